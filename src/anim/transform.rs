@@ -1,0 +1,52 @@
+//! Translation, rotation and scale of one joint relative to its parent.
+
+use glam::{Affine3A, Mat4, Quat, Vec3};
+use serde::{Deserialize, Serialize};
+
+/// A local transform: `parent_from_joint = T · R · S`. Translation in the parent's units, rotation a unit quaternion.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Transform {
+    pub translation: Vec3,
+    pub rotation: Quat,
+    pub scale: Vec3,
+}
+
+impl Transform {
+    pub const IDENTITY: Self = Self { translation: Vec3::ZERO, rotation: Quat::IDENTITY, scale: Vec3::ONE };
+
+    pub fn from_translation(translation: Vec3) -> Self {
+        Self { translation, ..Self::IDENTITY }
+    }
+
+    pub fn from_rotation(rotation: Quat) -> Self {
+        Self { rotation, ..Self::IDENTITY }
+    }
+
+    /// Decomposes a matrix as glTF asks (2.0 §3.5.3): a mirrored one gets a negative X scale. A sheared or singular
+    /// matrix has no such form; the nearest one that keeps the column lengths is returned.
+    pub fn from_matrix(matrix: &Mat4) -> Self {
+        let (x, y, z) = (matrix.x_axis.truncate(), matrix.y_axis.truncate(), matrix.z_axis.truncate());
+        let mirrored = if matrix.determinant() < 0.0 { -1.0 } else { 1.0 };
+        let scale = Vec3::new(x.length() * mirrored, y.length(), z.length());
+        let axis = |v: Vec3, length: f32| if length == 0.0 { Vec3::ZERO } else { v / length };
+        let basis = glam::Mat3::from_cols(axis(x, scale.x), axis(y, scale.y), axis(z, scale.z));
+        let rotation = Quat::from_mat3(&basis);
+        let rotation =
+            if rotation.is_finite() && rotation.length_squared() > 0.0 { rotation.normalize() } else { Quat::IDENTITY };
+        Self { translation: matrix.w_axis.truncate(), rotation, scale }
+    }
+
+    pub fn to_affine(&self) -> Affine3A {
+        Affine3A::from_scale_rotation_translation(self.scale, self.rotation, self.translation)
+    }
+
+    pub fn is_finite(&self) -> bool {
+        self.translation.is_finite() && self.rotation.is_finite() && self.scale.is_finite()
+    }
+}
+
+impl Default for Transform {
+    fn default() -> Self {
+        Self::IDENTITY
+    }
+}

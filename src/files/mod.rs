@@ -1,0 +1,1 @@
+//! Getting at bytes: disk, drop, picker, network; and decoding images. Produces [`crate::library::Model`]s.

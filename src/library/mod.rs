@@ -1,0 +1,38 @@
+//! Everything that is loaded: assets with their decoded images, and what is derived from them once and kept.
+
+mod image;
+mod model;
+
+pub use image::ImageData;
+pub use model::{Model, ModelId};
+
+/// The loaded models, in the order they were opened.
+#[derive(Debug, Default)]
+pub struct Library {
+    models: Vec<Model>,
+    next_id: u64,
+}
+
+impl Library {
+    /// Replaces everything by one model.
+    pub fn set(&mut self, mut model: Model) -> ModelId {
+        self.next_id += 1;
+        model.id = ModelId(self.next_id);
+        self.models.clear();
+        self.models.push(model);
+        ModelId(self.next_id)
+    }
+
+    pub fn models(&self) -> &[Model] {
+        &self.models
+    }
+
+    /// The model that is shown and edited.
+    pub fn active(&self) -> Option<&Model> {
+        self.models.first()
+    }
+
+    pub fn get(&self, id: ModelId) -> Option<&Model> {
+        self.models.iter().find(|model| model.id == id)
+    }
+}

@@ -1,0 +1,11 @@
+//! The one binary: the command line natively, the page in wasm32.
+
+#[cfg(not(target_arch = "wasm32"))]
+fn main() -> std::process::ExitCode {
+    gaitway::cli::main()
+}
+
+#[cfg(target_arch = "wasm32")]
+fn main() {
+    gaitway::web::start();
+}

@@ -1,0 +1,61 @@
+//! Axis-aligned boxes.
+
+use glam::{Affine3A, Vec3};
+
+/// An axis-aligned box; empty when `min > max`, as [`Bounds::EMPTY`] is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounds {
+    pub min: Vec3,
+    pub max: Vec3,
+}
+
+impl Bounds {
+    pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
+
+    pub fn of(points: impl IntoIterator<Item = Vec3>) -> Self {
+        points.into_iter().fold(Self::EMPTY, Self::including)
+    }
+
+    /// The box grown to hold a point; points that are not finite are left out.
+    pub fn including(self, point: Vec3) -> Self {
+        if point.is_finite() { Self { min: self.min.min(point), max: self.max.max(point) } } else { self }
+    }
+
+    pub fn union(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    pub fn is_empty(&self) -> bool {
+        !(self.min.cmple(self.max).all())
+    }
+
+    pub fn center(&self) -> Vec3 {
+        0.5 * (self.min + self.max)
+    }
+
+    /// Edge lengths; zero when empty.
+    pub fn size(&self) -> Vec3 {
+        if self.is_empty() { Vec3::ZERO } else { self.max - self.min }
+    }
+
+    pub fn diagonal(&self) -> f32 {
+        self.size().length()
+    }
+
+    pub fn corners(&self) -> [Vec3; 8] {
+        std::array::from_fn(|corner| {
+            Vec3::select(glam::BVec3::new(corner & 1 != 0, corner & 2 != 0, corner & 4 != 0), self.max, self.min)
+        })
+    }
+
+    /// The box around this box's corners after a transform.
+    pub fn transformed(&self, to_from: &Affine3A) -> Self {
+        if self.is_empty() { *self } else { Self::of(self.corners().map(|corner| to_from.transform_point3(corner))) }
+    }
+}
+
+impl Default for Bounds {
+    fn default() -> Self {
+        Self::EMPTY
+    }
+}

@@ -1,0 +1,16 @@
+//! Shapes that skeletons bend: geometry, skins, materials, and skinning on the CPU, the reference for the GPU's.
+//! Knows no file, GPU, user interface or clock.
+
+mod bounds;
+mod geometry;
+mod material;
+mod palette;
+mod skin;
+mod skinning;
+
+pub use bounds::Bounds;
+pub use geometry::{Geometry, GeometryError, Influences, MAX_INFLUENCES, Mesh, MorphTarget, Topology};
+pub use material::{AlphaMode, Filter, Material, MipFilter, Sampler, Texture, TextureRef, UvTransform, Wrap};
+pub use palette::{PaletteEntry, SkinningMode, palette_entry, write_palette};
+pub use skin::{Skin, SkinError};
+pub use skinning::{DeformedVertices, deform};

