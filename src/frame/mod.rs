@@ -1,14 +1,24 @@
 //! One picture, ready to draw: `evaluate` turns what is loaded and what is set into plain numbers. No clock, no chance:
 //! the same library and state give the same frame.
 
+mod evaluate;
+mod overlays;
+mod pick;
+mod pose_document;
+mod view;
+
 use std::ops::Range;
 
 use glam::{Affine3A, Mat4, Vec3, Vec4};
 
 use crate::asset::LightKind;
-use crate::library::{Library, ModelId};
+use crate::library::ModelId;
 use crate::mesh::{Bounds, PaletteEntry, SkinningMode};
-use crate::state::{Background, ViewerState};
+use crate::state::Background;
+
+pub use evaluate::evaluate;
+pub use pick::pick_joint;
+pub use pose_document::pose_document;
 
 /// What the renderer reads. Reused from frame to frame, so that nothing is allocated once it has grown.
 #[derive(Debug, Default)]
@@ -24,6 +34,7 @@ pub struct Frame {
     pub bones: Vec<Bone>,
     /// World-space box of all that can be seen over the clip: fits the shadow and the grid.
     pub bounds: Bounds,
+    scratch: evaluate::Scratch,
 }
 
 #[derive(Debug, Clone, Copy, Default)]
@@ -45,6 +56,8 @@ pub struct Look {
     pub wireframe: bool,
     pub shadow: bool,
     pub grid: Option<Grid>,
+    /// Height of the plane that shadows fall on, where the character stands.
+    pub ground_height: f32,
 }
 
 /// A grid on the ground plane.
@@ -135,9 +148,7 @@ impl Default for Look {
             wireframe: false,
             shadow: true,
             grid: None,
+            ground_height: 0.0,
         }
     }
 }
-
-/// Fills `frame` for a picture of the given aspect ratio (width over height).
-pub fn evaluate(_library: &Library, _state: &ViewerState, _aspect: f32, _frame: &mut Frame) {}

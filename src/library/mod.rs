@@ -1,10 +1,16 @@
 //! Everything that is loaded: assets with their decoded images, and what is derived from them once and kept.
 
+mod extent;
 mod image;
+mod inspect;
 mod model;
+mod rig;
+pub mod sample;
 
 pub use image::ImageData;
+pub use inspect::{inspect, warning_documents};
 pub use model::{Model, ModelId};
+pub use rig::{Rig, RigBone};
 
 /// The loaded models, in the order they were opened.
 #[derive(Debug, Default)]

@@ -1,9 +1,14 @@
-//! One loaded file with its decoded images.
+//! One loaded file with its decoded images, and what is worked out from them once and kept.
 
-use std::sync::Arc;
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex};
 
 use super::ImageData;
+use super::extent::Extent;
+use super::rig::Rig;
+use crate::anim::{JointIndex, Pose, SampleCursor, model_from_joint};
 use crate::asset::Asset;
+use crate::mesh::Bounds;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
 pub struct ModelId(pub u64);
@@ -17,10 +22,175 @@ pub struct Model {
     pub asset: Arc<Asset>,
     /// One per image of the asset; none where it could not be decoded (a warning says why).
     pub images: Vec<Option<ImageData>>,
+    clip_titles: Vec<String>,
+    rig: Rig,
+    extent: Extent,
+    swept: Mutex<BTreeMap<SweptKey, Bounds>>,
+}
+
+/// What a swept box was made for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct SweptKey {
+    scene: Option<usize>,
+    clip: Option<usize>,
+    /// The root's travel over the ground is taken out.
+    in_place: bool,
 }
 
 impl Model {
+    /// How often a clip is looked at to find out how far it reaches.
+    const SWEEP_SAMPLES: usize = 24;
+
     pub fn new(source: String, asset: Asset, images: Vec<Option<ImageData>>) -> Self {
-        Self { id: ModelId::default(), source, asset: Arc::new(asset), images }
+        let clip_titles = unique_titles(&asset);
+        let rig = Rig::new(&asset);
+        let extent = Extent::new(&asset);
+        Self {
+            id: ModelId::default(),
+            source,
+            asset: Arc::new(asset),
+            images,
+            clip_titles,
+            rig,
+            extent,
+            swept: Mutex::default(),
+        }
     }
+
+    /// Names to show a person: one per clip, never empty, never twice the same.
+    pub fn clip_titles(&self) -> &[String] {
+        &self.clip_titles
+    }
+
+    /// Which joints make up the skeleton that is drawn, and how they hang together.
+    pub fn rig(&self) -> &Rig {
+        &self.rig
+    }
+
+    /// The scene a choice stands for: an index out of range is the file's default.
+    pub fn scene(&self, choice: Option<usize>) -> Option<usize> {
+        choice.filter(|&scene| scene < self.asset.scenes.len()).or(self.asset.default_scene)
+    }
+
+    /// World-space box of the rest pose of the file's default scene, every vertex skinned. Without a mesh: of the
+    /// joints. Empty when there is nothing.
+    pub fn rest_bounds(&self) -> Bounds {
+        self.extent.rest()
+    }
+
+    /// Box around one pose: encloses every vertex (nearly, for dual quaternions), a little wide where joints bend.
+    /// `world_from_joint` has one entry per joint; `in_scene` too.
+    pub fn pose_bounds(
+        &self,
+        world_from_joint: &[glam::Affine3A],
+        morph_weights: &[f32],
+        in_scene: &[bool],
+    ) -> Bounds {
+        self.extent.of_pose(&self.asset, world_from_joint, morph_weights, in_scene)
+    }
+
+    /// Middle of one mesh instance in a pose, for sorting.
+    pub fn instance_center(&self, instance: usize, world_from_joint: &[glam::Affine3A]) -> glam::Vec3 {
+        self.extent.instance_center(&self.asset, instance, world_from_joint)
+    }
+
+    /// World-space box of everything a clip reaches (no clip: the rest pose) in a scene of the file. With `in_place` the
+    /// travel of the root over the ground is taken out. Worked out once.
+    pub fn clip_bounds(&self, scene: Option<usize>, clip: Option<usize>, in_place: bool) -> Bounds {
+        let scene = self.scene(scene);
+        let clip = clip.filter(|&clip| clip < self.asset.clips.len());
+        let key = SweptKey { scene, clip, in_place };
+        if let Some(bounds) = self.swept.lock().ok().and_then(|swept| swept.get(&key).copied()) {
+            return bounds;
+        }
+        let bounds = self.sweep(key);
+        if let Ok(mut swept) = self.swept.lock() {
+            swept.insert(key, bounds);
+        }
+        bounds
+    }
+
+    /// The joint whose travel is the character's travel in a clip: the topmost joint of the skin that the clip carries
+    /// about, or the topmost at all; none when nothing moves.
+    pub fn root_of_clip(&self, clip: usize) -> Option<JointIndex> {
+        self.rig.root_of_clip(clip)
+    }
+
+    /// Frames per second that the keys of a clip were set at, as far as their times tell; 30 when they do not.
+    pub fn frames_per_sec(&self, clip: usize) -> f64 {
+        const COMMON: [f64; 8] = [30.0, 24.0, 25.0, 60.0, 50.0, 48.0, 120.0, 100.0];
+        const MOST_KEYS: usize = 4096;
+        let Some(clip) = self.asset.clips.get(clip) else { return COMMON[0] };
+        let on_frames = |rate: f64| {
+            clip.timelines().iter().flatten().take(MOST_KEYS).all(|&time| {
+                let frame = f64::from(time) * rate;
+                (frame - frame.round()).abs() < 0.02
+            })
+        };
+        COMMON.into_iter().find(|&rate| on_frames(rate)).unwrap_or(COMMON[0])
+    }
+
+    fn sweep(&self, key: SweptKey) -> Bounds {
+        let skeleton = &self.asset.skeleton;
+        let in_scene = self.asset.joints_in_scene(key.scene);
+        let mut pose = skeleton.rest().clone();
+        let mut world_from_joint = Vec::with_capacity(skeleton.len());
+        let Some(clip) = key.clip.map(|clip| &self.asset.clips[clip]) else {
+            if key.scene == self.asset.default_scene {
+                return self.rest_bounds();
+            }
+            model_from_joint(skeleton, &pose.locals, glam::Affine3A::IDENTITY, &mut world_from_joint);
+            return self.pose_bounds(&world_from_joint, &pose.morph_weights, &in_scene);
+        };
+        let root = key.clip.filter(|_| key.in_place).and_then(|clip| self.root_of_clip(clip));
+        let mut start = None;
+        let mut cursor = SampleCursor::default();
+        let mut bounds = Bounds::EMPTY;
+        for sample in 0..=Self::SWEEP_SAMPLES {
+            let time_secs = clip.duration_secs() * sample as f32 / Self::SWEEP_SAMPLES as f32;
+            pose.copy_from(skeleton.rest());
+            clip.sample(skeleton, time_secs, &mut cursor, &mut pose);
+            model_from_joint(skeleton, &pose.locals, glam::Affine3A::IDENTITY, &mut world_from_joint);
+            let mut at_time = self.pose_bounds(&world_from_joint, &pose.morph_weights, &in_scene);
+            if let Some(root) = root {
+                let position = glam::Vec3::from(world_from_joint[root.get()].translation);
+                let travel = (position - *start.get_or_insert(position)) * glam::Vec3::new(1.0, 0.0, 1.0);
+                if travel.is_finite() && !at_time.is_empty() {
+                    at_time = Bounds { min: at_time.min - travel, max: at_time.max - travel };
+                }
+            }
+            bounds = bounds.union(at_time);
+            if clip.duration_secs() <= 0.0 {
+                break;
+            }
+        }
+        bounds
+    }
+}
+
+/// Rest pose and box helpers need poses often enough to name it here.
+pub(super) fn rest_world(asset: &Asset) -> Vec<glam::Affine3A> {
+    let rest: &Pose = asset.skeleton.rest();
+    let mut world_from_joint = Vec::with_capacity(asset.skeleton.len());
+    model_from_joint(&asset.skeleton, &rest.locals, glam::Affine3A::IDENTITY, &mut world_from_joint);
+    world_from_joint
+}
+
+fn unique_titles(asset: &Asset) -> Vec<String> {
+    let mut seen: BTreeMap<String, usize> = BTreeMap::new();
+    let mut titles = Vec::with_capacity(asset.clips.len());
+    for (index, clip) in asset.clips.iter().enumerate() {
+        let base = if clip.name().trim().is_empty() { format!("Clip {index}") } else { clip.name().to_owned() };
+        let mut title = base.clone();
+        loop {
+            let count = seen.entry(title.clone()).or_insert(0);
+            *count += 1;
+            if *count == 1 {
+                break;
+            }
+            title = format!("{base} ({})", *count);
+        }
+        titles.push(title);
+    }
+    titles
 }

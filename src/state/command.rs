@@ -1,8 +1,7 @@
 //! Everything a person can do to the view. Menu, keys, links, scripts and tests all use this list.
 
-use super::{Background, CameraChoice, ClipChoice, OrbitCamera, UpAxis, ViewerState};
+use super::{Background, CameraChoice, ClipChoice, UpAxis, ViewerState};
 use crate::anim::{LoopMode, TimeRange};
-use crate::library::Library;
 use crate::mesh::SkinningMode;
 
 #[derive(Debug, Clone, PartialEq)]
@@ -52,9 +51,4 @@ pub enum Command {
     SetEnvironment(f32),
     SetBackground(Background),
     SetEmbed(bool),
-}
-
-/// The only way to change a view state. Values out of range are clamped, numbers that are not finite are ignored.
-pub fn apply(_state: &mut ViewerState, _library: &Library, _command: Command) {
-    let _ = OrbitCamera::eye;
 }

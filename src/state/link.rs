@@ -1,19 +1,435 @@
-//! The text form of a view state: `key=value` joined by `&` after the `#`. Old links keep working.
+//! The text form of a view state: `key=value` joined by `&` after the `#`, and the same keys as a JSON object. Old links
+//! keep working: `v=1` fixes the defaults below, keys this version does not know are kept and written back.
 
-use super::ViewerState;
+use std::collections::BTreeMap;
+use std::fmt::Display;
+
+use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_encode};
+use serde_json::{Map, Value, json};
+
+use super::{Background, CameraChoice, ClipChoice, OrbitCamera, Show, UpAxis, ViewerState};
+use crate::anim::{LoopMode, TimeRange};
+use crate::mesh::SkinningMode;
 
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum LinkError {
     #[error("{key}={value}: expected {expected}")]
     BadValue { key: String, value: String, expected: &'static str },
+    #[error("{key}: this version does not know it; it is kept in the link")]
+    UnknownKey { key: String },
+    #[error("show={value}: this version does not know it; it is kept in the link")]
+    UnknownShow { value: String },
 }
 
+/// Keys of the link in the order they are written.
+const KEYS: [&str; 20] = [
+    "model",
+    "scene",
+    "clip",
+    "t",
+    "play",
+    "speed",
+    "loop",
+    "range",
+    "skinning",
+    "morph",
+    "show",
+    "joint",
+    "camera",
+    "fov",
+    "follow",
+    "up",
+    "exposure",
+    "environment",
+    "background",
+    "embed",
+];
+
+/// Kept readable: `/`, `:`, `,` and the like need no escape in a fragment.
+const ESCAPED: &AsciiSet =
+    &CONTROLS.add(b' ').add(b'"').add(b'#').add(b'%').add(b'&').add(b'+').add(b'<').add(b'=').add(b'>').add(b'`');
+
 /// The part after `#`; only what differs from the default is written.
-pub fn to_link(_state: &ViewerState) -> String {
-    String::new()
+pub fn to_link(state: &ViewerState) -> String {
+    let default = ViewerState::default();
+    let mut text = "v=1".to_owned();
+    let mut push = |key: &str, value: &str| {
+        text.push('&');
+        text.extend(utf8_percent_encode(key, ESCAPED));
+        text.push('=');
+        text.extend(utf8_percent_encode(value, ESCAPED));
+    };
+    for key in KEYS {
+        if key == "model" {
+            state.model.iter().for_each(|model| push(key, model));
+        } else if key == "clip" && state.clip == ClipChoice::First {
+            // Absent means the first; empty means the rest pose.
+        } else {
+            let value = value_of(state, key);
+            if value != value_of(&default, key) || key == "clip" {
+                push(key, &value);
+            }
+        }
+    }
+    for (key, values) in &state.unknown {
+        if key != "show" {
+            values.split('\n').for_each(|value| push(key, value));
+        }
+    }
+    text
 }
 
 /// Reads a link's part after `#` (a leading `#` is fine). Bad values are reported and skipped, unknown keys kept.
-pub fn from_link(_fragment: &str) -> (ViewerState, Vec<LinkError>) {
-    (ViewerState::default(), Vec::new())
+pub fn from_link(fragment: &str) -> (ViewerState, Vec<LinkError>) {
+    let mut state = ViewerState::default();
+    let mut errors = Vec::new();
+    for pair in fragment.trim_start_matches('#').split('&').filter(|pair| !pair.is_empty()) {
+        let (key, value) = pair.split_once('=').unwrap_or((pair, ""));
+        let decode = |text: &str| percent_decode_str(text).decode_utf8_lossy().into_owned();
+        set_value(&mut state, &decode(key), &decode(value), &mut errors);
+    }
+    (state, errors)
+}
+
+/// All keys of the link with their values, as plain JSON: flags are booleans, numbers numbers, what is not set null.
+pub fn to_object(state: &ViewerState) -> Value {
+    let mut object = Map::new();
+    object.insert("v".to_owned(), json!(1));
+    for key in KEYS {
+        let text = value_of(state, key);
+        let value = match key {
+            "model" => json!(state.model),
+            "clip" if state.clip == ClipChoice::First => Value::Null,
+            "play" | "follow" | "embed" => json!(text == "1"),
+            "t" => json!(state.time_secs),
+            "speed" => json!(state.speed),
+            "fov" => json!(state.fov_degrees),
+            "exposure" => json!(state.exposure),
+            "environment" => json!(state.environment_degrees),
+            "scene" => json!(state.scene),
+            "joint" => json!(state.joint),
+            "range" if state.range.is_none() => Value::Null,
+            _ => Value::String(text),
+        };
+        object.insert(key.to_owned(), value);
+    }
+    for (key, values) in state.unknown.iter().filter(|(key, _)| *key != "show") {
+        let mut values: Vec<&str> = values.split('\n').collect();
+        let value = if values.len() == 1 { json!(values.remove(0)) } else { json!(values) };
+        object.insert(key.clone(), value);
+    }
+    Value::Object(object)
+}
+
+/// A state with some keys of the link set anew; null sets a key back to its default. Bad values are reported and skipped.
+pub fn from_object(base: &ViewerState, partial: &Value) -> (ViewerState, Vec<LinkError>) {
+    let mut state = base.clone();
+    let mut errors = Vec::new();
+    let Value::Object(partial) = partial else {
+        let expected = "an object with keys of the link";
+        errors.push(LinkError::BadValue { key: "state".to_owned(), value: partial.to_string(), expected });
+        return (state, errors);
+    };
+    for (key, value) in partial {
+        let repeatable = key == "model" || !(KEYS.contains(&key.as_str()) || key == "v");
+        let texts = match value {
+            Value::Array(values) if repeatable => values.iter().map(plain_text).collect(),
+            Value::Array(values) => vec![values.iter().map(plain_text).collect::<Vec<_>>().join(",")],
+            Value::Null => Vec::new(),
+            value => vec![plain_text(value)],
+        };
+        if repeatable {
+            state.model.retain(|_| key != "model");
+            state.unknown.remove(key);
+        }
+        if texts.is_empty() {
+            reset(&mut state, key);
+        }
+        for text in texts {
+            set_value(&mut state, key, &text, &mut errors);
+        }
+    }
+    (state, errors)
+}
+
+fn plain_text(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        Value::Bool(flag) => flag_text(*flag).to_owned(),
+        value => value.to_string(),
+    }
+}
+
+/// Back to the default of one key.
+fn reset(state: &mut ViewerState, key: &str) {
+    match key {
+        "clip" => state.clip = ClipChoice::First,
+        "scene" => state.scene = None,
+        "joint" => state.joint = None,
+        "range" => state.range = None,
+        "model" => state.model.clear(),
+        key if KEYS.contains(&key) => set_value(state, key, &value_of(&ViewerState::default(), key), &mut Vec::new()),
+        _ => {}
+    }
+}
+
+fn value_of(state: &ViewerState, key: &str) -> String {
+    let number = |value: Option<usize>| value.map_or(String::new(), |value| value.to_string());
+    match key {
+        "scene" => number(state.scene),
+        "clip" => match &state.clip {
+            ClipChoice::Named(name) => name.clone(),
+            ClipChoice::First | ClipChoice::RestPose => String::new(),
+        },
+        "t" => state.time_secs.to_string(),
+        "play" => flag_text(state.playing).to_owned(),
+        "speed" => state.speed.to_string(),
+        "loop" => word_of(&LOOP_MODES, &state.loop_mode),
+        "range" => state.range.map_or(String::new(), |range| format!("{},{}", range.start_secs, range.end_secs)),
+        "skinning" => word_of(&SKINNING_MODES, &state.skinning),
+        "morph" => joined(state.morph.iter().map(|(index, weight)| format!("{index}:{weight}"))),
+        "show" => show_text(state),
+        "joint" => number(state.joint),
+        "camera" => camera_text(&state.camera),
+        "fov" => state.fov_degrees.to_string(),
+        "follow" => flag_text(state.follow).to_owned(),
+        "up" => word_of(&UP_AXES, &state.up),
+        "exposure" => state.exposure.to_string(),
+        "environment" => state.environment_degrees.to_string(),
+        "background" => match state.background {
+            Background::Studio => "studio".to_owned(),
+            Background::Transparent => "transparent".to_owned(),
+            Background::Color([red, green, blue]) => format!("{red:02x}{green:02x}{blue:02x}"),
+        },
+        "embed" => flag_text(state.embed).to_owned(),
+        _ => String::new(),
+    }
+}
+
+fn set_value(state: &mut ViewerState, key: &str, value: &str, errors: &mut Vec<LinkError>) {
+    let expected = match read_value(state, key, value) {
+        Read::Done => return,
+        Read::Bad(expected) => expected,
+        Read::Unknown => {
+            errors.push(LinkError::UnknownKey { key: key.to_owned() });
+            let kept = state.unknown.entry(key.to_owned());
+            kept.and_modify(|kept| *kept = format!("{kept}\n{value}")).or_insert_with(|| value.to_owned());
+            return;
+        }
+        Read::UnknownShow(words) => {
+            errors.extend(words.iter().map(|word| LinkError::UnknownShow { value: word.clone() }));
+            state.unknown.insert("show".to_owned(), words.join(","));
+            return;
+        }
+    };
+    errors.push(LinkError::BadValue { key: key.to_owned(), value: value.to_owned(), expected });
+}
+
+enum Read {
+    Done,
+    /// What was expected.
+    Bad(&'static str),
+    Unknown,
+    /// Words of `show` that are not known; the others are set.
+    UnknownShow(Vec<String>),
+}
+
+fn read_value(state: &mut ViewerState, key: &str, value: &str) -> Read {
+    match key {
+        "v" => return if value == "1" { Read::Done } else { Read::Bad("1, the only version there is") },
+        "model" => state.model.push(value.to_owned()),
+        "clip" if value.is_empty() => state.clip = ClipChoice::RestPose,
+        "clip" => state.clip = ClipChoice::Named(value.to_owned()),
+        "scene" => return put(&mut state.scene, optional(value), "a scene's index"),
+        "joint" => return put(&mut state.joint, optional(value), "a joint's number in the file"),
+        "t" => return put(&mut state.time_secs, finite(value), "seconds"),
+        "play" => return put(&mut state.playing, flag(value), "0 or 1"),
+        "speed" => return put(&mut state.speed, finite(value), "a factor such as 0.5"),
+        "loop" => return put(&mut state.loop_mode, from_word(&LOOP_MODES, value), "once, loop or ping-pong"),
+        "range" if value.is_empty() => state.range = None,
+        "range" => return put(&mut state.range, read_range(value), "two times in seconds: 0.5,1.5"),
+        "skinning" => {
+            let mode = from_word(&SKINNING_MODES, value);
+            return put(&mut state.skinning, mode, "linear, rigid or dual-quaternion");
+        }
+        "morph" => return put(&mut state.morph, read_morph(value), "pairs of index and weight: 0:0.5,3:1"),
+        "show" => return read_show(state, value),
+        "camera" => {
+            let expected = "yaw,pitch,distance,x,y,z in degrees and metres, gltf:INDEX or auto";
+            return put(&mut state.camera, read_camera(value), expected);
+        }
+        "fov" => return put(&mut state.fov_degrees, finite(value), "degrees"),
+        "follow" => return put(&mut state.follow, flag(value), "0 or 1"),
+        "up" => return put(&mut state.up, from_word(&UP_AXES, value), "x, y, z, -x, -y or -z"),
+        "exposure" => return put(&mut state.exposure, finite(value), "stops"),
+        "environment" => return put(&mut state.environment_degrees, finite(value), "degrees"),
+        "background" => {
+            return put(&mut state.background, read_background(value), "studio, transparent or rrggbb");
+        }
+        "embed" => return put(&mut state.embed, flag(value), "0 or 1"),
+        _ => return Read::Unknown,
+    }
+    Read::Done
+}
+
+fn put<T>(slot: &mut T, value: Option<T>, expected: &'static str) -> Read {
+    match value {
+        Some(value) => {
+            *slot = value;
+            Read::Done
+        }
+        None => Read::Bad(expected),
+    }
+}
+
+const LOOP_MODES: [(&str, LoopMode); 3] =
+    [("once", LoopMode::Once), ("loop", LoopMode::Loop), ("ping-pong", LoopMode::PingPong)];
+
+const SKINNING_MODES: [(&str, SkinningMode); 3] = [
+    ("linear", SkinningMode::Linear),
+    ("rigid", SkinningMode::Rigid),
+    ("dual-quaternion", SkinningMode::DualQuaternion),
+];
+
+const UP_AXES: [(&str, UpAxis); 6] = [
+    ("x", UpAxis::X),
+    ("y", UpAxis::Y),
+    ("z", UpAxis::Z),
+    ("-x", UpAxis::MinusX),
+    ("-y", UpAxis::MinusY),
+    ("-z", UpAxis::MinusZ),
+];
+
+fn word_of<T: PartialEq>(words: &[(&str, T)], value: &T) -> String {
+    words.iter().find(|(_, other)| other == value).map_or(String::new(), |(word, _)| (*word).to_owned())
+}
+
+fn from_word<T: Copy>(words: &[(&str, T)], text: &str) -> Option<T> {
+    words.iter().find(|(word, _)| *word == text).map(|(_, value)| *value)
+}
+
+fn flag_text(flag: bool) -> &'static str {
+    if flag { "1" } else { "0" }
+}
+
+fn flag(text: &str) -> Option<bool> {
+    match text {
+        "1" | "true" => Some(true),
+        "0" | "false" => Some(false),
+        _ => None,
+    }
+}
+
+fn joined<T: Display>(parts: impl Iterator<Item = T>) -> String {
+    parts.map(|part| part.to_string()).collect::<Vec<_>>().join(",")
+}
+
+/// A number with a point; infinities and NaN are refused.
+fn finite<T: std::str::FromStr + Copy + Into<f64>>(text: &str) -> Option<T> {
+    text.trim().parse::<T>().ok().filter(|&value| Into::<f64>::into(value).is_finite())
+}
+
+/// Empty: not set.
+fn optional(text: &str) -> Option<Option<usize>> {
+    if text.is_empty() { Some(None) } else { text.parse().ok().map(Some) }
+}
+
+fn read_range(text: &str) -> Option<Option<TimeRange>> {
+    let (start, end) = text.split_once(',')?;
+    let (start_secs, end_secs) = (finite(start)?, finite(end)?);
+    (start_secs <= end_secs).then_some(Some(TimeRange { start_secs, end_secs }))
+}
+
+fn read_morph(text: &str) -> Option<BTreeMap<usize, f32>> {
+    let pair = |pair: &str| {
+        let (index, weight) = pair.split_once(':')?;
+        Some((index.trim().parse().ok()?, finite(weight)?))
+    };
+    text.split(',').filter(|part| !part.is_empty()).map(pair).collect()
+}
+
+/// The words of `show`, each with its flag, and what the flag is when the word is there. The mesh and its shadow belong to
+/// any picture, so the words for them take them away.
+fn show_flags(show: &mut Show) -> [(&'static str, &mut bool, bool); 7] {
+    [
+        ("no-mesh", &mut show.mesh, false),
+        ("skeleton", &mut show.skeleton, true),
+        ("weights", &mut show.weights, true),
+        ("bounds", &mut show.bounds, true),
+        ("wireframe", &mut show.wireframe, true),
+        ("grid", &mut show.grid, true),
+        ("no-shadow", &mut show.shadow, false),
+    ]
+}
+
+fn show_text(state: &ViewerState) -> String {
+    let mut show = state.show;
+    let flags = show_flags(&mut show).into_iter();
+    let words = flags.filter(|(_, flag, when)| **flag == *when).map(|(word, ..)| word.to_owned());
+    joined(words.chain(state.unknown.get("show").cloned()))
+}
+
+fn read_show(state: &mut ViewerState, text: &str) -> Read {
+    let mut unknown = Vec::new();
+    show_flags(&mut state.show).into_iter().for_each(|(_, flag, when)| *flag = !when);
+    state.unknown.remove("show");
+    for word in text.split(',').map(str::trim).filter(|word| !word.is_empty()) {
+        match show_flags(&mut state.show).into_iter().find(|(other, ..)| *other == word) {
+            Some((_, flag, when)) => *flag = when,
+            None => unknown.push(word.to_owned()),
+        }
+    }
+    if unknown.is_empty() { Read::Done } else { Read::UnknownShow(unknown) }
+}
+
+fn camera_text(camera: &CameraChoice) -> String {
+    match camera {
+        CameraChoice::Auto => "auto".to_owned(),
+        CameraChoice::File(index) => format!("gltf:{index}"),
+        CameraChoice::Orbit(OrbitCamera { yaw_radians, pitch_radians, distance, target }) => {
+            let (yaw, pitch) = (degrees_text(*yaw_radians), degrees_text(*pitch_radians));
+            format!("{yaw},{pitch},{distance},{},{},{}", target.x, target.y, target.z)
+        }
+    }
+}
+
+/// The shortest decimal that reads back as the same angle.
+fn degrees_text(radians: f32) -> String {
+    let degrees = f64::from(radians).to_degrees();
+    let reads_back = |text: &String| text.parse::<f64>().is_ok_and(|degrees| degrees.to_radians() as f32 == radians);
+    (0..12).map(|digits| format!("{degrees:.digits$}")).find(reads_back).unwrap_or_else(|| degrees.to_string())
+}
+
+fn read_camera(text: &str) -> Option<CameraChoice> {
+    if text == "auto" {
+        return Some(CameraChoice::Auto);
+    }
+    if let Some(index) = text.strip_prefix("gltf:") {
+        return index.parse().ok().map(CameraChoice::File);
+    }
+    let parts: Vec<&str> = text.split(',').collect();
+    let &[yaw, pitch, distance, x, y, z] = parts.as_slice() else { return None };
+    let radians = |text: &str| finite::<f64>(text).map(|degrees| degrees.to_radians() as f32);
+    let distance = finite::<f32>(distance).filter(|&distance| distance > 0.0)?;
+    let target = glam::Vec3::new(finite(x)?, finite(y)?, finite(z)?);
+    Some(CameraChoice::Orbit(OrbitCamera {
+        yaw_radians: radians(yaw)?,
+        pitch_radians: radians(pitch)?,
+        distance,
+        target,
+    }))
+}
+
+fn read_background(text: &str) -> Option<Background> {
+    match text {
+        "studio" => Some(Background::Studio),
+        "transparent" => Some(Background::Transparent),
+        _ => {
+            let hex = text.strip_prefix('#').unwrap_or(text);
+            let ok = hex.len() == 6 && hex.bytes().all(|byte| byte.is_ascii_hexdigit());
+            let number = u32::from_str_radix(hex, 16).ok().filter(|_| ok)?;
+            let [_, red, green, blue] = number.to_be_bytes();
+            Some(Background::Color([red, green, blue]))
+        }
+    }
 }

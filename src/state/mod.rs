@@ -1,11 +1,19 @@
 //! What a person has set, as plain data, and the one way to change it. Knows no user interface, GPU or clock.
 
+mod apply;
 mod camera;
 mod command;
+mod framing;
+mod history;
 mod link;
+mod playhead;
 mod view;
 
+pub use apply::apply;
 pub use camera::{CameraChoice, OrbitCamera};
-pub use command::{Command, apply};
-pub use link::{LinkError, from_link, to_link};
+pub use command::Command;
+pub use framing::{frame_all, resolve_camera, resolved_bounds, world_from_file_camera};
+pub use history::History;
+pub use link::{LinkError, from_link, from_object, to_link, to_object};
+pub use playhead::{active_clip, choice_of_clip, clip_secs, play_range, sample_pose, world_from_model};
 pub use view::{Background, ClipChoice, Show, UpAxis, ViewerState};

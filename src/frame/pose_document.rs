@@ -1,0 +1,65 @@
+//! The pose document: the numbers that are drawn, worked out by the reference implementation.
+
+use serde_json::{Value, json};
+
+use super::{Frame, evaluate};
+use crate::library::{Library, Model, warning_documents};
+use crate::mesh::{DeformedVertices, deform};
+use crate::state::{ViewerState, active_clip, clip_secs};
+
+/// What `gaitway pose --json` prints. World-space positions and normals of every mesh of the shown scene.
+pub fn pose_document(library: &Library, state: &ViewerState) -> Value {
+    let Some(model) = library.active() else {
+        return json!({ "clip": null, "time_secs": 0.0, "nodes": [], "meshes": [], "warnings": [] });
+    };
+    let mut frame = Frame::default();
+    evaluate(library, state, 1.0, &mut frame);
+    let clip = active_clip(model, state);
+    json!({
+        "clip": clip.map(|clip| model.asset.clips[clip].name()),
+        "time_secs": clip.map_or(0.0, |clip| clip_secs(model, clip, state)),
+        "nodes": nodes(model, &frame),
+        "meshes": meshes(model, state, &frame),
+        "warnings": warning_documents(&model.asset.warnings),
+    })
+}
+
+/// In the file's order.
+fn nodes(model: &Model, frame: &Frame) -> Vec<Value> {
+    let skeleton = &model.asset.skeleton;
+    let world_from_joint = frame.characters.first().map_or(&[][..], |character| &character.world_from_joint);
+    (0..skeleton.len())
+        .filter_map(|node| {
+            let joint = skeleton.joint_of_source(node)?;
+            let world = glam::Mat4::from(*world_from_joint.get(joint.get())?).to_cols_array();
+            Some(json!({ "node": node, "name": skeleton.name(joint), "world": world }))
+        })
+        .collect()
+}
+
+fn meshes(model: &Model, state: &ViewerState, frame: &Frame) -> Vec<Value> {
+    let asset = &model.asset;
+    let Some(character) = frame.characters.first() else { return Vec::new() };
+    let mut deformed = DeformedVertices::default();
+    let mut documents = Vec::new();
+    for draw in &character.draws {
+        let palette = &character.palette[draw.palette.start as usize..draw.palette.end as usize];
+        let weights = &character.morph_weights[draw.morph_weights.start as usize..draw.morph_weights.end as usize];
+        let node = asset.skeleton.source_index(asset.instances[draw.instance].joint);
+        for (primitive, geometry) in asset.meshes[draw.mesh].primitives.iter().enumerate() {
+            deform(geometry, weights, palette, state.skinning, &mut deformed);
+            documents.push(json!({
+                "node": node,
+                "mesh": draw.mesh,
+                "primitive": primitive,
+                "positions": flat(&deformed.positions, geometry.file_vertices),
+                "normals": flat(&deformed.normals, geometry.file_vertices),
+            }));
+        }
+    }
+    documents
+}
+
+fn flat(vectors: &[glam::Vec3], count: usize) -> Vec<f32> {
+    vectors.iter().take(count).flat_map(|vector| vector.to_array()).collect()
+}

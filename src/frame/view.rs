@@ -1,0 +1,69 @@
+//! The camera of one picture: place, direction, and planes that keep depth stable at any size.
+
+// The projections of the same form as WebGPU's: right-handed, Y up, depth from 0 to 1.
+use glam::camera::rh::proj::directx::{orthographic, perspective};
+use glam::camera::rh::view::look_at_mat4;
+use glam::{Affine3A, Mat4, Vec3};
+
+use super::{Frame, View};
+use crate::asset::CameraProjection;
+use crate::library::Library;
+use crate::state::{CameraChoice, ViewerState, resolve_camera, world_from_file_camera};
+
+/// The near plane is never nearer than this part of the far plane: more than 24 bits of depth can tell apart otherwise.
+const LEAST_NEAR: f32 = 1e-4;
+
+/// Expects bounds, ground and joints of the frame to be there already. `travel` is how far the camera has followed.
+pub(super) fn place_camera(library: &Library, state: &ViewerState, aspect: f32, travel: Vec3, frame: &mut Frame) {
+    if let CameraChoice::File(index) = state.camera
+        && let Some(view) = file_view(library, index, aspect, frame)
+    {
+        frame.view = view;
+        return;
+    }
+    let mut orbit = resolve_camera(library, state, aspect);
+    orbit.target += travel;
+    let eye = orbit.eye();
+    let (near, far) = planes(frame, eye, orbit.target - eye, orbit.distance);
+    let projection_from_view = perspective(state.fov_degrees.to_radians(), aspect, near, far);
+    frame.view = View { view_from_world: look_at_mat4(eye, orbit.target, Vec3::Y), projection_from_view, eye };
+}
+
+/// Distances that hold the model and the ground around it, along `ahead`.
+fn planes(frame: &Frame, eye: Vec3, ahead: Vec3, distance: f32) -> (f32, f32) {
+    let bounds = frame.bounds;
+    if bounds.is_empty() {
+        return (0.01 * distance, 100.0 * distance);
+    }
+    let ahead = ahead.normalize_or(Vec3::NEG_Z);
+    // Room for what reaches out of the box: overlays, and poses between those it was made from.
+    let radius = 0.6 * bounds.diagonal().max(1e-6);
+    let middle = (bounds.center() - eye).dot(ahead);
+    let ground = frame.look.grid.map_or(0.0, |grid| grid.radius);
+    let far = (middle + radius + ground).max(2.0 * radius);
+    let ground_near = if ground > 0.0 { 0.02 * distance } else { f32::INFINITY };
+    let near = (middle - radius).min(ground_near.max(0.0)).max(0.001 * distance.min(radius)).max(LEAST_NEAR * far);
+    (near, far.max(2.0 * near))
+}
+
+fn file_view(library: &Library, index: usize, aspect: f32, frame: &Frame) -> Option<View> {
+    let camera = library.active()?.asset.cameras.get(index)?;
+    let world_from_joint = &frame.characters.first()?.world_from_joint;
+    let world_from_camera: Affine3A = world_from_file_camera(world_from_joint.get(camera.joint.get())?)?;
+    let eye = Vec3::from(world_from_camera.translation);
+    let ahead = Vec3::from(-world_from_camera.matrix3.z_axis);
+    let distance = (frame.bounds.center() - eye).length().max(1e-6);
+    let (_, reach) = planes(frame, eye, ahead, distance);
+    let projection_from_view = match camera.projection {
+        CameraProjection::Perspective { y_fov_radians, near, far, .. } => {
+            let near = near.max(1e-6);
+            let far = far.unwrap_or(reach).max(2.0 * near);
+            perspective(y_fov_radians.clamp(0.01, 3.1), aspect, near, far)
+        }
+        CameraProjection::Orthographic { y_mag, near, far, .. } => {
+            let up = y_mag.abs().max(1e-6);
+            orthographic(-up * aspect, up * aspect, -up, up, near, far.max(near + 1e-6))
+        }
+    };
+    Some(View { view_from_world: Mat4::from(world_from_camera.inverse()), projection_from_view, eye })
+}

@@ -1,0 +1,73 @@
+//! The inspect document: what is in a file, as `gaitway inspect --json` and `window.gaitway.open` give it.
+
+use serde_json::{Value, json};
+
+use super::Model;
+use crate::anim::{Clip, Interpolation};
+use crate::asset::{Asset, Warnings};
+use crate::mesh::{Bounds, Geometry};
+
+/// `files` are the names of the files that were read. Counts are of the file: a mesh hung on two nodes counts once.
+pub fn inspect(model: &Model, files: &[String]) -> Value {
+    let asset: &Asset = &model.asset;
+    let primitives = || asset.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    let skins: Vec<Value> = asset
+        .skins
+        .iter()
+        .map(|skin| json!({ "name": skin.name(), "joints": skin.joints().len() }))
+        .collect();
+    let clips: Vec<Value> = asset.clips.iter().enumerate().map(|(index, clip)| clip_document(index, clip)).collect();
+    json!({
+        "files": files,
+        "format": asset.format,
+        "generator": asset.generator,
+        "nodes": asset.skeleton.len(),
+        "skins": skins,
+        "joints": model.rig().joint_count(asset),
+        "meshes": asset.meshes.len(),
+        "primitives": primitives().count(),
+        "vertices": primitives().map(|geometry| geometry.file_vertices).sum::<usize>(),
+        "triangles": primitives().map(Geometry::triangles).sum::<usize>(),
+        "morph_targets": asset.meshes.iter().map(target_count).sum::<usize>(),
+        "clips": clips,
+        "cameras": asset.cameras.len(),
+        "extensions_used": asset.extensions_used,
+        "extensions_required": asset.extensions_required,
+        "bounds": bounds_document(model.rest_bounds()),
+        "warnings": warning_documents(&asset.warnings),
+    })
+}
+
+/// `[{"code","message","where"}]`.
+pub fn warning_documents(warnings: &Warnings) -> Value {
+    let document = |warning: &crate::asset::Warning| json!({ "code": warning.code(), "message": warning.to_string(), "where": warning.place() });
+    Value::Array(warnings.iter().map(document).collect())
+}
+
+fn target_count(mesh: &crate::mesh::Mesh) -> usize {
+    mesh.primitives.iter().map(|geometry| geometry.morph_targets.len()).max().unwrap_or(0)
+}
+
+fn clip_document(index: usize, clip: &Clip) -> Value {
+    let count = |interpolation| clip.channels().iter().filter(|channel| channel.interpolation == interpolation).count();
+    json!({
+        "index": index,
+        "name": clip.name(),
+        "duration_secs": clip.duration_secs(),
+        "channels": clip.channels().len(),
+        "interpolations": {
+            "linear": count(Interpolation::Linear),
+            "step": count(Interpolation::Step),
+            "cubicspline": count(Interpolation::CubicSpline),
+        },
+    })
+}
+
+/// Null when there is nothing to enclose.
+fn bounds_document(bounds: Bounds) -> Value {
+    if bounds.is_empty() {
+        Value::Null
+    } else {
+        json!({ "min": bounds.min.to_array(), "max": bounds.max.to_array() })
+    }
+}

@@ -1,0 +1,119 @@
+//! Which joints of an asset are a skeleton to look at, which bones they form, and which of them carries the character.
+
+use crate::anim::{Clip, JointIndex, Keys};
+use crate::asset::Asset;
+
+/// Worked out once per model. "Real" joints are those of skins and the nodes between them; without a skin those that
+/// clips move; without a mesh all.
+#[derive(Debug, Default)]
+pub struct Rig {
+    real: Vec<bool>,
+    bones: Vec<RigBone>,
+    roots: Vec<Option<JointIndex>>,
+    skin_joints: usize,
+}
+
+/// From a joint to one of its children, or to nothing at the end of a chain.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RigBone {
+    pub head: JointIndex,
+    pub tail: Option<JointIndex>,
+}
+
+impl Rig {
+    pub(super) fn new(asset: &Asset) -> Self {
+        let skeleton = &asset.skeleton;
+        let mut in_skin = vec![false; skeleton.len()];
+        for joint in asset.skins.iter().flat_map(|skin| skin.joints()) {
+            in_skin[joint.get()] = true;
+        }
+        let skin_joints = in_skin.iter().filter(|&&inside| inside).count();
+        let mut real = in_skin.clone();
+        if skin_joints == 0 {
+            for channel in asset.clips.iter().flat_map(|clip| clip.channels()) {
+                if !matches!(channel.keys, Keys::MorphWeights { .. }) {
+                    real[channel.joint.get()] = true;
+                }
+            }
+            if asset.instances.is_empty() {
+                real.fill(true);
+            }
+        }
+        fill_gaps(asset, &mut real);
+        let mut has_child = vec![false; skeleton.len()];
+        let mut bones = Vec::new();
+        for joint in skeleton.joints().filter(|joint| real[joint.get()]) {
+            if let Some(parent) = skeleton.parent(joint).filter(|parent| real[parent.get()]) {
+                has_child[parent.get()] = true;
+                bones.push(RigBone { head: parent, tail: Some(joint) });
+            }
+        }
+        for joint in skeleton.joints().filter(|joint| real[joint.get()] && !has_child[joint.get()]) {
+            bones.push(RigBone { head: joint, tail: None });
+        }
+        let roots = asset.clips.iter().map(|clip| root_of_clip(asset, clip, &in_skin)).collect();
+        Self { real, bones, roots, skin_joints }
+    }
+
+    /// One flag per joint.
+    pub fn is_real(&self, joint: JointIndex) -> bool {
+        self.real.get(joint.get()).copied().unwrap_or(false)
+    }
+
+    pub fn bones(&self) -> &[RigBone] {
+        &self.bones
+    }
+
+    /// How many different joints the skins name.
+    pub fn skin_joints(&self) -> usize {
+        self.skin_joints
+    }
+
+    /// Joints of the skins; of a skeleton without a mesh, all.
+    pub fn joint_count(&self, asset: &Asset) -> usize {
+        if self.skin_joints == 0 && asset.instances.is_empty() { asset.skeleton.len() } else { self.skin_joints }
+    }
+
+    pub(super) fn root_of_clip(&self, clip: usize) -> Option<JointIndex> {
+        self.roots.get(clip).copied().flatten()
+    }
+}
+
+/// A joint between two real ones is real as well.
+fn fill_gaps(asset: &Asset, real: &mut [bool]) {
+    let skeleton = &asset.skeleton;
+    let mut below_real = vec![false; skeleton.len()];
+    for joint in skeleton.joints() {
+        let parent = skeleton.parent(joint);
+        below_real[joint.get()] = parent.is_some_and(|parent| real[parent.get()] || below_real[parent.get()]);
+    }
+    let mut above_real = vec![false; skeleton.len()];
+    for joint in skeleton.joints().rev() {
+        if (real[joint.get()] || above_real[joint.get()])
+            && let Some(parent) = skeleton.parent(joint)
+        {
+            above_real[parent.get()] = true;
+        }
+    }
+    for joint in 0..real.len() {
+        real[joint] = real[joint] || (below_real[joint] && above_real[joint]);
+    }
+}
+
+fn root_of_clip(asset: &Asset, clip: &Clip, in_skin: &[bool]) -> Option<JointIndex> {
+    let carried = |channel: &&crate::anim::Channel| match &channel.keys {
+        Keys::Translation(values) => values.windows(2).any(|pair| pair[0] != pair[1]),
+        _ => false,
+    };
+    let moved = || clip.channels().iter().filter(carried).map(|channel| channel.joint);
+    // Joints are sorted parents first, so the smallest index is a topmost one.
+    moved()
+        .filter(|joint| in_skin[joint.get()])
+        .min()
+        .or_else(|| {
+            // The travel sits above the skin: any joint of the skin is carried along.
+            moved().min()?;
+            asset.skeleton.joints().find(|joint| in_skin[joint.get()])
+        })
+        .or_else(|| moved().min())
+}

@@ -1,0 +1,271 @@
+//! The only way to change a view state.
+
+use std::f32::consts::{PI, TAU};
+
+use glam::Vec3;
+
+use super::framing::{frame_all, resolve_camera, resolved_bounds};
+use super::playhead::{active_clip, clip_secs, play_range};
+use super::{CameraChoice, Command, OrbitCamera, ViewerState};
+use crate::anim::{LoopMode, TimeRange};
+use crate::library::{Library, Model};
+
+/// For commands that need the automatic camera without knowing the picture: wide enough for most windows. Who knows the
+/// real shape sends `SetCamera` with [`resolve_camera`] first.
+const USUAL_ASPECT: f32 = 16.0 / 9.0;
+
+const MOST_PITCH_RADIANS: f32 = 89.9 * PI / 180.0;
+
+/// The only way to change a view state. Values out of range are clamped, numbers that are not finite are ignored.
+pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
+    let model = library.active();
+    match command {
+        Command::Replace(new) => replace(state, *new),
+        Command::SetScene(scene) => {
+            let known = |scene: usize| model.is_none_or(|model| scene < model.asset.scenes.len());
+            if scene.is_none_or(known) {
+                state.scene = scene;
+            }
+        }
+        Command::SetClip(clip) => {
+            state.clip = clip;
+            state.time_secs = 0.0;
+            state.range = None;
+        }
+        Command::SetPlaying(playing) => set_playing(state, model, playing),
+        Command::TogglePlaying => set_playing(state, model, !state.playing),
+        Command::Seek(time_secs) => seek(state, model, time_secs),
+        Command::Advance(clock_secs) => advance(state, model, clock_secs),
+        Command::StepFrames(frames) => step(state, model, frames),
+        Command::SetSpeed(speed) => set_f64(&mut state.speed, speed, 0.1, 4.0),
+        Command::SetLoopMode(mode) => {
+            // What is on the screen stays: the new mode would fold a playhead that has run on in its own way.
+            if let Some((model, clip)) = active(state, model) {
+                state.time_secs = clip_secs(model, clip, state);
+            }
+            state.loop_mode = mode;
+        }
+        Command::SetRange(range) => set_range(state, model, range),
+        Command::SetSkinning(mode) => state.skinning = mode,
+        Command::SetMorph { index, weight } => set_morph(state, model, index, weight),
+        Command::ClearMorphs => state.morph.clear(),
+        Command::SetShow(show) => state.show = show,
+        Command::SelectJoint(joint) => {
+            let known = |joint: usize| model.is_none_or(|model| joint < model.asset.skeleton.len());
+            if joint.is_none_or(known) {
+                state.joint = joint;
+            }
+        }
+        Command::SetCamera(choice) => set_camera(state, model, choice),
+        Command::Orbit { yaw_radians, pitch_radians } => {
+            let mut orbit = resolve_camera(library, state, USUAL_ASPECT);
+            orbit.yaw_radians += yaw_radians;
+            orbit.pitch_radians += pitch_radians;
+            set_camera(state, model, CameraChoice::Orbit(orbit));
+        }
+        Command::Pan { right, up } => {
+            let mut orbit = resolve_camera(library, state, USUAL_ASPECT);
+            let picture_height = 2.0 * orbit.distance * (0.5 * state.fov_degrees.to_radians()).tan();
+            let back = orbit.direction();
+            let to_right = Vec3::Y.cross(back).normalize_or(Vec3::X);
+            orbit.target += picture_height * (right * to_right + up * back.cross(to_right));
+            set_camera(state, model, CameraChoice::Orbit(orbit));
+        }
+        Command::Zoom(factor) => {
+            let mut orbit = resolve_camera(library, state, USUAL_ASPECT);
+            let size = model.map_or(1.0, |model| resolved_bounds(model, state).diagonal().max(1e-6));
+            if factor > 0.0 {
+                orbit.distance = (orbit.distance * factor).clamp(0.01 * size, 100.0 * size);
+                set_camera(state, model, CameraChoice::Orbit(orbit));
+            }
+        }
+        Command::FrameAll => {
+            if state.camera != CameraChoice::Auto {
+                let orbit = frame_all(library, state, 1.0);
+                set_camera(state, model, CameraChoice::Orbit(orbit));
+            }
+        }
+        Command::SetFov(degrees) => set_f32(&mut state.fov_degrees, degrees, 5.0, 120.0),
+        Command::SetFollow(follow) => state.follow = follow,
+        Command::SetUp(up) => state.up = up,
+        Command::SetExposure(stops) => set_f32(&mut state.exposure, stops, -10.0, 10.0),
+        Command::SetEnvironment(degrees) => set_turn(&mut state.environment_degrees, degrees),
+        Command::SetBackground(background) => state.background = background,
+        Command::SetEmbed(embed) => state.embed = embed,
+    }
+}
+
+/// Takes over a whole state, each number checked as if it had been set by itself. What depends on a model is left: the
+/// model may still be on its way, and an index that it does not have is shown as if it were not set.
+fn replace(state: &mut ViewerState, new: ViewerState) {
+    let default = ViewerState::default();
+    let wanted = new.clone();
+    *state = new;
+    if !wanted.time_secs.is_finite() {
+        state.time_secs = default.time_secs;
+    }
+    state.speed = default.speed;
+    set_f64(&mut state.speed, wanted.speed, 0.1, 4.0);
+    state.fov_degrees = default.fov_degrees;
+    set_f32(&mut state.fov_degrees, wanted.fov_degrees, 5.0, 120.0);
+    state.exposure = default.exposure;
+    set_f32(&mut state.exposure, wanted.exposure, -10.0, 10.0);
+    state.environment_degrees = default.environment_degrees;
+    set_turn(&mut state.environment_degrees, wanted.environment_degrees);
+    state.range = None;
+    set_range(state, None, wanted.range);
+    state.morph.clear();
+    for (index, weight) in wanted.morph {
+        set_morph(state, None, index, Some(weight));
+    }
+    state.camera = CameraChoice::Auto;
+    set_camera(state, None, wanted.camera);
+}
+
+fn active<'a>(state: &ViewerState, model: Option<&'a Model>) -> Option<(&'a Model, usize)> {
+    let model = model?;
+    Some((model, active_clip(model, state)?))
+}
+
+fn set_f64(slot: &mut f64, value: f64, least: f64, most: f64) {
+    if value.is_finite() {
+        *slot = value.clamp(least, most);
+    }
+}
+
+fn set_f32(slot: &mut f32, value: f32, least: f32, most: f32) {
+    if value.is_finite() {
+        *slot = value.clamp(least, most);
+    }
+}
+
+fn set_turn(slot: &mut f32, degrees: f32) {
+    if degrees.is_finite() {
+        *slot = if (-360.0..=360.0).contains(&degrees) { degrees } else { degrees.rem_euclid(360.0) };
+    }
+}
+
+/// Starting again at the end of a clip that plays once starts it over.
+fn set_playing(state: &mut ViewerState, model: Option<&Model>, playing: bool) {
+    state.playing = playing;
+    if playing
+        && state.loop_mode == LoopMode::Once
+        && let Some((model, clip)) = active(state, model)
+    {
+        let range = play_range(model, clip, state);
+        if state.time_secs >= range.end_secs {
+            state.time_secs = range.start_secs;
+        }
+    }
+}
+
+fn seek(state: &mut ViewerState, model: Option<&Model>, time_secs: f64) {
+    if time_secs.is_finite() {
+        let end = model.map_or(f64::INFINITY, |model| {
+            let clip = active_clip(model, state).and_then(|clip| model.asset.clips.get(clip));
+            clip.map_or(0.0, |clip| f64::from(clip.duration_secs()))
+        });
+        state.time_secs = time_secs.clamp(0.0, end);
+    }
+}
+
+fn advance(state: &mut ViewerState, model: Option<&Model>, clock_secs: f64) {
+    let Some((model, clip)) = active(state, model) else { return };
+    if !state.playing || !clock_secs.is_finite() {
+        return;
+    }
+    let range = play_range(model, clip, state);
+    let length = range.length_secs();
+    state.time_secs += clock_secs * state.speed;
+    match state.loop_mode {
+        LoopMode::Once if state.time_secs >= range.end_secs => {
+            state.time_secs = range.end_secs;
+            state.playing = false;
+        }
+        // Whole rounds are taken off, so that the playhead stays a small number however long it runs.
+        LoopMode::Loop if length > 0.0 && state.time_secs > range.end_secs => {
+            state.time_secs = range.start_secs + (state.time_secs - range.start_secs).rem_euclid(length);
+        }
+        LoopMode::PingPong if length > 0.0 && state.time_secs > range.start_secs + 2.0 * length => {
+            state.time_secs = range.start_secs + (state.time_secs - range.start_secs).rem_euclid(2.0 * length);
+        }
+        _ => {}
+    }
+    if length <= 0.0 {
+        state.time_secs = range.start_secs;
+    }
+}
+
+fn step(state: &mut ViewerState, model: Option<&Model>, frames: i32) {
+    state.playing = false;
+    let Some((model, clip)) = active(state, model) else { return };
+    let range = play_range(model, clip, state);
+    let rate = model.frames_per_sec(clip);
+    let stepped = ((clip_secs(model, clip, state) * rate).round() + f64::from(frames)) / rate;
+    // Half a frame of slack: the last frame may lie a rounding error past the end.
+    let slack = 0.5 / rate;
+    state.time_secs = if state.loop_mode == LoopMode::Loop && stepped > range.end_secs + slack {
+        range.start_secs
+    } else if state.loop_mode == LoopMode::Loop && stepped < range.start_secs - slack {
+        range.end_secs
+    } else {
+        stepped.clamp(range.start_secs, range.end_secs)
+    };
+}
+
+fn set_range(state: &mut ViewerState, model: Option<&Model>, range: Option<TimeRange>) {
+    let Some(range) = range else {
+        state.range = None;
+        return;
+    };
+    if !range.start_secs.is_finite() || !range.end_secs.is_finite() {
+        return;
+    }
+    let end = model.map_or(f64::INFINITY, |model| {
+        let clip = active_clip(model, state).and_then(|clip| model.asset.clips.get(clip));
+        clip.map_or(0.0, |clip| f64::from(clip.duration_secs()))
+    });
+    let (first, second) = (range.start_secs.clamp(0.0, end), range.end_secs.clamp(0.0, end));
+    state.range = Some(TimeRange { start_secs: first.min(second), end_secs: first.max(second) });
+}
+
+fn set_morph(state: &mut ViewerState, model: Option<&Model>, index: usize, weight: Option<f32>) {
+    let known = model.is_none_or(|model| index < model.asset.skeleton.rest().morph_weights.len());
+    match weight {
+        None => {
+            state.morph.remove(&index);
+        }
+        Some(weight) if known && weight.is_finite() => {
+            state.morph.insert(index, weight.clamp(-10.0, 10.0));
+        }
+        Some(_) => {}
+    }
+}
+
+fn set_camera(state: &mut ViewerState, model: Option<&Model>, choice: CameraChoice) {
+    match choice {
+        CameraChoice::Auto => state.camera = CameraChoice::Auto,
+        CameraChoice::File(index) => {
+            if model.is_none_or(|model| index < model.asset.cameras.len()) {
+                state.camera = choice;
+            }
+        }
+        CameraChoice::Orbit(orbit) => {
+            let OrbitCamera { yaw_radians, pitch_radians, distance, target } = orbit;
+            let finite = yaw_radians.is_finite() && pitch_radians.is_finite() && distance.is_finite();
+            if finite && target.is_finite() && distance > 0.0 {
+                let turn = if (-PI..=PI).contains(&yaw_radians) {
+                    yaw_radians
+                } else {
+                    (yaw_radians + PI).rem_euclid(TAU) - PI
+                };
+                state.camera = CameraChoice::Orbit(OrbitCamera {
+                    yaw_radians: turn,
+                    pitch_radians: pitch_radians.clamp(-MOST_PITCH_RADIANS, MOST_PITCH_RADIANS),
+                    distance: distance.clamp(1e-6, 1e7),
+                    target,
+                });
+            }
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! Where the camera goes by itself: the whole clip in the picture, from the front, a little from the side and above.
+
+use glam::{Affine3A, Mat3A, Vec3, Vec3A};
+
+use super::playhead::{active_clip, sample_pose, world_from_model};
+use super::{CameraChoice, OrbitCamera, ViewerState};
+use crate::anim::{Pose, SampleCursor, model_from_joint};
+use crate::library::{Library, Model};
+use crate::mesh::Bounds;
+
+const AUTO_YAW_RADIANS: f32 = 0.44;
+const AUTO_PITCH_RADIANS: f32 = 0.17;
+/// Room around what is framed.
+const MARGIN: f32 = 1.08;
+
+/// World-space box of all that the chosen clip shows, as the camera, the grid and the shadow see it: with the up axis
+/// turned, and without the root's travel while the camera follows. A unit box when there is nothing.
+pub fn resolved_bounds(model: &Model, state: &ViewerState) -> Bounds {
+    let bounds = model.clip_bounds(state.scene, active_clip(model, state), state.follow);
+    let bounds = bounds.transformed(&world_from_model(state.up));
+    if bounds.is_empty() || !bounds.size().is_finite() {
+        Bounds { min: Vec3::splat(-0.5), max: Vec3::splat(0.5) }
+    } else {
+        bounds
+    }
+}
+
+/// The orbit camera that shows what the state asks for at this aspect ratio (width over height). A camera of the file
+/// becomes the orbit camera nearest to it: same place and direction, no roll.
+pub fn resolve_camera(library: &Library, state: &ViewerState, aspect: f32) -> OrbitCamera {
+    let auto = |yaw, pitch| match library.active() {
+        Some(model) => fit(resolved_bounds(model, state), yaw, pitch, state.fov_degrees, aspect),
+        None => OrbitCamera { yaw_radians: yaw, pitch_radians: pitch, distance: 3.0, target: Vec3::ZERO },
+    };
+    match state.camera {
+        CameraChoice::Orbit(orbit) => orbit,
+        CameraChoice::Auto => auto(AUTO_YAW_RADIANS, AUTO_PITCH_RADIANS),
+        CameraChoice::File(index) => library
+            .active()
+            .and_then(|model| file_orbit(model, state, index))
+            .unwrap_or_else(|| auto(AUTO_YAW_RADIANS, AUTO_PITCH_RADIANS)),
+    }
+}
+
+/// Everything in the picture, seen from where the camera is now.
+pub fn frame_all(library: &Library, state: &ViewerState, aspect: f32) -> OrbitCamera {
+    let now = resolve_camera(library, state, aspect);
+    match library.active() {
+        Some(model) => {
+            fit(resolved_bounds(model, state), now.yaw_radians, now.pitch_radians, state.fov_degrees, aspect)
+        }
+        None => now,
+    }
+}
+
+/// The nearest place from which all corners of a box are in the picture.
+fn fit(bounds: Bounds, yaw_radians: f32, pitch_radians: f32, fov_degrees: f32, aspect: f32) -> OrbitCamera {
+    let mut orbit = OrbitCamera { yaw_radians, pitch_radians, distance: 1.0, target: bounds.center() };
+    let towards_eye = orbit.direction();
+    let right = Vec3::Y.cross(towards_eye).normalize_or(Vec3::X);
+    let up = towards_eye.cross(right);
+    let tan_up = (0.5 * fov_degrees.to_radians()).tan();
+    let tan_right = tan_up * aspect.clamp(0.05, 20.0);
+    let mut distance: f32 = 0.0;
+    for corner in bounds.corners() {
+        let corner = MARGIN * (corner - orbit.target);
+        let across = (corner.dot(right).abs() / tan_right).max(corner.dot(up).abs() / tan_up);
+        distance = distance.max(corner.dot(towards_eye) + across);
+    }
+    // A single point has no size to frame: look at it from a metre.
+    orbit.distance = if distance > 0.0 && distance.is_finite() { distance } else { 1.0 };
+    orbit
+}
+
+/// A camera's place and axes without scale: −Z looks ahead, Y is up. None when its matrix is singular.
+pub fn world_from_file_camera(world_from_joint: &Affine3A) -> Option<Affine3A> {
+    let back = world_from_joint.matrix3.z_axis.try_normalize()?;
+    let right = world_from_joint.matrix3.y_axis.cross(back).try_normalize()?;
+    let matrix3 = Mat3A::from_cols(right, back.cross(right), back);
+    world_from_joint.translation.is_finite().then_some(Affine3A { matrix3, translation: world_from_joint.translation })
+}
+
+fn file_orbit(model: &Model, state: &ViewerState, index: usize) -> Option<OrbitCamera> {
+    let camera = model.asset.cameras.get(index)?;
+    let (mut pose, mut world_from_joint) = (Pose::default(), Vec::new());
+    sample_pose(model, state, &mut SampleCursor::default(), &mut pose);
+    model_from_joint(&model.asset.skeleton, &pose.locals, world_from_model(state.up), &mut world_from_joint);
+    let world_from_camera = world_from_file_camera(&world_from_joint[camera.joint.get()])?;
+    let towards_eye = world_from_camera.matrix3.z_axis;
+    let eye = world_from_camera.translation;
+    let bounds = resolved_bounds(model, state);
+    let to_middle = (eye - Vec3A::from(bounds.center())).dot(towards_eye);
+    let distance = to_middle.max(0.1 * bounds.diagonal()).max(1e-4);
+    Some(OrbitCamera {
+        yaw_radians: towards_eye.x.atan2(towards_eye.z),
+        pitch_radians: towards_eye.y.clamp(-1.0, 1.0).asin(),
+        distance,
+        target: (eye - distance * towards_eye).into(),
+    })
+}

@@ -1,0 +1,112 @@
+//! Undo and redo: of edits (how the model is bent and shown), not of time or camera; one step per gesture.
+
+use std::mem::Discriminant;
+
+use super::{Command, ViewerState, apply};
+use crate::library::Library;
+
+/// What was set before each edit, newest last.
+#[derive(Debug, Default)]
+pub struct History {
+    past: Vec<ViewerState>,
+    future: Vec<ViewerState>,
+    /// The kind of command the present gesture consists of.
+    gesture: Option<Discriminant<Command>>,
+}
+
+impl History {
+    const MOST_STEPS: usize = 200;
+
+    /// Applies a command and remembers what was before if it was an edit that changed something. Commands of one kind
+    /// in a row are one step until [`History::end_gesture`].
+    pub fn apply(&mut self, state: &mut ViewerState, library: &Library, command: Command) {
+        if !is_edit(&command) {
+            // Time goes by and the camera moves while a slider is dragged: that does not end the gesture.
+            apply(state, library, command);
+            return;
+        }
+        let kind = std::mem::discriminant(&command);
+        let before = state.clone();
+        apply(state, library, command);
+        if !same_edits(&before, state) {
+            if self.gesture != Some(kind) {
+                if self.past.len() == Self::MOST_STEPS {
+                    self.past.remove(0);
+                }
+                self.past.push(before);
+            }
+            self.future.clear();
+            self.gesture = Some(kind);
+        }
+    }
+
+    /// The pointer went up, or the key: the next edit is a step of its own.
+    pub fn end_gesture(&mut self) {
+        self.gesture = None;
+    }
+
+    /// Forgets everything, as when another model is opened.
+    pub fn clear(&mut self) {
+        *self = Self::default();
+    }
+
+    pub fn can_undo(&self) -> bool {
+        !self.past.is_empty()
+    }
+
+    pub fn can_redo(&self) -> bool {
+        !self.future.is_empty()
+    }
+
+    /// Takes the last step back; false when there is none.
+    pub fn undo(&mut self, state: &mut ViewerState) -> bool {
+        self.gesture = None;
+        let Some(step) = self.past.pop() else { return false };
+        self.future.push(state.clone());
+        take_edits(state, &step);
+        true
+    }
+
+    /// Takes back the last undo; false when there is none.
+    pub fn redo(&mut self, state: &mut ViewerState) -> bool {
+        self.gesture = None;
+        let Some(step) = self.future.pop() else { return false };
+        self.past.push(state.clone());
+        take_edits(state, &step);
+        true
+    }
+}
+
+fn is_edit(command: &Command) -> bool {
+    matches!(
+        command,
+        Command::SetSkinning(_)
+            | Command::SetMorph { .. }
+            | Command::ClearMorphs
+            | Command::SetShow(_)
+            | Command::SetUp(_)
+            | Command::SetExposure(_)
+            | Command::SetEnvironment(_)
+            | Command::SetBackground(_)
+    )
+}
+
+fn take_edits(state: &mut ViewerState, from: &ViewerState) {
+    state.skinning = from.skinning;
+    state.morph.clone_from(&from.morph);
+    state.show = from.show;
+    state.up = from.up;
+    state.exposure = from.exposure;
+    state.environment_degrees = from.environment_degrees;
+    state.background = from.background;
+}
+
+fn same_edits(a: &ViewerState, b: &ViewerState) -> bool {
+    a.skinning == b.skinning
+        && a.morph == b.morph
+        && a.show == b.show
+        && a.up == b.up
+        && a.exposure == b.exposure
+        && a.environment_degrees == b.environment_degrees
+        && a.background == b.background
+}
