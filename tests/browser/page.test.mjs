@@ -1,0 +1,280 @@
+// The built page on each back end: it starts, opens real files in every way, and does what a hand or a script asks.
+import assert from "node:assert/strict";
+import path from "node:path";
+import { after, before, describe, test } from "node:test";
+import { dataFolder, skipWithoutData } from "../three/data.mjs";
+import { loadScene } from "../three/scene.mjs";
+import { BACK_ENDS, VIEWPORT, apply, drop, meanDifference, open, picture, pose, startSite, state, stats, whenReady, whenShown } from "./browser.mjs";
+
+const FOX = "khronos/Fox/glTF-Binary/Fox.glb";
+const FOX_VERTICES = 1728;
+const CESIUM_MAN = "khronos/CesiumMan/glTF/CesiumMan.gltf";
+const CESIUM_MAN_VERTICES = 3273;
+const CENTER = { x: VIEWPORT.width / 2, y: VIEWPORT.height / 2 };
+
+// GLTFLoader's remarks about the reference file.
+console.warn = () => {};
+
+for (const renderer of BACK_ENDS) {
+  describe(`page on ${renderer}`, () => {
+    let site;
+    before(async () => (site = await startSite()));
+    after(() => site?.close());
+
+    /** One test on a fresh page, which must have reported no error at its end. */
+    const onPage = (name, options, body) =>
+      test(name, { skip: options.data === true ? skipWithoutData : false }, async () => {
+        const page = await site.page({ renderer, ...options, link: options.link?.(site) });
+        try {
+          await body(page);
+          assert.deepEqual(page.troubles, []);
+        } finally {
+          await page.finish();
+        }
+      });
+
+    onPage("starts with a sample that moves", {}, async (page) => {
+      const { backend } = await stats(page);
+      assert.equal(backend, renderer);
+      const first = await pose(page);
+      const firstPicture = await picture(page);
+      const firstScreen = await page.screenshot();
+      await page.waitForTimeout(300);
+      const second = await pose(page);
+      assert.ok(first.meshes.length > 0);
+      assert.notEqual(second.time_secs, first.time_secs);
+      assert.notDeepEqual(second.meshes[0].positions, first.meshes[0].positions);
+      assert.ok(meanDifference(await picture(page), firstPicture) > 0, "the picture should move");
+      assert.ok(!firstScreen.equals(await page.screenshot()), "the screen should move");
+    });
+
+    onPage("asks no other host and needs no root folder", {}, async (page) => {
+      const { origin } = new URL(page.url());
+      const strangers = page.requests.filter((url) => !/^(data|blob):/.test(url) && !url.startsWith(`${origin}/some/folder/`));
+      assert.deepEqual(strangers, []);
+    });
+
+    onPage("opens one dropped file", { data: true }, async (page) => {
+      await drop(page, [{ name: "Fox.glb", url: site.data(FOX) }]);
+      await whenShown(page, FOX_VERTICES);
+    });
+
+    onPage("opens a .gltf dropped with its files", { data: true }, async (page) => {
+      const folder = path.posix.dirname(CESIUM_MAN);
+      const names = ["CesiumMan.jpg", "CesiumMan.gltf", "CesiumMan0.bin"];
+      await drop(page, names.map((name) => ({ name, url: site.data(`${folder}/${name}`) })));
+      await whenShown(page, CESIUM_MAN_VERTICES);
+    });
+
+    onPage("opens the URL of a link, with clip, time and camera", { data: true, link: (site) => `model=${encodeURIComponent(site.data(FOX))}&clip=Run&t=0.5&play=0&camera=40,15,250,0,40,0` }, async (page) => {
+      await whenShown(page, FOX_VERTICES);
+      const { clip, time_secs } = await pose(page);
+      assert.equal(clip, "Run");
+      assert.equal(time_secs, 0.5);
+      const { camera, play } = await state(page);
+      assert.deepEqual(String(camera).split(",").map(Number), [40, 15, 250, 0, 40, 0]);
+      assert.equal(Number(play), 0);
+    });
+
+    onPage("opens URLs, buffers and files from a script", { data: true }, async (page) => {
+      const byUrl = await open(page, site.data(CESIUM_MAN));
+      assert.equal(byUrl.vertices, CESIUM_MAN_VERTICES);
+      const byBuffer = await page.evaluate(
+        async (url) => await window.gaitway.open({ "Fox.glb": await (await fetch(url)).arrayBuffer() }),
+        site.data(FOX),
+      );
+      assert.equal(byBuffer.vertices, FOX_VERTICES);
+      assert.deepEqual(byBuffer.clips.map(({ name }) => name), ["Survey", "Walk", "Run"]);
+      const byFile = await page.evaluate(
+        async (url) => await window.gaitway.open([new File([await (await fetch(url)).blob()], "CesiumMan.glb")]),
+        site.data("khronos/CesiumMan/glTF-Binary/CesiumMan.glb"),
+      );
+      assert.equal(byFile.vertices, CESIUM_MAN_VERTICES);
+      await whenShown(page, CESIUM_MAN_VERTICES);
+    });
+
+    onPage("shows the chosen clip at the chosen time", { data: true }, async (page) => {
+      await open(page, site.data(FOX));
+      const reference = await loadScene(path.join(dataFolder, FOX));
+      for (const [clip, t] of [["Survey", 1.25], ["Run", 0.3], ["Walk", 0.6]]) {
+        await apply(page, { clip, t, play: 0 });
+        const shown = await pose(page);
+        assert.equal(shown.clip, clip);
+        assert.equal(shown.time_secs, t);
+        reference.play(reference.clips.findIndex(({ name }) => name === clip), t);
+        const [expected] = reference.meshes();
+        const worst = Math.max(...shown.meshes[0].positions.map((value, at) => Math.abs(value - expected.positions[at])));
+        assert.ok(worst < 0.015, `${clip} at ${t} s: off by ${worst} of the fox's 150 units`);
+      }
+      await apply(page, { clip: "" });
+      assert.equal((await pose(page)).clip, null);
+    });
+
+    onPage("tells others of a change", {}, async (page) => {
+      await page.evaluate(() => {
+        window.changes = 0;
+        window.addEventListener("gaitway:change", () => window.changes++);
+      });
+      await apply(page, { play: 0, exposure: 1 });
+      await page.waitForFunction(() => window.changes > 0);
+    });
+
+    onPage("refuses a wrong value and keeps the state", {}, async (page) => {
+      await apply(page, { play: 0 });
+      const earlier = await state(page);
+      await assert.rejects(apply(page, { speed: "quickly" }), /speed/);
+      assert.deepEqual(await state(page), earlier);
+    });
+
+    onPage("plays and pauses with the space bar", {}, async (page) => {
+      await page.mouse.click(CENTER.x, CENTER.y);
+      await page.keyboard.press("Space");
+      await page.waitForFunction(async () => Number((await window.gaitway.state()).play) === 0);
+      await page.keyboard.press("Space");
+      await page.waitForFunction(async () => Number((await window.gaitway.state()).play ?? 1) === 1);
+    });
+
+    onPage("orbits by dragging and comes nearer with the wheel", {}, async (page) => {
+      await apply(page, { play: 0 });
+      const before = await picture(page);
+      await page.mouse.move(CENTER.x, CENTER.y);
+      await page.mouse.down();
+      await page.mouse.move(CENTER.x + 60, CENTER.y + 20, { steps: 4 });
+      await page.mouse.up();
+      const orbited = await camera(page);
+      assert.ok(orbited.every(Number.isFinite) && orbited.length === 6, `camera: ${orbited}`);
+      assert.ok(meanDifference(await picture(page), before) > 0, "the picture should turn");
+      await page.mouse.wheel(0, -240);
+      await page.waitForFunction(
+        async (distance) => Number(String((await window.gaitway.state()).camera).split(",")[2]) < distance,
+        orbited[2],
+      );
+      const nearer = await camera(page);
+      assert.ok(Math.abs(nearer[0] - orbited[0]) < 1e-3 && Math.abs(nearer[1] - orbited[1]) < 1e-3, "the wheel should not turn");
+    });
+
+    onPage("follows a resize", {}, async (page) => {
+      await apply(page, { play: 0 });
+      const before = await picture(page);
+      await page.setViewportSize({ width: 1000, height: 500 });
+      await page.waitForFunction(() => [...document.querySelectorAll("canvas")].some(({ width }) => width === 1000 * devicePixelRatio));
+      await page.waitForTimeout(300);
+      const wide = await picture(page);
+      assert.ok(wide.width / wide.height > before.width / before.height, `${before.width}×${before.height} → ${wide.width}×${wide.height}`);
+      await page.setViewportSize({ width: 390, height: 700 });
+      await page.waitForFunction(() => [...document.querySelectorAll("canvas")].some(({ width }) => width === 390 * devicePixelRatio));
+      await page.waitForTimeout(300);
+      const narrow = await picture(page);
+      assert.ok(narrow.width < wide.width, `${wide.width}×${wide.height} → ${narrow.width}×${narrow.height}`);
+      assert.ok(coloursOf(narrow) > 16, "something should be drawn");
+    });
+
+    onPage("draws nothing while nothing changes", {}, async (page) => {
+      await apply(page, { play: 0 });
+      // What is still settling, such as a fading tooltip, may finish.
+      await page.waitForTimeout(1500);
+      const { frames: earlier } = await stats(page);
+      assert.equal(typeof earlier, "number");
+      await page.waitForTimeout(1000);
+      const { frames: later } = await stats(page);
+      // Asking takes a frame itself, at most two.
+      assert.ok(later - earlier <= 2, `${later - earlier} frames in an idle second`);
+    });
+
+    test("keeps what it shows when a file is broken", { skip: skipWithoutData }, async () => {
+      const page = await site.page({ renderer });
+      try {
+        await open(page, site.data(FOX));
+        await apply(page, { play: 0, t: 0.4 });
+        const before = await picture(page);
+        const refused = await page.evaluate(async () => {
+          const bytes = new TextEncoder().encode("glTF but not really, and then some more");
+          return await window.gaitway.open({ "broken.glb": bytes.buffer }).then(() => null, (error) => [error instanceof Error, error.message]);
+        });
+        assert.ok(refused !== null, "open() should reject");
+        assert.equal(refused[0], true, "with an Error");
+        assert.match(refused[1], /broken\.glb/);
+        await drop(page, [{ name: "cut.gltf", text: '{"asset":{"version":"2.0"},"buffers":[{"byteLength":12,"uri":"missing.bin"}]}' }]);
+        await page.waitForTimeout(1000);
+        await assert.rejects(open(page, site.data("nothing-here.glb")), /nothing-here\.glb/);
+        assert.equal((await pose(page)).meshes[0].positions.length, FOX_VERTICES * 3);
+        assert.equal((await pose(page)).time_secs, 0.4);
+        assert.equal(meanDifference(await picture(page), before), 0, "the picture should stay");
+        await drop(page, [{ name: "CesiumMan.glb", url: site.data("khronos/CesiumMan/glTF-Binary/CesiumMan.glb") }]);
+        await whenShown(page, CESIUM_MAN_VERTICES);
+      } finally {
+        await page.finish();
+      }
+    });
+
+    test("stops when the graphics process dies and starts again with the same view", { skip: skipWithoutData }, async () => {
+      const own = await startSite();
+      try {
+        const page = await own.page({ renderer });
+        await drop(page, [{ name: "Fox.glb", url: own.data(FOX) }]);
+        await whenShown(page, FOX_VERTICES);
+        await apply(page, { clip: "Run", play: 0, t: 0.5, camera: "40,15,250,0,40,0" });
+        const before = await picture(page);
+        const session = await own.browser.newBrowserCDPSession();
+        await session.send("Browser.crashGpuProcess").catch(() => {});
+        const again = page.getByRole("button", { name: new RegExp(renderer, "i") }).or(page.getByRole("button", { name: /again|restart|reload/i })).first();
+        await again.waitFor({ state: "visible" });
+        assert.match(await page.locator("body").innerText(), /stopped/i);
+        await again.click();
+        await page.waitForFunction(async () => (await window.gaitway?.stats())?.backend !== undefined, undefined, { polling: 200 });
+        await whenReady(page);
+        await whenShown(page, FOX_VERTICES);
+        const { clip, camera } = await state(page);
+        assert.equal(clip, "Run");
+        assert.deepEqual(String(camera).split(",").map(Number), [40, 15, 250, 0, 40, 0]);
+        const { backend } = await stats(page);
+        assert.ok(BACK_ENDS.includes(backend));
+        assert.ok(meanDifference(await picture(page), before) < 1, "the picture should come back");
+      } finally {
+        await own.close();
+      }
+    });
+  });
+}
+
+describe("page without graphics", () => {
+  let site;
+  before(async () => (site = await startSite()));
+  after(() => site?.close());
+
+  test("says what is missing and what to try", async () => {
+    const page = await site.page({
+      ready: false,
+      before: () => {
+        Object.defineProperty(Navigator.prototype, "gpu", { value: undefined });
+        HTMLCanvasElement.prototype.getContext = () => null;
+        OffscreenCanvas.prototype.getContext = () => null;
+      },
+    });
+    await page.waitForFunction(() => /cannot run here/i.test(document.body.innerText));
+    assert.match(await page.locator("body").innerText(), /WebGL\s?2/i);
+    await page.finish();
+  });
+
+  test("falls back to WebGL2 without asking", async () => {
+    const page = await site.page({ before: () => Object.defineProperty(Navigator.prototype, "gpu", { value: undefined }) });
+    assert.equal((await stats(page)).backend, "webgl2");
+    await page.finish();
+  });
+
+  test("takes WebGPU where there is an adapter", async () => {
+    const page = await site.page({});
+    assert.equal((await stats(page)).backend, "webgpu");
+    await page.finish();
+  });
+});
+
+async function camera(page) {
+  return String((await state(page)).camera).split(",").map(Number);
+}
+
+function coloursOf({ rgba }) {
+  const colours = new Set();
+  for (let at = 0; at < rgba.length; at += 4) colours.add(rgba.readUInt32LE(at));
+  return colours.size;
+}

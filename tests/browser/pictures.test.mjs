@@ -1,0 +1,79 @@
+// What is drawn: pictures of the two back ends agree, and on both, in every skinning mode, the model's silhouette is the one
+// that the numbers of `pose()` give. So neither numbers nor pictures can be right alone.
+import assert from "node:assert/strict";
+import path from "node:path";
+import { after, before, describe, test } from "node:test";
+import { dataFolder, skipWithoutData } from "../three/data.mjs";
+import { BACK_ENDS, apply, meanDifference, open, picture, pose, startSite } from "./browser.mjs";
+import { cameraFor, cameraText, maskOf, overlap, rasterise, trianglesOf } from "./silhouette.mjs";
+
+const LEAST_OVERLAP = 0.97;
+/** Of 255, over the whole picture. */
+const MOST_DIFFERENCE = 0.5;
+const FOV_DEGREES = 35;
+const MODES = ["linear", "rigid", "dual-quaternion"];
+
+/** `blended`: vertices have more than one influence, so that the three modes give three shapes. */
+const MODELS = [
+  { name: "Fox", file: "khronos/Fox/glTF-Binary/Fox.glb", clip: "Run", t: 0.5, yaw: 60, blended: true },
+  { name: "CesiumMan", file: "khronos/CesiumMan/glTF-Binary/CesiumMan.glb", clip: "0", t: 0.7, yaw: 30, blended: true },
+  { name: "Soldier", file: "threejs/Soldier.glb", clip: "Run", t: 0.35, yaw: 200, blended: true },
+  { name: "dwarf", file: "cosc422/dwarf.glb", clip: "0", t: 1, yaw: 30, blended: false },
+];
+
+/** Shown too, but not skinned, so only compared between the back ends. */
+const MORE_PICTURES = [
+  { name: "AnimatedMorphCube", file: "khronos/AnimatedMorphCube/glTF-Binary/AnimatedMorphCube.glb", clip: "0", t: 1.5 },
+  { name: "RobotExpressive", file: "threejs/RobotExpressive.glb", clip: "Wave", t: 0.6 },
+  { name: "TextureSettingsTest", file: "khronos/TextureSettingsTest/glTF-Binary/TextureSettingsTest.glb", clip: "", t: 0 },
+  { name: "Material_AlphaBlend", file: "asset-generator/Positive/Material_AlphaBlend/Material_AlphaBlend_05.gltf", clip: "", t: 0 },
+  { name: "Node_NegativeScale", file: "asset-generator/Positive/Node_NegativeScale/Node_NegativeScale_08.gltf", clip: "", t: 0 },
+];
+
+describe("pictures", { skip: skipWithoutData }, () => {
+  let site;
+  before(async () => (site = await startSite()));
+  after(() => site?.close());
+
+  for (const model of [...MODELS, ...MORE_PICTURES])
+    test(`${model.name}: the back ends agree`, async () => {
+      const pictures = [];
+      for (const renderer of BACK_ENDS) {
+        const page = await site.page({ renderer });
+        await open(page, site.data(model.file));
+        await apply(page, { clip: model.clip, t: model.t, play: 0 });
+        pictures.push(await picture(page));
+        assert.deepEqual(page.troubles, []);
+        await page.finish();
+      }
+      const difference = meanDifference(...pictures);
+      assert.ok(difference <= MOST_DIFFERENCE, `mean difference ${difference} of 255`);
+      console.log(`${model.name}: mean difference ${difference.toFixed(4)} of 255`);
+    });
+
+  for (const renderer of BACK_ENDS)
+    for (const model of MODELS)
+      test(`${model.name} on ${renderer}: silhouettes match the numbers`, async () => {
+        const triangles = trianglesOf(path.join(dataFolder, model.file));
+        const page = await site.page({ renderer });
+        await open(page, site.data(model.file));
+        const shapes = [];
+        for (const skinning of MODES) {
+          await apply(page, { clip: model.clip, t: model.t, play: 0, skinning, show: "no-shadow", background: "transparent", fov: FOV_DEGREES });
+          const posed = await pose(page);
+          const camera = cameraFor(posed, model.yaw, 12, FOV_DEGREES);
+          await apply(page, { camera: cameraText(camera) });
+          const drawn = await picture(page);
+          const match = overlap(maskOf(drawn), rasterise(posed, triangles, camera, drawn.width, drawn.height));
+          console.log(`${model.name} on ${renderer}, ${skinning}: overlap ${match.toFixed(4)}`);
+          assert.ok(match >= LEAST_OVERLAP, `${skinning}: overlap ${match}`);
+          shapes.push(posed.meshes.map(({ positions }) => positions));
+        }
+        if (model.blended) {
+          assert.notDeepEqual(shapes[1], shapes[0], "rigid should differ from linear");
+          assert.notDeepEqual(shapes[2], shapes[0], "dual quaternions should differ from linear");
+        }
+        assert.deepEqual(page.troubles, []);
+        await page.finish();
+      });
+});

@@ -1,0 +1,31 @@
+// The command line as the tests call it: one JSON document on standard output.
+import { execFile } from "node:child_process";
+import fs from "node:fs";
+import path from "node:path";
+import { repository } from "./data.mjs";
+
+/** The binary: GAITWAY_CLI, else what cargo built last in the usual place. */
+export const program = (() => {
+  if (process.env.GAITWAY_CLI) return process.env.GAITWAY_CLI;
+  const target = process.env.CARGO_TARGET_DIR ?? path.join(repository, "target");
+  const name = process.platform === "win32" ? "gaitway.exe" : "gaitway";
+  const built = ["release", "debug"].map((profile) => path.join(target, profile, name)).filter((file) => fs.existsSync(file));
+  if (built.length === 0) throw new Error("no gaitway binary: run `cargo build --release --no-default-features`, or set GAITWAY_CLI");
+  return built.sort((a, b) => fs.statSync(b).mtimeMs - fs.statSync(a).mtimeMs)[0];
+})();
+
+/** Runs `gaitway …`; gives `{status, stdout, stderr}` whatever the outcome. */
+export function run(...args) {
+  return new Promise((resolve) => {
+    execFile(program, args, { maxBuffer: 1 << 28, timeout: 60_000 }, (error, stdout, stderr) => {
+      resolve({ status: error === null ? 0 : (error.code ?? error.signal), stdout, stderr });
+    });
+  });
+}
+
+/** The JSON that `gaitway … --json` prints; an Error with its message when it fails. */
+export async function document(...args) {
+  const { status, stdout, stderr } = await run(...args, "--json");
+  if (status !== 0) throw new Error(`gaitway ${args.join(" ")}: status ${status}: ${stderr.trim()}`);
+  return JSON.parse(stdout);
+}

@@ -1,0 +1,143 @@
+// World positions and node matrices of `gaitway pose` against three.js (GLTFLoader, AnimationMixer, getVertexPosition), for
+// every readable file of the data folder, at several times of every clip, played once and held at the end.
+import assert from "node:assert/strict";
+import { after, describe, test } from "node:test";
+import { gltfFiles, skipWithoutData } from "./data.mjs";
+import { exceptions } from "./exceptions.mjs";
+import { document, run } from "./gaitway.mjs";
+import { loadScene } from "./scene.mjs";
+
+/** Largest distance allowed, in diagonals of the rest bounds. */
+const TOLERANCE = 1e-4;
+/** Fractions of the duration: first key, two that are on no key, last key, past the end. */
+const FRACTIONS = [0, 0.3217, 0.6789, 1, 1.25];
+const FRACTIONS_OF_MANY = [0.3217, 0.6789, 1.25];
+const MANY_CLIPS = 20;
+
+// GLTFLoader's remarks about the files say nothing about the comparison.
+console.warn = () => {};
+
+const totals = { files: 0, clips: 0, poses: 0, vertices: 0, worst: 0, worstWhere: "" };
+
+describe("positions agree with three.js", { skip: skipWithoutData, concurrency: 2 }, () => {
+  if (skipWithoutData) return;
+  for (const file of gltfFiles()) {
+    if (file.refused === null) test(file.name, () => compareFile(file));
+    else test(`${file.name} is refused`, () => checkRefused(file));
+  }
+  after(() => {
+    const { files, clips, poses, vertices, worst, worstWhere } = totals;
+    console.log(`${files} files, ${clips} clips, ${poses} poses, ${vertices} vertices; worst ${worst.toExponential(2)} diagonals (${worstWhere})`);
+  });
+});
+
+/** A required extension that is not supported is an error that names it. */
+async function checkRefused({ file, refused }) {
+  const { status, stderr } = await run("inspect", file);
+  assert.equal(status, 1, stderr);
+  assert.match(stderr, /^error: /m);
+  assert.ok(stderr.includes(refused), `the message should name ${refused}: ${stderr}`);
+}
+
+async function compareFile({ name, file }) {
+  const scene = await loadScene(file);
+  const inspected = await document("inspect", file);
+  assert.equal(inspected.clips.length, scene.clips.length, "number of clips");
+
+  scene.play(null, 0);
+  const rest = scene.meshes().filter(({ positions }) => positions.length > 0);
+  const bounds = boundsOf(rest.length > 0 ? rest.map(({ positions }) => positions) : scene.nodes().map(({ world }) => world.slice(12, 15)));
+  const diagonal = Math.hypot(...bounds.min.map((low, axis) => bounds.max[axis] - low)) || 1;
+  const own = exceptions.filter((entry) => entry.file === name);
+  if (rest.length > 0 && own.length === 0)
+    for (const end of ["min", "max"]) {
+      const difference = largestDistance(inspected.bounds[end], bounds[end]) / diagonal;
+      assert.ok(difference <= TOLERANCE, `bounds.${end} is ${inspected.bounds[end]}, three.js says ${bounds[end]}`);
+    }
+  const needed = new Set();
+  const compare = (clip, timeSecs, posed) => {
+    const where = `${name}, ${clip === null ? "rest" : `clip ${clip} (${scene.clips[clip].name}) at ${timeSecs} s`}`;
+    const excused = own.filter((entry) => entry.clip === undefined || entry.clip === clip);
+    comparePose(where, scene, posed, diagonal, excused, needed);
+  };
+  compare(null, 0, await document("pose", file));
+
+  const fractions = scene.clips.length > MANY_CLIPS ? FRACTIONS_OF_MANY : FRACTIONS;
+  for (const [clip, { duration }] of scene.clips.entries()) {
+    const { duration_secs } = inspected.clips[clip];
+    assert.ok(Math.abs(duration_secs - duration) <= 1e-5 * Math.max(1, duration), `clip ${clip}: ${duration_secs} s, three.js says ${duration} s`);
+    for (const fraction of fractions) {
+      const timeSecs = duration * fraction;
+      scene.play(clip, timeSecs);
+      compare(clip, timeSecs, await document("pose", file, "--clip", String(clip), "--time", String(timeSecs)));
+    }
+    totals.clips++;
+  }
+  totals.files++;
+  for (const entry of own) assert.ok(needed.has(entry), `exception no longer needed: ${entry.because}`);
+}
+
+/** Compares what three.js shows now with a pose document; `needed` collects the exceptions that were. */
+function comparePose(where, scene, posed, diagonal, excused, needed) {
+  const forgive = (list, node, difference) => {
+    const entry = excused.find((entry) => entry[list]?.includes(node));
+    if (entry !== undefined && !(difference <= TOLERANCE)) needed.add(entry);
+    return entry !== undefined;
+  };
+  const note = (difference, what) => {
+    if (!(difference <= totals.worst)) Object.assign(totals, { worst: difference, worstWhere: `${where}, ${what}` });
+    assert.ok(difference <= TOLERANCE, `${where}, ${what}: off by ${difference} (allowed ${TOLERANCE})`);
+  };
+
+  const world = new Map(posed.nodes.map((entry) => [entry.node, entry.world]));
+  for (const reference of scene.nodes()) {
+    assert.ok(world.has(reference.node), `${where}: node ${reference.node} is missing`);
+    const difference = matrixDifference(world.get(reference.node), reference.world, diagonal);
+    if (!forgive("nodes", reference.node, difference)) note(difference, `matrix of node ${reference.node}`);
+  }
+
+  const key = ({ node, mesh, primitive }) => `mesh ${mesh}.${primitive} on node ${node}`;
+  const positions = new Map(posed.meshes.map((entry) => [key(entry), entry.positions]));
+  const references = scene.meshes();
+  assert.deepEqual([...positions.keys()].sort(), references.map(key).sort(), `${where}: what is drawn`);
+  for (const reference of references) {
+    const found = positions.get(key(reference));
+    assert.equal(found.length, reference.positions.length, `${where}, ${key(reference)}: number of vertices`);
+    const difference = largestDistance(found, reference.positions) / diagonal;
+    if (!forgive("meshes", reference.node, difference)) note(difference, key(reference));
+    totals.vertices += found.length / 3;
+  }
+  totals.poses++;
+}
+
+/** NaN where either holds one, so that every comparison with it fails. */
+function largestDistance(a, b) {
+  let largest = 0;
+  for (let at = 0; at < b.length; at += 3) {
+    const distance = Math.hypot(a[at] - b[at], a[at + 1] - b[at + 1], a[at + 2] - b[at + 2]);
+    if (!(distance <= largest)) largest = distance;
+    if (Number.isNaN(largest)) return NaN;
+  }
+  return largest;
+}
+
+/** The origin in diagonals, the axes in lengths of the longest one. */
+function matrixDifference(a, b, diagonal) {
+  const longest = Math.max(...[0, 4, 8].map((at) => Math.hypot(b[at], b[at + 1], b[at + 2])), 1e-6);
+  return Math.max(
+    largestDistance(a.slice(12, 15), b.slice(12, 15)) / diagonal,
+    ...[0, 4, 8].map((at) => largestDistance(a.slice(at, at + 3), b.slice(at, at + 3)) / longest),
+  );
+}
+
+/** The box around lists of points. */
+function boundsOf(lists) {
+  const min = [Infinity, Infinity, Infinity];
+  const max = [-Infinity, -Infinity, -Infinity];
+  for (const list of lists)
+    for (let at = 0; at < list.length; at++) {
+      min[at % 3] = Math.min(min[at % 3], list[at]);
+      max[at % 3] = Math.max(max[at % 3], list[at]);
+    }
+  return { min, max };
+}
