@@ -1,6 +1,225 @@
 //! The command line: thin entries over the same functions as the page.
 
+mod inspect;
+mod pose;
+#[cfg(feature = "render")]
+mod render;
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::{Context, bail};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use crate::anim::LoopMode;
+use crate::files::{Opened, open_paths};
+use crate::library::{Library, Model};
+use crate::mesh::SkinningMode;
+use crate::state::{ClipChoice, Command, ViewerState, active_clip, apply};
+
+/// Drop in a glTF character, watch it move, and see why it bends as it does.
+#[derive(Debug, Parser)]
+#[command(name = "gaitway", version, about, args_conflicts_with_subcommands = true)]
+struct Arguments {
+    #[command(subcommand)]
+    action: Option<Action>,
+    /// Opens the window with these files: a model with its parts (none: the built-in sample).
+    #[arg(value_name = "FILE")]
+    files: Vec<PathBuf>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Action {
+    /// Says what is in a model: nodes, skins, clips, warnings.
+    Inspect(InspectArguments),
+    /// Prints the numbers that would be drawn: joints and skinned vertices in world space.
+    Pose(PoseArguments),
+    /// Draws the same picture as the page, without a window.
+    #[cfg(feature = "render")]
+    Render(RenderArguments),
+}
+
+#[derive(Debug, Args)]
+struct Files {
+    /// A model with its parts: files, folders, or `sample:walker`.
+    #[arg(value_name = "FILE", required = true)]
+    files: Vec<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+struct InspectArguments {
+    #[command(flatten)]
+    input: Files,
+    /// Prints one JSON document on standard output.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Which moment of the model is meant.
+#[derive(Debug, Args)]
+struct Moment {
+    /// A clip's name or index (none: the rest pose).
+    #[arg(long, value_name = "CLIP")]
+    clip: Option<String>,
+    /// Seconds into the clip; past its end: its end.
+    #[arg(long, value_name = "SECS", allow_negative_numbers = true)]
+    time: Option<f64>,
+    /// How vertices follow several joints.
+    #[arg(long, value_enum)]
+    skinning: Option<Skinning>,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Skinning {
+    Linear,
+    Rigid,
+    DualQuaternion,
+}
+
+#[derive(Debug, Args)]
+struct PoseArguments {
+    #[command(flatten)]
+    input: Files,
+    #[command(flatten)]
+    moment: Moment,
+    /// Prints one JSON document on standard output.
+    #[arg(long)]
+    json: bool,
+}
+
+#[cfg(feature = "render")]
+#[derive(Debug, Args)]
+struct RenderArguments {
+    #[command(flatten)]
+    input: Files,
+    /// The picture to write.
+    #[arg(long, value_name = "PNG")]
+    out: PathBuf,
+    /// Its width and height in pixels.
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = read_size)]
+    size: [u32; 2],
+    #[command(flatten)]
+    moment: Moment,
+    /// Degrees and metres; the camera looks at the middle of the model.
+    #[arg(long, value_name = "YAW,PITCH,DISTANCE", allow_hyphen_values = true, value_parser = read_camera)]
+    camera: Option<[f32; 3]>,
+    /// A link of the page, or its part after `#`: the same view. Other options win over it.
+    #[arg(long, value_name = "LINK")]
+    view: Option<String>,
+}
+
 /// Runs the program; the result is its exit status.
-pub fn main() -> std::process::ExitCode {
-    std::process::ExitCode::from(2)
+pub fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // Help and version are not errors; everything else is wrong usage. Nobody is left to tell when this fails.
+            let _ = error.print();
+            return if error.use_stderr() { ExitCode::from(2) } else { ExitCode::SUCCESS };
+        }
+    };
+    match run(arguments) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::from(1)
+        }
+    }
+}
+
+fn run(arguments: Arguments) -> anyhow::Result<()> {
+    match arguments.action {
+        Some(Action::Inspect(arguments)) => inspect::run(&arguments),
+        Some(Action::Pose(arguments)) => pose::run(&arguments),
+        #[cfg(feature = "render")]
+        Some(Action::Render(arguments)) => render::run(&arguments),
+        None => open_window(arguments.files),
+    }
+}
+
+#[cfg(feature = "viewer")]
+fn open_window(files: Vec<PathBuf>) -> anyhow::Result<()> {
+    Ok(crate::app::run_native(files)?)
+}
+
+#[cfg(not(feature = "viewer"))]
+fn open_window(_files: Vec<PathBuf>) -> anyhow::Result<()> {
+    bail!("this gaitway was built without the viewer; build it with the feature `viewer` to open a window")
+}
+
+/// Reads the model and says what was odd about it.
+fn open(input: &Files) -> anyhow::Result<Opened> {
+    let opened = open_paths(&input.files)?;
+    for warning in opened.model.asset.warnings.iter() {
+        eprintln!("warning: {warning}");
+    }
+    Ok(opened)
+}
+
+/// Puts the model at the wanted moment. What is not given stays as the state has it.
+fn set_moment(library: &Library, moment: &Moment, state: &mut ViewerState) -> anyhow::Result<()> {
+    state.playing = false;
+    if let (Some(name), Some(model)) = (&moment.clip, library.active()) {
+        apply(state, library, Command::SetClip(ClipChoice::Named(name.clone())));
+        if active_clip(model, state).is_none() {
+            bail!("there is no clip “{name}”; {}", clips_text(model));
+        }
+    }
+    if let Some(time_secs) = moment.time {
+        if !time_secs.is_finite() {
+            bail!("--time {time_secs}: expected a number of seconds");
+        }
+        state.range = None;
+        state.loop_mode = LoopMode::Once;
+        apply(state, library, Command::Seek(time_secs));
+    }
+    if let Some(skinning) = moment.skinning {
+        state.skinning = match skinning {
+            Skinning::Linear => SkinningMode::Linear,
+            Skinning::Rigid => SkinningMode::Rigid,
+            Skinning::DualQuaternion => SkinningMode::DualQuaternion,
+        };
+    }
+    Ok(())
+}
+
+fn clips_text(model: &Model) -> String {
+    let titles = model.clip_titles();
+    match titles {
+        [] => "the model has no clips".to_owned(),
+        titles => format!("the clips are: {}", titles.join(", ")),
+    }
+}
+
+/// One document on standard output. A reader that has gone away is no error.
+fn print_json(document: &serde_json::Value) -> anyhow::Result<()> {
+    let mut text = serde_json::to_vec(document).context("the document cannot be written as JSON")?;
+    text.push(b'\n');
+    print_bytes(&text)
+}
+
+fn print_bytes(text: &[u8]) -> anyhow::Result<()> {
+    match std::io::stdout().lock().write_all(text) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(error).context("standard output"),
+        _ => Ok(()),
+    }
+}
+
+#[cfg(feature = "render")]
+fn read_size(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once('x').and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
+    let fits = |side: &u32| (1..=8192).contains(side);
+    sides
+        .filter(|sides| sides.iter().all(fits))
+        .ok_or_else(|| "expected WxH in pixels, from 1x1 to 8192x8192".to_owned())
+}
+
+#[cfg(feature = "render")]
+fn read_camera(text: &str) -> Result<[f32; 3], String> {
+    let numbers: Option<Vec<f32>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+    let numbers = numbers.and_then(|numbers| <[f32; 3]>::try_from(numbers).ok());
+    numbers
+        .filter(|numbers| numbers.iter().all(|number| number.is_finite()) && numbers[2] > 0.0)
+        .ok_or_else(|| "expected YAW,PITCH,DISTANCE: degrees, degrees, metres above 0".to_owned())
 }

@@ -1,1 +1,11 @@
 //! Getting at bytes: disk, drop, picker, network; and decoding images. Produces [`crate::library::Model`]s.
+
+#[cfg(not(target_arch = "wasm32"))]
+mod decode;
+#[cfg(not(target_arch = "wasm32"))]
+mod disk;
+
+#[cfg(not(target_arch = "wasm32"))]
+pub use decode::decode_images;
+#[cfg(not(target_arch = "wasm32"))]
+pub use disk::{OpenError, Opened, open_bytes, open_paths};

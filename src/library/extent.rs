@@ -79,9 +79,10 @@ impl Extent {
 
     pub fn instance_center(&self, asset: &Asset, instance: usize, world_from_joint: &[Affine3A]) -> Vec3 {
         let Some(extent) = self.instances.get(instance).filter(|extent| !extent.parts.is_empty()) else {
-            return asset.instances.get(instance).map_or(Vec3::ZERO, |instance| {
-                world_from_joint[instance.joint.get()].translation.into()
-            });
+            return asset
+                .instances
+                .get(instance)
+                .map_or(Vec3::ZERO, |instance| world_from_joint[instance.joint.get()].translation.into());
         };
         let sum: Vec3 =
             extent.parts.iter().map(|part| world_from_joint[part.joint.get()].transform_point3(part.center)).sum();
@@ -168,21 +169,7 @@ impl Support {
             return;
         }
         let Vec3 { x, y, z } = point;
-        let along = [
-            x,
-            y,
-            z,
-            x + y,
-            x - y,
-            y + z,
-            y - z,
-            z + x,
-            z - x,
-            x + y + z,
-            x + y - z,
-            x - y + z,
-            -x + y + z,
-        ];
+        let along = [x, y, z, x + y, x - y, y + z, y - z, z + x, z - x, x + y + z, x + y - z, x - y + z, -x + y + z];
         for (axis, along) in along.into_iter().enumerate() {
             if along > self.furthest[2 * axis].0 {
                 self.furthest[2 * axis] = (along, point);

@@ -11,11 +11,8 @@ use crate::mesh::{Bounds, Geometry};
 pub fn inspect(model: &Model, files: &[String]) -> Value {
     let asset: &Asset = &model.asset;
     let primitives = || asset.meshes.iter().flat_map(|mesh| &mesh.primitives);
-    let skins: Vec<Value> = asset
-        .skins
-        .iter()
-        .map(|skin| json!({ "name": skin.name(), "joints": skin.joints().len() }))
-        .collect();
+    let skins: Vec<Value> =
+        asset.skins.iter().map(|skin| json!({ "name": skin.name(), "joints": skin.joints().len() })).collect();
     let clips: Vec<Value> = asset.clips.iter().enumerate().map(|(index, clip)| clip_document(index, clip)).collect();
     json!({
         "files": files,
@@ -65,9 +62,5 @@ fn clip_document(index: usize, clip: &Clip) -> Value {
 
 /// Null when there is nothing to enclose.
 fn bounds_document(bounds: Bounds) -> Value {
-    if bounds.is_empty() {
-        Value::Null
-    } else {
-        json!({ "min": bounds.min.to_array(), "max": bounds.max.to_array() })
-    }
+    if bounds.is_empty() { Value::Null } else { json!({ "min": bounds.min.to_array(), "max": bounds.max.to_array() }) }
 }

@@ -29,6 +29,16 @@ impl Library {
         ModelId(self.next_id)
     }
 
+    /// Takes everything out, so that it can be put back when what follows does not work.
+    pub fn take(&mut self) -> Vec<Model> {
+        std::mem::take(&mut self.models)
+    }
+
+    /// Undoes [`Library::take`].
+    pub fn put_back(&mut self, models: Vec<Model>) {
+        self.models = models;
+    }
+
     pub fn models(&self) -> &[Model] {
         &self.models
     }

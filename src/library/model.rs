@@ -80,12 +80,7 @@ impl Model {
 
     /// Box around one pose: encloses every vertex (nearly, for dual quaternions), a little wide where joints bend.
     /// `world_from_joint` has one entry per joint; `in_scene` too.
-    pub fn pose_bounds(
-        &self,
-        world_from_joint: &[glam::Affine3A],
-        morph_weights: &[f32],
-        in_scene: &[bool],
-    ) -> Bounds {
+    pub fn pose_bounds(&self, world_from_joint: &[glam::Affine3A], morph_weights: &[f32], in_scene: &[bool]) -> Bounds {
         self.extent.of_pose(&self.asset, world_from_joint, morph_weights, in_scene)
     }
 

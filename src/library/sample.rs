@@ -94,7 +94,10 @@ fn build() -> Result<Asset, SampleError> {
         Mesh { name: "Body".to_owned(), primitives: shape::body(), target_names: Vec::new() },
         Mesh { name: "Eyes".to_owned(), primitives: vec![shape::eyes()], target_names: vec!["Blink".to_owned()] },
     ];
-    meshes.iter().flat_map(|mesh| &mesh.primitives).try_for_each(|part: &Geometry| part.validate(Some(joint::COUNT)))?;
+    meshes
+        .iter()
+        .flat_map(|mesh| &mesh.primitives)
+        .try_for_each(|part: &Geometry| part.validate(Some(joint::COUNT)))?;
     let of_source = |source: usize| skeleton.joint_of_source(source).unwrap_or(JointIndex(0));
     let instances = vec![
         MeshInstance { joint: of_source(BODY_NODE), mesh: 0, skin: Some(0) },

@@ -6,7 +6,7 @@ use std::f32::consts::{PI, TAU};
 use glam::{Quat, Vec3};
 
 use super::{EYES_NODE, SampleError, joint, place};
-use crate::anim::{ClipBuilder, Clip, Interpolation, JointIndex, Keys, Skeleton};
+use crate::anim::{Clip, ClipBuilder, Interpolation, JointIndex, Keys, Skeleton};
 
 const FRAMES_PER_SEC: usize = 30;
 
@@ -32,12 +32,7 @@ pub fn clips(skeleton: &Skeleton) -> Result<Vec<Clip>, SampleError> {
 }
 
 /// Samples a motion at every frame; `motion` takes the part of the clip that has gone by, 0 to 1, both the same stance.
-fn record(
-    name: &str,
-    skeleton: &Skeleton,
-    frames: usize,
-    motion: impl Fn(f32) -> Stance,
-) -> Result<Clip, SampleError> {
+fn record(name: &str, skeleton: &Skeleton, frames: usize, motion: impl Fn(f32) -> Stance) -> Result<Clip, SampleError> {
     let times_secs: Vec<f32> = (0..=frames).map(|frame| frame as f32 / FRAMES_PER_SEC as f32).collect();
     // The last key repeats the first exactly, so that the loop has no seam.
     let stances: Vec<Stance> = (0..=frames).map(|frame| motion((frame % frames) as f32 / frames as f32)).collect();
@@ -60,8 +55,7 @@ fn record(
 impl Stance {
     /// Upright, arms hanging.
     fn standing() -> Self {
-        let mut stance =
-            Self { hips: place(joint::HIPS), rotations: [Quat::IDENTITY; joint::COUNT], eyes_closed: 0.0 };
+        let mut stance = Self { hips: place(joint::HIPS), rotations: [Quat::IDENTITY; joint::COUNT], eyes_closed: 0.0 };
         stance.arm(1.0, 0.0, 0.16, 0.2);
         stance.arm(-1.0, 0.0, 0.16, 0.2);
         stance
@@ -71,8 +65,8 @@ impl Stance {
     fn arm(&mut self, side: f32, swing: f32, spread: f32, bend: f32) {
         let [shoulder, upper, lower, hand] = if side > 0.0 { joint::LEFT_ARM } else { joint::RIGHT_ARM };
         self.rotations[shoulder] = Quat::from_rotation_z(-side * 0.06);
-        self.rotations[upper] = Quat::from_rotation_x(-swing)
-            * Quat::from_rotation_z(side * (spread + 0.06 - 0.5 * PI));
+        self.rotations[upper] =
+            Quat::from_rotation_x(-swing) * Quat::from_rotation_z(side * (spread + 0.06 - 0.5 * PI));
         self.rotations[lower] = Quat::from_rotation_y(-side * bend);
         self.rotations[hand] = Quat::from_rotation_y(-side * 0.1);
     }
@@ -86,7 +80,9 @@ impl Stance {
             let (thigh, shin) = ((place(upper) - place(lower)).length(), (place(lower) - place(ankle)).length());
             let reach = foot.ankle - hip_joint;
             let distance = reach.length().min(0.9995 * (thigh + shin));
-            let angle = |opposite: f32, a: f32, b: f32| ((a * a + b * b - opposite * opposite) / (2.0 * a * b)).clamp(-1.0, 1.0).acos();
+            let angle = |opposite: f32, a: f32, b: f32| {
+                ((a * a + b * b - opposite * opposite) / (2.0 * a * b)).clamp(-1.0, 1.0).acos()
+            };
             let knee = PI - angle(distance, thigh, shin);
             let aim = Quat::from_rotation_arc(Vec3::NEG_Y, reach.normalize_or(Vec3::NEG_Y));
             let world_from_thigh = aim * Quat::from_rotation_x(-angle(shin, thigh, distance));
@@ -146,12 +142,10 @@ fn rolled(side: f32, forward: f32, lift: f32, pitch: f32) -> Foot {
 
 /// Smooth steps between keys.
 fn keyed(keys: &[(f32, f32)], at: f32) -> f32 {
-    keys.windows(2)
-        .find(|pair| at <= pair[1].0)
-        .map_or(keys[keys.len() - 1].1, |pair| {
-            let part = ((at - pair[0].0) / (pair[1].0 - pair[0].0)).clamp(0.0, 1.0);
-            pair[0].1 + (pair[1].1 - pair[0].1) * part * part * (3.0 - 2.0 * part)
-        })
+    keys.windows(2).find(|pair| at <= pair[1].0).map_or(keys[keys.len() - 1].1, |pair| {
+        let part = ((at - pair[0].0) / (pair[1].0 - pair[0].0)).clamp(0.0, 1.0);
+        pair[0].1 + (pair[1].1 - pair[0].1) * part * part * (3.0 - 2.0 * part)
+    })
 }
 
 /// On the spot: the ground goes by. The left heel strikes at 0, the right one half a cycle later.
@@ -162,9 +156,11 @@ fn walk(part: f32) -> Stance {
     let bob = -(2.0 * TAU * (part - 0.04)).cos();
     stance.hips += Vec3::new(0.018 * (TAU * (part - 0.05)).sin(), -0.052 + 0.013 * bob, 0.0);
     let turn = 0.13 * cos;
-    stance.rotations[joint::HIPS] = Quat::from_rotation_y(-turn) * Quat::from_rotation_z(0.05 * sin) * Quat::from_rotation_x(0.04);
+    stance.rotations[joint::HIPS] =
+        Quat::from_rotation_y(-turn) * Quat::from_rotation_z(0.05 * sin) * Quat::from_rotation_x(0.04);
     stance.rotations[joint::SPINE] = Quat::from_rotation_y(0.9 * turn) * Quat::from_rotation_z(-0.04 * sin);
-    stance.rotations[joint::CHEST] = Quat::from_rotation_y(0.9 * turn) * Quat::from_rotation_z(-0.02 * sin) * Quat::from_rotation_x(0.02);
+    stance.rotations[joint::CHEST] =
+        Quat::from_rotation_y(0.9 * turn) * Quat::from_rotation_z(-0.02 * sin) * Quat::from_rotation_x(0.02);
     stance.rotations[joint::NECK] = Quat::from_rotation_y(-0.4 * turn) * Quat::from_rotation_x(-0.03);
     stance.rotations[joint::HEAD] = Quat::from_rotation_y(-0.4 * turn) * Quat::from_rotation_x(-0.02 + 0.015 * bob);
     for side in [1.0, -1.0] {
@@ -180,9 +176,13 @@ fn walk(part: f32) -> Stance {
 fn idle(part: f32) -> Stance {
     let mut stance = Stance::standing();
     stand(&mut stance, part);
-    let look = keyed(&[(0.0, 0.0), (0.3, 0.0), (0.4, 0.42), (0.52, 0.42), (0.66, -0.3), (0.78, -0.3), (0.9, 0.0), (1.0, 0.0)], part);
+    let look = keyed(
+        &[(0.0, 0.0), (0.3, 0.0), (0.4, 0.42), (0.52, 0.42), (0.66, -0.3), (0.78, -0.3), (0.9, 0.0), (1.0, 0.0)],
+        part,
+    );
     stance.rotations[joint::NECK] = Quat::from_rotation_y(0.4 * look);
-    stance.rotations[joint::HEAD] = Quat::from_rotation_y(0.6 * look) * Quat::from_rotation_x(0.02 * (2.0 * TAU * part).sin());
+    stance.rotations[joint::HEAD] =
+        Quat::from_rotation_y(0.6 * look) * Quat::from_rotation_x(0.02 * (2.0 * TAU * part).sin());
     stance.eyes_closed = blink(part, 0.33, 0.04) + blink(part, 0.62, 0.04) + blink(part, 0.68, 0.04);
     stance
 }
@@ -219,7 +219,8 @@ fn wave(part: f32) -> Stance {
     }
     stance.rotations[joint::CHEST] *= Quat::from_rotation_z(0.07 * raised + 0.012 * beat);
     stance.rotations[joint::HEAD] = Quat::from_rotation_z(-0.12 * raised) * Quat::from_rotation_y(-0.1 * raised);
-    stance.eyes_closed = 0.35 * keyed(&[(0.0, 0.0), (0.28, 0.0), (0.36, 1.0), (0.7, 1.0), (0.78, 0.0), (1.0, 0.0)], part);
+    stance.eyes_closed =
+        0.35 * keyed(&[(0.0, 0.0), (0.28, 0.0), (0.36, 1.0), (0.7, 1.0), (0.78, 0.0), (1.0, 0.0)], part);
     stance
 }
 

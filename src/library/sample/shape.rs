@@ -89,8 +89,11 @@ pub fn eyes() -> Geometry {
 }
 
 fn torso(surface: &mut Surface) {
-    let chain =
-        Chain { joints: &[joint::HIPS, joint::SPINE, joint::CHEST, joint::NECK, joint::HEAD], axis: Vec3::Y, blend: 0.05 };
+    let chain = Chain {
+        joints: &[joint::HIPS, joint::SPINE, joint::CHEST, joint::NECK, joint::HEAD],
+        axis: Vec3::Y,
+        blend: 0.05,
+    };
     let ring = |y: f32, z: f32, x_radius: f32, z_radius: f32, color: Vec3| Ring {
         center: Vec3::new(0.0, y, z),
         radii: Vec2::new(x_radius, z_radius),
@@ -155,11 +158,8 @@ fn visor() -> Geometry {
             // Square to disk-like: rounded corners.
             let (x, y) = (u * (1.0 - 0.28 * v * v).sqrt(), v * (1.0 - 0.28 * u * u).sqrt());
             let (azimuth, elevation) = (1.12 * x, 0.47 * y + 0.06);
-            let direction = Vec3::new(
-                azimuth.sin() * elevation.cos(),
-                elevation.sin(),
-                azimuth.cos() * elevation.cos(),
-            );
+            let direction =
+                Vec3::new(azimuth.sin() * elevation.cos(), elevation.sin(), azimuth.cos() * elevation.cos());
             let rim = u.abs().max(v.abs());
             let out = if rim > 0.999 { 0.985 } else { 1.035 - 0.02 * rim.powi(6) };
             surface.vertex(HEAD_CENTER + out * HEAD_RADII * direction, SHELL, [(joint::HEAD, 1.0), (joint::HEAD, 0.0)]);
@@ -346,7 +346,8 @@ impl Surface {
         const RINGS: usize = 14;
         let start = self.positions.len() as u32;
         for ring in 0..=RINGS {
-            let (height, width) = (std::f32::consts::PI * ring as f32 / RINGS as f32 - 0.5 * std::f32::consts::PI).sin_cos();
+            let (height, width) =
+                (std::f32::consts::PI * ring as f32 / RINGS as f32 - 0.5 * std::f32::consts::PI).sin_cos();
             for side in 0..SIDES {
                 let (sin, cos) = (std::f32::consts::TAU * side as f32 / SIDES as f32).sin_cos();
                 let direction = Vec3::new(width * cos, height, -width * sin);
@@ -389,5 +390,8 @@ fn smooth_normals(positions: &[Vec3], indices: &[u32]) -> Vec<Vec3> {
             *sums.entry(key(corner)).or_default() += area;
         }
     }
-    positions.iter().map(|&position| sums.get(&key(position)).map_or(Vec3::Y, |sum| sum.normalize_or(Vec3::Y))).collect()
+    positions
+        .iter()
+        .map(|&position| sums.get(&key(position)).map_or(Vec3::Y, |sum| sum.normalize_or(Vec3::Y)))
+        .collect()
 }

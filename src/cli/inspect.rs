@@ -1,0 +1,60 @@
+//! `gaitway inspect`: what is in a model.
+
+use std::fmt::Write;
+
+use serde_json::Value;
+
+use super::{InspectArguments, open, print_bytes, print_json};
+use crate::files::Opened;
+use crate::library::inspect;
+
+pub(super) fn run(arguments: &InspectArguments) -> anyhow::Result<()> {
+    let opened = open(&arguments.input)?;
+    let document = inspect(&opened.model, &opened.files);
+    if arguments.json {
+        return print_json(&document);
+    }
+    print_bytes(text(&opened, &document).as_bytes())
+}
+
+/// For people; scripts read the JSON.
+fn text(opened: &Opened, document: &Value) -> String {
+    let asset = &opened.model.asset;
+    let mut text = String::new();
+    let mut line = |name: &str, value: String| {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{name:<12}{value}");
+    };
+    let number = |key: &str| document[key].to_string();
+    line("files", opened.files.join(", "));
+    line("format", asset.format.to_owned());
+    if !asset.generator.is_empty() {
+        line("generator", asset.generator.clone());
+    }
+    line("nodes", number("nodes"));
+    line("joints", format!("{} in {} skins", number("joints"), asset.skins.len()));
+    line("meshes", format!("{} ({} primitives)", number("meshes"), number("primitives")));
+    line("vertices", number("vertices"));
+    line("triangles", number("triangles"));
+    line("morphs", number("morph_targets"));
+    line("cameras", number("cameras"));
+    if !asset.extensions_used.is_empty() {
+        line("extensions", asset.extensions_used.join(", "));
+    }
+    let bounds = opened.model.rest_bounds();
+    if !bounds.is_empty() {
+        let size = bounds.size();
+        line(
+            "size",
+            format!("{:.3} × {:.3} × {:.3} m, from {:.3} to {:.3}", size.x, size.y, size.z, bounds.min, bounds.max),
+        );
+    }
+    for (index, title) in opened.model.clip_titles().iter().enumerate() {
+        let clip = &asset.clips[index];
+        line(
+            &format!("clip {index}"),
+            format!("{title}, {:.3} s, {} channels", clip.duration_secs(), clip.channels().len()),
+        );
+    }
+    text
+}

@@ -1,0 +1,29 @@
+//! `gaitway pose`: the numbers that would be drawn.
+
+use std::fmt::Write;
+
+use super::{PoseArguments, open, print_bytes, print_json, set_moment};
+use crate::frame::pose_document;
+use crate::library::Library;
+use crate::state::{ClipChoice, ViewerState};
+
+pub(super) fn run(arguments: &PoseArguments) -> anyhow::Result<()> {
+    let mut library = Library::default();
+    library.set(open(&arguments.input)?.model);
+    let mut state = ViewerState { clip: ClipChoice::RestPose, ..ViewerState::default() };
+    set_moment(&library, &arguments.moment, &mut state)?;
+    let document = pose_document(&library, &state);
+    if arguments.json {
+        return print_json(&document);
+    }
+    let mut text = String::new();
+    let clip = document["clip"].as_str().unwrap_or("rest pose");
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "{clip} at {} s; world positions of the nodes in metres:", document["time_secs"]);
+    for node in document["nodes"].as_array().into_iter().flatten() {
+        let name = node["name"].as_str().unwrap_or_default();
+        let at = |index: usize| node["world"][index].as_f64().unwrap_or(f64::NAN);
+        let _ = writeln!(text, "{:>5} {name:<32} {:>10.4} {:>10.4} {:>10.4}", node["node"], at(12), at(13), at(14));
+    }
+    print_bytes(text.as_bytes())
+}

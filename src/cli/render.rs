@@ -1,0 +1,58 @@
+//! `gaitway render`: the same picture as the page, without a window.
+
+use anyhow::{Context, bail};
+
+use super::{RenderArguments, open, set_moment};
+use crate::frame::{Frame, evaluate};
+use crate::library::Library;
+use crate::render::{Renderer, RendererOptions, headless_device, read_pixels};
+use crate::state::{CameraChoice, ClipChoice, Command, OrbitCamera, ViewerState, apply, from_link, resolve_camera};
+
+pub(super) fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
+    let mut library = Library::default();
+    library.set(open(&arguments.input)?.model);
+    let state = view(arguments, &library)?;
+    let [width, height] = arguments.size;
+    let mut frame = Frame::default();
+    evaluate(&library, &state, width as f32 / height as f32, &mut frame);
+
+    let (device, queue, adapter) = headless_device()?;
+    eprintln!("drawing with {} ({})", adapter.name, adapter.backend);
+    let mut renderer = Renderer::new(&device, &queue, RendererOptions { samples: 4 });
+    for model in library.models() {
+        renderer.upload(&device, &queue, model)?;
+    }
+    renderer.draw(&device, &queue, &frame, arguments.size);
+    let pixels = pollster::block_on(read_pixels(&device, &queue, renderer.output()));
+    let Some(image) = image::RgbaImage::from_raw(width, height, pixels).filter(|image| image.width() > 0) else {
+        bail!("the picture could not be read back from the graphics device");
+    };
+    let out = &arguments.out;
+    image.save_with_format(out, image::ImageFormat::Png).with_context(|| format!("{}", out.display()))
+}
+
+/// The link's view with the options on top.
+fn view(arguments: &RenderArguments, library: &Library) -> anyhow::Result<ViewerState> {
+    let mut state = ViewerState { clip: ClipChoice::RestPose, ..ViewerState::default() };
+    if let Some(link) = &arguments.view {
+        let fragment = link.split_once('#').map_or(link.as_str(), |(_, fragment)| fragment);
+        let (wanted, errors) = from_link(fragment);
+        for error in errors {
+            eprintln!("warning: {error}");
+        }
+        apply(&mut state, library, Command::Replace(Box::new(wanted)));
+    }
+    set_moment(library, &arguments.moment, &mut state)?;
+    if let Some([yaw_degrees, pitch_degrees, distance]) = arguments.camera {
+        let [width, height] = arguments.size;
+        let target = resolve_camera(library, &state, width as f32 / height as f32).target;
+        let orbit = OrbitCamera {
+            yaw_radians: yaw_degrees.to_radians(),
+            pitch_radians: pitch_degrees.to_radians(),
+            distance,
+            target,
+        };
+        apply(&mut state, library, Command::SetCamera(CameraChoice::Orbit(orbit)));
+    }
+    Ok(state)
+}
