@@ -1,5 +1,23 @@
 //! The frame loop: owns the state, the library, the renderer and the panels.
 
+mod device;
+mod host;
 mod inbox;
+#[cfg(not(target_arch = "wasm32"))]
+mod native;
+mod png;
+mod run;
+mod scene_texture;
 
+pub use device::{Backend, FatalHook, set_fatal_hook};
+pub use host::Host;
 pub use inbox::{Inbox, Message, Opening, Reply, ScriptCall};
+pub use png::encode as encode_png;
+pub use run::App;
+
+#[cfg(not(target_arch = "wasm32"))]
+pub use device::native_options;
+#[cfg(target_arch = "wasm32")]
+pub use device::web_options;
+#[cfg(not(target_arch = "wasm32"))]
+pub use native::{WindowError, run_native};

@@ -1,1 +1,201 @@
-//! Placeholder while the first version is laid out.
+//! The panels: functions that show a library and a view state and give back commands. They never change either, and
+//! know neither the clock nor the GPU; what only matters to the panels themselves lives in [`UiState`].
+
+mod clips;
+mod controls;
+mod display;
+mod icons;
+mod inspector;
+mod keys;
+mod overlays;
+mod picture;
+mod report;
+mod scene_tree;
+mod scrub;
+mod style;
+mod transport;
+mod view_options;
+
+use std::collections::HashSet;
+
+use egui::{Rect, Ui};
+
+use crate::anim::Clip;
+use crate::frame::Frame;
+use crate::library::{Library, ModelId};
+use crate::state::{Command, ViewerState, active_clip, clip_secs};
+
+pub use inspector::Tab;
+pub use keys::{KEY_TABLE, KeyHelp};
+pub use overlays::overlays;
+pub use picture::{PictureSlot, picture};
+pub use style::install;
+
+/// What the panels show. `frame` is what is on the screen: one behind while a command is under way.
+#[derive(Clone, Copy)]
+pub struct Shown<'a> {
+    pub library: &'a Library,
+    pub state: &'a ViewerState,
+    pub frame: &'a Frame,
+}
+
+impl<'a> Shown<'a> {
+    /// Which clip the state chooses; none: the rest pose.
+    pub fn clip_index(&self) -> Option<usize> {
+        active_clip(self.library.active()?, self.state)
+    }
+
+    pub fn clip(&self) -> Option<&'a Clip> {
+        self.library.active()?.asset.clips.get(self.clip_index()?)
+    }
+
+    /// The playhead inside the clip; 0 at rest.
+    pub fn clip_time_secs(&self) -> f64 {
+        match (self.library.active(), self.clip_index()) {
+            (Some(model), Some(clip)) => clip_secs(model, clip, self.state),
+            _ => 0.0,
+        }
+    }
+
+    /// What a frame step is and what times are counted in.
+    pub fn frames_per_sec(&self) -> f64 {
+        match (self.library.active(), self.clip_index()) {
+            (Some(model), Some(clip)) => model.frames_per_sec(clip),
+            _ => 30.0,
+        }
+    }
+}
+
+/// What only the panels remember.
+#[derive(Debug)]
+pub struct UiState {
+    pub clips_open: bool,
+    pub inspector_open: bool,
+    /// On a narrow screen the panels are sheets over the picture, one at a time.
+    pub sheet: Option<Sheet>,
+    pub tab: Tab,
+    pub clip_search: String,
+    pub joint_search: String,
+    pub help_open: bool,
+    /// Shown until dismissed.
+    pub error: Option<String>,
+    pub progress: Option<Progress>,
+    /// The playhead is held: time stands still meanwhile.
+    pub scrubbing: bool,
+    /// The joint under the pointer, as the file numbers it.
+    pub hovered_joint: Option<usize>,
+    /// Width over height of the picture, as last shown.
+    pub aspect: f32,
+    /// Says briefly that something was done.
+    pub toast: Option<Toast>,
+    key_marks: scrub::KeyMarks,
+    /// Joints whose children are folded away, as the file numbers them, and the model they belong to.
+    folded: HashSet<usize>,
+    folded_of: Option<ModelId>,
+    /// The joint the tree was last scrolled to.
+    scrolled_to: Option<usize>,
+}
+
+impl Default for UiState {
+    fn default() -> Self {
+        Self {
+            clips_open: true,
+            inspector_open: true,
+            sheet: None,
+            tab: Tab::Scene,
+            clip_search: String::new(),
+            joint_search: String::new(),
+            help_open: false,
+            error: None,
+            progress: None,
+            scrubbing: false,
+            hovered_joint: None,
+            aspect: 1.6,
+            toast: None,
+            key_marks: scrub::KeyMarks::default(),
+            folded: HashSet::new(),
+            folded_of: None,
+            scrolled_to: None,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sheet {
+    Clips,
+    Inspector,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct Progress {
+    pub name: String,
+    /// From 0 to 1; none: not known.
+    pub fraction: Option<f32>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct Toast {
+    pub text: String,
+    /// egui's time at which it goes.
+    pub until_secs: f64,
+}
+
+/// What pressing things asks for.
+#[derive(Debug, Default, PartialEq)]
+pub struct Output {
+    pub commands: Vec<Command>,
+    pub actions: Vec<UiAction>,
+}
+
+/// What is not a change of the view state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum UiAction {
+    /// Let the person choose files.
+    OpenFiles,
+    /// Put a link to this view on the clipboard.
+    CopyLink,
+    Undo,
+    Redo,
+}
+
+/// Screens narrower than this get sheets instead of side panels.
+pub const NARROW_WIDTH: f32 = 700.0;
+
+/// Shows the panels around the picture and gives back the rectangle that is left for it.
+pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Output) -> Rect {
+    let palette = style::palette(ui);
+    let narrow = is_narrow(ui);
+    let side =
+        egui::Frame::new().fill(palette.panel).inner_margin(egui::Margin { left: 14, right: 14, top: 14, bottom: 8 });
+    let bottom =
+        egui::Frame::new().fill(palette.panel).inner_margin(egui::Margin { left: 12, right: 12, top: 2, bottom: 6 });
+    local.scrubbing = false;
+    egui::Panel::bottom("transport")
+        .frame(bottom)
+        .resizable(false)
+        .show_separator_line(false)
+        .show(ui, |ui| transport::show(ui, &shown, local, narrow, out));
+    if !narrow && !shown.state.embed {
+        if local.clips_open {
+            egui::Panel::left("clips")
+                .frame(side)
+                .default_size(244.0)
+                .size_range(190.0..=420.0)
+                .show_separator_line(false)
+                .show(ui, |ui| clips::show(ui, &shown, local, out));
+        }
+        if local.inspector_open {
+            egui::Panel::right("inspector")
+                .frame(side)
+                .default_size(304.0)
+                .size_range(260.0..=520.0)
+                .show_separator_line(false)
+                .show(ui, |ui| inspector::show(ui, &shown, local, out));
+        }
+    }
+    ui.available_rect_before_wrap()
+}
+
+fn is_narrow(ui: &Ui) -> bool {
+    ui.ctx().content_rect().width() < NARROW_WIDTH
+}

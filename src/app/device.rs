@@ -1,0 +1,115 @@
+//! Which adapter and device the app runs on, and what happens when it breaks.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
+
+use eframe::egui_wgpu;
+
+/// The page's two ways to draw.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Backend {
+    WebGpu,
+    WebGl2,
+}
+
+/// Told once what ended the drawing for good; see [`set_fatal_hook`].
+pub type FatalHook = fn(&str);
+
+static FATAL_HOOK: Mutex<Option<FatalHook>> = Mutex::new(None);
+
+/// Sets who is told when the device is lost or a drawing call fails: nothing can be drawn after that.
+pub fn set_fatal_hook(hook: FatalHook) {
+    if let Ok(mut slot) = FATAL_HOOK.lock() {
+        *slot = Some(hook);
+    }
+}
+
+fn fatal(message: &str) {
+    let hook = FATAL_HOOK.lock().ok().and_then(|hook| *hook);
+    match hook {
+        Some(hook) => hook(message),
+        None => eprintln!("error: {message}"),
+    }
+}
+
+/// Reports a lost device and errors nobody asked for. Nothing is reported once `closing` is set: closing the app drops
+/// its device, which is no news.
+pub(super) fn watch(device: &wgpu::Device, closing: &Arc<AtomicBool>) {
+    let closed = closing.clone();
+    device.set_device_lost_callback(move |_, message| {
+        if !closed.load(Ordering::Relaxed) {
+            fatal(&format!("the graphics device was lost: {message}"));
+        }
+    });
+    let closed = closing.clone();
+    device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+        if !closed.load(Ordering::Relaxed) {
+            fatal(&format!("the graphics device reported an error: {error}"));
+        }
+    }));
+}
+
+/// Samples per pixel for an adapter: where the CPU draws, four samples cost twice the frame.
+pub(super) fn samples(info: &wgpu::AdapterInfo) -> u32 {
+    if draws_on_cpu(info) { 1 } else { 4 }
+}
+
+/// A browser does not say what kind of adapter it has, but names software ones.
+fn draws_on_cpu(info: &wgpu::AdapterInfo) -> bool {
+    let names = format!("{} {} {}", info.name, info.driver, info.driver_info).to_lowercase();
+    info.device_type == wgpu::DeviceType::Cpu
+        || ["swiftshader", "llvmpipe", "lavapipe", "software"].iter().any(|name| names.contains(name))
+}
+
+/// `webgpu`, `webgl2`, or natively `vulkan`, `metal`, `dx12`, `gl`.
+pub(super) fn backend_name(info: &wgpu::AdapterInfo) -> &'static str {
+    match info.backend {
+        wgpu::Backend::BrowserWebGpu => "webgpu",
+        wgpu::Backend::Gl if cfg!(target_arch = "wasm32") => "webgl2",
+        wgpu::Backend::Gl => "gl",
+        wgpu::Backend::Vulkan => "vulkan",
+        wgpu::Backend::Metal => "metal",
+        wgpu::Backend::Dx12 => "dx12",
+        wgpu::Backend::Noop => "noop",
+    }
+}
+
+/// WebGL2's limits on every device, so that what works on one works on all; only textures may be as large as they can.
+fn configuration(backends: Option<wgpu::Backends>) -> egui_wgpu::WgpuConfiguration {
+    let mut setup = egui_wgpu::WgpuSetupCreateNew::without_display_handle();
+    if let Some(backends) = backends {
+        setup.instance_descriptor.backends = backends;
+    }
+    setup.device_descriptor = Arc::new(|adapter| wgpu::DeviceDescriptor {
+        label: Some("gaitway"),
+        required_limits: wgpu::Limits::downlevel_webgl2_defaults().using_resolution(adapter.limits()),
+        ..Default::default()
+    });
+    egui_wgpu::WgpuConfiguration { wgpu_setup: setup.into(), ..Default::default() }
+}
+
+/// How the window is opened.
+#[cfg(not(target_arch = "wasm32"))]
+pub fn native_options() -> eframe::NativeOptions {
+    eframe::NativeOptions {
+        viewport: egui::ViewportBuilder::default()
+            .with_title("Gaitway")
+            .with_app_id("gaitway")
+            .with_inner_size([1280.0, 800.0])
+            .with_min_inner_size([340.0, 420.0])
+            .with_drag_and_drop(true),
+        wgpu_options: configuration(None),
+        ..Default::default()
+    }
+}
+
+/// How the page's canvas is taken over. No back end: WebGPU when there is an adapter, else WebGL2.
+#[cfg(target_arch = "wasm32")]
+pub fn web_options(backend: Option<Backend>) -> eframe::WebOptions {
+    let backends = match backend {
+        None => wgpu::Backends::BROWSER_WEBGPU | wgpu::Backends::GL,
+        Some(Backend::WebGpu) => wgpu::Backends::BROWSER_WEBGPU,
+        Some(Backend::WebGl2) => wgpu::Backends::GL,
+    };
+    eframe::WebOptions { wgpu_options: configuration(Some(backends)), ..Default::default() }
+}

@@ -1,0 +1,25 @@
+//! What the frame loop leaves to the platform: choosing files, links, and news for whoever embeds the page.
+
+use super::Inbox;
+use crate::state::ViewerState;
+
+/// Implemented once for the page and once for the window. All calls come from the loop's thread; answers arrive
+/// through the inbox.
+pub trait Host {
+    /// Lets the person choose files; false when there is no way to on this platform.
+    fn choose_files(&self, inbox: &Inbox) -> bool;
+
+    /// Opens files that were dropped on the canvas or the window, as one set.
+    fn open_dropped(&self, files: Vec<egui::DroppedFileHandle>, inbox: &Inbox);
+
+    /// A link that a person can pass on, from the part after `#`.
+    fn link(&self, fragment: &str) -> String;
+
+    /// Something was set, other than the playhead moving on by itself.
+    fn state_changed(&self, state: &ViewerState);
+
+    /// Called at the start of every frame, before the inbox is read.
+    fn before_frame(&self, inbox: &Inbox) {
+        let _ = inbox;
+    }
+}

@@ -1,0 +1,89 @@
+//! The window: files from the command line or dropped onto it, read in the background.
+
+use std::path::PathBuf;
+use std::sync::mpsc::{Receiver, Sender, channel};
+
+use super::{App, Host, Inbox, Message, Opening, native_options};
+use crate::files::{OpenError, open_paths};
+use crate::library::{Model, sample};
+use crate::state::ViewerState;
+
+/// Why there is no window, or no longer.
+#[derive(Debug, thiserror::Error)]
+pub enum WindowError {
+    #[error(transparent)]
+    Open(#[from] OpenError),
+    #[error("the embedded sample is missing")]
+    NoSample,
+    #[error("the window could not be opened: {0}")]
+    Window(#[from] eframe::Error),
+}
+
+/// Opens the window and returns when it is closed. Several files are one set; without any the sample walks.
+///
+/// # Errors
+/// When the first files cannot be read, or no window or graphics device is to be had.
+pub fn run_native(files: Vec<PathBuf>) -> Result<(), WindowError> {
+    let sample = || sample::load(sample::NAMES[0]).ok_or(WindowError::NoSample);
+    let model = if files.is_empty() { sample()? } else { open_paths(&files)?.model };
+    let state = ViewerState { model: vec![model.source.clone()], ..ViewerState::default() };
+    let create: eframe::AppCreator<'_> = Box::new(move |cc| {
+        let app = App::new(cc, Box::new(Window::new(cc.egui_ctx.clone())), model, state, |_| {})?;
+        Ok(Box::new(app))
+    });
+    Ok(eframe::run_native("Gaitway", native_options(), create)?)
+}
+
+struct Window {
+    context: egui::Context,
+    loaded: Receiver<Result<Box<Model>, String>>,
+    sender: Sender<Result<Box<Model>, String>>,
+}
+
+impl Window {
+    fn new(context: egui::Context) -> Self {
+        let (sender, loaded) = channel();
+        Self { context, loaded, sender }
+    }
+}
+
+impl Host for Window {
+    fn choose_files(&self, _inbox: &Inbox) -> bool {
+        false
+    }
+
+    fn open_dropped(&self, files: Vec<egui::DroppedFileHandle>, inbox: &Inbox) {
+        let paths: Vec<PathBuf> = files.iter().map(|file| file.path().to_owned()).collect();
+        let name = paths.first().and_then(|path| path.file_name()).map(|name| name.to_string_lossy().into_owned());
+        let opening = Opening { name: name.unwrap_or_default(), received_bytes: 0, total_bytes: 0 };
+        inbox.send(Message::OpenProgress(opening));
+        let (sender, context) = (self.sender.clone(), self.context.clone());
+        std::thread::spawn(move || {
+            // Nobody waits any more when the window was closed meanwhile.
+            let _ =
+                sender.send(open_paths(&paths).map(|opened| Box::new(opened.model)).map_err(|error| error.to_string()));
+            context.request_repaint();
+        });
+    }
+
+    fn link(&self, fragment: &str) -> String {
+        format!("#{fragment}")
+    }
+
+    fn state_changed(&self, state: &ViewerState) {
+        let title = match state.model.first() {
+            Some(model) => format!("{model} – Gaitway"),
+            None => "Gaitway".to_owned(),
+        };
+        self.context.send_viewport_cmd(egui::ViewportCommand::Title(title));
+    }
+
+    fn before_frame(&self, inbox: &Inbox) {
+        while let Ok(loaded) = self.loaded.try_recv() {
+            inbox.send(match loaded {
+                Ok(model) => Message::Opened { model, state: None, reply: None },
+                Err(error) => Message::OpenFailed(error),
+            });
+        }
+    }
+}

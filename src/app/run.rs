@@ -1,0 +1,342 @@
+//! One turn of the loop: read the inbox, show the panels, apply what was pressed, advance time, draw what changed.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::scene_texture::SceneTexture;
+use super::{Host, Inbox, Message, Opening, Reply, ScriptCall, device, encode_png};
+use crate::frame::{Frame, evaluate, pose_document};
+use crate::library::{Library, Model, inspect};
+use crate::render::read_pixels;
+use crate::state::{
+    CameraChoice, ClipChoice, Command, History, ViewerState, frame_all, from_object, resolve_camera, to_link, to_object,
+};
+use crate::ui::{self, Output, Progress, Shown, Toast, UiAction, UiState};
+
+/// How long a short message stays.
+const TOAST_SECS: f64 = 2.5;
+
+pub struct App {
+    library: Library,
+    state: ViewerState,
+    history: History,
+    frame: Frame,
+    panels: UiState,
+    output: Output,
+    scene: SceneTexture,
+    /// Size in pixels and aspect of the last picture; none: nothing drawn yet.
+    drawn_size: Option<[u32; 2]>,
+    /// Something the picture depends on has changed since it was drawn.
+    dirty: bool,
+    /// Something was set since the host was last told.
+    changed: bool,
+    inbox: Inbox,
+    host: Box<dyn Host>,
+    /// Answered once the picture shows what they asked for.
+    after_draw: Vec<Box<dyn FnOnce()>>,
+    screenshots: Vec<Reply<Vec<u8>>>,
+    backend: &'static str,
+    closing: Arc<AtomicBool>,
+    /// Running mean of the time between frames that follow one another, seconds.
+    frame_secs: f32,
+    cpu_secs: f32,
+}
+
+impl App {
+    /// Shows `model` in `state` at first. `inbox_ready` gets the queue through which everything else arrives.
+    ///
+    /// # Errors
+    /// When there is no wgpu device, or the model does not fit on it.
+    pub fn new(
+        cc: &eframe::CreationContext<'_>,
+        host: Box<dyn Host>,
+        model: Model,
+        state: ViewerState,
+        inbox_ready: impl FnOnce(Inbox),
+    ) -> Result<Self, String> {
+        let gpu = cc.wgpu_render_state.clone().ok_or("there is no graphics device")?;
+        let closing = Arc::new(AtomicBool::new(false));
+        device::watch(&gpu.device, &closing);
+        let info = gpu.adapter.get_info();
+        ui::install(&cc.egui_ctx);
+        let inbox = Inbox::new(cc.egui_ctx.clone());
+        let mut app = Self {
+            library: Library::default(),
+            state: ViewerState::default(),
+            history: History::default(),
+            frame: Frame::default(),
+            panels: UiState::default(),
+            output: Output::default(),
+            scene: SceneTexture::new(gpu, device::samples(&info)),
+            drawn_size: None,
+            dirty: true,
+            changed: false,
+            inbox: inbox.clone(),
+            host,
+            after_draw: Vec::new(),
+            screenshots: Vec::new(),
+            backend: device::backend_name(&info),
+            closing,
+            frame_secs: 0.0,
+            cpu_secs: 0.0,
+        };
+        app.show_model(model, Some(state))?;
+        inbox_ready(inbox);
+        Ok(app)
+    }
+
+    pub fn state(&self) -> &ViewerState {
+        &self.state
+    }
+
+    pub fn library(&self) -> &Library {
+        &self.library
+    }
+
+    fn handle(&mut self, message: Message) {
+        match message {
+            Message::OpenProgress(opening) => self.panels.progress = Some(progress(&opening)),
+            Message::Opened { model, state, reply } => {
+                self.panels.progress = None;
+                let shown = self.show_model(*model, state.map(|state| *state));
+                if let Err(error) = &shown {
+                    self.panels.error = Some(error.clone());
+                } else {
+                    self.panels.error = None;
+                }
+                if let Some(reply) = reply {
+                    match shown {
+                        Ok(()) => {
+                            let document = self.library.active().map(|model| inspect(model, &self.state.model));
+                            let document = document.unwrap_or_default();
+                            self.after_draw.push(Box::new(move || reply(Ok(document))));
+                        }
+                        Err(error) => reply(Err(error)),
+                    }
+                }
+            }
+            Message::OpenFailed(error) => {
+                self.panels.progress = None;
+                self.panels.error = Some(error);
+            }
+            Message::Commands(commands) => commands.into_iter().for_each(|command| self.apply(command)),
+            Message::Script(call) => self.script(call),
+        }
+    }
+
+    /// Puts a model in place of the present one, which stays when the new one does not fit on the device. Without a
+    /// state, what is about the old model (clip, time, camera, …) starts anew and the rest is kept.
+    fn show_model(&mut self, model: Model, state: Option<ViewerState>) -> Result<(), String> {
+        let source = model.source.clone();
+        let before = self.library.take();
+        self.library.set(model);
+        let uploaded = match self.library.active() {
+            Some(model) => self.scene.upload(model).map_err(|error| error.to_string()),
+            None => Ok(()),
+        };
+        if let Err(error) = uploaded {
+            self.library.put_back(before);
+            return Err(error);
+        }
+        self.state = state.unwrap_or_else(|| ViewerState {
+            model: vec![source],
+            scene: None,
+            clip: ClipChoice::First,
+            time_secs: 0.0,
+            range: None,
+            morph: Default::default(),
+            joint: None,
+            camera: CameraChoice::Auto,
+            up: Default::default(),
+            ..std::mem::take(&mut self.state)
+        });
+        self.history.clear();
+        self.dirty = true;
+        self.changed = true;
+        Ok(())
+    }
+
+    fn script(&mut self, call: ScriptCall) {
+        match call {
+            ScriptCall::State(reply) => reply(Ok(to_object(&self.state))),
+            ScriptCall::Apply(partial, reply) => {
+                let (state, errors) = from_object(&self.state, &partial);
+                if errors.is_empty() {
+                    self.apply(Command::Replace(Box::new(state)));
+                    self.after_draw.push(Box::new(move || reply(Ok(()))));
+                } else {
+                    let errors: Vec<String> = errors.iter().map(ToString::to_string).collect();
+                    reply(Err(errors.join("; ")));
+                }
+            }
+            ScriptCall::Pose(reply) => reply(Ok(pose_document(&self.library, &self.state))),
+            ScriptCall::Screenshot(reply) => self.screenshots.push(reply),
+            ScriptCall::Stats(reply) => reply(Ok(self.stats())),
+        }
+    }
+
+    fn stats(&self) -> serde_json::Value {
+        let drawn = self.scene.stats();
+        let joints: usize = self.frame.characters.iter().map(|character| character.world_from_joint.len()).sum();
+        serde_json::json!({
+            "backend": self.backend,
+            "frame_ms": 1000.0 * self.frame_secs,
+            "cpu_ms": 1000.0 * self.cpu_secs,
+            "draw_calls": drawn.draw_calls,
+            "triangles": drawn.triangles,
+            "joints": joints,
+            "characters": self.frame.characters.len(),
+        })
+    }
+
+    fn apply(&mut self, command: Command) {
+        let aspect = self.panels.aspect;
+        let relative = matches!(command, Command::Orbit { .. } | Command::Pan { .. } | Command::Zoom(_));
+        // The automatic camera depends on the picture's shape, which commands do not know.
+        let command = if matches!(command, Command::FrameAll) && self.state.camera != CameraChoice::Auto {
+            Command::SetCamera(CameraChoice::Orbit(frame_all(&self.library, &self.state, aspect)))
+        } else {
+            if relative && !matches!(self.state.camera, CameraChoice::Orbit(_)) {
+                let orbit = resolve_camera(&self.library, &self.state, aspect);
+                self.history.apply(&mut self.state, &self.library, Command::SetCamera(CameraChoice::Orbit(orbit)));
+            }
+            command
+        };
+        self.changed |= !matches!(command, Command::Advance(_));
+        self.dirty = true;
+        self.history.apply(&mut self.state, &self.library, command);
+    }
+
+    fn act(&mut self, action: UiAction, context: &egui::Context) {
+        let toast = |text: &str| Toast { text: text.to_owned(), until_secs: context.input(|i| i.time) + TOAST_SECS };
+        match action {
+            UiAction::OpenFiles => {
+                if !self.host.choose_files(&self.inbox) {
+                    self.panels.toast = Some(toast("Drop a file anywhere on this window to open it."));
+                }
+            }
+            UiAction::CopyLink => {
+                context.copy_text(self.host.link(&to_link(&self.state)));
+                self.panels.toast = Some(toast("Link copied."));
+            }
+            UiAction::Undo | UiAction::Redo => {
+                let done = match action {
+                    UiAction::Undo => self.history.undo(&mut self.state),
+                    _ => self.history.redo(&mut self.state),
+                };
+                self.dirty |= done;
+                self.changed |= done;
+            }
+        }
+    }
+
+    /// Time goes by while playing; nothing is asked for when it does not.
+    fn advance(&mut self, context: &egui::Context) {
+        let shown = Shown { library: &self.library, state: &self.state, frame: &self.frame };
+        let moves = shown.clip().is_some_and(|clip| clip.duration_secs() > 0.0);
+        if self.state.playing && moves && !self.panels.scrubbing {
+            let (secs, unsmoothed_secs) = context.input(|input| (input.stable_dt, input.unstable_dt));
+            // A pause (a hidden page, a long load) is not made up for.
+            self.apply(Command::Advance(f64::from(secs.min(0.25))));
+            if unsmoothed_secs < 1.0 {
+                let share = if self.frame_secs == 0.0 { 1.0 } else { 0.1 };
+                self.frame_secs += share * (unsmoothed_secs - self.frame_secs);
+            }
+            context.request_repaint();
+        }
+    }
+
+    fn draw(&mut self, rect: egui::Rect, pixels_per_point: f32) {
+        let largest = self.scene.largest_size() as f32;
+        let pixels = |points: f32| (points * pixels_per_point).round().clamp(1.0, largest) as u32;
+        let size = [pixels(rect.width()), pixels(rect.height())];
+        if self.dirty || self.drawn_size != Some(size) {
+            evaluate(&self.library, &self.state, size[0] as f32 / size[1] as f32, &mut self.frame);
+            self.scene.draw(&self.frame, size);
+            self.drawn_size = Some(size);
+            self.dirty = false;
+        }
+    }
+
+    fn answer(&mut self) {
+        self.after_draw.drain(..).for_each(|reply| reply());
+        for reply in self.screenshots.drain(..) {
+            let (device, queue, texture) = self.scene.last_picture();
+            let screenshot = async move {
+                let pixels = read_pixels(&device, &queue, &texture).await;
+                let png = encode_png(texture.width(), texture.height(), &pixels);
+                reply(png.ok_or_else(|| "the picture could not be read back from the graphics device".to_owned()));
+            };
+            #[cfg(target_arch = "wasm32")]
+            wasm_bindgen_futures::spawn_local(screenshot);
+            #[cfg(not(target_arch = "wasm32"))]
+            pollster::block_on(screenshot);
+        }
+    }
+}
+
+impl Drop for App {
+    fn drop(&mut self) {
+        self.closing.store(true, Ordering::Relaxed);
+    }
+}
+
+impl eframe::App for App {
+    fn logic(&mut self, _context: &egui::Context, _frame: &mut eframe::Frame) {
+        self.host.before_frame(&self.inbox);
+        while let Some(message) = self.inbox.take() {
+            self.handle(message);
+        }
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
+        self.cpu_secs = frame.info().cpu_usage.unwrap_or(0.0);
+        let context = ui.ctx().clone();
+        let dropped = context.input(|input| input.raw.dropped_files.clone());
+        if !dropped.is_empty() {
+            self.host.open_dropped(dropped, &self.inbox);
+        }
+        let mut output = std::mem::take(&mut self.output);
+        let shown = Shown { library: &self.library, state: &self.state, frame: &self.frame };
+        let rect = ui::panels(ui, shown, &mut self.panels, &mut output);
+        let slot = ui::picture(ui, rect, shown, &mut self.panels, &mut output);
+        ui::overlays(ui, rect, shown, &mut self.panels, &mut output);
+        let acted = !output.commands.is_empty() || !output.actions.is_empty();
+        output.commands.drain(..).for_each(|command| self.apply(command));
+        output.actions.drain(..).for_each(|action| self.act(action, &context));
+        self.output = output;
+        if context.input(|input| !input.pointer.any_down() && input.keys_down.is_empty()) {
+            self.history.end_gesture();
+        }
+        self.advance(&context);
+        if rect.is_positive() {
+            self.draw(rect, context.pixels_per_point());
+            if let Some(texture) = self.scene.texture() {
+                slot.fill(texture);
+            }
+        }
+        self.answer();
+        if acted {
+            // The panels were laid out before the commands were applied.
+            context.request_repaint();
+        }
+        if std::mem::take(&mut self.changed) {
+            self.host.state_changed(&self.state);
+        }
+    }
+
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        visuals.panel_fill.to_normalized_gamma_f32()
+    }
+
+    #[cfg(target_arch = "wasm32")]
+    fn as_any_mut(&mut self) -> Option<&mut dyn std::any::Any> {
+        Some(self)
+    }
+}
+
+fn progress(opening: &Opening) -> Progress {
+    let total = opening.total_bytes;
+    let fraction = (total > 0).then(|| (opening.received_bytes as f64 / total as f64).clamp(0.0, 1.0) as f32);
+    Progress { name: opening.name.clone(), fraction }
+}

@@ -1,0 +1,100 @@
+//! The left panel: which model, and which of its clips.
+
+use egui::{RichText, ScrollArea, Ui};
+
+use super::icons::{Icon, icon_button};
+use super::{Output, Shown, UiAction, UiState, controls, style};
+use crate::library::Model;
+use crate::state::{ClipChoice, Command, choice_of_clip};
+
+/// With more clips than this there is a search field.
+const MANY_CLIPS: usize = 8;
+
+pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
+    let Some(model) = shown.library.active() else { return };
+    header(ui, model, out);
+    controls::section(ui, "CLIPS");
+    let titles = model.clip_titles();
+    if titles.len() > MANY_CLIPS {
+        search_field(ui, &mut local.clip_search, &format!("Search {} clips", titles.len()));
+        ui.add_space(4.0);
+    } else {
+        local.clip_search.clear();
+    }
+    let wanted = local.clip_search.to_lowercase();
+    let chosen = shown.clip_index();
+    ScrollArea::vertical().id_salt("clips").auto_shrink([false, true]).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 2.0;
+        let mut found = false;
+        if wanted.is_empty() {
+            found = true;
+            if controls::list_row(ui, "Rest pose", "", chosen.is_none()).clicked() {
+                out.commands.push(Command::SetClip(ClipChoice::RestPose));
+            }
+        }
+        for (index, title) in titles.iter().enumerate() {
+            if !title.to_lowercase().contains(&wanted) {
+                continue;
+            }
+            found = true;
+            let duration = model.asset.clips.get(index).map_or(0.0, |clip| clip.duration_secs());
+            let row = controls::list_row(ui, title, &format!("{duration:.2} s"), chosen == Some(index));
+            if row.clicked() {
+                out.commands.push(Command::SetClip(choice_of_clip(model, index)));
+            }
+        }
+        if !found {
+            controls::hint(ui, format!("No clip's name contains “{}”.", local.clip_search));
+        } else if titles.is_empty() {
+            ui.add_space(4.0);
+            controls::hint(ui, "This file has no animation. It is shown as it rests.");
+        }
+    });
+}
+
+fn header(ui: &mut Ui, model: &Model, out: &mut Output) {
+    let palette = style::palette(ui);
+    let (name, place) = name_and_place(&model.source);
+    ui.add(egui::Label::new(RichText::new(name).heading().color(palette.text)).truncate());
+    ui.add(egui::Label::new(RichText::new(place).small().color(palette.weak_text)).truncate());
+    ui.add_space(8.0);
+    ui.horizontal(|ui| {
+        let open = egui::Button::new("Open…").min_size(egui::vec2(76.0, 32.0));
+        if ui.add(open).on_hover_text("Open a model; files can also be dropped anywhere").clicked() {
+            out.actions.push(UiAction::OpenFiles);
+        }
+        if icon_button(ui, Icon::Link, "Copy a link to this view", false).clicked() {
+            out.actions.push(UiAction::CopyLink);
+        }
+    });
+}
+
+/// The last part of a path or URL, and where it is.
+fn name_and_place(source: &str) -> (String, String) {
+    if let Some(sample) = source.strip_prefix("sample:") {
+        return (sample.to_owned(), "Sample".to_owned());
+    }
+    let source = source.split(['?', '#']).next().unwrap_or(source);
+    match source.trim_end_matches('/').rsplit_once(['/', '\\']) {
+        Some((place, name)) => (name.to_owned(), place.to_owned()),
+        None if source.is_empty() => ("Untitled".to_owned(), String::new()),
+        None => (source.to_owned(), "Opened from this computer".to_owned()),
+    }
+}
+
+/// A search field that can be emptied.
+pub(super) fn search_field(ui: &mut Ui, text: &mut String, hint: &str) {
+    ui.horizontal(|ui| {
+        let clear_width = if text.is_empty() { 0.0 } else { 34.0 };
+        let field = ui.add(
+            egui::TextEdit::singleline(text)
+                .hint_text(hint)
+                .margin(egui::Margin::symmetric(10, 6))
+                .desired_width(ui.available_width() - clear_width),
+        );
+        field.accessible_name(hint);
+        if !text.is_empty() && icon_button(ui, Icon::Close, "Clear the search", false).clicked() {
+            text.clear();
+        }
+    });
+}

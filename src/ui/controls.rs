@@ -1,0 +1,222 @@
+//! The few controls that all panels share: section titles, switches, segmented choices, labelled sliders.
+
+use egui::{Color32, CornerRadius, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, vec2};
+
+use super::style;
+
+/// A quiet title over a group of settings.
+pub fn section(ui: &mut Ui, title: &str) {
+    ui.add_space(10.0);
+    let weak = style::palette(ui).weak_text;
+    ui.label(RichText::new(title).small().strong().color(weak));
+    ui.add_space(2.0);
+}
+
+/// Weak text that wraps.
+pub fn hint(ui: &mut Ui, text: impl Into<String>) {
+    let weak = style::palette(ui).weak_text;
+    ui.add(egui::Label::new(RichText::new(text.into()).small().color(weak)).wrap());
+}
+
+/// A row with a name on the left and a switch on the right; true when it was flipped.
+pub fn switch(ui: &mut Ui, label: &str, on: bool) -> bool {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 28.0), Sense::click());
+    let role = egui::accesskit::Role::CheckBox;
+    response.widget_info(|| WidgetInfo::selected(role, ui.is_enabled(), on, label));
+    let palette = style::palette(ui);
+    let painter = ui.painter_at(rect.expand(2.0));
+    let text = if ui.is_enabled() { palette.text } else { palette.weak_text.gamma_multiply(0.7) };
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    painter.text(rect.left_center(), egui::Align2::LEFT_CENTER, label, font, text);
+
+    let how_on = ui.ctx().animate_bool_responsive(response.id, on);
+    let track = Rect::from_min_size(rect.right_center() - vec2(34.0, 9.0), vec2(34.0, 18.0));
+    let off = if response.hovered() { palette.pressed } else { palette.hover };
+    let mut fill = off.lerp_to_gamma(palette.accent, how_on);
+    if !ui.is_enabled() {
+        fill = fill.gamma_multiply(0.5);
+    }
+    painter.rect_filled(track, 9.0, fill);
+    let knob = egui::pos2(egui::lerp(track.left() + 9.0..=track.right() - 9.0, how_on), track.center().y);
+    painter.circle_filled(knob, 6.5, if on { palette.on_accent } else { palette.weak_text });
+    if response.has_focus() {
+        painter.rect_stroke(rect.expand(1.0), style::CORNER, Stroke::new(1.0, palette.accent), StrokeKind::Inside);
+    }
+    response.clicked()
+}
+
+/// Equal buttons side by side, one of them chosen; the value of the one that was pressed.
+pub fn segmented<T: Copy + PartialEq>(ui: &mut Ui, chosen: Option<T>, choices: &[(T, &str)]) -> Option<T> {
+    let mut pressed = None;
+    let palette = style::palette(ui);
+    let (bar, whole) = ui.allocate_exact_size(vec2(ui.available_width(), 30.0), Sense::hover());
+    ui.painter().rect_filled(bar, style::CORNER, palette.surface);
+    let width = bar.width() / choices.len().max(1) as f32;
+    for (index, (value, label)) in choices.iter().enumerate() {
+        let cell = Rect::from_min_size(bar.min + vec2(index as f32 * width, 0.0), vec2(width, bar.height()));
+        let response = ui.interact(cell, whole.id.with(index), Sense::click());
+        let on = chosen == Some(*value);
+        let role = egui::accesskit::Role::RadioButton;
+        response.widget_info(|| WidgetInfo::selected(role, ui.is_enabled(), on, *label));
+        segment(ui, cell, &response, on, label);
+        if response.clicked() {
+            pressed = Some(*value);
+        }
+    }
+    pressed
+}
+
+fn segment(ui: &Ui, cell: Rect, response: &Response, on: bool, label: &str) {
+    let palette = style::palette(ui);
+    let inner = cell.shrink(2.0);
+    let corner = CornerRadius::same(style::CORNER - 2);
+    if on {
+        ui.painter().rect_filled(inner, corner, palette.chosen);
+    } else if response.hovered() {
+        ui.painter().rect_filled(inner, corner, palette.hover);
+    }
+    if response.has_focus() {
+        ui.painter().rect_stroke(inner, corner, Stroke::new(1.0, palette.accent), StrokeKind::Inside);
+    }
+    let font = egui::FontId::proportional(13.0);
+    let color = if on { palette.accent } else { palette.text };
+    ui.painter().text(cell.center(), egui::Align2::CENTER_CENTER, label, font, color);
+}
+
+/// A name, a value and a slider under them; the new value while it is dragged or typed. Double click: `default`.
+pub fn slider(ui: &mut Ui, label: &str, value: f64, settings: SliderSettings) -> Option<f64> {
+    ui.scope(|ui| slider_in(ui, label, value, settings)).inner
+}
+
+fn slider_in(ui: &mut Ui, label: &str, value: f64, settings: SliderSettings) -> Option<f64> {
+    let mut new = value;
+    let id = ui.label_and_value(label, &mut new, &settings);
+    ui.spacing_mut().slider_width = ui.available_width();
+    let mut bar = new;
+    knob_style(ui);
+    let response = ui.add(
+        egui::Slider::new(&mut bar, settings.range.0..=settings.range.1)
+            .show_value(false)
+            .logarithmic(settings.logarithmic)
+            .clamping(egui::SliderClamping::Never),
+    );
+    let name = label.to_owned();
+    response.widget_info(|| WidgetInfo::slider(true, bar, name.clone()));
+    let response = response.labelled_by(id);
+    if response.changed() {
+        new = bar;
+    }
+    if response.double_clicked() {
+        new = settings.default;
+    }
+    (new != value).then_some(new)
+}
+
+/// A ring in the accent's colour instead of egui's knob, for all sliders that follow in this `Ui`.
+pub fn knob_style(ui: &mut Ui) {
+    let palette = style::palette(ui);
+    let widgets = &mut ui.visuals_mut().widgets;
+    for (widget, width) in [(&mut widgets.inactive, 2.0), (&mut widgets.hovered, 2.5), (&mut widgets.active, 3.0)] {
+        widget.fg_stroke = Stroke::new(width, palette.accent);
+        widget.bg_stroke = Stroke::NONE;
+        widget.bg_fill = palette.pressed;
+    }
+}
+
+#[derive(Debug, Clone, Copy)]
+pub struct SliderSettings {
+    pub range: (f64, f64),
+    pub default: f64,
+    pub decimals: usize,
+    pub suffix: &'static str,
+    pub logarithmic: bool,
+}
+
+trait LabelAndValue {
+    fn label_and_value(&mut self, label: &str, value: &mut f64, settings: &SliderSettings) -> egui::Id;
+}
+
+impl LabelAndValue for Ui {
+    fn label_and_value(&mut self, label: &str, value: &mut f64, settings: &SliderSettings) -> egui::Id {
+        self.horizontal(|ui| {
+            let field_width = 76.0;
+            let width = (ui.available_width() - field_width - 8.0).max(20.0);
+            let (rect, response) = ui.allocate_exact_size(vec2(width, 24.0), Sense::hover());
+            let font = egui::TextStyle::Body.resolve(ui.style());
+            let color = style::palette(ui).text;
+            let galley = ui.painter().layout_no_wrap(label.to_owned(), font, color);
+            let at = rect.left_center() - vec2(0.0, galley.size().y / 2.0);
+            ui.painter_at(rect).galley(at, galley, color);
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                ui.spacing_mut().interact_size.y = 24.0;
+                let span = settings.range.1 - settings.range.0;
+                let field = ui.add_sized(
+                    [field_width, 24.0],
+                    egui::DragValue::new(value)
+                        .speed(span / 300.0)
+                        .range(settings.range.0..=settings.range.1)
+                        .fixed_decimals(settings.decimals)
+                        .suffix(settings.suffix),
+                );
+                field.labelled_by(response.id);
+            });
+            response.id
+        })
+        .inner
+    }
+}
+
+/// A rounded card that fills the width.
+pub fn card<R>(ui: &mut Ui, contents: impl FnOnce(&mut Ui) -> R) -> R {
+    let fill = style::palette(ui).surface;
+    egui::Frame::new()
+        .fill(fill)
+        .corner_radius(8)
+        .inner_margin(egui::Margin::same(10))
+        .show(ui, |ui| {
+            ui.set_width(ui.available_width());
+            contents(ui)
+        })
+        .inner
+}
+
+/// A full-width row that can be chosen: a name, and something short at its right end.
+pub fn list_row(ui: &mut Ui, name: &str, right: &str, chosen: bool) -> Response {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 30.0), Sense::click());
+    let role = egui::accesskit::Role::Button;
+    response.widget_info(|| WidgetInfo::selected(role, ui.is_enabled(), chosen, name));
+    if ui.is_rect_visible(rect) {
+        let palette = style::palette(ui);
+        let fill = if chosen {
+            palette.chosen
+        } else if response.hovered() {
+            palette.hover
+        } else {
+            Color32::TRANSPARENT
+        };
+        ui.painter().rect_filled(rect, style::CORNER, fill);
+        if response.has_focus() {
+            ui.painter().rect_stroke(rect, style::CORNER, Stroke::new(1.0, palette.accent), StrokeKind::Inside);
+        }
+        let mut left = rect.shrink2(Vec2::new(10.0, 0.0));
+        if !right.is_empty() {
+            let font = egui::FontId::proportional(12.0);
+            let drawn =
+                ui.painter().text(left.right_center(), egui::Align2::RIGHT_CENTER, right, font, palette.weak_text);
+            left.max.x = drawn.left() - 8.0;
+        }
+        let color = if chosen { palette.accent } else { palette.text };
+        elided(ui, left, name, color);
+    }
+    response
+}
+
+/// One line of text in a box, cut with an ellipsis where it does not fit.
+pub fn elided(ui: &Ui, rect: Rect, text: &str, color: Color32) {
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), font, color);
+    job.wrap = egui::text::TextWrapping::truncate_at_width(rect.width().max(0.0));
+    let galley = ui.painter().layout_job(job);
+    let at = rect.left_center() - vec2(0.0, galley.size().y / 2.0);
+    ui.painter().galley(at, galley, color);
+}

@@ -1,0 +1,102 @@
+//! The Display tab: how the mesh is bent, what is drawn over it, and morph targets set by hand.
+
+use egui::Ui;
+
+use super::controls::{self, SliderSettings};
+use super::{Output, Shown};
+use crate::library::Model;
+use crate::mesh::SkinningMode;
+use crate::state::{Command, Show};
+
+const MODES: [(SkinningMode, &str); 3] =
+    [(SkinningMode::Linear, "Linear"), (SkinningMode::Rigid, "Rigid"), (SkinningMode::DualQuaternion, "Dual quat.")];
+
+fn explanation(mode: SkinningMode) -> &'static str {
+    match mode {
+        SkinningMode::Linear => {
+            "Each vertex is the weighted mean of where its joints would put it. The usual way; twisted limbs get thin."
+        }
+        SkinningMode::Rigid => {
+            "Each vertex follows its strongest joint alone. Shows what blending is for: limbs break at the joints."
+        }
+        SkinningMode::DualQuaternion => {
+            "Joints are blended as screw motions, so twisted limbs keep their thickness; bent ones may bulge."
+        }
+    }
+}
+
+pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
+    let state = shown.state;
+    controls::section(ui, "SKINNING");
+    if let Some(mode) = controls::segmented(ui, Some(state.skinning), &MODES) {
+        out.commands.push(Command::SetSkinning(mode));
+    }
+    ui.add_space(2.0);
+    controls::hint(ui, explanation(state.skinning));
+
+    controls::section(ui, "SHOW");
+    let Show { mesh, skeleton, weights, bounds, wireframe, grid, shadow } = state.show;
+    type Flip = fn(&mut Show);
+    let switches: [(&str, bool, Flip); 7] = [
+        ("Mesh", mesh, |show| show.mesh = !show.mesh),
+        ("Skeleton", skeleton, |show| show.skeleton = !show.skeleton),
+        ("Influence of the chosen joint", weights, |show| show.weights = !show.weights),
+        ("Wireframe", wireframe, |show| show.wireframe = !show.wireframe),
+        ("Bounds", bounds, |show| show.bounds = !show.bounds),
+        ("Grid", grid, |show| show.grid = !show.grid),
+        ("Shadow", shadow, |show| show.shadow = !show.shadow),
+    ];
+    for (label, on, flip) in switches {
+        if controls::switch(ui, label, on) {
+            let mut show = state.show;
+            flip(&mut show);
+            out.commands.push(Command::SetShow(show));
+        }
+        if label.starts_with("Influence") && on && state.joint.is_none() {
+            controls::hint(ui, "Choose a joint in the picture or in the Scene tab to see what it pulls.");
+        }
+    }
+    if let Some(model) = shown.library.active() {
+        morphs(ui, shown, model, out);
+    }
+}
+
+/// Sliders for every morph target; they follow the clip until they are touched.
+fn morphs(ui: &mut Ui, shown: &Shown<'_>, model: &Model, out: &mut Output) {
+    let asset = &model.asset;
+    let now = shown.frame.characters.first().map_or(&[][..], |character| &character.morph_weights);
+    let mut titled = false;
+    for instance in &asset.instances {
+        let (Some(mesh), range) = (asset.meshes.get(instance.mesh), asset.skeleton.morph_range(instance.joint)) else {
+            continue;
+        };
+        if range.is_empty() {
+            continue;
+        }
+        if !titled {
+            titled = true;
+            controls::section(ui, "MORPH TARGETS");
+            if !shown.state.morph.is_empty() && ui.button("Let the clip decide").clicked() {
+                out.commands.push(Command::ClearMorphs);
+            }
+        }
+        for (target, index) in range.enumerate() {
+            let name = mesh.target_names.get(target).filter(|name| !name.is_empty());
+            let name = name.cloned().unwrap_or_else(|| format!("Target {target}"));
+            let rest = asset.skeleton.rest().morph_weights.get(index).copied().unwrap_or(0.0);
+            let by_hand = shown.state.morph.get(&index).copied();
+            let value = by_hand.or_else(|| now.get(index).copied()).unwrap_or(rest);
+            let settings = SliderSettings {
+                range: (0.0, 1.0),
+                default: f64::from(rest),
+                decimals: 2,
+                suffix: "",
+                logarithmic: false,
+            };
+            let new = ui.push_id(index, |ui| controls::slider(ui, &name, f64::from(value), settings)).inner;
+            if let Some(weight) = new {
+                out.commands.push(Command::SetMorph { index, weight: Some(weight as f32) });
+            }
+        }
+    }
+}

@@ -1,0 +1,37 @@
+//! The right panel: one tab at a time.
+
+use egui::{ScrollArea, Ui};
+
+use super::{Output, Shown, UiState, controls, display, report, scene_tree, view_options};
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Tab {
+    Scene,
+    Display,
+    File,
+    View,
+}
+
+pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
+    let tabs = [(Tab::Scene, "Scene"), (Tab::Display, "Display"), (Tab::File, "File"), (Tab::View, "View")];
+    if let Some(tab) = controls::segmented(ui, Some(local.tab), &tabs) {
+        local.tab = tab;
+    }
+    ui.add_space(4.0);
+    match local.tab {
+        // The tree scrolls by itself, under the chosen joint's numbers.
+        Tab::Scene => scene_tree::show(ui, shown, local, out),
+        Tab::Display => scrolled(ui, "display", |ui| display::show(ui, shown, out)),
+        Tab::File => scrolled(ui, "file", |ui| report::show(ui, shown)),
+        Tab::View => scrolled(ui, "view", |ui| view_options::show(ui, shown, local.aspect, out)),
+    }
+}
+
+fn scrolled(ui: &mut Ui, id: &str, contents: impl FnOnce(&mut Ui)) {
+    ScrollArea::vertical().id_salt(id).auto_shrink([false, false]).show(ui, |ui| {
+        // Room for the floating scroll bar.
+        ui.set_max_width(ui.available_width() - 6.0);
+        contents(ui);
+        ui.add_space(12.0);
+    });
+}

@@ -1,0 +1,171 @@
+//! The keys: one table that is both listened to and shown.
+
+use egui::{Context, Key, Modifiers};
+
+use super::transport::range_here;
+use super::{Output, Shown, UiAction, UiState};
+use crate::anim::LoopMode;
+use crate::state::{CameraChoice, Command, Show, choice_of_clip};
+
+/// One line of the help.
+pub struct KeyHelp {
+    pub keys: &'static str,
+    pub does: &'static str,
+    pressed: &'static [Key],
+    act: fn(&Shown<'_>, &mut UiState, usize, &mut Output),
+}
+
+const ORBIT_STEP_RADIANS: f32 = 0.12;
+const ZOOM_STEP: f32 = 0.9;
+
+/// All keys. `act` gets the position of the pressed key among `pressed`.
+pub const KEY_TABLE: &[KeyHelp] = &[
+    KeyHelp {
+        keys: "Space",
+        does: "Play or pause",
+        pressed: &[Key::Space],
+        act: |_, _, _, out| out.commands.push(Command::TogglePlaying),
+    },
+    KeyHelp {
+        keys: ",  .",
+        does: "One frame back, one frame on",
+        pressed: &[Key::Comma, Key::Period],
+        act: |_, _, which, out| out.commands.push(Command::StepFrames(if which == 0 { -1 } else { 1 })),
+    },
+    KeyHelp {
+        keys: "↑  ↓",
+        does: "Nearer, farther",
+        pressed: &[Key::ArrowUp, Key::ArrowDown],
+        act: |_, _, which, out| {
+            out.commands.push(Command::Zoom(if which == 0 { ZOOM_STEP } else { 1.0 / ZOOM_STEP }));
+        },
+    },
+    KeyHelp {
+        keys: "←  →",
+        does: "Around",
+        pressed: &[Key::ArrowLeft, Key::ArrowRight],
+        act: |_, _, which, out| {
+            let yaw_radians = if which == 0 { -ORBIT_STEP_RADIANS } else { ORBIT_STEP_RADIANS };
+            out.commands.push(Command::Orbit { yaw_radians, pitch_radians: 0.0 });
+        },
+    },
+    KeyHelp {
+        keys: "1 – 9",
+        does: "Choose a clip",
+        pressed: &[Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9],
+        act: |shown, _, which, out| {
+            if let Some(model) = shown.library.active().filter(|model| which < model.asset.clips.len()) {
+                out.commands.push(Command::SetClip(choice_of_clip(model, which)));
+            }
+        },
+    },
+    KeyHelp {
+        keys: "F",
+        does: "Fit everything into the picture",
+        pressed: &[Key::F],
+        act: |_, _, _, out| out.commands.push(Command::FrameAll),
+    },
+    KeyHelp {
+        keys: "Home",
+        does: "The camera as it was at first",
+        pressed: &[Key::Home],
+        act: |_, _, _, out| out.commands.push(Command::SetCamera(CameraChoice::Auto)),
+    },
+    KeyHelp {
+        keys: "I  O",
+        does: "In point, out point here",
+        pressed: &[Key::I, Key::O],
+        act: |shown, _, which, out| out.commands.extend(range_here(shown, which == 0)),
+    },
+    KeyHelp {
+        keys: "L",
+        does: "Next loop mode",
+        pressed: &[Key::L],
+        act: |shown, _, _, out| {
+            out.commands.push(Command::SetLoopMode(match shown.state.loop_mode {
+                LoopMode::Once => LoopMode::Loop,
+                LoopMode::Loop => LoopMode::PingPong,
+                LoopMode::PingPong => LoopMode::Once,
+            }));
+        },
+    },
+    KeyHelp {
+        keys: "S  W  G",
+        does: "Skeleton, wireframe, grid",
+        pressed: &[Key::S, Key::W, Key::G],
+        act: |shown, _, which, out| {
+            let mut show: Show = shown.state.show;
+            match which {
+                0 => show.skeleton = !show.skeleton,
+                1 => show.wireframe = !show.wireframe,
+                _ => show.grid = !show.grid,
+            }
+            out.commands.push(Command::SetShow(show));
+        },
+    },
+    KeyHelp { keys: "Ctrl Z, Ctrl Y", does: "Undo, redo a setting", pressed: &[], act: |_, _, _, _| {} },
+    KeyHelp {
+        keys: "?",
+        does: "This list",
+        pressed: &[Key::Questionmark, Key::F1],
+        act: |_, local, _, _| local.help_open = !local.help_open,
+    },
+    KeyHelp {
+        keys: "Esc",
+        does: "Close what is open, choose no joint",
+        pressed: &[Key::Escape],
+        act: |shown, local, _, out| {
+            if local.help_open {
+                local.help_open = false;
+            } else if local.sheet.is_some() {
+                local.sheet = None;
+            } else if local.error.is_some() {
+                local.error = None;
+            } else if shown.state.joint.is_some() {
+                out.commands.push(Command::SelectJoint(None));
+            }
+        },
+    },
+];
+
+/// Listens, unless someone is typing or a control has the keyboard.
+pub(super) fn listen(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
+    if context.egui_wants_keyboard_input() {
+        return;
+    }
+    let undo = egui::KeyboardShortcut::new(Modifiers::COMMAND, Key::Z);
+    let redo = egui::KeyboardShortcut::new(Modifiers::COMMAND, Key::Y);
+    let redo_too = egui::KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    // The longer one first: the shorter would swallow it.
+    if context.input_mut(|input| input.consume_shortcut(&redo_too) || input.consume_shortcut(&redo)) {
+        out.actions.push(UiAction::Redo);
+    } else if context.input_mut(|input| input.consume_shortcut(&undo)) {
+        out.actions.push(UiAction::Undo);
+    }
+    // The help is modal: only the keys that close it count.
+    let modal = local.help_open;
+    for line in KEY_TABLE {
+        if modal && !line.pressed.iter().any(|key| matches!(key, Key::Escape | Key::Questionmark)) {
+            continue;
+        }
+        for (which, &key) in line.pressed.iter().enumerate() {
+            let presses = context.input(|input| {
+                let plain = !input.modifiers.intersects_command_or_alt();
+                if plain { input.num_presses(key) } else { 0 }
+            });
+            for _ in 0..presses {
+                (line.act)(shown, local, which, out);
+            }
+        }
+    }
+}
+
+trait CommandOrAlt {
+    fn intersects_command_or_alt(self) -> bool;
+}
+
+impl CommandOrAlt for Modifiers {
+    fn intersects_command_or_alt(self) -> bool {
+        self.ctrl || self.command || self.mac_cmd || self.alt
+    }
+}

@@ -1,0 +1,171 @@
+//! What lies over everything for a while: sheets on narrow screens, help, progress, errors, the drop target.
+
+use egui::{Align, Align2, Area, Color32, Context, Id, Layout, Order, Rect, RichText, Stroke, Ui, pos2, vec2};
+
+use super::icons::{Icon, icon_button};
+use super::{KEY_TABLE, Output, Sheet, Shown, UiState, clips, inspector, is_narrow, style};
+
+/// Call last; `picture` is the rectangle the picture has.
+pub fn overlays(ui: &mut Ui, picture: Rect, shown: Shown<'_>, local: &mut UiState, out: &mut Output) {
+    if is_narrow(ui) && !shown.state.embed {
+        sheet(ui, picture, &shown, local, out);
+    } else {
+        local.sheet = None;
+    }
+    notices(ui, picture, local);
+    if local.help_open {
+        help(ui.ctx(), local);
+    }
+    if ui.input(|input| !input.raw.hovered_files.is_empty()) {
+        drop_target(ui);
+    }
+}
+
+fn sheet(ui: &mut Ui, picture: Rect, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
+    let Some(sheet) = local.sheet else { return };
+    let palette = style::palette(ui);
+    let height = (picture.height() * 0.62).max(240.0).min(picture.height() - 56.0);
+    let rect = Rect::from_min_max(pos2(picture.left(), picture.bottom() - height), picture.right_bottom());
+    Area::new(Id::unique(("sheet", sheet as u8))).order(Order::Middle).fixed_pos(rect.min).show(ui.ctx(), |ui| {
+        let corners = egui::CornerRadius { nw: 16, ne: 16, sw: 0, se: 0 };
+        ui.painter().rect_filled(rect, corners, palette.panel);
+        let line = Stroke::new(1.0, palette.line);
+        ui.painter().rect_stroke(rect, corners, line, egui::StrokeKind::Inside);
+        let grip = Rect::from_center_size(rect.center_top() + vec2(0.0, 9.0), vec2(36.0, 4.0));
+        ui.painter().rect_filled(grip, 2.0, palette.pressed);
+        // All of the sheet takes the pointer, so that nothing under it moves.
+        ui.allocate_rect(rect, egui::Sense::click_and_drag());
+        let inner = Rect::from_min_max(rect.min + vec2(14.0, 16.0), rect.max - vec2(14.0, 4.0));
+        let mut content = ui.new_child(egui::UiBuilder::new().max_rect(inner));
+        content.set_clip_rect(inner.expand(4.0).intersect(content.clip_rect()));
+        let close = Rect::from_min_size(pos2(rect.right() - 44.0, rect.top() + 10.0), vec2(32.0, 32.0));
+        match sheet {
+            Sheet::Clips => clips::show(&mut content, shown, local, out),
+            Sheet::Inspector => {
+                content.add_space(28.0);
+                inspector::show(&mut content, shown, local, out);
+            }
+        }
+        let mut corner = ui.new_child(egui::UiBuilder::new().max_rect(close));
+        if icon_button(&mut corner, Icon::Close, "Close the sheet", false).clicked() {
+            local.sheet = None;
+        }
+    });
+}
+
+/// Progress, errors and short messages, at the bottom of the picture.
+fn notices(ui: &mut Ui, picture: Rect, local: &mut UiState) {
+    let now_secs = ui.input(|input| input.time);
+    if let Some(toast) = &local.toast {
+        let left_secs = toast.until_secs - now_secs;
+        if left_secs <= 0.0 {
+            local.toast = None;
+        } else {
+            ui.ctx().request_repaint_after_secs(left_secs as f32);
+        }
+    }
+    if local.toast.is_none() && local.error.is_none() && local.progress.is_none() {
+        return;
+    }
+    let palette = style::palette(ui);
+    let width = (picture.width() - 32.0).min(520.0);
+    let area = Area::new(Id::unique("notices"))
+        .order(Order::Foreground)
+        .pivot(Align2::CENTER_BOTTOM)
+        .fixed_pos(pos2(picture.center().x, picture.bottom() - 14.0));
+    area.show(ui.ctx(), |ui| {
+        ui.set_max_width(width);
+        if let Some(progress) = &local.progress {
+            notice(ui, palette.line, |ui| {
+                ui.set_width(width.min(360.0) - 32.0);
+                ui.add(egui::Label::new(format!("Opening {}", progress.name)).truncate());
+                let bar = match progress.fraction {
+                    Some(fraction) => egui::ProgressBar::new(fraction),
+                    None => egui::ProgressBar::new(1.0).animate(true),
+                };
+                ui.add(bar.desired_height(6.0).fill(palette.accent));
+            });
+        }
+        if let Some(error) = local.error.clone() {
+            notice(ui, palette.error, |ui| {
+                ui.with_layout(Layout::right_to_left(Align::Min), |ui| {
+                    if icon_button(ui, Icon::Close, "Dismiss the error", false).clicked() {
+                        local.error = None;
+                    }
+                    ui.with_layout(Layout::top_down(Align::Min), |ui| {
+                        ui.label(RichText::new("That did not work").strong().color(palette.error));
+                        egui::ScrollArea::vertical().max_height(180.0).show(ui, |ui| {
+                            ui.add(egui::Label::new(error).wrap().selectable(true));
+                        });
+                    });
+                });
+            });
+        }
+        if let Some(toast) = &local.toast {
+            notice(ui, palette.line, |ui| ui.label(&toast.text));
+        }
+    });
+}
+
+fn notice<R>(ui: &mut Ui, line: Color32, contents: impl FnOnce(&mut Ui) -> R) {
+    let palette = style::palette(ui);
+    egui::Frame::new()
+        .fill(palette.panel)
+        .stroke(Stroke::new(1.0, line))
+        .corner_radius(10)
+        .shadow(ui.visuals().popup_shadow)
+        .inner_margin(egui::Margin::symmetric(16, 12))
+        .show(ui, contents);
+}
+
+fn help(context: &Context, local: &mut UiState) {
+    let modal = egui::Modal::new(Id::unique("help")).show(context, |ui| {
+        let palette = style::palette(ui);
+        ui.set_width((ui.ctx().content_rect().width() - 64.0).min(400.0));
+        ui.horizontal(|ui| {
+            ui.heading("Keys and gestures");
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                if icon_button(ui, Icon::Close, "Close the help", false).clicked() {
+                    local.help_open = false;
+                }
+            });
+        });
+        let pointer = [
+            ("Drag", "Look around"),
+            ("Right drag, shift drag", "Move the picture"),
+            ("Wheel, pinch", "Nearer, farther"),
+            ("Two fingers", "Move the picture"),
+            ("Click a joint", "Choose it"),
+            ("Double click", "Fit everything into the picture"),
+        ];
+        let lines = KEY_TABLE.iter().map(|line| (line.keys, line.does)).chain(pointer);
+        let most = (ui.ctx().content_rect().height() - 160.0).max(120.0);
+        egui::ScrollArea::vertical().max_height(most).show(ui, |ui| {
+            egui::Grid::new("keys").num_columns(2).spacing([18.0, 7.0]).show(ui, |ui| {
+                for (keys, does) in lines {
+                    ui.label(RichText::new(keys).color(palette.accent));
+                    ui.label(does);
+                    ui.end_row();
+                }
+            });
+        });
+    });
+    if modal.should_close() {
+        local.help_open = false;
+    }
+}
+
+fn drop_target(ui: &Ui) {
+    let palette = style::palette(ui);
+    let painter = ui.ctx().layer_painter(egui::LayerId::new(Order::Tooltip, Id::unique("drop target")));
+    let whole = ui.ctx().content_rect();
+    painter.rect_filled(whole, 0.0, palette.panel.gamma_multiply(0.82));
+    let inner = whole.shrink(24.0);
+    let corners = [inner.left_top(), inner.right_top(), inner.right_bottom(), inner.left_bottom(), inner.left_top()];
+    painter.extend(egui::Shape::dashed_line(&corners, Stroke::new(2.0, palette.accent), 10.0, 8.0));
+    let center = whole.center();
+    painter.text(center, Align2::CENTER_BOTTOM, "Drop to open", egui::FontId::proportional(28.0), palette.text);
+    let below = "A .glb, a .gltf with its files, a folder or a .zip";
+    let at = center + vec2(0.0, 10.0);
+    painter.text(at, Align2::CENTER_TOP, below, egui::FontId::proportional(15.0), palette.weak_text);
+}

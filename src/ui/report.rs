@@ -1,0 +1,118 @@
+//! The File tab: what is in the file, and what was odd about it.
+
+use std::collections::BTreeMap;
+
+use egui::{RichText, Ui};
+
+use super::{Shown, controls, style};
+use crate::asset::{Asset, Warning};
+use crate::mesh::Geometry;
+
+pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
+    let Some(model) = shown.library.active() else { return };
+    let asset: &Asset = &model.asset;
+    let primitives = || asset.meshes.iter().flat_map(|mesh| &mesh.primitives);
+
+    controls::section(ui, "CONTENTS");
+    controls::card(ui, |ui| {
+        let size = model.rest_bounds().size();
+        let rows = [
+            ("Format", asset.format.to_owned()),
+            ("Nodes", grouped(asset.skeleton.len())),
+            ("Skins", grouped(asset.skins.len())),
+            ("Joints", grouped(model.rig().joint_count(asset))),
+            ("Meshes", grouped(asset.meshes.len())),
+            ("Primitives", grouped(primitives().count())),
+            ("Vertices", grouped(primitives().map(|geometry| geometry.file_vertices).sum())),
+            ("Triangles", grouped(primitives().map(Geometry::triangles).sum())),
+            ("Materials", grouped(asset.materials.len())),
+            ("Images", grouped(asset.images.len())),
+            ("Clips", grouped(asset.clips.len())),
+            ("Cameras", grouped(asset.cameras.len())),
+            ("Lights", grouped(asset.lights.len())),
+            ("Size", format!("{} × {} × {} m", short(size.x), short(size.y), short(size.z))),
+        ];
+        for (name, value) in rows {
+            fact(ui, name, &value);
+        }
+        if !asset.generator.is_empty() {
+            fact(ui, "Made with", &asset.generator);
+        }
+    });
+
+    controls::section(ui, "EXTENSIONS");
+    if asset.extensions_used.is_empty() {
+        controls::hint(ui, "None.");
+    } else {
+        controls::card(ui, |ui| {
+            for name in &asset.extensions_used {
+                let required = asset.extensions_required.contains(name);
+                fact(ui, name, if required { "required" } else { "" });
+            }
+        });
+    }
+
+    controls::section(ui, "WARNINGS");
+    if asset.warnings.is_empty() {
+        controls::hint(ui, "None: the file is as the specification says, as far as Gaitway looks.");
+        return;
+    }
+    let mut by_code: BTreeMap<&str, Vec<&Warning>> = BTreeMap::new();
+    for warning in asset.warnings.iter() {
+        by_code.entry(warning.code()).or_default().push(warning);
+    }
+    let color = style::palette(ui).warning;
+    for (code, warnings) in by_code {
+        let title = RichText::new(format!("{code} ({})", warnings.len())).color(color);
+        egui::CollapsingHeader::new(title).id_salt(code).default_open(warnings.len() <= 3).show(ui, |ui| {
+            for warning in warnings {
+                controls::hint(ui, warning.to_string());
+            }
+        });
+    }
+}
+
+/// A name at the left and its value at the right end; long values go on below.
+fn fact(ui: &mut Ui, name: &str, value: &str) {
+    let palette = style::palette(ui);
+    ui.horizontal_wrapped(|ui| {
+        ui.label(RichText::new(name).color(palette.weak_text));
+        let galley = egui::WidgetText::from(value).into_galley(ui, None, f32::INFINITY, egui::TextStyle::Body);
+        let room = ui.available_width() - galley.size().x;
+        if room > 0.0 {
+            ui.add_space(room);
+        }
+        ui.add(egui::Label::new(value).wrap().selectable(true));
+    });
+}
+
+/// With a thin space between thousands.
+fn grouped(number: usize) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push('\u{2009}');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// Three significant digits.
+pub(super) fn short(number: f32) -> String {
+    let size = number.abs();
+    if size == 0.0 {
+        "0".to_owned()
+    } else if size >= 100.0 {
+        format!("{number:.0}")
+    } else if size >= 10.0 {
+        format!("{number:.1}")
+    } else if size >= 1.0 {
+        format!("{number:.2}")
+    } else if size >= 0.001 {
+        format!("{number:.4}")
+    } else {
+        format!("{number:.1e}")
+    }
+}

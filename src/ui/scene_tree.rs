@@ -1,0 +1,299 @@
+//! The Scene tab: every node of the file as a tree, and the chosen joint's transforms.
+
+use egui::{Color32, Rect, RichText, ScrollArea, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
+use glam::{Affine3A, EulerRot, Quat, Vec3};
+
+use super::report::short;
+use super::{Output, Shown, UiState, clips, controls, style};
+use crate::anim::{JointIndex, Pose, SampleCursor, Transform};
+use crate::asset::Asset;
+use crate::library::Model;
+use crate::state::{Command, sample_pose};
+
+const ROW_HEIGHT: f32 = 26.0;
+
+pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
+    let Some(model) = shown.library.active() else { return };
+    if local.folded_of != Some(model.id) {
+        local.folded_of = Some(model.id);
+        local.folded.clear();
+        local.joint_search.clear();
+        local.scrolled_to = None;
+    }
+    let chosen = shown.state.joint.and_then(|joint| model.asset.skeleton.joint_of_source(joint));
+    if let Some(joint) = chosen {
+        ui.add_space(4.0);
+        controls::card(ui, |ui| joint_card(ui, shown, model, joint, out));
+    } else {
+        controls::hint(ui, "Click a joint here or in the picture to see its transforms.");
+    }
+    ui.add_space(6.0);
+    clips::search_field(ui, &mut local.joint_search, "Search nodes by name");
+    ui.add_space(2.0);
+    tree(ui, shown, model, local, out);
+}
+
+/// One line of the tree.
+struct Row {
+    joint: JointIndex,
+    depth: usize,
+    has_children: bool,
+}
+
+fn rows(asset: &Asset, local: &UiState) -> Vec<Row> {
+    let skeleton = &asset.skeleton;
+    let wanted = local.joint_search.to_lowercase();
+    let mut has_children = vec![false; skeleton.len()];
+    for parent in skeleton.parents().iter().flatten() {
+        has_children[parent.get()] = true;
+    }
+    // Joints are sorted depth first, so their order is the tree's; depths follow the parents'.
+    let mut depths = vec![0; skeleton.len()];
+    let mut hidden = vec![false; skeleton.len()];
+    let mut rows = Vec::new();
+    for joint in skeleton.joints() {
+        if let Some(parent) = skeleton.parent(joint) {
+            depths[joint.get()] = depths[parent.get()] + 1;
+            hidden[joint.get()] = hidden[parent.get()] || local.folded.contains(&skeleton.source_index(parent));
+        }
+        if wanted.is_empty() {
+            if !hidden[joint.get()] {
+                rows.push(Row { joint, depth: depths[joint.get()], has_children: has_children[joint.get()] });
+            }
+        } else if title(asset, joint).to_lowercase().contains(&wanted) {
+            rows.push(Row { joint, depth: 0, has_children: false });
+        }
+    }
+    rows
+}
+
+/// A name to show; nodes without one get their number.
+pub(super) fn title(asset: &Asset, joint: JointIndex) -> String {
+    let name = asset.skeleton.name(joint);
+    if name.is_empty() { format!("Node {}", asset.skeleton.source_index(joint)) } else { name.to_owned() }
+}
+
+fn tree(ui: &mut Ui, shown: &Shown<'_>, model: &Model, local: &mut UiState, out: &mut Output) {
+    let asset = &model.asset;
+    let mut kinds = vec![Kind::Empty; asset.skeleton.len()];
+    for joint in asset.skeleton.joints().filter(|&joint| model.rig().is_real(joint)) {
+        kinds[joint.get()] = Kind::Joint;
+    }
+    for camera in &asset.cameras {
+        kinds[camera.joint.get()] = Kind::Camera;
+    }
+    for light in &asset.lights {
+        kinds[light.joint.get()] = Kind::Light;
+    }
+    for instance in &asset.instances {
+        kinds[instance.joint.get()] = Kind::Mesh;
+    }
+    let rows = rows(asset, local);
+    if rows.is_empty() {
+        controls::hint(ui, format!("No node's name contains “{}”.", local.joint_search));
+        return;
+    }
+    let mut area = ScrollArea::vertical().id_salt("tree").auto_shrink([false, false]);
+    if local.scrolled_to != shown.state.joint {
+        local.scrolled_to = shown.state.joint;
+        let at = rows.iter().position(|row| Some(asset.skeleton.source_index(row.joint)) == shown.state.joint);
+        if let Some(at) = at {
+            // A few rows above it stay in sight, to show where it hangs.
+            area = area.vertical_scroll_offset((at as f32 - 4.0).max(0.0) * ROW_HEIGHT);
+        }
+    }
+    let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
+    area.show_rows(ui, ROW_HEIGHT, rows.len(), |ui, visible| {
+        for row in rows.get(visible).unwrap_or_default() {
+            let source = asset.skeleton.source_index(row.joint);
+            let chosen = shown.state.joint == Some(source);
+            match tree_row(
+                ui,
+                row,
+                &title(asset, row.joint),
+                kinds[row.joint.get()],
+                chosen,
+                local.folded.contains(&source),
+            ) {
+                Some(Pressed::Row) => {
+                    local.scrolled_to = Some(source);
+                    out.commands.push(Command::SelectJoint((!chosen).then_some(source)));
+                }
+                Some(Pressed::Fold) => {
+                    let was_folded = local.folded.remove(&source);
+                    if !was_folded {
+                        local.folded.insert(source);
+                    }
+                }
+                None => {}
+            }
+        }
+    });
+    ui.spacing_mut().item_spacing.y = spacing;
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Empty,
+    Joint,
+    Mesh,
+    Camera,
+    Light,
+}
+
+enum Pressed {
+    Row,
+    Fold,
+}
+
+fn tree_row(ui: &mut Ui, row: &Row, name: &str, kind: Kind, chosen: bool, folded: bool) -> Option<Pressed> {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT), Sense::click());
+    let role = egui::accesskit::Role::TreeItem;
+    response.widget_info(|| WidgetInfo::selected(role, true, chosen, name));
+    let palette = style::palette(ui);
+    let fill = if chosen {
+        palette.chosen
+    } else if response.hovered() {
+        palette.hover
+    } else {
+        Color32::TRANSPARENT
+    };
+    ui.painter().rect_filled(rect.shrink2(vec2(0.0, 1.0)), 5.0, fill);
+    // Deep rigs stay readable: the indent grows ever more slowly.
+    let depth = row.depth as f32;
+    let indent = if depth <= 8.0 { depth * 11.0 } else { 88.0 + (depth - 8.0) * 3.0 };
+    let x = rect.left() + 4.0 + indent.min(rect.width() * 0.55);
+    let mut pressed = response.clicked().then_some(Pressed::Row);
+    if row.has_children {
+        let center = pos2(x + 6.0, rect.center().y);
+        let grab = Rect::from_center_size(center, vec2(18.0, ROW_HEIGHT));
+        let fold = ui.interact(grab, ui.scope_id().with(("fold", row.joint.0)), Sense::click());
+        let label = format!("{} {name}", if folded { "Unfold" } else { "Fold" });
+        fold.widget_info(|| WidgetInfo::labeled(egui::accesskit::Role::Button, true, &label));
+        if fold.clicked() {
+            pressed = Some(Pressed::Fold);
+        }
+        let (a, b) = if folded { (vec2(-2.0, -4.0), vec2(-2.0, 4.0)) } else { (vec2(-4.0, -2.0), vec2(4.0, -2.0)) };
+        let tip = if folded { vec2(3.0, 0.0) } else { vec2(0.0, 3.0) };
+        let color = if fold.hovered() { palette.text } else { palette.weak_text };
+        ui.painter().add(Shape::convex_polygon(vec![center + a, center + tip, center + b], color, Stroke::NONE));
+    }
+    kind_mark(ui, kind, pos2(x + 20.0, rect.center().y), palette);
+    let text = Rect::from_min_max(pos2(x + 32.0, rect.top()), rect.right_bottom() - vec2(6.0, 0.0));
+    let color = if chosen {
+        palette.accent
+    } else if kind == Kind::Empty {
+        palette.weak_text
+    } else {
+        palette.text
+    };
+    controls::elided(ui, text, name, color);
+    pressed
+}
+
+fn kind_mark(ui: &Ui, kind: Kind, center: egui::Pos2, palette: style::Palette) {
+    let painter = ui.painter();
+    let line = Stroke::new(1.3, palette.weak_text);
+    match kind {
+        Kind::Empty => {
+            painter.circle_stroke(center, 3.0, line);
+        }
+        Kind::Joint => {
+            painter.circle_filled(center, 3.5, palette.accent);
+        }
+        Kind::Mesh => {
+            let points = [vec2(0.0, -5.0), vec2(5.0, 4.0), vec2(-5.0, 4.0)].map(|corner| center + corner);
+            painter.add(Shape::closed_line(points.to_vec(), line));
+        }
+        Kind::Camera => {
+            let body = Rect::from_center_size(center - vec2(1.5, 0.0), vec2(8.0, 7.0));
+            painter.rect_stroke(body, 1.5, line, egui::StrokeKind::Middle);
+            painter.line_segment([center + vec2(3.0, 0.0), center + vec2(6.0, -3.0)], line);
+            painter.line_segment([center + vec2(3.0, 0.0), center + vec2(6.0, 3.0)], line);
+        }
+        Kind::Light => {
+            painter.circle_filled(center, 2.5, palette.warning);
+            for step in 0..8 {
+                let way = egui::Vec2::angled(step as f32 * std::f32::consts::FRAC_PI_4);
+                painter.line_segment([center + way * 4.0, center + way * 5.5], Stroke::new(1.2, palette.warning));
+            }
+        }
+    }
+}
+
+fn joint_card(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, out: &mut Output) {
+    let asset = &model.asset;
+    ui.horizontal(|ui| {
+        let name = RichText::new(title(asset, joint)).strong().size(15.0);
+        let width = ui.available_width() - 34.0;
+        ui.scope(|ui| {
+            ui.set_max_width(width);
+            ui.add(egui::Label::new(name).truncate().selectable(true));
+        });
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let close = super::icons::icon_button_sized(ui, super::icons::Icon::Close, "Choose no joint", false, 24.0);
+            if close.clicked() {
+                out.commands.push(Command::SelectJoint(None));
+            }
+        });
+    });
+    let mut pose = Pose::default();
+    sample_pose(model, shown.state, &mut SampleCursor::default(), &mut pose);
+    let local = pose.locals.get(joint.get()).copied().unwrap_or_default();
+    let parent = asset.skeleton.parent(joint).map_or("no parent".to_owned(), |parent| title(asset, parent));
+    transform(ui, &format!("Local, in {parent}"), &local);
+    let character = shown.frame.characters.first();
+    if let Some(world) = character.and_then(|character| character.world_from_joint.get(joint.get())) {
+        transform(ui, "World", &decomposed(world));
+    }
+}
+
+fn decomposed(world: &Affine3A) -> Transform {
+    Transform::from_matrix(&(*world).into())
+}
+
+fn transform(ui: &mut Ui, title: &str, value: &Transform) {
+    let palette = style::palette(ui);
+    ui.add_space(4.0);
+    ui.add(egui::Label::new(RichText::new(title).small().color(palette.weak_text)).truncate());
+    let (x, y, z) = value.rotation.normalize_or_identity().to_euler(EulerRot::XYZ);
+    let degrees = Vec3::new(x, y, z) * (180.0 / std::f32::consts::PI);
+    let rows = [("Position", value.translation, " m"), ("Rotation", degrees, "°"), ("Scale", value.scale, "")];
+    for (name, numbers, unit) in rows {
+        let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 18.0), Sense::hover());
+        let font = egui::FontId::proportional(12.5);
+        ui.painter().text(rect.left_center(), egui::Align2::LEFT_CENTER, name, font, palette.weak_text);
+        let font = egui::FontId::monospace(12.0);
+        let width = (rect.width() - 60.0) / 3.0;
+        let texts = numbers.to_array().map(|number| match unit {
+            "°" => format!("{:.1}°", number + 0.0),
+            _ => short(number),
+        });
+        for (column, text) in texts.iter().enumerate() {
+            let at = pos2(rect.left() + 60.0 + width * (column + 1) as f32, rect.center().y);
+            ui.painter().text(at, egui::Align2::RIGHT_CENTER, text, font.clone(), palette.text);
+        }
+        let whole = format!("{name} {}", texts.join(" "));
+        response.widget_info(|| WidgetInfo::labeled(egui::accesskit::Role::Label, true, &whole));
+        let exact = match unit {
+            "°" => quaternion_text(value.rotation),
+            _ => format!("{} {} {}{unit}", numbers.x, numbers.y, numbers.z),
+        };
+        response.on_hover_text(exact);
+    }
+}
+
+fn quaternion_text(rotation: Quat) -> String {
+    let [x, y, z, w] = rotation.to_array();
+    format!("Quaternion x {x:.5}  y {y:.5}  z {z:.5}  w {w:.5}\nAngles are about X, then Y, then Z of the joint.")
+}
+
+trait NormalizeOrIdentity {
+    fn normalize_or_identity(self) -> Quat;
+}
+
+impl NormalizeOrIdentity for Quat {
+    fn normalize_or_identity(self) -> Quat {
+        if self.length_squared() > 0.0 && self.is_finite() { self.normalize() } else { Quat::IDENTITY }
+    }
+}

@@ -1,0 +1,152 @@
+//! How the panels look: two quiet palettes, one for each system theme, and egui's style made from them. The scene's own
+//! look is part of the view state and never follows the theme.
+
+use egui::{Color32, CornerRadius, FontFamily, FontId, Margin, Shadow, Stroke, Style, TextStyle, Theme, Vec2, Visuals};
+
+/// The colours of one theme; panels ask for these by what they are for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Palette {
+    pub panel: Color32,
+    /// Cards and fields on a panel.
+    pub surface: Color32,
+    pub hover: Color32,
+    pub pressed: Color32,
+    pub line: Color32,
+    pub text: Color32,
+    pub weak_text: Color32,
+    pub accent: Color32,
+    /// On top of `accent`.
+    pub on_accent: Color32,
+    /// A tint of the accent, for what is chosen.
+    pub chosen: Color32,
+    pub warning: Color32,
+    pub error: Color32,
+}
+
+const DARK: Palette = Palette {
+    panel: Color32::from_rgb(0x18, 0x1a, 0x1f),
+    surface: Color32::from_rgb(0x23, 0x26, 0x2d),
+    hover: Color32::from_rgb(0x2e, 0x32, 0x3b),
+    pressed: Color32::from_rgb(0x3a, 0x3f, 0x4a),
+    line: Color32::from_rgb(0x2c, 0x30, 0x38),
+    text: Color32::from_rgb(0xe4, 0xe7, 0xec),
+    weak_text: Color32::from_rgb(0x9a, 0xa2, 0xaf),
+    accent: Color32::from_rgb(0x7d, 0x9b, 0xff),
+    on_accent: Color32::from_rgb(0x10, 0x14, 0x20),
+    chosen: Color32::from_rgb(0x2b, 0x34, 0x55),
+    warning: Color32::from_rgb(0xf0, 0xb4, 0x5a),
+    error: Color32::from_rgb(0xff, 0x86, 0x7c),
+};
+
+const LIGHT: Palette = Palette {
+    panel: Color32::from_rgb(0xf7, 0xf8, 0xfa),
+    surface: Color32::from_rgb(0xec, 0xee, 0xf2),
+    hover: Color32::from_rgb(0xe1, 0xe5, 0xec),
+    pressed: Color32::from_rgb(0xd3, 0xd9, 0xe3),
+    line: Color32::from_rgb(0xdf, 0xe3, 0xe9),
+    text: Color32::from_rgb(0x1d, 0x22, 0x2b),
+    weak_text: Color32::from_rgb(0x5b, 0x65, 0x74),
+    accent: Color32::from_rgb(0x3d, 0x5c, 0xe0),
+    on_accent: Color32::WHITE,
+    chosen: Color32::from_rgb(0xd9, 0xe1, 0xfc),
+    warning: Color32::from_rgb(0x9a, 0x5b, 0x00),
+    error: Color32::from_rgb(0xb4, 0x2a, 0x1f),
+};
+
+pub const CORNER: u8 = 7;
+
+/// The palette that goes with what egui shows now.
+pub fn palette(ui: &egui::Ui) -> Palette {
+    if ui.visuals().dark_mode { DARK } else { LIGHT }
+}
+
+/// Sets both styles; egui then follows the system's theme by itself.
+pub fn install(context: &egui::Context) {
+    context.set_theme(egui::ThemePreference::System);
+    for (theme, palette) in [(Theme::Dark, DARK), (Theme::Light, LIGHT)] {
+        context.set_style_of(theme, style(theme, &palette));
+    }
+}
+
+fn style(theme: Theme, palette: &Palette) -> Style {
+    let mut style = theme.default_style();
+    style.text_styles = [
+        (TextStyle::Heading, FontId::new(17.0, FontFamily::Proportional)),
+        (TextStyle::Body, FontId::new(14.0, FontFamily::Proportional)),
+        (TextStyle::Button, FontId::new(14.0, FontFamily::Proportional)),
+        (TextStyle::Small, FontId::new(12.0, FontFamily::Proportional)),
+        (TextStyle::Monospace, FontId::new(12.0, FontFamily::Monospace)),
+    ]
+    .into();
+    style.visuals = visuals(theme, palette);
+    style.animation_time = 0.12;
+    style.interaction.selectable_labels = false;
+    style.interaction.tooltip_delay = 0.4;
+
+    let spacing = &mut style.spacing;
+    spacing.item_spacing = Vec2::new(8.0, 6.0);
+    spacing.button_padding = Vec2::new(10.0, 5.0);
+    spacing.interact_size = Vec2::new(28.0, 28.0);
+    spacing.slider_rail_height = 4.0;
+    spacing.icon_width = 18.0;
+    spacing.icon_width_inner = 10.0;
+    spacing.window_margin = Margin::same(16);
+    spacing.menu_margin = Margin::same(8);
+    spacing.scroll = egui::style::ScrollStyle::floating();
+    style
+}
+
+fn visuals(theme: Theme, palette: &Palette) -> Visuals {
+    let mut visuals = theme.default_visuals();
+    let corner = CornerRadius::same(CORNER);
+    visuals.panel_fill = palette.panel;
+    visuals.window_fill = palette.panel;
+    visuals.window_stroke = Stroke::new(1.0, palette.line);
+    visuals.window_corner_radius = CornerRadius::same(12);
+    visuals.menu_corner_radius = CornerRadius::same(10);
+    visuals.window_shadow = Shadow {
+        offset: [0, 8],
+        blur: 28,
+        spread: 0,
+        color: Color32::from_black_alpha(if visuals.dark_mode { 120 } else { 50 }),
+    };
+    visuals.popup_shadow = Shadow {
+        offset: [0, 4],
+        blur: 14,
+        spread: 0,
+        color: Color32::from_black_alpha(if visuals.dark_mode { 100 } else { 36 }),
+    };
+    visuals.extreme_bg_color = palette.surface;
+    visuals.text_edit_bg_color = Some(palette.surface);
+    visuals.faint_bg_color = palette.surface;
+    visuals.code_bg_color = palette.surface;
+    visuals.weak_text_color = Some(palette.weak_text);
+    visuals.warn_fg_color = palette.warning;
+    visuals.error_fg_color = palette.error;
+    visuals.hyperlink_color = palette.accent;
+    visuals.selection.bg_fill = palette.accent;
+    visuals.selection.stroke = Stroke::new(1.0, palette.on_accent);
+    visuals.slider_trailing_fill = true;
+    visuals.handle_shape = egui::style::HandleShape::Circle;
+    visuals.indent_has_left_vline = false;
+    visuals.striped = false;
+
+    let widgets = &mut visuals.widgets;
+    for (widget, fill) in [
+        (&mut widgets.noninteractive, palette.panel),
+        (&mut widgets.inactive, palette.surface),
+        (&mut widgets.hovered, palette.hover),
+        (&mut widgets.active, palette.pressed),
+        (&mut widgets.open, palette.hover),
+    ] {
+        widget.bg_fill = fill;
+        widget.weak_bg_fill = fill;
+        widget.bg_stroke = Stroke::NONE;
+        widget.fg_stroke = Stroke::new(1.0, palette.text);
+        widget.corner_radius = corner;
+        widget.expansion = 0.0;
+    }
+    widgets.noninteractive.bg_stroke = Stroke::new(1.0, palette.line);
+    widgets.active.bg_stroke = Stroke::new(1.0, palette.accent);
+    visuals
+}

@@ -1,0 +1,136 @@
+//! The View tab: camera, light, background, and which way is up.
+
+use egui::{RichText, Ui};
+
+use super::controls::{self, SliderSettings};
+use super::{Output, Shown, style};
+use crate::state::{Background, CameraChoice, Command, OrbitCamera, UpAxis, frame_all, resolve_camera};
+
+pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, aspect: f32, out: &mut Output) {
+    camera(ui, shown, aspect, out);
+    light(ui, shown, out);
+    controls::section(ui, "UP AXIS OF THE FILE");
+    let axes = [
+        (UpAxis::X, "X"),
+        (UpAxis::Y, "Y"),
+        (UpAxis::Z, "Z"),
+        (UpAxis::MinusX, "−X"),
+        (UpAxis::MinusY, "−Y"),
+        (UpAxis::MinusZ, "−Z"),
+    ];
+    if let Some(up) = controls::segmented(ui, Some(shown.state.up), &axes) {
+        out.commands.push(Command::SetUp(up));
+    }
+    ui.add_space(2.0);
+    controls::hint(ui, "glTF says Y. Choose another for a model that lies on its back.");
+    scenes(ui, shown, out);
+}
+
+fn camera(ui: &mut Ui, shown: &Shown<'_>, aspect: f32, out: &mut Output) {
+    let state = shown.state;
+    controls::section(ui, "CAMERA");
+    let sides = [(0.0, 0.0, "Front"), (90.0, 0.0, "Side"), (0.0, 89.9, "Top")];
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        let width = (ui.available_width() - 3.0 * 6.0) / 4.0;
+        for (yaw_degrees, pitch_degrees, label) in sides {
+            if ui.add_sized([width, 30.0], egui::Button::new(label)).clicked() {
+                out.commands.push(look_from(shown, aspect, yaw_degrees, pitch_degrees));
+            }
+        }
+        if ui.add_sized([width, 30.0], egui::Button::new("Frame")).on_hover_text("Fit it all in (F)").clicked() {
+            out.commands.push(Command::FrameAll);
+        }
+    });
+    let cameras = shown.library.active().map_or(&[][..], |model| &model.asset.cameras);
+    if !cameras.is_empty() {
+        ui.add_space(2.0);
+        let free = !matches!(state.camera, CameraChoice::File(_));
+        if controls::list_row(ui, "Free camera", "", free).clicked() && !free {
+            out.commands.push(Command::SetCamera(CameraChoice::Auto));
+        }
+        for (index, camera) in cameras.iter().enumerate() {
+            let name = if camera.name.is_empty() { format!("Camera {index}") } else { camera.name.clone() };
+            let chosen = state.camera == CameraChoice::File(index);
+            if controls::list_row(ui, &name, "in the file", chosen).clicked() {
+                out.commands.push(Command::SetCamera(CameraChoice::File(index)));
+            }
+        }
+    }
+    let settings =
+        SliderSettings { range: (10.0, 100.0), default: 35.0, decimals: 0, suffix: "°", logarithmic: false };
+    if let Some(degrees) = controls::slider(ui, "Field of view", f64::from(state.fov_degrees), settings) {
+        out.commands.push(Command::SetFov(degrees as f32));
+    }
+    if controls::switch(ui, "Follow the character", state.follow) {
+        out.commands.push(Command::SetFollow(!state.follow));
+    }
+}
+
+/// An orbit camera that looks from a fixed side and sees everything.
+fn look_from(shown: &Shown<'_>, aspect: f32, yaw_degrees: f32, pitch_degrees: f32) -> Command {
+    let mut state = shown.state.clone();
+    state.camera = CameraChoice::Orbit(OrbitCamera {
+        yaw_radians: yaw_degrees.to_radians(),
+        pitch_radians: pitch_degrees.to_radians(),
+        ..resolve_camera(shown.library, shown.state, aspect)
+    });
+    Command::SetCamera(CameraChoice::Orbit(frame_all(shown.library, &state, aspect)))
+}
+
+fn light(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
+    let state = shown.state;
+    controls::section(ui, "LIGHT AND BACKGROUND");
+    let settings =
+        SliderSettings { range: (-5.0, 5.0), default: 0.0, decimals: 1, suffix: " stops", logarithmic: false };
+    if let Some(stops) = controls::slider(ui, "Exposure", f64::from(state.exposure), settings) {
+        out.commands.push(Command::SetExposure(stops as f32));
+    }
+    let settings =
+        SliderSettings { range: (-180.0, 180.0), default: 0.0, decimals: 0, suffix: "°", logarithmic: false };
+    if let Some(degrees) = controls::slider(ui, "Environment", f64::from(state.environment_degrees), settings) {
+        out.commands.push(Command::SetEnvironment(degrees as f32));
+    }
+    ui.add_space(4.0);
+    #[derive(Clone, Copy, PartialEq)]
+    enum Kind {
+        Studio,
+        Color,
+        Transparent,
+    }
+    let (kind, mut color) = match state.background {
+        Background::Studio => (Kind::Studio, [236, 238, 242]),
+        Background::Color(color) => (Kind::Color, color),
+        Background::Transparent => (Kind::Transparent, [236, 238, 242]),
+    };
+    let kinds = [(Kind::Studio, "Studio"), (Kind::Color, "Colour"), (Kind::Transparent, "None")];
+    if let Some(kind) = controls::segmented(ui, Some(kind), &kinds) {
+        out.commands.push(Command::SetBackground(match kind {
+            Kind::Studio => Background::Studio,
+            Kind::Color => Background::Color(color),
+            Kind::Transparent => Background::Transparent,
+        }));
+    }
+    if kind == Kind::Color {
+        ui.horizontal(|ui| {
+            let weak = style::palette(ui).weak_text;
+            ui.label(RichText::new("Background").color(weak));
+            if ui.color_edit_button_srgb(&mut color).accessible_name("Background colour").changed() {
+                out.commands.push(Command::SetBackground(Background::Color(color)));
+            }
+        });
+    }
+}
+
+fn scenes(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
+    let Some(model) = shown.library.active().filter(|model| model.asset.scenes.len() > 1) else { return };
+    controls::section(ui, "SCENE");
+    let now = model.scene(shown.state.scene);
+    for (index, scene) in model.asset.scenes.iter().enumerate() {
+        let name = if scene.name.is_empty() { format!("Scene {index}") } else { scene.name.clone() };
+        let default = if model.asset.default_scene == Some(index) { "default" } else { "" };
+        if controls::list_row(ui, &name, default, now == Some(index)).clicked() {
+            out.commands.push(Command::SetScene(Some(index)));
+        }
+    }
+}

@@ -1,0 +1,1 @@
+//! The panels without a GPU: what is shown for a model, and which commands come of pressing things, found by label.
