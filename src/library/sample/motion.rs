@@ -91,7 +91,7 @@ impl Stance {
             self.rotations[lower] = Quat::from_rotation_x(knee);
             self.rotations[ankle] = world_from_shin.inverse() * Quat::from_rotation_x(foot.pitch);
             // Toes stay flat on the ground while the heel is lifted.
-            self.rotations[toes] = Quat::from_rotation_x(-0.85 * foot.pitch.max(0.0));
+            self.rotations[toes] = Quat::from_rotation_x(-foot.pitch.max(0.0));
         }
     }
 }
@@ -133,10 +133,11 @@ fn walking_foot(side: f32, part: f32) -> Foot {
     rolled(side, forward, lift, pitch)
 }
 
-/// A foot turned about what it stands on: the heel when the toes are up, the ball when they are down.
+/// A foot turned about what it stands on: the heel when the toes are up, the toes' joint when they are down.
 fn rolled(side: f32, forward: f32, lift: f32, pitch: f32) -> Foot {
-    let flat = Vec3::new(0.075 * side, place(joint::LEFT_LEG[2]).y + lift, forward);
-    let pivot = if pitch > 0.0 { Vec3::new(0.0, -flat.y + lift, 0.13) } else { Vec3::new(0.0, -flat.y + lift, -0.05) };
+    let [ankle, toes] = [joint::LEFT_LEG[2], joint::LEFT_LEG[3]].map(place);
+    let flat = Vec3::new(0.075 * side, ankle.y + lift, forward);
+    let pivot = if pitch > 0.0 { toes - ankle } else { Vec3::new(0.0, -ankle.y, -0.07) };
     Foot { ankle: flat + pivot - Quat::from_rotation_x(pitch) * pivot, pitch }
 }
 
