@@ -90,7 +90,7 @@ pub fn slider(ui: &mut Ui, label: &str, value: f64, settings: SliderSettings) ->
 
 fn slider_in(ui: &mut Ui, label: &str, value: f64, settings: SliderSettings) -> Option<f64> {
     let mut new = value;
-    let id = ui.label_and_value(label, &mut new, &settings);
+    label_and_value(ui, label, &mut new, &settings);
     ui.spacing_mut().slider_width = ui.available_width();
     let mut bar = new;
     knob_style(ui);
@@ -102,7 +102,6 @@ fn slider_in(ui: &mut Ui, label: &str, value: f64, settings: SliderSettings) -> 
     );
     let name = label.to_owned();
     response.widget_info(|| WidgetInfo::slider(true, bar, name.clone()));
-    let response = response.labelled_by(id);
     if response.changed() {
         new = bar;
     }
@@ -115,6 +114,7 @@ fn slider_in(ui: &mut Ui, label: &str, value: f64, settings: SliderSettings) -> 
 /// A ring in the accent's colour instead of egui's knob, for all sliders that follow in this `Ui`.
 pub fn knob_style(ui: &mut Ui) {
     let palette = style::palette(ui);
+    ui.spacing_mut().interact_size.y = 20.0;
     let widgets = &mut ui.visuals_mut().widgets;
     for (widget, width) in [(&mut widgets.inactive, 2.0), (&mut widgets.hovered, 2.5), (&mut widgets.active, 3.0)] {
         widget.fg_stroke = Stroke::new(width, palette.accent);
@@ -132,38 +132,24 @@ pub struct SliderSettings {
     pub logarithmic: bool,
 }
 
-trait LabelAndValue {
-    fn label_and_value(&mut self, label: &str, value: &mut f64, settings: &SliderSettings) -> egui::Id;
-}
-
-impl LabelAndValue for Ui {
-    fn label_and_value(&mut self, label: &str, value: &mut f64, settings: &SliderSettings) -> egui::Id {
-        self.horizontal(|ui| {
-            let field_width = 76.0;
-            let width = (ui.available_width() - field_width - 8.0).max(20.0);
-            let (rect, response) = ui.allocate_exact_size(vec2(width, 24.0), Sense::hover());
-            let font = egui::TextStyle::Body.resolve(ui.style());
-            let color = style::palette(ui).text;
-            let galley = ui.painter().layout_no_wrap(label.to_owned(), font, color);
-            let at = rect.left_center() - vec2(0.0, galley.size().y / 2.0);
-            ui.painter_at(rect).galley(at, galley, color);
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                ui.spacing_mut().interact_size.y = 24.0;
-                let span = settings.range.1 - settings.range.0;
-                let field = ui.add_sized(
-                    [field_width, 24.0],
-                    egui::DragValue::new(value)
-                        .speed(span / 300.0)
-                        .range(settings.range.0..=settings.range.1)
-                        .fixed_decimals(settings.decimals)
-                        .suffix(settings.suffix),
-                );
-                field.labelled_by(response.id);
-            });
-            response.id
-        })
-        .inner
-    }
+fn label_and_value(ui: &mut Ui, label: &str, value: &mut f64, settings: &SliderSettings) {
+    ui.horizontal(|ui| {
+        let field_width = 76.0;
+        let width = (ui.available_width() - field_width - 8.0).max(20.0);
+        let (rect, _) = ui.allocate_exact_size(vec2(width, 24.0), Sense::hover());
+        elided(ui, rect, label, style::palette(ui).text);
+        ui.spacing_mut().interact_size.y = 24.0;
+        let span = settings.range.1 - settings.range.0;
+        let field = ui.add_sized(
+            [field_width, 24.0],
+            egui::DragValue::new(value)
+                .speed(span / 300.0)
+                .range(settings.range.0..=settings.range.1)
+                .fixed_decimals(settings.decimals)
+                .suffix(settings.suffix),
+        );
+        field.accessible_name(format!("{label} value"));
+    });
 }
 
 /// A rounded card that fills the width.

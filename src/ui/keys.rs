@@ -33,7 +33,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
         act: |_, _, which, out| out.commands.push(Command::StepFrames(if which == 0 { -1 } else { 1 })),
     },
     KeyHelp {
-        keys: "↑  ↓",
+        keys: "Up  Down",
         does: "Nearer, farther",
         pressed: &[Key::ArrowUp, Key::ArrowDown],
         act: |_, _, which, out| {
@@ -41,7 +41,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
         },
     },
     KeyHelp {
-        keys: "←  →",
+        keys: "Left  Right",
         does: "Around",
         pressed: &[Key::ArrowLeft, Key::ArrowRight],
         act: |_, _, which, out| {

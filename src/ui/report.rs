@@ -72,18 +72,26 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
     }
 }
 
-/// A name at the left and its value at the right end; long values go on below.
+/// A name at the left and its value at the right end; a value that does not fit goes on below.
 fn fact(ui: &mut Ui, name: &str, value: &str) {
     let palette = style::palette(ui);
-    ui.horizontal_wrapped(|ui| {
-        ui.label(RichText::new(name).color(palette.weak_text));
-        let galley = egui::WidgetText::from(value).into_galley(ui, None, f32::INFINITY, egui::TextStyle::Body);
-        let room = ui.available_width() - galley.size().x;
-        if room > 0.0 {
-            ui.add_space(room);
-        }
-        ui.add(egui::Label::new(value).wrap().selectable(true));
-    });
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let width = ui.available_width();
+    let name_galley = ui.painter().layout(name.to_owned(), font.clone(), palette.weak_text, width);
+    let value_galley = ui.painter().layout(value.to_owned(), font, palette.text, width);
+    let (name_size, value_size) = (name_galley.size(), value_galley.size());
+    let beside = name_size.x + value_size.x + 12.0 <= width;
+    let height = if beside || value.is_empty() { name_size.y } else { name_size.y + value_size.y + 2.0 };
+    let (rect, response) = ui.allocate_exact_size(egui::vec2(width, height), egui::Sense::hover());
+    let whole = format!("{name} {value}");
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Label, true, &whole));
+    let value_at = if beside {
+        egui::pos2(rect.right() - value_size.x, rect.top())
+    } else {
+        egui::pos2(rect.left(), rect.top() + name_size.y + 2.0)
+    };
+    ui.painter().galley(rect.min, name_galley, palette.weak_text);
+    ui.painter().galley(value_at, value_galley, palette.text);
 }
 
 /// With a thin space between thousands.
@@ -99,20 +107,16 @@ fn grouped(number: usize) -> String {
     text
 }
 
-/// Three significant digits.
+/// Three decimals, or a power of ten where those would show nothing.
 pub(super) fn short(number: f32) -> String {
     let size = number.abs();
-    if size == 0.0 {
-        "0".to_owned()
-    } else if size >= 100.0 {
-        format!("{number:.0}")
-    } else if size >= 10.0 {
-        format!("{number:.1}")
-    } else if size >= 1.0 {
-        format!("{number:.2}")
-    } else if size >= 0.001 {
-        format!("{number:.4}")
-    } else {
+    if size == 0.0 || !number.is_finite() {
+        format!("{}", number + 0.0)
+    } else if size >= 1e6 || size < 0.005 {
         format!("{number:.1e}")
+    } else if size >= 100.0 {
+        format!("{number:.1}")
+    } else {
+        format!("{number:.3}")
     }
 }

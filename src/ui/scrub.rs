@@ -82,7 +82,9 @@ pub fn show(ui: &mut Ui, scrub: &Scrub<'_>, of: (ModelId, usize), marks: &mut Ke
     seek.widget_info(|| WidgetInfo::slider(true, scrub.time_secs, "Time"));
     let held = seek.is_pointer_button_down_on();
     if held && let Some(pointer) = seek.interact_pointer_pos() {
-        scrubbed = Some(Scrubbed::Seek(secs_at(pointer.x)));
+        // Held still, it asks for nothing: nothing needs to be drawn again.
+        let secs = secs_at(pointer.x);
+        scrubbed = (secs != scrub.time_secs).then_some(Scrubbed::Seek(secs));
     }
 
     for (label, x, is_start) in [("In point", start_x, true), ("Out point", end_x, false)] {
@@ -100,7 +102,7 @@ pub fn show(ui: &mut Ui, scrub: &Scrub<'_>, of: (ModelId, usize), marks: &mut Ke
             } else {
                 TimeRange { start_secs: range.start_secs, end_secs: secs.max(range.start_secs) }
             };
-            scrubbed = Some(Scrubbed::Range(range));
+            scrubbed = (scrub.range != Some(range)).then_some(Scrubbed::Range(range));
         }
         let lit = handle.hovered() || handle.dragged();
         let color = match (lit, scrub.range.is_some()) {

@@ -1,1 +1,9 @@
 //! The panels without a GPU: what is shown for a model, and which commands come of pressing things, found by label.
+
+mod bench;
+mod clips;
+mod inspector;
+mod keys;
+mod layout;
+mod picture;
+mod transport;

@@ -1,0 +1,67 @@
+//! The keys, and the table of them.
+
+use egui::Key;
+use egui_kittest::kittest::Queryable;
+use gaitway::state::{CameraChoice, ClipChoice, Command};
+use gaitway::ui::{KEY_TABLE, UiAction};
+
+use crate::bench::{WIDE, press, press_key, sample_bench};
+
+#[test]
+fn keys_do_what_the_help_says() {
+    let clip = |name: &str| Command::SetClip(ClipChoice::Named(name.to_owned()));
+    let turn = |yaw_radians| Command::Orbit { yaw_radians, pitch_radians: 0.0 };
+    let cases = [
+        (Key::Space, Command::TogglePlaying),
+        (Key::Comma, Command::StepFrames(-1)),
+        (Key::Period, Command::StepFrames(1)),
+        (Key::ArrowUp, Command::Zoom(0.9)),
+        (Key::ArrowDown, Command::Zoom(1.0 / 0.9)),
+        (Key::ArrowLeft, turn(-0.12)),
+        (Key::ArrowRight, turn(0.12)),
+        (Key::Num1, clip("Walk")),
+        (Key::Num3, clip("Wave")),
+        (Key::F, Command::FrameAll),
+        (Key::Home, Command::SetCamera(CameraChoice::Auto)),
+    ];
+    let mut harness = sample_bench(WIDE);
+    for (key, expected) in cases {
+        assert_eq!(press_key(&mut harness, key), [expected], "{key:?}");
+    }
+    assert!(press_key(&mut harness, Key::Num9).is_empty(), "there are three clips");
+}
+
+#[test]
+fn undo_and_redo_are_asked_for() {
+    let mut harness = sample_bench(WIDE);
+    let command = egui::Modifiers::COMMAND;
+    for (modifiers, key) in [(command, Key::Z), (command, Key::Y), (command | egui::Modifiers::SHIFT, Key::Z)] {
+        harness.key_press_modifiers(modifiers, key);
+        harness.run();
+    }
+    assert_eq!(harness.state().actions, [UiAction::Undo, UiAction::Redo, UiAction::Redo]);
+}
+
+#[test]
+fn typing_is_not_taken_for_keys() {
+    let mut harness = sample_bench(WIDE);
+    harness.get_by_label("Search nodes by name").click();
+    harness.run();
+    assert!(press_key(&mut harness, Key::F).is_empty());
+    assert!(press_key(&mut harness, Key::Space).is_empty());
+}
+
+#[test]
+fn the_help_lists_every_key_and_closes() {
+    let mut harness = sample_bench(WIDE);
+    press_key(&mut harness, Key::Questionmark);
+    for line in KEY_TABLE {
+        assert!(harness.query_all_by_label(line.does).next().is_some(), "{}", line.does);
+    }
+    assert!(press_key(&mut harness, Key::Space).is_empty(), "nothing plays behind the help");
+    press(&mut harness, "Close the help");
+    assert!(!harness.state().panels.help_open);
+    press_key(&mut harness, Key::Questionmark);
+    press_key(&mut harness, Key::Escape);
+    assert!(!harness.state().panels.help_open);
+}
