@@ -1,0 +1,184 @@
+//! Layers go one way: reads the sources and looks at what each module names.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// A module of the crate uses lower ranks and its own folder only. ARCHITECTURE.md has the same table.
+const RANKS: [(&str, u32); 14] = [
+    ("anim", 0),
+    ("mesh", 1),
+    ("asset", 2),
+    ("formats", 3),
+    ("retarget", 3),
+    ("library", 4),
+    ("state", 5),
+    ("frame", 6),
+    ("render", 7),
+    ("ui", 8),
+    ("files", 8),
+    ("app", 9),
+    ("cli", 10),
+    ("web", 10),
+];
+
+/// Up to here a module knows no disk, network, clock, GPU and user interface.
+const LAST_CORE_RANK: u32 = 6;
+
+const OUTSIDE: [&str; 13] = [
+    "std::fs",
+    "std::net",
+    "std::env",
+    "std::process",
+    "std::time",
+    "Instant::now",
+    "SystemTime",
+    "web_sys",
+    "js_sys",
+    "wgpu",
+    "egui",
+    "eframe",
+    "clap",
+];
+
+fn rank(module: &str) -> Option<u32> {
+    RANKS.iter().find(|(name, _)| *name == module).map(|(_, rank)| *rank)
+}
+
+/// The text without its comments, which may speak of anything. Addresses in strings lose their ends, which is no harm.
+fn without_comments(text: &str) -> String {
+    text.lines().map(|line| line.split("//").next().unwrap_or("")).collect::<Vec<_>>().join("\n")
+}
+
+fn identifier(text: &str) -> &str {
+    let end = text.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(text.len());
+    &text[..end]
+}
+
+/// Names directly behind each `crate::`, those of `crate::{a, b::{c, d}}` as well.
+fn modules_used(text: &str) -> Vec<String> {
+    let mut modules = Vec::new();
+    for (at, _) in text.match_indices("crate::") {
+        let before = text[..at].chars().next_back();
+        if before.is_some_and(|c| c.is_alphanumeric() || c == '_') {
+            continue;
+        }
+        let rest = &text[at + "crate::".len()..];
+        let Some(group) = rest.strip_prefix('{') else {
+            modules.push(identifier(rest).to_owned());
+            continue;
+        };
+        let (mut depth, mut start) = (0, true);
+        for (at, c) in group.char_indices() {
+            match c {
+                '}' if depth == 0 => break,
+                '{' => depth += 1,
+                '}' => depth -= 1,
+                ',' if depth == 0 => start = true,
+                c if start && !c.is_whitespace() => {
+                    modules.push(identifier(&group[at..]).to_owned());
+                    start = false;
+                }
+                _ => {}
+            }
+        }
+    }
+    modules
+}
+
+/// What is wrong with one file. `path` is relative to `src`, with `/`.
+fn trouble(path: &str, text: &str) -> Vec<String> {
+    let text = &without_comments(text);
+    let parts: Vec<&str> = path.trim_end_matches(".rs").split('/').filter(|part| *part != "mod").collect();
+    let own = parts[0];
+    if parts.len() == 1 && (own == "lib" || own == "main") {
+        return Vec::new();
+    }
+    let Some(own_rank) = rank(own) else { return vec![format!("{path}: `{own}` has no rank in this test")] };
+    let mut trouble = Vec::new();
+    for used in modules_used(text) {
+        match rank(&used) {
+            _ if used == own => {}
+            Some(rank) if rank < own_rank => {}
+            Some(rank) => trouble.push(format!("{path}: `{own}` ({own_rank}) uses `{used}` ({rank})")),
+            None => trouble.push(format!("{path}: `crate::{used}` is no module with a rank")),
+        }
+    }
+    // The only other way out of a module's own folder.
+    let upwards = "super::".repeat(parts.len());
+    if text.contains(&upwards) {
+        trouble.push(format!("{path}: `{upwards}` leaves the module; say `crate::`"));
+    }
+    if own_rank <= LAST_CORE_RANK {
+        // The library holds a decoded browser image without looking into it.
+        let text = if own == "library" { text.replace("web_sys::ImageBitmap", "") } else { text.to_owned() };
+        for word in OUTSIDE.iter().filter(|word| text.contains(**word)) {
+            trouble.push(format!("{path}: the core must not know `{word}`"));
+        }
+    }
+    let apart: &[&str] = match own {
+        "render" => &["egui", "ViewerState", "state::Command", "state::apply"],
+        "ui" => &["state::apply", "std::fs"],
+        _ => &[],
+    };
+    for word in apart.iter().filter(|word| text.contains(**word)) {
+        trouble.push(format!("{path}: `{own}` must not know `{word}`"));
+    }
+    trouble
+}
+
+fn sources(folder: &Path, files: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            sources(&path, files);
+        } else if path.extension().is_some_and(|ending| ending == "rs") {
+            files.push(path);
+        }
+    }
+}
+
+#[track_caller]
+fn check_trouble(path: &str, text: &str, expected: usize) {
+    let found = trouble(path, text);
+    assert_eq!(found.len(), expected, "{path}: {text}: {found:?}");
+}
+
+#[test]
+fn the_reader_sees_what_it_should() {
+    assert_eq!(
+        modules_used(
+            "use crate::anim::Clip; use crate::{mesh::{Skin, Bounds}, asset}; pub(crate) fn f() { crate::ui::g() }"
+        ),
+        ["anim", "mesh", "asset", "ui"]
+    );
+    check_trouble("mesh/skin.rs", "use crate::anim::JointIndex;", 0);
+    check_trouble("mesh/skin.rs", "use crate::mesh::Bounds; // not crate::ui", 0);
+    check_trouble("anim/clip.rs", "use crate::mesh::Skin;", 1);
+    check_trouble("anim/clip.rs", "use super::super::mesh::Skin;", 1);
+    check_trouble("anim/mod.rs", "use super::mesh::Skin;", 1);
+    check_trouble("anim/clip.rs", "let now = std::time::Instant::now();", 2);
+    check_trouble("formats/gltf/mod.rs", "use super::FileSet; use crate::retarget::x;", 1);
+    check_trouble("formats/gltf/read.rs", "use super::super::FileSet; std::fs::read(path)", 1);
+    check_trouble("library/image.rs", "Bitmap(web_sys::ImageBitmap)", 0);
+    check_trouble("library/image.rs", "web_sys::window()", 1);
+    check_trouble("state/mod.rs", "Bitmap(web_sys::ImageBitmap)", 1);
+    check_trouble("render/mod.rs", "use crate::state::ViewerState;", 1);
+    check_trouble("files/mod.rs", "use crate::ui::style;", 1);
+    check_trouble("elsewhere.rs", "", 1);
+    check_trouble("lib.rs", "use crate::ui;", 0);
+}
+
+#[test]
+fn modules_use_lower_ranks_only() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files = Vec::new();
+    sources(&src, &mut files);
+    files.sort();
+    assert!(files.len() > 20, "only {} sources found", files.len());
+    let mut all = Vec::new();
+    for file in files {
+        let path = file.strip_prefix(&src).unwrap().to_string_lossy().replace('\\', "/");
+        all.extend(trouble(&path, &fs::read_to_string(&file).unwrap()));
+    }
+    assert!(all.is_empty(), "\n{}", all.join("\n"));
+}
