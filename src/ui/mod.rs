@@ -165,6 +165,7 @@ pub const NARROW_WIDTH: f32 = 700.0;
 pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Output) -> Rect {
     let palette = style::palette(ui);
     let narrow = is_narrow(ui);
+    let width = ui.ctx().content_rect().width();
     let side =
         egui::Frame::new().fill(palette.panel).inner_margin(egui::Margin { left: 14, right: 14, top: 14, bottom: 8 });
     let bottom =
@@ -180,7 +181,7 @@ pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Outp
             egui::Panel::left("clips")
                 .frame(side)
                 .default_size(244.0)
-                .size_range(190.0..=420.0)
+                .size_range(190.0..=(0.3 * width).clamp(190.0, 420.0))
                 .show_separator_line(false)
                 .show(ui, |ui| clips::show(ui, &shown, local, out));
         }
@@ -188,7 +189,7 @@ pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Outp
             egui::Panel::right("inspector")
                 .frame(side)
                 .default_size(304.0)
-                .size_range(260.0..=520.0)
+                .size_range(260.0..=(0.38 * width).clamp(260.0, 520.0))
                 .show_separator_line(false)
                 .show(ui, |ui| inspector::show(ui, &shown, local, out));
         }
