@@ -1,1 +1,26 @@
-//! Placeholder while the first version is laid out.
+//! Draws a [`Frame`](crate::frame::Frame) with wgpu into its own texture. Knows no state and no user interface.
+//!
+//! One path on all back ends, within WebGL2's limits: palettes and morph targets are textures read with `textureLoad`.
+//! A picture is a shadow map, the scene in linear light, and one pass that turns light into colours.
+
+mod draw_list;
+mod environment;
+mod frame_uniform;
+pub mod geometry;
+mod headless;
+mod model;
+mod overlay;
+pub mod palette;
+mod pipelines;
+mod renderer;
+pub mod shaders;
+mod shadow;
+mod targets;
+mod texture;
+pub mod uniforms;
+
+#[cfg(not(target_arch = "wasm32"))]
+pub use headless::headless_device;
+pub use headless::{HeadlessError, read_pixels};
+pub use pipelines::Layouts;
+pub use renderer::{RenderStats, Renderer, RendererOptions, UploadError};

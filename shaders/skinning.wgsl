@@ -1,0 +1,202 @@
+// Morphing and skinning, the same as src/mesh/skinning.rs does on the CPU.
+
+struct Draw {
+    // First palette entry.
+    palette: u32,
+    // First texel of the morph weights in the palette texture.
+    morph_weights: u32,
+    morph_count: u32,
+    // Texels per vertex and target: 1 positions, 2 and normals, 3 and tangents.
+    morph_attributes: u32,
+    vertices: u32,
+    // Pairs per vertex of the influence texture.
+    influence_stride: u32,
+    // The joint whose weight is shown; 0xffffffff: none.
+    heat_joint: u32,
+    // Linear, of the wireframe.
+    color: vec4f,
+}
+
+@group(1) @binding(0) var<uniform> draw: Draw;
+@group(2) @binding(11) var morph_deltas: texture_2d<f32>;
+@group(2) @binding(12) var influences: texture_2d<f32>;
+
+const MODE_RIGID: u32 = 1u;
+const MODE_DUAL_QUATERNION: u32 = 2u;
+const VERTEX_TEXTURE_WIDTH: u32 = 2048u;
+
+struct Shape {
+    position: vec3f,
+    normal: vec3f,
+    tangent: vec3f,
+}
+
+// p' = rotation · (linear · p) + translation
+struct Blend {
+    linear: mat3x3f,
+    rotation: vec4f,
+    translation: vec3f,
+}
+
+// A weighted sum of palette entries.
+struct Sum {
+    rows: array<vec4f, 5>,
+    // Rotation of the first entry: q and −q are the same rotation, and all are brought to its hemisphere.
+    pivot: vec4f,
+}
+
+fn load_vertex_texel(source: texture_2d<f32>, index: u32) -> vec4f {
+    return textureLoad(source, vec2i(i32(index % VERTEX_TEXTURE_WIDTH), i32(index / VERTEX_TEXTURE_WIDTH)), 0);
+}
+
+fn empty_sum() -> Sum {
+    return Sum(array<vec4f, 5>(vec4f(), vec4f(), vec4f(), vec4f(), vec4f()), vec4f());
+}
+
+fn add_influence(sum: ptr<function, Sum>, joint: u32, weight: f32) {
+    if weight == 0.0 {
+        return;
+    }
+    let texel = (draw.palette + joint) * PALETTE_ENTRY_TEXELS;
+    let first = palette_texel(texel);
+    var signed_weight = weight;
+    if frame.skinning == MODE_DUAL_QUATERNION {
+        if all((*sum).pivot == vec4f()) {
+            (*sum).pivot = first;
+        }
+        if dot((*sum).pivot, first) < 0.0 {
+            signed_weight = -weight;
+        }
+        (*sum).rows[3] += weight * palette_texel(texel + 3u);
+        (*sum).rows[4] += weight * palette_texel(texel + 4u);
+    }
+    (*sum).rows[0] += signed_weight * first;
+    (*sum).rows[1] += signed_weight * palette_texel(texel + 1u);
+    (*sum).rows[2] += weight * palette_texel(texel + 2u);
+}
+
+// `strongest`: the first influence's joint.
+fn finish_sum(sum: ptr<function, Sum>, strongest: u32) -> Blend {
+    if frame.skinning == MODE_RIGID {
+        return single(strongest);
+    }
+    return blend_from_rows(*sum);
+}
+
+fn single(joint: u32) -> Blend {
+    var sum = empty_sum();
+    add_influence(&sum, joint, 1.0);
+    return blend_from_rows(sum);
+}
+
+fn blend_from_rows(sum: Sum) -> Blend {
+    let real_length = length(sum.rows[0]);
+    if frame.skinning != MODE_DUAL_QUATERNION {
+        return linear_blend(sum.rows[0], sum.rows[1], sum.rows[2]);
+    }
+    if real_length == 0.0 {
+        return linear_blend(sum.rows[2], sum.rows[3], sum.rows[4]);
+    }
+    let real = sum.rows[0] / real_length;
+    let dual = sum.rows[1] / real_length;
+    var blend = linear_blend(sum.rows[2], sum.rows[3], sum.rows[4]);
+    blend.rotation = real;
+    blend.translation = 2.0 * (real.w * dual.xyz - dual.w * real.xyz + cross(real.xyz, dual.xyz));
+    return blend;
+}
+
+fn linear_blend(x: vec4f, y: vec4f, z: vec4f) -> Blend {
+    return Blend(transpose(mat3x3f(x.xyz, y.xyz, z.xyz)), vec4f(0.0, 0.0, 0.0, 1.0), vec3f(x.w, y.w, z.w));
+}
+
+fn rotate(rotation: vec4f, vector: vec3f) -> vec3f {
+    return vector + 2.0 * cross(rotation.xyz, cross(rotation.xyz, vector) + rotation.w * vector);
+}
+
+fn normalize_or_zero(vector: vec3f) -> vec3f {
+    let squared = dot(vector, vector);
+    return select(vec3f(0.0), vector * inverseSqrt(max(squared, 1e-38)), squared > 0.0);
+}
+
+fn blend_normal(blend: Blend, normal: vec3f) -> vec3f {
+    // The cofactor matrix is the inverse transpose times the determinant: no division, and right for flat scales.
+    let m = blend.linear;
+    let cofactor = mat3x3f(cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1]));
+    let side = select(1.0, -1.0, dot(m[0], cofactor[0]) < 0.0);
+    return rotate(blend.rotation, normalize_or_zero(side * (cofactor * normal)));
+}
+
+fn morph(vertex: u32, base: Shape) -> Shape {
+    var shape = base;
+    for (var index = 0u; index < draw.morph_count; index++) {
+        let target_weight = morph_weight(draw.morph_weights, index);
+        let texel = (u32(target_weight.x) * draw.vertices + vertex) * draw.morph_attributes;
+        shape.position += target_weight.y * load_vertex_texel(morph_deltas, texel).xyz;
+        if draw.morph_attributes > 1u {
+            shape.normal += target_weight.y * load_vertex_texel(morph_deltas, texel + 1u).xyz;
+        }
+        if draw.morph_attributes > 2u {
+            shape.tangent += target_weight.y * load_vertex_texel(morph_deltas, texel + 2u).xyz;
+        }
+    }
+    return shape;
+}
+
+// From mesh space to the space the palette was made for.
+fn deform(vertex: u32, base: Shape, blend: Blend) -> Shape {
+    let shape = morph(vertex, base);
+    return Shape(
+        rotate(blend.rotation, blend.linear * shape.position) + blend.translation,
+        blend_normal(blend, shape.normal),
+        rotate(blend.rotation, blend.linear * shape.tangent),
+    );
+}
+
+fn blend_4(joints: vec4u, weights: vec4f) -> Blend {
+    var sum = empty_sum();
+    for (var index = 0u; index < 4u; index++) {
+        add_influence(&sum, joints[index], weights[index]);
+    }
+    return finish_sum(&sum, joints[0]);
+}
+
+fn blend_8(joints_0: vec4u, weights_0: vec4f, joints_1: vec4u, weights_1: vec4f) -> Blend {
+    var sum = empty_sum();
+    for (var index = 0u; index < 4u; index++) {
+        add_influence(&sum, joints_0[index], weights_0[index]);
+    }
+    for (var index = 0u; index < 4u; index++) {
+        add_influence(&sum, joints_1[index], weights_1[index]);
+    }
+    return finish_sum(&sum, joints_0[0]);
+}
+
+// Two influences to a texel: joint, weight, joint, weight.
+fn influence_pair(vertex: u32, pair: u32) -> vec4f {
+    return load_vertex_texel(influences, vertex * (draw.influence_stride / 2u) + pair);
+}
+
+fn blend_texture(vertex: u32) -> Blend {
+    var sum = empty_sum();
+    for (var pair = 0u; pair < draw.influence_stride / 2u; pair++) {
+        let texel = influence_pair(vertex, pair);
+        add_influence(&sum, u32(texel.x), texel.y);
+        add_influence(&sum, u32(texel.z), texel.w);
+    }
+    return finish_sum(&sum, u32(influence_pair(vertex, 0u).x));
+}
+
+// How hard the chosen joint pulls.
+fn heat_4(joints: vec4u, weights: vec4f) -> f32 {
+    return dot(weights, select(vec4f(0.0), vec4f(1.0), joints == vec4u(draw.heat_joint)));
+}
+
+fn heat_texture(vertex: u32) -> f32 {
+    var heat = 0.0;
+    for (var pair = 0u; pair < draw.influence_stride / 2u; pair++) {
+        let texel = influence_pair(vertex, pair);
+        let hits = select(vec2f(0.0), vec2f(1.0), vec2u(texel.xz) == vec2u(draw.heat_joint));
+        heat += dot(texel.yw, hits);
+    }
+    return heat;
+}

@@ -1,0 +1,221 @@
+// Fragment stages of meshes: metallic-roughness, unlit, weights, wireframe. The overrides leave out what a material
+// does not have.
+
+override BASE_COLOR_MAP: bool = false;
+override METALLIC_ROUGHNESS_MAP: bool = false;
+override NORMAL_MAP: bool = false;
+override OCCLUSION_MAP: bool = false;
+override EMISSIVE_MAP: bool = false;
+override VERTEX_COLORS: bool = false;
+// No normals: they come from the drawn triangles.
+override FLAT: bool = false;
+override TANGENTS: bool = false;
+override MASK: bool = false;
+override BLEND: bool = false;
+override SHADOW: bool = false;
+// The file's own lights instead of the key light.
+override FILE_LIGHTS: bool = false;
+
+struct UvTransform {
+    // Columns of the 2×2 part.
+    matrix: vec4f,
+    offset: vec2f,
+    // 0 or 1.
+    uv_set: u32,
+}
+
+struct Material {
+    base_color: vec4f,
+    emissive: vec3f,
+    alpha_cutoff: f32,
+    metallic: f32,
+    roughness: f32,
+    normal_scale: f32,
+    occlusion_strength: f32,
+    // Base colour, metallic-roughness, normal, occlusion, emissive.
+    uvs: array<UvTransform, 5>,
+}
+
+@group(2) @binding(0) var<uniform> material: Material;
+@group(2) @binding(1) var base_color_map: texture_2d<f32>;
+@group(2) @binding(2) var base_color_sampler: sampler;
+@group(2) @binding(3) var metallic_roughness_map: texture_2d<f32>;
+@group(2) @binding(4) var metallic_roughness_sampler: sampler;
+@group(2) @binding(5) var normal_map: texture_2d<f32>;
+@group(2) @binding(6) var normal_sampler: sampler;
+@group(2) @binding(7) var occlusion_map: texture_2d<f32>;
+@group(2) @binding(8) var occlusion_sampler: sampler;
+@group(2) @binding(9) var emissive_map: texture_2d<f32>;
+@group(2) @binding(10) var emissive_sampler: sampler;
+
+fn map_uv(slot: u32, uv: vec4f) -> vec2f {
+    let transform = material.uvs[slot];
+    let chosen = select(uv.xy, uv.zw, transform.uv_set == 1u);
+    return transform.matrix.xy * chosen.x + transform.matrix.zw * chosen.y + transform.offset;
+}
+
+fn base_color(in: VertexOut) -> vec4f {
+    var color = material.base_color;
+    if BASE_COLOR_MAP {
+        color *= textureSample(base_color_map, base_color_sampler, map_uv(0u, in.uv));
+    }
+    if VERTEX_COLORS {
+        color *= in.color;
+    }
+    return color;
+}
+
+fn emissive(in: VertexOut) -> vec3f {
+    if EMISSIVE_MAP {
+        return material.emissive * textureSample(emissive_map, emissive_sampler, map_uv(4u, in.uv)).rgb;
+    }
+    return material.emissive;
+}
+
+// Premultiplied. Masked parts are cut out here, after every texture has been read.
+fn finish(color: vec3f, alpha: f32) -> vec4f {
+    if MASK && alpha < material.alpha_cutoff {
+        discard;
+    }
+    if BLEND {
+        return vec4f(color * alpha, alpha);
+    }
+    return vec4f(color, 1.0);
+}
+
+fn flat_normal(in: VertexOut) -> vec3f {
+    let normal = cross(dpdx(in.to_eye), dpdy(in.to_eye));
+    return normalize_or_zero(select(normal, -normal, dot(normal, in.to_eye) < 0.0));
+}
+
+fn surface_normal(in: VertexOut, front: bool) -> vec3f {
+    var normal: vec3f;
+    var side = 1.0;
+    if FLAT {
+        normal = flat_normal(in);
+    } else {
+        side = select(-1.0, 1.0, front);
+        normal = side * normalize_or_zero(in.normal);
+    }
+    if NORMAL_MAP {
+        let uv = map_uv(2u, in.uv);
+        var sample = 2.0 * textureSample(normal_map, normal_sampler, uv).xyz - 1.0;
+        sample = vec3f(sample.xy * material.normal_scale, sample.z);
+        var tangent: vec3f;
+        var bitangent: vec3f;
+        if TANGENTS {
+            tangent = side * normalize_or_zero(in.tangent.xyz);
+            bitangent = in.tangent.w * cross(normal, tangent);
+        } else {
+            // The directions in which the texture coordinates grow (Schüler, "Followup: Normal Mapping Without
+            // Precomputed Tangents").
+            let across = -dpdx(in.to_eye);
+            let down = -dpdy(in.to_eye);
+            let uv_across = dpdx(uv);
+            let uv_down = dpdy(uv);
+            let a = cross(down, normal);
+            let b = cross(normal, across);
+            tangent = a * uv_across.x + b * uv_down.x;
+            // glTF's v points down, its bitangent up.
+            bitangent = a * uv_across.y + b * uv_down.y;
+            let scale = inverseSqrt(max(max(dot(tangent, tangent), dot(bitangent, bitangent)), 1e-38));
+            tangent *= scale;
+            bitangent *= scale;
+        }
+        normal = normalize_or_zero(sample.x * tangent + sample.y * bitangent + sample.z * normal);
+    }
+    return normal;
+}
+
+@fragment
+fn lit(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    let base = base_color(in);
+    var metallic = material.metallic;
+    var roughness = material.roughness;
+    if METALLIC_ROUGHNESS_MAP {
+        let sample = textureSample(metallic_roughness_map, metallic_roughness_sampler, map_uv(1u, in.uv));
+        metallic *= sample.b;
+        roughness *= sample.g;
+    }
+    var occlusion = 1.0;
+    if OCCLUSION_MAP {
+        let sample = textureSample(occlusion_map, occlusion_sampler, map_uv(3u, in.uv)).r;
+        occlusion = 1.0 + material.occlusion_strength * (sample - 1.0);
+    }
+    let emitted = emissive(in);
+
+    var surface: Surface;
+    surface.normal = surface_normal(in, front);
+    surface.to_eye = normalize(in.to_eye);
+    surface.roughness = clamp(roughness, 0.045, 1.0);
+    surface.diffuse = base.rgb * (1.0 - metallic);
+    surface.specular = mix(vec3f(0.04), base.rgb, metallic);
+    let facing = dot(surface.normal, surface.to_eye);
+    surface.normal_view = clamp(facing, 0.001, 1.0);
+
+    let scale_offset = environment_brdf(surface.roughness, surface.normal_view);
+    let reflectance = surface.specular * scale_offset.x + scale_offset.y;
+    let reflected = 2.0 * facing * surface.normal - surface.to_eye;
+    var color = (1.0 - reflectance) * surface.diffuse * environment_diffuse(surface.normal)
+        + reflectance * environment_specular(reflected, surface.roughness);
+    color *= occlusion;
+
+    let world = frame.eye - in.to_eye;
+    var shadow = 1.0;
+    if SHADOW {
+        shadow = mesh_shadow(world, surface.normal);
+    }
+    if FILE_LIGHTS {
+        for (var index = 0u; index < frame.light_count; index++) {
+            var to_light: vec3f;
+            var light = light_at(frame.lights[index], world, &to_light);
+            if index == frame.shadow_light {
+                light *= shadow;
+            }
+            color += light * reflect_light(surface, to_light);
+        }
+    } else {
+        color += shadow * frame.key_color * reflect_light(surface, frame.key_direction);
+    }
+    return finish(color + emitted, base.a);
+}
+
+@fragment
+fn unlit(in: VertexOut) -> @location(0) vec4f {
+    let base = base_color(in);
+    return finish(scene_from_display(base.rgb + emissive(in), frame.exposure), base.a);
+}
+
+// Grey-blue where the joint does not pull at all, then blue, green, yellow, red.
+fn heat_color(weight: f32) -> vec3f {
+    let blue = vec3f(0.03, 0.16, 0.75);
+    let green = vec3f(0.04, 0.55, 0.16);
+    let yellow = vec3f(0.95, 0.75, 0.03);
+    let red = vec3f(0.80, 0.03, 0.02);
+    var color = mix(blue, green, clamp(3.0 * weight, 0.0, 1.0));
+    color = mix(color, yellow, clamp(3.0 * weight - 1.0, 0.0, 1.0));
+    color = mix(color, red, clamp(3.0 * weight - 2.0, 0.0, 1.0));
+    return mix(vec3f(0.19, 0.23, 0.30), color, clamp(50.0 * weight, 0.0, 1.0));
+}
+
+@fragment
+fn heat(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    let alpha = base_color(in).a;
+    let normal = surface_normal(in, front);
+    // Just enough shading to read the shape.
+    let shade = 0.45 + 0.55 * clamp(dot(normal, normalize(in.to_eye)), 0.0, 1.0);
+    return finish(scene_from_display(shade * heat_color(in.heat), frame.exposure), alpha);
+}
+
+@fragment
+fn wireframe(in: VertexOut) -> @location(0) vec4f {
+    return vec4f(scene_from_display(draw.color.rgb, frame.exposure) * draw.color.a, draw.color.a);
+}
+
+// Into the shadow map: only the holes of masked materials.
+@fragment
+fn shadow_mask(in: VertexOut) {
+    if base_color(in).a < material.alpha_cutoff {
+        discard;
+    }
+}

@@ -1,0 +1,73 @@
+// Vertex stages of meshes: one for each way a vertex has its influences, for the picture and for the shadow map.
+
+struct VertexIn {
+    @builtin(vertex_index) vertex: u32,
+    @location(0) position: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) tangent: vec4f,
+    // Both sets.
+    @location(3) uv: vec4f,
+    @location(4) color: vec4f,
+}
+
+struct Influences4 {
+    @location(5) joints: vec4u,
+    @location(6) weights: vec4f,
+}
+
+struct Influences8 {
+    @location(5) joints_0: vec4u,
+    @location(6) weights_0: vec4f,
+    @location(7) joints_1: vec4u,
+    @location(8) weights_1: vec4f,
+}
+
+struct VertexOut {
+    @builtin(position) position: vec4f,
+    // From the surface to the eye, in world space: small numbers keep derivatives exact far from the origin.
+    @location(0) to_eye: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) tangent: vec4f,
+    @location(3) uv: vec4f,
+    @location(4) color: vec4f,
+    @location(5) heat: f32,
+}
+
+// Of depth, towards the viewer: wireframe lies on the surface.
+override DEPTH_OFFSET: f32 = 0.0;
+
+fn vertex_out(in: VertexIn, blend: Blend, heat: f32) -> VertexOut {
+    let shape = deform(in.vertex, Shape(in.position, in.normal, in.tangent.xyz), blend);
+    var out: VertexOut;
+    out.position = frame.projection_from_world * vec4f(shape.position, 1.0);
+    out.position.z -= DEPTH_OFFSET * out.position.w;
+    out.to_eye = frame.eye - shape.position;
+    out.normal = shape.normal;
+    out.tangent = vec4f(shape.tangent, in.tangent.w);
+    out.uv = in.uv;
+    out.color = in.color;
+    out.heat = heat;
+    return out;
+}
+
+@vertex
+fn vertex_0(in: VertexIn) -> VertexOut {
+    return vertex_out(in, single(0u), select(0.0, 1.0, draw.heat_joint == 0u));
+}
+
+@vertex
+fn vertex_4(in: VertexIn, influence: Influences4) -> VertexOut {
+    return vertex_out(in, blend_4(influence.joints, influence.weights), heat_4(influence.joints, influence.weights));
+}
+
+@vertex
+fn vertex_8(in: VertexIn, influence: Influences8) -> VertexOut {
+    let heat = heat_4(influence.joints_0, influence.weights_0) + heat_4(influence.joints_1, influence.weights_1);
+    let blend = blend_8(influence.joints_0, influence.weights_0, influence.joints_1, influence.weights_1);
+    return vertex_out(in, blend, heat);
+}
+
+@vertex
+fn vertex_texture(in: VertexIn) -> VertexOut {
+    return vertex_out(in, blend_texture(in.vertex), heat_texture(in.vertex));
+}

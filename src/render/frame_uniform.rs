@@ -1,0 +1,147 @@
+//! From a frame to the numbers that all of its shaders read.
+
+use glam::{Mat3, Vec3, Vec4};
+
+use super::environment::{KEY_COLOR, KEY_DIRECTION};
+use super::shadow::shadow_view;
+use super::uniforms::{FrameUniform, LightUniform, MAX_LIGHTS};
+use crate::asset::LightKind;
+use crate::frame::{Frame, FrameLight};
+use crate::mesh::SkinningMode;
+use crate::state::Background;
+
+/// Linear light of the studio's backdrop, in the middle and at the edge.
+const STUDIO_CENTER: Vec3 = Vec3::new(0.62, 0.64, 0.67);
+const STUDIO_EDGE: Vec3 = Vec3::new(0.30, 0.32, 0.36);
+/// How dark the ground gets where no key light reaches it.
+const GROUND_SHADOW: f32 = 0.55;
+/// No light casts a shadow on meshes.
+const NO_SHADOW: u32 = u32::MAX;
+
+/// The part of the ground that can be seen.
+pub(super) struct GroundPlane {
+    pub center: Vec3,
+    pub radius: f32,
+    pub spacing: f32,
+    pub grid: bool,
+    pub shadow: bool,
+}
+
+impl GroundPlane {
+    /// None when there is neither grid nor shadow to show.
+    pub fn of(frame: &Frame) -> Option<Self> {
+        let bounds = &frame.bounds;
+        let shadow = frame.look.shadow && frame.look.mesh && !bounds.is_empty();
+        match frame.look.grid {
+            Some(grid) => Some(Self {
+                center: grid.center.with_y(grid.height),
+                radius: grid.radius,
+                spacing: grid.spacing,
+                grid: true,
+                // From below the ground is clear.
+                shadow: shadow && frame.view.eye.y > grid.height,
+            }),
+            None if shadow => Some(Self {
+                center: bounds.center().with_y(bounds.min.y),
+                radius: 2.5 * bounds.diagonal(),
+                spacing: 1.0,
+                grid: false,
+                shadow: frame.view.eye.y > bounds.min.y,
+            }),
+            None => None,
+        }
+    }
+}
+
+/// The picture's uniform and, when something casts a shadow, the same seen from the light.
+pub(super) fn frame_uniform(
+    frame: &Frame,
+    ground: Option<&GroundPlane>,
+    size: [u32; 2],
+    irradiance: &[[f32; 4]; 9],
+) -> (FrameUniform, Option<FrameUniform>) {
+    let look = &frame.look;
+    let (sin, cos) = look.environment_radians.sin_cos();
+    let key_direction = Mat3::from_rotation_y(look.environment_radians) * KEY_DIRECTION.normalize_or_zero();
+    // The file's first light that shines like the sun casts the shadow; other lights leave it on the ground alone.
+    let sun = frame.lights.iter().take(MAX_LIGHTS).position(|light| {
+        light.kind == LightKind::Directional && light.direction.normalize_or_zero().y < -0.15
+    });
+    let (to_light, shadow_light) = match sun {
+        Some(index) => (-frame.lights[index].direction.normalize_or_zero(), index as u32),
+        None if frame.lights.is_empty() => (key_direction, 0),
+        None => (key_direction, NO_SHADOW),
+    };
+    let shadow = if look.shadow && look.mesh { shadow_view(&frame.bounds, to_light) } else { None };
+    let (center, edge) = match look.background {
+        Background::Studio => (STUDIO_CENTER.extend(1.0), STUDIO_EDGE.extend(1.0)),
+        Background::Color(color) => {
+            let color = Vec3::from(color.map(linear_from_srgb));
+            // No noise on a colour that is meant as it is.
+            (color.extend(1.0), color.extend(0.0))
+        }
+        Background::Transparent => (Vec4::ZERO, Vec4::ZERO),
+    };
+    let mut uniform = FrameUniform {
+        projection_from_world: (frame.view.projection_from_view * frame.view.view_from_world).to_cols_array_2d(),
+        shadow_from_world: shadow.map_or_else(Default::default, |view| view.shadow_from_world.to_cols_array_2d()),
+        eye: frame.view.eye.to_array(),
+        exposure: look.exposure.max(1e-6),
+        viewport_pixels: size.map(|edge| edge as f32),
+        skinning: match look.skinning {
+            SkinningMode::Linear => 0,
+            SkinningMode::Rigid => 1,
+            SkinningMode::DualQuaternion => 2,
+        },
+        light_count: frame.lights.len().min(MAX_LIGHTS) as u32,
+        environment: [cos, sin],
+        shadow_texel: shadow.map_or(0.0, |view| view.texel),
+        shadow_light,
+        key_direction: key_direction.to_array(),
+        ground_shadow: GROUND_SHADOW,
+        key_color: KEY_COLOR.to_array(),
+        grid_spacing: ground.map_or(1.0, |ground| ground.spacing),
+        ground: ground.map_or([0.0; 4], |ground| ground.center.extend(ground.radius).to_array()),
+        background_center: center.to_array(),
+        background_edge: edge.to_array(),
+        irradiance: *irradiance,
+        lights: Default::default(),
+    };
+    for (slot, light) in uniform.lights.iter_mut().zip(&frame.lights) {
+        *slot = light_uniform(light);
+    }
+    let from_light = shadow.map(|view| {
+        let mut from_light = uniform;
+        from_light.projection_from_world = view.shadow_from_world.to_cols_array_2d();
+        from_light
+    });
+    (uniform, from_light)
+}
+
+fn light_uniform(light: &FrameLight) -> LightUniform {
+    let (kind, spot_scale, spot_offset) = match light.kind {
+        LightKind::Directional => (0, 0.0, 0.0),
+        LightKind::Point => (1, 0.0, 0.0),
+        LightKind::Spot { inner_cone_radians, outer_cone_radians } => {
+            // As KHR_lights_punctual suggests.
+            let outer = outer_cone_radians.cos();
+            let scale = 1.0 / (inner_cone_radians.cos() - outer).max(0.001);
+            (2, scale, -outer * scale)
+        }
+    };
+    LightUniform {
+        position: light.position.to_array(),
+        range: light.range,
+        color: light.color.to_array(),
+        kind,
+        direction: light.direction.normalize_or_zero().to_array(),
+        spot_scale,
+        spot_offset,
+        padding: [0.0; 3],
+    }
+}
+
+fn linear_from_srgb(value: u8) -> f32 {
+    let value = f32::from(value) / 255.0;
+    if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+}

@@ -1,0 +1,274 @@
+//! Vertices, influences, morph targets and indices of one primitive on the GPU.
+
+use std::collections::HashSet;
+
+use bytemuck::{Pod, Zeroable};
+use wgpu::util::DeviceExt;
+
+use super::UploadError;
+use crate::mesh::{Geometry, Topology};
+
+/// Texels in a row of a vertex texture; skinning.wgsl has the same number.
+pub const VERTEX_TEXTURE_WIDTH: u32 = 2048;
+
+/// How a vertex stage gets its influences.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum InfluenceSource {
+    /// All vertices follow the draw's first palette entry.
+    None,
+    /// 4 in vertex attributes.
+    Four,
+    /// 8 in vertex attributes.
+    Eight,
+    /// 12 or 16, by vertex index from a texture.
+    Texture,
+}
+
+impl InfluenceSource {
+    pub fn of(stride: usize) -> Self {
+        match stride {
+            0 => Self::None,
+            4 => Self::Four,
+            8 => Self::Eight,
+            _ => Self::Texture,
+        }
+    }
+
+    /// Vertex stage in vertex.wgsl.
+    pub fn entry_point(self) -> &'static str {
+        match self {
+            Self::None => "vertex_0",
+            Self::Four => "vertex_4",
+            Self::Eight => "vertex_8",
+            Self::Texture => "vertex_texture",
+        }
+    }
+}
+
+/// Position and normal.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct ShapeVertex {
+    position: [f32; 3],
+    normal: [f32; 3],
+}
+
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct SurfaceVertex {
+    tangent: [f32; 4],
+    uv: [f32; 4],
+    /// 0 to 65,535.
+    color: [u16; 4],
+}
+
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct FourInfluences {
+    joints: [u16; 4],
+    weights: [f32; 4],
+}
+
+/// Layouts of the vertex buffers a pipeline reads, in the order of [`GpuGeometry::bind`].
+pub fn vertex_buffers(influences: InfluenceSource) -> Vec<Option<wgpu::VertexBufferLayout<'static>>> {
+    const SHAPE: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
+    const SURFACE: [wgpu::VertexAttribute; 3] = wgpu::vertex_attr_array![2 => Float32x4, 3 => Float32x4, 4 => Unorm16x4];
+    const FOUR: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![5 => Uint16x4, 6 => Float32x4];
+    const EIGHT: [wgpu::VertexAttribute; 4] =
+        wgpu::vertex_attr_array![5 => Uint16x4, 6 => Float32x4, 7 => Uint16x4, 8 => Float32x4];
+    let layout = |array_stride: usize, attributes| {
+        Some(wgpu::VertexBufferLayout {
+            array_stride: array_stride as u64,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes,
+        })
+    };
+    let mut buffers =
+        vec![layout(size_of::<ShapeVertex>(), &SHAPE[..]), layout(size_of::<SurfaceVertex>(), &SURFACE[..])];
+    match influences {
+        InfluenceSource::None | InfluenceSource::Texture => {}
+        InfluenceSource::Four => buffers.push(layout(size_of::<FourInfluences>(), &FOUR[..])),
+        InfluenceSource::Eight => buffers.push(layout(2 * size_of::<FourInfluences>(), &EIGHT[..])),
+    }
+    buffers
+}
+
+/// One primitive.
+pub struct GpuGeometry {
+    pub topology: Topology,
+    pub influences: InfluenceSource,
+    pub influence_stride: u32,
+    pub vertices: u32,
+    /// Texels per vertex and morph target.
+    pub morph_attributes: u32,
+    shape: wgpu::Buffer,
+    surface: wgpu::Buffer,
+    influence_buffer: Option<wgpu::Buffer>,
+    pub indices: wgpu::Buffer,
+    pub index_count: u32,
+    pub morph_view: Option<wgpu::TextureView>,
+    pub influence_view: Option<wgpu::TextureView>,
+}
+
+impl GpuGeometry {
+    /// `mesh` and `primitive` are for messages. The geometry must be valid and have indices.
+    pub fn new(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        geometry: &Geometry,
+        mesh: usize,
+        primitive: usize,
+    ) -> Result<Self, UploadError> {
+        let count = geometry.positions.len();
+        let too_many = || UploadError::TooManyVertices { mesh, primitive, vertices: count };
+        let most_bytes = device.limits().max_buffer_size;
+        let vertices = u32::try_from(count).map_err(|_| too_many())?;
+        if count as u64 * size_of::<SurfaceVertex>().max(8 * geometry.influences.stride) as u64 > most_bytes
+            || geometry.indices.len() as u64 * 8 > most_bytes
+        {
+            return Err(too_many());
+        }
+
+        let shape: Vec<ShapeVertex> = (0..count)
+            .map(|vertex| ShapeVertex {
+                position: geometry.positions[vertex].to_array(),
+                normal: geometry.normals.get(vertex).map_or([0.0; 3], |normal| normal.to_array()),
+            })
+            .collect();
+        let surface: Vec<SurfaceVertex> = (0..count)
+            .map(|vertex| {
+                let uv = |set: usize| geometry.uvs[set].get(vertex).map_or([0.0; 2], |uv| uv.to_array());
+                let ([u0, v0], [u1, v1]) = (uv(0), uv(1));
+                SurfaceVertex {
+                    tangent: geometry.tangents.get(vertex).map_or([0.0; 4], |tangent| tangent.to_array()),
+                    uv: [u0, v0, u1, v1],
+                    color: geometry.colors.get(vertex).map_or([u16::MAX; 4], |color| {
+                        color.to_array().map(|channel| (channel.clamp(0.0, 1.0) * 65_535.0).round() as u16)
+                    }),
+                }
+            })
+            .collect();
+        let buffer = |label, contents: &[u8], usage| {
+            device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
+        };
+        let influences = InfluenceSource::of(geometry.influences.stride);
+        let influence_buffer = matches!(influences, InfluenceSource::Four | InfluenceSource::Eight).then(|| {
+            let fours: Vec<FourInfluences> = geometry
+                .influences
+                .joints
+                .as_chunks::<4>()
+                .0
+                .iter()
+                .zip(geometry.influences.weights.as_chunks::<4>().0)
+                .map(|(&joints, &weights)| FourInfluences { joints, weights })
+                .collect();
+            buffer("influences", bytemuck::cast_slice(&fours), wgpu::BufferUsages::VERTEX)
+        });
+        let influence_view = match influences {
+            InfluenceSource::Texture => {
+                let pairs = geometry.influences.joints.iter().zip(&geometry.influences.weights);
+                let numbers: Vec<f32> = pairs.flat_map(|(&joint, &weight)| [f32::from(joint), weight]).collect();
+                Some(vertex_texture(device, queue, "influences", numbers).ok_or_else(too_many)?)
+            }
+            _ => None,
+        };
+        let (morph_attributes, morph_numbers) = morph_numbers(geometry);
+        let morph_view = match geometry.morph_targets.is_empty() {
+            true => None,
+            false => Some(vertex_texture(device, queue, "morph targets", morph_numbers).ok_or(
+                UploadError::TooManyMorphTargets { mesh, primitive, vertices: count, targets: geometry.morph_targets.len() },
+            )?),
+        };
+        Ok(Self {
+            topology: geometry.topology,
+            influences,
+            influence_stride: geometry.influences.stride as u32,
+            vertices,
+            morph_attributes,
+            shape: buffer("positions and normals", bytemuck::cast_slice(&shape), wgpu::BufferUsages::VERTEX),
+            surface: buffer("surface", bytemuck::cast_slice(&surface), wgpu::BufferUsages::VERTEX),
+            influence_buffer,
+            indices: buffer("indices", bytemuck::cast_slice(&geometry.indices), wgpu::BufferUsages::INDEX),
+            index_count: geometry.indices.len() as u32,
+            morph_view,
+            influence_view,
+        })
+    }
+
+    /// Binds the vertex buffers, not the indices.
+    pub fn bind(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_vertex_buffer(0, self.shape.slice(..));
+        pass.set_vertex_buffer(1, self.surface.slice(..));
+        if let Some(influences) = &self.influence_buffer {
+            pass.set_vertex_buffer(2, influences.slice(..));
+        }
+    }
+}
+
+/// Texels per vertex and target, and the deltas: targets slowest, then vertices, then position, normal, tangent.
+fn morph_numbers(geometry: &Geometry) -> (u32, Vec<f32>) {
+    let targets = &geometry.morph_targets;
+    let attributes = if targets.iter().any(|target| !target.tangents.is_empty()) {
+        3
+    } else if targets.iter().any(|target| !target.normals.is_empty()) {
+        2
+    } else {
+        1
+    };
+    let mut numbers = Vec::with_capacity(4 * attributes * targets.len() * geometry.positions.len());
+    for target in targets {
+        for vertex in 0..geometry.positions.len() {
+            for deltas in [&target.positions, &target.normals, &target.tangents].into_iter().take(attributes) {
+                let delta = deltas.get(vertex).copied().unwrap_or_default();
+                numbers.extend([delta.x, delta.y, delta.z, 0.0]);
+            }
+        }
+    }
+    (attributes as u32, numbers)
+}
+
+/// A texture of numbers, four to a texel; none when there are more than the device can hold.
+fn vertex_texture(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    label: &str,
+    mut numbers: Vec<f32>,
+) -> Option<wgpu::TextureView> {
+    let row = 4 * VERTEX_TEXTURE_WIDTH as usize;
+    let height = u32::try_from(numbers.len().div_ceil(row)).ok()?.max(1);
+    if height > device.limits().max_texture_dimension_2d {
+        return None;
+    }
+    numbers.resize(row * height as usize, 0.0);
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width: VERTEX_TEXTURE_WIDTH, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba32Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    queue.write_texture(
+        texture.as_image_copy(),
+        bytemuck::cast_slice(&numbers),
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(16 * VERTEX_TEXTURE_WIDTH), rows_per_image: None },
+        texture.size(),
+    );
+    Some(texture.create_view(&Default::default()))
+}
+
+/// Every edge of the triangles once, as pairs of indices.
+pub(super) fn edges(indices: &[u32]) -> Vec<u32> {
+    let mut seen = HashSet::with_capacity(indices.len());
+    let mut edges = Vec::with_capacity(indices.len());
+    for &[a, b, c] in indices.as_chunks::<3>().0 {
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            if seen.insert((from.min(to), from.max(to))) {
+                edges.extend([from, to]);
+            }
+        }
+    }
+    edges
+}

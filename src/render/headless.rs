@@ -1,0 +1,115 @@
+//! A device without a window, and pixels back from the GPU: for the command line, tests and screenshots.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering};
+
+/// Why there is no device.
+#[derive(Debug, thiserror::Error)]
+pub enum HeadlessError {
+    #[error("no graphics adapter was found ({0}); install a Vulkan driver, for example Mesa's llvmpipe")]
+    NoAdapter(#[from] wgpu::RequestAdapterError),
+    #[error("the graphics adapter gives no device: {0}")]
+    NoDevice(#[from] wgpu::RequestDeviceError),
+}
+
+/// A device without a window. Limits are WebGL2's, so that what works here works everywhere.
+#[cfg(not(target_arch = "wasm32"))]
+pub fn headless_device() -> Result<(wgpu::Device, wgpu::Queue, wgpu::AdapterInfo), HeadlessError> {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = wgpu::Backends::from_env().unwrap_or(wgpu::Backends::PRIMARY | wgpu::Backends::GL);
+    let instance = wgpu::Instance::new(descriptor);
+    let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions {
+        power_preference: wgpu::PowerPreference::HighPerformance,
+        ..Default::default()
+    }))?;
+    let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+        label: Some("gaitway"),
+        required_limits: wgpu::Limits::downlevel_webgl2_defaults().using_resolution(adapter.limits()),
+        ..Default::default()
+    }))?;
+    Ok((device, queue, adapter.get_info()))
+}
+
+/// Pixels of an Rgba8Unorm texture made with `COPY_SRC` (such as [`super::Renderer::output`]): RGBA rows from the top,
+/// straight alpha (the texture's is premultiplied). Empty when the device was lost.
+pub async fn read_pixels(device: &wgpu::Device, queue: &wgpu::Queue, texture: &wgpu::Texture) -> Vec<u8> {
+    let (width, height) = (texture.width(), texture.height());
+    let row_bytes = 4 * width;
+    let padded_row_bytes = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("read-back"),
+        size: u64::from(padded_row_bytes) * u64::from(height),
+        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    let mut encoder = device.create_command_encoder(&Default::default());
+    encoder.copy_texture_to_buffer(
+        texture.as_image_copy(),
+        wgpu::TexelCopyBufferInfo {
+            buffer: &buffer,
+            layout: wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(padded_row_bytes),
+                rows_per_image: None,
+            },
+        },
+        texture.size(),
+    );
+    queue.submit([encoder.finish()]);
+    if !map(device, &buffer).await {
+        return Vec::new();
+    }
+    let Ok(mapped) = buffer.slice(..).get_mapped_range() else { return Vec::new() };
+    let mut pixels = Vec::with_capacity((row_bytes * height) as usize);
+    for row in mapped.chunks_exact(padded_row_bytes as usize) {
+        pixels.extend_from_slice(&row[..row_bytes as usize]);
+    }
+    for pixel in pixels.chunks_exact_mut(4) {
+        let alpha = u32::from(pixel[3]);
+        if alpha != 0 && alpha != 255 {
+            for channel in &mut pixel[..3] {
+                *channel = ((u32::from(*channel) * 255 + alpha / 2) / alpha).min(255) as u8;
+            }
+        }
+    }
+    pixels
+}
+
+/// Waits until the buffer is mapped: natively by blocking; in a page by asking again after each turn of the event loop,
+/// as WebGL2 calls back only when polled.
+async fn map(device: &wgpu::Device, buffer: &wgpu::Buffer) -> bool {
+    const WAITING: u8 = 0;
+    const MAPPED: u8 = 1;
+    const FAILED: u8 = 2;
+    let state = Arc::new(AtomicU8::new(WAITING));
+    let from_callback = state.clone();
+    buffer.map_async(wgpu::MapMode::Read, .., move |result| {
+        from_callback.store(if result.is_ok() { MAPPED } else { FAILED }, Ordering::Release);
+    });
+    #[cfg(not(target_arch = "wasm32"))]
+    if device.poll(wgpu::PollType::wait_indefinitely()).is_err() {
+        return false;
+    }
+    #[cfg(target_arch = "wasm32")]
+    while state.load(Ordering::Acquire) == WAITING {
+        if device.poll(wgpu::PollType::Poll).is_err() {
+            return false;
+        }
+        next_turn().await;
+    }
+    state.load(Ordering::Acquire) == MAPPED
+}
+
+/// Resolves in a later turn of the page's event loop.
+#[cfg(target_arch = "wasm32")]
+async fn next_turn() {
+    use wasm_bindgen::JsCast;
+    let promise = js_sys::Promise::new(&mut |resolve, _| {
+        let set_timeout = js_sys::Reflect::get(&js_sys::global(), &"setTimeout".into());
+        if let Some(set_timeout) = set_timeout.ok().and_then(|value| value.dyn_into::<js_sys::Function>().ok()) {
+            // A page without timers cannot happen; then the promise would wait forever, as it should.
+            let _ = set_timeout.call2(&wasm_bindgen::JsValue::UNDEFINED, &resolve, &1.into());
+        }
+    });
+    let _ = wasm_bindgen_futures::JsFuture::from(promise).await;
+}

@@ -1,0 +1,195 @@
+//! What is drawn over the model: lines and bones, as instances.
+
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+use wgpu::util::DeviceExt;
+
+use crate::frame::{Bone, Line};
+
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct LineInstance {
+    from: [f32; 3],
+    width_pixels: f32,
+    to: [f32; 3],
+    color: [f32; 4],
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct BoneInstance {
+    head: [f32; 3],
+    radius: f32,
+    tail: [f32; 3],
+    color: [f32; 4],
+}
+
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct BoneVertex {
+    position: [f32; 3],
+    /// w: 0 octahedron, 1 ball.
+    normal: [f32; 4],
+}
+
+/// Instances that are written again only when they differ from those of the last picture.
+struct Instances<T> {
+    label: &'static str,
+    buffer: wgpu::Buffer,
+    now: Vec<T>,
+    uploaded: Vec<T>,
+}
+
+impl<T: Pod + PartialEq> Instances<T> {
+    fn new(device: &wgpu::Device, label: &'static str) -> Self {
+        Self { label, buffer: instance_buffer(device, label, 1024), now: Vec::new(), uploaded: Vec::new() }
+    }
+
+    fn upload(&mut self, device: &wgpu::Device, queue: &wgpu::Queue) {
+        if self.now == self.uploaded {
+            return;
+        }
+        let bytes: &[u8] = bytemuck::cast_slice(&self.now);
+        if bytes.len() as u64 > self.buffer.size() {
+            self.buffer = instance_buffer(device, self.label, (bytes.len() as u64).next_power_of_two());
+        }
+        queue.write_buffer(&self.buffer, 0, bytes);
+        self.uploaded.clone_from(&self.now);
+    }
+}
+
+fn instance_buffer(device: &wgpu::Device, label: &'static str, size: u64) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size,
+        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
+
+pub(super) struct Overlay {
+    lines: Instances<LineInstance>,
+    /// Lines before this one are hidden by what is in front of them, the others are not.
+    lines_on_top: u32,
+    bones: Instances<BoneInstance>,
+    bone_shape: wgpu::Buffer,
+    bone_vertices: u32,
+}
+
+impl Overlay {
+    pub fn new(device: &wgpu::Device) -> Self {
+        let shape = bone_shape();
+        Self {
+            lines: Instances::new(device, "lines"),
+            lines_on_top: 0,
+            bones: Instances::new(device, "bones"),
+            bone_shape: device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("bone shape"),
+                contents: bytemuck::cast_slice(&shape),
+                usage: wgpu::BufferUsages::VERTEX,
+            }),
+            bone_vertices: shape.len() as u32,
+        }
+    }
+
+    pub fn upload(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, lines: &[Line], bones: &[Bone]) {
+        let instance = |line: &Line| LineInstance {
+            from: line.from.to_array(),
+            width_pixels: line.width_pixels,
+            to: line.to.to_array(),
+            color: line.color.to_array(),
+        };
+        self.lines.now.clear();
+        self.lines.now.extend(lines.iter().filter(|line| !line.on_top).map(instance));
+        self.lines_on_top = self.lines.now.len() as u32;
+        self.lines.now.extend(lines.iter().filter(|line| line.on_top).map(instance));
+        self.lines.upload(device, queue);
+
+        self.bones.now.clear();
+        self.bones.now.extend(bones.iter().map(|bone| BoneInstance {
+            head: bone.head.to_array(),
+            radius: bone.radius,
+            tail: bone.tail.to_array(),
+            color: bone.color.to_array(),
+        }));
+        self.bones.upload(device, queue);
+    }
+
+    /// Instances of the lines that are not, or are, drawn through everything.
+    pub fn lines(&self, on_top: bool) -> std::ops::Range<u32> {
+        if on_top { self.lines_on_top..self.lines.now.len() as u32 } else { 0..self.lines_on_top }
+    }
+
+    pub fn bones(&self) -> u32 {
+        self.bones.now.len() as u32
+    }
+
+    pub fn bone_triangles(&self) -> u32 {
+        self.bones() * self.bone_vertices / 3
+    }
+
+    pub fn draw_lines(&self, pass: &mut wgpu::RenderPass<'_>, on_top: bool) {
+        pass.set_vertex_buffer(0, self.lines.buffer.slice(..));
+        pass.draw(0..6, self.lines(on_top));
+    }
+
+    pub fn draw_bones(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_vertex_buffer(0, self.bone_shape.slice(..));
+        pass.set_vertex_buffer(1, self.bones.buffer.slice(..));
+        pass.draw(0..self.bone_vertices, 0..self.bones());
+    }
+}
+
+/// Triangles of the octahedron from head (y 0) to tail (y 1), flat, and of the ball around the head, smooth.
+fn bone_shape() -> Vec<BoneVertex> {
+    /// Where along the bone it is widest.
+    const WAIST: f32 = 0.12;
+    let mut shape = Vec::new();
+    let waist = [Vec3::X, Vec3::NEG_Z, Vec3::NEG_X, Vec3::Z].map(|corner| corner + WAIST * Vec3::Y);
+    for side in 0..4 {
+        let (a, b) = (waist[side], waist[(side + 1) % 4]);
+        for triangle in [[a, b, Vec3::Y], [b, a, Vec3::ZERO]] {
+            let normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]).normalize_or_zero();
+            shape.extend(triangle.map(|corner| BoneVertex { position: corner.to_array(), normal: normal.extend(0.0).to_array() }));
+        }
+    }
+    for x in [Vec3::X, Vec3::NEG_X] {
+        for y in [Vec3::Y, Vec3::NEG_Y] {
+            for z in [Vec3::Z, Vec3::NEG_Z] {
+                let (a, b, c) = if x.dot(y.cross(z)) > 0.0 { (x, y, z) } else { (x, z, y) };
+                ball_part([a, b, c], 2, &mut shape);
+            }
+        }
+    }
+    shape
+}
+
+fn ball_part([a, b, c]: [Vec3; 3], splits: u32, shape: &mut Vec<BoneVertex>) {
+    if splits == 0 {
+        shape.extend([a, b, c].map(|corner| BoneVertex { position: corner.to_array(), normal: corner.extend(1.0).to_array() }));
+        return;
+    }
+    let [ab, bc, ca] = [a + b, b + c, c + a].map(Vec3::normalize_or_zero);
+    for part in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
+        ball_part(part, splits - 1, shape);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn triangles_of_the_bone_face_outwards() {
+        for triangle in bone_shape().as_chunks::<3>().0 {
+            let [a, b, c] = triangle.map(|vertex| Vec3::from(vertex.position));
+            let winding = (b - a).cross(c - a);
+            let ball = triangle[0].normal[3] == 1.0;
+            let middle = (a + b + c) / 3.0 - if ball { Vec3::ZERO } else { 0.2 * Vec3::Y };
+            assert!(winding.dot(middle) > 0.0, "{a} {b} {c}");
+            for vertex in triangle {
+                assert!(winding.dot(Vec3::from_slice(&vertex.normal)) > 0.0, "{a} {b} {c}");
+            }
+        }
+    }
+}

@@ -1,0 +1,452 @@
+//! Bind group layouts, and pipelines made when they are first needed.
+
+use std::collections::HashMap;
+
+use super::geometry::{InfluenceSource, vertex_buffers};
+use super::shaders;
+use super::shadow::SHADOW_FORMAT;
+use super::targets::{DEPTH_FORMAT, OUTPUT_FORMAT, SCENE_FORMAT};
+use super::uniforms::{DrawUniform, FrameUniform, MaterialUniform};
+use crate::mesh::Topology;
+
+/// Texture and sampler pairs of a material.
+pub(super) const MATERIAL_MAPS: usize = 5;
+
+/// Bind group layouts, in the order of their group numbers.
+pub struct Layouts {
+    /// Group 0: frame, palette.
+    pub frame: wgpu::BindGroupLayout,
+    /// Group 1 of meshes: draw, with a dynamic offset.
+    pub draw: wgpu::BindGroupLayout,
+    /// Group 2 of meshes: material, morph deltas, influences.
+    pub primitive: wgpu::BindGroupLayout,
+    /// Group 3 of what is lit: environment, shadow map.
+    pub light: wgpu::BindGroupLayout,
+    /// Group 1 of the encoder: the scene.
+    pub scene: wgpu::BindGroupLayout,
+}
+
+impl Layouts {
+    pub fn new(device: &wgpu::Device) -> Self {
+        use wgpu::{ShaderStages as Stages, TextureSampleType as Sample, TextureViewDimension as Dimension};
+        let entry = |binding, visibility, ty| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
+        let texture = |sample_type, view_dimension| wgpu::BindingType::Texture {
+            sample_type,
+            view_dimension,
+            multisampled: false,
+        };
+        let uniform = |size: usize, has_dynamic_offset| wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset,
+            min_binding_size: wgpu::BufferSize::new(size as u64),
+        };
+        let layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
+            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
+        };
+        let filtered = Sample::Float { filterable: true };
+        let numbers = Sample::Float { filterable: false };
+
+        let mut primitive = vec![entry(0, Stages::FRAGMENT, uniform(size_of::<MaterialUniform>(), false))];
+        for map in 0..MATERIAL_MAPS as u32 {
+            let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+            primitive.push(entry(1 + 2 * map, Stages::FRAGMENT, texture(filtered, Dimension::D2)));
+            primitive.push(entry(2 + 2 * map, Stages::FRAGMENT, sampler));
+        }
+        primitive.push(entry(11, Stages::VERTEX, texture(numbers, Dimension::D2)));
+        primitive.push(entry(12, Stages::VERTEX, texture(numbers, Dimension::D2)));
+
+        Self {
+            frame: layout(
+                "frame",
+                &[
+                    entry(0, Stages::VERTEX_FRAGMENT, uniform(size_of::<FrameUniform>(), false)),
+                    entry(1, Stages::VERTEX, texture(numbers, Dimension::D2)),
+                ],
+            ),
+            draw: layout("draw", &[entry(0, Stages::VERTEX_FRAGMENT, uniform(size_of::<DrawUniform>(), true))]),
+            primitive: layout("primitive", &primitive),
+            light: layout(
+                "light",
+                &[
+                    entry(0, Stages::FRAGMENT, texture(filtered, Dimension::Cube)),
+                    entry(1, Stages::FRAGMENT, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
+                    entry(2, Stages::FRAGMENT, texture(Sample::Depth, Dimension::D2)),
+                    entry(3, Stages::FRAGMENT, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison)),
+                ],
+            ),
+            scene: layout("scene", &[entry(0, Stages::FRAGMENT, texture(numbers, Dimension::D2))]),
+        }
+    }
+}
+
+/// What a mesh is drawn as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Shading {
+    Lit,
+    Unlit,
+    Heat,
+    Wireframe,
+    /// Into the shadow map.
+    Shadow,
+}
+
+/// Parts of surface.wgsl that a material needs, as bits: [`OVERRIDES`] has their names.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub(super) struct Features(pub u16);
+
+impl Features {
+    pub const BASE_COLOR_MAP: Self = Self(1);
+    pub const METALLIC_ROUGHNESS_MAP: Self = Self(1 << 1);
+    pub const NORMAL_MAP: Self = Self(1 << 2);
+    pub const OCCLUSION_MAP: Self = Self(1 << 3);
+    pub const EMISSIVE_MAP: Self = Self(1 << 4);
+    pub const VERTEX_COLORS: Self = Self(1 << 5);
+    pub const FLAT: Self = Self(1 << 6);
+    pub const TANGENTS: Self = Self(1 << 7);
+    pub const MASK: Self = Self(1 << 8);
+    pub const BLEND: Self = Self(1 << 9);
+    pub const SHADOW: Self = Self(1 << 10);
+    pub const FILE_LIGHTS: Self = Self(1 << 11);
+
+    pub fn with(self, other: Self, wanted: bool) -> Self {
+        if wanted { Self(self.0 | other.0) } else { self }
+    }
+
+    pub fn has(self, other: Self) -> bool {
+        self.0 & other.0 != 0
+    }
+
+    pub fn only(self, other: Self) -> Self {
+        Self(self.0 & other.0)
+    }
+}
+
+const OVERRIDES: [&str; 12] = [
+    "BASE_COLOR_MAP",
+    "METALLIC_ROUGHNESS_MAP",
+    "NORMAL_MAP",
+    "OCCLUSION_MAP",
+    "EMISSIVE_MAP",
+    "VERTEX_COLORS",
+    "FLAT",
+    "TANGENTS",
+    "MASK",
+    "BLEND",
+    "SHADOW",
+    "FILE_LIGHTS",
+];
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) struct MeshKey {
+    pub shading: Shading,
+    pub influences: InfluenceSource,
+    pub topology: Topology,
+    pub features: Features,
+    /// The side that is left out.
+    pub cull: Option<wgpu::Face>,
+    pub mirrored: bool,
+}
+
+/// Index of a pipeline made for a [`MeshKey`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct MeshPipeline(usize);
+
+/// What the ground shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) struct GroundKey {
+    pub shadow: bool,
+    pub grid: bool,
+}
+
+pub(super) struct Pipelines {
+    samples: u32,
+    mesh_module: wgpu::ShaderModule,
+    ground_module: wgpu::ShaderModule,
+    mesh_layout: wgpu::PipelineLayout,
+    /// Without group 3, which has the shadow map itself.
+    shadow_layout: wgpu::PipelineLayout,
+    ground_layout: wgpu::PipelineLayout,
+    by_key: HashMap<MeshKey, MeshPipeline>,
+    meshes: Vec<wgpu::RenderPipeline>,
+    grounds: HashMap<GroundKey, wgpu::RenderPipeline>,
+    pub lines: wgpu::RenderPipeline,
+    pub bones: wgpu::RenderPipeline,
+    pub clear_depth: wgpu::RenderPipeline,
+    pub encode: wgpu::RenderPipeline,
+}
+
+const BLENDED: Option<wgpu::BlendState> = Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING);
+
+/// A pipeline that draws into the scene with one of the simple shaders.
+struct ScenePipeline<'a> {
+    label: &'a str,
+    module: &'a wgpu::ShaderModule,
+    layout: &'a wgpu::PipelineLayout,
+    vertex: &'a str,
+    fragment: &'a str,
+    constants: &'a [(&'a str, f64)],
+    buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
+    depth_write: bool,
+    depth_compare: wgpu::CompareFunction,
+    writes: wgpu::ColorWrites,
+    cull: Option<wgpu::Face>,
+}
+
+impl ScenePipeline<'_> {
+    fn create(&self, device: &wgpu::Device, samples: u32) -> wgpu::RenderPipeline {
+        let options =
+            || wgpu::PipelineCompilationOptions { constants: self.constants, zero_initialize_workgroup_memory: false };
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(self.label),
+            layout: Some(self.layout),
+            vertex: wgpu::VertexState {
+                module: self.module,
+                entry_point: Some(self.vertex),
+                compilation_options: options(),
+                buffers: self.buffers,
+            },
+            primitive: wgpu::PrimitiveState { cull_mode: self.cull, ..Default::default() },
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: DEPTH_FORMAT,
+                depth_write_enabled: Some(self.depth_write),
+                depth_compare: Some(self.depth_compare),
+                stencil: Default::default(),
+                bias: Default::default(),
+            }),
+            multisample: wgpu::MultisampleState { count: samples, ..Default::default() },
+            fragment: Some(wgpu::FragmentState {
+                module: self.module,
+                entry_point: Some(self.fragment),
+                compilation_options: options(),
+                targets: &[Some(wgpu::ColorTargetState { format: SCENE_FORMAT, blend: BLENDED, write_mask: self.writes })],
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+}
+
+impl Pipelines {
+    pub fn new(device: &wgpu::Device, layouts: &Layouts, samples: u32) -> Self {
+        let pipeline_layout = |label, groups: &[Option<&wgpu::BindGroupLayout>]| {
+            device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: Some(label),
+                bind_group_layouts: groups,
+                immediate_size: 0,
+            })
+        };
+        let frame = Some(&layouts.frame);
+        let (draw, primitive, light) = (Some(&layouts.draw), Some(&layouts.primitive), Some(&layouts.light));
+        let frame_layout = pipeline_layout("frame only", &[frame]);
+        let empty_layout = pipeline_layout("nothing", &[]);
+
+        let line_module = shaders::LINES.module(device);
+        let line_attributes = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32, 2 => Float32x3, 3 => Float32x4];
+        let lines = ScenePipeline {
+            label: "lines",
+            module: &line_module,
+            layout: &frame_layout,
+            vertex: "line_vertex",
+            fragment: "line_fragment",
+            constants: &[],
+            buffers: &[Some(wgpu::VertexBufferLayout {
+                array_stride: size_of::<super::overlay::LineInstance>() as u64,
+                step_mode: wgpu::VertexStepMode::Instance,
+                attributes: &line_attributes,
+            })],
+            depth_write: false,
+            depth_compare: wgpu::CompareFunction::LessEqual,
+            writes: wgpu::ColorWrites::ALL,
+            cull: None,
+        }
+        .create(device, samples);
+
+        let bone_module = shaders::BONES.module(device);
+        let bone_shape = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x4];
+        let bone_instance = wgpu::vertex_attr_array![2 => Float32x3, 3 => Float32, 4 => Float32x3, 5 => Float32x4];
+        let bones = ScenePipeline {
+            label: "bones",
+            module: &bone_module,
+            layout: &frame_layout,
+            vertex: "bone_vertex",
+            fragment: "bone_fragment",
+            constants: &[],
+            buffers: &[
+                Some(wgpu::VertexBufferLayout {
+                    array_stride: size_of::<super::overlay::BoneVertex>() as u64,
+                    step_mode: wgpu::VertexStepMode::Vertex,
+                    attributes: &bone_shape,
+                }),
+                Some(wgpu::VertexBufferLayout {
+                    array_stride: size_of::<super::overlay::BoneInstance>() as u64,
+                    step_mode: wgpu::VertexStepMode::Instance,
+                    attributes: &bone_instance,
+                }),
+            ],
+            depth_write: true,
+            depth_compare: wgpu::CompareFunction::LessEqual,
+            writes: wgpu::ColorWrites::ALL,
+            cull: Some(wgpu::Face::Back),
+        }
+        .create(device, samples);
+
+        let clear_module = shaders::DEPTH_CLEAR.module(device);
+        let clear_depth = ScenePipeline {
+            label: "clear depth",
+            module: &clear_module,
+            layout: &empty_layout,
+            vertex: "full_screen",
+            fragment: "nothing",
+            constants: &[],
+            buffers: &[],
+            depth_write: true,
+            depth_compare: wgpu::CompareFunction::Always,
+            writes: wgpu::ColorWrites::empty(),
+            cull: None,
+        }
+        .create(device, samples);
+
+        let encode_module = shaders::ENCODER.module(device);
+        let encode_layout = pipeline_layout("encode", &[frame, Some(&layouts.scene)]);
+        let encode = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("encode"),
+            layout: Some(&encode_layout),
+            vertex: wgpu::VertexState {
+                module: &encode_module,
+                entry_point: Some("full_screen"),
+                compilation_options: Default::default(),
+                buffers: &[],
+            },
+            primitive: Default::default(),
+            depth_stencil: None,
+            multisample: Default::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &encode_module,
+                entry_point: Some("encode"),
+                compilation_options: Default::default(),
+                targets: &[Some(OUTPUT_FORMAT.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        Self {
+            samples,
+            mesh_module: shaders::MESH.module(device),
+            ground_module: shaders::GROUND_PLANE.module(device),
+            mesh_layout: pipeline_layout("mesh", &[frame, draw, primitive, light]),
+            shadow_layout: pipeline_layout("shadow", &[frame, draw, primitive]),
+            ground_layout: pipeline_layout("ground", &[frame, None, None, light]),
+            by_key: HashMap::new(),
+            meshes: Vec::new(),
+            grounds: HashMap::new(),
+            lines,
+            bones,
+            clear_depth,
+            encode,
+        }
+    }
+
+    pub fn prepare_ground(&mut self, device: &wgpu::Device, key: GroundKey) {
+        let (module, layout, samples) = (&self.ground_module, &self.ground_layout, self.samples);
+        self.grounds.entry(key).or_insert_with(|| {
+            ScenePipeline {
+                label: "ground",
+                module,
+                layout,
+                vertex: "ground_vertex",
+                fragment: "ground_fragment",
+                constants: &[("GROUND_SHADOW", f64::from(key.shadow)), ("GRID", f64::from(key.grid))],
+                buffers: &[],
+                depth_write: false,
+                depth_compare: wgpu::CompareFunction::LessEqual,
+                writes: wgpu::ColorWrites::ALL,
+                cull: None,
+            }
+            .create(device, samples)
+        });
+    }
+
+    /// Made by [`Self::prepare_ground`].
+    pub fn ground(&self, key: GroundKey) -> Option<&wgpu::RenderPipeline> {
+        self.grounds.get(&key)
+    }
+
+    pub fn mesh(&mut self, device: &wgpu::Device, key: MeshKey) -> MeshPipeline {
+        if let Some(&pipeline) = self.by_key.get(&key) {
+            return pipeline;
+        }
+        let pipeline = MeshPipeline(self.meshes.len());
+        self.meshes.push(self.create_mesh(device, key));
+        self.by_key.insert(key, pipeline);
+        pipeline
+    }
+
+    pub fn get(&self, pipeline: MeshPipeline) -> &wgpu::RenderPipeline {
+        &self.meshes[pipeline.0]
+    }
+
+    fn create_mesh(&self, device: &wgpu::Device, key: MeshKey) -> wgpu::RenderPipeline {
+        let shadow = key.shading == Shading::Shadow;
+        let blended = key.shading == Shading::Wireframe || key.features.has(Features::BLEND);
+        let mut constants: Vec<(&str, f64)> = OVERRIDES
+            .iter()
+            .enumerate()
+            .map(|(bit, name)| (*name, f64::from(key.features.0 >> bit & 1)))
+            .collect();
+        constants.push(("DEPTH_OFFSET", if key.shading == Shading::Wireframe { 3e-5 } else { 0.0 }));
+        let options =
+            || wgpu::PipelineCompilationOptions { constants: &constants, zero_initialize_workgroup_memory: false };
+        let fragment = match key.shading {
+            Shading::Lit => Some("lit"),
+            Shading::Unlit => Some("unlit"),
+            Shading::Heat => Some("heat"),
+            Shading::Wireframe => Some("wireframe"),
+            Shading::Shadow => key.features.has(Features::MASK).then_some("shadow_mask"),
+        };
+        let color = [Some(wgpu::ColorTargetState {
+            format: SCENE_FORMAT,
+            blend: if blended { BLENDED } else { None },
+            write_mask: wgpu::ColorWrites::ALL,
+        })];
+        let bias = wgpu::DepthBiasState { constant: 2, slope_scale: 2.0, clamp: 0.0 };
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("mesh"),
+            layout: Some(if shadow { &self.shadow_layout } else { &self.mesh_layout }),
+            vertex: wgpu::VertexState {
+                module: &self.mesh_module,
+                entry_point: Some(key.influences.entry_point()),
+                compilation_options: options(),
+                buffers: &vertex_buffers(key.influences),
+            },
+            primitive: wgpu::PrimitiveState {
+                topology: match key.topology {
+                    Topology::Points => wgpu::PrimitiveTopology::PointList,
+                    Topology::Lines => wgpu::PrimitiveTopology::LineList,
+                    Topology::Triangles => wgpu::PrimitiveTopology::TriangleList,
+                },
+                front_face: if key.mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw },
+                cull_mode: key.cull,
+                ..Default::default()
+            },
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: if shadow { SHADOW_FORMAT } else { DEPTH_FORMAT },
+                depth_write_enabled: Some(!blended),
+                depth_compare: Some(wgpu::CompareFunction::LessEqual),
+                stencil: Default::default(),
+                bias: if shadow && key.topology == Topology::Triangles { bias } else { Default::default() },
+            }),
+            multisample: wgpu::MultisampleState {
+                count: if shadow { 1 } else { self.samples },
+                ..Default::default()
+            },
+            fragment: fragment.map(|entry_point| wgpu::FragmentState {
+                module: &self.mesh_module,
+                entry_point: Some(entry_point),
+                compilation_options: options(),
+                targets: if shadow { &[] } else { &color },
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+}

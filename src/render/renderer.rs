@@ -1,0 +1,350 @@
+//! The renderer: GPU data of the models, and one call that draws a frame.
+
+use super::draw_list::{DrawList, Item};
+use super::environment::Environment;
+use super::frame_uniform::{GroundPlane, frame_uniform};
+use super::model::{GpuModel, ModelUploader};
+use super::overlay::Overlay;
+use super::palette::PaletteTexture;
+use super::pipelines::{GroundKey, Layouts, Pipelines};
+use super::shadow::ShadowMap;
+use super::targets::Targets;
+use super::uniforms::FrameUniform;
+use crate::frame::Frame;
+use crate::library::{Model, ModelId};
+
+#[derive(Debug, Clone, Copy)]
+pub struct RendererOptions {
+    /// Samples per pixel: 4, or 1 where every pixel is drawn by the CPU.
+    pub samples: u32,
+}
+
+/// Why a model cannot be drawn.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum UploadError {
+    #[error("mesh {mesh}, primitive {primitive}: {vertices} vertices are more than this device can hold")]
+    TooManyVertices { mesh: usize, primitive: usize, vertices: usize },
+    #[error(
+        "mesh {mesh}, primitive {primitive}: {targets} morph targets of {vertices} vertices are more than this device can hold"
+    )]
+    TooManyMorphTargets { mesh: usize, primitive: usize, vertices: usize, targets: usize },
+}
+
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct RenderStats {
+    pub draw_calls: u32,
+    pub triangles: u32,
+}
+
+/// Draws frames. Belongs to the device it was made with; all calls get that one.
+pub struct Renderer {
+    options: RendererOptions,
+    layouts: Layouts,
+    pipelines: Pipelines,
+    uploader: ModelUploader,
+    models: Vec<GpuModel>,
+    environment: Environment,
+    shadow_map: ShadowMap,
+    palette: PaletteTexture,
+    overlay: Overlay,
+    draws: DrawList,
+    targets: Targets,
+    frame_buffer: UniformBuffer,
+    /// The same numbers, seen from the light.
+    shadow_buffer: UniformBuffer,
+    frame_group: wgpu::BindGroup,
+    shadow_group: wgpu::BindGroup,
+    light_group: wgpu::BindGroup,
+    scene_group: wgpu::BindGroup,
+    stats: RenderStats,
+}
+
+/// A [`FrameUniform`] on the GPU, written when it changes.
+struct UniformBuffer {
+    buffer: wgpu::Buffer,
+    written: FrameUniform,
+}
+
+impl UniformBuffer {
+    fn new(device: &wgpu::Device, label: &str) -> Self {
+        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size: size_of::<FrameUniform>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        Self { buffer, written: FrameUniform::default() }
+    }
+
+    fn write(&mut self, queue: &wgpu::Queue, uniform: FrameUniform) {
+        if bytemuck::bytes_of(&uniform) != bytemuck::bytes_of(&self.written) {
+            queue.write_buffer(&self.buffer, 0, bytemuck::bytes_of(&uniform));
+            self.written = uniform;
+        }
+    }
+
+    fn bind_group(&self, device: &wgpu::Device, layouts: &Layouts, palette: &PaletteTexture) -> wgpu::BindGroup {
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("frame"),
+            layout: &layouts.frame,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: self.buffer.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(palette.view()) },
+            ],
+        })
+    }
+}
+
+impl Renderer {
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, options: RendererOptions) -> Self {
+        let layouts = Layouts::new(device);
+        let environment = Environment::new(device, queue);
+        let shadow_map = ShadowMap::new(device);
+        let palette = PaletteTexture::new(device);
+        let frame_buffer = UniformBuffer::new(device, "frame");
+        let shadow_buffer = UniformBuffer::new(device, "shadow");
+        let targets = Targets::new(device, [1, 1], options.samples);
+        let light_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("light"),
+            layout: &layouts.light,
+            entries: &[
+                wgpu::BindGroupEntry {
+                    binding: 0,
+                    resource: wgpu::BindingResource::TextureView(&environment.view),
+                },
+                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(&environment.sampler) },
+                wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(&shadow_map.view) },
+                wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::Sampler(&shadow_map.sampler) },
+            ],
+        });
+        // Software draws each pixel's extra samples and extra texels itself: leave out both.
+        let anisotropy = if options.samples > 1 { 4 } else { 1 };
+        Self {
+            options,
+            pipelines: Pipelines::new(device, &layouts, options.samples),
+            uploader: ModelUploader::new(device, queue, anisotropy),
+            models: Vec::new(),
+            overlay: Overlay::new(device),
+            draws: DrawList::new(device, &layouts),
+            frame_group: frame_buffer.bind_group(device, &layouts, &palette),
+            shadow_group: shadow_buffer.bind_group(device, &layouts, &palette),
+            scene_group: scene_group(device, &layouts, &targets),
+            light_group,
+            environment,
+            shadow_map,
+            palette,
+            targets,
+            frame_buffer,
+            shadow_buffer,
+            layouts,
+            stats: RenderStats::default(),
+        }
+    }
+
+    /// Brings a model's geometry and textures to the GPU; a model that is there already is left as it is.
+    pub fn upload(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, model: &Model) -> Result<(), UploadError> {
+        if !self.models.iter().any(|known| known.id == model.id) {
+            self.models.push(self.uploader.upload(device, queue, &self.layouts, model)?);
+        }
+        Ok(())
+    }
+
+    /// Drops the GPU data of all models but these.
+    pub fn retain(&mut self, keep: &[ModelId]) {
+        self.models.retain(|model| keep.contains(&model.id));
+    }
+
+    /// Draws the frame into a texture of this size in pixels. The view is of an Rgba8Unorm texture, gamma-encoded, alpha
+    /// premultiplied; it stays the same until the size changes. Models that were not uploaded are left out.
+    pub fn draw(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        frame: &Frame,
+        size: [u32; 2],
+    ) -> &wgpu::TextureView {
+        let most = device.limits().max_texture_dimension_2d;
+        let size = size.map(|edge| edge.clamp(1, most));
+        if self.targets.size() != size {
+            self.targets = Targets::new(device, size, self.options.samples);
+            self.scene_group = scene_group(device, &self.layouts, &self.targets);
+        }
+
+        let ground = GroundPlane::of(frame);
+        let (uniform, shadow_uniform) = frame_uniform(frame, ground.as_ref(), size, &self.environment.irradiance);
+        self.frame_buffer.write(queue, uniform);
+        let shadow = shadow_uniform.is_some();
+        if let Some(uniform) = shadow_uniform {
+            self.shadow_buffer.write(queue, uniform);
+        }
+        self.draws.collect(device, frame, &mut self.models, &mut self.pipelines, &mut self.palette, shadow);
+        self.draws.upload(device, queue, &self.layouts);
+        if self.palette.upload(device, queue) {
+            self.frame_group = self.frame_buffer.bind_group(device, &self.layouts, &self.palette);
+            self.shadow_group = self.shadow_buffer.bind_group(device, &self.layouts, &self.palette);
+        }
+        self.overlay.upload(device, queue, &frame.lines, &frame.bones);
+        let ground = ground.map(|ground| GroundKey { shadow: ground.shadow && shadow, grid: ground.grid });
+        let ground = ground.filter(|key| key.shadow || key.grid);
+        if let Some(key) = ground {
+            self.pipelines.prepare_ground(device, key);
+        }
+
+        self.stats = RenderStats::default();
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("picture") });
+        if shadow {
+            self.draw_shadow(&mut encoder);
+        }
+        self.draw_scene(&mut encoder, ground);
+        self.encode(&mut encoder);
+        queue.submit([encoder.finish()]);
+        &self.targets.output_view
+    }
+
+    /// The texture of the last picture.
+    pub fn output(&self) -> &wgpu::Texture {
+        &self.targets.output
+    }
+
+    /// Of the last picture.
+    pub fn stats(&self) -> RenderStats {
+        self.stats
+    }
+
+    fn draw_shadow(&mut self, encoder: &mut wgpu::CommandEncoder) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("shadow"),
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &self.shadow_map.view,
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        pass.set_bind_group(0, &self.shadow_group, &[]);
+        let stats =
+            draw_items(&mut pass, self.draws.shadow(), self.draws.bind_group(), &self.models, &self.pipelines);
+        self.stats.draw_calls += stats.draw_calls;
+    }
+
+    fn draw_scene(&mut self, encoder: &mut wgpu::CommandEncoder, ground: Option<GroundKey>) {
+        let (view, resolve_target) = match &self.targets.multisampled {
+            Some(samples) => (samples, Some(&self.targets.scene)),
+            None => (&self.targets.scene, None),
+        };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("scene"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view,
+                depth_slice: None,
+                resolve_target,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    store: if resolve_target.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store },
+                },
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &self.targets.depth,
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Discard }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        pass.set_bind_group(0, &self.frame_group, &[]);
+        pass.set_bind_group(3, &self.light_group, &[]);
+        let mut stats = RenderStats::default();
+        let mut add = |more: RenderStats| {
+            stats.draw_calls += more.draw_calls;
+            stats.triangles += more.triangles;
+        };
+        let draw = self.draws.bind_group();
+        add(draw_items(&mut pass, self.draws.solid(), draw, &self.models, &self.pipelines));
+        if let Some(pipeline) = ground.and_then(|key| self.pipelines.ground(key)) {
+            pass.set_pipeline(pipeline);
+            pass.draw(0..18, 0..1);
+            add(RenderStats { draw_calls: 1, triangles: 0 });
+        }
+        add(draw_items(&mut pass, self.draws.blended(), draw, &self.models, &self.pipelines));
+        for on_top in [false, true] {
+            if on_top && (self.overlay.bones() > 0 || !self.overlay.lines(true).is_empty()) {
+                pass.set_pipeline(&self.pipelines.clear_depth);
+                pass.draw(0..3, 0..1);
+                add(RenderStats { draw_calls: 1, triangles: 0 });
+            }
+            if on_top && self.overlay.bones() > 0 {
+                pass.set_pipeline(&self.pipelines.bones);
+                self.overlay.draw_bones(&mut pass);
+                add(RenderStats { draw_calls: 1, triangles: self.overlay.bone_triangles() });
+            }
+            if !self.overlay.lines(on_top).is_empty() {
+                pass.set_pipeline(&self.pipelines.lines);
+                self.overlay.draw_lines(&mut pass, on_top);
+                add(RenderStats { draw_calls: 1, triangles: 0 });
+            }
+        }
+        drop(pass);
+        self.stats.draw_calls += stats.draw_calls;
+        self.stats.triangles += stats.triangles;
+    }
+
+    fn encode(&mut self, encoder: &mut wgpu::CommandEncoder) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("encode"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &self.targets.output_view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store },
+            })],
+            ..Default::default()
+        });
+        pass.set_pipeline(&self.pipelines.encode);
+        pass.set_bind_group(0, &self.frame_group, &[]);
+        pass.set_bind_group(1, &self.scene_group, &[]);
+        pass.draw(0..3, 0..1);
+        self.stats.draw_calls += 1;
+    }
+}
+
+fn scene_group(device: &wgpu::Device, layouts: &Layouts, targets: &Targets) -> wgpu::BindGroup {
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("scene"),
+        layout: &layouts.scene,
+        entries: &[wgpu::BindGroupEntry {
+            binding: 0,
+            resource: wgpu::BindingResource::TextureView(&targets.scene),
+        }],
+    })
+}
+
+fn draw_items(
+    pass: &mut wgpu::RenderPass<'_>,
+    items: &[Item],
+    draw_group: &wgpu::BindGroup,
+    models: &[GpuModel],
+    pipelines: &Pipelines,
+) -> RenderStats {
+    let mut stats = RenderStats::default();
+    let mut pipeline = None;
+    for item in items {
+        let Some(primitive) = item.primitive(models) else { continue };
+        let (indices, count) = match (&primitive.edges, item.edges) {
+            (Some((edges, count)), true) => (edges, *count),
+            _ => (&primitive.geometry.indices, primitive.geometry.index_count),
+        };
+        if pipeline != Some(item.pipeline) {
+            pass.set_pipeline(pipelines.get(item.pipeline));
+            pipeline = Some(item.pipeline);
+        }
+        pass.set_bind_group(1, draw_group, &[item.offset]);
+        pass.set_bind_group(2, &primitive.bind_group, &[]);
+        primitive.geometry.bind(pass);
+        pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+        pass.draw_indexed(0..count, 0, 0..1);
+        stats.draw_calls += 1;
+        if !item.edges && primitive.geometry.topology == crate::mesh::Topology::Triangles {
+            stats.triangles += count / 3;
+        }
+    }
+    stats
+}

@@ -1,0 +1,49 @@
+//! The WGSL of every pipeline, put together from the files in `shaders/`.
+
+const FRAME: &str = include_str!("../../shaders/frame.wgsl");
+const TONE: &str = include_str!("../../shaders/tone.wgsl");
+const PALETTE: &str = include_str!("../../shaders/palette.wgsl");
+const SKINNING: &str = include_str!("../../shaders/skinning.wgsl");
+const VERTEX: &str = include_str!("../../shaders/vertex.wgsl");
+const LIGHT: &str = include_str!("../../shaders/light.wgsl");
+const SURFACE: &str = include_str!("../../shaders/surface.wgsl");
+const GROUND: &str = include_str!("../../shaders/ground.wgsl");
+const LINE: &str = include_str!("../../shaders/line.wgsl");
+const BONE: &str = include_str!("../../shaders/bone.wgsl");
+const CLEAR_DEPTH: &str = include_str!("../../shaders/clear_depth.wgsl");
+const ENCODE: &str = include_str!("../../shaders/encode.wgsl");
+const MIP: &str = include_str!("../../shaders/mip.wgsl");
+
+/// One shader module.
+#[derive(Debug, Clone, Copy)]
+pub struct Shader {
+    pub label: &'static str,
+    parts: &'static [&'static str],
+}
+
+pub const MESH: Shader =
+    Shader { label: "mesh", parts: &[FRAME, TONE, PALETTE, SKINNING, VERTEX, LIGHT, SURFACE] };
+pub const GROUND_PLANE: Shader = Shader { label: "ground", parts: &[FRAME, TONE, LIGHT, GROUND] };
+pub const LINES: Shader = Shader { label: "lines", parts: &[FRAME, TONE, LINE] };
+pub const BONES: Shader = Shader { label: "bones", parts: &[FRAME, TONE, BONE] };
+pub const DEPTH_CLEAR: Shader = Shader { label: "clear depth", parts: &[CLEAR_DEPTH] };
+pub const ENCODER: Shader = Shader { label: "encode", parts: &[FRAME, TONE, ENCODE] };
+pub const MIPS: Shader = Shader { label: "mips", parts: &[MIP] };
+/// What a vertex stage needs to move a mesh's vertices: frame, palette, skinning and its inputs.
+pub const SKINNED_VERTEX: Shader = Shader { label: "skinned vertex", parts: &[FRAME, PALETTE, SKINNING, VERTEX] };
+
+/// Every module that is drawn with.
+pub const ALL: [Shader; 7] = [MESH, GROUND_PLANE, LINES, BONES, DEPTH_CLEAR, ENCODER, MIPS];
+
+impl Shader {
+    pub fn source(&self) -> String {
+        self.parts.concat()
+    }
+
+    pub(super) fn module(&self, device: &wgpu::Device) -> wgpu::ShaderModule {
+        device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(self.label),
+            source: wgpu::ShaderSource::Wgsl(self.source().into()),
+        })
+    }
+}

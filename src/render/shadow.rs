@@ -1,0 +1,95 @@
+//! The shadow map and where it looks from.
+
+use glam::camera::rh::proj::directx::orthographic;
+use glam::camera::rh::view::look_to_mat4;
+use glam::{Mat4, Vec3};
+
+use crate::mesh::Bounds;
+
+pub(super) const SHADOW_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+const SIZE: u32 = 1024;
+
+pub(super) struct ShadowMap {
+    pub view: wgpu::TextureView,
+    pub sampler: wgpu::Sampler,
+}
+
+impl ShadowMap {
+    pub fn new(device: &wgpu::Device) -> Self {
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("shadow map"),
+            size: wgpu::Extent3d { width: SIZE, height: SIZE, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: SHADOW_FORMAT,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT,
+            view_formats: &[],
+        });
+        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("shadow map"),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            compare: Some(wgpu::CompareFunction::LessEqual),
+            ..Default::default()
+        });
+        Self { view: texture.create_view(&Default::default()), sampler }
+    }
+}
+
+/// How the light sees the scene.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct ShadowView {
+    pub shadow_from_world: Mat4,
+    /// Edge of a texel in metres.
+    pub texel: f32,
+}
+
+/// The tightest parallel view of the box along the light, with a small margin; `to_light` has unit length. None for an
+/// empty box.
+pub(super) fn shadow_view(bounds: &Bounds, to_light: Vec3) -> Option<ShadowView> {
+    let diagonal = bounds.diagonal();
+    if bounds.is_empty() || !diagonal.is_finite() || diagonal <= 0.0 {
+        return None;
+    }
+    let up = if to_light.y.abs() > 0.99 { Vec3::Z } else { Vec3::Y };
+    let center = bounds.center();
+    let light_from_world = look_to_mat4(center, -to_light, up);
+    let seen = Bounds::of(bounds.corners().map(|corner| light_from_world.transform_point3(corner)));
+    let half = 0.5 * seen.size().truncate().max_element() * 1.06;
+    let middle = seen.center();
+    let margin = 0.05 * diagonal;
+    let projection = orthographic(
+        middle.x - half,
+        middle.x + half,
+        middle.y - half,
+        middle.y + half,
+        -seen.max.z - margin,
+        -seen.min.z + margin,
+    );
+    Some(ShadowView { shadow_from_world: projection * light_from_world, texel: 2.0 * half / SIZE as f32 })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_corner_is_seen() {
+        let bounds = Bounds { min: Vec3::new(-1.0, 0.0, 3.0), max: Vec3::new(2.0, 5.0, 4.0) };
+        for to_light in [Vec3::Y, Vec3::new(-0.48, 0.72, 0.5).normalize(), Vec3::X, Vec3::NEG_Y] {
+            let view = shadow_view(&bounds, to_light).unwrap();
+            for corner in bounds.corners() {
+                let at = view.shadow_from_world.project_point3(corner);
+                assert!(at.truncate().abs().max_element() < 1.0 && (0.0..1.0).contains(&at.z), "{to_light} {corner} {at}");
+            }
+            let toward = view.shadow_from_world.project_point3(bounds.center() + 0.01 * to_light);
+            assert!(toward.z < view.shadow_from_world.project_point3(bounds.center()).z, "{to_light}");
+        }
+    }
+
+    #[test]
+    fn nothing_casts_no_shadow() {
+        assert_eq!(shadow_view(&Bounds::EMPTY, Vec3::Y), None);
+    }
+}

@@ -1,0 +1,49 @@
+//! The textures a picture is drawn into.
+
+pub(super) const SCENE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth24Plus;
+pub(super) const OUTPUT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+pub(super) struct Targets {
+    /// Several samples per pixel; none with one sample, where `scene` is drawn into directly.
+    pub multisampled: Option<wgpu::TextureView>,
+    /// The scene's light, linear, alpha premultiplied.
+    pub scene: wgpu::TextureView,
+    pub depth: wgpu::TextureView,
+    pub output: wgpu::Texture,
+    pub output_view: wgpu::TextureView,
+}
+
+impl Targets {
+    pub fn new(device: &wgpu::Device, size: [u32; 2], samples: u32) -> Self {
+        use wgpu::TextureUsages as Usages;
+        let texture = |label, format, sample_count, usage| {
+            device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage,
+                view_formats: &[],
+            })
+        };
+        let view = |texture: wgpu::Texture| texture.create_view(&Default::default());
+        let attachment = Usages::RENDER_ATTACHMENT;
+        let output =
+            texture("picture", OUTPUT_FORMAT, 1, attachment | Usages::TEXTURE_BINDING | Usages::COPY_SRC);
+        Self {
+            multisampled: (samples > 1)
+                .then(|| view(texture("scene samples", SCENE_FORMAT, samples, attachment))),
+            scene: view(texture("scene", SCENE_FORMAT, 1, attachment | Usages::TEXTURE_BINDING)),
+            depth: view(texture("depth", DEPTH_FORMAT, samples, attachment)),
+            output_view: output.create_view(&Default::default()),
+            output,
+        }
+    }
+
+    pub fn size(&self) -> [u32; 2] {
+        [self.output.width(), self.output.height()]
+    }
+}
