@@ -1,9 +1,57 @@
-//! Why a load failed: the file, the place in it, what was expected, what was found, what to do.
+//! Why a load failed: the file, the place in it, what was expected, what was found and, when known, what to do.
 
+/// Everything that makes a set of files unreadable. The texts are what a person sees.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LoadError {
-    #[error("no model among the files ({}); Gaitway reads .glb, .gltf with its files, .vrm, or a .zip of these", found.join(", "))]
+    #[error("no model among the files ({}); Gaitway reads .glb, .gltf with its files, .vrm, or a .zip of these", listed(found))]
     NoModel { found: Vec<String> },
-    #[error("{file}: {place}: {problem}")]
-    Invalid { file: String, place: String, problem: String },
+    #[error("several models at once ({}); drop one of them with its own files", listed(found))]
+    SeveralModels { found: Vec<String> },
+    #[error("{file}: {format} files cannot be read; open it in Blender (File → Import), then export glTF 2.0 (.glb) and drop that")]
+    UnsupportedFormat { file: String, format: &'static str },
+    #[error("{file}: this is glTF {found}; Gaitway reads glTF 2.0. Convert it, for example by importing and exporting it again")]
+    UnsupportedVersion { file: String, found: String },
+    #[error("{file}: needs the extension {name}, which is not supported; {advice}")]
+    RequiredExtension { file: String, name: String, advice: &'static str },
+    #[error("{file}: not valid JSON for glTF, line {line}, column {column}: {problem}")]
+    Json { file: String, line: usize, column: usize, problem: String },
+    #[error("{file}: {place}: expected {expected}, found {found}")]
+    Invalid { file: String, place: String, expected: String, found: String },
+    #[error("{file}: {place} is “{uri}”, which is not among the files; drop it together with the model")]
+    MissingFile { file: String, place: String, uri: String },
+    #[error("{file}: {problem}")]
+    Archive { file: String, problem: String },
+}
+
+fn listed(names: &[String]) -> String {
+    const MOST: usize = 8;
+    if names.is_empty() {
+        return "there are none".to_owned();
+    }
+    let mut text = names.iter().take(MOST).cloned().collect::<Vec<_>>().join(", ");
+    if names.len() > MOST {
+        text.push_str(&format!(" and {} more", names.len() - MOST));
+    }
+    text
+}
+
+/// What is wrong at one place of a file; the loader adds the file's name.
+#[derive(Debug)]
+pub(super) enum Problem {
+    Invalid { place: String, expected: String, found: String },
+    MissingFile { place: String, uri: String },
+}
+
+impl Problem {
+    pub fn new(place: impl Into<String>, expected: impl Into<String>, found: impl ToString) -> Self {
+        Self::Invalid { place: place.into(), expected: expected.into(), found: found.to_string() }
+    }
+
+    pub fn in_file(self, file: &str) -> LoadError {
+        let file = file.to_owned();
+        match self {
+            Self::Invalid { place, expected, found } => LoadError::Invalid { file, place, expected, found },
+            Self::MissingFile { place, uri } => LoadError::MissingFile { file, place, uri },
+        }
+    }
 }

@@ -1,0 +1,58 @@
+//! The GLB container: 12 bytes of header ("glTF", version, length), then chunks of (length, type, data). The first is JSON,
+//! an optional second is the binary buffer (glTF 2.0 §4.4).
+
+use crate::formats::LoadError;
+
+/// JSON text and binary chunk of a file that is either a GLB or plain JSON.
+pub struct Container<'a> {
+    pub json: &'a [u8],
+    pub binary: Option<&'a [u8]>,
+    pub is_glb: bool,
+}
+
+const JSON_CHUNK: u32 = 0x4E4F_534A;
+const BINARY_CHUNK: u32 = 0x004E_4942;
+
+pub fn open<'a>(file: &str, bytes: &'a [u8]) -> Result<Container<'a>, LoadError> {
+    if !bytes.starts_with(b"glTF") {
+        return Ok(Container { json: without_bom(bytes), binary: None, is_glb: false });
+    }
+    let invalid = |place: &str, expected: &str, found: String| LoadError::Invalid {
+        file: file.to_owned(),
+        place: place.to_owned(),
+        expected: expected.to_owned(),
+        found,
+    };
+    let word = |at: usize| {
+        let four = bytes.get(at..at.checked_add(4)?)?;
+        Some(u32::from_le_bytes([four[0], four[1], four[2], four[3]]))
+    };
+    let header = || invalid("GLB header", "12 bytes", format!("{}", bytes.len()));
+    let version = word(4).ok_or_else(header)?;
+    if version != 2 {
+        return Err(LoadError::UnsupportedVersion { file: file.to_owned(), found: format!("{version}.0") });
+    }
+    let length = word(8).ok_or_else(header)? as usize;
+    if length > bytes.len() {
+        return Err(invalid("GLB header", &format!("{length} bytes in all"), format!("{} (cut short?)", bytes.len())));
+    }
+    let (mut at, mut json, mut binary) = (12, None, None);
+    while at + 8 <= length {
+        let (size, kind) = (word(at).unwrap_or(0) as usize, word(at + 4).unwrap_or(0));
+        let data = (at + 8).checked_add(size).and_then(|end| bytes[..length].get(at + 8..end)).ok_or_else(|| {
+            invalid(&format!("GLB chunk at byte {at}"), &format!("{size} bytes"), format!("{}", length - at - 8))
+        })?;
+        match kind {
+            JSON_CHUNK if json.is_none() => json = Some(data),
+            BINARY_CHUNK if binary.is_none() => binary = Some(data),
+            _ => {}
+        }
+        at += 8 + size;
+    }
+    let json = json.ok_or_else(|| invalid("GLB", "a JSON chunk", "none".to_owned()))?;
+    Ok(Container { json: without_bom(json), binary, is_glb: true })
+}
+
+fn without_bom(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes)
+}

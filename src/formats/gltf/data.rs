@@ -1,0 +1,47 @@
+//! Bytes behind URIs: buffers and images from data URIs or the files at hand.
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use base64::Engine;
+use percent_encoding::percent_decode_str;
+
+use crate::asset::{Warning, Warnings};
+use crate::formats::FileSet;
+use crate::formats::error::Problem;
+
+pub fn is_data_uri(uri: &str) -> bool {
+    uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:"))
+}
+
+/// Percent-decoded; what is not UTF-8 afterwards is taken as it stands.
+pub fn decode_uri(uri: &str) -> Cow<'_, str> {
+    percent_decode_str(uri).decode_utf8().unwrap_or(Cow::Borrowed(uri))
+}
+
+pub fn data_uri(place: &str, uri: &str) -> Result<Vec<u8>, Problem> {
+    let Some((header, body)) = uri.split_once(',') else {
+        return Err(Problem::new(place, "a data URI with a comma before its data", "none"));
+    };
+    if !header.to_ascii_lowercase().ends_with(";base64") {
+        return Ok(percent_decode_str(body).collect());
+    }
+    let engine = base64::engine::GeneralPurpose::new(
+        &base64::alphabet::STANDARD,
+        base64::engine::GeneralPurposeConfig::new()
+            .with_decode_padding_mode(base64::engine::DecodePaddingMode::Indifferent)
+            .with_decode_allow_trailing_bits(true),
+    );
+    engine.decode(decode_uri(body).trim().as_bytes()).map_err(|problem| Problem::new(place, "base64", problem))
+}
+
+/// The bytes of a file that `uri` names, as seen from the file `base`.
+pub fn file(files: &FileSet, base: &str, uri: &str, warnings: &mut Warnings) -> Option<Arc<[u8]>> {
+    // Some exporters leave a bare `%` in names: try the decoded form, then the text itself.
+    let decoded = decode_uri(uri);
+    let found = files.resolve(base, &decoded).or_else(|| files.resolve(base, uri))?;
+    if found.by_bare_name {
+        warnings.push(Warning::FoundByBareName { uri: decoded.into_owned(), used: found.name.to_owned() });
+    }
+    Some(found.bytes.clone())
+}
