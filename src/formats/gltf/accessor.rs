@@ -1,0 +1,266 @@
+//! Typed views of buffer bytes (glTF 2.0 §3.6). Every range is checked before it is read, and all that is decoded counts
+//! towards a budget, so that a small file cannot ask for a large memory.
+
+use std::cell::Cell;
+use std::sync::Arc;
+
+use super::schema;
+use crate::formats::error::Problem;
+
+/// How much one file may decode to, in bytes.
+const BUDGET_BYTES: usize = 1 << 30;
+
+/// The buffers of one file and the views into them.
+pub struct Accessors<'a> {
+    pub root: &'a schema::Root,
+    /// One per buffer; none where there is no data (allowed as long as nobody reads it).
+    buffers: Vec<Option<Bytes<'a>>>,
+    spent_bytes: Cell<usize>,
+}
+
+pub enum Bytes<'a> {
+    Borrowed(&'a [u8]),
+    Shared(Arc<[u8]>),
+    Owned(Vec<u8>),
+}
+
+impl Bytes<'_> {
+    pub fn as_slice(&self) -> &[u8] {
+        match self {
+            Self::Borrowed(bytes) => bytes,
+            Self::Shared(bytes) => bytes,
+            Self::Owned(bytes) => bytes,
+        }
+    }
+}
+
+/// Where the elements of an accessor lie.
+struct Layout<'a> {
+    /// None: zeros.
+    bytes: Option<&'a [u8]>,
+    stride: usize,
+    count: usize,
+    components: usize,
+    component: Component,
+    normalized: bool,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Component {
+    I8,
+    U8,
+    I16,
+    U16,
+    U32,
+    F32,
+}
+
+impl Component {
+    fn new(code: u32) -> Option<Self> {
+        Some(match code {
+            5120 => Self::I8,
+            5121 => Self::U8,
+            5122 => Self::I16,
+            5123 => Self::U16,
+            5125 => Self::U32,
+            5126 => Self::F32,
+            _ => return None,
+        })
+    }
+
+    fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::U32 | Self::F32 => 4,
+        }
+    }
+
+    /// The value at the start of `bytes`, normalised as §3.6.2.2 says.
+    #[inline]
+    fn to_f32(self, bytes: &[u8], normalized: bool) -> f32 {
+        match (self, normalized) {
+            (Self::F32, _) => f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]),
+            (Self::U8, false) => f32::from(bytes[0]),
+            (Self::U8, true) => f32::from(bytes[0]) / 255.0,
+            (Self::I8, false) => f32::from(bytes[0] as i8),
+            (Self::I8, true) => (f32::from(bytes[0] as i8) / 127.0).max(-1.0),
+            (Self::U16, false) => f32::from(u16::from_le_bytes([bytes[0], bytes[1]])),
+            (Self::U16, true) => f32::from(u16::from_le_bytes([bytes[0], bytes[1]])) / 65535.0,
+            (Self::I16, false) => f32::from(i16::from_le_bytes([bytes[0], bytes[1]])),
+            (Self::I16, true) => (f32::from(i16::from_le_bytes([bytes[0], bytes[1]])) / 32767.0).max(-1.0),
+            (Self::U32, _) => u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]) as f32,
+        }
+    }
+
+    #[inline]
+    fn to_u32(self, bytes: &[u8]) -> u32 {
+        match self {
+            Self::U8 | Self::I8 => u32::from(bytes[0]),
+            Self::U16 | Self::I16 => u32::from(u16::from_le_bytes([bytes[0], bytes[1]])),
+            Self::U32 | Self::F32 => u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]),
+        }
+    }
+}
+
+impl<'a> Accessors<'a> {
+    pub fn new(root: &'a schema::Root, buffers: Vec<Option<Bytes<'a>>>) -> Self {
+        Self { root, buffers, spent_bytes: Cell::new(0) }
+    }
+
+    /// Bytes of a buffer view, and its stride.
+    pub fn view(&self, index: usize, place: &str) -> Result<(&[u8], Option<usize>), Problem> {
+        let view = get(&self.root.buffer_views, index, place, "bufferViews")?;
+        let here = format!("bufferViews[{index}]");
+        get(&self.root.buffers, view.buffer, &format!("{here}.buffer"), "buffers")?;
+        let Some(Some(buffer)) = self.buffers.get(view.buffer) else {
+            return Err(Problem::new(format!("buffers[{}]", view.buffer), "a URI or a binary chunk", "neither"));
+        };
+        let buffer = buffer.as_slice();
+        let range = view.byte_offset..view.byte_offset.saturating_add(view.byte_length);
+        let bytes = buffer.get(range.clone()).ok_or_else(|| {
+            let expected = format!("bytes {}..{} of buffer {}", range.start, range.end, view.buffer);
+            Problem::new(here, expected, format!("only {} bytes", buffer.len()))
+        })?;
+        Ok((bytes, view.byte_stride))
+    }
+
+    /// How many elements an accessor has.
+    pub fn count(&self, index: usize, place: &str) -> Result<usize, Problem> {
+        Ok(get(&self.root.accessors, index, place, "accessors")?.count)
+    }
+
+    fn layout(&self, index: usize, place: &str, components: usize, what: &str) -> Result<Layout<'_>, Problem> {
+        let accessor = get(&self.root.accessors, index, place, "accessors")?;
+        let here = || format!("accessors[{index}]");
+        let found = match accessor.shape.as_str() {
+            "SCALAR" => 1,
+            "VEC2" => 2,
+            "VEC3" => 3,
+            "VEC4" | "MAT2" => 4,
+            "MAT3" => 9,
+            "MAT4" => 16,
+            other => return Err(Problem::new(here(), "a known type such as VEC3", format!("“{other}”"))),
+        };
+        if found != components {
+            return Err(Problem::new(format!("{place} (accessor {index})"), what, &accessor.shape));
+        }
+        let component = Component::new(accessor.component_type)
+            .ok_or_else(|| Problem::new(here(), "a known componentType", accessor.component_type))?;
+        let size = component.size() * components;
+        let spent = accessor
+            .count
+            .checked_mul(components * 4)
+            .and_then(|bytes| bytes.checked_add(self.spent_bytes.get()))
+            .filter(|&bytes| bytes <= BUDGET_BYTES)
+            .ok_or_else(|| {
+                let expected = format!("at most {} MiB of data in all", BUDGET_BYTES >> 20);
+                Problem::new(here(), expected, format!("{} more elements", accessor.count))
+            })?;
+        self.spent_bytes.set(spent);
+        let (bytes, stride) = match accessor.buffer_view {
+            None => (None, size),
+            Some(view) => {
+                let (bytes, stride) = self.view(view, &here())?;
+                let stride = stride.unwrap_or(size);
+                if stride < size && accessor.count > 1 {
+                    return Err(Problem::new(here(), format!("a byteStride of at least {size}"), stride));
+                }
+                let bytes = bytes.get(accessor.byte_offset..).unwrap_or(&[]);
+                check_range(bytes.len(), stride, size, accessor.count)
+                    .map_err(|needed| Problem::new(here(), format!("{needed} bytes in its buffer view"), bytes.len()))?;
+                (Some(bytes), stride)
+            }
+        };
+        Ok(Layout { bytes, stride, count: accessor.count, components, component, normalized: accessor.normalized })
+    }
+
+    /// Calls `put(element, bytes)` for the elements that a sparse accessor replaces.
+    fn sparse(&self, index: usize, layout: &Layout, mut put: impl FnMut(usize, &[u8])) -> Result<(), Problem> {
+        let Some(sparse) = self.root.accessors.get(index).and_then(|accessor| accessor.sparse.as_ref()) else {
+            return Ok(());
+        };
+        let here = format!("accessors[{index}].sparse");
+        if sparse.count > layout.count {
+            return Err(Problem::new(here, format!("at most {} entries", layout.count), sparse.count));
+        }
+        let index_type = Component::new(sparse.indices.component_type)
+            .filter(|component| matches!(component, Component::U8 | Component::U16 | Component::U32))
+            .ok_or_else(|| Problem::new(here.as_str(), "unsigned indices", sparse.indices.component_type))?;
+        let size = layout.component.size() * layout.components;
+        let (indices, _) = self.view(sparse.indices.buffer_view, &here)?;
+        let (values, _) = self.view(sparse.values.buffer_view, &here)?;
+        let indices = indices.get(sparse.indices.byte_offset..).unwrap_or(&[]);
+        let values = values.get(sparse.values.byte_offset..).unwrap_or(&[]);
+        for (bytes, size, what) in [(indices, index_type.size(), "indices"), (values, size, "values")] {
+            check_range(bytes.len(), size, size, sparse.count)
+                .map_err(|needed| Problem::new(format!("{here}.{what}"), format!("{needed} bytes"), bytes.len()))?;
+        }
+        for entry in 0..sparse.count {
+            let element = index_type.to_u32(&indices[entry * index_type.size()..]) as usize;
+            if element >= layout.count {
+                return Err(Problem::new(here, format!("indices below {}", layout.count), element));
+            }
+            put(element, &values[entry * size..(entry + 1) * size]);
+        }
+        Ok(())
+    }
+
+    /// Elements of `N` numbers. `what` says in words what is expected, for the error.
+    pub fn floats<const N: usize>(&self, index: usize, place: &str, what: &str) -> Result<Vec<[f32; N]>, Problem> {
+        let layout = self.layout(index, place, N, what)?;
+        let (component, normalized, size) = (layout.component, layout.normalized, layout.component.size());
+        let read = |bytes: &[u8]| std::array::from_fn(|at| component.to_f32(&bytes[at * size..], normalized));
+        let mut out = match layout.bytes {
+            None => vec![[0.0; N]; layout.count],
+            Some(bytes) => elements(bytes, &layout).map(read).collect(),
+        };
+        self.sparse(index, &layout, |element, bytes| out[element] = read(bytes))?;
+        Ok(out)
+    }
+
+    /// As [`Self::floats`], refusing numbers that are not finite.
+    pub fn finite<const N: usize>(&self, index: usize, place: &str, what: &str) -> Result<Vec<[f32; N]>, Problem> {
+        let values = self.floats::<N>(index, place, what)?;
+        match values.iter().position(|value| value.iter().any(|number| !number.is_finite())) {
+            Some(at) => Err(Problem::new(format!("{place}, element {at}"), "finite numbers", format!("{:?}", values[at]))),
+            None => Ok(values),
+        }
+    }
+
+    /// Elements of `N` unsigned integers.
+    pub fn integers<const N: usize>(&self, index: usize, place: &str, what: &str) -> Result<Vec<[u32; N]>, Problem> {
+        let layout = self.layout(index, place, N, what)?;
+        let (component, size) = (layout.component, layout.component.size());
+        if !matches!(component, Component::U8 | Component::U16 | Component::U32) {
+            let place = format!("{place} (accessor {index})");
+            return Err(Problem::new(place, "unsigned integers", format!("{component:?}")));
+        }
+        let read = |bytes: &[u8]| std::array::from_fn(|at| component.to_u32(&bytes[at * size..]));
+        let mut out = match layout.bytes {
+            None => vec![[0; N]; layout.count],
+            Some(bytes) => elements(bytes, &layout).map(read).collect(),
+        };
+        self.sparse(index, &layout, |element, bytes| out[element] = read(bytes))?;
+        Ok(out)
+    }
+}
+
+fn elements<'a>(bytes: &'a [u8], layout: &Layout) -> impl Iterator<Item = &'a [u8]> + use<'a> {
+    let (stride, size) = (layout.stride, layout.component.size() * layout.components);
+    (0..layout.count).map(move |element| &bytes[element * stride..element * stride + size])
+}
+
+/// Whether `count` elements fit; if not, how many bytes they would need.
+fn check_range(available: usize, stride: usize, size: usize, count: usize) -> Result<(), usize> {
+    if count == 0 {
+        return Ok(());
+    }
+    let needed = (count - 1).checked_mul(stride).and_then(|bytes| bytes.checked_add(size)).unwrap_or(usize::MAX);
+    if needed <= available { Ok(()) } else { Err(needed) }
+}
+
+/// `list[index]`, or an error at `place` that says how many there are.
+pub fn get<'a, T>(list: &'a [T], index: usize, place: &str, name: &str) -> Result<&'a T, Problem> {
+    list.get(index).ok_or_else(|| Problem::new(place, format!("an index into the {} {name}", list.len()), index))
+}

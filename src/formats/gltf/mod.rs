@@ -1,0 +1,150 @@
+//! glTF 2.0 (ISO/IEC 12113): .glb, .gltf and what is built on them (.vrm, .vrma). Section numbers refer to the
+//! specification. The readers of the `gltf` crate are not used: they refuse fine files and trust broken ones.
+
+mod accessor;
+mod animations;
+mod container;
+mod data;
+mod extensions;
+mod images;
+mod indices;
+mod influences;
+mod materials;
+mod meshes;
+mod nodes;
+mod schema;
+mod skins;
+
+use crate::asset::{Asset, Warnings};
+use crate::formats::error::Problem;
+use crate::formats::{FileSet, LoadError};
+use accessor::{Accessors, Bytes};
+use container::Container;
+
+/// Decoded URIs of the files that a model names besides itself. Empty when it cannot be read.
+pub(super) fn referenced_uris(file: &str, bytes: &[u8]) -> Vec<String> {
+    let Ok(root) = container::open(file, bytes).and_then(|container| parse(file, container.json)) else {
+        return Vec::new();
+    };
+    let buffers = root.buffers.iter().filter_map(|buffer| buffer.uri.as_deref());
+    let images = root.images.iter().filter_map(|image| image.uri.as_deref());
+    let mut uris: Vec<String> = Vec::new();
+    for uri in buffers.chain(images).filter(|uri| !data::is_data_uri(uri)) {
+        let uri = data::decode_uri(uri).into_owned();
+        if !uris.contains(&uri) {
+            uris.push(uri);
+        }
+    }
+    uris
+}
+
+pub(super) fn load(files: &FileSet, file: &str, bytes: &[u8]) -> Result<Asset, LoadError> {
+    let container = container::open(file, bytes)?;
+    let root = parse(file, container.json)?;
+    let mut warnings = Warnings::default();
+    extensions::check(file, &root, &mut warnings)?;
+    build(files, file, &container, &root, warnings).map_err(|problem| problem.in_file(file))
+}
+
+fn parse(file: &str, json: &[u8]) -> Result<schema::Root, LoadError> {
+    let error = |problem: serde_json::Error| LoadError::Json {
+        file: file.to_owned(),
+        line: problem.line(),
+        column: problem.column(),
+        problem: problem.to_string(),
+    };
+    let versions: schema::Versions = serde_json::from_slice(json).map_err(error)?;
+    let text = |key: &str| match versions.asset.get(key) {
+        Some(serde_json::Value::String(text)) => Some(text.clone()),
+        Some(other) => Some(other.to_string()),
+        None => None,
+    };
+    let unsupported = |found: String| LoadError::UnsupportedVersion { file: file.to_owned(), found };
+    match text("version") {
+        // glTF 1.0 allowed an asset without a version.
+        None => return Err(unsupported("of no stated version (asset.version is missing)".to_owned())),
+        Some(version) if !version.starts_with("2.") => return Err(unsupported(version)),
+        Some(_) => {}
+    }
+    if let Some(least) = text("minVersion")
+        && least != "2.0"
+    {
+        return Err(unsupported(format!("{least} at least (asset.minVersion)")));
+    }
+    serde_json::from_slice(json).map_err(error)
+}
+
+fn build(
+    files: &FileSet,
+    file: &str,
+    container: &Container,
+    root: &schema::Root,
+    mut warnings: Warnings,
+) -> Result<Asset, Problem> {
+    let buffers = resolve_buffers(files, file, container, root, &mut warnings)?;
+    let accessors = Accessors::new(root, buffers);
+    let materials = materials::materials(root, &mut warnings)?;
+    let textures = materials::textures(root)?;
+    let images = images::images(files, file, &accessors, &mut warnings)?;
+    let meshes = meshes::meshes(&accessors, &materials, &mut warnings)?;
+    let skeleton = nodes::skeleton(root, &meshes, &mut warnings)?;
+    let skins = skins::skins(&accessors, &skeleton, &mut warnings)?;
+    let instances = nodes::instances(root, &skeleton, &skins, &meshes)?;
+    let clips = animations::clips(&accessors, &skeleton, &mut warnings)?;
+    let (scenes, default_scene) = nodes::scenes(root, &skeleton)?;
+    let cameras = nodes::cameras(root, &skeleton)?;
+    let lights = nodes::lights(root, &skeleton, &mut warnings)?;
+    Ok(Asset {
+        format: if container.is_glb { "glb" } else { "gltf" },
+        generator: root.asset.generator.clone(),
+        skeleton,
+        scenes,
+        default_scene,
+        clips,
+        skins,
+        meshes,
+        instances,
+        materials,
+        textures,
+        images,
+        cameras,
+        lights,
+        extensions_used: root.extensions_used.clone(),
+        extensions_required: root.extensions_required.clone(),
+        warnings,
+    })
+}
+
+fn resolve_buffers<'a>(
+    files: &FileSet,
+    file: &str,
+    container: &Container<'a>,
+    root: &schema::Root,
+    warnings: &mut Warnings,
+) -> Result<Vec<Option<Bytes<'a>>>, Problem> {
+    let mut buffers = Vec::with_capacity(root.buffers.len());
+    for (index, buffer) in root.buffers.iter().enumerate() {
+        let place = format!("buffers[{index}]");
+        let bytes = match (&buffer.uri, container.binary) {
+            (Some(uri), _) if data::is_data_uri(uri) => Bytes::Owned(data::data_uri(&format!("{place}.uri"), uri)?),
+            (Some(uri), _) => match data::file(files, file, uri, warnings) {
+                Some(bytes) => Bytes::Shared(bytes),
+                None => {
+                    let uri = data::decode_uri(uri).into_owned();
+                    return Err(Problem::MissingFile { place: format!("{place}.uri"), uri });
+                }
+            },
+            (None, Some(binary)) if index == 0 => Bytes::Borrowed(binary),
+            (None, _) => {
+                buffers.push(None);
+                continue;
+            }
+        };
+        let found = bytes.as_slice().len();
+        if found < buffer.byte_length {
+            return Err(Problem::new(place, format!("{} bytes (byteLength)", buffer.byte_length), found));
+        }
+        buffers.push(Some(bytes));
+    }
+    Ok(buffers)
+}
