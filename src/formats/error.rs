@@ -3,13 +3,20 @@
 /// Everything that makes a set of files unreadable. The texts are what a person sees.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LoadError {
-    #[error("no model among the files ({}); Gaitway reads .glb, .gltf with its files, .vrm, or a .zip of these", listed(found))]
+    #[error(
+        "no model among the files ({}); Gaitway reads .glb, .gltf with its files, .vrm, or a .zip of these",
+        listed(found)
+    )]
     NoModel { found: Vec<String> },
     #[error("several models at once ({}); drop one of them with its own files", listed(found))]
     SeveralModels { found: Vec<String> },
-    #[error("{file}: {format} files cannot be read; open it in Blender (File → Import), then export glTF 2.0 (.glb) and drop that")]
+    #[error(
+        "{file}: {format} files cannot be read; open it in Blender (File → Import), then export glTF 2.0 (.glb) and drop that"
+    )]
     UnsupportedFormat { file: String, format: &'static str },
-    #[error("{file}: this is glTF {found}; Gaitway reads glTF 2.0. Convert it, for example by importing and exporting it again")]
+    #[error(
+        "{file}: this is glTF {found}; Gaitway reads glTF 2.0. Convert it, for example by importing and exporting it again"
+    )]
     UnsupportedVersion { file: String, found: String },
     #[error("{file}: needs the extension {name}, which is not supported; {advice}")]
     RequiredExtension { file: String, name: String, advice: &'static str },

@@ -86,7 +86,7 @@ fn unpack(file: &str, bytes: &[u8], budget: &mut u64, out: &mut FileSet) -> Resu
     }
     for index in 0..archive.len() {
         let entry = archive.by_index(index).map_err(|problem| error(format!("entry {index}: {problem}")))?;
-        let name = entry.name().to_string();
+        let name = entry.name().map_err(|problem| error(format!("entry {index}: {problem}")))?.into_owned();
         if entry.is_dir() || name.starts_with("__MACOSX/") || bare_name(&name).starts_with("._") {
             continue;
         }
@@ -95,9 +95,9 @@ fn unpack(file: &str, bytes: &[u8], budget: &mut u64, out: &mut FileSet) -> Resu
             .take(*budget + 1)
             .read_to_end(&mut content)
             .map_err(|problem| error(format!("“{name}” cannot be unpacked: {problem}")))?;
-        *budget = budget.checked_sub(content.len() as u64).ok_or_else(|| {
-            error(format!("unpacks to more than {} MiB, which is not read", MAX_ARCHIVE_BYTES >> 20))
-        })?;
+        *budget = budget
+            .checked_sub(content.len() as u64)
+            .ok_or_else(|| error(format!("unpacks to more than {} MiB, which is not read", MAX_ARCHIVE_BYTES >> 20)))?;
         out.insert(name, content);
     }
     Ok(())

@@ -7,6 +7,7 @@ mod material;
 mod palette;
 mod skin;
 mod skinning;
+mod tangents;
 
 pub use bounds::Bounds;
 pub use geometry::{Geometry, GeometryError, Influences, MAX_INFLUENCES, Mesh, MorphTarget, Topology};
@@ -14,3 +15,4 @@ pub use material::{AlphaMode, Filter, Material, MipFilter, Sampler, Texture, Tex
 pub use palette::{PaletteEntry, SkinningMode, palette_entry, write_palette};
 pub use skin::{Skin, SkinError};
 pub use skinning::{DeformedVertices, deform};
+pub use tangents::add_tangents;

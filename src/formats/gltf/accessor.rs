@@ -167,8 +167,9 @@ impl<'a> Accessors<'a> {
                     return Err(Problem::new(here(), format!("a byteStride of at least {size}"), stride));
                 }
                 let bytes = bytes.get(accessor.byte_offset..).unwrap_or(&[]);
-                check_range(bytes.len(), stride, size, accessor.count)
-                    .map_err(|needed| Problem::new(here(), format!("{needed} bytes in its buffer view"), bytes.len()))?;
+                check_range(bytes.len(), stride, size, accessor.count).map_err(|needed| {
+                    Problem::new(here(), format!("{needed} bytes in its buffer view"), bytes.len())
+                })?;
                 (Some(bytes), stride)
             }
         };
@@ -223,7 +224,9 @@ impl<'a> Accessors<'a> {
     pub fn finite<const N: usize>(&self, index: usize, place: &str, what: &str) -> Result<Vec<[f32; N]>, Problem> {
         let values = self.floats::<N>(index, place, what)?;
         match values.iter().position(|value| value.iter().any(|number| !number.is_finite())) {
-            Some(at) => Err(Problem::new(format!("{place}, element {at}"), "finite numbers", format!("{:?}", values[at]))),
+            Some(at) => {
+                Err(Problem::new(format!("{place}, element {at}"), "finite numbers", format!("{:?}", values[at])))
+            }
             None => Ok(values),
         }
     }

@@ -1,0 +1,37 @@
+//! Which extensions are understood, and what to say about the others.
+
+use super::schema;
+use crate::asset::{Warning, Warnings};
+use crate::formats::LoadError;
+
+const SUPPORTED: &[&str] = &[
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+    "KHR_materials_unlit",
+    "KHR_materials_emissive_strength",
+    "KHR_lights_punctual",
+    "EXT_texture_webp",
+];
+
+/// Refuses required extensions that are not supported; optional ones are warned about, once each.
+pub fn check(file: &str, root: &schema::Root, warnings: &mut Warnings) -> Result<(), LoadError> {
+    let unsupported = |name: &&String| !SUPPORTED.contains(&name.as_str());
+    if let Some(name) = root.extensions_required.iter().find(unsupported) {
+        return Err(LoadError::RequiredExtension { file: file.to_owned(), name: name.clone(), advice: advice(name) });
+    }
+    for name in root.extensions_used.iter().filter(unsupported) {
+        warnings.push(Warning::UnsupportedExtension { name: name.clone() });
+    }
+    Ok(())
+}
+
+fn advice(name: &str) -> &'static str {
+    match name {
+        "KHR_draco_mesh_compression" | "EXT_meshopt_compression" | "KHR_meshopt_compression" => {
+            "save the model without mesh compression (in Blender's glTF export, switch Compression off; \
+             or run `gltf-transform copy` on it)"
+        }
+        "KHR_texture_basisu" => "convert its KTX2 textures to PNG, JPEG or WebP",
+        _ => "export the model without it",
+    }
+}

@@ -1,0 +1,80 @@
+//! Images stay encoded; only their headers are read, so that absurd sizes are refused before anything is decoded. An
+//! image that cannot be had costs its texture, not the model.
+
+use std::sync::Arc;
+
+use imagesize::ImageType;
+
+use super::accessor::Accessors;
+use super::data;
+use crate::asset::{Image, Warning, Warnings};
+use crate::formats::FileSet;
+use crate::formats::error::Problem;
+
+const MAX_SIDE_PIXELS: usize = 16_384;
+/// Of all images of a file together.
+const MAX_PIXELS: usize = 256 << 20;
+
+pub fn images(
+    files: &FileSet,
+    file: &str,
+    accessors: &Accessors,
+    warnings: &mut Warnings,
+) -> Result<Vec<Image>, Problem> {
+    let mut budget = MAX_PIXELS;
+    let mut images = Vec::with_capacity(accessors.root.images.len());
+    for (index, image) in accessors.root.images.iter().enumerate() {
+        let place = format!("images[{index}]");
+        let bytes: Option<Arc<[u8]>> = match (&image.uri, image.buffer_view) {
+            (Some(uri), _) if data::is_data_uri(uri) => Some(data::data_uri(&place, uri)?.into()),
+            (Some(uri), _) => {
+                let found = data::file(files, file, uri, warnings);
+                if found.is_none() {
+                    warnings.push(Warning::ImageMissing { uri: data::decode_uri(uri).into_owned() });
+                }
+                found
+            }
+            (None, Some(view)) => Some(accessors.view(view, &format!("{place}.bufferView"))?.0.into()),
+            (None, None) => {
+                let problem = "it has neither a URI nor a buffer view".to_owned();
+                warnings.push(Warning::ImageUnreadable { image: place.clone(), problem });
+                None
+            }
+        };
+        let name = match (image.name.as_str(), &image.uri) {
+            ("", Some(uri)) if !data::is_data_uri(uri) => data::decode_uri(uri).into_owned(),
+            (name, _) => name.to_owned(),
+        };
+        // An image without bytes keeps its place, so that indices stay as they are in the file.
+        let missing = Image { name: name.clone(), mime: "", bytes: Arc::from([]), width: 0, height: 0 };
+        images.push(match bytes {
+            None => missing,
+            Some(bytes) => match header(&bytes, &mut budget) {
+                Ok((mime, width, height)) => Image { name, mime, bytes, width, height },
+                Err(problem) => {
+                    warnings.push(Warning::ImageUnreadable { image: place, problem });
+                    missing
+                }
+            },
+        });
+    }
+    Ok(images)
+}
+
+/// Kind by content (the file's own word for it is often wrong), and size.
+fn header(bytes: &[u8], budget: &mut usize) -> Result<(&'static str, u32, u32), String> {
+    let mime = match imagesize::image_type(bytes) {
+        Ok(ImageType::Png) => "image/png",
+        Ok(ImageType::Jpeg) => "image/jpeg",
+        Ok(ImageType::Webp) => "image/webp",
+        _ if bytes.starts_with(b"\xABKTX 20") => return Err("KTX2 textures are not supported".to_owned()),
+        _ => return Err("it is not PNG, JPEG or WebP".to_owned()),
+    };
+    let size = imagesize::blob_size(bytes).map_err(|problem| problem.to_string())?;
+    let pixels = size.width.checked_mul(size.height).unwrap_or(usize::MAX);
+    if pixels == 0 || size.width.max(size.height) > MAX_SIDE_PIXELS || pixels > *budget {
+        return Err(format!("{} × {} pixels is not a size that is read", size.width, size.height));
+    }
+    *budget -= pixels;
+    Ok((mime, size.width as u32, size.height as u32))
+}

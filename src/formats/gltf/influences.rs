@@ -1,0 +1,72 @@
+//! JOINTS_n and WEIGHTS_n of a primitive, merged into one list per vertex, strongest first (§3.7.3.3).
+
+use crate::asset::{Warning, Warnings};
+use crate::mesh::{Influences, MAX_INFLUENCES};
+
+/// Sums further off 1 than this are worth a word; smaller errors are rounding.
+const SUM_TOLERANCE: f32 = 1e-3;
+
+/// One JOINTS_n with its WEIGHTS_n.
+pub struct InfluenceSet {
+    pub joints: Vec<[u32; 4]>,
+    pub weights: Vec<[f32; 4]>,
+}
+
+pub fn merge(mesh: &str, vertices: usize, sets: &[InfluenceSet], warnings: &mut Warnings) -> Influences {
+    if sets.is_empty() {
+        return Influences::default();
+    }
+    let of_vertex = |vertex: usize, pairs: &mut Vec<(u16, f32)>| {
+        pairs.clear();
+        for set in sets {
+            for (&joint, &weight) in set.joints[vertex].iter().zip(&set.weights[vertex]) {
+                if weight > 0.0 && weight.is_finite() {
+                    pairs.push((joint.min(u32::from(u16::MAX)) as u16, weight));
+                }
+            }
+        }
+        // Stable: of equal weights, the one that comes first in the file stays first.
+        pairs.sort_by(|a, b| b.1.total_cmp(&a.1));
+    };
+    let mut pairs = Vec::with_capacity(4 * sets.len());
+    let mut most = 1;
+    for vertex in 0..vertices {
+        of_vertex(vertex, &mut pairs);
+        most = most.max(pairs.len());
+    }
+    let stride = most.min(MAX_INFLUENCES).next_multiple_of(4);
+    let mut influences =
+        Influences { stride, joints: vec![0; stride * vertices], weights: vec![0.0; stride * vertices] };
+    let (mut normalized, mut missing, mut largest_lost_weight) = (0, 0, 0.0_f32);
+    for vertex in 0..vertices {
+        of_vertex(vertex, &mut pairs);
+        let total: f32 = pairs.iter().map(|pair| pair.1).sum();
+        if pairs.is_empty() {
+            missing += 1;
+            pairs.push((0, 1.0));
+        } else if (total - 1.0).abs() > SUM_TOLERANCE {
+            normalized += 1;
+        }
+        for lost in pairs.iter().skip(MAX_INFLUENCES) {
+            largest_lost_weight = largest_lost_weight.max(lost.1 / total);
+        }
+        pairs.truncate(MAX_INFLUENCES);
+        let kept: f32 = pairs.iter().map(|pair| pair.1).sum();
+        for (at, &(joint, weight)) in pairs.iter().enumerate() {
+            influences.joints[vertex * stride + at] = joint;
+            influences.weights[vertex * stride + at] = weight / kept;
+        }
+    }
+    let mesh = mesh.to_owned();
+    if most > MAX_INFLUENCES {
+        let (found, kept) = (most, MAX_INFLUENCES);
+        warnings.push(Warning::InfluencesDropped { mesh: mesh.clone(), found, kept, largest_lost_weight });
+    }
+    if missing > 0 {
+        warnings.push(Warning::WeightsMissing { mesh: mesh.clone(), vertices: missing });
+    }
+    if normalized > 0 {
+        warnings.push(Warning::WeightsNormalized { mesh, vertices: normalized });
+    }
+    influences
+}

@@ -1,0 +1,216 @@
+//! Nodes, scenes and what hangs on nodes (§3.5, §3.10).
+
+use glam::{Mat4, Quat, Vec3};
+
+use super::accessor::get;
+use super::materials::extension;
+use super::schema;
+use crate::anim::{Joint, Skeleton, SkeletonError, Transform};
+use crate::asset::{Camera, CameraProjection, Light, LightKind, MeshInstance, Scene, Warning, Warnings};
+use crate::formats::error::Problem;
+use crate::mesh::{Influences, Mesh, Skin};
+
+/// All nodes as one skeleton; its source indices are the file's node indices.
+pub fn skeleton(root: &schema::Root, meshes: &[Mesh], warnings: &mut Warnings) -> Result<Skeleton, Problem> {
+    let mut joints: Vec<Joint> = Vec::with_capacity(root.nodes.len());
+    for (index, node) in root.nodes.iter().enumerate() {
+        let place = format!("nodes[{index}]");
+        let morph_weights = match node.mesh {
+            None => Vec::new(),
+            Some(mesh) => rest_weights(root, meshes, node, mesh, &place)?,
+        };
+        joints.push(Joint {
+            name: node.name.clone(),
+            parent: None,
+            rest: rest(node, &place, warnings)?,
+            morph_weights,
+        });
+    }
+    for (index, node) in root.nodes.iter().enumerate() {
+        for (at, &child) in node.children.iter().enumerate() {
+            let place = format!("nodes[{index}].children[{at}]");
+            get(&root.nodes, child, &place, "nodes")?;
+            if let Some(parent) = joints[child].parent.replace(index) {
+                let found = format!("node {child}, which is a child of node {parent} already");
+                return Err(Problem::new(place, "a node without another parent", found));
+            }
+        }
+    }
+    Skeleton::new(joints).map_err(|problem| {
+        let place = match problem {
+            SkeletonError::Cycle { joint } | SkeletonError::ParentOutOfRange { joint, .. } => format!("nodes[{joint}]"),
+        };
+        Problem::new(place, "a tree of nodes", problem)
+    })
+}
+
+fn rest_weights(
+    root: &schema::Root,
+    meshes: &[Mesh],
+    node: &schema::Node,
+    mesh: usize,
+    place: &str,
+) -> Result<Vec<f32>, Problem> {
+    let targets = get(meshes, mesh, &format!("{place}.mesh"), "meshes")?.target_names.len();
+    match &node.weights {
+        Some(weights) if weights.len() != targets => {
+            Err(Problem::new(format!("{place}.weights"), format!("{targets} weights"), weights.len()))
+        }
+        Some(weights) => Ok(weights.clone()),
+        None if root.meshes[mesh].weights.is_empty() => Ok(vec![0.0; targets]),
+        None => Ok(root.meshes[mesh].weights.clone()),
+    }
+}
+
+fn rest(node: &schema::Node, place: &str, warnings: &mut Warnings) -> Result<Transform, Problem> {
+    let transform = match node.matrix {
+        Some(columns) => {
+            let matrix = Mat4::from_cols_array(&columns);
+            let transform = Transform::from_matrix(&matrix);
+            let again = Mat4::from(transform.to_affine());
+            let size = columns.iter().fold(1.0_f32, |most, number| most.max(number.abs()));
+            if matrix.is_finite() && !matrix.abs_diff_eq(again, 1e-4 * size) {
+                warnings.push(Warning::MatrixNotDecomposable { node: place.to_owned() });
+            }
+            transform
+        }
+        None => {
+            let rotation = node.rotation.map_or(Quat::IDENTITY, Quat::from_array);
+            let rotation = if rotation.length_squared() > 0.0 { rotation.normalize() } else { Quat::IDENTITY };
+            Transform {
+                translation: node.translation.map_or(Vec3::ZERO, Vec3::from),
+                rotation,
+                scale: node.scale.map_or(Vec3::ONE, Vec3::from),
+            }
+        }
+    };
+    if transform.is_finite() {
+        Ok(transform)
+    } else {
+        Err(Problem::new(place, "a transform of finite numbers", format!("{transform:?}")))
+    }
+}
+
+/// Which mesh hangs where. Influences are checked against every skin they are used with; a mesh that is used without a
+/// skin keeps its influences, which are then not read.
+pub fn instances(
+    root: &schema::Root,
+    skeleton: &Skeleton,
+    skins: &[Skin],
+    meshes: &[Mesh],
+) -> Result<Vec<MeshInstance>, Problem> {
+    let mut instances = Vec::new();
+    for (index, node) in root.nodes.iter().enumerate() {
+        let (Some(mesh), Some(joint)) = (node.mesh, skeleton.joint_of_source(index)) else { continue };
+        if let Some(skin) = node.skin {
+            let joints = get(skins, skin, &format!("nodes[{index}].skin"), "skins")?.joints().len();
+            for (at, geometry) in meshes[mesh].primitives.iter().enumerate() {
+                let place = format!("meshes[{mesh}].primitives[{at}].attributes.JOINTS_n");
+                check_influences(&geometry.influences, joints, &place)?;
+            }
+        }
+        instances.push(MeshInstance { joint, mesh, skin: node.skin });
+    }
+    Ok(instances)
+}
+
+fn check_influences(influences: &Influences, joints: usize, place: &str) -> Result<(), Problem> {
+    match influences.joints.iter().position(|&joint| joint as usize >= joints) {
+        None => Ok(()),
+        Some(at) => Err(Problem::new(
+            format!("{place}, vertex {}", at / influences.stride),
+            format!("a joint below {joints}, the size of the skin"),
+            influences.joints[at],
+        )),
+    }
+}
+
+pub fn scenes(root: &schema::Root, skeleton: &Skeleton) -> Result<(Vec<Scene>, Option<usize>), Problem> {
+    let mut scenes = Vec::with_capacity(root.scenes.len());
+    for (index, scene) in root.scenes.iter().enumerate() {
+        let mut roots = Vec::with_capacity(scene.nodes.len());
+        for (at, &node) in scene.nodes.iter().enumerate() {
+            get(&root.nodes, node, &format!("scenes[{index}].nodes[{at}]"), "nodes")?;
+            roots.extend(skeleton.joint_of_source(node));
+        }
+        scenes.push(Scene { name: scene.name.clone(), roots });
+    }
+    if let Some(scene) = root.scene {
+        get(&root.scenes, scene, "scene", "scenes")?;
+    }
+    let default_scene = root.scene.or(if scenes.is_empty() { None } else { Some(0) });
+    Ok((scenes, default_scene))
+}
+
+pub fn cameras(root: &schema::Root, skeleton: &Skeleton) -> Result<Vec<Camera>, Problem> {
+    let mut cameras = Vec::new();
+    for (index, node) in root.nodes.iter().enumerate() {
+        let (Some(camera), Some(joint)) = (node.camera, skeleton.joint_of_source(index)) else { continue };
+        let place = format!("nodes[{index}].camera");
+        let camera = get(&root.cameras, camera, &place, "cameras")?;
+        let projection = match (&camera.perspective, &camera.orthographic) {
+            (Some(lens), _) => CameraProjection::Perspective {
+                y_fov_radians: lens.yfov,
+                aspect: lens.aspect_ratio,
+                near: lens.znear,
+                far: lens.zfar,
+            },
+            (None, Some(lens)) => {
+                CameraProjection::Orthographic { x_mag: lens.xmag, y_mag: lens.ymag, near: lens.znear, far: lens.zfar }
+            }
+            (None, None) => return Err(Problem::new(place, "a perspective or orthographic camera", "neither")),
+        };
+        let name = if camera.name.is_empty() { node.name.clone() } else { camera.name.clone() };
+        cameras.push(Camera { name, joint, projection });
+    }
+    Ok(cameras)
+}
+
+/// KHR_lights_punctual.
+pub fn lights(root: &schema::Root, skeleton: &Skeleton, warnings: &mut Warnings) -> Result<Vec<Light>, Problem> {
+    const NAME: &str = "KHR_lights_punctual";
+    #[derive(serde::Deserialize, Default)]
+    struct List {
+        #[serde(default)]
+        lights: Vec<schema::Light>,
+    }
+    #[derive(serde::Deserialize)]
+    struct Use {
+        light: usize,
+    }
+    let list: List = extension(&root.extensions, NAME, "glTF")?.unwrap_or_default();
+    let mut lights = Vec::new();
+    for (index, node) in root.nodes.iter().enumerate() {
+        let place = format!("nodes[{index}]");
+        let Some(used) = extension::<Use>(&node.extensions, NAME, &place)? else { continue };
+        let light = get(&list.lights, used.light, &format!("{place}.extensions.{NAME}.light"), "lights")?;
+        let Some(joint) = skeleton.joint_of_source(index) else { continue };
+        let kind = match light.kind.as_str() {
+            "directional" => LightKind::Directional,
+            "point" => LightKind::Point,
+            "spot" => {
+                let spot = light.spot.as_ref();
+                LightKind::Spot {
+                    inner_cone_radians: spot.and_then(|spot| spot.inner_cone_angle).unwrap_or(0.0),
+                    outer_cone_radians: spot
+                        .and_then(|spot| spot.outer_cone_angle)
+                        .unwrap_or(std::f32::consts::FRAC_PI_4),
+                }
+            }
+            other => {
+                let problem = format!("light type “{other}” is not known; the light is left out");
+                warnings.push(Warning::Other { code: "light-type", place, problem });
+                continue;
+            }
+        };
+        lights.push(Light {
+            name: light.name.clone(),
+            joint,
+            color: light.color.map_or(Vec3::ONE, Vec3::from),
+            intensity: light.intensity.unwrap_or(1.0),
+            range: light.range,
+            kind,
+        });
+    }
+    Ok(lights)
+}

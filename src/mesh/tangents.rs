@@ -1,0 +1,111 @@
+//! Tangents by MikkTSpace, the algorithm that glTF 2.0 §3.7.2.1 names for meshes that bring none.
+
+use glam::Vec4;
+
+use super::Geometry;
+
+struct Corners<'a> {
+    geometry: &'a Geometry,
+    uv_set: usize,
+    tangents: Vec<Vec4>,
+}
+
+impl Corners<'_> {
+    fn vertex(&self, face: usize, corner: usize) -> usize {
+        self.geometry.indices[3 * face + corner] as usize
+    }
+}
+
+impl bevy_mikktspace::Geometry for Corners<'_> {
+    fn num_faces(&self) -> usize {
+        self.geometry.indices.len() / 3
+    }
+
+    fn num_vertices_of_face(&self, _face: usize) -> usize {
+        3
+    }
+
+    fn position(&self, face: usize, corner: usize) -> [f32; 3] {
+        self.geometry.positions[self.vertex(face, corner)].into()
+    }
+
+    fn normal(&self, face: usize, corner: usize) -> [f32; 3] {
+        self.geometry.normals[self.vertex(face, corner)].into()
+    }
+
+    fn tex_coord(&self, face: usize, corner: usize) -> [f32; 2] {
+        self.geometry.uvs[self.uv_set][self.vertex(face, corner)].into()
+    }
+
+    fn set_tangent(&mut self, tangent: Option<bevy_mikktspace::TangentSpace>, face: usize, corner: usize) {
+        if let Some(tangent) = tangent {
+            let [x, y, z, sign] = tangent.tangent_encoded();
+            // MikkTSpace's V points up, glTF's down.
+            self.tangents[3 * face + corner] = Vec4::new(x, y, z, -sign);
+        }
+    }
+}
+
+/// Adds tangents to a triangle list with normals and the given texture coordinates; without these nothing happens.
+/// Where the corners at one vertex want different tangents, the vertex is copied; copies come last, so the first
+/// `file_vertices` stay as they are.
+pub fn add_tangents(geometry: &mut Geometry, uv_set: usize) {
+    if geometry.normals.is_empty() || geometry.uvs.get(uv_set).is_none_or(Vec::is_empty) {
+        return;
+    }
+    let corners = geometry.indices.len();
+    let mut interface = Corners { geometry, uv_set, tangents: vec![Vec4::new(1.0, 0.0, 0.0, 1.0); corners] };
+    if bevy_mikktspace::generate_tangents(&mut interface).is_err() {
+        return;
+    }
+    let corner_tangents = interface.tangents;
+    let mut tangents: Vec<Option<Vec4>> = vec![None; geometry.positions.len()];
+    // Copies of a vertex already made, as a chain through this list: there are few of them.
+    let mut copies: Vec<(u32, u32)> = Vec::new();
+    let mut copies_of: std::collections::BTreeMap<u32, Vec<u32>> = std::collections::BTreeMap::new();
+    for (corner, tangent) in corner_tangents.into_iter().enumerate() {
+        let vertex = geometry.indices[corner];
+        let same = |other: Vec4| other.distance_squared(tangent) < 1e-6;
+        match tangents[vertex as usize] {
+            None => tangents[vertex as usize] = Some(tangent),
+            Some(other) if same(other) => {}
+            Some(_) => {
+                let made = copies_of.entry(vertex).or_default();
+                let found = made.iter().copied().find(|&copy| tangents[copy as usize].is_some_and(same));
+                let copy = found.unwrap_or_else(|| {
+                    let copy = tangents.len() as u32;
+                    made.push(copy);
+                    copies.push((vertex, copy));
+                    tangents.push(Some(tangent));
+                    copy
+                });
+                geometry.indices[corner] = copy;
+            }
+        }
+    }
+    for (vertex, _) in copies {
+        copy_vertex(geometry, vertex as usize);
+    }
+    geometry.tangents = tangents.into_iter().map(|tangent| tangent.unwrap_or(Vec4::new(1.0, 0.0, 0.0, 1.0))).collect();
+}
+
+fn copy_vertex(geometry: &mut Geometry, vertex: usize) {
+    fn again<T: Copy>(list: &mut Vec<T>, at: usize) {
+        if let Some(&value) = list.get(at) {
+            list.push(value);
+        }
+    }
+    again(&mut geometry.positions, vertex);
+    again(&mut geometry.normals, vertex);
+    again(&mut geometry.uvs[0], vertex);
+    again(&mut geometry.uvs[1], vertex);
+    again(&mut geometry.colors, vertex);
+    let stride = geometry.influences.stride;
+    geometry.influences.joints.extend_from_within(vertex * stride..(vertex + 1) * stride);
+    geometry.influences.weights.extend_from_within(vertex * stride..(vertex + 1) * stride);
+    for target in &mut geometry.morph_targets {
+        again(&mut target.positions, vertex);
+        again(&mut target.normals, vertex);
+        again(&mut target.tangents, vertex);
+    }
+}
