@@ -3,6 +3,7 @@
 mod clip;
 mod playback;
 mod pose;
+mod sampler;
 mod skeleton;
 mod transform;
 

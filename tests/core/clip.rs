@@ -55,10 +55,11 @@ fn refuses_keys_that_do_not_match_the_times() {
     let targets = |found| ChannelError::MorphTargetCount { expected: 2, found };
     check_error(0, Linear, &[0.0], weights(3, 3), targets(3));
     check_error(0, Linear, &[0.0], weights(1, 1), targets(1));
-    check_error(0, Linear, &[0.0, 1.0], weights(2, 2), count(2, 2, 1));
+    check_error(0, Linear, &[0.0, 1.0], weights(2, 2), count(2, 4, 2));
+    check_error(0, CubicSpline, &[0.0], weights(2, 2), count(1, 6, 2));
     // A last entry that lacks a weight is no entry; nor may there be weights left over.
-    check_error(0, Linear, &[0.0, 1.0], weights(3, 2), count(2, 2, 1));
-    check_error(0, Linear, &[0.0], weights(3, 2), count(1, 1, 2));
+    check_error(0, Linear, &[0.0, 1.0], weights(3, 2), count(2, 4, 3));
+    check_error(0, Linear, &[0.0], weights(3, 2), count(1, 2, 3));
 }
 
 #[test]
