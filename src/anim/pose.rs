@@ -29,9 +29,9 @@ pub fn model_from_joint(
     out: &mut Vec<Affine3A>,
 ) {
     debug_assert_eq!(skeleton.len(), locals.len());
-    out.clear();
-    for (local, parent) in locals.iter().zip(skeleton.parents()) {
+    out.resize(skeleton.len(), Affine3A::IDENTITY);
+    for (joint, (local, parent)) in locals.iter().zip(skeleton.parents()).enumerate() {
         let model_from_parent = parent.map_or(world_from_model, |parent| out[parent.get()]);
-        out.push(model_from_parent * local.to_affine());
+        out[joint] = local.below(&model_from_parent);
     }
 }

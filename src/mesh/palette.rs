@@ -68,10 +68,27 @@ fn rotation_of(matrix: Mat3) -> Quat {
 
 /// Palette of one skin: `world_from_joint` has one entry per joint of the skeleton; one entry per skin joint is appended.
 pub fn write_palette(skin: &Skin, world_from_joint: &[Affine3A], mode: SkinningMode, out: &mut Vec<PaletteEntry>) {
-    out.extend(
-        skin.joints()
-            .iter()
-            .zip(skin.joint_from_bind())
-            .map(|(joint, joint_from_bind)| palette_entry(&(world_from_joint[joint.get()] * *joint_from_bind), mode)),
-    );
+    match mode {
+        SkinningMode::Linear | SkinningMode::Rigid => {
+            let joints = skin.joints().iter().zip(skin.joint_from_bind_rows());
+            out.extend(joints.map(|(joint, rows)| linear_entry(&world_from_joint[joint.get()], rows)));
+        }
+        SkinningMode::DualQuaternion => {
+            let joints = skin.joints().iter().zip(skin.joint_from_bind());
+            out.extend(joints.map(|(joint, joint_from_bind)| {
+                palette_entry(&(world_from_joint[joint.get()] * *joint_from_bind), mode)
+            }));
+        }
+    }
+}
+
+/// The product of a matrix and one given by its rows, in rows: no transposition.
+#[inline]
+fn linear_entry(world_from_joint: &Affine3A, [x, y, z]: &[Vec4; 3]) -> PaletteEntry {
+    let Affine3A { matrix3, translation } = world_from_joint;
+    let row = |a: f32, b: f32, c: f32, d: f32| {
+        Vec4::splat(a) * *x + Vec4::splat(b) * *y + Vec4::splat(c) * *z + Vec4::splat(d) * Vec4::W
+    };
+    let (a, b, c, d) = (matrix3.x_axis, matrix3.y_axis, matrix3.z_axis, *translation);
+    [row(a.x, b.x, c.x, d.x), row(a.y, b.y, c.y, d.y), row(a.z, b.z, c.z, d.z), Vec4::ZERO, Vec4::ZERO]
 }

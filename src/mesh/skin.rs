@@ -1,6 +1,6 @@
 //! Skins: which joints bend a mesh, and where each was when the mesh was bound to it.
 
-use glam::Affine3A;
+use glam::{Affine3A, Mat4, Vec4};
 
 use crate::anim::JointIndex;
 
@@ -10,6 +10,8 @@ pub struct Skin {
     name: String,
     joints: Vec<JointIndex>,
     joint_from_bind: Vec<Affine3A>,
+    /// The rows of the same matrices, four numbers each, as the palette wants them.
+    joint_from_bind_rows: Vec<[Vec4; 3]>,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -49,7 +51,12 @@ impl Skin {
         if let Some(joint) = joint_from_bind.iter().position(|matrix| !matrix.is_finite()) {
             return Err(SkinError::NotFinite { joint });
         }
-        Ok(Self { name, joints, joint_from_bind })
+        let rows = |matrix: &Affine3A| {
+            let rows = Mat4::from(*matrix).transpose();
+            [rows.x_axis, rows.y_axis, rows.z_axis]
+        };
+        let joint_from_bind_rows = joint_from_bind.iter().map(rows).collect();
+        Ok(Self { name, joints, joint_from_bind, joint_from_bind_rows })
     }
 
     pub fn name(&self) -> &str {
@@ -62,5 +69,9 @@ impl Skin {
 
     pub fn joint_from_bind(&self) -> &[Affine3A] {
         &self.joint_from_bind
+    }
+
+    pub(super) fn joint_from_bind_rows(&self) -> &[[Vec4; 3]] {
+        &self.joint_from_bind_rows
     }
 }

@@ -38,7 +38,8 @@ pub fn deform(
                 *normal += weight * delta;
             }
         }
-        let blend = if geometry.influences.is_empty() {
+        // One entry serves all vertices: a mesh with joint attributes may hang on a node without a skin.
+        let blend = if geometry.influences.is_empty() || palette.len() == 1 {
             Blend::single(&palette[0], mode)
         } else if mode == SkinningMode::Rigid {
             let joint = geometry.influences.joints[vertex * geometry.influences.stride];

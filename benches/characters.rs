@@ -1,0 +1,114 @@
+//! One character-frame: sampling a clip, local to model space, skin palette. For 1, 100 and 1,000 characters, each at its
+//! own phase, playing forward at 60 frames per second.
+
+mod support;
+
+use std::f32::consts::TAU;
+use std::hint::black_box;
+
+use gaitway::anim::{
+    Clip, ClipBuilder, Interpolation, Joint, Keys, Pose, SampleCursor, Skeleton, Transform, model_from_joint,
+};
+use gaitway::mesh::{PaletteEntry, Skin, SkinningMode, write_palette};
+use glam::{Affine3A, Quat, Vec3};
+use support::measure;
+
+struct Character {
+    time_secs: f32,
+    cursor: SampleCursor,
+}
+
+struct Rig {
+    skeleton: Skeleton,
+    skin: Skin,
+    clip: Clip,
+}
+
+fn main() {
+    let rig = walker();
+    println!("{:40} {:>10} {:>12} {:>10} {:>10}", "", "characters", "µs/character", "ns/joint", "(fastest)");
+    for count in [1, 100, 1000] {
+        print("made in code: 67 joints, 30 keys, T R S", &rig, count, Part::All);
+    }
+    print("  sampling alone", &rig, 100, Part::Sample);
+    print("  local to model space alone", &rig, 100, Part::Model);
+    print("  palette alone", &rig, 100, Part::Palette);
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Part {
+    All,
+    Sample,
+    Model,
+    Palette,
+}
+
+fn print(name: &str, rig: &Rig, count: usize, part: Part) {
+    let length = rig.clip.duration_secs();
+    let mut characters: Vec<Character> = (0..count)
+        .map(|at| Character { time_secs: length * at as f32 / count as f32, cursor: SampleCursor::default() })
+        .collect();
+    let mut pose: Pose = rig.skeleton.rest().clone();
+    let mut world: Vec<Affine3A> = vec![Affine3A::IDENTITY; rig.skeleton.len()];
+    let mut palette: Vec<PaletteEntry> = Vec::new();
+    let nanos = measure(|| {
+        palette.clear();
+        for character in &mut characters {
+            character.time_secs += 1.0 / 60.0;
+            if character.time_secs > length {
+                character.time_secs -= length;
+            }
+            if part == Part::All || part == Part::Sample {
+                pose.copy_from(rig.skeleton.rest());
+                rig.clip.sample(&rig.skeleton, character.time_secs, &mut character.cursor, &mut pose);
+            }
+            if part == Part::All || part == Part::Model {
+                model_from_joint(&rig.skeleton, &black_box(&pose).locals, Affine3A::IDENTITY, &mut world);
+            }
+            if part == Part::All || part == Part::Palette {
+                write_palette(&rig.skin, black_box(&world), SkinningMode::Linear, &mut palette);
+            }
+        }
+        black_box((&pose, &world, &palette));
+    });
+    let joints = (count * rig.skin.joints().len()) as f64;
+    println!(
+        "{name:40} {count:>10} {:>12.3} {:>10.1} {:>10.1}",
+        nanos.median / count as f64 / 1000.0,
+        nanos.median / joints,
+        nanos.fastest / joints
+    );
+}
+
+/// As many joints, keys and channels as a common character's walk has: translation, rotation and scale on every joint,
+/// none of them quite still.
+fn walker() -> Rig {
+    const JOINTS: usize = 67;
+    const KEYS: usize = 30;
+    let joints = (0..JOINTS)
+        .map(|at| Joint {
+            name: format!("joint {at}"),
+            // Four chains from the hips, some of them forked: hands.
+            parent: at.checked_sub(if at % 15 == 1 { at } else { 1 }),
+            rest: Transform::from_translation(Vec3::Y * 0.1),
+            morph_weights: Vec::new(),
+        })
+        .collect();
+    let skeleton = Skeleton::new(joints).expect("the parents are there");
+    let times: Vec<f32> = (0..KEYS).map(|key| key as f32 / 30.0).collect();
+    let phases = || times.iter().map(|time| TAU * time);
+    let mut builder = ClipBuilder::new("walk", &skeleton);
+    for joint in skeleton.joints() {
+        let at = joint.get() as f32;
+        let translations = phases().map(|phase| Vec3::new(0.0, 0.1, 1e-6 * (phase + at).sin())).collect();
+        let rotations = phases().map(|phase| Quat::from_rotation_x(0.4 * (phase + at).sin())).collect();
+        let scales = phases().map(|phase| Vec3::ONE + 1e-6 * (phase + at).cos()).collect();
+        for keys in [Keys::Translation(translations), Keys::Rotation(rotations), Keys::Scale(scales)] {
+            builder.channel(joint, Interpolation::Linear, &times, keys).expect("the keys match the times");
+        }
+    }
+    let clip = builder.build();
+    let bind = vec![Affine3A::from_translation(Vec3::Y); JOINTS];
+    let skin = Skin::new("skin".into(), skeleton.joints().collect(), bind, JOINTS).expect("the joints are there");
+    Rig { skeleton, skin, clip }
+}

@@ -1,0 +1,45 @@
+//! Timing for the benches: many short rounds. No statistics beyond that; compare figures of one run on one machine, the
+//! fastest rounds on a busy one.
+
+use std::time::{Duration, Instant};
+
+const ROUNDS: usize = 41;
+const ROUND: Duration = Duration::from_millis(12);
+
+/// Nanoseconds that one call took.
+pub struct Nanos {
+    pub median: f64,
+    pub fastest: f64,
+}
+
+/// Runs `work` often. `cargo test --benches` and the like pass
+/// `--test`: then it runs once, to see that it works.
+pub fn measure(mut work: impl FnMut()) -> Nanos {
+    let once = Instant::now();
+    work();
+    if std::env::args().any(|argument| argument == "--test") {
+        let nanos = once.elapsed().as_secs_f64() * 1e9;
+        return Nanos { median: nanos, fastest: nanos };
+    }
+    let mut calls = 1_u32;
+    loop {
+        let start = Instant::now();
+        (0..calls).for_each(|_| work());
+        let spent = start.elapsed();
+        if spent >= ROUND {
+            break;
+        }
+        calls =
+            (f64::from(calls) * (ROUND.as_secs_f64() / spent.as_secs_f64().max(1e-9)).clamp(1.2, 50.0)).ceil() as u32;
+    }
+    // What takes long by itself is not repeated as often.
+    let start = Instant::now();
+    let mut nanos = Vec::new();
+    while nanos.len() < ROUNDS && (nanos.len() < 5 || start.elapsed() < Duration::from_secs(2)) {
+        let start = Instant::now();
+        (0..calls).for_each(|_| work());
+        nanos.push(start.elapsed().as_secs_f64() * 1e9 / f64::from(calls));
+    }
+    nanos.sort_by(f64::total_cmp);
+    Nanos { median: nanos[nanos.len() / 2], fastest: nanos[0] }
+}
