@@ -16,10 +16,20 @@ export const dataFolder = (() => {
 export const skipWithoutData =
   dataFolder === null && process.env.GAITWAY_REQUIRE_DATA !== "1" ? "skipped: no test data folder (GAITWAY_DATA)" : false;
 
-/** Extensions whose geometry or animation nobody can read from the core specification alone. */
-const COMPRESSION = ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression", "KHR_texture_basisu"];
+/** What a reader of the core specification also reads; anything else that a file requires is refused. */
+const SUPPORTED = [
+  "EXT_texture_webp",
+  "KHR_lights_punctual",
+  "KHR_materials_emissive_strength",
+  "KHR_materials_unlit",
+  "KHR_mesh_quantization",
+  "KHR_texture_transform",
+];
 
-/** Every glTF of the folder as `{name, file, json, refused}`, names relative and sorted; `refused` is the required extension no reader of the core has. */
+/**
+ * Every glTF of the folder as `{name, file, refused}`, names relative and sorted; `refused` is null, or the version or
+ * extension that the file requires and that is not supported.
+ */
 export function gltfFiles() {
   if (dataFolder === null) throw new Error("GAITWAY_REQUIRE_DATA=1, but there is no test data folder");
   const files = fs
@@ -30,9 +40,9 @@ export function gltfFiles() {
     .sort();
   return files.map((name) => {
     const file = path.join(dataFolder, name);
-    const json = readGltf(file).json;
-    const refused = (json.extensionsRequired ?? []).find((extension) => COMPRESSION.includes(extension)) ?? null;
-    return { name, file, json, refused };
+    const { asset, extensionsRequired = [] } = readGltf(file).json;
+    const newer = asset.minVersion > "2.0" ? asset.minVersion : undefined;
+    return { name, file, refused: newer ?? extensionsRequired.find((extension) => !SUPPORTED.includes(extension)) ?? null };
   });
 }
 

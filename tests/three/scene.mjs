@@ -33,8 +33,10 @@ function documentOf(file) {
   return json;
 }
 
-export async function loadScene(file) {
+/** `repair`, if given, may mend what GLTFLoader made. */
+export async function loadScene(file, repair = () => {}) {
   const gltf = await new GLTFLoader().parseAsync(documentOf(file), "");
+  repair(gltf);
   const mixer = new THREE.AnimationMixer(gltf.scene);
   const associations = gltf.parser.associations;
 
