@@ -1,9 +1,9 @@
 // Light that reaches a surface: the studio environment, the key light with its shadow, the file's own lights.
 
-@group(3) @binding(0) var environment: texture_cube<f32>;
-@group(3) @binding(1) var environment_sampler: sampler;
-@group(3) @binding(2) var shadow_map: texture_depth_2d;
-@group(3) @binding(3) var shadow_sampler: sampler_comparison;
+@group(1) @binding(0) var environment: texture_cube<f32>;
+@group(1) @binding(1) var environment_sampler: sampler;
+@group(1) @binding(2) var shadow_map: texture_depth_2d;
+@group(1) @binding(3) var shadow_sampler: sampler_comparison;
 
 const PI: f32 = 3.14159265;
 // Mip levels of the environment, roughness 0 to 1.

@@ -17,9 +17,9 @@ struct Draw {
     color: vec4f,
 }
 
-@group(1) @binding(0) var<uniform> draw: Draw;
-@group(2) @binding(11) var morph_deltas: texture_2d<f32>;
-@group(2) @binding(12) var influences: texture_2d<f32>;
+@group(2) @binding(0) var<uniform> draw: Draw;
+@group(3) @binding(11) var morph_deltas: texture_2d<f32>;
+@group(3) @binding(12) var influences: texture_2d<f32>;
 
 const MODE_RIGID: u32 = 1u;
 const MODE_DUAL_QUATERNION: u32 = 2u;

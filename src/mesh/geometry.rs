@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3, Vec4};
 pub const MAX_INFLUENCES: usize = 16;
 
 /// What the indices mean. Strips, fans and loops are turned into lists when a file is read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Topology {
     Points,
     Lines,

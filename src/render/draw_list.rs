@@ -98,9 +98,8 @@ impl DrawList {
         for character in &frame.characters {
             palette.push_palette(&character.palette);
         }
-        let light_features = Features::default()
-            .with(Features::SHADOW, shadow)
-            .with(Features::FILE_LIGHTS, !frame.lights.is_empty());
+        let light_features =
+            Features::default().with(Features::SHADOW, shadow).with(Features::FILE_LIGHTS, !frame.lights.is_empty());
         for character in &frame.characters {
             let first_palette = next_palette;
             next_palette += character.palette.len() as u32;
@@ -168,7 +167,8 @@ impl DrawList {
                             } else {
                                 Features::default()
                             };
-                            let key = MeshKey { shading: Shading::Shadow, features, cull: None, mirrored: false, ..key };
+                            let key =
+                                MeshKey { shading: Shading::Shadow, features, cull: None, mirrored: false, ..key };
                             self.shadow.push(item(key, offset, false));
                         }
                     }

@@ -10,7 +10,7 @@ const LEVELS: u32 = 6;
 
 /// Towards the key light with the environment unturned: from the front left, above.
 pub const KEY_DIRECTION: Vec3 = Vec3::new(-0.48, 0.72, 0.50);
-pub const KEY_COLOR: Vec3 = Vec3::new(2.35, 2.25, 2.10);
+pub const KEY_COLOR: Vec3 = Vec3::new(1.75, 1.68, 1.58);
 
 /// A lamp with a soft edge on an infinitely far plane.
 struct SoftBox {
@@ -35,7 +35,8 @@ impl SoftBox {
             return Vec3::ZERO;
         }
         let at = Vec2::new(direction.dot(self.right), direction.dot(self.up)) / facing;
-        let edge = ((self.half_size - at.abs()) / (0.12 * self.half_size.min_element()) + 0.5).clamp(Vec2::ZERO, Vec2::ONE);
+        let edge =
+            ((self.half_size - at.abs()) / (0.12 * self.half_size.min_element()) + 0.5).clamp(Vec2::ZERO, Vec2::ONE);
         let edge = edge * edge * (3.0 - 2.0 * edge);
         self.color * (edge.x * edge.y)
     }
@@ -51,7 +52,7 @@ impl Studio {
         Self {
             boxes: [
                 // Key, above left.
-                SoftBox::new(KEY_DIRECTION, Vec2::new(0.55, 0.55), gray * 3.4),
+                SoftBox::new(KEY_DIRECTION, Vec2::new(0.55, 0.55), gray * 2.6),
                 // Fill, large and weak, right.
                 SoftBox::new(Vec3::new(0.9, 0.25, 0.5), Vec2::new(0.7, 1.0), Vec3::new(0.95, 1.0, 1.06) * 0.9),
                 // Rims, behind on both sides.
@@ -65,15 +66,12 @@ impl Studio {
 
     /// Linear light from a direction of unit length.
     fn radiance(&self, direction: Vec3) -> Vec3 {
-        let floor = Vec3::new(0.20, 0.195, 0.19);
-        let horizon = Vec3::new(0.42, 0.43, 0.45);
-        let zenith = Vec3::new(0.50, 0.52, 0.56);
+        let floor = Vec3::new(0.16, 0.155, 0.15);
+        let horizon = Vec3::new(0.26, 0.27, 0.29);
+        let zenith = Vec3::new(0.32, 0.34, 0.38);
         let height = direction.y;
-        let walls = if height > 0.0 {
-            horizon.lerp(zenith, height)
-        } else {
-            horizon.lerp(floor, (-3.0 * height).min(1.0))
-        };
+        let walls =
+            if height > 0.0 { horizon.lerp(zenith, height) } else { horizon.lerp(floor, (-3.0 * height).min(1.0)) };
         self.boxes.iter().fold(walls, |sum, soft_box| sum + soft_box.radiance(direction))
     }
 }
@@ -119,7 +117,11 @@ impl Environment {
                         aspect: wgpu::TextureAspect::All,
                     },
                     bytemuck::cast_slice(&texels),
-                    wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(8 * size), rows_per_image: Some(size) },
+                    wgpu::TexelCopyBufferLayout {
+                        offset: 0,
+                        bytes_per_row: Some(8 * size),
+                        rows_per_image: Some(size),
+                    },
                     wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 1 },
                 );
             }
@@ -214,17 +216,7 @@ fn irradiance(studio: &Studio) -> [[f32; 4]; 9] {
         let ring = (1.0 - y * y).sqrt();
         let n = Vec3::new(ring * cos, y, ring * sin);
         let light = studio.radiance(n);
-        let basis = [
-            1.0,
-            n.y,
-            n.z,
-            n.x,
-            n.x * n.y,
-            n.y * n.z,
-            3.0 * n.z * n.z - 1.0,
-            n.x * n.z,
-            n.x * n.x - n.y * n.y,
-        ];
+        let basis = [1.0, n.y, n.z, n.x, n.x * n.y, n.y * n.z, 3.0 * n.z * n.z - 1.0, n.x * n.z, n.x * n.x - n.y * n.y];
         for (sum, basis) in sums.iter_mut().zip(basis) {
             *sum += basis * light;
         }
@@ -246,7 +238,8 @@ mod tests {
 
     #[test]
     fn halves_keep_eleven_bits() {
-        for (value, bits) in [(0.0, 0), (1.0, 0x3c00), (0.5, 0x3800), (2.0, 0x4000), (1.5, 0x3e00), (65_504.0, 0x7bff)] {
+        for (value, bits) in [(0.0, 0), (1.0, 0x3c00), (0.5, 0x3800), (2.0, 0x4000), (1.5, 0x3e00), (65_504.0, 0x7bff)]
+        {
             assert_eq!(half_from_float(value), bits, "{value}");
         }
     }
@@ -257,17 +250,8 @@ mod tests {
         let coefficients = irradiance(&studio);
         for normal in [Vec3::Y, Vec3::NEG_Y, Vec3::X, Vec3::Z, Vec3::new(-0.6, 0.0, 0.8)] {
             let n = normal;
-            let basis = [
-                1.0,
-                n.y,
-                n.z,
-                n.x,
-                n.x * n.y,
-                n.y * n.z,
-                3.0 * n.z * n.z - 1.0,
-                n.x * n.z,
-                n.x * n.x - n.y * n.y,
-            ];
+            let basis =
+                [1.0, n.y, n.z, n.x, n.x * n.y, n.y * n.z, 3.0 * n.z * n.z - 1.0, n.x * n.z, n.x * n.x - n.y * n.y];
             let shown: f32 = coefficients.iter().zip(basis).map(|(c, b)| c[1] * b).sum();
             let lobe = Lobe::new(1.0, 4096);
             // With roughness 1 the lobe around the normal is the cosine lobe of a matte surface, nearly.

@@ -11,8 +11,8 @@ use crate::mesh::SkinningMode;
 use crate::state::Background;
 
 /// Linear light of the studio's backdrop, in the middle and at the edge.
-const STUDIO_CENTER: Vec3 = Vec3::new(0.62, 0.64, 0.67);
-const STUDIO_EDGE: Vec3 = Vec3::new(0.30, 0.32, 0.36);
+const STUDIO_CENTER: Vec3 = Vec3::new(0.50, 0.52, 0.55);
+const STUDIO_EDGE: Vec3 = Vec3::new(0.21, 0.225, 0.26);
 /// How dark the ground gets where no key light reaches it.
 const GROUND_SHADOW: f32 = 0.55;
 /// No light casts a shadow on meshes.
@@ -42,11 +42,11 @@ impl GroundPlane {
                 shadow: shadow && frame.view.eye.y > grid.height,
             }),
             None if shadow => Some(Self {
-                center: bounds.center().with_y(bounds.min.y),
+                center: bounds.center().with_y(frame.look.ground_height),
                 radius: 2.5 * bounds.diagonal(),
                 spacing: 1.0,
                 grid: false,
-                shadow: frame.view.eye.y > bounds.min.y,
+                shadow: frame.view.eye.y > frame.look.ground_height,
             }),
             None => None,
         }
@@ -64,9 +64,11 @@ pub(super) fn frame_uniform(
     let (sin, cos) = look.environment_radians.sin_cos();
     let key_direction = Mat3::from_rotation_y(look.environment_radians) * KEY_DIRECTION.normalize_or_zero();
     // The file's first light that shines like the sun casts the shadow; other lights leave it on the ground alone.
-    let sun = frame.lights.iter().take(MAX_LIGHTS).position(|light| {
-        light.kind == LightKind::Directional && light.direction.normalize_or_zero().y < -0.15
-    });
+    let sun = frame
+        .lights
+        .iter()
+        .take(MAX_LIGHTS)
+        .position(|light| light.kind == LightKind::Directional && light.direction.normalize_or_zero().y < -0.15);
     let (to_light, shadow_light) = match sun {
         Some(index) => (-frame.lights[index].direction.normalize_or_zero(), index as u32),
         None if frame.lights.is_empty() => (key_direction, 0),

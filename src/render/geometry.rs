@@ -72,7 +72,8 @@ struct FourInfluences {
 /// Layouts of the vertex buffers a pipeline reads, in the order of [`GpuGeometry::bind`].
 pub fn vertex_buffers(influences: InfluenceSource) -> Vec<Option<wgpu::VertexBufferLayout<'static>>> {
     const SHAPE: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
-    const SURFACE: [wgpu::VertexAttribute; 3] = wgpu::vertex_attr_array![2 => Float32x4, 3 => Float32x4, 4 => Unorm16x4];
+    const SURFACE: [wgpu::VertexAttribute; 3] =
+        wgpu::vertex_attr_array![2 => Float32x4, 3 => Float32x4, 4 => Unorm16x4];
     const FOUR: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![5 => Uint16x4, 6 => Float32x4];
     const EIGHT: [wgpu::VertexAttribute; 4] =
         wgpu::vertex_attr_array![5 => Uint16x4, 6 => Float32x4, 7 => Uint16x4, 8 => Float32x4];
@@ -176,7 +177,12 @@ impl GpuGeometry {
         let morph_view = match geometry.morph_targets.is_empty() {
             true => None,
             false => Some(vertex_texture(device, queue, "morph targets", morph_numbers).ok_or(
-                UploadError::TooManyMorphTargets { mesh, primitive, vertices: count, targets: geometry.morph_targets.len() },
+                UploadError::TooManyMorphTargets {
+                    mesh,
+                    primitive,
+                    vertices: count,
+                    targets: geometry.morph_targets.len(),
+                },
             )?),
         };
         Ok(Self {

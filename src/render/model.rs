@@ -161,16 +161,17 @@ impl Materials<'_> {
         let unlit = material.unlit || (geometry.topology != Topology::Triangles && geometry.normals.is_empty());
 
         let view = |slot: usize| maps[slot].as_ref().map_or(&self.uploader.white, |(view, _)| view);
-        let plain = self.samplers.entry(Sampler::default()).or_insert_with(|| {
-            sampler(self.device, &Sampler::default(), self.uploader.anisotropy)
-        });
-        let mut entries =
-            vec![wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() }];
+        let plain = self
+            .samplers
+            .entry(Sampler::default())
+            .or_insert_with(|| sampler(self.device, &Sampler::default(), self.uploader.anisotropy));
+        let mut entries = vec![wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() }];
         for (slot, map) in maps.iter().enumerate() {
             let sampler = map.as_ref().map_or(&*plain, |(_, sampler)| sampler);
             let binding = 1 + 2 * slot as u32;
             entries.push(wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view(slot)) });
-            entries.push(wgpu::BindGroupEntry { binding: binding + 1, resource: wgpu::BindingResource::Sampler(sampler) });
+            entries
+                .push(wgpu::BindGroupEntry { binding: binding + 1, resource: wgpu::BindingResource::Sampler(sampler) });
         }
         let numbers = [(11, &gpu.morph_view), (12, &gpu.influence_view)];
         entries.extend(numbers.map(|(binding, numbers)| wgpu::BindGroupEntry {
@@ -249,12 +250,7 @@ fn uv_transform(reference: TextureRef) -> UvTransformUniform {
     let transform = reference.uv_transform;
     let (sin, cos) = transform.rotation_radians.sin_cos();
     UvTransformUniform {
-        matrix: [
-            cos * transform.scale.x,
-            -sin * transform.scale.x,
-            sin * transform.scale.y,
-            cos * transform.scale.y,
-        ],
+        matrix: [cos * transform.scale.x, -sin * transform.scale.x, sin * transform.scale.y, cos * transform.scale.y],
         offset: transform.offset.to_array(),
         uv_set: reference.uv_set as u32,
         padding: 0,

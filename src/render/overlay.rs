@@ -150,7 +150,10 @@ fn bone_shape() -> Vec<BoneVertex> {
         let (a, b) = (waist[side], waist[(side + 1) % 4]);
         for triangle in [[a, b, Vec3::Y], [b, a, Vec3::ZERO]] {
             let normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]).normalize_or_zero();
-            shape.extend(triangle.map(|corner| BoneVertex { position: corner.to_array(), normal: normal.extend(0.0).to_array() }));
+            shape.extend(
+                triangle
+                    .map(|corner| BoneVertex { position: corner.to_array(), normal: normal.extend(0.0).to_array() }),
+            );
         }
     }
     for x in [Vec3::X, Vec3::NEG_X] {
@@ -166,7 +169,9 @@ fn bone_shape() -> Vec<BoneVertex> {
 
 fn ball_part([a, b, c]: [Vec3; 3], splits: u32, shape: &mut Vec<BoneVertex>) {
     if splits == 0 {
-        shape.extend([a, b, c].map(|corner| BoneVertex { position: corner.to_array(), normal: corner.extend(1.0).to_array() }));
+        shape.extend(
+            [a, b, c].map(|corner| BoneVertex { position: corner.to_array(), normal: corner.extend(1.0).to_array() }),
+        );
         return;
     }
     let [ab, bc, ca] = [a + b, b + c, c + a].map(Vec3::normalize_or_zero);

@@ -12,16 +12,17 @@ use crate::mesh::Topology;
 /// Texture and sampler pairs of a material.
 pub(super) const MATERIAL_MAPS: usize = 5;
 
-/// Bind group layouts, in the order of their group numbers.
+/// Bind group layouts, in the order of their group numbers. No pipeline leaves a number out: software Vulkan loses the
+/// groups after a gap.
 pub struct Layouts {
     /// Group 0: frame, palette.
     pub frame: wgpu::BindGroupLayout,
-    /// Group 1 of meshes: draw, with a dynamic offset.
-    pub draw: wgpu::BindGroupLayout,
-    /// Group 2 of meshes: material, morph deltas, influences.
-    pub primitive: wgpu::BindGroupLayout,
-    /// Group 3 of what is lit: environment, shadow map.
+    /// Group 1 of meshes and ground: environment, shadow map.
     pub light: wgpu::BindGroupLayout,
+    /// Group 2 of meshes: draw, with a dynamic offset.
+    pub draw: wgpu::BindGroupLayout,
+    /// Group 3 of meshes: material, morph deltas, influences.
+    pub primitive: wgpu::BindGroupLayout,
     /// Group 1 of the encoder: the scene.
     pub scene: wgpu::BindGroupLayout,
 }
@@ -163,8 +164,6 @@ pub(super) struct Pipelines {
     mesh_module: wgpu::ShaderModule,
     ground_module: wgpu::ShaderModule,
     mesh_layout: wgpu::PipelineLayout,
-    /// Without group 3, which has the shadow map itself.
-    shadow_layout: wgpu::PipelineLayout,
     ground_layout: wgpu::PipelineLayout,
     by_key: HashMap<MeshKey, MeshPipeline>,
     meshes: Vec<wgpu::RenderPipeline>,
@@ -218,7 +217,11 @@ impl ScenePipeline<'_> {
                 module: self.module,
                 entry_point: Some(self.fragment),
                 compilation_options: options(),
-                targets: &[Some(wgpu::ColorTargetState { format: SCENE_FORMAT, blend: BLENDED, write_mask: self.writes })],
+                targets: &[Some(wgpu::ColorTargetState {
+                    format: SCENE_FORMAT,
+                    blend: BLENDED,
+                    write_mask: self.writes,
+                })],
             }),
             multiview_mask: None,
             cache: None,
@@ -333,9 +336,8 @@ impl Pipelines {
             samples,
             mesh_module: shaders::MESH.module(device),
             ground_module: shaders::GROUND_PLANE.module(device),
-            mesh_layout: pipeline_layout("mesh", &[frame, draw, primitive, light]),
-            shadow_layout: pipeline_layout("shadow", &[frame, draw, primitive]),
-            ground_layout: pipeline_layout("ground", &[frame, None, None, light]),
+            mesh_layout: pipeline_layout("mesh", &[frame, light, draw, primitive]),
+            ground_layout: pipeline_layout("ground", &[frame, light]),
             by_key: HashMap::new(),
             meshes: Vec::new(),
             grounds: HashMap::new(),
@@ -388,11 +390,8 @@ impl Pipelines {
     fn create_mesh(&self, device: &wgpu::Device, key: MeshKey) -> wgpu::RenderPipeline {
         let shadow = key.shading == Shading::Shadow;
         let blended = key.shading == Shading::Wireframe || key.features.has(Features::BLEND);
-        let mut constants: Vec<(&str, f64)> = OVERRIDES
-            .iter()
-            .enumerate()
-            .map(|(bit, name)| (*name, f64::from(key.features.0 >> bit & 1)))
-            .collect();
+        let mut constants: Vec<(&str, f64)> =
+            OVERRIDES.iter().enumerate().map(|(bit, name)| (*name, f64::from(key.features.0 >> bit & 1))).collect();
         constants.push(("DEPTH_OFFSET", if key.shading == Shading::Wireframe { 3e-5 } else { 0.0 }));
         let options =
             || wgpu::PipelineCompilationOptions { constants: &constants, zero_initialize_workgroup_memory: false };
@@ -411,7 +410,7 @@ impl Pipelines {
         let bias = wgpu::DepthBiasState { constant: 2, slope_scale: 2.0, clamp: 0.0 };
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("mesh"),
-            layout: Some(if shadow { &self.shadow_layout } else { &self.mesh_layout }),
+            layout: Some(&self.mesh_layout),
             vertex: wgpu::VertexState {
                 module: &self.mesh_module,
                 entry_point: Some(key.influences.entry_point()),
@@ -435,10 +434,7 @@ impl Pipelines {
                 stencil: Default::default(),
                 bias: if shadow && key.topology == Topology::Triangles { bias } else { Default::default() },
             }),
-            multisample: wgpu::MultisampleState {
-                count: if shadow { 1 } else { self.samples },
-                ..Default::default()
-            },
+            multisample: wgpu::MultisampleState { count: if shadow { 1 } else { self.samples }, ..Default::default() },
             fragment: fragment.map(|entry_point| wgpu::FragmentState {
                 module: &self.mesh_module,
                 entry_point: Some(entry_point),

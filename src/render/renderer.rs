@@ -55,6 +55,8 @@ pub struct Renderer {
     frame_group: wgpu::BindGroup,
     shadow_group: wgpu::BindGroup,
     light_group: wgpu::BindGroup,
+    /// Without the shadow map, which is being drawn.
+    no_light_group: wgpu::BindGroup,
     scene_group: wgpu::BindGroup,
     stats: RenderStats,
 }
@@ -104,19 +106,22 @@ impl Renderer {
         let frame_buffer = UniformBuffer::new(device, "frame");
         let shadow_buffer = UniformBuffer::new(device, "shadow");
         let targets = Targets::new(device, [1, 1], options.samples);
-        let light_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("light"),
-            layout: &layouts.light,
-            entries: &[
-                wgpu::BindGroupEntry {
-                    binding: 0,
-                    resource: wgpu::BindingResource::TextureView(&environment.view),
-                },
-                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(&environment.sampler) },
-                wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(&shadow_map.view) },
-                wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::Sampler(&shadow_map.sampler) },
-            ],
-        });
+        let light_group = |shadow_view| {
+            let resources = [
+                wgpu::BindingResource::TextureView(&environment.view),
+                wgpu::BindingResource::Sampler(&environment.sampler),
+                wgpu::BindingResource::TextureView(shadow_view),
+                wgpu::BindingResource::Sampler(&shadow_map.sampler),
+            ];
+            let mut bindings = 0..;
+            let entries =
+                resources.map(|resource| wgpu::BindGroupEntry { binding: bindings.next().unwrap_or(0), resource });
+            device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("light"),
+                layout: &layouts.light,
+                entries: &entries,
+            })
+        };
         // Software draws each pixel's extra samples and extra texels itself: leave out both.
         let anisotropy = if options.samples > 1 { 4 } else { 1 };
         Self {
@@ -129,7 +134,8 @@ impl Renderer {
             frame_group: frame_buffer.bind_group(device, &layouts, &palette),
             shadow_group: shadow_buffer.bind_group(device, &layouts, &palette),
             scene_group: scene_group(device, &layouts, &targets),
-            light_group,
+            light_group: light_group(&shadow_map.view),
+            no_light_group: light_group(&shadow_map.stand_in),
             environment,
             shadow_map,
             palette,
@@ -222,8 +228,8 @@ impl Renderer {
             ..Default::default()
         });
         pass.set_bind_group(0, &self.shadow_group, &[]);
-        let stats =
-            draw_items(&mut pass, self.draws.shadow(), self.draws.bind_group(), &self.models, &self.pipelines);
+        pass.set_bind_group(1, &self.no_light_group, &[]);
+        let stats = draw_items(&mut pass, self.draws.shadow(), self.draws.bind_group(), &self.models, &self.pipelines);
         self.stats.draw_calls += stats.draw_calls;
     }
 
@@ -251,7 +257,7 @@ impl Renderer {
             ..Default::default()
         });
         pass.set_bind_group(0, &self.frame_group, &[]);
-        pass.set_bind_group(3, &self.light_group, &[]);
+        pass.set_bind_group(1, &self.light_group, &[]);
         let mut stats = RenderStats::default();
         let mut add = |more: RenderStats| {
             stats.draw_calls += more.draw_calls;
@@ -294,7 +300,10 @@ impl Renderer {
                 view: &self.targets.output_view,
                 depth_slice: None,
                 resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store },
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    store: wgpu::StoreOp::Store,
+                },
             })],
             ..Default::default()
         });
@@ -310,10 +319,7 @@ fn scene_group(device: &wgpu::Device, layouts: &Layouts, targets: &Targets) -> w
     device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("scene"),
         layout: &layouts.scene,
-        entries: &[wgpu::BindGroupEntry {
-            binding: 0,
-            resource: wgpu::BindingResource::TextureView(&targets.scene),
-        }],
+        entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&targets.scene) }],
     })
 }
 
@@ -336,8 +342,8 @@ fn draw_items(
             pass.set_pipeline(pipelines.get(item.pipeline));
             pipeline = Some(item.pipeline);
         }
-        pass.set_bind_group(1, draw_group, &[item.offset]);
-        pass.set_bind_group(2, &primitive.bind_group, &[]);
+        pass.set_bind_group(2, draw_group, &[item.offset]);
+        pass.set_bind_group(3, &primitive.bind_group, &[]);
         primitive.geometry.bind(pass);
         pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
         pass.draw_indexed(0..count, 0, 0..1);

@@ -21,8 +21,7 @@ pub struct Shader {
     parts: &'static [&'static str],
 }
 
-pub const MESH: Shader =
-    Shader { label: "mesh", parts: &[FRAME, TONE, PALETTE, SKINNING, VERTEX, LIGHT, SURFACE] };
+pub const MESH: Shader = Shader { label: "mesh", parts: &[FRAME, TONE, PALETTE, SKINNING, VERTEX, LIGHT, SURFACE] };
 pub const GROUND_PLANE: Shader = Shader { label: "ground", parts: &[FRAME, TONE, LIGHT, GROUND] };
 pub const LINES: Shader = Shader { label: "lines", parts: &[FRAME, TONE, LINE] };
 pub const BONES: Shader = Shader { label: "bones", parts: &[FRAME, TONE, BONE] };

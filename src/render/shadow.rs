@@ -11,21 +11,26 @@ const SIZE: u32 = 1024;
 
 pub(super) struct ShadowMap {
     pub view: wgpu::TextureView,
+    /// Bound in its place while it is drawn.
+    pub stand_in: wgpu::TextureView,
     pub sampler: wgpu::Sampler,
 }
 
 impl ShadowMap {
     pub fn new(device: &wgpu::Device) -> Self {
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("shadow map"),
-            size: wgpu::Extent3d { width: SIZE, height: SIZE, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: SHADOW_FORMAT,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT,
-            view_formats: &[],
-        });
+        let view = |size| {
+            let texture = device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("shadow map"),
+                size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: SHADOW_FORMAT,
+                usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT,
+                view_formats: &[],
+            });
+            texture.create_view(&Default::default())
+        };
         let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("shadow map"),
             mag_filter: wgpu::FilterMode::Linear,
@@ -33,7 +38,7 @@ impl ShadowMap {
             compare: Some(wgpu::CompareFunction::LessEqual),
             ..Default::default()
         });
-        Self { view: texture.create_view(&Default::default()), sampler }
+        Self { view: view(SIZE), stand_in: view(1), sampler }
     }
 }
 
@@ -81,7 +86,10 @@ mod tests {
             let view = shadow_view(&bounds, to_light).unwrap();
             for corner in bounds.corners() {
                 let at = view.shadow_from_world.project_point3(corner);
-                assert!(at.truncate().abs().max_element() < 1.0 && (0.0..1.0).contains(&at.z), "{to_light} {corner} {at}");
+                assert!(
+                    at.truncate().abs().max_element() < 1.0 && (0.0..1.0).contains(&at.z),
+                    "{to_light} {corner} {at}"
+                );
             }
             let toward = view.shadow_from_world.project_point3(bounds.center() + 0.01 * to_light);
             assert!(toward.z < view.shadow_from_world.project_point3(bounds.center()).z, "{to_light}");

@@ -31,11 +31,9 @@ impl Targets {
         };
         let view = |texture: wgpu::Texture| texture.create_view(&Default::default());
         let attachment = Usages::RENDER_ATTACHMENT;
-        let output =
-            texture("picture", OUTPUT_FORMAT, 1, attachment | Usages::TEXTURE_BINDING | Usages::COPY_SRC);
+        let output = texture("picture", OUTPUT_FORMAT, 1, attachment | Usages::TEXTURE_BINDING | Usages::COPY_SRC);
         Self {
-            multisampled: (samples > 1)
-                .then(|| view(texture("scene samples", SCENE_FORMAT, samples, attachment))),
+            multisampled: (samples > 1).then(|| view(texture("scene samples", SCENE_FORMAT, samples, attachment))),
             scene: view(texture("scene", SCENE_FORMAT, 1, attachment | Usages::TEXTURE_BINDING)),
             depth: view(texture("depth", DEPTH_FORMAT, samples, attachment)),
             output_view: output.create_view(&Default::default()),
