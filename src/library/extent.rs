@@ -5,6 +5,7 @@
 
 use glam::{Affine3A, Vec3};
 
+use super::Rig;
 use super::model::rest_world;
 use crate::anim::JointIndex;
 use crate::asset::{Asset, MeshInstance};
@@ -37,9 +38,9 @@ struct Part {
 const LEAST_WEIGHT: f32 = 0.05;
 
 impl Extent {
-    pub fn new(asset: &Asset) -> Self {
+    pub fn new(asset: &Asset, rig: &Rig) -> Self {
         let instances = asset.instances.iter().map(|instance| InstanceExtent::new(asset, instance)).collect();
-        Self { rest: exact_rest_bounds(asset), instances }
+        Self { rest: exact_rest_bounds(asset, rig), instances }
     }
 
     pub fn rest(&self) -> Bounds {
@@ -49,6 +50,7 @@ impl Extent {
     pub fn of_pose(
         &self,
         asset: &Asset,
+        rig: &Rig,
         world_from_joint: &[Affine3A],
         morph_weights: &[f32],
         in_scene: &[bool],
@@ -74,7 +76,7 @@ impl Extent {
                 }
             }
         }
-        if bounds.is_empty() { joint_bounds(asset, world_from_joint, in_scene) } else { bounds }
+        if bounds.is_empty() { joint_bounds(asset, rig, world_from_joint, in_scene) } else { bounds }
     }
 
     pub fn instance_center(&self, asset: &Asset, instance: usize, world_from_joint: &[Affine3A]) -> Vec3 {
@@ -192,13 +194,13 @@ impl Support {
 }
 
 /// Box of the joints themselves, of those that bones are drawn for when there is no mesh.
-fn joint_bounds(asset: &Asset, world_from_joint: &[Affine3A], in_scene: &[bool]) -> Bounds {
-    let joints = asset.skeleton.joints().filter(|joint| in_scene[joint.get()]);
+fn joint_bounds(asset: &Asset, rig: &Rig, world_from_joint: &[Affine3A], in_scene: &[bool]) -> Bounds {
+    let joints = asset.skeleton.joints().filter(|&joint| in_scene[joint.get()] && rig.is_real(joint));
     Bounds::of(joints.map(|joint| world_from_joint[joint.get()].translation.into()))
 }
 
 /// Every vertex of the default scene's rest pose, skinned.
-fn exact_rest_bounds(asset: &Asset) -> Bounds {
+fn exact_rest_bounds(asset: &Asset, rig: &Rig) -> Bounds {
     let world_from_joint = rest_world(asset);
     let in_scene = asset.joints_in_scene(asset.default_scene);
     let mut bounds = Bounds::EMPTY;
@@ -219,5 +221,5 @@ fn exact_rest_bounds(asset: &Asset) -> Bounds {
             bounds = deformed.positions.iter().fold(bounds, |bounds, &position| bounds.including(position));
         }
     }
-    if bounds.is_empty() { joint_bounds(asset, &world_from_joint, &in_scene) } else { bounds }
+    if bounds.is_empty() { joint_bounds(asset, rig, &world_from_joint, &in_scene) } else { bounds }
 }

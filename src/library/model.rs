@@ -44,7 +44,7 @@ impl Model {
     pub fn new(source: String, asset: Asset, images: Vec<Option<ImageData>>) -> Self {
         let clip_titles = unique_titles(&asset);
         let rig = Rig::new(&asset);
-        let extent = Extent::new(&asset);
+        let extent = Extent::new(&asset, &rig);
         Self {
             id: ModelId::default(),
             source,
@@ -81,7 +81,7 @@ impl Model {
     /// Box around one pose: encloses every vertex (nearly, for dual quaternions), a little wide where joints bend.
     /// `world_from_joint` has one entry per joint; `in_scene` too.
     pub fn pose_bounds(&self, world_from_joint: &[glam::Affine3A], morph_weights: &[f32], in_scene: &[bool]) -> Bounds {
-        self.extent.of_pose(&self.asset, world_from_joint, morph_weights, in_scene)
+        self.extent.of_pose(&self.asset, &self.rig, world_from_joint, morph_weights, in_scene)
     }
 
     /// Middle of one mesh instance in a pose, for sorting.

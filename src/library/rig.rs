@@ -36,7 +36,8 @@ impl Rig {
                 }
             }
             if asset.instances.is_empty() {
-                real.fill(true);
+                let moved = std::mem::replace(&mut real, vec![true; skeleton.len()]);
+                drop_containers(asset, &moved, &mut real);
             }
         }
         fill_gaps(asset, &mut real);
@@ -76,6 +77,24 @@ impl Rig {
 
     pub(super) fn root_of_clip(&self, clip: usize) -> Option<JointIndex> {
         self.roots.get(clip).copied().flatten()
+    }
+}
+
+/// Of a skeleton without a mesh, what only holds the moving joints (`RootNode`, `Armature`) is not part of the body: it
+/// stays behind when a clip travels.
+fn drop_containers(asset: &Asset, moved: &[bool], real: &mut [bool]) {
+    let skeleton = &asset.skeleton;
+    let mut holds_moved = vec![false; skeleton.len()];
+    for joint in skeleton.joints().rev() {
+        if (moved[joint.get()] || holds_moved[joint.get()])
+            && let Some(parent) = skeleton.parent(joint)
+        {
+            holds_moved[parent.get()] = true;
+        }
+    }
+    for joint in skeleton.joints() {
+        let below_body = skeleton.parent(joint).is_some_and(|parent| real[parent.get()]);
+        real[joint.get()] = below_body || moved[joint.get()] || !holds_moved[joint.get()];
     }
 }
 

@@ -1,0 +1,60 @@
+//! Models for the tests: the walker, small ones made in code, and real files where they are at hand.
+
+use std::path::PathBuf;
+
+use gaitway::anim::{ClipBuilder, Interpolation, Joint, Keys, Skeleton, Transform};
+use gaitway::asset::{Asset, MeshInstance};
+use gaitway::files::open_paths;
+use gaitway::library::{Library, Model, sample};
+use gaitway::mesh::{Geometry, Mesh};
+use glam::Vec3;
+
+pub fn library_of(model: Model) -> Library {
+    let mut library = Library::default();
+    library.set(model);
+    library
+}
+
+pub fn walker() -> Library {
+    library_of(sample::load("walker").expect("the walker is built in"))
+}
+
+/// A box of the given half size on one node, with these keys of its translation as the clip "Move".
+pub fn moving_box(half: f32, times_secs: &[f32], places: &[Vec3]) -> Library {
+    let joint = Joint { name: "Box".to_owned(), rest: Transform::IDENTITY, ..Joint::default() };
+    let skeleton = Skeleton::new(vec![joint]).expect("one joint");
+    let joint = skeleton.joint_of_source(0).expect("one joint");
+    let mut clip = ClipBuilder::new("Move", &skeleton);
+    clip.channel(joint, Interpolation::Linear, times_secs, Keys::Translation(places.to_vec())).expect("fine keys");
+    let clips = vec![clip.build()];
+    let positions: Vec<Vec3> =
+        gaitway::mesh::Bounds { min: Vec3::splat(-half), max: Vec3::splat(half) }.corners().into();
+    let geometry = Geometry { file_vertices: 8, positions, indices: (0..6).collect(), ..Geometry::default() };
+    let asset = Asset {
+        format: "test",
+        clips,
+        meshes: vec![Mesh { primitives: vec![geometry], ..Mesh::default() }],
+        instances: vec![MeshInstance { joint, mesh: 0, skin: None }],
+        skeleton,
+        ..Asset::default()
+    };
+    library_of(Model::new("box".to_owned(), asset, Vec::new()))
+}
+
+/// The folder of real files; none (and a line that says so) where there is none.
+pub fn folder() -> Option<PathBuf> {
+    let folder = std::env::var_os("GAITWAY_DATA")
+        .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/data"), PathBuf::from);
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    assert!(std::env::var_os("GAITWAY_REQUIRE_DATA").is_none(), "real files are required and {folder:?} is not there");
+    println!("skipped: no real files at {}", folder.display());
+    None
+}
+
+/// A real file, opened as the command line does.
+pub fn open(path: &str) -> Option<Library> {
+    let path = folder()?.join(path);
+    Some(library_of(open_paths(std::slice::from_ref(&path)).unwrap_or_else(|error| panic!("{path:?}: {error}")).model))
+}

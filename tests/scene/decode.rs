@@ -1,0 +1,56 @@
+//! Decoding images of a model: what cannot be read is a warning, never an end.
+
+use std::io::Cursor;
+use std::sync::Arc;
+
+use gaitway::asset::{Asset, Image};
+use gaitway::files::decode_images;
+use gaitway::library::ImageData;
+
+fn png(width: u32, height: u32, pixels: &[u8]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let image = image::RgbaImage::from_raw(width, height, pixels.to_vec()).expect("as many pixels");
+    image.write_to(&mut Cursor::new(&mut bytes), image::ImageFormat::Png).expect("memory");
+    bytes
+}
+
+fn decode(bytes: Vec<u8>) -> (Option<ImageData>, Asset) {
+    let image = Image { name: "skin".to_owned(), mime: "image/png", bytes: Arc::from(bytes), width: 2, height: 1 };
+    let mut asset = Asset { images: vec![image], ..Asset::default() };
+    let mut images = decode_images(&mut asset);
+    assert_eq!(images.len(), 1);
+    (images.remove(0), asset)
+}
+
+fn check_unreadable(bytes: Vec<u8>) {
+    let (image, asset) = decode(bytes);
+    assert!(image.is_none());
+    let warnings: Vec<_> = asset.warnings.iter().map(|warning| (warning.code(), warning.place())).collect();
+    assert_eq!(warnings, [("image-unreadable", "skin")]);
+}
+
+#[test]
+fn what_is_no_image_is_a_warning() {
+    check_unreadable(Vec::new());
+    check_unreadable(b"not an image at all".to_vec());
+    let mut cut = png(2, 1, &[255, 0, 0, 255, 0, 255, 0, 128]);
+    cut.truncate(40);
+    check_unreadable(cut);
+}
+
+#[test]
+fn sizes_in_a_header_are_not_trusted() {
+    let mut huge = png(2, 1, &[0; 8]);
+    // Width and height are at bytes 16 to 23 of a PNG.
+    huge[16..24].copy_from_slice(&[0x7f, 0xff, 0xff, 0xff, 0x7f, 0xff, 0xff, 0xff]);
+    check_unreadable(huge);
+}
+
+#[test]
+fn pixels_come_back_as_they_were_written() {
+    let pixels = [255, 0, 0, 255, 10, 200, 30, 128];
+    let (image, asset) = decode(png(2, 1, &pixels));
+    assert!(asset.warnings.is_empty());
+    let Some(ImageData::Rgba8 { width: 2, height: 1, pixels: found }) = image else { panic!("{image:?}") };
+    assert_eq!(found, pixels);
+}

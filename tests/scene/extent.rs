@@ -1,0 +1,69 @@
+//! Boxes around poses hold every vertex, and not much more.
+
+use gaitway::frame::{Frame, evaluate, pose_document};
+use gaitway::library::Library;
+use gaitway::mesh::{Bounds, SkinningMode};
+use gaitway::state::{ClipChoice, ViewerState};
+use glam::Vec3;
+
+use crate::data::{open, walker};
+
+/// The exact box of what the reference implementation draws.
+fn exact(library: &Library, state: &ViewerState) -> Bounds {
+    let document = pose_document(library, state);
+    let meshes = document["meshes"].as_array().expect("meshes");
+    let numbers = meshes.iter().flat_map(|mesh| mesh["positions"].as_array().expect("positions"));
+    let numbers: Vec<f32> = numbers.filter_map(|number| number.as_f64()).map(|number| number as f32).collect();
+    Bounds::of(numbers.chunks_exact(3).map(Vec3::from_slice))
+}
+
+fn check(library: &Library, clip: usize) {
+    let model = library.active().expect("a model");
+    let duration_secs = f64::from(model.asset.clips[clip].duration_secs());
+    let whole = model.clip_bounds(None, Some(clip), false);
+    let mut union = Bounds::EMPTY;
+    // The times that the box is made from.
+    for sample in 0..=24 {
+        let time_secs = duration_secs * f64::from(sample) / 24.0;
+        let state = ViewerState { clip: ClipChoice::Named(clip.to_string()), time_secs, ..ViewerState::default() };
+        let exact = exact(library, &state);
+        let mut frame = Frame::default();
+        evaluate(library, &state, 1.0, &mut frame);
+        let character = &frame.characters[0];
+        let in_scene = model.asset.joints_in_scene(model.asset.default_scene);
+        let close = model.pose_bounds(&character.world_from_joint, &character.morph_weights, &in_scene);
+        let slack = 0.02 * exact.diagonal();
+        assert!(
+            (close.min - slack).cmple(exact.min).all() && (close.max + slack).cmpge(exact.max).all(),
+            "{clip} {sample}"
+        );
+        union = union.union(exact);
+    }
+    let slack = 0.02 * union.diagonal();
+    assert!((whole.min - slack).cmple(union.min).all() && (whole.max + slack).cmpge(union.max).all());
+    assert!(whole.diagonal() < 1.35 * union.diagonal(), "{whole:?} around {union:?}");
+}
+
+#[test]
+fn of_the_walker() {
+    (0..3).for_each(|clip| check(&walker(), clip));
+}
+
+#[test]
+fn of_real_characters() {
+    for path in ["khronos/Fox/glTF-Binary/Fox.glb", "threejs/Soldier.glb", "threejs/Flamingo.glb", "cosc422/dwarf.glb"]
+    {
+        if let Some(library) = open(path) {
+            check(&library, 0);
+        }
+    }
+}
+
+#[test]
+fn rest_bounds_are_exact() {
+    let state = ViewerState { clip: ClipChoice::RestPose, skinning: SkinningMode::Linear, ..ViewerState::default() };
+    assert_eq!(walker().active().expect("a model").rest_bounds(), exact(&walker(), &state));
+    if let Some(library) = open("khronos/CesiumMan/glTF-Binary/CesiumMan.glb") {
+        assert_eq!(library.active().expect("a model").rest_bounds(), exact(&library, &state));
+    }
+}

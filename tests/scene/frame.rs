@@ -1,0 +1,121 @@
+//! What a frame says about models, overlays and clicks.
+
+use gaitway::frame::{Frame, evaluate, pick_joint};
+use gaitway::library::Library;
+use gaitway::mesh::SkinningMode;
+use gaitway::state::{Background, Show, ViewerState};
+use glam::{Vec2, Vec3, Vec4Swizzles};
+
+use crate::data::{moving_box, walker};
+
+fn frame_of(library: &Library, state: &ViewerState) -> Frame {
+    let mut frame = Frame::default();
+    evaluate(library, state, 1.5, &mut frame);
+    frame
+}
+
+fn showing(change: impl Fn(&mut Show)) -> ViewerState {
+    let mut state = ViewerState::default();
+    change(&mut state.show);
+    state
+}
+
+/// Joint of the walker as the file numbers it.
+const HEAD: usize = 5;
+
+#[test]
+fn without_a_model_there_is_an_empty_picture() {
+    let state = ViewerState { background: Background::Color([1, 2, 3]), ..ViewerState::default() };
+    let frame = frame_of(&Library::default(), &state);
+    assert!(frame.characters.is_empty() && frame.bones.is_empty() && frame.bounds.is_empty());
+    assert_eq!(frame.look.background, state.background);
+    assert!(frame.view.projection_from_view.is_finite());
+}
+
+#[test]
+fn the_same_state_is_the_same_frame() {
+    let library = walker();
+    let state = ViewerState { time_secs: 0.3, ..showing(|show| show.skeleton = true) };
+    let fresh = frame_of(&library, &state);
+    let mut used = frame_of(&library, &ViewerState { time_secs: 0.9, ..ViewerState::default() });
+    evaluate(&library, &state, 1.5, &mut used);
+    assert_eq!(used.characters[0].palette, fresh.characters[0].palette);
+    assert_eq!(used.bones, fresh.bones);
+    assert_eq!(used.view.view_from_world, fresh.view.view_from_world);
+}
+
+#[test]
+fn each_instance_has_its_palette() {
+    for skinning in [SkinningMode::Linear, SkinningMode::Rigid, SkinningMode::DualQuaternion] {
+        let frame = frame_of(&walker(), &ViewerState { skinning, ..ViewerState::default() });
+        let character = &frame.characters[0];
+        let ranges: Vec<_> = character.draws.iter().map(|draw| draw.palette.clone()).collect();
+        assert_eq!((ranges, character.palette.len()), (vec![0..22, 22..44], 44));
+        assert_eq!(character.draws[1].morph_weights, 0..1);
+    }
+    assert_eq!(
+        frame_of(&moving_box(0.5, &[0.0], &[Vec3::ZERO]), &ViewerState::default()).characters[0].palette.len(),
+        1
+    );
+}
+
+#[test]
+fn weights_set_by_hand_win_over_the_clip() {
+    let mut state = ViewerState::default();
+    state.morph.insert(0, 0.75);
+    // Neither a panic nor an effect: the link may be from another model.
+    state.morph.insert(99, 1.0);
+    assert_eq!(frame_of(&walker(), &state).characters[0].morph_weights, [0.75]);
+}
+
+#[test]
+fn the_heat_map_is_of_the_chosen_joint() {
+    let state = ViewerState { joint: Some(HEAD), ..showing(|show| show.weights = true) };
+    assert_eq!(frame_of(&walker(), &state).characters[0].draws[0].heat_joint, Some(HEAD as u32));
+    let library = moving_box(0.5, &[0.0], &[Vec3::ZERO]);
+    let of_box = |joint| frame_of(&library, &ViewerState { joint, ..state.clone() }).characters[0].draws[0].heat_joint;
+    assert_eq!((of_box(Some(0)), of_box(Some(5)), of_box(None)), (Some(0), None, None));
+    assert_eq!(
+        frame_of(&walker(), &ViewerState { joint: Some(HEAD), ..ViewerState::default() }).characters[0].draws[0]
+            .heat_joint,
+        None
+    );
+}
+
+#[test]
+fn bones_are_joints_of_the_skin_and_end_in_stubs() {
+    let frame = frame_of(&walker(), &showing(|show| show.skeleton = true));
+    // 22 joints: 21 of them hang on another; the ends are head, hands and toes. The meshes' nodes are no joints. Bones
+    // from Root to Hips and so on; none has no length.
+    assert_eq!(frame.bones.len(), 21 + 5);
+    assert!(frame.bones.iter().all(|bone| bone.joint < 22 && bone.head != bone.tail && bone.radius > 0.0));
+    assert!(frame_of(&walker(), &ViewerState::default()).bones.is_empty());
+}
+
+#[test]
+fn a_click_finds_the_nearest_bone() {
+    let frame = frame_of(&walker(), &showing(|show| show.skeleton = true));
+    let shin = frame.bones.iter().find(|bone| bone.joint == 15).copied().expect("the left shin");
+    let projection_from_world = frame.view.projection_from_view * frame.view.view_from_world;
+    let middle = projection_from_world * shin.head.midpoint(shin.tail).extend(1.0);
+    let point = middle.xy() / middle.w;
+    assert_eq!(pick_joint(&frame, point, 0.02), Some(15));
+    assert_eq!(pick_joint(&frame, Vec2::new(0.95, 0.95), 0.02), None);
+}
+
+#[test]
+fn overlays_are_drawn_when_asked_for() {
+    assert!(frame_of(&walker(), &ViewerState::default()).lines.is_empty());
+    assert_eq!(frame_of(&walker(), &showing(|show| show.bounds = true)).lines.len(), 12);
+    assert_eq!(frame_of(&walker(), &ViewerState { joint: Some(HEAD), ..ViewerState::default() }).lines.len(), 3);
+    assert_eq!(frame_of(&walker(), &showing(|show| show.grid = false)).look.grid, None);
+}
+
+#[test]
+fn any_aspect_ratio_gives_finite_matrices() {
+    for aspect in [0.0, -1.0, f32::NAN, f32::INFINITY, 1e-9, 1e9] {
+        let mut frame = Frame::default();
+        evaluate(&walker(), &ViewerState::default(), aspect, &mut frame);
+        assert!(frame.view.projection_from_view.is_finite() && frame.view.view_from_world.is_finite(), "{aspect}");
+    }
+}

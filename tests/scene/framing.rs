@@ -1,0 +1,77 @@
+//! Everything a clip shows is in the picture, at any size and shape of the picture.
+
+use gaitway::frame::{Frame, evaluate};
+use gaitway::state::{CameraChoice, Command, OrbitCamera, UpAxis, ViewerState, apply, resolve_camera, resolved_bounds};
+use glam::{Vec3, Vec4Swizzles};
+
+use crate::data::{moving_box, walker};
+
+/// The furthest corner of the clip's box from the middle of the picture: 1 at the edge.
+fn reach(library: &gaitway::library::Library, state: &ViewerState, aspect: f32) -> f32 {
+    let mut frame = Frame::default();
+    evaluate(library, state, aspect, &mut frame);
+    let projection_from_world = frame.view.projection_from_view * frame.view.view_from_world;
+    let corners = resolved_bounds(library.active().expect("a model"), state).corners();
+    let on_picture = corners.map(|corner| projection_from_world * corner.extend(1.0));
+    assert!(on_picture.iter().all(|corner| (0.0..=corner.w).contains(&corner.z)), "out of the depth range");
+    on_picture.iter().map(|corner| (corner.xy() / corner.w).abs().max_element()).fold(0.0, f32::max)
+}
+
+#[test]
+fn the_whole_clip_is_in_the_picture() {
+    let far = moving_box(0.5, &[0.0, 1.0], &[Vec3::ZERO, Vec3::X * 10.0]);
+    for library in [walker(), far] {
+        for aspect in [0.4, 1.0, 16.0 / 9.0, 3.0] {
+            for up in [UpAxis::Y, UpAxis::Z, UpAxis::MinusX] {
+                let reach = reach(&library, &ViewerState { up, ..ViewerState::default() }, aspect);
+                assert!((0.85..=1.0).contains(&reach), "aspect {aspect}, {up:?}: {reach}");
+            }
+        }
+    }
+}
+
+#[test]
+fn framing_keeps_the_direction() {
+    let library = walker();
+    let away = OrbitCamera { yaw_radians: 2.0, pitch_radians: 0.6, distance: 40.0, target: Vec3::splat(9.0) };
+    let mut state = ViewerState { camera: CameraChoice::Orbit(away), ..ViewerState::default() };
+    apply(&mut state, &library, Command::FrameAll);
+    let CameraChoice::Orbit(framed) = state.camera else { panic!("{:?}", state.camera) };
+    assert_eq!((framed.yaw_radians, framed.pitch_radians), (2.0, 0.6));
+    assert!(reach(&library, &state, 1.0) <= 1.0);
+}
+
+#[test]
+fn a_following_camera_stays_with_the_character() {
+    let library = moving_box(0.5, &[0.0, 1.0], &[Vec3::ZERO, Vec3::new(10.0, 2.0, -5.0)]);
+    let follow = |time_secs| ViewerState { follow: true, time_secs, ..ViewerState::default() };
+    let (mut start, mut end) = (Frame::default(), Frame::default());
+    evaluate(&library, &follow(0.0), 1.0, &mut start);
+    evaluate(&library, &follow(1.0), 1.0, &mut end);
+    // Over the ground only: a jump is still seen as one.
+    assert!((end.view.eye - start.view.eye).distance(Vec3::new(10.0, 0.0, -5.0)) < 1e-4);
+    assert!((end.bounds.min - start.bounds.min).distance(Vec3::new(10.0, 0.0, -5.0)) < 1e-4);
+    // Without the travel there is less to frame.
+    let near = resolve_camera(&library, &follow(0.0), 1.0).distance;
+    let far = resolve_camera(&library, &ViewerState::default(), 1.0).distance;
+    assert!(near < 0.6 * far, "{near} {far}");
+}
+
+#[test]
+fn up_axes_end_up() {
+    let library = moving_box(0.5, &[0.0], &[Vec3::new(1.0, 2.0, 3.0)]);
+    for (up, expected) in [
+        (UpAxis::X, 1.0),
+        (UpAxis::Y, 2.0),
+        (UpAxis::Z, 3.0),
+        (UpAxis::MinusX, -1.0),
+        (UpAxis::MinusY, -2.0),
+        (UpAxis::MinusZ, -3.0),
+    ] {
+        let mut frame = Frame::default();
+        evaluate(&library, &ViewerState { up, ..ViewerState::default() }, 1.0, &mut frame);
+        let world_from_joint = frame.characters[0].world_from_joint[0];
+        assert!((world_from_joint.translation.y - expected).abs() < 1e-6, "{up:?}");
+        assert!((world_from_joint.matrix3.determinant() - 1.0).abs() < 1e-6, "{up:?}");
+    }
+}

@@ -1,0 +1,190 @@
+//! The text form of a view: what is written is read back, whatever is set.
+
+use std::collections::BTreeMap;
+
+use gaitway::anim::{LoopMode, TimeRange};
+use gaitway::mesh::SkinningMode;
+use gaitway::state::{
+    Background, CameraChoice, ClipChoice, LinkError, OrbitCamera, Show, UpAxis, ViewerState, from_link, from_object,
+    to_link, to_object,
+};
+use glam::Vec3;
+
+fn check_round_trip(state: &ViewerState) {
+    let link = to_link(state);
+    let (back, errors) = from_link(&link);
+    let known = |error: &&LinkError| matches!(error, LinkError::BadValue { .. });
+    assert_eq!(errors.iter().find(known), None, "{link}");
+    assert_eq!(&back, state, "{link}");
+    assert_eq!(to_link(&back), link);
+    let (back, errors) = from_object(&ViewerState::default(), &to_object(state));
+    assert_eq!(errors.iter().find(known), None, "{}", to_object(state));
+    assert_eq!(&back, state, "{}", to_object(state));
+}
+
+fn check_read(link: &str, expected: ViewerState) {
+    let (state, errors) = from_link(link);
+    assert_eq!(errors, [], "{link}");
+    assert_eq!(state, expected, "{link}");
+}
+
+fn check_bad(link: &str, key: &str) {
+    let (state, errors) = from_link(link);
+    assert!(matches!(&errors[..], [LinkError::BadValue { key: bad, .. }] if bad == key), "{link}: {errors:?}");
+    assert_eq!(state, ViewerState::default(), "{link}");
+}
+
+/// A state that differs from the default in one field each; the name is the field's.
+fn one_field_each() -> Vec<(&'static str, ViewerState)> {
+    let orbit =
+        OrbitCamera { yaw_radians: 0.7, pitch_radians: -0.3, distance: 2.5, target: Vec3::new(0.1, -2.0, 3e-5) };
+    let with = |change: &dyn Fn(&mut ViewerState)| {
+        let mut state = ViewerState::default();
+        change(&mut state);
+        state
+    };
+    vec![
+        (
+            "model",
+            with(&|state| state.model = vec!["https://host/a b.glb?x=1&y=2".to_owned(), "sample:walker".to_owned()]),
+        ),
+        ("scene", with(&|state| state.scene = Some(2))),
+        ("clip", with(&|state| state.clip = ClipChoice::Named("Walk & run = 100 %".to_owned()))),
+        ("time_secs", with(&|state| state.time_secs = 1.0 / 3.0)),
+        ("playing", with(&|state| state.playing = false)),
+        ("speed", with(&|state| state.speed = 0.1)),
+        ("loop_mode", with(&|state| state.loop_mode = LoopMode::PingPong)),
+        ("range", with(&|state| state.range = Some(TimeRange { start_secs: 0.25, end_secs: 1.1 }))),
+        ("skinning", with(&|state| state.skinning = SkinningMode::DualQuaternion)),
+        ("morph", with(&|state| state.morph = BTreeMap::from([(0, 0.3), (12, -1.0)]))),
+        ("show", with(&|state| state.show = Show { skeleton: true, mesh: false, grid: false, ..Show::default() })),
+        ("joint", with(&|state| state.joint = Some(0))),
+        ("camera", with(&|state| state.camera = CameraChoice::Orbit(orbit))),
+        ("fov_degrees", with(&|state| state.fov_degrees = 50.0)),
+        ("follow", with(&|state| state.follow = true)),
+        ("up", with(&|state| state.up = UpAxis::MinusZ)),
+        ("exposure", with(&|state| state.exposure = -0.7)),
+        ("environment_degrees", with(&|state| state.environment_degrees = 123.4)),
+        ("background", with(&|state| state.background = Background::Color([0, 128, 255]))),
+        ("embed", with(&|state| state.embed = true)),
+        ("unknown", with(&|state| state.unknown = BTreeMap::from([("motion".to_owned(), "a.bvh\nb.bvh".to_owned())]))),
+    ]
+}
+
+#[test]
+fn every_field_of_the_state_has_a_key() {
+    let fields = serde_json::to_value(ViewerState::default()).expect("plain data");
+    let fields: Vec<&str> = fields.as_object().expect("a struct").keys().map(String::as_str).collect();
+    let changed = one_field_each();
+    assert_eq!(changed.iter().map(|(field, _)| *field).collect::<Vec<_>>(), fields);
+    for (field, state) in &changed {
+        assert_ne!(to_link(state), to_link(&ViewerState::default()), "{field} is not in the link");
+        check_round_trip(state);
+    }
+}
+
+#[test]
+fn all_fields_at_once_come_back() {
+    let mut all = serde_json::to_value(ViewerState::default()).expect("plain data");
+    for (field, state) in one_field_each() {
+        all[field] = serde_json::to_value(&state).expect("plain data")[field].clone();
+    }
+    check_round_trip(&serde_json::from_value(all).expect("the same fields"));
+}
+
+#[test]
+fn any_camera_comes_back_exactly() {
+    // A simple generator of bit patterns: no two cameras are alike, and the same ones every time.
+    let mut seed = 0x9e37_79b9_u32;
+    let mut next = |scale: f32| {
+        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        scale * ((seed >> 8) as f32 / (1 << 23) as f32 - 1.0)
+    };
+    for _ in 0..500 {
+        let camera = OrbitCamera {
+            yaw_radians: next(std::f32::consts::PI),
+            pitch_radians: next(1.56),
+            distance: next(3.0).exp(),
+            target: Vec3::new(next(10.0), next(1e-4), next(1e4)),
+        };
+        let time_secs = f64::from(next(100.0)) / 3.0;
+        check_round_trip(&ViewerState { camera: CameraChoice::Orbit(camera), time_secs, ..ViewerState::default() });
+    }
+}
+
+#[test]
+fn defaults_are_left_out() {
+    assert_eq!(to_link(&ViewerState::default()), "v=1");
+}
+
+#[test]
+fn links_read_as_written_down() {
+    let default = ViewerState::default();
+    check_read("", default.clone());
+    check_read("#v=1&clip=", ViewerState { clip: ClipChoice::RestPose, ..default.clone() });
+    check_read("clip=Run", ViewerState { clip: ClipChoice::Named("Run".to_owned()), ..default.clone() });
+    check_read("t=0.5&play=0", ViewerState { time_secs: 0.5, playing: false, ..default.clone() });
+    check_read("camera=gltf:1", ViewerState { camera: CameraChoice::File(1), ..default.clone() });
+    check_read("model=sample%3Awalker", ViewerState { model: vec!["sample:walker".to_owned()], ..default.clone() });
+    check_read("background=%23ff8000", ViewerState { background: Background::Color([255, 128, 0]), ..default.clone() });
+    let skeleton = Show { skeleton: true, grid: false, ..Show::default() };
+    check_read("show=skeleton", ViewerState { show: skeleton, ..default.clone() });
+    let orbit = OrbitCamera {
+        yaw_radians: std::f32::consts::FRAC_PI_2,
+        pitch_radians: 0.0,
+        distance: 4.0,
+        target: Vec3::new(0.0, 1.0, 0.0),
+    };
+    check_read("camera=90,0,4,0,1,0", ViewerState { camera: CameraChoice::Orbit(orbit), ..default });
+}
+
+#[test]
+fn bad_values_are_named_and_skipped() {
+    check_bad("t=soon", "t");
+    check_bad("t=inf", "t");
+    check_bad("play=yes", "play");
+    check_bad("speed=NaN", "speed");
+    check_bad("loop=twice", "loop");
+    check_bad("range=2,1", "range");
+    check_bad("range=2", "range");
+    check_bad("skinning=soft", "skinning");
+    check_bad("morph=0", "morph");
+    check_bad("camera=1,2,3", "camera");
+    check_bad("camera=0,0,0,0,0,0", "camera");
+    check_bad("camera=gltf:-1", "camera");
+    check_bad("joint=hips", "joint");
+    check_bad("up=w", "up");
+    check_bad("background=12345", "background");
+    check_bad("background=+12345", "background");
+    check_bad("v=2", "v");
+}
+
+#[test]
+fn keys_of_other_versions_are_kept() {
+    let link = "v=1&show=skeleton,split&motion=b.bvh&motion=c.bvh&zoo=1%262";
+    let (state, errors) = from_link(link);
+    assert_eq!(errors.len(), 4, "{errors:?}");
+    assert!(state.show.skeleton);
+    assert_eq!(to_link(&state), link);
+}
+
+#[test]
+fn an_object_changes_only_its_keys() {
+    let base = ViewerState { time_secs: 2.0, speed: 2.0, joint: Some(4), ..ViewerState::default() };
+    let partial =
+        serde_json::json!({ "t": 0.5, "play": false, "camera": [90, 0, 4, 0, 1, 0], "joint": null, "clip": "" });
+    let (state, errors) = from_object(&base, &partial);
+    assert_eq!(errors, []);
+    let (camera, _) = from_link("camera=90,0,4,0,1,0");
+    let expected = ViewerState {
+        time_secs: 0.5,
+        playing: false,
+        camera: camera.camera,
+        joint: None,
+        clip: ClipChoice::RestPose,
+        ..base
+    };
+    assert_eq!(state, expected);
+    let (same, errors) = from_object(&state, &serde_json::json!("t=1"));
+    assert_eq!((same, errors.len()), (state, 1));
+}

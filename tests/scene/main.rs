@@ -1,0 +1,16 @@
+//! From a model and a view state to a picture's numbers: library, state, link, frame, and the command line. No GPU.
+
+mod allocation;
+mod cli;
+mod data;
+mod decode;
+mod extent;
+mod frame;
+mod framing;
+mod generator_animations;
+mod history;
+mod link;
+mod real_models;
+mod scale;
+mod state;
+mod walker;

@@ -1,0 +1,127 @@
+//! Facts about real files that other programs and the files' own pages give.
+
+use gaitway::asset::Asset;
+use gaitway::frame::{Frame, evaluate, pose_document};
+use gaitway::library::{Library, inspect};
+use gaitway::state::{ClipChoice, ViewerState, active_clip};
+
+use crate::data::open;
+
+struct Facts {
+    path: &'static str,
+    joints: usize,
+    vertices: usize,
+    clips: &'static [(&'static str, f64)],
+}
+
+fn check(facts: &Facts) {
+    let Some(library) = open(facts.path) else { return };
+    let document = inspect(library.active().expect("a model"), &[]);
+    assert_eq!(document["joints"], facts.joints, "{}", facts.path);
+    assert_eq!(document["vertices"], facts.vertices, "{}", facts.path);
+    for (name, duration_secs) in facts.clips {
+        let clips = document["clips"].as_array().expect("clips");
+        let clip = clips.iter().find(|clip| clip["name"] == *name).unwrap_or_else(|| panic!("{name}: {clips:?}"));
+        let found = clip["duration_secs"].as_f64().expect("a number");
+        // The facts are written down to a thousandth of a second.
+        assert!((found - duration_secs).abs() < 6e-4 + 1e-3 * duration_secs, "{} {name}: {found}", facts.path);
+    }
+}
+
+fn asset(library: &Library) -> &Asset {
+    &library.active().expect("a model").asset
+}
+
+#[test]
+fn counts_and_durations() {
+    let all = [
+        Facts {
+            path: "khronos/Fox/glTF-Binary/Fox.glb",
+            joints: 24,
+            vertices: 1728,
+            clips: &[("Survey", 3.417), ("Walk", 0.708), ("Run", 1.158)],
+        },
+        Facts { path: "khronos/CesiumMan/glTF-Binary/CesiumMan.glb", joints: 19, vertices: 3273, clips: &[("", 2.0)] },
+        Facts { path: "cosc422/dwarf.glb", joints: 40, vertices: 1479, clips: &[("AnimationSet0", 2.2)] },
+        Facts {
+            path: "cosc422/ArmyPilot.glb",
+            joints: 63,
+            vertices: 16091,
+            clips: &[
+                ("Run_Forwards", 2.267),
+                ("Walk", 1.467),
+                ("Idle", 8.4),
+                ("Idle_Reload", 10.27),
+                ("Idle_Aim", 0.067),
+            ],
+        },
+        Facts {
+            path: "threejs/Soldier.glb",
+            joints: 49,
+            vertices: 7434,
+            clips: &[("Idle", 1.967), ("Run", 0.7), ("Walk", 1.033)],
+        },
+    ];
+    all.iter().for_each(check);
+}
+
+#[test]
+fn a_skinned_mesh_ignores_the_node_it_hangs_on() {
+    // ArmyPilot's mesh hangs on the joint Pelvis: moved by that node's own transform it would be far above its skeleton.
+    let Some(library) = open("cosc422/ArmyPilot.glb") else { return };
+    let bounds = library.active().expect("a model").rest_bounds();
+    let (mut frame, rest) = (Frame::default(), ViewerState { clip: ClipChoice::RestPose, ..ViewerState::default() });
+    evaluate(&library, &rest, 1.0, &mut frame);
+    let slack = 0.02 * bounds.diagonal();
+    let skeleton = &asset(&library).skeleton;
+    // Joints that lie inside a limb, and so inside the surface that they bend.
+    for name in
+        ["Pelvis", "LLegUpper", "LLegCalf", "LLegAnkle", "Spine1", "Spine2", "Neck1", "RArmForearm1", "RArmHand"]
+    {
+        let joint = skeleton.find(name).unwrap_or_else(|| panic!("{name}"));
+        let place = glam::Vec3::from(frame.characters[0].world_from_joint[joint.get()].translation);
+        let inside = place.cmpge(bounds.min - slack).all() && place.cmple(bounds.max + slack).all();
+        assert!(inside, "{name}: {place} outside {bounds:?}");
+    }
+}
+
+#[test]
+fn frames_of_a_clip_are_found_from_its_keys() {
+    for (path, clip, expected) in
+        [("cosc422/ArmyPilot.glb", "Walk", 30.0), ("khronos/Fox/glTF-Binary/Fox.glb", "Walk", 24.0)]
+    {
+        let Some(library) = open(path) else { return };
+        let model = library.active().expect("a model");
+        let state = ViewerState { clip: ClipChoice::Named(clip.to_owned()), ..ViewerState::default() };
+        let index = active_clip(model, &state).expect("the clip");
+        assert_eq!(model.frames_per_sec(index), expected, "{path}");
+    }
+}
+
+#[test]
+fn nodes_are_numbered_as_in_the_file() {
+    let Some(library) = open("cosc422/ArmyPilot.glb") else { return };
+    let document = pose_document(&library, &ViewerState::default());
+    let name = |node: usize| document["nodes"][node]["name"].as_str().unwrap_or_default().to_owned();
+    assert_eq!([0, 1, 2, 4].map(name), ["RootFrame", "RootFrame", "Pelvis", "LLegCalf"]);
+}
+
+#[test]
+fn a_skeleton_without_mesh_is_drawn_by_itself() {
+    let Some(library) = open("cosc422/mannequin_run.glb") else { return };
+    let mut frame = Frame::default();
+    evaluate(&library, &ViewerState::default(), 1.0, &mut frame);
+    assert!(frame.characters[0].draws.is_empty() && frame.bones.len() > 50);
+    assert!(!frame.bounds.is_empty());
+}
+
+#[test]
+fn following_keeps_a_runner_in_the_picture() {
+    // Root motion above the skin: the run leaves the picture unless the camera goes with it.
+    let Some(library) = open("cosc422/mannequin_run.glb") else { return };
+    let model = library.active().expect("a model");
+    assert!(model.root_of_clip(0).is_some());
+    let in_place = model.clip_bounds(None, Some(0), true).size();
+    let whole = model.clip_bounds(None, Some(0), false).size();
+    assert!(in_place.max_element() < 0.9 * whole.max_element(), "{in_place} {whole}");
+}

@@ -1,0 +1,180 @@
+//! What commands do to a view.
+
+use std::f32::consts::PI;
+
+use gaitway::anim::{LoopMode, TimeRange};
+use gaitway::library::Library;
+use gaitway::state::{
+    CameraChoice, ClipChoice, Command, OrbitCamera, ViewerState, active_clip, apply, choice_of_clip, clip_secs,
+    resolve_camera,
+};
+use glam::Vec3;
+
+use crate::data::{moving_box, walker};
+
+fn after(library: &Library, commands: impl IntoIterator<Item = Command>) -> ViewerState {
+    let mut state = ViewerState::default();
+    commands.into_iter().for_each(|command| apply(&mut state, library, command));
+    state
+}
+
+/// One second long, ten metres far.
+fn one_second() -> Library {
+    moving_box(0.5, &[0.0, 1.0], &[Vec3::ZERO, Vec3::X * 10.0])
+}
+
+fn shown_secs(library: &Library, state: &ViewerState) -> f64 {
+    clip_secs(library.active().expect("a model"), 0, state)
+}
+
+#[test]
+fn numbers_that_are_not_finite_change_nothing() {
+    let library = one_second();
+    let nothing = [
+        Command::Seek(f64::NAN),
+        Command::Advance(f64::INFINITY),
+        Command::SetSpeed(f64::NAN),
+        Command::SetRange(Some(TimeRange { start_secs: 0.0, end_secs: f64::NAN })),
+        Command::SetMorph { index: 0, weight: Some(f32::NAN) },
+        Command::Orbit { yaw_radians: f32::NAN, pitch_radians: 0.0 },
+        Command::Pan { right: f32::INFINITY, up: 0.0 },
+        Command::Zoom(f32::NAN),
+        Command::Zoom(-1.0),
+        Command::SetFov(f32::NAN),
+        Command::SetExposure(f32::INFINITY),
+        Command::SetEnvironment(f32::NAN),
+        Command::SetScene(Some(3)),
+        Command::SelectJoint(Some(1)),
+        Command::SetCamera(CameraChoice::File(0)),
+    ];
+    for command in nothing {
+        assert_eq!(after(&library, [command.clone()]), ViewerState::default(), "{command:?}");
+    }
+}
+
+#[test]
+fn values_out_of_range_are_clamped() {
+    let library = one_second();
+    assert_eq!(after(&library, [Command::Seek(7.0)]).time_secs, 1.0);
+    assert_eq!(after(&library, [Command::Seek(-7.0)]).time_secs, 0.0);
+    assert_eq!(after(&library, [Command::SetSpeed(100.0)]).speed, 4.0);
+    assert_eq!(after(&library, [Command::SetFov(0.0)]).fov_degrees, 5.0);
+    let range = Some(TimeRange { start_secs: -1.0, end_secs: 9.0 });
+    let whole = Some(TimeRange { start_secs: 0.0, end_secs: 1.0 });
+    assert_eq!(after(&library, [Command::SetRange(range)]).range, whole);
+    let bad = ViewerState {
+        time_secs: f64::NAN,
+        speed: f64::INFINITY,
+        fov_degrees: 900.0,
+        camera: CameraChoice::Orbit(OrbitCamera {
+            yaw_radians: 0.0,
+            pitch_radians: 0.0,
+            distance: -1.0,
+            target: Vec3::ZERO,
+        }),
+        ..ViewerState::default()
+    };
+    let expected = ViewerState { fov_degrees: 120.0, ..ViewerState::default() };
+    assert_eq!(after(&library, [Command::Replace(Box::new(bad))]), expected);
+}
+
+#[test]
+fn time_goes_by_at_the_chosen_speed() {
+    let library = one_second();
+    assert_eq!(after(&library, [Command::SetSpeed(0.5), Command::Advance(0.5)]).time_secs, 0.25);
+    assert_eq!(after(&library, [Command::SetPlaying(false), Command::Advance(0.5)]).time_secs, 0.0);
+    assert_eq!(after(&library, [Command::SetClip(ClipChoice::RestPose), Command::Advance(0.5)]).time_secs, 0.0);
+}
+
+#[test]
+fn once_stops_at_the_end_and_starts_over() {
+    let library = one_second();
+    let mut state =
+        after(&library, [Command::SetLoopMode(LoopMode::Once), Command::Advance(0.75), Command::Advance(0.75)]);
+    assert_eq!((state.time_secs, state.playing), (1.0, false));
+    apply(&mut state, &library, Command::TogglePlaying);
+    assert_eq!((state.time_secs, state.playing), (0.0, true));
+}
+
+#[test]
+fn loops_fold_the_playhead_into_the_range() {
+    let library = one_second();
+    let range = Some(TimeRange { start_secs: 0.25, end_secs: 0.75 });
+    for (mode, expected) in [(LoopMode::Loop, 0.35), (LoopMode::PingPong, 0.65)] {
+        let mut state = after(&library, [Command::SetRange(range), Command::SetLoopMode(mode), Command::Seek(0.25)]);
+        for _ in 0..6 {
+            apply(&mut state, &library, Command::Advance(0.1));
+        }
+        assert!((shown_secs(&library, &state) - expected).abs() < 1e-9, "{mode:?}: {}", state.time_secs);
+        // However long it plays the playhead stays near the range.
+        for _ in 0..1000 {
+            apply(&mut state, &library, Command::Advance(0.1));
+        }
+        assert!(state.time_secs < 2.0, "{mode:?}");
+        assert!((shown_secs(&library, &state) - expected).abs() < 1e-6, "{mode:?}: {}", state.time_secs);
+    }
+}
+
+#[test]
+fn steps_are_whole_frames_and_pause() {
+    let library = one_second();
+    let at_frame = |frames: f64| frames / 30.0;
+    let state = after(&library, [Command::Seek(0.49), Command::StepFrames(1)]);
+    assert_eq!((state.time_secs, state.playing), (at_frame(16.0), false));
+    assert_eq!(after(&library, [Command::StepFrames(-1)]).time_secs, 1.0);
+    assert_eq!(after(&library, [Command::Seek(1.0), Command::StepFrames(1)]).time_secs, 0.0);
+    let once = [Command::SetLoopMode(LoopMode::Once), Command::StepFrames(-1)];
+    assert_eq!(after(&library, once).time_secs, 0.0);
+}
+
+#[test]
+fn another_clip_starts_at_its_beginning() {
+    let library = walker();
+    let range = Some(TimeRange { start_secs: 0.25, end_secs: 0.75 });
+    let wave = ClipChoice::Named("Wave".to_owned());
+    let state = after(&library, [Command::Seek(0.5), Command::SetRange(range), Command::SetClip(wave.clone())]);
+    assert_eq!((state.time_secs, state.range, state.clip), (0.0, None, wave));
+}
+
+#[test]
+fn clips_are_found_by_name_and_by_index() {
+    let library = walker();
+    let model = library.active().expect("a model");
+    let find = |name: &str| {
+        active_clip(model, &ViewerState { clip: ClipChoice::Named(name.to_owned()), ..ViewerState::default() })
+    };
+    assert_eq!((find("Wave"), find("2"), find("wave"), find("3"), find("")), (Some(2), Some(2), None, None, None));
+    assert_eq!(active_clip(model, &ViewerState::default()), Some(0));
+    assert_eq!(choice_of_clip(model, 1), ClipChoice::Named("Idle".to_owned()));
+}
+
+#[test]
+fn turning_starts_from_where_the_camera_is() {
+    let library = walker();
+    let auto = resolve_camera(&library, &ViewerState::default(), 16.0 / 9.0);
+    let state = after(&library, [Command::Orbit { yaw_radians: 0.5, pitch_radians: 0.1 }]);
+    let CameraChoice::Orbit(turned) = state.camera else { panic!("{:?}", state.camera) };
+    assert_eq!((turned.distance, turned.target), (auto.distance, auto.target));
+    assert!((turned.yaw_radians - auto.yaw_radians - 0.5).abs() < 1e-6);
+    assert!((turned.pitch_radians - auto.pitch_radians - 0.1).abs() < 1e-6);
+}
+
+#[test]
+fn the_camera_never_tips_over_and_yaw_stays_small() {
+    let library = walker();
+    let state = after(&library, [Command::Orbit { yaw_radians: 100.0, pitch_radians: 100.0 }]);
+    let CameraChoice::Orbit(orbit) = state.camera else { panic!("{:?}", state.camera) };
+    assert!(orbit.pitch_radians < 0.5 * PI && orbit.pitch_radians > 1.5);
+    assert!(orbit.yaw_radians.abs() <= PI);
+}
+
+#[test]
+fn panning_by_a_picture_height_moves_by_what_the_picture_shows() {
+    let library = walker();
+    let camera = OrbitCamera { yaw_radians: 0.0, pitch_radians: 0.0, distance: 2.0, target: Vec3::ZERO };
+    let state =
+        after(&library, [Command::SetCamera(CameraChoice::Orbit(camera)), Command::Pan { right: 1.0, up: 0.5 }]);
+    let CameraChoice::Orbit(panned) = state.camera else { panic!("{:?}", state.camera) };
+    let height = 4.0 * 17.5_f32.to_radians().tan();
+    assert!(panned.target.distance(Vec3::new(height, 0.5 * height, 0.0)) < 1e-5, "{}", panned.target);
+}
