@@ -9,6 +9,11 @@ pub trait Host {
     /// Lets the person choose files; false when there is no way to on this platform.
     fn choose_files(&self, inbox: &Inbox) -> bool;
 
+    /// Opens a path that was typed, on platforms where [`Host::choose_files`] cannot help.
+    fn open_path(&self, path: &str, inbox: &Inbox) {
+        let _ = (path, inbox);
+    }
+
     /// Opens files that were dropped on the canvas or the window, as one set.
     fn open_dropped(&self, files: Vec<egui::DroppedFileHandle>, inbox: &Inbox);
 

@@ -45,6 +45,20 @@ impl Window {
         let (sender, loaded) = channel();
         Self { context, loaded, sender }
     }
+
+    /// Reads in the background; the answer comes with a later frame.
+    fn open(&self, paths: Vec<PathBuf>, inbox: &Inbox) {
+        let name = paths.first().and_then(|path| path.file_name()).map(|name| name.to_string_lossy().into_owned());
+        let opening = Opening { name: name.unwrap_or_default(), received_bytes: 0, total_bytes: 0 };
+        inbox.send(Message::OpenProgress(opening));
+        let (sender, context) = (self.sender.clone(), self.context.clone());
+        std::thread::spawn(move || {
+            let opened = open_paths(&paths).map(|opened| Box::new(opened.model)).map_err(|error| error.to_string());
+            // Nobody waits any more when the window was closed meanwhile.
+            let _ = sender.send(opened);
+            context.request_repaint();
+        });
+    }
 }
 
 impl Host for Window {
@@ -52,18 +66,12 @@ impl Host for Window {
         false
     }
 
+    fn open_path(&self, path: &str, inbox: &Inbox) {
+        self.open(vec![PathBuf::from(path)], inbox);
+    }
+
     fn open_dropped(&self, files: Vec<egui::DroppedFileHandle>, inbox: &Inbox) {
-        let paths: Vec<PathBuf> = files.iter().map(|file| file.path().to_owned()).collect();
-        let name = paths.first().and_then(|path| path.file_name()).map(|name| name.to_string_lossy().into_owned());
-        let opening = Opening { name: name.unwrap_or_default(), received_bytes: 0, total_bytes: 0 };
-        inbox.send(Message::OpenProgress(opening));
-        let (sender, context) = (self.sender.clone(), self.context.clone());
-        std::thread::spawn(move || {
-            // Nobody waits any more when the window was closed meanwhile.
-            let _ =
-                sender.send(open_paths(&paths).map(|opened| Box::new(opened.model)).map_err(|error| error.to_string()));
-            context.request_repaint();
-        });
+        self.open(files.iter().map(|file| file.path().to_owned()).collect(), inbox);
     }
 
     fn link(&self, fragment: &str) -> String {

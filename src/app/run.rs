@@ -175,7 +175,7 @@ impl App {
         }
     }
 
-    fn stats(&self) -> serde_json::Value {
+    pub fn stats(&self) -> serde_json::Value {
         let drawn = self.scene.stats();
         let joints: usize = self.frame.characters.iter().map(|character| character.world_from_joint.len()).sum();
         serde_json::json!({
@@ -212,9 +212,10 @@ impl App {
         match action {
             UiAction::OpenFiles => {
                 if !self.host.choose_files(&self.inbox) {
-                    self.panels.toast = Some(toast("Drop a file anywhere on this window to open it."));
+                    self.panels.path_prompt = Some(String::new());
                 }
             }
+            UiAction::OpenPath(path) => self.host.open_path(&path, &self.inbox),
             UiAction::CopyLink => {
                 context.copy_text(self.host.link(&to_link(&self.state)));
                 self.panels.toast = Some(toast("Link copied."));

@@ -130,7 +130,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
 
 /// Listens, unless someone is typing or a control has the keyboard.
 pub(super) fn listen(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
-    if context.egui_wants_keyboard_input() {
+    if context.egui_wants_keyboard_input() || local.path_prompt.is_some() {
         return;
     }
     let undo = egui::KeyboardShortcut::new(Modifiers::COMMAND, Key::Z);

@@ -80,6 +80,8 @@ pub struct UiState {
     /// Shown until dismissed.
     pub error: Option<String>,
     pub progress: Option<Progress>,
+    /// Asks for a path, where the platform has no way to choose files: what has been typed so far.
+    pub path_prompt: Option<String>,
     /// The playhead is held: time stands still meanwhile.
     pub scrubbing: bool,
     /// The joint under the pointer, as the file numbers it.
@@ -108,6 +110,7 @@ impl Default for UiState {
             help_open: false,
             error: None,
             progress: None,
+            path_prompt: None,
             scrubbing: false,
             hovered_joint: None,
             aspect: 1.6,
@@ -148,10 +151,12 @@ pub struct Output {
 }
 
 /// What is not a change of the view state.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum UiAction {
     /// Let the person choose files.
     OpenFiles,
+    /// Open what was typed into [`UiState::path_prompt`].
+    OpenPath(String),
     /// Put a link to this view on the clipboard.
     CopyLink,
     Undo,

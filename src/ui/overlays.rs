@@ -3,7 +3,7 @@
 use egui::{Align, Align2, Area, Color32, Context, Id, Layout, Order, Rect, RichText, Stroke, Ui, pos2, vec2};
 
 use super::icons::{Icon, icon_button};
-use super::{KEY_TABLE, Output, Sheet, Shown, UiState, clips, inspector, is_narrow, style};
+use super::{KEY_TABLE, Output, Sheet, Shown, UiAction, UiState, clips, inspector, is_narrow, style};
 
 /// Call last; `picture` is the rectangle the picture has.
 pub fn overlays(ui: &mut Ui, picture: Rect, shown: Shown<'_>, local: &mut UiState, out: &mut Output) {
@@ -16,6 +16,7 @@ pub fn overlays(ui: &mut Ui, picture: Rect, shown: Shown<'_>, local: &mut UiStat
     if local.help_open {
         help(ui.ctx(), local);
     }
+    path_prompt(ui.ctx(), local, out);
     if ui.input(|input| !input.raw.hovered_files.is_empty()) {
         drop_target(ui);
     }
@@ -152,6 +153,38 @@ fn help(context: &Context, local: &mut UiState) {
     });
     if modal.should_close() {
         local.help_open = false;
+    }
+}
+
+fn path_prompt(context: &Context, local: &mut UiState, out: &mut Output) {
+    let Some(path) = &mut local.path_prompt else { return };
+    let mut done = false;
+    let modal = egui::Modal::new(Id::unique("path prompt")).show(context, |ui| {
+        ui.set_width((ui.ctx().content_rect().width() - 64.0).min(460.0));
+        ui.heading("Open a file");
+        ui.add_space(4.0);
+        let field = egui::TextEdit::singleline(path)
+            .hint_text("Path of a .glb, .gltf, .zip or folder")
+            .margin(egui::Margin::symmetric(10, 6))
+            .desired_width(f32::INFINITY);
+        let field = ui.add(field).accessible_name("Path");
+        let entered = field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+        if !field.has_focus() && !entered {
+            field.request_focus();
+        }
+        super::controls::hint(ui, "Files can also be dropped anywhere on the window.");
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let filled = !path.trim().is_empty();
+            let open = ui.add_enabled(filled, egui::Button::new("Open"));
+            if filled && (open.clicked() || entered) {
+                out.actions.push(UiAction::OpenPath(path.trim().to_owned()));
+                done = true;
+            }
+            done |= ui.button("Cancel").clicked();
+        });
+    });
+    if done || modal.should_close() {
+        local.path_prompt = None;
     }
 }
 

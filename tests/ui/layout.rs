@@ -1,7 +1,7 @@
 //! What fits where: wide, narrow, folded, embedded; and what lies over the picture.
 
 use egui_kittest::kittest::Queryable;
-use gaitway::ui::{Progress, Sheet};
+use gaitway::ui::{Progress, Sheet, UiAction};
 
 use crate::bench::{NARROW, WIDE, bench, model_with_clips, press, sample_bench};
 
@@ -93,4 +93,16 @@ fn nothing_repaints_by_itself() {
     let mut harness = sample_bench(WIDE);
     harness.run();
     assert_eq!(harness.run(), 1, "one step for the run itself and none after it");
+}
+
+#[test]
+fn a_path_can_be_typed_where_there_is_no_dialog() {
+    let mut harness = sample_bench(WIDE);
+    harness.state_mut().panels.path_prompt = Some(String::new());
+    harness.run();
+    harness.get_by_label("Path").type_text("models/fox.glb");
+    harness.run();
+    assert!(press(&mut harness, "Open").is_empty());
+    assert_eq!(harness.state().actions, [UiAction::OpenPath("models/fox.glb".to_owned())]);
+    assert_eq!(harness.state().panels.path_prompt, None);
 }
