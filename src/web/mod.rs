@@ -1,2 +1,10 @@
-//! The page: `window.gaitway` and the start of the app in the browser.
-pub fn start() {}
+//! The page: what the HTML shell (web/shell.js) calls. The shell owns the canvas, the dropped files, the messages and
+//! `window.gaitway`; everything here lives in one wasm instance that the shell may throw away and start again.
+
+#[cfg(feature = "bench")]
+mod bench;
+mod calls;
+mod page;
+mod shell;
+
+pub use page::start;

@@ -1,1 +1,59 @@
-fn main() {}
+//! Work on the repository: `cargo xtask serve`, `build`, `test`, `setup`. Each sets up what it needs first.
+
+mod page;
+mod process;
+mod serve;
+mod setup;
+mod sizes;
+mod test;
+
+use std::process::ExitCode;
+
+use anyhow::{Context, bail};
+
+const USAGE: &str = "\
+cargo xtask serve [--port N]   builds the page and serves it on 127.0.0.1 (port 8080)
+cargo xtask build [--bench]    builds the page into dist/; --bench with what benches/web measures
+cargo xtask test               runs every check and test, cheap ones first
+cargo xtask setup              installs what the others need and is missing";
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run() -> anyhow::Result<()> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    match arguments.as_slice() {
+        ["serve"] => serve_page(8080),
+        ["serve", "--port", port] => serve_page(port.parse().with_context(|| format!("--port {port}"))?),
+        ["build"] => build_page(&[]),
+        ["build", "--bench"] => build_page(&["bench"]),
+        ["test"] => test::run(),
+        ["setup"] => setup::page().and_then(|()| setup::tests()),
+        ["help" | "--help" | "-h"] => {
+            println!("{USAGE}");
+            Ok(())
+        }
+        [] => bail!("what is to be done?\n{USAGE}"),
+        other => bail!("cargo xtask {}: there is no such command\n{USAGE}", other.join(" ")),
+    }
+}
+
+fn build_page(features: &[&str]) -> anyhow::Result<()> {
+    setup::page()?;
+    page::build(features)?;
+    sizes::print()
+}
+
+fn serve_page(port: u16) -> anyhow::Result<()> {
+    setup::page()?;
+    page::build(&[])?;
+    serve::run(port)
+}

@@ -1,0 +1,250 @@
+//! Models on the page: fetched by URL together with the files they name beside themselves, or from buffers that were
+//! dropped; images are decoded by the browser. Nothing is sent anywhere.
+
+use js_sys::{Array, Reflect, Uint8Array};
+use wasm_bindgen::{JsCast, JsValue};
+use wasm_bindgen_futures::JsFuture;
+
+use crate::asset::{Asset, Image, Warning};
+use crate::formats::{FileSet, LoadError, load, missing_files};
+use crate::library::{ImageData, Model, sample};
+
+/// What is to be opened: one part of a set.
+#[derive(Debug)]
+pub enum Item {
+    /// Absolute, relative to the page, or `sample:NAME`.
+    Url(String),
+    /// A path, `/` between folders, with the content.
+    File(String, Vec<u8>),
+}
+
+/// Why nothing could be opened; each names the file and, when known, what to do.
+#[derive(Debug, thiserror::Error)]
+pub enum OpenError {
+    #[error("there is nothing to open: expected files or addresses")]
+    Nothing,
+    #[error("sample:{name}: there is no such sample; there are: {}", sample::NAMES.map(|name| format!("sample:{name}")).join(", "))]
+    NoSuchSample { name: String },
+    #[error("{url}: this is not an address; expected one such as https://example.org/character.glb")]
+    NotAnAddress { url: String },
+    #[error("{url}: the server answered {status}{}", hint(*status))]
+    Status { url: String, status: u16 },
+    #[error(
+        "{url}: it could not be fetched. Either the site cannot be reached, or it does not let other pages read its files \
+         (CORS); download the file and drop it here instead"
+    )]
+    Unreachable { url: String },
+    #[error("{url}: the connection broke off after {received} bytes")]
+    BrokeOff { url: String, received: u64 },
+    #[error("{name}: more than {most} bytes together, which a browser cannot hold; try the window (`gaitway FILE`)")]
+    TooLarge { name: String, most: u64 },
+    #[error(transparent)]
+    Load(#[from] LoadError),
+}
+
+fn hint(status: u16) -> &'static str {
+    match status {
+        401 | 403 => " (not allowed); download the file and drop it here instead",
+        404 | 410 => " (there is no such file)",
+        _ => "",
+    }
+}
+
+const MOST_BYTES: u64 = 1 << 30;
+const MOST_IMAGE_BYTES: u64 = 1 << 30;
+const MOST_PIXELS_ACROSS: u32 = 16_384;
+/// Files that name further files, one round each.
+const MOST_ROUNDS: usize = 4;
+
+/// Opens one set. `progress` is told the name of the file on its way, the bytes received, and the total (0: not known).
+pub async fn open_items(items: Vec<Item>, progress: &dyn Fn(&str, u64, u64)) -> Result<Model, OpenError> {
+    if let [Item::Url(url)] = items.as_slice()
+        && let Some(name) = url.strip_prefix("sample:")
+    {
+        return sample::load(name).ok_or_else(|| OpenError::NoSuchSample { name: name.to_owned() });
+    }
+    let source = source_of(&items).ok_or(OpenError::Nothing)?;
+    let mut set = FileSet::default();
+    let mut bases = Vec::new();
+    let mut bytes_left = MOST_BYTES;
+    for item in items {
+        match item {
+            Item::File(name, bytes) => {
+                let too_large = || OpenError::TooLarge { name: name.clone(), most: MOST_BYTES };
+                bytes_left = bytes_left.checked_sub(bytes.len() as u64).ok_or_else(too_large)?;
+                set.insert(name, bytes);
+            }
+            Item::Url(url) => {
+                let base = absolute(&url, None).ok_or_else(|| OpenError::NotAnAddress { url: url.clone() })?;
+                let name = file_name(&base);
+                let name = if set.get(&name).is_some() { url.clone() } else { name };
+                let bytes = fetch(&base, &name, &mut bytes_left, progress).await?;
+                set.insert(name, bytes);
+                bases.push(base);
+            }
+        }
+    }
+    fetch_beside(&mut set, &bases, &mut bytes_left, progress).await?;
+    let mut asset = load(&set)?;
+    let images = decode_images(&mut asset).await;
+    Ok(Model::new(source, asset, images))
+}
+
+/// How the set is called in links and panels: after its model, else after its first part.
+fn source_of(items: &[Item]) -> Option<String> {
+    const MODELS: [&str; 4] = [".glb", ".gltf", ".vrm", ".zip"];
+    let names = || {
+        items.iter().map(|item| match item {
+            Item::Url(name) | Item::File(name, _) => name,
+        })
+    };
+    let is_model = |name: &&String| {
+        let name = name.to_lowercase();
+        MODELS.iter().any(|ending| name.split(['?', '#']).next().unwrap_or_default().ends_with(ending))
+    };
+    names().find(is_model).or_else(|| names().next()).cloned()
+}
+
+/// Fetches what the set's model names beside itself, next to the address it came from. What is not found there is left to
+/// the loader, which says what is missing and whether that matters.
+async fn fetch_beside(
+    set: &mut FileSet,
+    bases: &[String],
+    bytes_left: &mut u64,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<(), OpenError> {
+    let mut tried: Vec<String> = Vec::new();
+    for _ in 0..MOST_ROUNDS {
+        let missing: Vec<String> = missing_files(set).into_iter().filter(|name| !tried.contains(name)).collect();
+        if missing.is_empty() || bases.is_empty() {
+            break;
+        }
+        for name in missing {
+            for base in bases {
+                let Some(url) = absolute(&escaped(&name), Some(base)) else { continue };
+                match fetch(&url, &name, bytes_left, progress).await {
+                    Ok(bytes) => {
+                        set.insert(name.clone(), bytes);
+                        break;
+                    }
+                    Err(error @ OpenError::TooLarge { .. }) => return Err(error),
+                    Err(error) => web_sys::console::warn_1(&error.to_string().into()),
+                }
+            }
+            tried.push(name);
+        }
+    }
+    Ok(())
+}
+
+/// A relative path with everything escaped that means something in a URL.
+fn escaped(path: &str) -> String {
+    let segments = path.split('/').map(|segment| String::from(js_sys::encode_uri_component(segment)));
+    let path = segments.collect::<Vec<_>>().join("/");
+    // A first segment with a colon must not be taken for a scheme.
+    format!("./{path}")
+}
+
+/// `url` seen from `base`, or from the page.
+fn absolute(url: &str, base: Option<&str>) -> Option<String> {
+    let page = web_sys::window().and_then(|window| window.location().href().ok());
+    let url = web_sys::Url::new_with_base(url, base.or(page.as_deref())?).ok()?;
+    Some(url.href())
+}
+
+/// The last part of an address, as a person would write it.
+fn file_name(url: &str) -> String {
+    let path = url.split(['?', '#']).next().unwrap_or(url);
+    let last = path.rsplit('/').find(|part| !part.is_empty()).unwrap_or(path);
+    percent_encoding::percent_decode_str(last).decode_utf8_lossy().into_owned()
+}
+
+async fn fetch(
+    url: &str,
+    name: &str,
+    bytes_left: &mut u64,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<Vec<u8>, OpenError> {
+    progress(name, 0, 0);
+    let unreachable = || OpenError::Unreachable { url: url.to_owned() };
+    let window = web_sys::window().ok_or_else(unreachable)?;
+    let response = JsFuture::from(window.fetch_with_str(url)).await.map_err(|_| unreachable())?;
+    let response: web_sys::Response = response.dyn_into().map_err(|_| unreachable())?;
+    if !response.ok() {
+        return Err(OpenError::Status { url: url.to_owned(), status: response.status() });
+    }
+    let header = |name: &str| response.headers().get(name).ok().flatten();
+    // The length of a compressed transfer says nothing about the bytes that arrive here.
+    let total = match header("content-encoding") {
+        None => header("content-length").and_then(|length| length.parse::<u64>().ok()).unwrap_or(0),
+        Some(_) => 0,
+    };
+    let too_large = || OpenError::TooLarge { name: name.to_owned(), most: MOST_BYTES };
+    if total > *bytes_left {
+        return Err(too_large());
+    }
+    let mut bytes: Vec<u8> = Vec::with_capacity(total as usize);
+    let Some(body) = response.body() else { return Ok(bytes) };
+    let reader: web_sys::ReadableStreamDefaultReader = body.get_reader().unchecked_into();
+    loop {
+        let broke_off = |received: usize| OpenError::BrokeOff { url: url.to_owned(), received: received as u64 };
+        let chunk = JsFuture::from(reader.read()).await.map_err(|_| broke_off(bytes.len()))?;
+        if Reflect::get(&chunk, &"done".into()).is_ok_and(|done| done.is_truthy()) {
+            break;
+        }
+        let value = Reflect::get(&chunk, &"value".into()).map_err(|_| broke_off(bytes.len()))?;
+        let value: Uint8Array = value.dyn_into().map_err(|_| broke_off(bytes.len()))?;
+        *bytes_left = bytes_left.checked_sub(u64::from(value.length())).ok_or_else(too_large)?;
+        let start = bytes.len();
+        bytes.resize(start + value.length() as usize, 0);
+        value.copy_to(&mut bytes[start..]);
+        let received = bytes.len() as u64;
+        progress(name, received, if received > total { 0 } else { total });
+    }
+    Ok(bytes)
+}
+
+/// One entry per image of the asset, all decoded at once. What cannot be decoded is none, and a warning of the asset says
+/// why.
+pub async fn decode_images(asset: &mut Asset) -> Vec<Option<ImageData>> {
+    let mut bytes_left = MOST_IMAGE_BYTES;
+    let promises: Vec<Result<js_sys::Promise, String>> =
+        asset.images.iter().map(|image| start_decoding(image, &mut bytes_left)).collect();
+    let mut decoded = Vec::with_capacity(promises.len());
+    for (index, promise) in promises.into_iter().enumerate() {
+        let bitmap = match promise {
+            Ok(promise) => JsFuture::from(promise)
+                .await
+                .map_err(|_| "the browser cannot decode it".to_owned())
+                .and_then(|bitmap| bitmap.dyn_into().map_err(|_| "the browser cannot decode it".to_owned())),
+            Err(problem) => Err(problem),
+        };
+        match bitmap {
+            Ok(bitmap) => decoded.push(Some(ImageData::Bitmap(bitmap))),
+            Err(problem) => {
+                let name = asset.images.get(index).map(|image| image.name.clone()).filter(|name| !name.is_empty());
+                let image = name.unwrap_or_else(|| index.to_string());
+                asset.warnings.push(Warning::ImageUnreadable { image, problem });
+                decoded.push(None);
+            }
+        }
+    }
+    decoded
+}
+
+/// What the header says is checked first: the browser would take any amount of memory.
+fn start_decoding(image: &Image, bytes_left: &mut u64) -> Result<js_sys::Promise, String> {
+    let bytes = 4 * u64::from(image.width) * u64::from(image.height);
+    if bytes == 0 || image.width.max(image.height) > MOST_PIXELS_ACROSS || bytes > *bytes_left {
+        return Err(format!("{} × {} pixels", image.width, image.height));
+    }
+    *bytes_left -= bytes;
+    let failed = |_: JsValue| "the browser cannot decode it".to_owned();
+    let parts = Array::of1(&Uint8Array::from(&image.bytes[..]));
+    let blob = web_sys::Blob::new_with_u8_array_sequence(&parts).map_err(failed)?;
+    let options = web_sys::ImageBitmapOptions::new();
+    options.set_premultiply_alpha(web_sys::PremultiplyAlpha::None);
+    options.set_color_space_conversion(web_sys::ColorSpaceConversion::None);
+    let window = web_sys::window().ok_or_else(|| "there is no window".to_owned())?;
+    window.create_image_bitmap_with_blob_and_image_bitmap_options(&blob, &options).map_err(failed)
+}

@@ -1,0 +1,58 @@
+//! The work of one character in one frame, measured in the page for benches/web.
+
+use glam::Affine3A;
+use wasm_bindgen::prelude::*;
+
+use crate::anim::{Pose, SampleCursor, model_from_joint};
+use crate::formats::{FileSet, load};
+use crate::mesh::{PaletteEntry, SkinningMode, write_palette};
+
+struct Character {
+    phase_secs: f64,
+    cursor: SampleCursor,
+    pose: Pose,
+}
+
+#[wasm_bindgen]
+extern "C" {
+    #[wasm_bindgen(js_namespace = performance)]
+    fn now() -> f64;
+}
+
+/// µs per character and frame to sample a clip of a .glb, go to model space and write the skins' palettes. Each character
+/// has its own phase.
+///
+/// # Errors
+/// When the file cannot be read or has no clip of that name.
+#[wasm_bindgen]
+pub fn bench_characters(bytes: &[u8], clip: &str, characters: u32, frames: u32) -> Result<f64, JsError> {
+    let mut set = FileSet::default();
+    set.insert("model.glb", bytes);
+    let asset = load(&set).map_err(|error| JsError::new(&error.to_string()))?;
+    let clip = asset.clips.iter().find(|other| other.name() == clip).ok_or_else(|| JsError::new("no such clip"))?;
+    let skeleton = &asset.skeleton;
+    let duration_secs = f64::from(clip.duration_secs()).max(1e-3);
+    let mut crowd: Vec<Character> = (0..characters)
+        .map(|index| Character {
+            phase_secs: duration_secs * f64::from(index) / f64::from(characters.max(1)),
+            cursor: SampleCursor::default(),
+            pose: skeleton.rest().clone(),
+        })
+        .collect();
+    let mut world_from_joint: Vec<Affine3A> = Vec::with_capacity(skeleton.len());
+    let mut palette: Vec<PaletteEntry> = Vec::new();
+    let start_ms = now();
+    for frame in 0..frames {
+        for character in &mut crowd {
+            let time_secs = (character.phase_secs + f64::from(frame) / 60.0) % duration_secs;
+            clip.sample(skeleton, time_secs as f32, &mut character.cursor, &mut character.pose);
+            model_from_joint(skeleton, &character.pose.locals, Affine3A::IDENTITY, &mut world_from_joint);
+            palette.clear();
+            for skin in &asset.skins {
+                write_palette(skin, &world_from_joint, SkinningMode::Linear, &mut palette);
+            }
+            std::hint::black_box(&palette);
+        }
+    }
+    Ok(1000.0 * (now() - start_ms) / (f64::from(frames.max(1)) * f64::from(characters.max(1))))
+}

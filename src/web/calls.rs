@@ -1,0 +1,183 @@
+//! What the shell's `window.gaitway` and dialog call. Documents cross as JSON text, errors as the message a person sees.
+
+use std::rc::Rc;
+
+use js_sys::{Array, Function, Promise, Uint8Array};
+use serde_json::{Value, json};
+use wasm_bindgen::prelude::*;
+
+use super::page::{Page, page, state_of_link};
+use crate::app::{App, Message, Opening, Reply, ScriptCall};
+use crate::files::{Item, open_items};
+use crate::frame::pose_document;
+use crate::library::sample;
+use crate::state::{Command, ViewerState, active_clip, from_object, to_object};
+
+/// Opens one set instead of what is shown: an array of addresses and of `[name, Uint8Array]`. Resolves to the inspect
+/// document once it is on the screen; what is shown stays when that fails.
+#[wasm_bindgen]
+pub async fn open(items: Array) -> Result<String, JsError> {
+    let page = page().map_err(error)?;
+    let items = items_of(&items).map_err(error)?;
+    show(&page, items, None).await.map(|document| document.to_string()).map_err(error)
+}
+
+/// Takes over another part after `#`, with its model when that is another one.
+#[wasm_bindgen]
+pub async fn follow_link(link: String) -> Result<(), JsError> {
+    let page = page().map_err(error)?;
+    let mut state = state_of_link(&link, &page.shell);
+    if state.model.is_empty() {
+        state.model.push(format!("sample:{}", sample::NAMES[0]));
+    }
+    take_over(&page, state).await.map_err(error)
+}
+
+/// Sets some keys of the link; resolves after the frame that shows them.
+#[wasm_bindgen]
+pub async fn apply(partial: String) -> Result<(), JsError> {
+    let page = page().map_err(error)?;
+    let partial: Value = serde_json::from_str(&partial).map_err(|problem| error(problem.to_string()))?;
+    if partial.get("model").is_none() {
+        let (promise, reply) = promise::<()>(|()| JsValue::UNDEFINED);
+        page.inbox.send(Message::Script(ScriptCall::Apply(partial, reply)));
+        return settled(promise).await.map(|_| ()).map_err(error);
+    }
+    let before = with_app(&page, |app| app.state().clone()).map_err(error)?;
+    let (mut state, errors) = from_object(&before, &partial);
+    if !errors.is_empty() {
+        return Err(error(errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")));
+    }
+    if state.model.is_empty() {
+        state.model.push(format!("sample:{}", sample::NAMES[0]));
+    }
+    take_over(&page, state).await.map_err(error)
+}
+
+/// The link's keys as JSON.
+#[wasm_bindgen]
+pub fn state() -> Result<String, JsError> {
+    let page = page().map_err(error)?;
+    with_app(&page, |app| to_object(app.state()).to_string()).map_err(error)
+}
+
+/// The pose document of what is on the screen.
+#[wasm_bindgen]
+pub fn pose() -> Result<String, JsError> {
+    let page = page().map_err(error)?;
+    with_app(&page, |app| pose_document(app.library(), app.state()).to_string()).map_err(error)
+}
+
+#[wasm_bindgen]
+pub fn stats() -> Result<String, JsError> {
+    let page = page().map_err(error)?;
+    with_app(&page, |app| app.stats().to_string()).map_err(error)
+}
+
+/// PNG bytes of the picture alone.
+#[wasm_bindgen]
+pub async fn screenshot() -> Result<Uint8Array, JsError> {
+    let page = page().map_err(error)?;
+    let (promise, reply) = promise::<Vec<u8>>(|png| Uint8Array::from(png.as_slice()).into());
+    page.inbox.send(Message::Script(ScriptCall::Screenshot(reply)));
+    settled(promise).await.map(JsValue::unchecked_into).map_err(error)
+}
+
+/// What the live region says: `{model, clip, playing}`; no clip is the rest pose.
+#[wasm_bindgen]
+pub fn summary() -> Result<String, JsError> {
+    let page = page().map_err(error)?;
+    let summary = |app: &mut App| {
+        let state = app.state();
+        let model = app.library().active();
+        let clip = model.and_then(|model| model.clip_titles().get(active_clip(model, state)?));
+        json!({ "model": state.model.join(", "), "clip": clip, "playing": state.playing }).to_string()
+    };
+    with_app(&page, summary).map_err(error)
+}
+
+/// Shows a state, with its model when that is another one than what is shown.
+async fn take_over(page: &Rc<Page>, state: ViewerState) -> Result<(), String> {
+    if with_app(page, |app| app.state().model == state.model)? {
+        page.inbox.send(Message::Commands(vec![Command::Replace(Box::new(state))]));
+        return Ok(());
+    }
+    let items = state.model.iter().map(|model| Item::Url(model.clone())).collect();
+    show(page, items, Some(Box::new(state))).await.map(|_| ())
+}
+
+/// Loads and shows one set; without a state the present one is kept as far as it fits. Gives the inspect document.
+async fn show(page: &Rc<Page>, items: Vec<Item>, state: Option<Box<ViewerState>>) -> Result<Value, String> {
+    let load = page.loads.get() + 1;
+    page.loads.set(load);
+    let progress = |name: &str, received_bytes: u64, total_bytes: u64| {
+        if page.loads.get() == load {
+            let opening = Opening { name: name.to_owned(), received_bytes, total_bytes };
+            page.inbox.send(Message::OpenProgress(opening));
+        }
+    };
+    let opened = open_items(items, &progress).await.map_err(|error| error.to_string());
+    if page.loads.get() != load {
+        return Err("something else was opened meanwhile".to_owned());
+    }
+    match opened {
+        Ok(model) => {
+            let (promise, reply) = promise::<Value>(|document| JsValue::from_str(&document.to_string()));
+            page.inbox.send(Message::Opened { model: Box::new(model), state, reply: Some(reply) });
+            let text = settled(promise).await?.as_string().unwrap_or_default();
+            serde_json::from_str(&text).map_err(|error| error.to_string())
+        }
+        Err(problem) => {
+            page.inbox.send(Message::OpenFailed(problem.clone()));
+            Err(problem)
+        }
+    }
+}
+
+pub(super) fn items_of(items: &Array) -> Result<Vec<Item>, String> {
+    let wrong = || "expected addresses, files, or one object with a buffer for each name".to_owned();
+    items
+        .iter()
+        .map(|item| {
+            if let Some(url) = item.as_string() {
+                return Ok(Item::Url(url));
+            }
+            let pair: Array = item.dyn_into().map_err(|_| wrong())?;
+            let name = pair.get(0).as_string().ok_or_else(wrong)?;
+            let bytes: Uint8Array = pair.get(1).dyn_into().map_err(|_| wrong())?;
+            Ok(Item::File(name, bytes.to_vec()))
+        })
+        .collect()
+}
+
+fn with_app<T>(page: &Page, read: impl FnOnce(&mut App) -> T) -> Result<T, String> {
+    let mut app = page.runner.app_mut::<App>().ok_or_else(|| "Gaitway is busy or has stopped".to_owned())?;
+    Ok(read(&mut app))
+}
+
+/// A promise, and the reply that settles it.
+fn promise<T: 'static>(into: impl FnOnce(T) -> JsValue + 'static) -> (Promise, Reply<T>) {
+    let mut functions = None;
+    let promise = Promise::new(&mut |resolve, reject| functions = Some((resolve, reject)));
+    let reply: Reply<T> = Box::new(move |answer| {
+        let call = |function: &Function, value: &JsValue| {
+            // Settling a promise runs nothing at once and cannot fail.
+            let _ = function.call1(&JsValue::UNDEFINED, value);
+        };
+        match (answer, functions) {
+            (Ok(answer), Some((resolve, _))) => call(&resolve, &into(answer)),
+            (Err(message), Some((_, reject))) => call(&reject, &JsValue::from_str(&message)),
+            (_, None) => {}
+        }
+    });
+    (promise, reply)
+}
+
+async fn settled(promise: Promise) -> Result<JsValue, String> {
+    let settled = wasm_bindgen_futures::JsFuture::from(promise).await;
+    settled.map_err(|message| message.as_string().unwrap_or_default())
+}
+
+fn error(message: impl AsRef<str>) -> JsError {
+    JsError::new(message.as_ref())
+}

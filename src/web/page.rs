@@ -1,0 +1,151 @@
+//! Starting an instance on a canvas, and its end.
+
+use std::cell::{Cell, RefCell};
+
+use js_sys::Array;
+use wasm_bindgen::prelude::*;
+
+use super::shell::{self, Shell};
+use crate::app::{App, Backend, Host, Inbox, set_fatal_hook, web_options};
+use crate::files::open_items;
+use crate::library::{Model, sample};
+use crate::state::{ViewerState, from_link, to_link};
+
+/// One instance draws on one canvas.
+pub(super) struct Page {
+    pub runner: eframe::WebRunner,
+    pub inbox: Inbox,
+    pub shell: Shell,
+    /// Loads begun so far: of several under way only the last is shown.
+    pub loads: Cell<u32>,
+}
+
+thread_local! {
+    static PAGE: RefCell<Option<std::rc::Rc<Page>>> = const { RefCell::new(None) };
+}
+
+/// Nothing is drawn before the shell calls [`run`].
+pub fn start() {
+    let before = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        before(info);
+        let message = info.payload_as_str().unwrap_or("an error without a message");
+        let place = info.location().map(|place| format!(" ({place})")).unwrap_or_default();
+        shell::stopped(&format!("An error inside Gaitway: {message}{place}"));
+    }));
+    set_fatal_hook(shell::stopped);
+}
+
+/// Shows what the link says, or `items` (see [`super::calls::open`]) in the link's view; resolves when the first picture
+/// is on its way. `renderer` is `webgpu`, `webgl2` or nothing. Rejects when no device is to be had; call again with a new
+/// canvas then.
+#[wasm_bindgen]
+pub async fn run(
+    canvas: web_sys::HtmlCanvasElement,
+    renderer: Option<String>,
+    link: String,
+    items: Array,
+    shell: Shell,
+) -> Result<(), JsError> {
+    shell::keep(shell.clone());
+    let (model, state, problem) = first_model(&link, &items, &shell).await.map_err(|error| JsError::new(&error))?;
+    let backend = match renderer.as_deref() {
+        Some("webgpu") => Some(Backend::WebGpu),
+        Some("webgl2") => Some(Backend::WebGl2),
+        _ => None,
+    };
+    let runner = eframe::WebRunner::new();
+    let made = std::rc::Rc::new(RefCell::new(None));
+    let inbox_slot = made.clone();
+    let host = Box::new(PageHost { shell: shell.clone() });
+    let create: eframe::AppCreator<'static> = Box::new(move |cc| {
+        let app = App::new(cc, host, model, state, |inbox| *inbox_slot.borrow_mut() = Some(inbox))?;
+        Ok(Box::new(app))
+    });
+    runner.start(canvas, web_options(backend), create).await.map_err(|error| JsError::new(&text_of(&error)))?;
+    let inbox = made.borrow_mut().take().ok_or_else(|| JsError::new("the app did not start"))?;
+    if let Some(problem) = problem {
+        shell.warn(&problem);
+        inbox.send(crate::app::Message::OpenFailed(problem));
+    }
+    let page = Page { runner, inbox, shell, loads: Cell::new(0) };
+    PAGE.with_borrow_mut(|slot| *slot = Some(std::rc::Rc::new(page)));
+    Ok(())
+}
+
+/// What is shown first: the items, else the link's model, else the sample, which also stands in for what cannot be opened;
+/// the reason comes along.
+async fn first_model(link: &str, items: &Array, shell: &Shell) -> Result<(Model, ViewerState, Option<String>), String> {
+    let mut state = state_of_link(link, shell);
+    let items = if items.length() > 0 {
+        super::calls::items_of(items)?
+    } else {
+        if state.model.is_empty() {
+            state.model.push(format!("sample:{}", sample::NAMES[0]));
+        }
+        state.model.iter().map(|model| crate::files::Item::Url(model.clone())).collect()
+    };
+    let progress = |name: &str, received: u64, total: u64| shell.progress(name, received as f64, total as f64);
+    match open_items(items, &progress).await {
+        Ok(model) => Ok((model, state, None)),
+        Err(error) => {
+            let model = sample::load(sample::NAMES[0]).ok_or_else(|| error.to_string())?;
+            let state = ViewerState { model: vec![model.source.clone()], ..ViewerState::default() };
+            Ok((model, calm(state), Some(error.to_string())))
+        }
+    }
+}
+
+/// A link as a state; what it gets wrong is said.
+pub(super) fn state_of_link(link: &str, shell: &Shell) -> ViewerState {
+    let (state, errors) = from_link(link);
+    errors.iter().for_each(|error| shell.warn(&error.to_string()));
+    calm(state)
+}
+
+/// A wish for less motion overrides `play` when a link is opened.
+fn calm(mut state: ViewerState) -> ViewerState {
+    let query =
+        web_sys::window().and_then(|window| window.match_media("(prefers-reduced-motion: reduce)").ok()).flatten();
+    state.playing &= !query.is_some_and(|query| query.matches());
+    state
+}
+
+pub(super) fn page() -> Result<std::rc::Rc<Page>, String> {
+    PAGE.with_borrow(Clone::clone).ok_or_else(|| "Gaitway has not started yet".to_owned())
+}
+
+/// Ends this instance and lets go of its canvas.
+#[wasm_bindgen]
+pub fn destroy() {
+    if let Some(page) = PAGE.with_borrow_mut(Option::take) {
+        page.runner.destroy();
+    }
+}
+
+pub(super) fn text_of(value: &JsValue) -> String {
+    value.as_string().unwrap_or_else(|| String::from(js_sys::Object::from(value.clone()).to_string()))
+}
+
+struct PageHost {
+    shell: Shell,
+}
+
+impl Host for PageHost {
+    fn choose_files(&self, _inbox: &Inbox) -> bool {
+        self.shell.choose();
+        true
+    }
+
+    /// The shell takes every drop before the canvas sees it, since it keeps the files and reads folders.
+    fn open_dropped(&self, _files: Vec<egui::DroppedFileHandle>, _inbox: &Inbox) {}
+
+    fn link(&self, fragment: &str) -> String {
+        let href = web_sys::window().and_then(|window| window.location().href().ok()).unwrap_or_default();
+        format!("{}#{fragment}", href.split('#').next().unwrap_or_default())
+    }
+
+    fn state_changed(&self, state: &ViewerState) {
+        self.shell.changed(&to_link(state));
+    }
+}

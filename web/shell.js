@@ -1,0 +1,481 @@
+// The page around the canvas. It owns what must outlive a crash: the files that were dropped or chosen, the view's link,
+// the messages, and `window.gaitway`. The app itself is one wasm instance on one canvas; when it ends, another can be
+// started on a fresh canvas with the same files and view.
+
+const byId = (id) => document.getElementById(id);
+const meta = document.querySelector('meta[name="gaitway-module"]');
+const moduleUrl = new URL(meta.content, document.baseURI).href;
+const wasmUrl = new URL(meta.dataset.wasm, document.baseURI).href;
+const NAMES = { webgpu: "WebGPU", webgl2: "WebGL2" };
+
+/** What is shown now, so that it can be shown again: the items that were opened last (none: those of the link) and the link. */
+const kept = { items: [], link: location.hash.slice(1) };
+/** Compiled once for all instances. */
+let compiled = null;
+/** Bindings of the running instance; null while none runs. */
+let app = null;
+let instances = 0;
+let started = null;
+let stopReason = null;
+
+// ---- Panels ----
+
+const panels = ["loading", "cannot-run", "stopped"];
+let panel = "loading";
+
+/** Shows one panel, or none of them. */
+function show(name) {
+  panel = name;
+  for (const other of panels) byId(other).hidden = other !== name;
+  byId("stage").inert = name === "stopped" || name === "cannot-run";
+}
+
+function say(message) {
+  byId("live").textContent = message;
+}
+
+/** `total` 0: not known. */
+function showProgress(what, received, total) {
+  const known = total > 0;
+  const bar = byId("loading-progress");
+  if (known) bar.value = Math.min(1, received / total);
+  else bar.removeAttribute("value");
+  const amount = `${(received / 1e6).toFixed(1)}${known ? ` of ${(total / 1e6).toFixed(1)}` : ""} MB`;
+  byId("loading-what").textContent = received > 0 ? `${what}: ${amount}` : `${what}…`;
+}
+
+function list(id, texts) {
+  byId(id).replaceChildren(
+    ...texts.map((text) => {
+      const item = document.createElement("li");
+      item.textContent = text;
+      return item;
+    }),
+  );
+}
+
+/** `missing` and `attempts` are sentences. */
+function cannotRun(missing, attempts) {
+  list("cannot-run-missing", missing);
+  list("cannot-run-try", attempts);
+  show("cannot-run");
+}
+
+function stopped(message) {
+  if (panel === "stopped" || panel === "cannot-run") return;
+  stopReason = message;
+  byId("stopped-why").textContent = message;
+  const other = drawnWith() === "webgpu" ? "webgl2" : "webgpu";
+  byId("stopped-other").textContent = `Use ${NAMES[other]} instead`;
+  byId("stopped-other").onclick = () => restart(other);
+  byId("stopped-other").hidden = !has(other);
+  const ended = app;
+  app = null;
+  show("stopped");
+  byId("open").close();
+  byId("stopped-again").focus();
+  // Not from inside the instance's own call.
+  setTimeout(() => {
+    try {
+      ended?.destroy();
+    } catch {
+      // After a panic nothing of the instance answers any more.
+    }
+    byId("stage").replaceChildren();
+  });
+}
+
+// ---- What this browser can do ----
+
+/** A module with one vector instruction. */
+const SIMD = Uint8Array.of(0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11);
+
+function has(backend) {
+  if (backend === "webgpu") return navigator.gpu !== undefined;
+  return document.createElement("canvas").getContext("webgl2") !== null;
+}
+
+function lacksWasm() {
+  if (typeof WebAssembly !== "object") return ["WebAssembly is switched off or missing in this browser."];
+  if (!WebAssembly.validate(SIMD)) return ["This browser's WebAssembly has no vector instructions (SIMD)."];
+  return [];
+}
+
+function lacksGraphics() {
+  if (has("webgpu") || has("webgl2")) return [];
+  return ["Graphics: there is neither WebGPU nor WebGL2."];
+}
+
+const TRY_BROWSER = "Open this page in a current Chrome, Edge, Firefox or Safari.";
+const TRY_GRAPHICS = [
+  "Switch on graphics (hardware) acceleration in the browser's settings, then start the browser again.",
+  "Update the graphics driver.",
+  TRY_BROWSER,
+];
+
+// ---- Instances ----
+
+const forced = () => {
+  const wanted = new URLSearchParams(location.search).get("renderer");
+  return wanted in NAMES ? wanted : null;
+};
+
+/** What the last instance asked for or got. */
+let backend = null;
+const drawnWith = () => backend ?? (has("webgpu") ? "webgpu" : "webgl2");
+
+/** The compiled module, with its progress shown on the way. */
+async function compile() {
+  const response = await fetch(wasmUrl);
+  if (!response.ok) throw new Error(`${wasmUrl}: the server answered ${response.status}`);
+  // The length that is sent may be that of the compressed bytes; the build writes down the other.
+  const total = Number(meta.dataset.bytes ?? response.headers.get("content-length") ?? 0);
+  let received = 0;
+  const counted = response.body.pipeThrough(
+    new TransformStream({
+      transform(chunk, controller) {
+        received += chunk.byteLength;
+        showProgress("Loading Gaitway", received, total);
+        controller.enqueue(chunk);
+      },
+    }),
+  );
+  const headers = { "content-type": "application/wasm" };
+  return await WebAssembly.compileStreaming(new Response(counted, { headers }));
+}
+
+/** Starts a fresh instance with what is kept. `renderer` null: whichever works. */
+async function start(renderer) {
+  stopReason = null;
+  show("loading");
+  showProgress("Loading Gaitway", 0, 0);
+  const missing = [...lacksWasm(), ...lacksGraphics()];
+  if (missing.length > 0) {
+    cannotRun(missing, lacksWasm().length > 0 ? [TRY_BROWSER] : TRY_GRAPHICS);
+    throw new Error(missing.join(" "));
+  }
+  let bindings;
+  try {
+    compiled ??= await compile();
+    instances += 1;
+    // An address of its own gives an instance of its own.
+    bindings = await import(instances === 1 ? moduleUrl : `${moduleUrl}?instance=${instances}`);
+    await bindings.default({ module_or_path: compiled });
+  } catch (error) {
+    cannotRun([`The program could not be loaded: ${error.message}`], ["Check the connection and reload the page.", TRY_BROWSER]);
+    throw error;
+  }
+  const entries = await read(kept.items).catch((error) => {
+    say(error.message);
+    return [];
+  });
+  const problems = [];
+  for (const attempt of renderer === null ? [null, "webgl2"] : [renderer]) {
+    const canvas = document.createElement("canvas");
+    canvas.setAttribute("role", "application");
+    canvas.setAttribute("aria-label", "The model and its controls. Ctrl+O opens files.");
+    byId("stage").replaceChildren(canvas);
+    backend = attempt;
+    try {
+      await bindings.run(canvas, attempt ?? undefined, kept.link, entries, hooks(() => app === bindings || app === null));
+    } catch (error) {
+      if (panel === "stopped") throw error;
+      problems.push(`${NAMES[attempt] ?? "Graphics"}: ${error.message}`);
+      continue;
+    }
+    app = bindings;
+    backend = JSON.parse(bindings.stats()).backend;
+    canvas.addEventListener("webglcontextlost", () => stopped("The browser took the graphics context away."));
+    await frames(2);
+    if (stopReason !== null) throw new Error(stopReason);
+    show(null);
+    summarise();
+    return;
+  }
+  const other = renderer === null ? null : renderer === "webgpu" ? "webgl2" : "webgpu";
+  const attempts = other !== null && has(other) ? [`Open this page with ?renderer=${other} instead.`, ...TRY_GRAPHICS] : TRY_GRAPHICS;
+  cannotRun(problems, attempts);
+  throw new Error(problems.join(" "));
+}
+
+/** What an instance tells the page; `current` is false for one that has been replaced. */
+const hooks = (current) => ({
+  choose: () => openDialog(),
+  progress: (name, received, total) => showProgress(name, received, total),
+  changed: (link) => current() && changed(link),
+  warn: (message) => {
+    console.warn(message);
+    say(message);
+  },
+  stopped: (message) => current() && stopped(message),
+});
+
+const frames = async (count) => {
+  // A hidden page draws no frames.
+  for (let frame = 0; frame < count; frame++) await Promise.race([new Promise(requestAnimationFrame), new Promise((done) => setTimeout(done, 200))]);
+};
+
+function launch(renderer) {
+  started = start(renderer);
+  // Whoever waits for `ready` gets the error; the panel shows it in any case.
+  started.catch(() => {});
+  return started;
+}
+
+function restart(renderer) {
+  return launch(renderer);
+}
+
+// ---- What was set ----
+
+let soon = null;
+
+function changed(link) {
+  kept.link = link;
+  clearTimeout(soon);
+  soon = setTimeout(summarise, 250);
+  // After the frame, so that whoever hears it may ask for the state.
+  setTimeout(() => dispatchEvent(new CustomEvent("gaitway:change")));
+}
+
+/** Tells a screen reader, the title and the address bar. */
+function summarise() {
+  if (app === null) return;
+  const { model, clip, playing } = JSON.parse(app.summary());
+  say(`${model}: ${clip ?? "rest pose"}, ${clip !== null && playing ? "playing" : "paused"}`);
+  document.title = model === "" ? "Gaitway" : `${model.split("/").pop()} – Gaitway`;
+  // A link to files that only this browser has would lead nowhere.
+  if (kept.items.length === 0) history.replaceState(history.state, "", `#${kept.link}`);
+}
+
+addEventListener("hashchange", async () => {
+  const link = location.hash.slice(1);
+  if (app === null || link === kept.link) return;
+  kept.items = [];
+  try {
+    await app.follow_link(link);
+  } catch (error) {
+    say(error.message);
+  }
+});
+
+// ---- Opening ----
+
+/** Items as the app takes them: an address, or a path with its bytes. */
+async function read(items) {
+  return await Promise.all(
+    items.map(async (item) => {
+      if (typeof item === "string") return item;
+      try {
+        return [item.name, new Uint8Array(item.content instanceof Blob ? await item.content.arrayBuffer() : item.content)];
+      } catch {
+        throw new Error(`${item.name}: the browser cannot read it; it was moved, changed or is not a file`);
+      }
+    }),
+  );
+}
+
+/** Addresses, `File`s or one object of buffers by name, alone or in a list, as addresses and `{name, content}`. */
+function normalised(items) {
+  const isList = Array.isArray(items) || items instanceof FileList;
+  return [...(isList ? items : [items])].flatMap((item) => {
+    if (typeof item === "string") return [item];
+    if (item instanceof URL) return [item.href];
+    if (item instanceof File) return [{ name: item.webkitRelativePath || item.name, content: item }];
+    if (typeof item?.name === "string" && item.content instanceof Blob) return [item];
+    if (item === null || typeof item !== "object") throw new Error("open: expected addresses, files, or one object with a buffer for each name");
+    return Object.entries(item).map(([name, content]) => {
+      if (content instanceof Blob || content instanceof ArrayBuffer) return { name, content };
+      if (ArrayBuffer.isView(content)) return { name, content: new Uint8Array(content.buffer, content.byteOffset, content.byteLength) };
+      throw new Error(`open: ${name}: expected an ArrayBuffer`);
+    });
+  });
+}
+
+async function open(items) {
+  const wanted = normalised(items);
+  const current = await running();
+  const document = await unlessStopped(current, (async () => current.open(await read(wanted)))());
+  // A link says where addresses lead; other files have to be held on to.
+  kept.items = wanted.every((item) => typeof item === "string") ? [] : wanted;
+  summarise();
+  return JSON.parse(document);
+}
+
+/** For the person at the page: what goes wrong is shown by the app. */
+async function openByHand(items) {
+  if (items.length === 0) return;
+  try {
+    await open(items);
+  } catch (error) {
+    say(error.message);
+  }
+  focusCanvas();
+}
+
+const focusCanvas = () => byId("stage").querySelector("canvas")?.focus({ preventScroll: true });
+
+function openDialog() {
+  const dialog = byId("open");
+  if (panel !== null || dialog.open) return;
+  byId("open-form").reset();
+  dialog.showModal();
+}
+
+function openFromDialog(items) {
+  byId("open").close();
+  openByHand(items);
+}
+
+byId("open-files").addEventListener("change", ({ target }) => target.files.length > 0 && openFromDialog([...target.files]));
+byId("open-folder").addEventListener("change", ({ target }) => target.files.length > 0 && openFromDialog(insideFolder([...target.files])));
+byId("open-sample").addEventListener("click", () => openFromDialog(["sample:walker"]));
+byId("open-cancel").addEventListener("click", () => byId("open").close());
+byId("open").addEventListener("close", focusCanvas);
+byId("open-form").addEventListener("submit", (event) => {
+  event.preventDefault();
+  const url = byId("open-url").value.trim();
+  if (url !== "") openFromDialog([url]);
+});
+
+/** Paths seen from the chosen folder. */
+function insideFolder(files) {
+  return files.map((file) => ({ name: file.webkitRelativePath.split("/").slice(1).join("/") || file.name, content: file }));
+}
+
+addEventListener(
+  "keydown",
+  (event) => {
+    const isOpen = event.key.toLowerCase() === "o" && (event.ctrlKey || event.metaKey) && !event.shiftKey && !event.altKey;
+    if (!isOpen || panel !== null) return;
+    event.preventDefault();
+    event.stopPropagation();
+    openDialog();
+  },
+  { capture: true },
+);
+
+// ---- Dropping: taken before the canvas sees it ----
+
+const carriesFiles = ({ dataTransfer }) => dataTransfer !== null && [...dataTransfer.types].some((type) => type === "Files" || type === "text/uri-list");
+let leaving = null;
+
+/** The sheet that shows where to drop; it goes away when no drag has been seen for a while, which misses no case. */
+function showDrop(shown) {
+  clearTimeout(leaving);
+  byId("drop").hidden = !shown;
+  if (shown) leaving = setTimeout(() => showDrop(false), 1000);
+}
+
+for (const type of ["dragenter", "dragover", "dragleave", "drop"])
+  addEventListener(
+    type,
+    (event) => {
+      if (!carriesFiles(event)) return;
+      event.preventDefault();
+      event.stopPropagation();
+      if (type === "dragenter" || type === "dragover") {
+        event.dataTransfer.dropEffect = "copy";
+        showDrop(true);
+      } else if (type === "dragleave") {
+        if (event.relatedTarget === null) showDrop(false);
+      } else {
+        showDrop(false);
+        byId("open").close();
+        dropped(event.dataTransfer).then(openByHand, (error) => say(error.message));
+      }
+    },
+    { capture: true },
+  );
+
+/** What a drop carries: files, files of folders with their paths, or the address of a link. */
+async function dropped(transfer) {
+  // All entries have to be asked for before the first pause: the list is empty after it.
+  const entries = [...transfer.items].filter(({ kind }) => kind === "file").map((item) => ({ entry: item.webkitGetAsEntry?.() ?? null, file: item.getAsFile() }));
+  const address = transfer.getData("text/uri-list").split(/\r?\n/).find((line) => line !== "" && !line.startsWith("#"));
+  const folders = entries.filter(({ entry }) => entry?.isDirectory);
+  if (entries.length === 0) return address === undefined ? [] : [address];
+  const files = [];
+  for (const { entry, file } of entries) {
+    if (entry?.isDirectory) await walk(entry, folders.length === 1 && entries.length === 1 ? "" : `${entry.name}/`, files);
+    else if (file !== null) files.push({ name: file.name, content: file });
+  }
+  return files;
+}
+
+const MOST_FILES = 4096;
+
+async function walk(folder, path, files) {
+  const reader = folder.createReader();
+  for (;;) {
+    // A part of the folder at a time, until there is none left.
+    const entries = await new Promise((resolve, reject) => reader.readEntries(resolve, reject));
+    if (entries.length === 0) return;
+    for (const entry of entries) {
+      if (files.length >= MOST_FILES) throw new Error(`More than ${MOST_FILES} files in the folder; drop the model's own files instead.`);
+      if (entry.isDirectory) await walk(entry, `${path}${entry.name}/`, files);
+      else files.push({ name: `${path}${entry.name}`, content: await new Promise((resolve, reject) => entry.file(resolve, reject)) });
+    }
+  }
+}
+
+// ---- The script interface ----
+
+/** The bindings once they run. */
+async function running() {
+  await started;
+  if (app === null) throw new Error(`Gaitway has stopped: ${stopReason}`);
+  return app;
+}
+
+/** An answer that an instance that stops meanwhile can no longer give. */
+async function unlessStopped(current, answer) {
+  let timer;
+  const ended = new Promise((_, reject) => {
+    timer = setInterval(() => app !== current && reject(new Error(`Gaitway has stopped: ${stopReason ?? "it was started again"}`)), 100);
+  });
+  try {
+    return await Promise.race([answer, ended]);
+  } finally {
+    clearInterval(timer);
+  }
+}
+
+/** Answered at once while the app runs, otherwise as soon as it does. */
+function ask(name) {
+  if (app !== null) return JSON.parse(app[name]());
+  return running().then((current) => JSON.parse(current[name]()));
+}
+
+window.gaitway = {
+  /** Resolves when the first picture is on the screen; a new promise after each restart. */
+  get ready() {
+    return started.then(() => undefined);
+  },
+  open,
+  state: () => ask("state"),
+  pose: () => ask("pose"),
+  stats: () => ask("stats"),
+  async apply(partial) {
+    const current = await running();
+    await unlessStopped(current, current.apply(JSON.stringify(partial ?? null)));
+    if (partial?.model !== undefined) kept.items = [];
+  },
+  async screenshot() {
+    const current = await running();
+    return new Blob([await unlessStopped(current, current.screenshot())], { type: "image/png" });
+  },
+};
+
+byId("stopped-again").addEventListener("click", () => restart(drawnWith()));
+byId("stopped-reload").addEventListener("click", () => location.reload());
+byId("cannot-run-reload").addEventListener("click", () => location.reload());
+addEventListener("pagehide", () => clearTimeout(soon));
+
+launch(forced()).then(
+  () => {
+    // Only in a build for benches/web.
+    if (app?.bench_characters !== undefined) window.gaitway.benchCharacters = (...work) => app.bench_characters(...work);
+  },
+  () => {},
+);

@@ -1,0 +1,63 @@
+//! The page: trunk compiles and binds, wasm-opt makes it smaller, and the length of the program is written down so that
+//! the page can show how far its loading has got.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::Context;
+
+use crate::process::{repository, run};
+
+/// What rustc emits for wasm32 today and every browser with SIMD has.
+const WASM_FEATURES: [&str; 8] = [
+    "--enable-simd",
+    "--enable-bulk-memory",
+    "--enable-bulk-memory-opt",
+    "--enable-nontrapping-float-to-int",
+    "--enable-sign-ext",
+    "--enable-mutable-globals",
+    "--enable-reference-types",
+    "--enable-multivalue",
+];
+
+pub fn dist() -> PathBuf {
+    repository().join("dist")
+}
+
+pub fn build(features: &[&str]) -> anyhow::Result<()> {
+    let features = features.join(",");
+    let mut arguments = vec!["build", "--offline"];
+    if !features.is_empty() {
+        arguments.extend(["--features", &features]);
+    }
+    // What is left from an earlier build has another name and would be counted.
+    if dist().exists() {
+        fs::remove_dir_all(dist()).context("dist/")?;
+    }
+    run("trunk", &arguments)?;
+    let wasm = file_ending("_bg.wasm")?;
+    optimise(&wasm)?;
+    write_length(&wasm)
+}
+
+fn optimise(wasm: &Path) -> anyhow::Result<()> {
+    let file = wasm.to_str().context("the repository's path is not UTF-8")?;
+    run("node", &[&["node_modules/binaryen/bin/wasm-opt", "-Oz"], &WASM_FEATURES[..], &[file, "-o", file]].concat())
+}
+
+/// The host may send the program compressed, and then the length it gives is not the one that arrives.
+fn write_length(wasm: &Path) -> anyhow::Result<()> {
+    let index = dist().join("index.html");
+    let length = fs::metadata(wasm)?.len();
+    let html = fs::read_to_string(&index).context("dist/index.html")?;
+    let marked = html.replacen(" data-wasm=", &format!(" data-bytes=\"{length}\" data-wasm="), 1);
+    anyhow::ensure!(marked != html, "dist/index.html does not name the program: see pattern_script in Trunk.toml");
+    Ok(fs::write(&index, marked)?)
+}
+
+fn file_ending(ending: &str) -> anyhow::Result<PathBuf> {
+    let files = fs::read_dir(dist()).context("dist/")?;
+    let mut paths = files.filter_map(|entry| Some(entry.ok()?.path()));
+    let found = paths.find(|path| path.to_str().is_some_and(|path| path.ends_with(ending)));
+    found.with_context(|| format!("trunk left no *{ending} in dist/"))
+}
