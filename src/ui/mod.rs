@@ -90,6 +90,8 @@ pub struct UiState {
     pub aspect: f32,
     /// Says briefly that something was done.
     pub toast: Option<Toast>,
+    /// The help was open in the last pass already.
+    help_shown: bool,
     key_marks: scrub::KeyMarks,
     /// Joints whose children are folded away, as the file numbers them, and the model they belong to.
     folded: HashSet<usize>,
@@ -115,6 +117,7 @@ impl Default for UiState {
             hovered_joint: None,
             aspect: 1.6,
             toast: None,
+            help_shown: false,
             key_marks: scrub::KeyMarks::default(),
             folded: HashSet::new(),
             folded_of: None,

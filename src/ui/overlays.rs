@@ -13,9 +13,13 @@ pub fn overlays(ui: &mut Ui, picture: Rect, shown: Shown<'_>, local: &mut UiStat
         local.sheet = None;
     }
     notices(ui, picture, local);
-    if local.help_open {
+    // Shown from the next pass on: the press that opened it would count as one beside it, which closes it.
+    if local.help_open && local.help_shown {
         help(ui.ctx(), local);
+    } else if local.help_open {
+        ui.ctx().request_repaint();
     }
+    local.help_shown = local.help_open;
     path_prompt(ui.ctx(), local, out);
     if ui.input(|input| !input.raw.hovered_files.is_empty()) {
         drop_target(ui);
