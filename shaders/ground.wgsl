@@ -73,5 +73,5 @@ fn ground_fragment(in: GroundOut) -> @location(0) vec4f {
         alpha = 1.0 - (1.0 - alpha) * (1.0 - dark);
         color *= select(0.0, 1.0, alpha > dark);
     }
-    return vec4f(scene_from_display(color, frame.exposure) * alpha, alpha);
+    return vec4f(color * alpha, alpha);
 }

@@ -48,5 +48,5 @@ fn line_vertex(@builtin(vertex_index) vertex: u32, in: LineIn) -> LineOut {
 @fragment
 fn line_fragment(in: LineOut) -> @location(0) vec4f {
     let alpha = in.color.a * clamp(in.across.y - abs(in.across.x), 0.0, 1.0);
-    return vec4f(scene_from_display(in.color.rgb, frame.exposure) * alpha, alpha);
+    return vec4f(in.color.rgb * alpha, alpha);
 }

@@ -73,12 +73,14 @@ fn emissive(in: VertexOut) -> vec3f {
 }
 
 // Premultiplied. Masked parts are cut out here, after every texture has been read.
-fn finish(color: vec3f, alpha: f32) -> vec4f {
+fn finish(display: vec3f, alpha: f32) -> vec4f {
+    let color = clamp(display, vec3f(0.0), vec3f(1.0));
     if MASK && alpha < material.alpha_cutoff {
         discard;
     }
     if BLEND {
-        return vec4f(color * alpha, alpha);
+        let share = clamp(alpha, 0.0, 1.0);
+        return vec4f(color * share, share);
     }
     return vec4f(color, 1.0);
 }
@@ -154,7 +156,7 @@ fn lit(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) vec4f 
     surface.normal_view = clamp(facing, 0.001, 1.0);
 
     let scale_offset = environment_brdf(surface.roughness, surface.normal_view);
-    let reflectance = surface.specular * scale_offset.x + scale_offset.y;
+    let reflectance = max(surface.specular * scale_offset.x + scale_offset.y, vec3f(0.0));
     let reflected = 2.0 * facing * surface.normal - surface.to_eye;
     var color = (1.0 - reflectance) * surface.diffuse * environment_diffuse(surface.normal)
         + reflectance * environment_specular(reflected, surface.roughness);
@@ -177,13 +179,13 @@ fn lit(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) vec4f 
     } else {
         color += shadow * frame.key_color * reflect_light(surface, frame.key_direction);
     }
-    return finish(color + emitted, base.a);
+    return finish(tone_map(frame.exposure * (color + emitted)), base.a);
 }
 
 @fragment
 fn unlit(in: VertexOut) -> @location(0) vec4f {
     let base = base_color(in);
-    return finish(scene_from_display(base.rgb + emissive(in), frame.exposure), base.a);
+    return finish(base.rgb + emissive(in), base.a);
 }
 
 // Grey-blue where the joint does not pull at all, then blue, green, yellow, red.
@@ -204,12 +206,12 @@ fn heat(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) vec4f
     let normal = surface_normal(in, front);
     // Just enough shading to read the shape.
     let shade = 0.45 + 0.55 * clamp(dot(normal, normalize(in.to_eye)), 0.0, 1.0);
-    return finish(scene_from_display(shade * heat_color(in.heat), frame.exposure), alpha);
+    return finish(shade * heat_color(in.heat), alpha);
 }
 
 @fragment
 fn wireframe(in: VertexOut) -> @location(0) vec4f {
-    return vec4f(scene_from_display(draw.color.rgb, frame.exposure) * draw.color.a, draw.color.a);
+    return vec4f(draw.color.rgb * draw.color.a, draw.color.a);
 }
 
 // Into the shadow map: only the holes of masked materials.

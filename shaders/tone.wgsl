@@ -1,4 +1,5 @@
-// Khronos PBR Neutral tone mapping, its inverse, and the sRGB curve.
+// Khronos PBR Neutral tone mapping and the sRGB curve. Lit surfaces are tone-mapped where they are drawn: what is meant
+// as it is (unlit surfaces, overlays) mixes with them as shown, and edges are smooth beside bright light.
 
 const TONE_START: f32 = 0.76;
 const TONE_DESATURATION: f32 = 0.15;
@@ -15,21 +16,6 @@ fn tone_map(scene: vec3f) -> vec3f {
     let new_peak = 1.0 - TONE_RANGE * TONE_RANGE / (peak + TONE_RANGE - TONE_START);
     let gray = 1.0 - 1.0 / (TONE_DESATURATION * (peak - new_peak) + 1.0);
     return mix(color * (new_peak / peak), vec3f(new_peak), gray);
-}
-
-// The scene's light that is shown as this linear display colour: for overlays and unlit surfaces, whose colours are
-// meant as they are.
-fn scene_from_display(display: vec3f, exposure: f32) -> vec3f {
-    var color = clamp(display, vec3f(0.0), vec3f(0.998));
-    let new_peak = max(color.r, max(color.g, color.b));
-    if new_peak > TONE_START {
-        let peak = TONE_RANGE * TONE_RANGE / (1.0 - new_peak) - TONE_RANGE + TONE_START;
-        let gray = 1.0 - 1.0 / (TONE_DESATURATION * (peak - new_peak) + 1.0);
-        color = (color - new_peak * gray) / (1.0 - gray) * (peak / new_peak);
-    }
-    let darkest = min(color.r, min(color.g, color.b));
-    let offset = select(0.04, 0.4 * sqrt(max(darkest, 0.0)) - darkest, darkest < 0.04);
-    return (color + offset) / exposure;
 }
 
 fn srgb_from_linear(linear: vec3f) -> vec3f {

@@ -1,7 +1,7 @@
 //! Draws a [`Frame`](crate::frame::Frame) with wgpu into its own texture. Knows no state and no user interface.
 //!
 //! One path on all back ends, within WebGL2's limits: palettes and morph targets are textures read with `textureLoad`.
-//! A picture is a shadow map, the scene in linear light, and one pass that turns light into colours.
+//! A picture is a shadow map, the scene in linear colours, and one pass that puts it before the background and encodes it.
 
 mod draw_list;
 mod environment;
@@ -22,5 +22,4 @@ pub mod uniforms;
 #[cfg(not(target_arch = "wasm32"))]
 pub use headless::headless_device;
 pub use headless::{HeadlessError, read_pixels};
-pub use pipelines::Layouts;
 pub use renderer::{RenderStats, Renderer, RendererOptions, UploadError};

@@ -14,7 +14,7 @@ pub(super) const MATERIAL_MAPS: usize = 5;
 
 /// Bind group layouts, in the order of their group numbers. No pipeline leaves a number out: software Vulkan loses the
 /// groups after a gap.
-pub struct Layouts {
+pub(super) struct Layouts {
     /// Group 0: frame, palette.
     pub frame: wgpu::BindGroupLayout,
     /// Group 1 of meshes and ground: environment, shadow map.

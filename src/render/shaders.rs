@@ -22,9 +22,9 @@ pub struct Shader {
 }
 
 pub const MESH: Shader = Shader { label: "mesh", parts: &[FRAME, TONE, PALETTE, SKINNING, VERTEX, LIGHT, SURFACE] };
-pub const GROUND_PLANE: Shader = Shader { label: "ground", parts: &[FRAME, TONE, LIGHT, GROUND] };
-pub const LINES: Shader = Shader { label: "lines", parts: &[FRAME, TONE, LINE] };
-pub const BONES: Shader = Shader { label: "bones", parts: &[FRAME, TONE, BONE] };
+pub const GROUND_PLANE: Shader = Shader { label: "ground", parts: &[FRAME, LIGHT, GROUND] };
+pub const LINES: Shader = Shader { label: "lines", parts: &[FRAME, LINE] };
+pub const BONES: Shader = Shader { label: "bones", parts: &[FRAME, BONE] };
 pub const DEPTH_CLEAR: Shader = Shader { label: "clear depth", parts: &[CLEAR_DEPTH] };
 pub const ENCODER: Shader = Shader { label: "encode", parts: &[FRAME, TONE, ENCODE] };
 pub const MIPS: Shader = Shader { label: "mips", parts: &[MIP] };

@@ -7,7 +7,7 @@ pub(super) const OUTPUT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8
 pub(super) struct Targets {
     /// Several samples per pixel; none with one sample, where `scene` is drawn into directly.
     pub multisampled: Option<wgpu::TextureView>,
-    /// The scene's light, linear, alpha premultiplied.
+    /// Linear, as it will be shown, alpha premultiplied.
     pub scene: wgpu::TextureView,
     pub depth: wgpu::TextureView,
     pub output: wgpu::Texture,

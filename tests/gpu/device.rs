@@ -1,0 +1,51 @@
+//! The adapter that tests draw with, when there is one.
+
+use gaitway::render::headless_device;
+
+pub struct Gpu {
+    pub device: wgpu::Device,
+    pub queue: wgpu::Queue,
+}
+
+/// None, and a line that says so, when there is no adapter; a failure with `REQUIRE_GPU=1`.
+pub fn gpu() -> Option<Gpu> {
+    match headless_device() {
+        Ok((device, queue, _)) => Some(Gpu { device, queue }),
+        Err(problem) => {
+            assert!(
+                std::env::var("REQUIRE_GPU").map_or(true, |value| value != "1"),
+                "REQUIRE_GPU is set, but: {problem}"
+            );
+            eprintln!("skipped: {problem}");
+            None
+        }
+    }
+}
+
+impl Gpu {
+    /// Texels of a texture, `size` bytes each, without padding between rows.
+    pub fn read(&self, texture: &wgpu::Texture, size: u32) -> Vec<u8> {
+        let (row, height) = (size * texture.width(), texture.height());
+        let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: u64::from(padded * height),
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        encoder.copy_texture_to_buffer(
+            texture.as_image_copy(),
+            wgpu::TexelCopyBufferInfo {
+                buffer: &buffer,
+                layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: None },
+            },
+            texture.size(),
+        );
+        self.queue.submit([encoder.finish()]);
+        buffer.map_async(wgpu::MapMode::Read, .., |result| result.unwrap());
+        self.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+        let mapped = buffer.get_mapped_range(..).unwrap();
+        mapped.chunks_exact(padded as usize).flat_map(|line| &line[..row as usize]).copied().collect()
+    }
+}

@@ -1,0 +1,85 @@
+//! Uniform structs are the same in WGSL and in Rust.
+
+use std::collections::BTreeMap;
+use std::mem::{offset_of, size_of};
+
+use gaitway::render::shaders::MESH;
+use gaitway::render::uniforms::{DrawUniform, FrameUniform, LightUniform, MaterialUniform, UvTransformUniform};
+use naga::TypeInner;
+
+/// Offsets of the members of a struct in the mesh shader, and its size.
+fn in_wgsl(name: &str) -> (BTreeMap<String, usize>, usize) {
+    let module = naga::front::wgsl::parse_str(&MESH.source()).unwrap();
+    for (_, found) in module.types.iter() {
+        if let (Some(found_name), TypeInner::Struct { members, span }) = (&found.name, &found.inner)
+            && found_name == name
+        {
+            let offsets = members.iter().map(|member| (member.name.clone().unwrap(), member.offset as usize)).collect();
+            return (offsets, *span as usize);
+        }
+    }
+    panic!("there is no struct {name}");
+}
+
+macro_rules! check {
+    ($wgsl:literal, $rust:ty, $($field:ident),+) => {{
+        let (offsets, size) = in_wgsl($wgsl);
+        let expected: BTreeMap<String, usize> =
+            [$((stringify!($field).to_string(), offset_of!($rust, $field))),+].into();
+        assert_eq!(offsets, expected, "{}", $wgsl);
+        assert_eq!(size, size_of::<$rust>(), "{}", $wgsl);
+    }};
+}
+
+#[test]
+fn uniforms_have_the_same_layout_in_wgsl_and_rust() {
+    check!("Light", LightUniform, position, range, color, kind, direction, spot_scale, spot_offset);
+    check!(
+        "Frame",
+        FrameUniform,
+        projection_from_world,
+        shadow_from_world,
+        eye,
+        exposure,
+        viewport_pixels,
+        skinning,
+        light_count,
+        environment,
+        shadow_texel,
+        shadow_light,
+        key_direction,
+        ground_shadow,
+        key_color,
+        grid_spacing,
+        ground,
+        background_center,
+        background_edge,
+        irradiance,
+        lights
+    );
+    check!(
+        "Draw",
+        DrawUniform,
+        palette,
+        morph_weights,
+        morph_count,
+        morph_attributes,
+        vertices,
+        influence_stride,
+        heat_joint,
+        color
+    );
+    check!("UvTransform", UvTransformUniform, matrix, offset, uv_set);
+    check!(
+        "Material",
+        MaterialUniform,
+        base_color,
+        emissive,
+        alpha_cutoff,
+        metallic,
+        roughness,
+        normal_scale,
+        occlusion_strength,
+        uvs
+    );
+}

@@ -1,0 +1,9 @@
+//! What the GPU draws: shaders, layouts, skinning against the shared cases, and a few small pictures.
+
+mod device;
+mod layouts;
+mod pictures;
+mod shaders;
+mod skinning;
+#[path = "../support/skinning_cases.rs"]
+mod skinning_cases;

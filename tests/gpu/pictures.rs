@@ -1,0 +1,431 @@
+//! Small pictures of things whose colours are known.
+
+use std::path::Path;
+
+use gaitway::asset::Asset;
+use gaitway::frame::{Bone, Character, Draw, Frame, Line, View, evaluate};
+use gaitway::library::{ImageData, Library, Model, ModelId, sample};
+use gaitway::mesh::{
+    AlphaMode, Bounds, Geometry, Influences, Material, Mesh, SkinningMode, Texture, TextureRef, Topology, UvTransform,
+    palette_entry,
+};
+use gaitway::render::{Renderer, RendererOptions, read_pixels};
+use gaitway::state::{Background, ViewerState};
+use glam::camera::rh::proj::directx::orthographic;
+use glam::camera::rh::view::look_at_mat4;
+use glam::{Affine3A, Vec2, Vec3, Vec4};
+
+use crate::device::{Gpu, gpu};
+
+const SIZE: u32 = 32;
+
+/// A square from −0.5 to 0.5 at z = 0, facing +Z.
+fn square(material: usize) -> Geometry {
+    let corners = [Vec2::new(0.0, 1.0), Vec2::new(1.0, 1.0), Vec2::new(1.0, 0.0), Vec2::ZERO];
+    Geometry {
+        positions: corners.map(|uv| Vec3::new(uv.x - 0.5, 0.5 - uv.y, 0.0)).to_vec(),
+        normals: vec![Vec3::Z; 4],
+        uvs: [corners.to_vec(), Vec::new()],
+        indices: vec![0, 1, 2, 0, 2, 3],
+        material: Some(material),
+        file_vertices: 4,
+        ..Default::default()
+    }
+}
+
+fn unlit(color: Vec4) -> Material {
+    Material { base_color: color, unlit: true, metallic: 0.0, ..Default::default() }
+}
+
+/// One mesh per geometry, all drawn where they are, seen from +Z; the picture spans −1 to 1.
+struct Scene {
+    model: Model,
+    frame: Frame,
+}
+
+impl Scene {
+    fn new(geometries: Vec<Geometry>, materials: Vec<Material>) -> Self {
+        Self::textured(geometries, materials, Vec::new(), Vec::new())
+    }
+
+    fn textured(
+        geometries: Vec<Geometry>,
+        materials: Vec<Material>,
+        textures: Vec<Texture>,
+        images: Vec<Option<ImageData>>,
+    ) -> Self {
+        let count = geometries.len();
+        let meshes =
+            geometries.into_iter().map(|geometry| Mesh { primitives: vec![geometry], ..Default::default() }).collect();
+        let asset = Asset { meshes, materials, textures, ..Default::default() };
+        let eye = Vec3::new(0.0, 0.0, 5.0);
+        let mut frame = Frame::default();
+        frame.view = View {
+            view_from_world: look_at_mat4(eye, Vec3::ZERO, Vec3::Y),
+            projection_from_view: orthographic(-1.0, 1.0, -1.0, 1.0, 1.0, 9.0),
+            eye,
+        };
+        frame.bounds = Bounds { min: Vec3::splat(-0.5), max: Vec3::splat(0.5) };
+        frame.look.shadow = false;
+        frame.look.background = Background::Transparent;
+        frame.characters.push(Character {
+            model: ModelId::default(),
+            palette: vec![palette_entry(&Affine3A::IDENTITY, SkinningMode::Linear)],
+            draws: (0..count)
+                .map(|mesh| Draw {
+                    instance: mesh,
+                    mesh,
+                    palette: 0..1,
+                    morph_weights: 0..0,
+                    mirrored: false,
+                    heat_joint: None,
+                    center: Vec3::ZERO,
+                })
+                .collect(),
+            ..Default::default()
+        });
+        Self { model: Model::new(String::new(), asset, images), frame }
+    }
+
+    fn draw(&self, gpu: &Gpu) -> Picture {
+        let Gpu { device, queue } = gpu;
+        let mut renderer = Renderer::new(device, queue, RendererOptions { samples: 1 });
+        renderer.upload(device, queue, &self.model).unwrap();
+        renderer.draw(device, queue, &self.frame, [SIZE, SIZE]);
+        Picture(pollster::block_on(read_pixels(device, queue, renderer.output())))
+    }
+}
+
+struct Picture(Vec<u8>);
+
+impl Picture {
+    /// At −1 to 1, up and right.
+    fn at(&self, x: f32, y: f32) -> [u8; 4] {
+        let pixel = |at: f32| ((0.5 + 0.5 * at) * SIZE as f32) as usize;
+        let offset = 4 * (pixel(-y) * SIZE as usize + pixel(x));
+        self.0[offset..offset + 4].try_into().unwrap()
+    }
+
+    fn covered(&self) -> usize {
+        self.0.as_chunks::<4>().0.iter().filter(|pixel| pixel[3] > 0).count()
+    }
+}
+
+#[track_caller]
+fn near(found: [u8; 4], expected: [u8; 4], tolerance: u8) {
+    let differs = found.iter().zip(expected).any(|(a, b)| a.abs_diff(b) > tolerance);
+    assert!(!differs, "{found:?} instead of {expected:?}");
+}
+
+fn linear(color: [u8; 3]) -> Vec4 {
+    let linear = |value: u8| {
+        let value = f32::from(value) / 255.0;
+        if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+    };
+    Vec3::from(color.map(linear)).extend(1.0)
+}
+
+#[test]
+fn an_unlit_colour_is_shown_as_it_is() {
+    let Some(gpu) = gpu() else { return };
+    for color in [[200, 100, 50], [255, 255, 255], [0, 0, 0], [10, 20, 30], [250, 0, 3], [128, 128, 128]] {
+        for exposure in [1.0, 4.0, 0.25] {
+            let mut scene = Scene::new(vec![square(0)], vec![unlit(linear(color))]);
+            scene.frame.look.exposure = exposure;
+            let picture = scene.draw(&gpu);
+            near(picture.at(0.0, 0.0), [color[0], color[1], color[2], 255], 1);
+        }
+    }
+}
+
+#[test]
+fn a_silhouette_covers_its_pixels_and_no_others() {
+    let Some(gpu) = gpu() else { return };
+    let picture = Scene::new(vec![square(0)], vec![unlit(Vec4::ONE)]).draw(&gpu);
+    assert_eq!(picture.covered(), (SIZE * SIZE / 4) as usize);
+    assert_eq!(picture.at(-0.9, 0.9), [0; 4]);
+}
+
+#[test]
+fn a_mask_cuts_and_does_not_blend() {
+    let Some(gpu) = gpu() else { return };
+    for (alpha, shown) in [(0.4, 0), (0.5, 255), (0.6, 255)] {
+        let material =
+            Material { alpha_mode: AlphaMode::Mask { cutoff: 0.5 }, ..unlit(Vec4::new(1.0, 1.0, 1.0, alpha)) };
+        let picture = Scene::new(vec![square(0)], vec![material]).draw(&gpu);
+        assert_eq!(picture.at(0.0, 0.0)[3], shown, "alpha {alpha}");
+    }
+}
+
+#[test]
+fn blended_surfaces_mix_light_and_are_sorted() {
+    let Some(gpu) = gpu() else { return };
+    let blend = |color: Vec3, alpha| Material { alpha_mode: AlphaMode::Blend, ..unlit(color.extend(alpha)) };
+    let mut scene = Scene::new(vec![square(0)], vec![blend(Vec3::ONE, 0.5)]);
+    // Eight bits of premultiplied colour leave seven and a half here.
+    near(scene.draw(&gpu).at(0.0, 0.0), [255, 255, 255, 128], 2);
+    scene.frame.look.background = Background::Color([0, 0, 0]);
+    // Half of the light of white.
+    near(scene.draw(&gpu).at(0.0, 0.0), [188, 188, 188, 255], 1);
+
+    // The nearer one is drawn last whichever comes first in the file.
+    for near_first in [true, false] {
+        let mut squares = vec![square(0), square(1)];
+        let depths = if near_first { [1.0, 0.0] } else { [0.0, 1.0] };
+        for (square, z) in squares.iter_mut().zip(depths) {
+            square.positions.iter_mut().for_each(|position| position.z = z);
+            square.material = Some(usize::from(z == 0.0));
+        }
+        let red_over_green = vec![blend(Vec3::X, 0.75), blend(Vec3::Y, 1.0)];
+        let mut scene = Scene::new(squares, red_over_green);
+        for (draw, z) in scene.frame.characters[0].draws.iter_mut().zip(depths) {
+            draw.center.z = z;
+        }
+        let shown = scene.draw(&gpu).at(0.0, 0.0);
+        assert!(shown[0] > shown[1] && shown[1] > 80, "{shown:?}");
+    }
+}
+
+#[test]
+fn back_faces_are_left_out_unless_double_sided_and_then_lit_from_their_own_side() {
+    let Some(gpu) = gpu() else { return };
+    let material = Material { base_color: Vec4::new(0.5, 0.5, 0.5, 1.0), metallic: 0.0, ..Default::default() };
+    let double_sided = Material { double_sided: true, ..material.clone() };
+    let front = Scene::new(vec![square(0)], vec![material.clone()]).draw(&gpu).at(0.0, 0.0);
+    assert!(front[0] > 60, "the front is lit: {front:?}");
+    let turned = || {
+        let mut square = square(0);
+        square.indices.reverse();
+        square.normals = vec![Vec3::NEG_Z; 4];
+        vec![square]
+    };
+    assert_eq!(Scene::new(turned(), vec![material]).draw(&gpu).covered(), 0);
+    near(Scene::new(turned(), vec![double_sided]).draw(&gpu).at(0.0, 0.0), front, 1);
+}
+
+#[test]
+fn a_mirrored_mesh_shows_its_front() {
+    let Some(gpu) = gpu() else { return };
+    for (mirrored, covered) in [(true, (SIZE * SIZE / 4) as usize), (false, 0)] {
+        let mut scene = Scene::new(vec![square(0)], vec![unlit(Vec4::ONE)]);
+        let character = &mut scene.frame.characters[0];
+        let mirror = Affine3A::from_scale(Vec3::new(-1.0, 1.0, 1.0));
+        character.palette = vec![palette_entry(&mirror, SkinningMode::Linear)];
+        character.draws[0].mirrored = mirrored;
+        assert_eq!(scene.draw(&gpu).covered(), covered, "{mirrored}");
+    }
+}
+
+#[test]
+fn flat_normals_are_those_of_the_triangles() {
+    let Some(gpu) = gpu() else { return };
+    let material = Material { base_color: Vec4::new(0.5, 0.5, 0.5, 1.0), metallic: 0.0, ..Default::default() };
+    let smooth = Scene::new(vec![square(0)], vec![material.clone()]).draw(&gpu);
+    let mut flat = square(0);
+    flat.normals.clear();
+    let flat = Scene::new(vec![flat], vec![material]).draw(&gpu);
+    near(flat.at(0.3, 0.2), smooth.at(0.3, 0.2), 1);
+}
+
+/// Khronos PBR Neutral of gray light, as its specification has it.
+#[test]
+fn gray_light_is_tone_mapped() {
+    let Some(gpu) = gpu() else { return };
+    for light in [0.02_f32, 0.3, 0.7, 1.5, 6.0] {
+        let offset = if light < 0.08 { light - 6.25 * light * light } else { 0.04 };
+        let color = light - offset;
+        let mapped = if color < 0.76 { color } else { 1.0 - 0.24 * 0.24 / (color + 0.24 - 0.76) };
+        let srgb = if mapped <= 0.0031308 { 12.92 * mapped } else { 1.055 * mapped.powf(1.0 / 2.4) - 0.055 };
+        let shown = (255.0 * srgb).round() as u8;
+        // Black metal gives nothing back: only what it emits is seen.
+        let material =
+            Material { base_color: Vec4::new(0.0, 0.0, 0.0, 1.0), emissive: Vec3::splat(light), ..Default::default() };
+        let picture = Scene::new(vec![square(0)], vec![material]).draw(&gpu);
+        near(picture.at(0.0, 0.0), [shown, shown, shown, 255], 1);
+    }
+}
+
+#[test]
+fn a_texture_is_read_with_its_transform() {
+    let Some(gpu) = gpu() else { return };
+    // Red, green over blue, white.
+    let pixels = [[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [255; 4]].concat();
+    let image = ImageData::Rgba8 { width: 2, height: 2, pixels };
+    let mut texture = Texture { image: Some(0), sampler: Default::default() };
+    texture.sampler.mag = gaitway::mesh::Filter::Nearest;
+    let quarter_turn = UvTransform { rotation_radians: std::f32::consts::FRAC_PI_2, ..UvTransform::IDENTITY };
+    let half = UvTransform { offset: Vec2::new(0.5, 0.0), ..UvTransform::IDENTITY };
+    let cases = [
+        (UvTransform::IDENTITY, [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255; 3]]),
+        // u' = u + ½: columns change places.
+        (half, [[0, 255, 0], [255, 0, 0], [255; 3], [0, 0, 255]]),
+        // u' = v, v' = −u (KHR_texture_transform's matrix for a quarter turn).
+        (quarter_turn, [[0, 0, 255], [255, 0, 0], [255; 3], [0, 255, 0]]),
+    ];
+    for (uv_transform, colors) in cases {
+        let material = Material {
+            base_color_texture: Some(TextureRef { texture: 0, uv_set: 0, uv_transform }),
+            ..unlit(Vec4::ONE)
+        };
+        let scene = Scene::textured(vec![square(0)], vec![material], vec![texture], vec![Some(image.clone())]);
+        let picture = scene.draw(&gpu);
+        for ((x, y), [r, g, b]) in [(-0.25, 0.25), (0.25, 0.25), (-0.25, -0.25), (0.25, -0.25)].into_iter().zip(colors)
+        {
+            near(picture.at(x, y), [r, g, b, 255], 1);
+        }
+    }
+}
+
+#[test]
+fn weights_are_shown_as_colours() {
+    let Some(gpu) = gpu() else { return };
+    let mut geometry = square(0);
+    geometry.influences =
+        Influences { stride: 4, joints: [[0, 1, 0, 0]; 4].concat(), weights: [[1.0, 0.0, 0.0, 0.0]; 4].concat() };
+    let mut scene = Scene::new(vec![geometry], vec![Material::default()]);
+    let entry = scene.frame.characters[0].palette[0];
+    scene.frame.characters[0].palette = vec![entry; 2];
+    scene.frame.characters[0].draws[0].palette = 0..2;
+    let mut color = |joint| {
+        scene.frame.characters[0].draws[0].heat_joint = Some(joint);
+        scene.draw(&gpu).at(0.0, 0.0)
+    };
+    let [r, g, b, _] = color(0);
+    assert!(r > 3 * g && r > 3 * b, "full weight is red: {r} {g} {b}");
+    let [r, g, b, _] = color(1);
+    assert!(b > r && b < 2 * r, "no weight is grey-blue: {r} {g} {b}");
+    assert_eq!(color(u32::MAX), [r, g, b, 255]);
+}
+
+#[test]
+fn the_ground_shows_the_shadow_of_what_stands_on_it() {
+    let Some(gpu) = gpu() else { return };
+    let mut geometry = square(0);
+    // Lying 0.3 above the ground, facing up.
+    for position in &mut geometry.positions {
+        *position = Vec3::new(position.x, 0.3, -position.y);
+    }
+    geometry.normals = vec![Vec3::Y; 4];
+    let mut scene = Scene::new(vec![geometry], vec![unlit(Vec4::ONE)]);
+    let eye = Vec3::new(0.0, 5.0, 0.0);
+    scene.frame.view.eye = eye;
+    scene.frame.view.view_from_world = look_at_mat4(eye, Vec3::ZERO, Vec3::NEG_Z);
+    scene.frame.bounds = Bounds { min: Vec3::new(-0.5, 0.0, -0.5), max: Vec3::new(0.5, 0.3, 0.5) };
+    assert_eq!(scene.draw(&gpu).at(0.6, 0.3)[3], 0, "nothing without a shadow");
+    scene.frame.look.shadow = true;
+    let picture = scene.draw(&gpu);
+    // The key light comes from the left, in front: the shadow lies to the right, behind.
+    let [r, g, b, alpha] = picture.at(0.6, 0.3);
+    assert!([r, g, b] == [0; 3] && (60..220).contains(&alpha), "{r} {g} {b} {alpha}");
+    assert_eq!(picture.at(-0.8, -0.8)[3], 0, "and not on the lit side");
+}
+
+#[test]
+fn lines_have_their_width_and_colour_and_on_top_means_through() {
+    let Some(gpu) = gpu() else { return };
+    let line = |y: f32, on_top| Line {
+        from: Vec3::new(-0.9, y, -1.0),
+        to: Vec3::new(0.9, y, -1.0),
+        color: Vec4::new(1.0, 0.0, 0.0, 1.0),
+        width_pixels: 4.0,
+        on_top,
+    };
+    let mut scene = Scene::new(vec![square(0)], vec![unlit(Vec4::ONE)]);
+    scene.frame.lines = vec![line(0.25, true), line(-0.25, false)];
+    let picture = scene.draw(&gpu);
+    near(picture.at(0.0, 0.25), [255, 0, 0, 255], 2);
+    near(picture.at(0.0, -0.25), [255, 255, 255, 255], 1);
+    near(picture.at(0.7, -0.25), [255, 0, 0, 255], 2);
+    let column: usize = (0..SIZE).filter(|row| picture.0[(4 * (row * SIZE + 2) + 3) as usize] > 128).count();
+    assert_eq!(column, 8, "two lines of four pixels");
+}
+
+#[test]
+fn bones_are_seen_through_the_mesh() {
+    let Some(gpu) = gpu() else { return };
+    let mut scene = Scene::new(vec![square(0)], vec![unlit(Vec4::ONE)]);
+    scene.frame.bones = vec![Bone {
+        head: Vec3::new(0.0, -0.4, -2.0),
+        tail: Vec3::new(0.0, 0.4, -2.0),
+        radius: 0.15,
+        color: Vec4::new(0.0, 0.0, 1.0, 1.0),
+        joint: 0,
+    }];
+    let [r, _, b, _] = scene.draw(&gpu).at(0.0, -0.15);
+    assert!(b > 100 && r < 100, "{r} {b}");
+}
+
+#[test]
+fn a_wireframe_is_drawn_with_and_without_the_mesh() {
+    let Some(gpu) = gpu() else { return };
+    let mut scene = Scene::new(vec![square(0)], vec![unlit(Vec4::ONE)]);
+    scene.frame.look.wireframe = true;
+    let over = scene.draw(&gpu);
+    assert_eq!(over.at(0.2, -0.2)[3], 255);
+    let dark = |picture: &Picture| picture.0.as_chunks::<4>().0.iter().filter(|p| p[3] > 0 && p[0] < 230).count();
+    assert!(dark(&over) >= SIZE as usize / 2, "the diagonal is drawn over the mesh: {}", dark(&over));
+    scene.frame.look.mesh = false;
+    let alone = scene.draw(&gpu);
+    assert!((40..120).contains(&alone.covered()), "{}", alone.covered());
+}
+
+#[test]
+fn points_and_lines_of_a_file_are_drawn() {
+    let Some(gpu) = gpu() else { return };
+    for (topology, indices, covered) in [
+        (Topology::Points, vec![0, 1, 2, 3], 2..=4),
+        (Topology::Lines, vec![0, 2], SIZE as usize / 2 - 1..=SIZE as usize / 2 + 1),
+    ] {
+        let geometry = Geometry { topology, indices, normals: Vec::new(), ..square(0) };
+        let picture = Scene::new(vec![geometry], vec![Material { metallic: 0.0, ..Default::default() }]).draw(&gpu);
+        assert!(covered.contains(&picture.covered()), "{topology:?}: {}", picture.covered());
+    }
+}
+
+#[test]
+fn an_empty_frame_and_an_unknown_model_draw_the_background() {
+    let Some(gpu) = gpu() else { return };
+    let Gpu { device, queue } = &gpu;
+    let mut renderer = Renderer::new(device, queue, RendererOptions { samples: 4 });
+    let mut scene = Scene::new(vec![square(0)], vec![unlit(Vec4::ONE)]);
+    scene.frame.look.background = Background::Color([10, 200, 30]);
+    renderer.draw(device, queue, &scene.frame, [SIZE, SIZE]);
+    let picture = Picture(pollster::block_on(read_pixels(device, queue, renderer.output())));
+    assert!(picture.0.as_chunks::<4>().0.iter().all(|pixel| *pixel == [10, 200, 30, 255]));
+    assert_eq!(renderer.stats().triangles, 0);
+    // Nor does a model whose data were dropped.
+    renderer.upload(device, queue, &scene.model).unwrap();
+    renderer.draw(device, queue, &scene.frame, [SIZE, SIZE]);
+    assert_eq!(renderer.stats().triangles, 2);
+    renderer.retain(&[]);
+    renderer.draw(device, queue, &scene.frame, [SIZE, SIZE]);
+    assert_eq!(renderer.stats().triangles, 0);
+}
+
+/// The whole of it: `UPDATE_GOLDEN=1` draws the kept picture anew; look at it before it is committed.
+#[test]
+fn the_walker_looks_as_it_did() {
+    let Some(gpu) = gpu() else { return };
+    let Gpu { device, queue } = &gpu;
+    let size = [160, 120];
+    let mut library = Library::default();
+    library.set(sample::load("walker").unwrap());
+    let state = ViewerState { time_secs: 0.3, ..Default::default() };
+    let mut frame = Frame::default();
+    evaluate(&library, &state, size[0] as f32 / size[1] as f32, &mut frame);
+    let mut renderer = Renderer::new(device, queue, RendererOptions { samples: 1 });
+    renderer.upload(device, queue, library.active().unwrap()).unwrap();
+    renderer.draw(device, queue, &frame, size);
+    let pixels = pollster::block_on(read_pixels(device, queue, renderer.output()));
+
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/gpu/golden/walker.png");
+    if std::env::var_os("UPDATE_GOLDEN").is_some() {
+        image::save_buffer(&path, &pixels, size[0], size[1], image::ColorType::Rgba8).unwrap();
+    }
+    let golden = image::open(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display())).into_rgba8();
+    assert_eq!(golden.dimensions(), (size[0], size[1]));
+    let differences = golden.as_raw().iter().zip(&pixels).map(|(a, b)| u64::from(a.abs_diff(*b)));
+    // Edges fall a little differently on other adapters.
+    let mean = differences.sum::<u64>() as f64 / pixels.len() as f64;
+    assert!(mean < 0.5, "the mean difference is {mean:.3} of 255; run with UPDATE_GOLDEN=1 and look at the picture");
+}

@@ -1,0 +1,276 @@
+//! The GPU moves vertices as the shared cases and the CPU say: each vertex is drawn as one pixel that holds its place.
+
+use bytemuck::Zeroable;
+use gaitway::mesh::{Geometry, PaletteEntry, SkinningMode, deform, palette_entry};
+use gaitway::render::geometry::{GpuGeometry, InfluenceSource, vertex_buffers};
+use gaitway::render::palette::PaletteTexture;
+use gaitway::render::shaders::SKINNED_VERTEX;
+use gaitway::render::uniforms::{DrawUniform, FrameUniform};
+use glam::{Affine3A, DVec3, Quat, Vec3};
+use wgpu::util::DeviceExt;
+
+use crate::device::{Gpu, gpu};
+use crate::skinning_cases::{Case, cases, expected, morphing, scattered};
+
+const WIDTH: u32 = 64;
+const HEIGHT: u32 = 64;
+
+const PROBE: &str = "
+struct Probe {
+    @builtin(position) position: vec4f,
+    @location(0) world: vec3f,
+    @location(1) normal: vec3f,
+}
+
+fn probe(vertex: u32, moved: VertexOut) -> Probe {
+    let pixel = vec2f(f32(vertex % 64u), f32(vertex / 64u)) + 0.5;
+    let at = vec2f(pixel.x / 32.0 - 1.0, 1.0 - pixel.y / 32.0);
+    return Probe(vec4f(at, 0.0, 1.0), frame.eye - moved.to_eye, moved.normal);
+}
+
+@vertex
+fn probe_0(in: VertexIn) -> Probe {
+    return probe(in.vertex, vertex_out(in, single(0u), 0.0));
+}
+
+@vertex
+fn probe_4(in: VertexIn, influence: Influences4) -> Probe {
+    return probe(in.vertex, vertex_out(in, blend_4(influence.joints, influence.weights), 0.0));
+}
+
+@vertex
+fn probe_8(in: VertexIn, influence: Influences8) -> Probe {
+    let blend = blend_8(influence.joints_0, influence.weights_0, influence.joints_1, influence.weights_1);
+    return probe(in.vertex, vertex_out(in, blend, 0.0));
+}
+
+@vertex
+fn probe_texture(in: VertexIn) -> Probe {
+    return probe(in.vertex, vertex_out(in, blend_texture(in.vertex), 0.0));
+}
+
+struct Texels {
+    @location(0) world: vec4f,
+    @location(1) normal: vec4f,
+}
+
+@fragment
+fn write(in: Probe) -> Texels {
+    return Texels(vec4f(in.world, 1.0), vec4f(in.normal, 1.0));
+}
+";
+
+/// Positions and normals of all vertices as the GPU has them.
+fn on_gpu(
+    gpu: &Gpu,
+    geometry: &Geometry,
+    palette: &[PaletteEntry],
+    weights: &[f32],
+    mode: SkinningMode,
+) -> [Vec<Vec3>; 2] {
+    let Gpu { device, queue } = gpu;
+    let gpu_geometry = GpuGeometry::new(device, queue, geometry, 0, 0).unwrap();
+    // One entry before, so that the offset matters.
+    let mut palette_texture = PaletteTexture::new(device);
+    palette_texture.push_palette(&[PaletteEntry::default()]);
+    let first = palette_texture.push_palette(palette);
+    let (morph_weights, morph_count) = palette_texture.push_morph_weights(weights);
+    palette_texture.upload(device, queue);
+
+    let frame = FrameUniform {
+        skinning: match mode {
+            SkinningMode::Linear => 0,
+            SkinningMode::Rigid => 1,
+            SkinningMode::DualQuaternion => 2,
+        },
+        ..FrameUniform::zeroed()
+    };
+    let draw = DrawUniform {
+        palette: first,
+        morph_weights,
+        morph_count: if gpu_geometry.morph_view.is_some() { morph_count } else { 0 },
+        morph_attributes: gpu_geometry.morph_attributes,
+        vertices: gpu_geometry.vertices,
+        influence_stride: gpu_geometry.influence_stride,
+        ..DrawUniform::zeroed()
+    };
+    let uniform = |contents: &[u8]| {
+        device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: None,
+            contents,
+            usage: wgpu::BufferUsages::UNIFORM,
+        })
+    };
+    let (frame, draw) = (uniform(bytemuck::bytes_of(&frame)), uniform(bytemuck::bytes_of(&draw)));
+    let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+    let texture_layout = |binding| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::VERTEX,
+        ty: wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: false },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        },
+        count: None,
+    };
+    let uniform_layout = wgpu::BindGroupLayoutEntry {
+        binding: 0,
+        visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+        ty: wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        count: None,
+    };
+    let layouts =
+        [vec![uniform_layout, texture_layout(1)], vec![uniform_layout], vec![texture_layout(11), texture_layout(12)]]
+            .map(|entries| {
+                device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries })
+            });
+    let none = palette_texture.view();
+    let morphs = gpu_geometry.morph_view.as_ref().unwrap_or(none);
+    let influences = gpu_geometry.influence_view.as_ref().unwrap_or(none);
+    let entries = [
+        vec![entry(0, frame.as_entire_binding()), entry(1, wgpu::BindingResource::TextureView(none))],
+        vec![entry(0, draw.as_entire_binding())],
+        vec![
+            entry(11, wgpu::BindingResource::TextureView(morphs)),
+            entry(12, wgpu::BindingResource::TextureView(influences)),
+        ],
+    ];
+    // Groups without the one for light, which moves nothing.
+    let source = (SKINNED_VERTEX.source() + PROBE).replace("@group(2)", "@group(1)").replace("@group(3)", "@group(2)");
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("probe"),
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    });
+    let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: None,
+        bind_group_layouts: &layouts.each_ref().map(Some),
+        immediate_size: 0,
+    });
+    let format = wgpu::TextureFormat::Rgba32Float;
+    let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("probe"),
+        layout: Some(&pipeline_layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some(match gpu_geometry.influences {
+                InfluenceSource::None => "probe_0",
+                InfluenceSource::Four => "probe_4",
+                InfluenceSource::Eight => "probe_8",
+                InfluenceSource::Texture => "probe_texture",
+            }),
+            compilation_options: Default::default(),
+            buffers: &vertex_buffers(gpu_geometry.influences),
+        },
+        primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::PointList, ..Default::default() },
+        depth_stencil: None,
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some("write"),
+            compilation_options: Default::default(),
+            targets: &[Some(format.into()), Some(format.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    });
+    let targets = [(); 2].map(|()| {
+        device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width: WIDTH, height: HEIGHT, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        })
+    });
+    let views = targets.each_ref().map(|texture| texture.create_view(&Default::default()));
+    let mut encoder = device.create_command_encoder(&Default::default());
+    {
+        let attachments = views.each_ref().map(|view| {
+            Some(wgpu::RenderPassColorAttachment {
+                view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    store: wgpu::StoreOp::Store,
+                },
+            })
+        });
+        let mut pass = encoder
+            .begin_render_pass(&wgpu::RenderPassDescriptor { color_attachments: &attachments, ..Default::default() });
+        pass.set_pipeline(&pipeline);
+        for (group, (layout, entries)) in layouts.iter().zip(&entries).enumerate() {
+            let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries });
+            pass.set_bind_group(group as u32, &bind_group, &[]);
+        }
+        gpu_geometry.bind(&mut pass);
+        pass.draw(0..gpu_geometry.vertices, 0..1);
+    }
+    queue.submit([encoder.finish()]);
+    targets.map(|texture| {
+        let bytes = gpu.read(&texture, 16);
+        let texels: &[[f32; 4]] = bytemuck::cast_slice(&bytes);
+        let vertices = &texels[..geometry.positions.len()];
+        assert!(vertices.iter().all(|texel| texel[3] == 1.0), "not every vertex was drawn");
+        vertices.iter().map(|texel| Vec3::from_slice(texel)).collect()
+    })
+}
+
+/// The GPU may use a rounded reciprocal square root and fused products: a few more bits than the CPU loses.
+fn compare(name: &str, found: &[Vec3], expected: &[DVec3], tolerance: f64) {
+    let size = expected.iter().map(|value| value.abs().max_element()).fold(1e-9, f64::max);
+    assert_eq!(found.len(), expected.len(), "{name}");
+    for (vertex, (found, expected)) in found.iter().zip(expected).enumerate() {
+        let distance = found.as_dvec3().distance(*expected);
+        assert!(distance <= tolerance * size, "{name}, vertex {vertex}: {found} instead of {expected}");
+    }
+}
+
+fn palette_of(case: &Case) -> Vec<PaletteEntry> {
+    case.world_from_bind.iter().map(|matrix| palette_entry(matrix, case.mode)).collect()
+}
+
+#[test]
+fn the_shared_cases_hold_on_the_gpu() {
+    let Some(gpu) = gpu() else { return };
+    for case in cases() {
+        let [positions, normals] = on_gpu(&gpu, &case.geometry, &palette_of(&case), &case.morph_weights, case.mode);
+        let (expected_positions, expected_normals) = expected(&case);
+        compare(case.name, &positions, &expected_positions, 1e-5);
+        compare(case.name, &normals, &expected_normals, 1e-4);
+    }
+}
+
+/// Against the CPU, with more joints than any uniform buffer of WebGL2 could hold, in every mode and form of influences.
+#[test]
+fn a_thousand_joints_move_as_on_the_cpu() {
+    let Some(gpu) = gpu() else { return };
+    let joints: Vec<Affine3A> = (0..1000)
+        .map(|joint| {
+            let part = joint as f32 / 1000.0;
+            let rotation = Quat::from_euler(glam::EulerRot::XYZ, 3.0 * part, 2.0 * part, 0.3 - part);
+            Affine3A::from_rotation_translation(rotation, Vec3::new(part, 2.0 * part, -0.5))
+        })
+        .collect();
+    for influences in [4, 8, 13, 16] {
+        for mode in [SkinningMode::Linear, SkinningMode::Rigid, SkinningMode::DualQuaternion] {
+            let geometry = morphing(scattered(influences, 1000));
+            assert!(geometry.influences.joints.iter().any(|joint| *joint > 900));
+            let palette: Vec<_> = joints.iter().map(|matrix| palette_entry(matrix, mode)).collect();
+            let mut on_cpu = Default::default();
+            deform(&geometry, &[0.5, -0.25], &palette, mode, &mut on_cpu);
+            let [positions, normals] = on_gpu(&gpu, &geometry, &palette, &[0.5, -0.25], mode);
+            let name = format!("{influences} influences, {mode:?}");
+            let wide = |values: &[Vec3]| values.iter().map(|value| value.as_dvec3()).collect::<Vec<_>>();
+            compare(&name, &positions, &wide(&on_cpu.positions), 1e-5);
+            compare(&name, &normals, &wide(&on_cpu.normals), 1e-4);
+        }
+    }
+}
