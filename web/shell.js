@@ -34,6 +34,11 @@ function say(message) {
   byId("live").textContent = message;
 }
 
+/** What went wrong, for screen readers; the app shows it as well. */
+function sayProblem(message) {
+  byId("problem").textContent = message;
+}
+
 /** `total` 0: not known. */
 function showProgress(what, received, total) {
   const known = total > 0;
@@ -166,7 +171,7 @@ async function start(renderer) {
     throw error;
   }
   const entries = await read(kept.items).catch((error) => {
-    say(error.message);
+    sayProblem(error.message);
     return [];
   });
   const problems = [];
@@ -205,7 +210,7 @@ const hooks = (current) => ({
   changed: (link) => current() && changed(link),
   warn: (message) => {
     console.warn(message);
-    say(message);
+    sayProblem(message);
   },
   stopped: (message) => current() && stopped(message),
 });
@@ -229,9 +234,12 @@ function restart(renderer) {
 // ---- What was set ----
 
 let soon = null;
+/** The link as the instance first gave it back: until something is set, the address bar keeps what was typed. */
+let firstLink = null;
 
 function changed(link) {
   kept.link = link;
+  firstLink ??= link;
   clearTimeout(soon);
   soon = setTimeout(summarise, 250);
   // After the frame, so that whoever hears it may ask for the state.
@@ -245,7 +253,7 @@ function summarise() {
   say(`${model}: ${clip ?? "rest pose"}, ${clip !== null && playing ? "playing" : "paused"}`);
   document.title = model === "" ? "Gaitway" : `${model.split("/").pop()} – Gaitway`;
   // A link to files that only this browser has would lead nowhere.
-  if (kept.items.length === 0) history.replaceState(history.state, "", `#${kept.link}`);
+  if (kept.items.length === 0 && kept.link !== firstLink) history.replaceState(history.state, "", `#${kept.link}`);
 }
 
 addEventListener("hashchange", async () => {
@@ -255,7 +263,7 @@ addEventListener("hashchange", async () => {
   try {
     await app.follow_link(link);
   } catch (error) {
-    say(error.message);
+    sayProblem(error.message);
   }
 });
 
@@ -308,7 +316,7 @@ async function openByHand(items) {
   try {
     await open(items);
   } catch (error) {
-    say(error.message);
+    sayProblem(error.message);
   }
   focusCanvas();
 }
@@ -382,7 +390,7 @@ for (const type of ["dragenter", "dragover", "dragleave", "drop"])
       } else {
         showDrop(false);
         byId("open").close();
-        dropped(event.dataTransfer).then(openByHand, (error) => say(error.message));
+        dropped(event.dataTransfer).then(openByHand, (error) => sayProblem(error.message));
       }
     },
     { capture: true },

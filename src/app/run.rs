@@ -40,6 +40,8 @@ pub struct App {
     /// Running mean of the time between frames that follow one another, seconds.
     frame_secs: f32,
     cpu_secs: f32,
+    /// Times the panels were shown: stands still while nothing changes.
+    frames: u64,
 }
 
 impl App {
@@ -79,6 +81,7 @@ impl App {
             closing,
             frame_secs: 0.0,
             cpu_secs: 0.0,
+            frames: 0,
         };
         app.show_model(model, Some(state))?;
         inbox_ready(inbox);
@@ -182,6 +185,7 @@ impl App {
             "backend": self.backend,
             "frame_ms": 1000.0 * self.frame_secs,
             "cpu_ms": 1000.0 * self.cpu_secs,
+            "frames": self.frames,
             "draw_calls": drawn.draw_calls,
             "triangles": drawn.triangles,
             "joints": joints,
@@ -291,6 +295,7 @@ impl eframe::App for App {
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
+        self.frames += 1;
         self.cpu_secs = frame.info().cpu_usage.unwrap_or(0.0);
         let context = ui.ctx().clone();
         let dropped = context.input(|input| input.raw.dropped_files.clone());
