@@ -27,7 +27,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
         act: |_, _, _, out| out.commands.push(Command::TogglePlaying),
     },
     KeyHelp {
-        keys: ",  .",
+        keys: "Comma, period",
         does: "One frame back, one frame on",
         pressed: &[Key::Comma, Key::Period],
         act: |_, _, which, out| out.commands.push(Command::StepFrames(if which == 0 { -1 } else { 1 })),

@@ -123,8 +123,13 @@ fn notice<R>(ui: &mut Ui, line: Color32, contents: impl FnOnce(&mut Ui) -> R) {
         .show(ui, contents);
 }
 
+fn modal(name: &str, context: &Context) -> egui::Modal {
+    let frame = egui::Frame::window(&context.global_style()).inner_margin(egui::Margin::same(18));
+    egui::Modal::new(Id::unique(name)).frame(frame)
+}
+
 fn help(context: &Context, local: &mut UiState) {
-    let modal = egui::Modal::new(Id::unique("help")).show(context, |ui| {
+    let modal = modal("help", context).show(context, |ui| {
         let palette = style::palette(ui);
         ui.set_width((ui.ctx().content_rect().width() - 64.0).min(400.0));
         ui.horizontal(|ui| {
@@ -145,7 +150,7 @@ fn help(context: &Context, local: &mut UiState) {
         ];
         let lines = KEY_TABLE.iter().map(|line| (line.keys, line.does)).chain(pointer);
         let most = (ui.ctx().content_rect().height() - 160.0).max(120.0);
-        egui::ScrollArea::vertical().max_height(most).show(ui, |ui| {
+        egui::ScrollArea::vertical().max_height(most).min_scrolled_height(most).show(ui, |ui| {
             egui::Grid::new("keys").num_columns(2).spacing([18.0, 7.0]).show(ui, |ui| {
                 for (keys, does) in lines {
                     ui.label(RichText::new(keys).color(palette.accent));
@@ -163,7 +168,7 @@ fn help(context: &Context, local: &mut UiState) {
 fn path_prompt(context: &Context, local: &mut UiState, out: &mut Output) {
     let Some(path) = &mut local.path_prompt else { return };
     let mut done = false;
-    let modal = egui::Modal::new(Id::unique("path prompt")).show(context, |ui| {
+    let modal = modal("path prompt", context).show(context, |ui| {
         ui.set_width((ui.ctx().content_rect().width() - 64.0).min(460.0));
         ui.heading("Open a file");
         ui.add_space(4.0);
