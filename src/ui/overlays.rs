@@ -151,7 +151,7 @@ fn help(context: &Context, local: &mut UiState) {
         let lines = KEY_TABLE.iter().map(|line| (line.keys, line.does)).chain(pointer);
         let most = (ui.ctx().content_rect().height() - 160.0).max(120.0);
         egui::ScrollArea::vertical().max_height(most).min_scrolled_height(most).show(ui, |ui| {
-            egui::Grid::new("keys").num_columns(2).spacing([18.0, 7.0]).show(ui, |ui| {
+            egui::Grid::new("keys").num_columns(2).min_row_height(18.0).spacing([18.0, 7.0]).show(ui, |ui| {
                 for (keys, does) in lines {
                     ui.label(RichText::new(keys).color(palette.accent));
                     ui.label(does);
