@@ -54,6 +54,15 @@ fn identifier(text: &str) -> &str {
     &text[..end]
 }
 
+/// Whether the text has this word, and not only as a part of a longer one.
+fn names(text: &str, word: &str) -> bool {
+    let part_of_word = |c: char| c.is_alphanumeric() || c == '_';
+    text.match_indices(word).any(|(at, _)| {
+        !text[..at].chars().next_back().is_some_and(part_of_word)
+            && !text[at + word.len()..].chars().next().is_some_and(part_of_word)
+    })
+}
+
 /// Names directly behind each `crate::`, those of `crate::{a, b::{c, d}}` as well.
 fn modules_used(text: &str) -> Vec<String> {
     let mut modules = Vec::new();
@@ -111,7 +120,7 @@ fn trouble(path: &str, text: &str) -> Vec<String> {
     if own_rank <= LAST_CORE_RANK {
         // The library holds a decoded browser image without looking into it.
         let text = if own == "library" { text.replace("web_sys::ImageBitmap", "") } else { text.to_owned() };
-        for word in OUTSIDE.iter().filter(|word| text.contains(**word)) {
+        for word in OUTSIDE.iter().filter(|word| names(&text, word)) {
             trouble.push(format!("{path}: the core must not know `{word}`"));
         }
     }
@@ -120,7 +129,7 @@ fn trouble(path: &str, text: &str) -> Vec<String> {
         "ui" => &["state::apply", "std::fs"],
         _ => &[],
     };
-    for word in apart.iter().filter(|word| text.contains(**word)) {
+    for word in apart.iter().filter(|word| names(text, word)) {
         trouble.push(format!("{path}: `{own}` must not know `{word}`"));
     }
     trouble
@@ -161,6 +170,8 @@ fn the_reader_sees_what_it_should() {
     check_trouble("formats/gltf/read.rs", "use super::super::FileSet; std::fs::read(path)", 1);
     check_trouble("library/image.rs", "Bitmap(web_sys::ImageBitmap)", 0);
     check_trouble("library/image.rs", "web_sys::window()", 1);
+    check_trouble("state/view.rs", "pub wireframe: bool, eframe_like: bool", 0);
+    check_trouble("state/view.rs", "use eframe::App;", 1);
     check_trouble("state/mod.rs", "Bitmap(web_sys::ImageBitmap)", 1);
     check_trouble("render/mod.rs", "use crate::state::ViewerState;", 1);
     check_trouble("files/mod.rs", "use crate::ui::style;", 1);
