@@ -69,7 +69,7 @@ function cannotRun(missing, attempts) {
 function stopped(message) {
   if (panel === "stopped" || panel === "cannot-run") return;
   stopReason = message;
-  byId("stopped-why").textContent = message;
+  byId("stopped-why").textContent = message.charAt(0).toUpperCase() + message.slice(1);
   const other = drawnWith() === "webgpu" ? "webgl2" : "webgpu";
   byId("stopped-other").textContent = `Use ${NAMES[other]} instead`;
   byId("stopped-other").onclick = () => restart(other);

@@ -30,10 +30,6 @@ pub fn build(features: &[&str]) -> anyhow::Result<()> {
     if !features.is_empty() {
         arguments.extend(["--features", &features]);
     }
-    // What is left from an earlier build has another name and would be counted.
-    if dist().exists() {
-        fs::remove_dir_all(dist()).context("dist/")?;
-    }
     run("trunk", &arguments)?;
     let wasm = file_ending("_bg.wasm")?;
     optimise(&wasm)?;
