@@ -11,7 +11,8 @@ use gaitway::anim::{
 };
 use gaitway::mesh::{PaletteEntry, Skin, SkinningMode, write_palette};
 use glam::{Affine3A, Quat, Vec3};
-use support::measure;
+use support::data_folder::data_folder;
+use support::{files_of, measure};
 
 struct Character {
     time_secs: f32,
@@ -33,6 +34,15 @@ fn main() {
     print("  sampling alone", &rig, 100, Part::Sample);
     print("  local to model space alone", &rig, 100, Part::Model);
     print("  palette alone", &rig, 100, Part::Palette);
+    for (path, clip) in
+        [("khronos/Fox/glTF-Binary/Fox.glb", "Run"), ("threejs/Soldier.glb", "Walk"), ("threejs/Xbot.glb", "walk")]
+    {
+        if let Some(rig) = real(path, clip) {
+            for count in [1, 100, 1000] {
+                print(&format!("{path} {clip}"), &rig, count, Part::All);
+            }
+        }
+    }
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -78,6 +88,14 @@ fn print(name: &str, rig: &Rig, count: usize, part: Part) {
         nanos.median / joints,
         nanos.fastest / joints
     );
+}
+
+/// The first skin of a real file with one of its clips, where the files are at hand.
+fn real(path: &str, clip: &str) -> Option<Rig> {
+    let files = files_of(&data_folder()?.join(path))?;
+    let asset = gaitway::formats::load(&files).expect("a file that is known to be fine");
+    let clip = asset.clips.iter().find(|found| found.name() == clip)?.clone();
+    Some(Rig { skin: asset.skins.first()?.clone(), skeleton: asset.skeleton, clip })
 }
 
 /// As many joints, keys and channels as a common character's walk has: translation, rotation and scale on every joint,

@@ -1,7 +1,13 @@
 //! Timing for the benches: many short rounds. No statistics beyond that; compare figures of one run on one machine, the
 //! fastest rounds on a busy one.
 
+#[path = "../../tests/support/data_folder.rs"]
+pub mod data_folder;
+
+use std::path::Path;
 use std::time::{Duration, Instant};
+
+use gaitway::formats::{FileSet, missing_files};
 
 const ROUNDS: usize = 41;
 const ROUND: Duration = Duration::from_millis(12);
@@ -42,4 +48,17 @@ pub fn measure(mut work: impl FnMut()) -> Nanos {
     }
     nanos.sort_by(f64::total_cmp);
     Nanos { median: nanos[nanos.len() / 2], fastest: nanos[0] }
+}
+
+/// A model on disk and the files it names beside itself.
+#[allow(dead_code)]
+pub fn files_of(path: &Path) -> Option<FileSet> {
+    let mut files = FileSet::default();
+    files.insert(path.file_name()?.to_str()?, std::fs::read(path).ok()?);
+    for name in missing_files(&files) {
+        if let Ok(bytes) = std::fs::read(path.parent()?.join(&name)) {
+            files.insert(name, bytes);
+        }
+    }
+    Some(files)
 }

@@ -1,0 +1,51 @@
+//! Reading real files that are already in memory: time per file, images left as they are. The slowest first.
+
+mod support;
+
+use std::hint::black_box;
+use std::path::{Path, PathBuf};
+
+use gaitway::formats::load;
+use support::data_folder::data_folder;
+use support::{files_of, measure};
+
+fn main() {
+    let Some(folder) = data_folder() else { return };
+    let mut models = Vec::new();
+    find_models(&folder, &mut models);
+    models.sort();
+    let mut rows = Vec::new();
+    let mut refused = 0;
+    for path in models {
+        let Some(files) = files_of(&path) else { continue };
+        if load(&files).is_err() {
+            refused += 1;
+            continue;
+        }
+        let bytes: usize = files.names().filter_map(|name| files.get(name)).map(|bytes| bytes.len()).sum();
+        let nanos = measure(|| {
+            black_box(load(black_box(&files))).ok();
+        });
+        let name = path.strip_prefix(&folder).unwrap_or(&path).display().to_string();
+        rows.push((nanos.median, nanos.fastest, bytes, name));
+    }
+    rows.sort_by(|a, b| b.0.total_cmp(&a.0));
+    println!("{:>10} {:>10} {:>10} {:>10}", "ms", "(fastest)", "KiB", "MiB/s");
+    for (median, fastest, bytes, name) in &rows {
+        let size = *bytes as f64;
+        let rate = size / (1 << 20) as f64 / (median * 1e-9);
+        println!("{:>10.3} {:>10.3} {:>10.0} {rate:>10.0}  {name}", median / 1e6, fastest / 1e6, size / 1024.0);
+    }
+    println!("{} files; {refused} more cannot be read and are not timed", rows.len());
+}
+
+fn find_models(folder: &Path, models: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            find_models(&path, models);
+        } else if path.extension().is_some_and(|ending| ["glb", "gltf", "vrm"].iter().any(|known| ending == *known)) {
+            models.push(path);
+        }
+    }
+}
