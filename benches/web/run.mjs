@@ -3,7 +3,7 @@
 // figures move from machine to machine, ratios less.
 import path from "node:path";
 import { chromium } from "playwright-core";
-import { FLAGS, dist } from "../../tests/browser/browser.mjs";
+import { FLAGS, dist, until } from "../../tests/browser/browser.mjs";
 import { serve } from "../../tests/browser/server.mjs";
 import { dataFolder, repository } from "../../tests/three/data.mjs";
 
@@ -35,13 +35,13 @@ const context = await browser.newContext({ viewport: { width: 1280, height: 720 
 const three = async () => {
   const page = await context.newPage();
   await page.goto(`${site.origin}/bench/three.html`);
-  await page.waitForFunction(() => window.bench !== undefined);
+  await until(page, () => window.bench !== undefined);
   return page;
 };
 const gaitway = async (link) => {
   const page = await context.newPage();
   await page.goto(`${site.origin}/?renderer=webgl2#${link}`);
-  await page.waitForFunction(() => window.gaitway !== undefined);
+  await until(page, () => window.gaitway !== undefined);
   await page.evaluate(async () => void (await window.gaitway.ready));
   return page;
 };
@@ -113,7 +113,7 @@ async function measureFrames() {
       await page.close();
     }
     const page = await gaitway(`embed=1&clip=Walk&play=1&model=${encodeURIComponent(`${site.origin}/data/${SOLDIER}`)}`);
-    await page.waitForFunction(async () => (await window.gaitway.stats()).triangles > 5000);
+    await until(page, async () => (await window.gaitway.stats()).triangles > 5000);
     figures.gaitway.push(await frameMs(page));
     await page.close();
   }

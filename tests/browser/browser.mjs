@@ -63,8 +63,17 @@ async function openPage(browser, address, { renderer, link = "", viewport = VIEW
   return page;
 }
 
+/** Waits until a function of the page, which may be asynchronous, gives something true. (Playwright's own wait takes a promise for that.) */
+export async function until(page, holds, argument) {
+  const deadline = Date.now() + 60_000;
+  while (!(await page.evaluate(holds, argument))) {
+    if (Date.now() > deadline) throw new Error(`still not so after a minute: ${holds}`);
+    await page.waitForTimeout(50);
+  }
+}
+
 export async function whenReady(page) {
-  await page.waitForFunction(() => window.gaitway !== undefined);
+  await until(page, () => window.gaitway !== undefined);
   await page.evaluate(async () => {
     await window.gaitway.ready;
   });
@@ -109,14 +118,11 @@ export function drop(page, files) {
 
 /** Waits until what is on the screen has this many vertices. */
 export function whenShown(page, vertices) {
-  return page.waitForFunction(
-    async (vertices) => {
-      const { meshes } = await window.gaitway.pose();
-      return meshes.reduce((sum, { positions }) => sum + positions.length / 3, 0) === vertices;
-    },
-    vertices,
-    { polling: 200 },
-  );
+  const shows = async (vertices) => {
+    const { meshes } = await window.gaitway.pose();
+    return meshes.reduce((sum, { positions }) => sum + positions.length / 3, 0) === vertices;
+  };
+  return until(page, shows, vertices);
 }
 
 /** Mean absolute difference of two pictures' colours, 0 to 255; they must have the same size. */
@@ -125,4 +131,11 @@ export function meanDifference(a, b) {
   let sum = 0;
   for (let at = 0; at < a.rgba.length; at++) sum += Math.abs(a.rgba[at] - b.rgba[at]);
   return sum / a.rgba.length;
+}
+
+/** How many different colours a picture has. */
+export function coloursOf({ rgba }) {
+  const colours = new Set();
+  for (let at = 0; at < rgba.length; at += 4) colours.add(rgba.readUInt32LE(at));
+  return colours.size;
 }
