@@ -21,9 +21,8 @@ struct Frame {
     eye: vec3f,
     exposure: f32,
     viewport_pixels: vec2f,
-    // 0 linear, 1 rigid, 2 dual quaternion.
-    skinning: u32,
     light_count: u32,
+    padding: u32,
     // Cosine and sine of the environment's turn about Y.
     environment: vec2f,
     // Edge of a texel of the shadow map, in metres.
@@ -38,6 +37,12 @@ struct Frame {
     grid_spacing: f32,
     // Centre on the ground plane, w: where the grid has faded out (0: no grid).
     ground: vec4f,
+    // What the shadow map sees of the ground plane is a parallelogram: its middle, from the middle of the ground, and half
+    // of its two edges. x and z.
+    shadow_center: vec2f,
+    shadow_x: vec2f,
+    shadow_y: vec2f,
+    padding_2: vec2f,
     // Linear. w: 1, or 0 for a transparent background.
     background_center: vec4f,
     background_edge: vec4f,

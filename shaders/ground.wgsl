@@ -1,4 +1,4 @@
-// The ground: it only catches the shadow and shows the grid; everything else of it is clear.
+// The ground: it only shows the grid and catches the shadow; everything else of it is clear.
 
 struct GroundOut {
     @builtin(position) position: vec4f,
@@ -6,17 +6,24 @@ struct GroundOut {
     @location(0) offset: vec2f,
 }
 
-override GROUND_SHADOW: bool = false;
-override GRID: bool = false;
+// Few where pixels are drawn by the CPU.
+override SHADOW_TAPS: u32 = 12u;
+
+fn ground_out(offset: vec2f) -> GroundOut {
+    let world = vec3f(frame.ground.x + offset.x, frame.ground.y, frame.ground.z + offset.y);
+    return GroundOut(frame.projection_from_world * vec4f(world, 1.0), offset);
+}
+
+fn ground_fade(offset: vec2f) -> f32 {
+    return 1.0 - smoothstep(0.4, 1.0, length(offset) / frame.ground.w);
+}
 
 @vertex
-fn ground_vertex(@builtin(vertex_index) vertex: u32) -> GroundOut {
+fn grid_vertex(@builtin(vertex_index) vertex: u32) -> GroundOut {
     // An octagon as a fan of six triangles around its first corner.
     let corner = select(vertex / 3u + vertex % 3u, 0u, vertex % 3u == 0u);
     let angle = f32(corner) * 0.78539816 + 0.39269908;
-    let offset = frame.ground.w * 1.0824 * vec2f(cos(angle), -sin(angle));
-    let world = vec3f(frame.ground.x + offset.x, frame.ground.y, frame.ground.z + offset.y);
-    return GroundOut(frame.projection_from_world * vec4f(world, 1.0), offset);
+    return ground_out(frame.ground.w * 1.0824 * vec2f(cos(angle), -sin(angle)));
 }
 
 // How much of a pixel the lines of a grid cover; lines are `width` pixels wide.
@@ -34,44 +41,51 @@ fn axis_line(at: f32, per_pixel: f32) -> f32 {
     return clamp(1.25 - abs(at) / max(per_pixel, 1e-9), 0.0, 1.0);
 }
 
-// Soft: 12 taps in a spiral, each of four texels.
+@fragment
+fn grid_fragment(in: GroundOut) -> @location(0) vec4f {
+    let at = frame.ground.xz + in.offset;
+    let per_pixel = fwidth(in.offset);
+    let thin = 0.16 * grid_lines(at, per_pixel, frame.grid_spacing, 1.0);
+    let thick = 0.30 * grid_lines(at, per_pixel, 10.0 * frame.grid_spacing, 1.0);
+    let x_axis = 0.55 * axis_line(at.y, per_pixel.y);
+    let z_axis = 0.55 * axis_line(at.x, per_pixel.x);
+    var color = mix(vec3f(0.02), vec3f(0.45, 0.04, 0.05), clamp(2.0 * x_axis, 0.0, 1.0));
+    color = mix(color, vec3f(0.03, 0.10, 0.50), clamp(2.0 * z_axis, 0.0, 1.0));
+    let alpha = max(max(thin, thick), max(x_axis, z_axis)) * ground_fade(in.offset);
+    return vec4f(color * alpha, alpha);
+}
+
+// Only the part of the ground that the shadow map sees.
+@vertex
+fn shadow_vertex(@builtin(vertex_index) vertex: u32) -> GroundOut {
+    let right = vertex == 1u || vertex == 2u || vertex == 4u;
+    let up = vertex == 2u || vertex == 4u || vertex == 5u;
+    return ground_out(select(-frame.shadow_x, frame.shadow_x, right) + select(-frame.shadow_y, frame.shadow_y, up)
+        + frame.shadow_center);
+}
+
+// Taps in a spiral, each of four texels.
 fn soft_shadow(world: vec3f, pixel: vec2f) -> f32 {
     let at = shadow_coordinates(world);
     let texel = 1.0 / vec2f(textureDimensions(shadow_map));
+    if SHADOW_TAPS <= 4u {
+        let a = 1.5 * texel * vec2f(0.4, 0.9);
+        let b = 1.5 * texel * vec2f(0.9, -0.4);
+        return 0.25 * (shadow_tap(at, a) + shadow_tap(at, b) + shadow_tap(at, -a) + shadow_tap(at, -b));
+    }
     let turn = 6.2831853 * fract(52.9829189 * fract(dot(pixel, vec2f(0.06711056, 0.00583715))));
     var lit = 0.0;
-    for (var tap = 0u; tap < 12u; tap++) {
+    for (var tap = 0u; tap < SHADOW_TAPS; tap++) {
         let angle = turn + 2.3999632 * f32(tap);
-        let radius = 5.0 * sqrt((f32(tap) + 0.5) / 12.0);
+        let radius = 5.0 * sqrt((f32(tap) + 0.5) / f32(SHADOW_TAPS));
         lit += shadow_tap(at, texel * radius * vec2f(cos(angle), sin(angle)));
     }
-    return lit / 12.0;
+    return lit / f32(SHADOW_TAPS);
 }
 
 @fragment
-fn ground_fragment(in: GroundOut) -> @location(0) vec4f {
-    let fade = 1.0 - smoothstep(0.4, 1.0, length(in.offset) / frame.ground.w);
+fn shadow_fragment(in: GroundOut) -> @location(0) vec4f {
     let world = vec3f(frame.ground.x + in.offset.x, frame.ground.y, frame.ground.z + in.offset.y);
-    var color = vec3f(0.0);
-    var alpha = 0.0;
-    if GRID {
-        let per_pixel = fwidth(in.offset);
-        let spacing = frame.grid_spacing;
-        let thin = 0.16 * grid_lines(world.xz, per_pixel, spacing, 1.0);
-        let thick = 0.30 * grid_lines(world.xz, per_pixel, 10.0 * spacing, 1.0);
-        alpha = max(thin, thick);
-        let x_axis = 0.55 * axis_line(world.z, per_pixel.y);
-        let z_axis = 0.55 * axis_line(world.x, per_pixel.x);
-        color = mix(vec3f(0.02), vec3f(0.45, 0.04, 0.05), clamp(2.0 * x_axis, 0.0, 1.0));
-        color = mix(color, vec3f(0.03, 0.10, 0.50), clamp(2.0 * z_axis, 0.0, 1.0));
-        alpha = max(alpha, max(x_axis, z_axis)) * fade;
-    }
-    if GROUND_SHADOW {
-        let dark = frame.ground_shadow * (1.0 - soft_shadow(world, in.position.xy)) * fade;
-        // The shadow falls over the lines.
-        color *= 1.0 - dark;
-        alpha = 1.0 - (1.0 - alpha) * (1.0 - dark);
-        color *= select(0.0, 1.0, alpha > dark);
-    }
-    return vec4f(color * alpha, alpha);
+    let dark = frame.ground_shadow * (1.0 - soft_shadow(world, in.position.xy)) * ground_fade(in.offset);
+    return vec4f(0.0, 0.0, 0.0, dark);
 }

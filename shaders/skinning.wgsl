@@ -21,6 +21,9 @@ struct Draw {
 @group(3) @binding(11) var morph_deltas: texture_2d<f32>;
 @group(3) @binding(12) var influences: texture_2d<f32>;
 
+// 0 linear, 1 rigid, 2 dual quaternion.
+override SKINNING: u32 = 0u;
+
 const MODE_RIGID: u32 = 1u;
 const MODE_DUAL_QUATERNION: u32 = 2u;
 const VERTEX_TEXTURE_WIDTH: u32 = 2048u;
@@ -60,7 +63,7 @@ fn add_influence(sum: ptr<function, Sum>, joint: u32, weight: f32) {
     let texel = (draw.palette + joint) * PALETTE_ENTRY_TEXELS;
     let first = palette_texel(texel);
     var signed_weight = weight;
-    if frame.skinning == MODE_DUAL_QUATERNION {
+    if SKINNING == MODE_DUAL_QUATERNION {
         if all((*sum).pivot == vec4f()) {
             (*sum).pivot = first;
         }
@@ -77,7 +80,7 @@ fn add_influence(sum: ptr<function, Sum>, joint: u32, weight: f32) {
 
 // `strongest`: the first influence's joint.
 fn finish_sum(sum: ptr<function, Sum>, strongest: u32) -> Blend {
-    if frame.skinning == MODE_RIGID {
+    if SKINNING == MODE_RIGID {
         return single(strongest);
     }
     return blend_from_rows(*sum);
@@ -91,7 +94,7 @@ fn single(joint: u32) -> Blend {
 
 fn blend_from_rows(sum: Sum) -> Blend {
     let real_length = length(sum.rows[0]);
-    if frame.skinning != MODE_DUAL_QUATERNION {
+    if SKINNING != MODE_DUAL_QUATERNION {
         return linear_blend(sum.rows[0], sum.rows[1], sum.rows[2]);
     }
     if real_length == 0.0 {

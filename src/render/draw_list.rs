@@ -134,6 +134,7 @@ impl DrawList {
                     let key = MeshKey {
                         shading,
                         influences: geometry.influences,
+                        skinning: frame.look.skinning,
                         topology: geometry.topology,
                         features,
                         cull: (!primitive.double_sided).then_some(wgpu::Face::Back),

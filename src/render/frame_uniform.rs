@@ -7,7 +7,6 @@ use super::shadow::shadow_view;
 use super::uniforms::{FrameUniform, LightUniform, MAX_LIGHTS};
 use crate::asset::LightKind;
 use crate::frame::{Frame, FrameLight};
-use crate::mesh::SkinningMode;
 use crate::state::Background;
 
 /// Linear light of the studio's backdrop, in the middle and at the edge.
@@ -75,6 +74,7 @@ pub(super) fn frame_uniform(
         None => (key_direction, NO_SHADOW),
     };
     let shadow = if look.shadow && look.mesh { shadow_view(&frame.bounds, to_light) } else { None };
+    let on_ground = ground.zip(shadow.as_ref()).map(|(ground, view)| view.on_ground(to_light, ground.center));
     let (center, edge) = match look.background {
         Background::Studio => (STUDIO_CENTER.extend(1.0), STUDIO_EDGE.extend(1.0)),
         Background::Color(color) => {
@@ -90,12 +90,8 @@ pub(super) fn frame_uniform(
         eye: frame.view.eye.to_array(),
         exposure: look.exposure.max(1e-6),
         viewport_pixels: size.map(|edge| edge as f32),
-        skinning: match look.skinning {
-            SkinningMode::Linear => 0,
-            SkinningMode::Rigid => 1,
-            SkinningMode::DualQuaternion => 2,
-        },
         light_count: frame.lights.len().min(MAX_LIGHTS) as u32,
+        padding: 0,
         environment: [cos, sin],
         shadow_texel: shadow.map_or(0.0, |view| view.texel),
         shadow_light,
@@ -106,6 +102,10 @@ pub(super) fn frame_uniform(
         ground: ground.map_or([0.0; 4], |ground| ground.center.extend(ground.radius).to_array()),
         background_center: center.to_array(),
         background_edge: edge.to_array(),
+        shadow_center: on_ground.map_or([0.0; 2], |[center, ..]| center),
+        shadow_x: on_ground.map_or([0.0; 2], |[_, x, _]| x),
+        shadow_y: on_ground.map_or([0.0; 2], |[.., y]| y),
+        padding_2: [0.0; 2],
         irradiance: *irradiance,
         lights: Default::default(),
     };

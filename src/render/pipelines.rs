@@ -7,7 +7,7 @@ use super::shaders;
 use super::shadow::SHADOW_FORMAT;
 use super::targets::{DEPTH_FORMAT, OUTPUT_FORMAT, SCENE_FORMAT};
 use super::uniforms::{DrawUniform, FrameUniform, MaterialUniform};
-use crate::mesh::Topology;
+use crate::mesh::{SkinningMode, Topology};
 
 /// Texture and sampler pairs of a material.
 pub(super) const MATERIAL_MAPS: usize = 5;
@@ -141,6 +141,7 @@ const OVERRIDES: [&str; 12] = [
 pub(super) struct MeshKey {
     pub shading: Shading,
     pub influences: InfluenceSource,
+    pub skinning: SkinningMode,
     pub topology: Topology,
     pub features: Features,
     /// The side that is left out.
@@ -152,22 +153,14 @@ pub(super) struct MeshKey {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct MeshPipeline(usize);
 
-/// What the ground shows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) struct GroundKey {
-    pub shadow: bool,
-    pub grid: bool,
-}
-
 pub(super) struct Pipelines {
     samples: u32,
     mesh_module: wgpu::ShaderModule,
-    ground_module: wgpu::ShaderModule,
     mesh_layout: wgpu::PipelineLayout,
-    ground_layout: wgpu::PipelineLayout,
     by_key: HashMap<MeshKey, MeshPipeline>,
     meshes: Vec<wgpu::RenderPipeline>,
-    grounds: HashMap<GroundKey, wgpu::RenderPipeline>,
+    pub grid: wgpu::RenderPipeline,
+    pub ground_shadow: wgpu::RenderPipeline,
     pub lines: wgpu::RenderPipeline,
     pub bones: wgpu::RenderPipeline,
     pub clear_depth: wgpu::RenderPipeline,
@@ -309,6 +302,28 @@ impl Pipelines {
         }
         .create(device, samples);
 
+        let ground_module = shaders::GROUND_PLANE.module(device);
+        let ground_layout = pipeline_layout("ground", &[frame, light]);
+        let taps = [("SHADOW_TAPS", if samples > 1 { 12.0 } else { 4.0 })];
+        let ground = |label, vertex, fragment| {
+            ScenePipeline {
+                label,
+                module: &ground_module,
+                layout: &ground_layout,
+                vertex,
+                fragment,
+                constants: &taps,
+                buffers: &[],
+                depth_write: false,
+                depth_compare: wgpu::CompareFunction::LessEqual,
+                writes: wgpu::ColorWrites::ALL,
+                cull: None,
+            }
+            .create(device, samples)
+        };
+        let grid = ground("grid", "grid_vertex", "grid_fragment");
+        let ground_shadow = ground("ground shadow", "shadow_vertex", "shadow_fragment");
+
         let encode_module = shaders::ENCODER.module(device);
         let encode_layout = pipeline_layout("encode", &[frame, Some(&layouts.scene)]);
         let encode = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -335,42 +350,16 @@ impl Pipelines {
         Self {
             samples,
             mesh_module: shaders::MESH.module(device),
-            ground_module: shaders::GROUND_PLANE.module(device),
             mesh_layout: pipeline_layout("mesh", &[frame, light, draw, primitive]),
-            ground_layout: pipeline_layout("ground", &[frame, light]),
             by_key: HashMap::new(),
             meshes: Vec::new(),
-            grounds: HashMap::new(),
+            grid,
+            ground_shadow,
             lines,
             bones,
             clear_depth,
             encode,
         }
-    }
-
-    pub fn prepare_ground(&mut self, device: &wgpu::Device, key: GroundKey) {
-        let (module, layout, samples) = (&self.ground_module, &self.ground_layout, self.samples);
-        self.grounds.entry(key).or_insert_with(|| {
-            ScenePipeline {
-                label: "ground",
-                module,
-                layout,
-                vertex: "ground_vertex",
-                fragment: "ground_fragment",
-                constants: &[("GROUND_SHADOW", f64::from(key.shadow)), ("GRID", f64::from(key.grid))],
-                buffers: &[],
-                depth_write: false,
-                depth_compare: wgpu::CompareFunction::LessEqual,
-                writes: wgpu::ColorWrites::ALL,
-                cull: None,
-            }
-            .create(device, samples)
-        });
-    }
-
-    /// Made by [`Self::prepare_ground`].
-    pub fn ground(&self, key: GroundKey) -> Option<&wgpu::RenderPipeline> {
-        self.grounds.get(&key)
     }
 
     pub fn mesh(&mut self, device: &wgpu::Device, key: MeshKey) -> MeshPipeline {
@@ -392,6 +381,12 @@ impl Pipelines {
         let blended = key.shading == Shading::Wireframe || key.features.has(Features::BLEND);
         let mut constants: Vec<(&str, f64)> =
             OVERRIDES.iter().enumerate().map(|(bit, name)| (*name, f64::from(key.features.0 >> bit & 1))).collect();
+        let skinning = match key.skinning {
+            SkinningMode::Linear => 0.0,
+            SkinningMode::Rigid => 1.0,
+            SkinningMode::DualQuaternion => 2.0,
+        };
+        constants.push(("SKINNING", skinning));
         constants.push(("DEPTH_OFFSET", if key.shading == Shading::Wireframe { 3e-5 } else { 0.0 }));
         let options =
             || wgpu::PipelineCompilationOptions { constants: &constants, zero_initialize_workgroup_memory: false };

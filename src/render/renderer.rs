@@ -6,7 +6,7 @@ use super::frame_uniform::{GroundPlane, frame_uniform};
 use super::model::{GpuModel, ModelUploader};
 use super::overlay::Overlay;
 use super::palette::PaletteTexture;
-use super::pipelines::{GroundKey, Layouts, Pipelines};
+use super::pipelines::{Layouts, Pipelines};
 use super::shadow::ShadowMap;
 use super::targets::Targets;
 use super::uniforms::FrameUniform;
@@ -190,18 +190,12 @@ impl Renderer {
             self.shadow_group = self.shadow_buffer.bind_group(device, &self.layouts, &self.palette);
         }
         self.overlay.upload(device, queue, &frame.lines, &frame.bones);
-        let ground = ground.map(|ground| GroundKey { shadow: ground.shadow && shadow, grid: ground.grid });
-        let ground = ground.filter(|key| key.shadow || key.grid);
-        if let Some(key) = ground {
-            self.pipelines.prepare_ground(device, key);
-        }
-
         self.stats = RenderStats::default();
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("picture") });
         if shadow {
             self.draw_shadow(&mut encoder);
         }
-        self.draw_scene(&mut encoder, ground);
+        self.draw_scene(&mut encoder, ground.as_ref());
         self.encode(&mut encoder);
         queue.submit([encoder.finish()]);
         &self.targets.output_view
@@ -233,7 +227,7 @@ impl Renderer {
         self.stats.draw_calls += stats.draw_calls;
     }
 
-    fn draw_scene(&mut self, encoder: &mut wgpu::CommandEncoder, ground: Option<GroundKey>) {
+    fn draw_scene(&mut self, encoder: &mut wgpu::CommandEncoder, ground: Option<&GroundPlane>) {
         let (view, resolve_target) = match &self.targets.multisampled {
             Some(samples) => (samples, Some(&self.targets.scene)),
             None => (&self.targets.scene, None),
@@ -265,9 +259,15 @@ impl Renderer {
         };
         let draw = self.draws.bind_group();
         add(draw_items(&mut pass, self.draws.solid(), draw, &self.models, &self.pipelines));
-        if let Some(pipeline) = ground.and_then(|key| self.pipelines.ground(key)) {
-            pass.set_pipeline(pipeline);
+        if ground.is_some_and(|ground| ground.grid) {
+            pass.set_pipeline(&self.pipelines.grid);
             pass.draw(0..18, 0..1);
+            add(RenderStats { draw_calls: 1, triangles: 0 });
+        }
+        // After the grid: the shadow falls over its lines.
+        if ground.is_some_and(|ground| ground.shadow) {
+            pass.set_pipeline(&self.pipelines.ground_shadow);
+            pass.draw(0..6, 0..1);
             add(RenderStats { draw_calls: 1, triangles: 0 });
         }
         add(draw_items(&mut pass, self.draws.blended(), draw, &self.models, &self.pipelines));

@@ -48,6 +48,22 @@ pub(super) struct ShadowView {
     pub shadow_from_world: Mat4,
     /// Edge of a texel in metres.
     pub texel: f32,
+    /// Middle of what is seen, and from there to its right and upper edges.
+    center: Vec3,
+    right: Vec3,
+    up: Vec3,
+}
+
+impl ShadowView {
+    /// Where what is seen lies on a level plane through `ground`: x and z of its middle from `ground`, then of half its
+    /// two edges. The light must come from above.
+    pub fn on_ground(&self, to_light: Vec3, ground: Vec3) -> [[f32; 2]; 3] {
+        let slide = |vector: Vec3| {
+            let moved = vector - to_light * (vector.y / to_light.y.max(0.05));
+            [moved.x, moved.z]
+        };
+        [slide(self.center - ground), slide(self.right), slide(self.up)]
+    }
 }
 
 /// The tightest parallel view of the box along the light, with a small margin; `to_light` has unit length. None for an
@@ -72,7 +88,14 @@ pub(super) fn shadow_view(bounds: &Bounds, to_light: Vec3) -> Option<ShadowView>
         -seen.max.z - margin,
         -seen.min.z + margin,
     );
-    Some(ShadowView { shadow_from_world: projection * light_from_world, texel: 2.0 * half / SIZE as f32 })
+    let world_from_light = light_from_world.inverse();
+    Some(ShadowView {
+        shadow_from_world: projection * light_from_world,
+        texel: 2.0 * half / SIZE as f32,
+        center: world_from_light.transform_point3(middle),
+        right: world_from_light.transform_vector3(half * Vec3::X),
+        up: world_from_light.transform_vector3(half * Vec3::Y),
+    })
 }
 
 #[cfg(test)]
@@ -93,6 +116,19 @@ mod tests {
             }
             let toward = view.shadow_from_world.project_point3(bounds.center() + 0.01 * to_light);
             assert!(toward.z < view.shadow_from_world.project_point3(bounds.center()).z, "{to_light}");
+        }
+    }
+
+    #[test]
+    fn what_is_seen_of_the_ground_ends_where_the_map_ends() {
+        let bounds = Bounds { min: Vec3::new(-1.0, 0.5, 3.0), max: Vec3::new(2.0, 5.0, 4.0) };
+        let to_light = Vec3::new(-0.48, 0.72, 0.5).normalize();
+        let ground = Vec3::new(0.3, 0.5, -2.0);
+        let view = shadow_view(&bounds, to_light).unwrap();
+        let [center, x, y] = view.on_ground(to_light, ground).map(|[x, z]| Vec3::new(x, 0.0, z));
+        for (right, up) in [(0.0, 0.0), (1.0, 1.0), (-1.0, 1.0), (1.0, -1.0)] {
+            let seen = view.shadow_from_world.project_point3(ground + center + right * x + up * y);
+            assert!(seen.truncate().distance(glam::Vec2::new(right, up)) < 1e-4, "{seen}");
         }
     }
 

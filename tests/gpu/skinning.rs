@@ -77,14 +77,12 @@ fn on_gpu(
     let (morph_weights, morph_count) = palette_texture.push_morph_weights(weights);
     palette_texture.upload(device, queue);
 
-    let frame = FrameUniform {
-        skinning: match mode {
-            SkinningMode::Linear => 0,
-            SkinningMode::Rigid => 1,
-            SkinningMode::DualQuaternion => 2,
-        },
-        ..FrameUniform::zeroed()
+    let number = match mode {
+        SkinningMode::Linear => 0.0,
+        SkinningMode::Rigid => 1.0,
+        SkinningMode::DualQuaternion => 2.0,
     };
+    let frame = FrameUniform::zeroed();
     let draw = DrawUniform {
         palette: first,
         morph_weights,
@@ -162,7 +160,10 @@ fn on_gpu(
                 InfluenceSource::Eight => "probe_8",
                 InfluenceSource::Texture => "probe_texture",
             }),
-            compilation_options: Default::default(),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: &[("SKINNING", number)],
+                ..Default::default()
+            },
             buffers: &vertex_buffers(gpu_geometry.influences),
         },
         primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::PointList, ..Default::default() },
