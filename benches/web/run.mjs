@@ -1,5 +1,5 @@
 // Measures three.js and Gaitway on the same work in the same headless Chromium, round by round in turn, and prints medians.
-// `node benches/web/run.mjs`, with the page built (`dist/`, or GAITWAY_DIST) with the cargo feature `bench`. Asserts nothing:
+// `node benches/web/run.mjs`, after `cargo xtask build --bench` (or with GAITWAY_DIST). Asserts nothing:
 // figures move from machine to machine, ratios less.
 import path from "node:path";
 import { chromium } from "playwright-core";
@@ -60,6 +60,10 @@ async function measureCharacters() {
   row("characters", "three.js", "Gaitway", "ratio");
   row("--", "--", "--", "--");
   const [theirs, ours] = [await three(), await gaitway("play=0")];
+  if (!(await ours.evaluate(() => window.gaitway.benchCharacters !== undefined))) {
+    console.log("skipped: the page was built without the feature; run `cargo xtask build --bench`");
+    return;
+  }
   await ours.evaluate(async (url) => void (window.bytes = new Uint8Array(await (await fetch(url)).arrayBuffer())), `/data/${XBOT}`);
   for (const count of CROWDS) {
     await theirs.evaluate(([url, count]) => window.bench.prepareCharacters(url, "walk", count), [`/data/${XBOT}`, count]);
@@ -81,6 +85,8 @@ async function measureLoads() {
   row("file", "GLTFLoader.parse", "gaitway.open");
   row("--", "--", "--");
   const [theirs, ours] = [await three(), await gaitway("play=0")];
+  // A small picture: what drawing it in software takes is measured below.
+  await ours.setViewportSize({ width: 320, height: 240 });
   for (const name of LOADED) {
     const figures = { three: [], gaitway: [] };
     for (let round = 0; round < ROUNDS; round++) {
