@@ -52,11 +52,14 @@ struct RotationTracks {
     turns: Vec<Vec4>,
 }
 
+/// A joint with its translations or scales, one per key.
+type VectorKeys<'a> = (JointIndex, &'a [Vec3]);
+
 impl Sampler {
     /// `channels` are valid for `timelines`, as the builder made sure.
     pub(super) fn new(timelines: &[Vec<f32>], channels: &[Channel]) -> Self {
         let mut sampler = Self { still: Still::default(), timelines: vec![TimelineTracks::default(); timelines.len()] };
-        let mut vectors: Vec<[Vec<(JointIndex, &[Vec3])>; 2]> = vec![Default::default(); timelines.len()];
+        let mut vectors: Vec<[Vec<VectorKeys>; 2]> = vec![Default::default(); timelines.len()];
         let mut rotations: Vec<Vec<(JointIndex, Vec<Quat>)>> = vec![Vec::new(); timelines.len()];
         for (index, channel) in last_of_each_property(channels) {
             let timeline = channel.timeline as usize;

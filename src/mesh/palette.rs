@@ -32,13 +32,7 @@ pub fn palette_entry(world_from_bind: &Affine3A, mode: SkinningMode) -> PaletteE
         SkinningMode::Linear | SkinningMode::Rigid => {
             let m = world_from_bind.matrix3.transpose();
             let t = world_from_bind.translation;
-            [
-                m.x_axis.extend(t.x).into(),
-                m.y_axis.extend(t.y).into(),
-                m.z_axis.extend(t.z).into(),
-                Vec4::ZERO,
-                Vec4::ZERO,
-            ]
+            [m.x_axis.extend(t.x), m.y_axis.extend(t.y), m.z_axis.extend(t.z), Vec4::ZERO, Vec4::ZERO]
         }
         SkinningMode::DualQuaternion => {
             let matrix = Mat3::from(world_from_bind.matrix3);

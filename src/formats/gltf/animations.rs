@@ -104,7 +104,7 @@ fn vec3(accessors: &Accessors, accessor: usize, place: &str) -> Result<Vec<Vec3>
 fn weights(accessors: &Accessors, accessor: usize, place: &str, targets: usize) -> Result<Vec<f32>, Problem> {
     let values: Vec<f32> =
         accessors.finite::<1>(accessor, place, "SCALAR of weights")?.into_iter().map(|[weight]| weight).collect();
-    if values.len() % targets != 0 {
+    if !values.len().is_multiple_of(targets) {
         return Err(Problem::new(place, format!("a multiple of {targets}, the number of targets"), values.len()));
     }
     Ok(values)
