@@ -236,9 +236,9 @@ fn many_rotations_on_one_timeline_each_take_their_own_way() {
             clip.sample(&skeleton, time, &mut cursor, &mut pose);
             let segment = times.iter().rposition(|&start| start <= time).unwrap().min(2);
             let factor = f64::from(time - times[segment]) / f64::from(times[segment + 1] - times[segment]);
-            for joint in 0..count {
-                let expected = slerp(keys[joint][segment], keys[joint][segment + 1], factor).as_quat();
-                let found = pose.locals[joint].rotation;
+            for (joint, (keys, local)) in keys.iter().zip(&pose.locals).enumerate() {
+                let expected = slerp(keys[segment], keys[segment + 1], factor).as_quat();
+                let found = local.rotation;
                 assert!(
                     same_rotation(found, expected, 1e-6),
                     "joint {joint} of {count} at {time}: {found}, {expected}"
@@ -305,7 +305,7 @@ fn cubic_splines_are_those_of_appendix_c() {
             hermite(value(from + 1), value(from + 2), value(to), value(to + 1), length, t)
         };
         let pose = sample(&clip, time);
-        for axis in 0..3 {
+        for axis in [0, 1, 2] {
             let expected = at(&|entry| vectors[entry][axis]);
             assert!((f64::from(pose.locals[0].translation[axis]) - expected).abs() < 2e-6, "translation at {time}");
             assert!((f64::from(pose.locals[0].scale[axis]) + 2.0 * expected).abs() < 4e-6, "scale at {time}");
