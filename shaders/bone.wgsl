@@ -45,5 +45,5 @@ fn bone_fragment(in: BoneOut) -> @location(0) vec4f {
     let normal = normalize(in.normal);
     let facing = clamp(dot(normal, normalize(in.to_eye)), 0.0, 1.0);
     let shade = 0.35 + 0.45 * facing + 0.2 * clamp(normal.y, 0.0, 1.0);
-    return vec4f(shade * in.color.rgb * in.color.a, in.color.a);
+    return vec4f(srgb_from_linear(shade * in.color.rgb) * in.color.a, in.color.a);
 }

@@ -43,7 +43,7 @@ struct Frame {
     shadow_x: vec2f,
     shadow_y: vec2f,
     padding_2: vec2f,
-    // Linear. w: 1, or 0 for a transparent background.
+    // sRGB.
     background_center: vec4f,
     background_edge: vec4f,
     irradiance: array<vec4f, 9>,

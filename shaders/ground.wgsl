@@ -45,12 +45,12 @@ fn axis_line(at: f32, per_pixel: f32) -> f32 {
 fn grid_fragment(in: GroundOut) -> @location(0) vec4f {
     let at = frame.ground.xz + in.offset;
     let per_pixel = fwidth(in.offset);
-    let thin = 0.16 * grid_lines(at, per_pixel, frame.grid_spacing, 1.0);
-    let thick = 0.30 * grid_lines(at, per_pixel, 10.0 * frame.grid_spacing, 1.0);
-    let x_axis = 0.55 * axis_line(at.y, per_pixel.y);
-    let z_axis = 0.55 * axis_line(at.x, per_pixel.x);
-    var color = mix(vec3f(0.02), vec3f(0.45, 0.04, 0.05), clamp(2.0 * x_axis, 0.0, 1.0));
-    color = mix(color, vec3f(0.03, 0.10, 0.50), clamp(2.0 * z_axis, 0.0, 1.0));
+    let thin = 0.10 * grid_lines(at, per_pixel, frame.grid_spacing, 1.0);
+    let thick = 0.20 * grid_lines(at, per_pixel, 10.0 * frame.grid_spacing, 1.0);
+    let x_axis = 0.5 * axis_line(at.y, per_pixel.y);
+    let z_axis = 0.5 * axis_line(at.x, per_pixel.x);
+    var color = mix(vec3f(0.15), vec3f(0.70, 0.22, 0.25), clamp(2.0 * x_axis, 0.0, 1.0));
+    color = mix(color, vec3f(0.19, 0.35, 0.74), clamp(2.0 * z_axis, 0.0, 1.0));
     let alpha = max(max(thin, thick), max(x_axis, z_axis)) * ground_fade(in.offset);
     return vec4f(color * alpha, alpha);
 }

@@ -42,7 +42,7 @@ fn line_vertex(@builtin(vertex_index) vertex: u32, in: LineIn) -> LineOut {
     }
     let offset = side * half_width * vec2f(-direction.y, direction.x) / half_viewport;
     position = vec4f(position.xy + offset * position.w, position.z, position.w);
-    return LineOut(position, in.color, vec2f(side * half_width, half_width));
+    return LineOut(position, vec4f(srgb_from_linear(in.color.rgb), in.color.a), vec2f(side * half_width, half_width));
 }
 
 @fragment

@@ -13,7 +13,7 @@ struct Draw {
     influence_stride: u32,
     // The joint whose weight is shown; 0xffffffff: none.
     heat_joint: u32,
-    // Linear, of the wireframe.
+    // sRGB, of the wireframe.
     color: vec4f,
 }
 

@@ -72,9 +72,9 @@ fn emissive(in: VertexOut) -> vec3f {
     return material.emissive;
 }
 
-// Premultiplied. Masked parts are cut out here, after every texture has been read.
+// From linear to the picture's colours, premultiplied. Masked parts are cut out here, after every texture has been read.
 fn finish(display: vec3f, alpha: f32) -> vec4f {
-    let color = clamp(display, vec3f(0.0), vec3f(1.0));
+    let color = srgb_from_linear(display);
     if MASK && alpha < material.alpha_cutoff {
         discard;
     }

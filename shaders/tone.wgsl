@@ -1,5 +1,5 @@
-// Khronos PBR Neutral tone mapping and the sRGB curve. Lit surfaces are tone-mapped where they are drawn: what is meant
-// as it is (unlit surfaces, overlays) mixes with them as shown, and edges are smooth beside bright light.
+// Khronos PBR Neutral tone mapping and the sRGB curve, both applied where a surface is drawn: colours mix as they are
+// shown (as in three.js), edges are smooth beside bright light, and no pass over the whole picture is needed.
 
 const TONE_START: f32 = 0.76;
 const TONE_DESATURATION: f32 = 0.15;

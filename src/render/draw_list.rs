@@ -9,8 +9,8 @@ use crate::mesh::Topology;
 
 /// Distance of draw uniforms: what WebGPU and WebGL2 ask of dynamic offsets.
 const ALIGNMENT: usize = 256;
-const WIREFRAME_OVER_MESH: [f32; 4] = [0.0, 0.0, 0.0, 0.35];
-const WIREFRAME_ALONE: [f32; 4] = [0.02, 0.05, 0.12, 0.75];
+const WIREFRAME_OVER_MESH: [f32; 4] = [0.0, 0.0, 0.0, 0.2];
+const WIREFRAME_ALONE: [f32; 4] = [0.15, 0.25, 0.38, 0.75];
 
 /// One draw call.
 #[derive(Debug, Clone, Copy)]

@@ -1,19 +1,18 @@
 //! From a frame to the numbers that all of its shaders read.
 
-use glam::{Mat3, Vec3, Vec4};
+use glam::{Mat3, Vec3};
 
 use super::environment::{KEY_COLOR, KEY_DIRECTION};
 use super::shadow::shadow_view;
 use super::uniforms::{FrameUniform, LightUniform, MAX_LIGHTS};
 use crate::asset::LightKind;
 use crate::frame::{Frame, FrameLight};
-use crate::state::Background;
 
-/// Linear light of the studio's backdrop, in the middle and at the edge.
-const STUDIO_CENTER: Vec3 = Vec3::new(0.50, 0.52, 0.55);
-const STUDIO_EDGE: Vec3 = Vec3::new(0.21, 0.225, 0.26);
+/// sRGB of the studio's backdrop, in the middle and at the edge.
+const STUDIO_CENTER: [f32; 4] = [0.735, 0.748, 0.767, 1.0];
+const STUDIO_EDGE: [f32; 4] = [0.496, 0.512, 0.547, 1.0];
 /// How dark the ground gets where no key light reaches it.
-const GROUND_SHADOW: f32 = 0.55;
+const GROUND_SHADOW: f32 = 0.32;
 /// No light casts a shadow on meshes.
 const NO_SHADOW: u32 = u32::MAX;
 
@@ -75,15 +74,6 @@ pub(super) fn frame_uniform(
     };
     let shadow = if look.shadow && look.mesh { shadow_view(&frame.bounds, to_light) } else { None };
     let on_ground = ground.zip(shadow.as_ref()).map(|(ground, view)| view.on_ground(to_light, ground.center));
-    let (center, edge) = match look.background {
-        Background::Studio => (STUDIO_CENTER.extend(1.0), STUDIO_EDGE.extend(1.0)),
-        Background::Color(color) => {
-            let color = Vec3::from(color.map(linear_from_srgb));
-            // No noise on a colour that is meant as it is.
-            (color.extend(1.0), color.extend(0.0))
-        }
-        Background::Transparent => (Vec4::ZERO, Vec4::ZERO),
-    };
     let mut uniform = FrameUniform {
         projection_from_world: (frame.view.projection_from_view * frame.view.view_from_world).to_cols_array_2d(),
         shadow_from_world: shadow.map_or_else(Default::default, |view| view.shadow_from_world.to_cols_array_2d()),
@@ -100,8 +90,8 @@ pub(super) fn frame_uniform(
         key_color: KEY_COLOR.to_array(),
         grid_spacing: ground.map_or(1.0, |ground| ground.spacing),
         ground: ground.map_or([0.0; 4], |ground| ground.center.extend(ground.radius).to_array()),
-        background_center: center.to_array(),
-        background_edge: edge.to_array(),
+        background_center: STUDIO_CENTER,
+        background_edge: STUDIO_EDGE,
         shadow_center: on_ground.map_or([0.0; 2], |[center, ..]| center),
         shadow_x: on_ground.map_or([0.0; 2], |[_, x, _]| x),
         shadow_y: on_ground.map_or([0.0; 2], |[.., y]| y),
@@ -141,9 +131,4 @@ fn light_uniform(light: &FrameLight) -> LightUniform {
         spot_offset,
         padding: [0.0; 3],
     }
-}
-
-fn linear_from_srgb(value: u8) -> f32 {
-    let value = f32::from(value) / 255.0;
-    if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
 }

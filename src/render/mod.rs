@@ -1,7 +1,7 @@
 //! Draws a [`Frame`](crate::frame::Frame) with wgpu into its own texture. Knows no state and no user interface.
 //!
 //! One path on all back ends, within WebGL2's limits: palettes and morph targets are textures read with `textureLoad`.
-//! A picture is a shadow map, the scene in linear colours, and one pass that puts it before the background and encodes it.
+//! A picture is a shadow map and one pass, whose stages write the colours that are shown.
 
 mod draw_list;
 mod environment;

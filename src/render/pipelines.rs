@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::geometry::{InfluenceSource, vertex_buffers};
 use super::shaders;
 use super::shadow::SHADOW_FORMAT;
-use super::targets::{DEPTH_FORMAT, OUTPUT_FORMAT, SCENE_FORMAT};
+use super::targets::{DEPTH_FORMAT, SCENE_FORMAT};
 use super::uniforms::{DrawUniform, FrameUniform, MaterialUniform};
 use crate::mesh::{SkinningMode, Topology};
 
@@ -23,8 +23,6 @@ pub(super) struct Layouts {
     pub draw: wgpu::BindGroupLayout,
     /// Group 3 of meshes: material, morph deltas, influences.
     pub primitive: wgpu::BindGroupLayout,
-    /// Group 1 of the encoder: the scene.
-    pub scene: wgpu::BindGroupLayout,
 }
 
 impl Layouts {
@@ -75,7 +73,6 @@ impl Layouts {
                     entry(3, Stages::FRAGMENT, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison)),
                 ],
             ),
-            scene: layout("scene", &[entry(0, Stages::FRAGMENT, texture(numbers, Dimension::D2))]),
         }
     }
 }
@@ -164,7 +161,7 @@ pub(super) struct Pipelines {
     pub lines: wgpu::RenderPipeline,
     pub bones: wgpu::RenderPipeline,
     pub clear_depth: wgpu::RenderPipeline,
-    pub encode: wgpu::RenderPipeline,
+    pub background: wgpu::RenderPipeline,
 }
 
 const BLENDED: Option<wgpu::BlendState> = Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING);
@@ -324,29 +321,21 @@ impl Pipelines {
         let grid = ground("grid", "grid_vertex", "grid_fragment");
         let ground_shadow = ground("ground shadow", "shadow_vertex", "shadow_fragment");
 
-        let encode_module = shaders::ENCODER.module(device);
-        let encode_layout = pipeline_layout("encode", &[frame, Some(&layouts.scene)]);
-        let encode = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("encode"),
-            layout: Some(&encode_layout),
-            vertex: wgpu::VertexState {
-                module: &encode_module,
-                entry_point: Some("full_screen"),
-                compilation_options: Default::default(),
-                buffers: &[],
-            },
-            primitive: Default::default(),
-            depth_stencil: None,
-            multisample: Default::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &encode_module,
-                entry_point: Some("encode"),
-                compilation_options: Default::default(),
-                targets: &[Some(OUTPUT_FORMAT.into())],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
+        let background_module = shaders::BACKDROP.module(device);
+        let background = ScenePipeline {
+            label: "background",
+            module: &background_module,
+            layout: &frame_layout,
+            vertex: "full_screen",
+            fragment: "backdrop",
+            constants: &[],
+            buffers: &[],
+            depth_write: false,
+            depth_compare: wgpu::CompareFunction::Always,
+            writes: wgpu::ColorWrites::ALL,
+            cull: None,
+        }
+        .create(device, samples);
         Self {
             samples,
             mesh_module: shaders::MESH.module(device),
@@ -358,7 +347,7 @@ impl Pipelines {
             lines,
             bones,
             clear_depth,
-            encode,
+            background,
         }
     }
 

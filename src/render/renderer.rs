@@ -12,6 +12,7 @@ use super::targets::Targets;
 use super::uniforms::FrameUniform;
 use crate::frame::Frame;
 use crate::library::{Model, ModelId};
+use crate::state::Background;
 
 #[derive(Debug, Clone, Copy)]
 pub struct RendererOptions {
@@ -57,7 +58,6 @@ pub struct Renderer {
     light_group: wgpu::BindGroup,
     /// Without the shadow map, which is being drawn.
     no_light_group: wgpu::BindGroup,
-    scene_group: wgpu::BindGroup,
     stats: RenderStats,
 }
 
@@ -133,7 +133,6 @@ impl Renderer {
             draws: DrawList::new(device, &layouts),
             frame_group: frame_buffer.bind_group(device, &layouts, &palette),
             shadow_group: shadow_buffer.bind_group(device, &layouts, &palette),
-            scene_group: scene_group(device, &layouts, &targets),
             light_group: light_group(&shadow_map.view),
             no_light_group: light_group(&shadow_map.stand_in),
             environment,
@@ -173,7 +172,6 @@ impl Renderer {
         let size = size.map(|edge| edge.clamp(1, most));
         if self.targets.size() != size {
             self.targets = Targets::new(device, size, self.options.samples);
-            self.scene_group = scene_group(device, &self.layouts, &self.targets);
         }
 
         let ground = GroundPlane::of(frame);
@@ -195,8 +193,7 @@ impl Renderer {
         if shadow {
             self.draw_shadow(&mut encoder);
         }
-        self.draw_scene(&mut encoder, ground.as_ref());
-        self.encode(&mut encoder);
+        self.draw_scene(&mut encoder, frame.look.background, ground.as_ref());
         queue.submit([encoder.finish()]);
         &self.targets.output_view
     }
@@ -227,10 +224,17 @@ impl Renderer {
         self.stats.draw_calls += stats.draw_calls;
     }
 
-    fn draw_scene(&mut self, encoder: &mut wgpu::CommandEncoder, ground: Option<&GroundPlane>) {
+    fn draw_scene(&mut self, encoder: &mut wgpu::CommandEncoder, background: Background, ground: Option<&GroundPlane>) {
         let (view, resolve_target) = match &self.targets.multisampled {
-            Some(samples) => (samples, Some(&self.targets.scene)),
-            None => (&self.targets.scene, None),
+            Some(samples) => (samples, Some(&self.targets.output_view)),
+            None => (&self.targets.output_view, None),
+        };
+        let clear = match background {
+            Background::Color(color) => {
+                let [r, g, b] = color.map(|channel| f64::from(channel) / 255.0);
+                wgpu::Color { r, g, b, a: 1.0 }
+            }
+            Background::Studio | Background::Transparent => wgpu::Color::TRANSPARENT,
         };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("scene"),
@@ -239,7 +243,7 @@ impl Renderer {
                 depth_slice: None,
                 resolve_target,
                 ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    load: wgpu::LoadOp::Clear(clear),
                     store: if resolve_target.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store },
                 },
             })],
@@ -257,6 +261,11 @@ impl Renderer {
             stats.draw_calls += more.draw_calls;
             stats.triangles += more.triangles;
         };
+        if background == Background::Studio {
+            pass.set_pipeline(&self.pipelines.background);
+            pass.draw(0..3, 0..1);
+            add(RenderStats { draw_calls: 1, triangles: 0 });
+        }
         let draw = self.draws.bind_group();
         add(draw_items(&mut pass, self.draws.solid(), draw, &self.models, &self.pipelines));
         if ground.is_some_and(|ground| ground.grid) {
@@ -292,35 +301,6 @@ impl Renderer {
         self.stats.draw_calls += stats.draw_calls;
         self.stats.triangles += stats.triangles;
     }
-
-    fn encode(&mut self, encoder: &mut wgpu::CommandEncoder) {
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("encode"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &self.targets.output_view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                    store: wgpu::StoreOp::Store,
-                },
-            })],
-            ..Default::default()
-        });
-        pass.set_pipeline(&self.pipelines.encode);
-        pass.set_bind_group(0, &self.frame_group, &[]);
-        pass.set_bind_group(1, &self.scene_group, &[]);
-        pass.draw(0..3, 0..1);
-        self.stats.draw_calls += 1;
-    }
-}
-
-fn scene_group(device: &wgpu::Device, layouts: &Layouts, targets: &Targets) -> wgpu::BindGroup {
-    device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("scene"),
-        layout: &layouts.scene,
-        entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&targets.scene) }],
-    })
 }
 
 fn draw_items(

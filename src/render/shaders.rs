@@ -11,7 +11,7 @@ const GROUND: &str = include_str!("../../shaders/ground.wgsl");
 const LINE: &str = include_str!("../../shaders/line.wgsl");
 const BONE: &str = include_str!("../../shaders/bone.wgsl");
 const CLEAR_DEPTH: &str = include_str!("../../shaders/clear_depth.wgsl");
-const ENCODE: &str = include_str!("../../shaders/encode.wgsl");
+const BACKGROUND: &str = include_str!("../../shaders/background.wgsl");
 const MIP: &str = include_str!("../../shaders/mip.wgsl");
 
 /// One shader module.
@@ -23,16 +23,16 @@ pub struct Shader {
 
 pub const MESH: Shader = Shader { label: "mesh", parts: &[FRAME, TONE, PALETTE, SKINNING, VERTEX, LIGHT, SURFACE] };
 pub const GROUND_PLANE: Shader = Shader { label: "ground", parts: &[FRAME, LIGHT, GROUND] };
-pub const LINES: Shader = Shader { label: "lines", parts: &[FRAME, LINE] };
-pub const BONES: Shader = Shader { label: "bones", parts: &[FRAME, BONE] };
+pub const LINES: Shader = Shader { label: "lines", parts: &[FRAME, TONE, LINE] };
+pub const BONES: Shader = Shader { label: "bones", parts: &[FRAME, TONE, BONE] };
 pub const DEPTH_CLEAR: Shader = Shader { label: "clear depth", parts: &[CLEAR_DEPTH] };
-pub const ENCODER: Shader = Shader { label: "encode", parts: &[FRAME, TONE, ENCODE] };
+pub const BACKDROP: Shader = Shader { label: "background", parts: &[FRAME, BACKGROUND] };
 pub const MIPS: Shader = Shader { label: "mips", parts: &[MIP] };
 /// What a vertex stage needs to move a mesh's vertices: frame, palette, skinning and its inputs.
 pub const SKINNED_VERTEX: Shader = Shader { label: "skinned vertex", parts: &[FRAME, PALETTE, SKINNING, VERTEX] };
 
 /// Every module that is drawn with.
-pub const ALL: [Shader; 7] = [MESH, GROUND_PLANE, LINES, BONES, DEPTH_CLEAR, ENCODER, MIPS];
+pub const ALL: [Shader; 7] = [MESH, GROUND_PLANE, LINES, BONES, DEPTH_CLEAR, BACKDROP, MIPS];
 
 impl Shader {
     pub fn source(&self) -> String {

@@ -1,14 +1,11 @@
 //! The textures a picture is drawn into.
 
-pub(super) const SCENE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth24Plus;
-pub(super) const OUTPUT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+pub(super) const SCENE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
 pub(super) struct Targets {
-    /// Several samples per pixel; none with one sample, where `scene` is drawn into directly.
+    /// Several samples per pixel; none with one sample, where `output` is drawn into directly.
     pub multisampled: Option<wgpu::TextureView>,
-    /// Linear, as it will be shown, alpha premultiplied.
-    pub scene: wgpu::TextureView,
     pub depth: wgpu::TextureView,
     pub output: wgpu::Texture,
     pub output_view: wgpu::TextureView,
@@ -31,10 +28,9 @@ impl Targets {
         };
         let view = |texture: wgpu::Texture| texture.create_view(&Default::default());
         let attachment = Usages::RENDER_ATTACHMENT;
-        let output = texture("picture", OUTPUT_FORMAT, 1, attachment | Usages::TEXTURE_BINDING | Usages::COPY_SRC);
+        let output = texture("picture", SCENE_FORMAT, 1, attachment | Usages::TEXTURE_BINDING | Usages::COPY_SRC);
         Self {
             multisampled: (samples > 1).then(|| view(texture("scene samples", SCENE_FORMAT, samples, attachment))),
-            scene: view(texture("scene", SCENE_FORMAT, 1, attachment | Usages::TEXTURE_BINDING)),
             depth: view(texture("depth", DEPTH_FORMAT, samples, attachment)),
             output_view: output.create_view(&Default::default()),
             output,

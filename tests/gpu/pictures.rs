@@ -158,15 +158,14 @@ fn a_mask_cuts_and_does_not_blend() {
 }
 
 #[test]
-fn blended_surfaces_mix_light_and_are_sorted() {
+fn blended_surfaces_mix_and_are_sorted() {
     let Some(gpu) = gpu() else { return };
     let blend = |color: Vec3, alpha| Material { alpha_mode: AlphaMode::Blend, ..unlit(color.extend(alpha)) };
     let mut scene = Scene::new(vec![square(0)], vec![blend(Vec3::ONE, 0.5)]);
     // Eight bits of premultiplied colour leave seven and a half here.
     near(scene.draw(&gpu).at(0.0, 0.0), [255, 255, 255, 128], 2);
     scene.frame.look.background = Background::Color([0, 0, 0]);
-    // Half of the light of white.
-    near(scene.draw(&gpu).at(0.0, 0.0), [188, 188, 188, 255], 1);
+    near(scene.draw(&gpu).at(0.0, 0.0), [128, 128, 128, 255], 1);
 
     // The nearer one is drawn last whichever comes first in the file.
     for near_first in [true, false] {
@@ -182,7 +181,7 @@ fn blended_surfaces_mix_light_and_are_sorted() {
             draw.center.z = z;
         }
         let shown = scene.draw(&gpu).at(0.0, 0.0);
-        assert!(shown[0] > shown[1] && shown[1] > 80, "{shown:?}");
+        near(shown, [191, 64, 0, 255], 1);
     }
 }
 
@@ -316,7 +315,7 @@ fn the_ground_shows_the_shadow_of_what_stands_on_it() {
     let picture = scene.draw(&gpu);
     // The key light comes from the left, in front: the shadow lies to the right, behind.
     let [r, g, b, alpha] = picture.at(0.6, 0.3);
-    assert!([r, g, b] == [0; 3] && (60..220).contains(&alpha), "{r} {g} {b} {alpha}");
+    assert!([r, g, b] == [0; 3] && (40..200).contains(&alpha), "{r} {g} {b} {alpha}");
     assert_eq!(picture.at(-0.8, -0.8)[3], 0, "and not on the lit side");
 }
 
