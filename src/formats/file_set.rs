@@ -55,10 +55,13 @@ impl FileSet {
         if let Some((name, bytes)) = self.files.iter().find(|(name, _)| *name == path) {
             return Some(Found { name, bytes, by_bare_name: false });
         }
-        let bare = bare_name(uri).to_lowercase();
+        fn folded(name: &str) -> impl Iterator<Item = char> {
+            name.chars().flat_map(char::to_lowercase)
+        }
+        let bare = bare_name(uri);
         self.files
             .iter()
-            .find(|(name, _)| !bare.is_empty() && bare_name(name).to_lowercase() == bare)
+            .find(|(name, _)| !bare.is_empty() && folded(bare_name(name)).eq(folded(bare)))
             .map(|(name, bytes)| Found { name, bytes, by_bare_name: true })
     }
 
@@ -90,14 +93,17 @@ fn unpack(file: &str, bytes: &[u8], budget: &mut u64, out: &mut FileSet) -> Resu
         if entry.is_dir() || name.starts_with("__MACOSX/") || bare_name(&name).starts_with("._") {
             continue;
         }
+        let too_large = || error(format!("unpacks to more than {} MiB, which is not read", MAX_ARCHIVE_BYTES >> 20));
+        // An honest header saves the work; one that lies is caught while unpacking.
+        if entry.size() > *budget {
+            return Err(too_large());
+        }
         let mut content = Vec::new();
         entry
             .take(*budget + 1)
             .read_to_end(&mut content)
             .map_err(|problem| error(format!("“{name}” cannot be unpacked: {problem}")))?;
-        *budget = budget
-            .checked_sub(content.len() as u64)
-            .ok_or_else(|| error(format!("unpacks to more than {} MiB, which is not read", MAX_ARCHIVE_BYTES >> 20)))?;
+        *budget = budget.checked_sub(content.len() as u64).ok_or_else(too_large)?;
         out.insert(name, content);
     }
     Ok(())

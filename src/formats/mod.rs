@@ -18,9 +18,7 @@ use file_set::bare_name;
 pub fn missing_files(files: &FileSet) -> Vec<String> {
     let Ok(files) = files.unpacked() else { return Vec::new() };
     match find_model(&files) {
-        Ok((name, bytes)) => {
-            gltf::referenced_uris(name, bytes).into_iter().filter(|uri| files.resolve(name, uri).is_none()).collect()
-        }
+        Ok((name, bytes)) => gltf::missing_files(&files, name, bytes),
         Err(_) => Vec::new(),
     }
 }

@@ -7,8 +7,8 @@ use std::sync::Arc;
 use super::schema;
 use crate::formats::error::Problem;
 
-/// How much one file may decode to, in bytes.
-const BUDGET_BYTES: usize = 1 << 30;
+/// How much one file may decode to, in bytes. A page has 4 GiB for everything.
+const BUDGET_BYTES: usize = if cfg!(target_pointer_width = "32") { 512 << 20 } else { 1 << 30 };
 
 /// The buffers of one file and the views into them.
 pub struct Accessors<'a> {
@@ -108,6 +108,20 @@ impl<'a> Accessors<'a> {
         Self { root, buffers, spent_bytes: Cell::new(0) }
     }
 
+    /// Counts `count` items of `size` bytes towards the budget, before they take any memory.
+    pub fn charge(&self, count: usize, size: usize, place: &str) -> Result<(), Problem> {
+        let spent = count
+            .checked_mul(size)
+            .and_then(|bytes| bytes.checked_add(self.spent_bytes.get()))
+            .filter(|&bytes| bytes <= BUDGET_BYTES)
+            .ok_or_else(|| {
+                let expected = format!("at most {} MiB of data in all", BUDGET_BYTES >> 20);
+                Problem::new(place, expected, format!("{count} more items of {size} bytes"))
+            })?;
+        self.spent_bytes.set(spent);
+        Ok(())
+    }
+
     /// Bytes of a buffer view, and its stride.
     pub fn view(&self, index: usize, place: &str) -> Result<(&[u8], Option<usize>), Problem> {
         let view = get(&self.root.buffer_views, index, place, "bufferViews")?;
@@ -148,16 +162,7 @@ impl<'a> Accessors<'a> {
         let component = Component::new(accessor.component_type)
             .ok_or_else(|| Problem::new(here(), "a known componentType", accessor.component_type))?;
         let size = component.size() * components;
-        let spent = accessor
-            .count
-            .checked_mul(components * 4)
-            .and_then(|bytes| bytes.checked_add(self.spent_bytes.get()))
-            .filter(|&bytes| bytes <= BUDGET_BYTES)
-            .ok_or_else(|| {
-                let expected = format!("at most {} MiB of data in all", BUDGET_BYTES >> 20);
-                Problem::new(here(), expected, format!("{} more elements", accessor.count))
-            })?;
-        self.spent_bytes.set(spent);
+        self.charge(accessor.count, components * 4, &here())?;
         let (bytes, stride) = match accessor.buffer_view {
             None => (None, size),
             Some(view) => {

@@ -9,6 +9,7 @@ use percent_encoding::percent_decode_str;
 use crate::asset::{Warning, Warnings};
 use crate::formats::FileSet;
 use crate::formats::error::Problem;
+use crate::formats::file_set::Found;
 
 pub fn is_data_uri(uri: &str) -> bool {
     uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:"))
@@ -35,13 +36,17 @@ pub fn data_uri(place: &str, uri: &str) -> Result<Vec<u8>, Problem> {
     engine.decode(decode_uri(body).trim().as_bytes()).map_err(|problem| Problem::new(place, "base64", problem))
 }
 
+/// Some exporters leave a bare `%` in names: the decoded form is tried, then the text itself.
+pub fn find<'a>(files: &'a FileSet, base: &str, uri: &str) -> Option<Found<'a>> {
+    files.resolve(base, &decode_uri(uri)).or_else(|| files.resolve(base, uri))
+}
+
 /// The bytes of a file that `uri` names, as seen from the file `base`.
 pub fn file(files: &FileSet, base: &str, uri: &str, warnings: &mut Warnings) -> Option<Arc<[u8]>> {
-    // Some exporters leave a bare `%` in names: try the decoded form, then the text itself.
-    let decoded = decode_uri(uri);
-    let found = files.resolve(base, &decoded).or_else(|| files.resolve(base, uri))?;
+    let found = find(files, base, uri)?;
     if found.by_bare_name {
-        warnings.push(Warning::FoundByBareName { uri: decoded.into_owned(), used: found.name.to_owned() });
+        let uri = decode_uri(uri).into_owned();
+        warnings.push(Warning::FoundByBareName { uri, used: found.name.to_owned() });
     }
     Some(found.bytes.clone())
 }

@@ -34,7 +34,11 @@ pub fn images(
                 }
                 found
             }
-            (None, Some(view)) => Some(accessors.view(view, &format!("{place}.bufferView"))?.0.into()),
+            (None, Some(view)) => {
+                let (bytes, _) = accessors.view(view, &format!("{place}.bufferView"))?;
+                accessors.charge(1, bytes.len(), &place)?;
+                Some(bytes.into())
+            }
             (None, None) => {
                 let problem = "it has neither a URI nor a buffer view".to_owned();
                 warnings.push(Warning::ImageUnreadable { image: place.clone(), problem });
@@ -71,7 +75,7 @@ fn header(bytes: &[u8], budget: &mut usize) -> Result<(&'static str, u32, u32), 
         _ => return Err("it is not PNG, JPEG or WebP".to_owned()),
     };
     let size = imagesize::blob_size(bytes).map_err(|problem| problem.to_string())?;
-    let pixels = size.width.checked_mul(size.height).unwrap_or(usize::MAX);
+    let pixels = size.width.saturating_mul(size.height);
     if pixels == 0 || size.width.max(size.height) > MAX_SIDE_PIXELS || pixels > *budget {
         return Err(format!("{} × {} pixels is not a size that is read", size.width, size.height));
     }

@@ -6,6 +6,9 @@ use crate::mesh::{Influences, MAX_INFLUENCES};
 /// Sums further off 1 than this are worth a word; smaller errors are rounding.
 const SUM_TOLERANCE: f32 = 1e-3;
 
+/// Weights past this are taken as broken, like NaN; below it no sum overflows.
+const LARGEST_WEIGHT: f32 = 1e30;
+
 /// One JOINTS_n with its WEIGHTS_n.
 pub struct InfluenceSet {
     pub joints: Vec<[u32; 4]>,
@@ -20,7 +23,7 @@ pub fn merge(mesh: &str, vertices: usize, sets: &[InfluenceSet], warnings: &mut 
         pairs.clear();
         for set in sets {
             for (&joint, &weight) in set.joints[vertex].iter().zip(&set.weights[vertex]) {
-                if weight > 0.0 && weight.is_finite() {
+                if weight > 0.0 && weight < LARGEST_WEIGHT {
                     pairs.push((joint.min(u32::from(u16::MAX)) as u16, weight));
                 }
             }

@@ -58,8 +58,8 @@ impl Attributes<'_> {
     fn index(&self, semantic: &str) -> Result<Option<usize>, Problem> {
         match self.map.get(semantic) {
             None => Ok(None),
-            Some(value) => match value.as_u64() {
-                Some(index) => Ok(Some(index as usize)),
+            Some(value) => match value.as_u64().and_then(|index| usize::try_from(index).ok()) {
+                Some(index) => Ok(Some(index)),
                 None => Err(Problem::new(format!("{}.{semantic}", self.place), "an accessor's index", value)),
             },
         }

@@ -21,17 +21,21 @@ use crate::formats::{FileSet, LoadError};
 use accessor::{Accessors, Bytes};
 use container::Container;
 
-/// Decoded URIs of the files that a model names besides itself. Empty when it cannot be read.
-pub(super) fn referenced_uris(file: &str, bytes: &[u8]) -> Vec<String> {
+/// URIs of the files that a model names besides itself, decoded, which are not in the set. Empty when it cannot be read.
+pub(super) fn missing_files(files: &FileSet, file: &str, bytes: &[u8]) -> Vec<String> {
     let Ok(root) = container::open(file, bytes).and_then(|container| parse(file, container.json)) else {
         return Vec::new();
     };
     let buffers = root.buffers.iter().filter_map(|buffer| buffer.uri.as_deref());
     let images = root.images.iter().filter_map(|image| image.uri.as_deref());
+    let mut seen = std::collections::BTreeSet::new();
     let mut uris: Vec<String> = Vec::new();
     for uri in buffers.chain(images).filter(|uri| !data::is_data_uri(uri)) {
+        if data::find(files, file, uri).is_some() {
+            continue;
+        }
         let uri = data::decode_uri(uri).into_owned();
-        if !uris.contains(&uri) {
+        if seen.insert(uri.clone()) {
             uris.push(uri);
         }
     }

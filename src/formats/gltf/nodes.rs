@@ -10,15 +10,27 @@ use crate::asset::{Camera, CameraProjection, Light, LightKind, MeshInstance, Sce
 use crate::formats::error::Problem;
 use crate::mesh::{Influences, Mesh, Skin};
 
+/// Nodes that share a mesh each have a weight for each of its targets: a short file could ask for billions.
+const MAX_MORPH_WEIGHTS: usize = 1 << 22;
+
+/// Names that many nodes can share are cut at this length, in characters.
+const MAX_SHARED_NAME: usize = 256;
+
 /// All nodes as one skeleton; its source indices are the file's node indices.
 pub fn skeleton(root: &schema::Root, meshes: &[Mesh], warnings: &mut Warnings) -> Result<Skeleton, Problem> {
     let mut joints: Vec<Joint> = Vec::with_capacity(root.nodes.len());
+    let mut weights_in_all = 0;
     for (index, node) in root.nodes.iter().enumerate() {
         let place = format!("nodes[{index}]");
         let morph_weights = match node.mesh {
             None => Vec::new(),
             Some(mesh) => rest_weights(root, meshes, node, mesh, &place)?,
         };
+        weights_in_all += morph_weights.len();
+        if weights_in_all > MAX_MORPH_WEIGHTS {
+            let expected = format!("at most {MAX_MORPH_WEIGHTS} morph weights in all");
+            return Err(Problem::new(place, expected, weights_in_all));
+        }
         joints.push(Joint {
             name: node.name.clone(),
             parent: None,
@@ -76,7 +88,9 @@ fn rest(node: &schema::Node, place: &str, warnings: &mut Warnings) -> Result<Tra
         }
         None => {
             let rotation = node.rotation.map_or(Quat::IDENTITY, Quat::from_array);
-            let rotation = if rotation.length_squared() > 0.0 { rotation.normalize() } else { Quat::IDENTITY };
+            // Not only zero: squares of very large numbers overflow.
+            let length = rotation.length();
+            let rotation = if length > 0.0 && length.is_finite() { rotation / length } else { Quat::IDENTITY };
             Transform {
                 translation: node.translation.map_or(Vec3::ZERO, Vec3::from),
                 rotation,
@@ -99,14 +113,23 @@ pub fn instances(
     skins: &[Skin],
     meshes: &[Mesh],
 ) -> Result<Vec<MeshInstance>, Problem> {
+    // The largest joint of each primitive and where it stands: many nodes may share one large mesh.
+    let largest: Vec<Vec<Option<(u16, usize)>>> = meshes
+        .iter()
+        .map(|mesh| mesh.primitives.iter().map(|geometry| largest_joint(&geometry.influences)).collect())
+        .collect();
     let mut instances = Vec::new();
     for (index, node) in root.nodes.iter().enumerate() {
         let (Some(mesh), Some(joint)) = (node.mesh, skeleton.joint_of_source(index)) else { continue };
         if let Some(skin) = node.skin {
             let joints = get(skins, skin, &format!("nodes[{index}].skin"), "skins")?.joints().len();
-            for (at, geometry) in meshes[mesh].primitives.iter().enumerate() {
-                let place = format!("meshes[{mesh}].primitives[{at}].attributes.JOINTS_n");
-                check_influences(&geometry.influences, joints, &place)?;
+            for (at, largest) in largest[mesh].iter().enumerate() {
+                if let Some((joint, vertex)) = *largest
+                    && usize::from(joint) >= joints
+                {
+                    let place = format!("meshes[{mesh}].primitives[{at}].attributes.JOINTS_n, vertex {vertex}");
+                    return Err(Problem::new(place, format!("a joint below {joints}, the size of the skin"), joint));
+                }
             }
         }
         instances.push(MeshInstance { joint, mesh, skin: node.skin });
@@ -114,15 +137,20 @@ pub fn instances(
     Ok(instances)
 }
 
-fn check_influences(influences: &Influences, joints: usize, place: &str) -> Result<(), Problem> {
-    match influences.joints.iter().position(|&joint| joint as usize >= joints) {
-        None => Ok(()),
-        Some(at) => Err(Problem::new(
-            format!("{place}, vertex {}", at / influences.stride),
-            format!("a joint below {joints}, the size of the skin"),
-            influences.joints[at],
-        )),
+/// The largest joint index and the first vertex that has it.
+fn largest_joint(influences: &Influences) -> Option<(u16, usize)> {
+    let (mut largest, mut found) = (None, None);
+    for (at, &joint) in influences.joints.iter().enumerate() {
+        if largest < Some(joint) {
+            largest = Some(joint);
+            found = Some((joint, at / influences.stride.max(1)));
+        }
     }
+    found
+}
+
+fn shared_name(name: &str) -> String {
+    name.chars().take(MAX_SHARED_NAME).collect()
 }
 
 pub fn scenes(root: &schema::Root, skeleton: &Skeleton) -> Result<(Vec<Scene>, Option<usize>), Problem> {
@@ -160,7 +188,7 @@ pub fn cameras(root: &schema::Root, skeleton: &Skeleton) -> Result<Vec<Camera>, 
             }
             (None, None) => return Err(Problem::new(place, "a perspective or orthographic camera", "neither")),
         };
-        let name = if camera.name.is_empty() { node.name.clone() } else { camera.name.clone() };
+        let name = if camera.name.is_empty() { node.name.clone() } else { shared_name(&camera.name) };
         cameras.push(Camera { name, joint, projection });
     }
     Ok(cameras)
@@ -204,7 +232,7 @@ pub fn lights(root: &schema::Root, skeleton: &Skeleton, warnings: &mut Warnings)
             }
         };
         lights.push(Light {
-            name: light.name.clone(),
+            name: shared_name(&light.name),
             joint,
             color: light.color.map_or(Vec3::ONE, Vec3::from),
             intensity: light.intensity.unwrap_or(1.0),

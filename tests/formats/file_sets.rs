@@ -1,0 +1,146 @@
+//! How a model finds its files: beside it, in folders, in archives, in itself.
+
+use std::io::{Cursor, Write};
+
+use base64::Engine;
+use gaitway::formats::{FileSet, LoadError, load, missing_files};
+use zip::write::SimpleFileOptions;
+
+use crate::build_gltf::{Build, one};
+
+fn buffer() -> Vec<u8> {
+    Build::triangle().bytes
+}
+
+fn set(files: &[(&str, Vec<u8>)]) -> FileSet {
+    let mut set = FileSet::default();
+    for (name, bytes) in files {
+        set.insert(*name, bytes.clone());
+    }
+    set
+}
+
+fn zipped(files: &[(&str, Vec<u8>)]) -> Vec<u8> {
+    let mut writer = zip::ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, bytes) in files {
+        writer
+            .start_file(*name, SimpleFileOptions::default().compression_method(zip::CompressionMethod::Deflated))
+            .unwrap();
+        writer.write_all(bytes).unwrap();
+    }
+    writer.finish().unwrap().into_inner()
+}
+
+/// Loads without a missing file; gives the codes of the warnings.
+#[track_caller]
+fn check(files: &FileSet) -> Vec<&'static str> {
+    assert_eq!(missing_files(files), [""; 0]);
+    let asset = load(files).unwrap_or_else(|problem| panic!("{problem}"));
+    assert_eq!(asset.meshes[0].primitives[0].positions.len(), 3);
+    asset.warnings.iter().map(|warning| warning.code()).collect()
+}
+
+#[test]
+fn what_a_model_names_is_listed_decoded_and_once() {
+    let mut build = Build::triangle();
+    build.json["images"] = serde_json::json!([
+        { "uri": "skin%20a.png" }, { "uri": "skin%20a.png" }, { "uri": "data:image/png;base64,AAAA" }
+    ]);
+    let mut files = one("model.gltf", build.gltf("mesh.bin"));
+    assert_eq!(missing_files(&files), ["mesh.bin", "skin a.png"]);
+    files.insert("mesh.bin", buffer());
+    assert_eq!(missing_files(&files), ["skin a.png"]);
+}
+
+#[test]
+fn percent_encoded_names() {
+    for name in ["mesh data.bin", "mesh%20data.bin"] {
+        assert_eq!(check(&set(&[("m.gltf", Build::triangle().gltf("mesh%20data.bin")), (name, buffer())])), [""; 0]);
+    }
+    assert_eq!(check(&set(&[("m.gltf", Build::triangle().gltf("100%.bin")), ("100%.bin", buffer())])), [""; 0]);
+}
+
+#[test]
+fn folders_and_dots() {
+    let files =
+        set(&[("a/models/m.gltf", Build::triangle().gltf("./../data//mesh.bin")), ("a/data/mesh.bin", buffer())]);
+    assert_eq!(check(&files), [""; 0]);
+    let files = set(&[("m.gltf", Build::triangle().gltf("data\\mesh.bin")), ("data/mesh.bin", buffer())]);
+    assert_eq!(check(&files), [""; 0]);
+}
+
+#[test]
+fn the_right_one_of_two_files_with_one_name() {
+    let files =
+        set(&[("b/mesh.bin", vec![0; 4]), ("a/m.gltf", Build::triangle().gltf("mesh.bin")), ("a/mesh.bin", buffer())]);
+    assert_eq!(check(&files), [""; 0]);
+}
+
+#[test]
+fn the_bare_name_will_do_with_a_warning() {
+    for uri in ["C:\\export\\Mesh.BIN", "../elsewhere/mesh.bin"] {
+        let files = set(&[("m.gltf", Build::triangle().gltf(uri)), ("mesh.bin", buffer())]);
+        assert_eq!(check(&files), ["found-by-bare-name"], "{uri}");
+    }
+}
+
+#[test]
+fn data_uris() {
+    let padded = base64::engine::general_purpose::STANDARD.encode(buffer());
+    for uri in [
+        format!("data:application/octet-stream;base64,{padded}"),
+        format!("DATA:;BASE64,{padded}"),
+        format!("data:;base64,{}", padded.trim_end_matches('=')),
+        format!("data:,{}", percent_encoding::percent_encode(&buffer(), percent_encoding::NON_ALPHANUMERIC)),
+    ] {
+        assert_eq!(check(&one("m.gltf", Build::triangle().gltf(&uri))), [""; 0], "{uri}");
+    }
+}
+
+#[test]
+fn archives_with_folders() {
+    let model = Build::triangle().gltf("textures/../mesh.bin");
+    let files = [
+        ("character/m.gltf", model),
+        ("character/mesh.bin", buffer()),
+        ("__MACOSX/character/._m.gltf", b"not a model".to_vec()),
+        ("character/._m.gltf", b"not a model".to_vec()),
+    ];
+    assert_eq!(check(&one("character.zip", zipped(&files))), [""; 0]);
+    // A GLB inside an archive without an ending, beside the archive nothing else.
+    assert_eq!(check(&one("download", zipped(&[("m.glb", Build::triangle().glb())]))), [""; 0]);
+}
+
+#[test]
+fn broken_archives_say_what_is_wrong() {
+    let whole = zipped(&[("m.glb", Build::triangle().glb())]);
+    let cut = load(&one("a.zip", whole[..whole.len() / 2].to_vec())).unwrap_err();
+    assert!(matches!(cut, LoadError::Archive { .. }) && cut.to_string().contains("a.zip"), "{cut}");
+    let empty = load(&one("a.zip", zipped(&[("readme.txt", b"hello".to_vec())]))).unwrap_err().to_string();
+    assert!(empty.contains("no model") && empty.contains("readme.txt"), "{empty}");
+}
+
+/// One that says so, before anything is unpacked; the bytes after it are not what it says.
+#[test]
+fn an_archive_of_too_many_bytes_is_refused() {
+    let mut archive = zipped(&[("m.glb", Build::triangle().glb())]);
+    let central = archive.windows(4).rposition(|window| window == b"PK\x01\x02").expect("a central directory");
+    archive[central + 24..central + 28].copy_from_slice(&0x7000_0000_u32.to_le_bytes());
+    let problem = load(&one("bomb.zip", archive)).unwrap_err().to_string();
+    assert!(problem.contains("bomb.zip") && problem.contains("more than 1024 MiB"), "{problem}");
+}
+
+#[test]
+fn an_archive_of_too_many_files_is_refused() {
+    let names: Vec<String> = (0..10_001).map(|at| format!("{at}")).collect();
+    let files: Vec<(&str, Vec<u8>)> = names.iter().map(|name| (name.as_str(), Vec::new())).collect();
+    let problem = load(&one("many.zip", zipped(&files))).unwrap_err().to_string();
+    assert!(problem.contains("many.zip") && problem.contains("at most 10000"), "{problem}");
+}
+
+#[test]
+fn a_model_without_a_name_is_known_by_its_content() {
+    assert_eq!(check(&one("blob", Build::triangle().glb())), [""; 0]);
+    let files = set(&[("blob", Build::triangle().gltf("mesh.bin")), ("mesh.bin", buffer())]);
+    assert_eq!(check(&files), [""; 0]);
+}

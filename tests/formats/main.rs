@@ -1,0 +1,12 @@
+//! Tests of the loaders: broken files first, then what a good file means, then every real file at hand.
+
+mod behaviour;
+mod build_gltf;
+mod file_sets;
+mod influences;
+mod invalid;
+mod mutation;
+mod sweep;
+
+#[path = "../support/data_folder.rs"]
+mod data_folder;

@@ -1,0 +1,163 @@
+//! Damaged files, the same ones on every run: flipped bytes, cut ends, changed numbers. The loader may refuse them or
+//! read them, but what it reads must be consistent, and nothing may panic.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use gaitway::formats::{load, missing_files};
+
+use crate::build_gltf::{Build, one};
+use crate::data_folder::data_folder;
+use crate::sweep::file_set;
+
+const CASES_PER_FILE: usize = 150;
+
+/// A xorshift generator: any sequence will do, as long as it stays the same.
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, end: usize) -> usize {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 % end.max(1) as u64) as usize
+    }
+}
+
+const NUMBERS: [&str; 14] = [
+    "0",
+    "1",
+    "2",
+    "3",
+    "7",
+    "255",
+    "65535",
+    "65536",
+    "4294967295",
+    "18446744073709551615",
+    "-1",
+    "0.5",
+    "1e30",
+    "1e999",
+];
+
+fn damage(file: &[u8], random: &mut Random) -> Vec<u8> {
+    let mut file = file.to_vec();
+    match random.below(6) {
+        0 => file.truncate(random.below(file.len())),
+        1 => {
+            for _ in 0..=random.below(8) {
+                let at = random.below(file.len());
+                file[at] ^= 1 << random.below(8);
+            }
+        }
+        2 => {
+            let (at, length) = (random.below(file.len()), random.below(16));
+            let end = (at + length).min(file.len());
+            file[at..end].fill([0, 0x7F, 0xFF][random.below(3)]);
+        }
+        // Most damage is done to numbers of the JSON: they are what the reader trusts or does not.
+        _ => {
+            for _ in 0..=random.below(2) {
+                replace_number(&mut file, random);
+            }
+        }
+    }
+    file
+}
+
+/// Puts another number in place of one in the text, and keeps a GLB's lengths right so that it is looked at at all.
+fn replace_number(file: &mut Vec<u8>, random: &mut Random) {
+    let is_glb = file.starts_with(b"glTF") && file.len() >= 20;
+    let (start, end) = match is_glb {
+        true => (20, (20 + u32::from_le_bytes([file[12], file[13], file[14], file[15]]) as usize).min(file.len())),
+        false => (0, file.len()),
+    };
+    let is_number = |byte: &u8| byte.is_ascii_digit() || matches!(byte, b'-' | b'.');
+    if end <= start {
+        return;
+    }
+    let from = start + random.below(end - start);
+    let Some(first) = (from..end).find(|&at| is_number(&file[at])) else { return };
+    let length = file[first..end].iter().take_while(|byte| is_number(byte)).count();
+    let number = NUMBERS[random.below(NUMBERS.len())];
+    file.splice(first..first + length, number.bytes());
+    if is_glb {
+        let chunk = end - start - length + number.len();
+        file[12..16].copy_from_slice(&(chunk as u32).to_le_bytes());
+        let total = file.len() as u32;
+        file[8..12].copy_from_slice(&total.to_le_bytes());
+    }
+}
+
+fn check(name: &str, file: &[u8], random: &mut Random, failures: &mut Vec<String>) -> usize {
+    let mut read = 0;
+    for case in 0..CASES_PER_FILE {
+        let damaged = damage(file, random);
+        let result = catch_unwind(AssertUnwindSafe(|| {
+            let files = one(name, damaged);
+            let _ = missing_files(&files);
+            load(&files).map(|asset| {
+                let skinned = |mesh: usize| {
+                    let of_mesh = asset.instances.iter().filter(move |instance| instance.mesh == mesh);
+                    of_mesh.filter_map(|instance| Some(asset.skins[instance.skin?].joints().len())).min()
+                };
+                for (index, mesh) in asset.meshes.iter().enumerate() {
+                    for geometry in &mesh.primitives {
+                        geometry.validate(skinned(index)).expect("what is read is consistent");
+                    }
+                }
+            })
+        }));
+        match result {
+            Ok(Ok(())) => read += 1,
+            Ok(Err(problem)) => assert!(!problem.to_string().is_empty()),
+            Err(_) => failures.push(format!("{name}, case {case}")),
+        }
+    }
+    read
+}
+
+fn generated() -> Vec<(&'static str, Vec<u8>)> {
+    let joints = [0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0];
+    let weights = [0.5, 0.5, 0.0, 0.0, 0.5, 0.5, 0.0, 0.0, 0.5, 0.5, 0.0, 0.0];
+    let moved = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 2.0, 0.0, 0.0];
+    vec![
+        ("triangle.glb", Build::triangle().glb()),
+        ("skinned.glb", Build::skinned(joints, weights).glb()),
+        ("animated.glb", Build::animated("translation", &[0.0, 1.0, 2.0], "VEC3", 3, &moved).glb()),
+        ("textured.glb", crate::behaviour::textured_square().glb()),
+    ]
+}
+
+/// Small, and of different kinds.
+const REAL: [&str; 10] = [
+    "khronos/SimpleSkin/glTF-Embedded/SimpleSkin.gltf",
+    "khronos/SimpleMorph/glTF-Embedded/SimpleMorph.gltf",
+    "khronos/RiggedSimple/glTF-Binary/RiggedSimple.glb",
+    "khronos/AnimatedMorphCube/glTF-Binary/AnimatedMorphCube.glb",
+    "khronos/RiggedFigure/glTF-Binary/RiggedFigure.glb",
+    "threejs/SimpleSkinning.gltf",
+    "asset-generator/Positive/Animation_Skin/Animation_Skin_00.gltf",
+    "validator-invalid/animation/valid.gltf",
+    "validator-invalid/accessor/valid.gltf",
+    "validator-invalid/glb/two_images.glb",
+];
+
+#[test]
+fn damaged_files_never_panic() {
+    let mut random = Random(0x9E37_79B9_7F4A_7C15);
+    let mut failures = Vec::new();
+    let mut read = 0;
+    for (name, file) in generated() {
+        read += check(name, &file, &mut random, &mut failures);
+    }
+    if let Some(data) = data_folder() {
+        for path in REAL {
+            let files = file_set(&data.join(path));
+            let name = path.rsplit('/').next().expect("a name");
+            read += check(name, files.get(name).expect("just added"), &mut random, &mut failures);
+        }
+    }
+    assert!(failures.is_empty(), "{failures:?}");
+    assert!(read > 20, "only {read} damaged files were read at all: the damage hides what it should test");
+}

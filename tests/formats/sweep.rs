@@ -1,0 +1,250 @@
+//! Every real file: what must load loads, what must be refused is refused in words, and nothing panics.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+
+use gaitway::asset::Asset;
+use gaitway::formats::{FileSet, LoadError, load, missing_files};
+
+use crate::data_folder::data_folder;
+
+/// A model with the files that it names, as a person would drop them.
+pub fn file_set(path: &Path) -> FileSet {
+    let folder = path.parent().expect("a file lies in a folder");
+    let mut files = FileSet::default();
+    files
+        .insert(path.file_name().expect("a file has a name").to_string_lossy(), std::fs::read(path).expect("readable"));
+    for uri in missing_files(&files) {
+        if let Ok(bytes) = std::fs::read(folder.join(&uri)) {
+            files.insert(uri, bytes);
+        }
+    }
+    files
+}
+
+fn models_under(folder: &Path, endings: &[&str], out: &mut Vec<PathBuf>) {
+    let mut entries: Vec<PathBuf> =
+        std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()).collect();
+    entries.sort();
+    for path in entries {
+        if path.is_dir() {
+            models_under(&path, endings, out);
+        } else if path.extension().is_some_and(|ending| endings.iter().any(|wanted| ending == *wanted)) {
+            out.push(path);
+        }
+    }
+}
+
+const GLTF: [&str; 4] = ["glb", "gltf", "vrm", "vrma"];
+
+/// Loads every model; the outcome as text where `check` does not like it, panics included.
+fn sweep(folders: &[&str], endings: &[&str], check: impl Fn(&str, Result<Asset, LoadError>) -> Result<(), String>) {
+    let Some(data) = data_folder() else { return };
+    let mut paths = Vec::new();
+    for folder in folders {
+        models_under(&data.join(folder), endings, &mut paths);
+    }
+    assert!(!paths.is_empty(), "no models in {folders:?}");
+    let mut failures = Vec::new();
+    for path in &paths {
+        let name = path.strip_prefix(&data).expect("found there").to_string_lossy().into_owned();
+        match catch_unwind(AssertUnwindSafe(|| check(&name, load(&file_set(path))))) {
+            Ok(Ok(())) => {}
+            Ok(Err(problem)) => failures.push(format!("{name}: {problem}")),
+            Err(_) => failures.push(format!("{name}: panicked")),
+        }
+    }
+    println!("{} models of {folders:?}", paths.len());
+    assert!(failures.is_empty(), "{} of {}:\n{}", failures.len(), paths.len(), failures.join("\n"));
+}
+
+/// What the loader promises about every asset: lengths agree and all indices are in range.
+fn consistent(asset: &Asset) -> Result<(), String> {
+    for (index, mesh) in asset.meshes.iter().enumerate() {
+        let smallest_skin = asset
+            .instances
+            .iter()
+            .filter(|instance| instance.mesh == index)
+            .filter_map(|instance| Some(asset.skins[instance.skin?].joints().len()))
+            .min();
+        for geometry in &mesh.primitives {
+            geometry.validate(smallest_skin).map_err(|problem| format!("mesh {index}: {problem}"))?;
+            if geometry.morph_targets.len() != mesh.target_names.len() {
+                return Err(format!("mesh {index}: targets and names differ in number"));
+            }
+            if geometry.file_vertices > geometry.positions.len() {
+                return Err(format!("mesh {index}: fewer vertices than the file has"));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The extension for which a file of the collection must be refused.
+fn unreadable(name: &str) -> Option<&'static str> {
+    let has = |part: &str| name.contains(part);
+    if has("raco") {
+        Some("KHR_draco_mesh_compression")
+    } else if has("meshopt") || has("Duck-vp-12") {
+        Some("EXT_meshopt_compression")
+    } else if has("ktx2") {
+        Some("KHR_texture_basisu")
+    } else if has("Compatibility_05") {
+        Some("FAKE_materials_quantumRendering")
+    } else {
+        None
+    }
+}
+
+#[test]
+fn real_models_load_or_name_the_extension_they_need() {
+    let folders = [
+        "asset-generator",
+        "khronos",
+        "threejs",
+        "kaykit",
+        "mesh2motion",
+        "misc",
+        "playcanvas",
+        "blender-io",
+        "cosc422",
+        "vrm",
+        "compressed",
+    ];
+    sweep(&folders, &GLTF, |name, result| match (result, unreadable(name)) {
+        (Err(LoadError::RequiredExtension { name: found, advice, .. }), Some(expected)) => {
+            if found.contains(expected) || found == "KHR_mesh_quantization" {
+                return Ok(());
+            }
+            Err(format!("needs {found} ({advice}), expected {expected}"))
+        }
+        (Ok(_), Some(expected)) => Err(format!("loaded, though it needs {expected}")),
+        (Err(LoadError::UnsupportedVersion { .. }), None)
+            if name.contains("v1.0-unsupported") || name.contains("Compatibility_04") =>
+        {
+            Ok(())
+        }
+        (Ok(_), None) if name.contains("v1.0-unsupported") || name.contains("Compatibility_04") => {
+            Err("loaded, though its version is not supported".to_owned())
+        }
+        (Ok(asset), None) => {
+            let missing = asset.warnings.iter().find(|warning| warning.code().starts_with("image-"));
+            if let Some(warning) = missing {
+                return Err(warning.to_string());
+            }
+            consistent(&asset)
+        }
+        (Err(problem), None) => Err(problem.to_string()),
+        (Err(problem), Some(_)) => Err(format!("refused for another reason: {problem}")),
+    });
+}
+
+#[test]
+fn the_validators_broken_files_load_or_say_why_not() {
+    sweep(&["validator-invalid"], &GLTF, |name, result| match result {
+        Ok(asset) => consistent(&asset),
+        Err(problem) => {
+            let file = name.rsplit('/').next().unwrap_or(name);
+            let text = problem.to_string();
+            // A set without a model lists what was found instead of naming one file.
+            if text.contains(file) { Ok(()) } else { Err(format!("the message names no file: {text}")) }
+        }
+    });
+}
+
+#[test]
+fn valid_files_of_the_validator_load() {
+    let Some(data) = data_folder() else { return };
+    // Not animation/valid.gltf: its key times are all zero, which the specification forbids.
+    for name in ["accessor/valid.gltf", "buffer/valid.gltf", "buffer/valid.glb", "glb/valid.glb"] {
+        let result = load(&file_set(&data.join("validator-invalid").join(name)));
+        assert!(result.is_ok(), "{name}: {}", result.unwrap_err());
+    }
+}
+
+#[test]
+fn other_programs_formats_are_sent_through_blender() {
+    sweep(&["threejs", "cosc422/original"], &["fbx", "x"], |_, result| match result {
+        Err(problem @ LoadError::UnsupportedFormat { .. }) if problem.to_string().contains("Blender") => Ok(()),
+        other => Err(format!("{other:?}")),
+    });
+}
+
+/// Joints of the largest skin, vertices as the file has them, clips, and the first clip's duration in seconds.
+struct Facts {
+    path: &'static str,
+    joints: usize,
+    vertices: usize,
+    clips: usize,
+    first_secs: f32,
+}
+
+const FACTS: &[Facts] = &[
+    Facts {
+        path: "khronos/CesiumMan/glTF-Binary/CesiumMan.glb",
+        joints: 19,
+        vertices: 3273,
+        clips: 1,
+        first_secs: 2.0,
+    },
+    Facts {
+        path: "khronos/RiggedFigure/glTF-Binary/RiggedFigure.glb",
+        joints: 19,
+        vertices: 370,
+        clips: 1,
+        first_secs: 1.25,
+    },
+    Facts {
+        path: "khronos/RiggedSimple/glTF-Binary/RiggedSimple.glb",
+        joints: 2,
+        vertices: 96,
+        clips: 1,
+        first_secs: 2.083,
+    },
+    Facts {
+        path: "khronos/BrainStem/glTF-Binary/BrainStem.glb",
+        joints: 18,
+        vertices: 34159,
+        clips: 1,
+        first_secs: 34.88,
+    },
+    Facts { path: "khronos/Monster/glTF-Binary/Monster.glb", joints: 32, vertices: 780, clips: 1, first_secs: 3.333 },
+    Facts { path: "khronos/Fox/glTF-Binary/Fox.glb", joints: 24, vertices: 1728, clips: 3, first_secs: 3.417 },
+    Facts {
+        path: "khronos/SimpleSkin/glTF-Embedded/SimpleSkin.gltf",
+        joints: 2,
+        vertices: 10,
+        clips: 1,
+        first_secs: 5.5,
+    },
+    Facts { path: "cosc422/dwarf.glb", joints: 40, vertices: 1479, clips: 1, first_secs: 2.2 },
+    Facts { path: "cosc422/ArmyPilot.glb", joints: 63, vertices: 16091, clips: 20, first_secs: -1.0 },
+    Facts { path: "cosc422/mannequin.glb", joints: 52, vertices: 9748, clips: 0, first_secs: -1.0 },
+    Facts { path: "cosc422/mannequin_run.glb", joints: 0, vertices: 0, clips: 1, first_secs: 0.733 },
+    Facts { path: "threejs/Soldier.glb", joints: 49, vertices: 7434, clips: 4, first_secs: 1.967 },
+    Facts { path: "threejs/Xbot.glb", joints: 67, vertices: 28374, clips: 7, first_secs: -1.0 },
+    Facts { path: "kaykit/Knight.glb", joints: 41, vertices: 7024, clips: 76, first_secs: -1.0 },
+    Facts { path: "misc/godot_mannequiny.glb", joints: 45, vertices: 12597, clips: 10, first_secs: -1.0 },
+    Facts { path: "mesh2motion/cmu_91_48.glb", joints: 0, vertices: 0, clips: 1, first_secs: 3.633 },
+    Facts { path: "vrm/three-vrm_test.vrma", joints: 0, vertices: 0, clips: 1, first_secs: 3.0 },
+];
+
+#[test]
+fn real_models_hold_what_other_programs_count_in_them() {
+    let Some(data) = data_folder() else { return };
+    let mut failures = Vec::new();
+    for facts in FACTS {
+        let asset = load(&file_set(&data.join(facts.path))).unwrap_or_else(|problem| panic!("{problem}"));
+        let joints = asset.skins.iter().map(|skin| skin.joints().len()).max().unwrap_or(0);
+        let vertices: usize =
+            asset.meshes.iter().flat_map(|mesh| &mesh.primitives).map(|geometry| geometry.file_vertices).sum();
+        let first_secs = asset.clips.first().map_or(-1.0, |clip| clip.duration_secs());
+        let agrees = (joints, vertices, asset.clips.len()) == (facts.joints, facts.vertices, facts.clips)
+            && (facts.first_secs < 0.0 || (first_secs - facts.first_secs).abs() < 2e-3);
+        if !agrees {
+            let (path, clips) = (facts.path, asset.clips.len());
+            failures.push(format!("{path}: {joints} joints, {vertices} vertices, {clips} clips, {first_secs} s"));
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
