@@ -66,8 +66,12 @@ function cannotRun(missing, attempts) {
   show("cannot-run");
 }
 
+/** Ends a start that is under way. */
+let giveUp = null;
+
 function stopped(message) {
   if (panel === "stopped" || panel === "cannot-run") return;
+  giveUp?.(new Error(message));
   stopReason = message;
   byId("stopped-why").textContent = message.charAt(0).toUpperCase() + message.slice(1);
   const other = drawnWith() === "webgpu" ? "webgl2" : "webgpu";
@@ -182,7 +186,8 @@ async function start(renderer) {
     byId("stage").replaceChildren(canvas);
     backend = attempt;
     try {
-      await bindings.run(canvas, attempt ?? undefined, kept.link, entries, hooks(() => app === bindings || app === null));
+      const run = bindings.run(canvas, attempt ?? undefined, kept.link, entries, hooks(() => app === bindings || app === null));
+      await Promise.race([run, new Promise((_, reject) => (giveUp = reject))]);
     } catch (error) {
       if (panel === "stopped") throw error;
       problems.push(`${NAMES[attempt] ?? "Graphics"}: ${error.message}`);
@@ -202,6 +207,12 @@ async function start(renderer) {
   cannotRun(problems, attempts);
   throw new Error(problems.join(" "));
 }
+
+// An instance that runs out of memory or stack says nothing itself.
+addEventListener("error", ({ error }) => isTrap(error) && stopped(`An error inside Gaitway: ${error.message}`));
+addEventListener("unhandledrejection", ({ reason }) => isTrap(reason) && stopped(`An error inside Gaitway: ${reason.message}`));
+
+const isTrap = (error) => typeof WebAssembly === "object" && error instanceof WebAssembly.RuntimeError;
 
 /** What an instance tells the page; `current` is false for one that has been replaced. */
 const hooks = (current) => ({

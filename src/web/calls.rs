@@ -38,15 +38,12 @@ pub async fn follow_link(link: String) -> Result<(), JsError> {
 pub async fn apply(partial: String) -> Result<(), JsError> {
     let page = page().map_err(error)?;
     let partial: Value = serde_json::from_str(&partial).map_err(|problem| error(problem.to_string()))?;
-    if partial.get("model").is_none() {
+    let before = with_app(&page, |app| app.state().clone()).map_err(error)?;
+    let (mut state, errors) = from_object(&before, &partial);
+    if !errors.is_empty() || state.model == before.model {
         let (promise, reply) = promise::<()>(|()| JsValue::UNDEFINED);
         page.inbox.send(Message::Script(ScriptCall::Apply(partial, reply)));
         return settled(promise).await.map(|_| ()).map_err(error);
-    }
-    let before = with_app(&page, |app| app.state().clone()).map_err(error)?;
-    let (mut state, errors) = from_object(&before, &partial);
-    if !errors.is_empty() {
-        return Err(error(errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")));
     }
     if state.model.is_empty() {
         state.model.push(format!("sample:{}", sample::NAMES[0]));

@@ -61,8 +61,16 @@ pub fn tests() -> anyhow::Result<()> {
 
 /// The browser that the tests drive.
 pub fn chromium() -> Option<PathBuf> {
+    const USUAL: [&str; 6] = [
+        "/usr/bin/chromium",
+        "/usr/bin/chromium-browser",
+        "/usr/bin/google-chrome",
+        "/snap/bin/chromium",
+        "/Applications/Chromium.app/Contents/MacOS/Chromium",
+        "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
+    ];
     let named = std::env::var_os("CHROMIUM").map(PathBuf::from);
-    named.into_iter().chain([PathBuf::from("/usr/bin/chromium")]).find(|path| path.exists())
+    named.into_iter().chain(USUAL.map(PathBuf::from)).find(|path| path.exists())
 }
 
 fn wasm_target_is_there() -> bool {
