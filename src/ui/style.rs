@@ -1,7 +1,12 @@
 //! How the panels look: two quiet palettes, one for each system theme, and egui's style made from them. The scene's own
 //! look is part of the view state and never follows the theme.
 
-use egui::{Color32, CornerRadius, FontFamily, FontId, Margin, Shadow, Stroke, Style, TextStyle, Theme, Vec2, Visuals};
+use std::sync::Arc;
+
+use egui::{
+    Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, Shadow, Stroke, Style, TextStyle,
+    Theme, Vec2, Visuals,
+};
 
 /// The colours of one theme; panels ask for these by what they are for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,12 +65,26 @@ pub fn palette(ui: &egui::Ui) -> Palette {
     if ui.visuals().dark_mode { DARK } else { LIGHT }
 }
 
-/// Sets both styles; egui then follows the system's theme by itself.
+/// Sets the font and both styles; egui then follows the system's theme by itself.
 pub fn install(context: &egui::Context) {
+    context.set_fonts(fonts());
     context.set_theme(egui::ThemePreference::System);
     for (theme, palette) in [(Theme::Dark, DARK), (Theme::Light, LIGHT)] {
         context.set_style_of(theme, style(theme, &palette));
     }
+}
+
+/// One font for all text: its digits have one width, so that columns of numbers need no other. And egui's few icons.
+fn fonts() -> FontDefinitions {
+    let mut fonts = FontDefinitions::empty();
+    let data = [("Ubuntu-Light", epaint_default_fonts::UBUNTU_LIGHT), ("egui-icons", epaint_default_fonts::EGUI_ICONS)];
+    for (name, bytes) in data {
+        fonts.font_data.insert(name.to_owned(), Arc::new(FontData::from_static(bytes)));
+        for family in [FontFamily::Proportional, FontFamily::Monospace] {
+            fonts.families.entry(family).or_default().push(name.to_owned());
+        }
+    }
+    fonts
 }
 
 fn style(theme: Theme, palette: &Palette) -> Style {
