@@ -11,7 +11,7 @@ pub enum LoadError {
     #[error("several models at once ({}); drop one of them with its own files", listed(found))]
     SeveralModels { found: Vec<String> },
     #[error(
-        "{file}: {format} files cannot be read; open it in Blender (File → Import), then export glTF 2.0 (.glb) and drop that"
+        "{file}: {format} files cannot be read; open it in Blender (File › Import), then export glTF 2.0 (.glb) and drop that"
     )]
     UnsupportedFormat { file: String, format: &'static str },
     #[error(

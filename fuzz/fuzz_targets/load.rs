@@ -1,0 +1,23 @@
+//! Any bytes, dropped as one file: whatever the loader makes of them must be consistent, and it must not panic, hang or
+//! take unbounded memory.
+//!
+//! `cargo fuzz run load -- -max_len=300000 -rss_limit_mb=4096`, with real files in `corpus/load` to begin from.
+
+#![no_main]
+
+use gaitway::formats::{FileSet, load, missing_files};
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
+    let mut files = FileSet::default();
+    // No ending: what the bytes are must be found out from the bytes, so that archives are tried too.
+    files.insert("model", bytes.to_vec());
+    let _ = missing_files(&files);
+    let Ok(asset) = load(&files) else { return };
+    for (index, mesh) in asset.meshes.iter().enumerate() {
+        let uses = asset.instances.iter().filter(|instance| instance.mesh == index);
+        let smallest_skin = uses.filter_map(|instance| Some(asset.skins[instance.skin?].joints().len())).min();
+        for geometry in &mesh.primitives {
+            geometry.validate(smallest_skin).expect("what is read is consistent");
+        }
+    }
+});
