@@ -7,8 +7,12 @@ use std::time::Instant;
 
 use anyhow::{Context, bail};
 
-pub fn repository() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."))
+/// The checkout that `cargo xtask` was called in. Asked for when running: two checkouts that share a target folder also
+/// share this program, and what was compiled in would be the other one's path.
+pub fn repository() -> PathBuf {
+    let package =
+        std::env::var_os("CARGO_MANIFEST_DIR").map_or_else(|| env!("CARGO_MANIFEST_DIR").into(), PathBuf::from);
+    package.parent().unwrap_or(Path::new(".")).to_owned()
 }
 
 /// Where cargo builds. On a CI machine the checkout is fresh each time, so builds are kept outside of it.
