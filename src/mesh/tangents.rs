@@ -1,8 +1,12 @@
 //! Tangents by MikkTSpace, the algorithm that glTF 2.0 §3.7.2.1 names for meshes that bring none.
 
-use glam::Vec4;
+use glam::{Vec2, Vec3, Vec4};
 
 use super::Geometry;
+
+/// How many copies of one vertex are looked through for a tangent that fits. Corners that share one are near each other;
+/// a vertex with thousands of copies exists only to keep us busy.
+const COPIES_COMPARED: usize = 64;
 
 struct Corners<'a> {
     geometry: &'a Geometry,
@@ -48,20 +52,23 @@ impl bevy_mikktspace::Geometry for Corners<'_> {
 
 /// Adds tangents to a triangle list with normals and the given texture coordinates; without these nothing happens.
 /// Where the corners at one vertex want different tangents, the vertex is copied; copies come last, so the first
-/// `file_vertices` stay as they are.
-pub fn add_tangents(geometry: &mut Geometry, uv_set: usize) {
+/// `file_vertices` stay as they are. The copies take at most `most_copied_bytes`, beyond which corners make do with the
+/// tangent that their vertex has; returned is what they took.
+pub fn add_tangents(geometry: &mut Geometry, uv_set: usize, most_copied_bytes: usize) -> usize {
     if geometry.normals.is_empty() || geometry.uvs.get(uv_set).is_none_or(Vec::is_empty) {
-        return;
+        return 0;
     }
+    let vertex_bytes = vertex_bytes(geometry);
+    let most_copies = most_copied_bytes / vertex_bytes;
     let corners = geometry.indices.len();
     let mut interface = Corners { geometry, uv_set, tangents: vec![Vec4::new(1.0, 0.0, 0.0, 1.0); corners] };
     if bevy_mikktspace::generate_tangents(&mut interface).is_err() {
-        return;
+        return 0;
     }
     let corner_tangents = interface.tangents;
     let mut tangents: Vec<Option<Vec4>> = vec![None; geometry.positions.len()];
-    // Copies of a vertex already made, as a chain through this list: there are few of them.
-    let mut copies: Vec<(u32, u32)> = Vec::new();
+    // Which vertex each copy is of, and the copies of each vertex.
+    let mut copies: Vec<u32> = Vec::new();
     let mut copies_of: std::collections::BTreeMap<u32, Vec<u32>> = std::collections::BTreeMap::new();
     for (corner, tangent) in corner_tangents.into_iter().enumerate() {
         let vertex = geometry.indices[corner];
@@ -71,22 +78,35 @@ pub fn add_tangents(geometry: &mut Geometry, uv_set: usize) {
             Some(other) if same(other) => {}
             Some(_) => {
                 let made = copies_of.entry(vertex).or_default();
-                let found = made.iter().copied().find(|&copy| tangents[copy as usize].is_some_and(same));
-                let copy = found.unwrap_or_else(|| {
+                let mut recent = made.iter().rev().take(COPIES_COMPARED).copied();
+                if let Some(copy) = recent.find(|&copy| tangents[copy as usize].is_some_and(same)) {
+                    geometry.indices[corner] = copy;
+                } else if copies.len() < most_copies {
                     let copy = tangents.len() as u32;
                     made.push(copy);
-                    copies.push((vertex, copy));
+                    copies.push(vertex);
                     tangents.push(Some(tangent));
-                    copy
-                });
-                geometry.indices[corner] = copy;
+                    geometry.indices[corner] = copy;
+                }
             }
         }
     }
-    for (vertex, _) in copies {
+    for &vertex in &copies {
         copy_vertex(geometry, vertex as usize);
     }
     geometry.tangents = tangents.into_iter().map(|tangent| tangent.unwrap_or(Vec4::new(1.0, 0.0, 0.0, 1.0))).collect();
+    copies.len() * vertex_bytes
+}
+
+/// What one more vertex takes, at most.
+fn vertex_bytes(geometry: &Geometry) -> usize {
+    let influence = size_of::<u16>() + size_of::<f32>();
+    let target = 3 * size_of::<Vec3>();
+    2 * size_of::<Vec3>()
+        + 2 * size_of::<Vec2>()
+        + 2 * size_of::<Vec4>()
+        + geometry.influences.stride * influence
+        + geometry.morph_targets.len() * target
 }
 
 fn copy_vertex(geometry: &mut Geometry, vertex: usize) {

@@ -1,7 +1,7 @@
 //! What a good file means: attributes, indices, nodes, materials, clips.
 
 use gaitway::asset::{Asset, CameraProjection, LightKind};
-use gaitway::mesh::{Filter, Geometry, MipFilter, Topology, Wrap};
+use gaitway::mesh::{Filter, Geometry, MipFilter, Topology, Wrap, add_tangents};
 use glam::{Mat4, Quat, Vec2, Vec3, Vec4};
 use serde_json::{Value, json};
 
@@ -230,6 +230,22 @@ fn mikktspace_copies_seam_vertices_behind_the_files_own() {
     given.attribute("TANGENT", tangents);
     let asset = read(given);
     assert_eq!(geometry(&asset).tangents, [Vec4::new(1.0, 0.0, 0.0, 1.0); 4], "given tangents are kept");
+}
+
+#[test]
+fn copies_for_tangents_stay_within_their_bytes() {
+    let check = |most_bytes: usize, expected_copies: usize| {
+        let asset = read(textured_square().with("/materials/0", json!({})));
+        let mut square = geometry(&asset).clone();
+        let used_bytes = add_tangents(&mut square, 0, most_bytes);
+        assert_eq!(square.positions.len(), 4 + expected_copies, "within {most_bytes} bytes");
+        assert_eq!(square.tangents.len(), square.positions.len());
+        assert!(used_bytes <= most_bytes && (used_bytes > 0) == (expected_copies > 0), "{used_bytes}");
+        square.validate(None).unwrap();
+    };
+    check(0, 0);
+    check(100, 1);
+    check(1000, 2);
 }
 
 #[test]

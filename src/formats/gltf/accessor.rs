@@ -122,6 +122,11 @@ impl<'a> Accessors<'a> {
         Ok(())
     }
 
+    /// What is left of the budget.
+    pub fn bytes_left(&self) -> usize {
+        BUDGET_BYTES.saturating_sub(self.spent_bytes.get())
+    }
+
     /// Bytes of a buffer view, and its stride.
     pub fn view(&self, index: usize, place: &str) -> Result<(&[u8], Option<usize>), Problem> {
         let view = get(&self.root.buffer_views, index, place, "bufferViews")?;

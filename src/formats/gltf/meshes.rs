@@ -177,7 +177,8 @@ fn read_primitive(
         && topology == Topology::Triangles
         && geometry.tangents.is_empty()
     {
-        add_tangents(&mut geometry, texture.uv_set);
+        let copied_bytes = add_tangents(&mut geometry, texture.uv_set, accessors.bytes_left());
+        accessors.charge(1, copied_bytes, place)?;
     }
     Ok(geometry)
 }
