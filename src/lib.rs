@@ -12,6 +12,7 @@ pub mod formats;
 pub mod frame;
 pub mod library;
 pub mod mesh;
+pub mod retarget;
 pub mod state;
 
 #[cfg(feature = "render")]

@@ -1,5 +1,6 @@
 //! What any loader makes of a file: immutable, validated, free of the file's own form.
 
+mod humanoid;
 mod warning;
 
 use std::sync::Arc;
@@ -9,6 +10,7 @@ use glam::Vec3;
 use crate::anim::{Clip, JointIndex, Skeleton};
 use crate::mesh::{Material, Mesh, Skin, Texture};
 
+pub use humanoid::{Humanoid, Slot};
 pub use warning::{Warning, Warnings};
 
 /// A model, its motion, or both. All indices are in range.
@@ -32,6 +34,8 @@ pub struct Asset {
     pub images: Vec<Image>,
     pub cameras: Vec<Camera>,
     pub lights: Vec<Light>,
+    /// The file's own word on which joint is which part of a human body (VRM, VRMA).
+    pub humanoid: Option<Humanoid>,
     pub extensions_used: Vec<String>,
     pub extensions_required: Vec<String>,
     pub warnings: Warnings,

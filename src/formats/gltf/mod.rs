@@ -113,6 +113,7 @@ fn build(
         images,
         cameras,
         lights,
+        humanoid: None,
         extensions_used: root.extensions_used.clone(),
         extensions_required: root.extensions_required.clone(),
         warnings,

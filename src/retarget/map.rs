@@ -1,0 +1,213 @@
+//! The joint map: which target joint follows which source joint, and how, in the form that files have it
+//! (`{"gaitway_map": 1, …}`). Names are looked up when it is resolved against two skeletons.
+
+use std::collections::BTreeMap;
+
+use glam::Quat;
+use serde::{Deserialize, Serialize};
+
+/// A whole map, as written. Joints that are not named in it have no source.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct JointMap {
+    /// 1: the version of this form.
+    pub gaitway_map: u32,
+    /// By target joint: its name, or `#NODE` where it has none or shares it.
+    #[serde(default)]
+    pub joints: BTreeMap<String, MapEntry>,
+    #[serde(default)]
+    pub unmapped: Unmapped,
+    #[serde(default)]
+    pub rest: RestChoices,
+    #[serde(default)]
+    pub root: RootOptions,
+    #[serde(default)]
+    pub translations: Keep,
+    #[serde(default)]
+    pub scales: Keep,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub muted_channels: Vec<MutedChannel>,
+    #[serde(default)]
+    pub feet: Feet,
+    #[serde(default)]
+    pub crossfade_secs: f64,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MapEntry {
+    /// None (`null`): deliberately without a source.
+    pub source: Option<SourceRef>,
+    /// Turns the joint further, in its own space: x y z w.
+    #[serde(default, skip_serializing_if = "is_identity")]
+    pub correction: Quat,
+    /// What the joint does when it has no source; absent: what the map says for all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unmapped: Option<Unmapped>,
+}
+
+fn is_identity(rotation: &Quat) -> bool {
+    *rotation == Quat::IDENTITY
+}
+
+/// A source joint by its number in its own file, or by its name.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum SourceRef {
+    Number(usize),
+    Name(String),
+}
+
+/// A clip of the model by its index or by its name.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum ClipRef {
+    Index(usize),
+    Name(String),
+}
+
+/// What joints without a source do: the word `"rest"`, or one of the model's own clips.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "UnmappedForm", into = "UnmappedForm")]
+pub enum Unmapped {
+    #[default]
+    Rest,
+    Clip {
+        clip: ClipRef,
+        /// The clip's first key for all time.
+        frozen: bool,
+    },
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(untagged)]
+enum UnmappedForm {
+    Word(String),
+    Clip {
+        clip: ClipRef,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        hold: Option<String>,
+    },
+}
+
+impl TryFrom<UnmappedForm> for Unmapped {
+    type Error = String;
+
+    fn try_from(form: UnmappedForm) -> Result<Self, String> {
+        match form {
+            UnmappedForm::Word(word) if word == "rest" => Ok(Self::Rest),
+            UnmappedForm::Word(word) => Err(format!("expected \"rest\" or {{\"clip\": …}}, found “{word}”")),
+            UnmappedForm::Clip { clip, hold } => match hold.as_deref() {
+                None => Ok(Self::Clip { clip, frozen: false }),
+                Some("first-key") => Ok(Self::Clip { clip, frozen: true }),
+                Some(other) => Err(format!("expected \"hold\": \"first-key\", found “{other}”")),
+            },
+        }
+    }
+}
+
+impl From<Unmapped> for UnmappedForm {
+    fn from(unmapped: Unmapped) -> Self {
+        match unmapped {
+            Unmapped::Rest => Self::Word("rest".to_owned()),
+            Unmapped::Clip { clip, frozen } => Self::Clip { clip, hold: frozen.then(|| "first-key".to_owned()) },
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct RestChoices {
+    pub model: RestChoice,
+    pub motion: RestChoice,
+}
+
+/// Which pose counts as a skeleton's rest.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RestChoice {
+    #[default]
+    Auto,
+    /// The nodes' own transforms.
+    Node,
+    /// Where the mesh was bound, for joints that a skin covers.
+    Bind,
+    /// The first key of the clip.
+    FirstFrame,
+}
+
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct RootOptions {
+    pub horizontal: RootPart,
+    pub vertical: RootPart,
+    pub yaw: RootPart,
+    /// Moves what is kept of the travel to the model's root joint.
+    pub extract: bool,
+}
+
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RootPart {
+    #[default]
+    Keep,
+    /// Without travel (the line from the first to the last key); the sway stays.
+    InPlace,
+    /// The first key's value for all time.
+    Freeze,
+}
+
+/// What becomes of translations or scales of joints other than the hips.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Keep {
+    /// Kept when the two skeletons are the same.
+    #[default]
+    Auto,
+    Keep,
+    Drop,
+}
+
+/// A channel of the motion that is left out.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MutedChannel {
+    pub source: SourceRef,
+    /// Absent: all of the joint's channels.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub property: Option<MutedProperty>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum MutedProperty {
+    Translation,
+    Rotation,
+    Scale,
+}
+
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Feet {
+    #[default]
+    Off,
+    /// Feet stay where they touch the ground.
+    Plant,
+}
+
+impl Default for JointMap {
+    fn default() -> Self {
+        Self {
+            gaitway_map: 1,
+            joints: BTreeMap::new(),
+            unmapped: Unmapped::Rest,
+            rest: RestChoices::default(),
+            root: RootOptions::default(),
+            translations: Keep::Auto,
+            scales: Keep::Auto,
+            muted_channels: Vec::new(),
+            feet: Feet::Off,
+            crossfade_secs: 0.0,
+        }
+    }
+}

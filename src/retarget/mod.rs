@@ -1,0 +1,10 @@
+//! Borrowed motion: a clip of one skeleton and a joint map make an ordinary clip of another skeleton. Knows no file format.
+
+mod map;
+mod resolved;
+
+pub use map::{
+    ClipRef, Feet, JointMap, Keep, MapEntry, MutedChannel, MutedProperty, RestChoice, RestChoices, RootOptions,
+    RootPart, SourceRef, Unmapped,
+};
+pub use resolved::{Layer, Pair, ResolvedMap};
