@@ -1,10 +1,14 @@
 //! Borrowed motion: a clip of one skeleton and a joint map make an ordinary clip of another skeleton. Knows no file format.
 
 mod map;
+mod recognize;
+mod resolve;
 mod resolved;
 
 pub use map::{
     ClipRef, Feet, JointMap, Keep, MapEntry, MutedChannel, MutedProperty, RestChoice, RestChoices, RootOptions,
     RootPart, SourceRef, Unmapped,
 };
+pub use recognize::{Contradiction, Facing, Part, Reason, Recognized, recognize};
+pub use resolve::MapError;
 pub use resolved::{Layer, Pair, ResolvedMap};
