@@ -1,10 +1,19 @@
 //! Borrowed motion: a clip of one skeleton and a joint map make an ordinary clip of another skeleton. Knows no file format.
 
+mod align;
+mod bake;
+mod law;
+mod locals;
 mod map;
 mod recognize;
+mod resample;
 mod resolve;
 mod resolved;
+mod rest;
+mod root;
+mod track;
 
+pub use bake::{Body, RetargetError, Retargeted, Retargeting};
 pub use map::{
     ClipRef, Feet, JointMap, Keep, MapEntry, MutedChannel, MutedProperty, RestChoice, RestChoices, RootOptions,
     RootPart, SourceRef, Unmapped,
