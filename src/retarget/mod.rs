@@ -2,6 +2,8 @@
 
 mod align;
 mod bake;
+mod contacts;
+mod figures;
 mod law;
 mod locals;
 mod map;
@@ -14,6 +16,7 @@ mod root;
 mod track;
 
 pub use bake::{Body, RetargetError, Retargeted, Retargeting};
+pub use figures::Figures;
 pub use map::{
     ClipRef, Feet, JointMap, Keep, MapEntry, MutedChannel, MutedProperty, RestChoice, RestChoices, RootOptions,
     RootPart, SourceRef, Unmapped,
