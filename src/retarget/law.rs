@@ -18,7 +18,7 @@ use super::track::{Motion, Track, angle_between, rotation_at, slerp};
 use crate::anim::{Interpolation, JointIndex, Keys, Skeleton};
 
 /// Where keys had to be put anew, straight interpolation is nearer than this.
-const TOLERANCE_RADIANS: f64 = 0.05 * std::f64::consts::PI / 180.0;
+pub(super) const TOLERANCE_RADIANS: f64 = 0.05 * std::f64::consts::PI / 180.0;
 
 /// One local rotation of the source in the product.
 #[derive(Debug, Clone, Copy)]

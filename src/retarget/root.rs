@@ -2,11 +2,12 @@
 //! the ground; kept, brought to a stop or frozen; written below whatever the target's hips hang on.
 
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 
 use glam::{DAffine3, DQuat, DVec3, Vec3};
 
 use super::align::{Alignment, yaw_of};
-use super::law::{NewChannel, RotationLaw, Yaw};
+use super::law::{NewChannel, RotationLaw, TOLERANCE_RADIANS, Yaw};
 use super::map::RootPart;
 use super::resample::{Resampled, resample, union};
 use super::resolved::ResolvedMap;
@@ -265,18 +266,17 @@ impl RootMotion<'_> {
             });
             yaw_of(self.alignment.target_turn * world * rest.conjugate())
         };
-        let (mut times, _) = laws[top].times();
-        if top != self.hips.pair {
-            times = union([&times[..], &laws[self.hips.pair].times().0]);
-        }
+        let (top_times, top_jumps) = laws[top].times();
+        let (hips_times, hips_jumps) = laws[self.hips.pair].times();
+        let (times, jumps) = (union([&top_times[..], &hips_times]), union([&top_jumps[..], &hips_jumps]));
         let (&first_secs, &last_secs) = (times.first()?, times.last()?);
+        let wrapped = |angle: f64| angle - (angle / TAU).round() * TAU;
+        let between = |from: f64, to: f64, factor: f64| from + factor * wrapped(to - from);
+        let Resampled { times, values: mut headings } =
+            resample(&times, &jumps, TOLERANCE_RADIANS, heading, between, |a, b| wrapped(a - b).abs());
         // Unwrapped, so that several turns are several turns.
-        let mut headings: Vec<f64> = Vec::with_capacity(times.len());
-        for &time in &times {
-            let found = heading(time);
-            let before = headings.last().copied().unwrap_or(found);
-            let turns = ((before - found) / std::f64::consts::TAU).round();
-            headings.push(found + turns * std::f64::consts::TAU);
+        for at in 1..headings.len() {
+            headings[at] = headings[at - 1] + wrapped(headings[at] - headings[at - 1]);
         }
         let secs = f64::from(last_secs - first_secs);
         let slope = if secs > 0.0 { (headings[headings.len() - 1] - headings[0]) / secs } else { 0.0 };

@@ -1,0 +1,304 @@
+//! The rotation law on figures whose exact answer is known.
+
+use gaitway::anim::{Clip, Interpolation, Keys};
+use gaitway::asset::Slot;
+use gaitway::retarget::{Body, Keep, Pair, ResolvedMap, RestChoice, Retargeted, Retargeting, RootPart};
+use glam::{DQuat, DVec3, Quat};
+
+use crate::figure::{Figure, Rig, build};
+
+/// All slots that both have.
+fn map(model: &Figure, motion: &Figure) -> ResolvedMap {
+    let mut pairs: Vec<Pair> = model
+        .slots
+        .0
+        .iter()
+        .filter_map(|(&slot, &target)| {
+            Some(Pair { target, source: motion.slots.joint(slot)?, correction: Quat::IDENTITY })
+        })
+        .collect();
+    pairs.sort_by_key(|pair| pair.target);
+    ResolvedMap { pairs, ..ResolvedMap::default() }
+}
+
+fn body(figure: &Figure) -> Body<'_> {
+    Body { asset: &figure.asset, slots: &figure.slots }
+}
+
+fn carry(model: &Figure, motion: &Figure, map: &ResolvedMap) -> Retargeted {
+    Retargeting::new(body(model), body(motion), 0, map).unwrap().bake().unwrap()
+}
+
+fn degrees(a: DQuat, b: DQuat) -> f64 {
+    let turn = a.conjugate() * b;
+    (2.0 * turn.xyz().length().atan2(turn.w.abs())).to_degrees()
+}
+
+/// The flesh of every part that both have does the same, within `most_degrees`, at many times.
+fn check_flesh(model: &Figure, motion: &Figure, most_degrees: f64) -> Retargeted {
+    let map = map(model, motion);
+    let done = carry(model, motion, &map);
+    let mut worst: f64 = 0.0;
+    for step in 0..=60 {
+        let time = step as f32 * 1.6 / 60.0;
+        let wanted = motion.flesh(&motion.asset.clips[0], time);
+        let found = model.flesh(&done.clip, time);
+        for (slot, turn) in &found {
+            if let Some(wanted) = wanted.get(slot) {
+                worst = worst.max(degrees(*wanted, *turn));
+            }
+        }
+    }
+    assert!(worst < most_degrees, "{worst} degrees");
+    done
+}
+
+fn dancer(rig: &Rig, interpolation: Interpolation) -> Figure {
+    let mut figure = build(rig);
+    figure.dance(11, 70.0, interpolation);
+    figure
+}
+
+#[test]
+fn the_same_skeleton_gets_the_same_keys() {
+    for interpolation in [Interpolation::Step, Interpolation::Linear, Interpolation::CubicSpline] {
+        for armature in [false, true] {
+            let figure = dancer(&Rig { axes: 3, armature, ..Rig::default() }, interpolation);
+            let map = ResolvedMap { translations: Keep::Keep, scales: Keep::Keep, ..map(&figure, &figure) };
+            let done = carry(&figure, &figure, &map);
+            assert_eq!(done.resampled, []);
+            assert_eq!(done.keys_in, done.keys_out);
+            let clip = &figure.asset.clips[0];
+            for step in 0..=60 {
+                let time = step as f32 * 1.5 / 60.0;
+                for (wanted, found) in figure.world(clip, time).iter().zip(figure.world(&done.clip, time)) {
+                    assert!(wanted.1.distance(found.1) < 1e-6 * 1.7, "{} at {time}", wanted.1.distance(found.1));
+                    assert!(degrees(wanted.0, found.0) < 1e-4);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn other_axes_sizes_names_and_an_armature_change_nothing() {
+    let motion = dancer(&Rig::default(), Interpolation::Linear);
+    let rig = Rig { axes: 5, prefix: "x:", size: 2.5, leg_length: 0.7, armature: true, ..Rig::default() };
+    let done = check_flesh(&build(&rig), &motion, 1e-3);
+    assert_eq!(done.resampled, [], "every joint has its counterpart, so keys are transformed");
+    let motion = dancer(&rig, Interpolation::Linear);
+    check_flesh(&build(&Rig { axes: 9, ..Rig::default() }), &motion, 1e-3);
+}
+
+#[test]
+fn a_rest_with_lowered_arms_meets_one_with_raised_arms() {
+    let lowered = Rig { axes: 5, arms_down_degrees: 45.0, ..Rig::default() };
+    let raised = Rig { axes: 8, armature: true, ..Rig::default() };
+    for (model, motion) in [(&lowered, &raised), (&raised, &lowered)] {
+        check_flesh_between_rests(&build(model), &dancer(motion, Interpolation::Linear));
+    }
+}
+
+/// The arms' turn is measured from the T-pose of the flesh, which no rest need be.
+fn check_flesh_between_rests(model: &Figure, motion: &Figure) {
+    check_flesh(model, motion, 0.05);
+}
+
+#[test]
+fn facing_another_way_turns_the_whole_motion() {
+    let motion = dancer(&Rig { axes: 2, ..Rig::default() }, Interpolation::Linear);
+    let model = build(&Rig { axes: 4, facing_degrees: 90.0, ..Rig::default() });
+    let done = carry(&model, &motion, &map(&model, &motion));
+    let turn = DQuat::from_rotation_y(std::f64::consts::FRAC_PI_2);
+    for step in 0..=20 {
+        let time = step as f32 * 1.5 / 20.0;
+        let wanted = motion.flesh(&motion.asset.clips[0], time);
+        for (slot, found) in model.flesh(&done.clip, time) {
+            assert!(degrees(turn * wanted[&slot], found) < 0.01, "{slot:?}");
+        }
+        let hips = |figure: &Figure, clip| figure.world(clip, time)[figure.joint(Slot::Hips).get()].1;
+        assert!((turn * hips(&motion, &motion.asset.clips[0])).distance(hips(&model, &done.clip)) < 1e-4);
+    }
+}
+
+#[test]
+fn joints_that_one_side_lacks_are_folded_into_their_neighbours() {
+    let full = Rig { axes: 5, ..Rig::default() };
+    let lacking = Rig { axes: 6, without: vec![Slot::Spine, Slot::Neck, Slot::LeftShoulder], ..Rig::default() };
+    let more = Rig { axes: 7, doubled: vec![Slot::Chest, Slot::LeftLowerArm, Slot::RightFoot], ..Rig::default() };
+    let motion = dancer(&full, Interpolation::Linear);
+    let done = check_flesh(&build(&lacking), &motion, 0.1);
+    assert!(!done.resampled.is_empty(), "two moving joints in one cannot keep either's keys");
+    check_flesh(&build(&more), &motion, 1e-3);
+    check_flesh(&build(&full), &dancer(&lacking, Interpolation::Linear), 1e-3);
+    // Moving joints of the source that the target lacks.
+    let mut motion = build(&more);
+    let extra = motion.asset.skeleton.find("extra_chest").unwrap();
+    motion.slots.0.insert(Slot::UpperChest, extra);
+    motion.t_pose.insert(Slot::UpperChest, DQuat::IDENTITY);
+    motion.dance(12, 60.0, Interpolation::Linear);
+    motion.slots.0.remove(&Slot::UpperChest);
+    check_flesh(&build(&full), &motion, 0.1);
+}
+
+#[test]
+fn there_and_back_is_where_it_was() {
+    let first = dancer(&Rig { axes: 3, arms_down_degrees: 30.0, ..Rig::default() }, Interpolation::Linear);
+    let mut second =
+        build(&Rig { axes: 4, size: 0.6, leg_length: 1.2, armature: true, prefix: "other_", ..Rig::default() });
+    let there = carry(&second, &first, &map(&second, &first));
+    second.asset.clips = vec![there.clip];
+    let back = carry(&first, &second, &map(&first, &second));
+    for step in 0..=30 {
+        let time = step as f32 * 1.5 / 30.0;
+        let (wanted, found) = (first.world(&first.asset.clips[0], time), first.world(&back.clip, time));
+        for (wanted, found) in wanted.iter().zip(found) {
+            assert!(degrees(wanted.0, found.0) < 0.01, "{}", degrees(wanted.0, found.0));
+            assert!(wanted.1.distance(found.1) < 1e-4, "{}", wanted.1.distance(found.1));
+        }
+    }
+}
+
+#[test]
+fn splines_stay_splines() {
+    let motion = dancer(&Rig { axes: 1, ..Rig::default() }, Interpolation::CubicSpline);
+    let model = build(&Rig { axes: 2, size: 3.0, armature: true, ..Rig::default() });
+    let done = check_flesh(&model, &motion, 1e-3);
+    assert!(done.clip.channels().iter().all(|channel| channel.interpolation == Interpolation::CubicSpline));
+    // Not only the turns: the hips' path between the keys as well.
+    let scale = done.hips_scale.unwrap();
+    fn hips(figure: &Figure, clip: &Clip, time: f32) -> DVec3 {
+        figure.world(clip, time)[figure.joint(Slot::Hips).get()].1
+    }
+    let (model_rest, motion_rest) = (rest_of(&model), rest_of(&motion));
+    let offset = hips(&model, &model_rest, 0.0) - scale * hips(&motion, &motion_rest, 0.0);
+    for step in 0..=200 {
+        let time = step as f32 * 1.5 / 200.0;
+        let wanted = offset + scale * hips(&motion, &motion.asset.clips[0], time);
+        let found = hips(&model, &done.clip, time);
+        assert!(wanted.distance(found) < 1e-4, "{} at {time}", wanted.distance(found));
+    }
+}
+
+fn rest_of(figure: &Figure) -> gaitway::anim::Clip {
+    gaitway::anim::ClipBuilder::new("", &figure.asset.skeleton).build()
+}
+
+#[test]
+fn a_correction_turns_one_joint_and_not_its_children() {
+    let motion = dancer(&Rig::default(), Interpolation::Linear);
+    let model = build(&Rig { axes: 6, ..Rig::default() });
+    let plain = carry(&model, &motion, &map(&model, &motion));
+    let mut corrected = map(&model, &motion);
+    let correction = Quat::from_rotation_y(0.4);
+    let joint = model.joint(Slot::LeftUpperArm);
+    corrected.pairs.iter_mut().find(|pair| pair.target == joint).unwrap().correction = correction;
+    let turned = carry(&model, &motion, &corrected);
+    let (plain, turned) = (model.world(&plain.clip, 0.7), model.world(&turned.clip, 0.7));
+    for (index, (plain, turned)) in plain.iter().zip(&turned).enumerate() {
+        let wanted = if index == joint.get() { plain.0 * correction.as_dquat() } else { plain.0 };
+        assert!(degrees(wanted, turned.0) < 1e-3);
+    }
+}
+
+#[test]
+fn the_hips_go_where_they_are_let() {
+    let motion = dancer(&Rig::default(), Interpolation::Linear);
+    let model = build(&Rig { axes: 6, armature: true, ..Rig::default() });
+    let plain = map(&model, &motion);
+    let path = |map: &ResolvedMap| {
+        let done = carry(&model, &motion, map);
+        move |time: f32| model_hips(&done, time)
+    };
+    fn model_hips(done: &Retargeted, time: f32) -> (DQuat, glam::DVec3) {
+        let model = build(&Rig { axes: 6, armature: true, ..Rig::default() });
+        model.world(&done.clip, time)[model.joint(Slot::Hips).get()]
+    }
+    let kept = path(&plain);
+    let mut options = plain.clone();
+    options.root.horizontal = RootPart::InPlace;
+    let in_place = path(&options);
+    assert!(in_place(0.0).1.distance(kept(0.0).1) < 1e-5);
+    let ends = in_place(1.5).1 - in_place(0.0).1;
+    assert!(ends.x.abs() < 1e-5 && ends.z.abs() < 1e-5 && (kept(1.5).1 - kept(0.0).1).length() > 0.05);
+    let middle = kept(0.6).1 - (kept(1.5).1 - kept(0.0).1) * glam::DVec3::new(0.4, 0.0, 0.4);
+    assert!(in_place(0.6).1.distance(middle) < 1e-4, "the sway stays");
+
+    options.root.horizontal = RootPart::Keep;
+    options.root.vertical = RootPart::Freeze;
+    let frozen = path(&options);
+    for time in [0.0, 0.4, 1.1, 1.5] {
+        assert!((frozen(time).1.y - kept(0.0).1.y).abs() < 1e-5);
+        assert!((frozen(time).1.x - kept(time).1.x).abs() < 1e-4);
+    }
+
+    options = plain.clone();
+    options.root.yaw = RootPart::Freeze;
+    let facing = path(&options);
+    let yaw = |turn: DQuat| {
+        let rest = model.t_pose[&Slot::Hips];
+        let away = turn * rest.conjugate();
+        2.0 * (away.y * away.w.signum()).atan2(away.w.abs())
+    };
+    for time in [0.0, 0.4, 1.1, 1.5] {
+        assert!((yaw(facing(time).0) - yaw(kept(0.0).0)).abs() < 2e-3, "{time}");
+    }
+
+    options = plain.clone();
+    options.root.extract = true;
+    let extracted = path(&options);
+    for time in [0.0, 0.4, 1.1, 1.5] {
+        assert!(extracted(time).1.distance(kept(time).1) < 2e-3, "the figure goes where it went");
+        assert!(degrees(extracted(time).0, kept(time).0) < 0.1);
+    }
+    let done = carry(&model, &motion, &options);
+    let armature = model.asset.skeleton.find("Armature").unwrap();
+    let travels =
+        |channel: &&gaitway::anim::Channel| channel.joint == armature && matches!(channel.keys, Keys::Translation(_));
+    assert!(done.clip.channels().iter().any(|channel| travels(&channel)), "the root joint carries the travel");
+}
+
+#[test]
+fn the_first_frame_can_be_the_rest() {
+    let mut motion = dancer(&Rig::default(), Interpolation::Linear);
+    // A clip that starts in the rest: with its first frame as the rest it must say the same as with the nodes'.
+    let skeleton = &motion.asset.skeleton;
+    let mut clip = gaitway::anim::ClipBuilder::new("from rest", skeleton);
+    for channel in motion.asset.clips[0].channels() {
+        if let Keys::Rotation(values) = &channel.keys {
+            let mut values = values.clone();
+            values[0] = skeleton.rest().locals[channel.joint.get()].rotation;
+            let times = &motion.asset.clips[0].timelines()[channel.timeline as usize];
+            clip.channel(channel.joint, channel.interpolation, times, Keys::Rotation(values)).unwrap();
+        }
+    }
+    motion.asset.clips = vec![clip.build()];
+    let model = build(&Rig { axes: 6, ..Rig::default() });
+    let mut first = map(&model, &motion);
+    first.rest.motion = RestChoice::FirstFrame;
+    let (node, first) = (carry(&model, &motion, &map(&model, &motion)), carry(&model, &motion, &first));
+    let worst = model
+        .world(&node.clip, 0.8)
+        .iter()
+        .zip(model.world(&first.clip, 0.8))
+        .map(|(a, b)| degrees(a.0, b.0))
+        .fold(0.0, f64::max);
+    assert!(worst < 1e-3, "{worst}");
+}
+
+#[test]
+fn figures_find_no_error_where_there_is_none_and_one_where_there_is() {
+    let motion = dancer(&Rig::default(), Interpolation::Linear);
+    let model = build(&Rig { axes: 6, size: 1.3, arms_down_degrees: 40.0, ..Rig::default() });
+    let map = map(&model, &motion);
+    let retargeting = Retargeting::new(body(&model), body(&motion), 0, &map).unwrap();
+    let done = retargeting.bake().unwrap();
+    let figures = retargeting.figures(&done.clip, &done.clip);
+    assert!(figures.orientation_error_degrees_max.unwrap() < 0.01, "{figures:?}");
+    assert!(figures.limb_direction_error_degrees_max.unwrap() < 0.1, "{figures:?}");
+    assert_eq!(figures.coverage, Some(1.0));
+    let wrong = rest_of(&model);
+    let figures = retargeting.figures(&wrong, &wrong);
+    assert!(figures.orientation_error_degrees_mean.unwrap() > 10.0, "{figures:?}");
+    assert!(figures.limb_direction_error_degrees_mean.unwrap() > 10.0, "{figures:?}");
+}

@@ -1,0 +1,4 @@
+//! Borrowed motion, without GPU: laws on figures made in code, and real pairs of files.
+
+mod figure;
+mod laws;
