@@ -121,7 +121,9 @@ fn travel(model: &Model, state: &ViewerState, scratch: &mut Scratch, world_from_
     let Some((clip, root)) = clip.and_then(|clip| Some((clip, model.root_of_clip(clip)?))) else { return Vec3::ZERO };
     let skeleton = &model.asset.skeleton;
     scratch.first_pose.copy_from(skeleton.rest());
-    model.asset.clips[clip].sample(skeleton, 0.0, &mut scratch.first_cursor, &mut scratch.first_pose);
+    if let Some(clip) = model.clip(clip) {
+        clip.sample(skeleton, 0.0, &mut scratch.first_cursor, &mut scratch.first_pose);
+    }
     let world_from_model = world_from_model(state.up);
     model_from_joint(skeleton, &scratch.first_pose.locals, world_from_model, &mut scratch.world_from_first);
     let at = |world: &[Affine3A]| Vec3::from(world[root.get()].translation);

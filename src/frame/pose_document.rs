@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use super::{Frame, evaluate};
+use crate::anim::Clip;
 use crate::library::{Library, Model, warning_documents};
 use crate::mesh::{DeformedVertices, deform};
 use crate::state::{ViewerState, active_clip, clip_secs};
@@ -16,7 +17,7 @@ pub fn pose_document(library: &Library, state: &ViewerState) -> Value {
     evaluate(library, state, 1.0, &mut frame);
     let clip = active_clip(model, state);
     json!({
-        "clip": clip.map(|clip| model.asset.clips[clip].name()),
+        "clip": clip.and_then(|clip| model.clip(clip)).map(Clip::name),
         "time_secs": clip.map_or(0.0, |clip| clip_secs(model, clip, state)),
         "nodes": nodes(model, &frame),
         "meshes": meshes(model, state, &frame),

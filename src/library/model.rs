@@ -1,14 +1,16 @@
 //! One loaded file with its decoded images, and what is worked out from them once and kept.
 
 use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use super::ImageData;
 use super::extent::Extent;
+use super::motion::BorrowedClip;
 use super::rig::Rig;
-use crate::anim::{JointIndex, Pose, SampleCursor, model_from_joint};
-use crate::asset::Asset;
+use crate::anim::{Clip, JointIndex, Pose, SampleCursor, model_from_joint};
+use crate::asset::{Asset, Humanoid};
 use crate::mesh::Bounds;
+use crate::retarget::{Body, LayerClip, recognize};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
 pub struct ModelId(pub u64);
@@ -22,7 +24,10 @@ pub struct Model {
     pub asset: Arc<Asset>,
     /// One per image of the asset; none where it could not be decoded (a warning says why).
     pub images: Vec<Option<ImageData>>,
+    /// Clips of other files, made over for this one; they follow the asset's own.
+    borrowed: Vec<BorrowedClip>,
     clip_titles: Vec<String>,
+    slots: OnceLock<Humanoid>,
     rig: Rig,
     extent: Extent,
     swept: Mutex<BTreeMap<SweptKey, Bounds>>,
@@ -42,7 +47,7 @@ impl Model {
     const SWEEP_SAMPLES: usize = 24;
 
     pub fn new(source: String, asset: Asset, images: Vec<Option<ImageData>>) -> Self {
-        let clip_titles = unique_titles(&asset);
+        let clip_titles = unique_titles(asset.clips.iter());
         let rig = Rig::new(&asset);
         let extent = Extent::new(&asset, &rig);
         Self {
@@ -50,11 +55,52 @@ impl Model {
             source,
             asset: Arc::new(asset),
             images,
+            borrowed: Vec::new(),
             clip_titles,
+            slots: OnceLock::new(),
             rig,
             extent,
             swept: Mutex::default(),
         }
+    }
+
+    /// How many clips there are to play: the asset's own, then the borrowed ones.
+    pub fn clip_count(&self) -> usize {
+        self.asset.clips.len() + self.borrowed.len()
+    }
+
+    pub fn clip(&self, index: usize) -> Option<&Clip> {
+        let own = &self.asset.clips;
+        own.get(index).or_else(|| Some(&self.borrowed.get(index.checked_sub(own.len())?)?.clip))
+    }
+
+    pub fn clips(&self) -> impl Iterator<Item = &Clip> {
+        self.asset.clips.iter().chain(self.borrowed.iter().map(|borrowed| &borrowed.clip))
+    }
+
+    /// Where a clip comes from, if it is a borrowed one.
+    pub fn borrowed(&self, clip: usize) -> Option<&BorrowedClip> {
+        self.borrowed.get(clip.checked_sub(self.asset.clips.len())?)
+    }
+
+    /// What plays below a clip on joints that it does not move; nothing for the asset's own clips.
+    pub fn layers(&self, clip: usize) -> &[LayerClip] {
+        self.borrowed(clip).map_or(&[], |borrowed| &borrowed.layers)
+    }
+
+    /// Replaces the borrowed clips.
+    pub(super) fn set_borrowed(&mut self, borrowed: Vec<BorrowedClip>) {
+        self.borrowed = borrowed;
+        self.clip_titles = unique_titles(self.clips());
+        let own = self.asset.clips.len();
+        if let Ok(mut swept) = self.swept.lock() {
+            swept.retain(|key, _| key.clip.is_none_or(|clip| clip < own));
+        }
+    }
+
+    /// Which joint is which part of a body; worked out once.
+    pub fn body(&self) -> Body<'_> {
+        Body { asset: &self.asset, slots: self.slots.get_or_init(|| recognize(&self.asset).humanoid()) }
     }
 
     /// Names to show a person: one per clip, never empty, never twice the same.
@@ -93,7 +139,7 @@ impl Model {
     /// travel of the root over the ground is taken out. Worked out once.
     pub fn clip_bounds(&self, scene: Option<usize>, clip: Option<usize>, in_place: bool) -> Bounds {
         let scene = self.scene(scene);
-        let clip = clip.filter(|&clip| clip < self.asset.clips.len());
+        let clip = clip.filter(|&clip| clip < self.clip_count());
         let key = SweptKey { scene, clip, in_place };
         if let Some(bounds) = self.swept.lock().ok().and_then(|swept| swept.get(&key).copied()) {
             return bounds;
@@ -108,14 +154,17 @@ impl Model {
     /// The joint whose travel is the character's travel in a clip: the topmost joint of the skin that the clip carries
     /// about, or the topmost at all; none when nothing moves.
     pub fn root_of_clip(&self, clip: usize) -> Option<JointIndex> {
-        self.rig.root_of_clip(clip)
+        match self.borrowed(clip) {
+            Some(borrowed) => borrowed.root,
+            None => self.rig.root_of_clip(clip),
+        }
     }
 
     /// Frames per second that the keys of a clip were set at, as far as their times tell; 30 when they do not.
     pub fn frames_per_sec(&self, clip: usize) -> f64 {
         const COMMON: [f64; 8] = [30.0, 24.0, 25.0, 60.0, 50.0, 48.0, 120.0, 100.0];
         const MOST_KEYS: usize = 4096;
-        let Some(clip) = self.asset.clips.get(clip) else { return COMMON[0] };
+        let Some(clip) = self.clip(clip) else { return COMMON[0] };
         let on_frames = |rate: f64| {
             clip.timelines().iter().flatten().take(MOST_KEYS).all(|&time| {
                 let frame = f64::from(time) * rate;
@@ -130,7 +179,7 @@ impl Model {
         let in_scene = self.asset.joints_in_scene(key.scene);
         let mut pose = skeleton.rest().clone();
         let mut world_from_joint = Vec::with_capacity(skeleton.len());
-        let Some(clip) = key.clip.map(|clip| &self.asset.clips[clip]) else {
+        let Some(clip) = key.clip.and_then(|clip| self.clip(clip)) else {
             if key.scene == self.asset.default_scene {
                 return self.rest_bounds();
             }
@@ -171,10 +220,10 @@ pub(super) fn rest_world(asset: &Asset) -> Vec<glam::Affine3A> {
     world_from_joint
 }
 
-fn unique_titles(asset: &Asset) -> Vec<String> {
+fn unique_titles<'a>(clips: impl Iterator<Item = &'a Clip>) -> Vec<String> {
     let mut seen: BTreeMap<String, usize> = BTreeMap::new();
-    let mut titles = Vec::with_capacity(asset.clips.len());
-    for (index, clip) in asset.clips.iter().enumerate() {
+    let mut titles = Vec::new();
+    for (index, clip) in clips.enumerate() {
         let base = if clip.name().trim().is_empty() { format!("Clip {index}") } else { clip.name().to_owned() };
         let mut title = base.clone();
         loop {

@@ -119,6 +119,15 @@ fn fill_gaps(asset: &Asset, real: &mut [bool]) {
     }
 }
 
+/// The joint whose travel is the character's in a clip over this asset.
+pub(super) fn root_of(asset: &Asset, clip: &Clip) -> Option<JointIndex> {
+    let mut in_skin = vec![false; asset.skeleton.len()];
+    for joint in asset.skins.iter().flat_map(|skin| skin.joints()) {
+        in_skin[joint.get()] = true;
+    }
+    root_of_clip(asset, clip, &in_skin)
+}
+
 fn root_of_clip(asset: &Asset, clip: &Clip, in_skin: &[bool]) -> Option<JointIndex> {
     let carried = |channel: &&crate::anim::Channel| match &channel.keys {
         Keys::Translation(values) => values.windows(2).any(|pair| pair[0] != pair[1]),

@@ -5,8 +5,10 @@ mod bake;
 mod contacts;
 mod figures;
 mod law;
+mod layers;
 mod locals;
 mod map;
+mod propose;
 mod recognize;
 mod resample;
 mod resolve;
@@ -17,10 +19,12 @@ mod track;
 
 pub use bake::{Body, RetargetError, Retargeted, Retargeting};
 pub use figures::Figures;
+pub use layers::{Baking, LayerClip, bake_layers, baking, layer_clips};
 pub use map::{
     ClipRef, Feet, JointMap, Keep, MapEntry, MutedChannel, MutedProperty, RestChoice, RestChoices, RootOptions,
     RootPart, SourceRef, Unmapped,
 };
+pub use propose::{Proposal, ProposedPair, propose};
 pub use recognize::{Contradiction, Facing, Part, Reason, Recognized, recognize};
 pub use resolve::MapError;
 pub use resolved::{Layer, Pair, ResolvedMap};

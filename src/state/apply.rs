@@ -162,7 +162,7 @@ fn set_playing(state: &mut ViewerState, model: Option<&Model>, playing: bool) {
 fn seek(state: &mut ViewerState, model: Option<&Model>, time_secs: f64) {
     if time_secs.is_finite() {
         let end = model.map_or(f64::INFINITY, |model| {
-            let clip = active_clip(model, state).and_then(|clip| model.asset.clips.get(clip));
+            let clip = active_clip(model, state).and_then(|clip| model.clip(clip));
             clip.map_or(0.0, |clip| f64::from(clip.duration_secs()))
         });
         state.time_secs = time_secs.clamp(0.0, end);
@@ -182,7 +182,9 @@ fn advance(state: &mut ViewerState, model: Option<&Model>, clock_secs: f64) {
             state.time_secs = range.end_secs;
             state.playing = false;
         }
-        // Whole rounds are taken off, so that the playhead stays a small number however long it runs.
+        // Whole rounds are taken off, so that the playhead stays a small number however long it runs; but not where layers
+        // loop on durations of their own, which one round of the clip would cut off.
+        _ if !model.layers(clip).is_empty() => {}
         LoopMode::Loop if length > 0.0 && state.time_secs > range.end_secs => {
             state.time_secs = range.start_secs + (state.time_secs - range.start_secs).rem_euclid(length);
         }
@@ -222,7 +224,7 @@ fn set_range(state: &mut ViewerState, model: Option<&Model>, range: Option<TimeR
         return;
     }
     let end = model.map_or(f64::INFINITY, |model| {
-        let clip = active_clip(model, state).and_then(|clip| model.asset.clips.get(clip));
+        let clip = active_clip(model, state).and_then(|clip| model.clip(clip));
         clip.map_or(0.0, |clip| f64::from(clip.duration_secs()))
     });
     let (first, second) = (range.start_secs.clamp(0.0, end), range.end_secs.clamp(0.0, end));

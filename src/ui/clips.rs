@@ -37,7 +37,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
                 continue;
             }
             found = true;
-            let duration = model.asset.clips.get(index).map_or(0.0, |clip| clip.duration_secs());
+            let duration = model.clip(index).map_or(0.0, |clip| clip.duration_secs());
             let row = controls::list_row(ui, title, &format!("{duration:.2} s"), chosen == Some(index));
             if row.clicked() {
                 out.commands.push(Command::SetClip(choice_of_clip(model, index)));

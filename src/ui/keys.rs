@@ -54,7 +54,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
         does: "Choose a clip",
         pressed: &[Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9],
         act: |shown, _, which, out| {
-            if let Some(model) = shown.library.active().filter(|model| which < model.asset.clips.len()) {
+            if let Some(model) = shown.library.active().filter(|model| which < model.clip_count()) {
                 out.commands.push(Command::SetClip(choice_of_clip(model, which)));
             }
         },

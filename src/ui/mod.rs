@@ -46,7 +46,7 @@ impl<'a> Shown<'a> {
     }
 
     pub fn clip(&self) -> Option<&'a Clip> {
-        self.library.active()?.asset.clips.get(self.clip_index()?)
+        self.library.active()?.clip(self.clip_index()?)
     }
 
     /// The playhead inside the clip; 0 at rest.

@@ -1,0 +1,81 @@
+//! Files that clips are borrowed from, and the borrowed clips.
+
+use std::sync::Arc;
+
+use crate::anim::{Clip, JointIndex};
+use crate::asset::{Asset, Humanoid};
+use crate::retarget::{
+    Body, JointMap, LayerClip, MapError, Proposal, ResolvedMap, RetargetError, Retargeting, layer_clips, propose,
+    recognize,
+};
+
+/// A loaded file whose clips others may borrow.
+#[derive(Debug, Clone)]
+pub struct Motion {
+    /// File name or URL, as the link writes it.
+    pub source: String,
+    pub asset: Arc<Asset>,
+    pub slots: Humanoid,
+}
+
+impl Motion {
+    pub fn new(source: String, asset: Arc<Asset>) -> Self {
+        let slots = recognize(&asset).humanoid();
+        Self { source, asset, slots }
+    }
+
+    pub fn body(&self) -> Body<'_> {
+        Body { asset: &self.asset, slots: &self.slots }
+    }
+}
+
+/// A clip of a motion made over for a model: plays like one of its own.
+#[derive(Debug)]
+pub struct BorrowedClip {
+    pub clip: Clip,
+    /// What joints without a source do meanwhile.
+    pub layers: Vec<LayerClip>,
+    /// Index into [`super::Library::motions`], and into that file's clips.
+    pub motion: usize,
+    pub source_clip: usize,
+    pub root: Option<JointIndex>,
+}
+
+/// Why a motion cannot be borrowed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum BorrowError {
+    #[error("{motion}: {problem}")]
+    Map { motion: String, problem: MapError },
+    #[error("{motion}: {problem}")]
+    Retarget { motion: String, problem: RetargetError },
+}
+
+/// The map that is in force between two files: the given one, or what is proposed.
+pub fn map_for(model: &Asset, motion: &Asset, map: Option<&JointMap>) -> (JointMap, Option<Proposal>) {
+    match map {
+        Some(map) => (map.clone(), None),
+        None => {
+            let proposal = propose(model, motion);
+            (proposal.to_map(model, motion), Some(proposal))
+        }
+    }
+}
+
+/// All clips of a motion over a model.
+pub(super) fn borrow(
+    model: Body<'_>,
+    motion: &Motion,
+    index: usize,
+    map: &ResolvedMap,
+    root_of: impl Fn(&Clip) -> Option<JointIndex>,
+) -> Result<Vec<BorrowedClip>, BorrowError> {
+    let layers = layer_clips(model.asset, map);
+    let clips = 0..motion.asset.clips.len().max(1);
+    let borrow = |source_clip| {
+        let baked = Retargeting::new(model, motion.body(), source_clip, map).and_then(|pair| pair.bake());
+        let baked = baked.map_err(|problem| BorrowError::Retarget { motion: motion.source.clone(), problem })?;
+        let root = root_of(&baked.clip);
+        Ok(BorrowedClip { clip: baked.clip, layers: layers.clone(), motion: index, source_clip, root })
+    };
+    clips.map(borrow).collect()
+}
