@@ -3,6 +3,7 @@
 mod align;
 mod bake;
 mod contacts;
+mod feet;
 mod figures;
 mod law;
 mod layers;
@@ -16,6 +17,7 @@ mod resolved;
 mod rest;
 mod root;
 mod track;
+mod vocabulary;
 
 pub use bake::{Body, RetargetError, Retargeted, Retargeting};
 pub use figures::Figures;

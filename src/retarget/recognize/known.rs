@@ -1,0 +1,153 @@
+//! Which known vocabulary a skeleton's names are from, and what it says of each joint.
+
+use std::collections::BTreeMap;
+
+use super::names::{Name, Side};
+use super::tree::Tree;
+use super::words::Word;
+use crate::anim::JointIndex;
+use crate::asset::Slot;
+use crate::retarget::vocabulary::{FINGERS, VOCABULARIES, Vocabulary};
+
+/// What one vocabulary says.
+#[derive(Debug, Default)]
+pub(super) struct Known {
+    pub vocabulary: &'static str,
+    pub slots: BTreeMap<JointIndex, Slot>,
+}
+
+/// Fewer parts than this (fingers aside) may be chance: `hips`, `head` and `foot` are in many.
+const FEWEST_PARTS: usize = 8;
+
+/// The vocabulary that says most; none when none says enough.
+pub(super) fn find(tree: &Tree) -> Option<Known> {
+    let mut best: Option<(i32, Known)> = None;
+    for vocabulary in VOCABULARIES {
+        let (known, odd) = read(tree, vocabulary);
+        let parts = known.slots.values().filter(|slot| !is_finger(**slot)).count();
+        if parts < FEWEST_PARTS {
+            continue;
+        }
+        let score = known.slots.len() as i32 - 2 * odd as i32;
+        if best.as_ref().is_none_or(|(other, _)| score > *other) {
+            best = Some((score, known));
+        }
+    }
+    best.map(|(_, known)| known)
+}
+
+/// What the vocabulary says, and how many of its words do not fit the hierarchy.
+fn read(tree: &Tree, vocabulary: &Vocabulary) -> (Known, usize) {
+    let entries: Vec<(Name, Slot)> = vocabulary
+        .body
+        .iter()
+        .copied()
+        .chain(vocabulary.fingers.iter().copied().zip(FINGERS))
+        .filter(|(name, _)| !name.is_empty())
+        .map(|(name, slot)| (Name::read(name), slot))
+        .collect();
+    let mut candidates: BTreeMap<Slot, Vec<JointIndex>> = BTreeMap::new();
+    for joint in tree.skeleton.joints().filter(|joint| tree.usable[joint.get()]) {
+        if let Some(slot) = look_up(&entries, &tree.names[joint.get()]) {
+            candidates.entry(slot).or_default().push(joint);
+        }
+    }
+    let mut known = Known { vocabulary: vocabulary.name, ..Known::default() };
+    let mut chosen: BTreeMap<Slot, JointIndex> = BTreeMap::new();
+    let mut odd = 0;
+    // Parents come before children in the order of slots.
+    for (&slot, joints) in &candidates {
+        let above = std::iter::successors(parent_of(slot), |slot| parent_of(*slot)).find_map(|slot| chosen.get(&slot));
+        let fits = |joint: &&JointIndex| above.is_none_or(|&above| **joint != above && tree.is_under(**joint, above));
+        match joints.iter().find(fits) {
+            Some(&joint) => {
+                chosen.insert(slot, joint);
+                known.slots.insert(joint, slot);
+            }
+            None => odd += 1,
+        }
+    }
+    (known, odd)
+}
+
+fn look_up(entries: &[(Name, Slot)], name: &Name) -> Option<Slot> {
+    let find = |key: &dyn Fn(&Name) -> String| {
+        let wanted = key(name);
+        entries.iter().find(|(entry, _)| entry.side.is_some() == name.side.is_some() && key(entry) == wanted)
+    };
+    let (_, slot) = find(&Name::key).or_else(|| find(&Name::short_key))?;
+    Some(if name.side == Some(Side::Right) { slot.mirrored() } else { *slot })
+}
+
+/// The word that a slot stands for.
+pub(super) fn word_of(slot: Slot) -> Word {
+    let name = slot.name();
+    let part = name.strip_prefix("left").or_else(|| name.strip_prefix("right")).unwrap_or(name);
+    match part {
+        "hips" => Word::Pelvis,
+        "neck" => Word::Neck,
+        "head" => Word::Head,
+        "jaw" => Word::Jaw,
+        "Eye" => Word::Eye,
+        "Shoulder" => Word::Clavicle,
+        "UpperArm" => Word::UpperArm,
+        "LowerArm" => Word::LowerArm,
+        "Hand" => Word::Hand,
+        "UpperLeg" => Word::UpperLeg,
+        "LowerLeg" => Word::LowerLeg,
+        "Foot" => Word::Foot,
+        "Toes" => Word::Toes,
+        _ => match FINGERS.iter().position(|finger| finger.name().ends_with(part)) {
+            Some(at) => Word::Finger((at / 3) as u8),
+            None => Word::Torso,
+        },
+    }
+}
+
+pub(super) fn side_of(slot: Slot) -> Option<Side> {
+    if slot.name().starts_with("left") {
+        Some(Side::Left)
+    } else if slot.name().starts_with("right") {
+        Some(Side::Right)
+    } else {
+        None
+    }
+}
+
+pub(in crate::retarget) fn is_finger(slot: Slot) -> bool {
+    FINGERS.contains(&slot) || FINGERS.contains(&slot.mirrored())
+}
+
+/// The slot that a slot hangs on in VRM 1.0, optional ones included.
+pub(in crate::retarget) fn parent_of(slot: Slot) -> Option<Slot> {
+    use Slot::*;
+    if side_of(slot) == Some(Side::Right) {
+        let left = parent_of(slot.mirrored())?;
+        return Some(left.mirrored());
+    }
+    Some(match slot {
+        Hips => return None,
+        Spine | LeftUpperLeg => Hips,
+        Chest => Spine,
+        UpperChest => Chest,
+        Neck | LeftShoulder => UpperChest,
+        Head => Neck,
+        Jaw | LeftEye => Head,
+        LeftLowerLeg => LeftUpperLeg,
+        LeftFoot => LeftLowerLeg,
+        LeftToes => LeftFoot,
+        LeftUpperArm => LeftShoulder,
+        LeftLowerArm => LeftUpperArm,
+        LeftHand => LeftLowerArm,
+        other => match FINGERS.iter().position(|&finger| finger == other) {
+            Some(at) if at % 3 > 0 => FINGERS[at - 1],
+            _ => LeftHand,
+        },
+    })
+}
+
+/// The three slots of a finger (thumb 0), from the palm outwards.
+pub(super) fn finger_slots(finger: u8, side: Side) -> impl Iterator<Item = Slot> {
+    let slots = FINGERS.iter().skip(usize::from(finger) * 3).take(3);
+    slots.map(move |&slot| if side == Side::Right { slot.mirrored() } else { slot })
+}

@@ -1,0 +1,93 @@
+//! A skeleton as recognition looks at it: which joints may be parts of a body, their names read, where they lie.
+
+use glam::{Affine3A, Vec3};
+
+use super::names::Name;
+use super::words::{self, Word};
+use crate::anim::{JointIndex, Pose, Skeleton, model_from_joint};
+use crate::asset::Asset;
+
+pub(super) struct Tree<'a> {
+    pub skeleton: &'a Skeleton,
+    pub names: Vec<Name>,
+    /// What each name says; none for joints that cannot be parts of a body.
+    pub words: Vec<Option<Word>>,
+    /// False for nodes that only hold a mesh.
+    pub usable: Vec<bool>,
+    /// In model space, of the pose that looks most like a body at rest.
+    pub places: Vec<Vec3>,
+}
+
+impl<'a> Tree<'a> {
+    pub fn new(asset: &'a Asset) -> Self {
+        let skeleton = &asset.skeleton;
+        let names: Vec<Name> = skeleton.joints().map(|joint| Name::read(skeleton.name(joint))).collect();
+        let usable = usable(asset);
+        let words =
+            names.iter().zip(&usable).map(|(name, &usable)| if usable { words::read(name) } else { None }).collect();
+        Self { skeleton, names, words, usable, places: places(skeleton, skeleton.rest()) }
+    }
+
+    pub fn word(&self, joint: JointIndex) -> Option<Word> {
+        self.words[joint.get()]
+    }
+
+    pub fn place(&self, joint: JointIndex) -> Vec3 {
+        self.places[joint.get()]
+    }
+
+    /// The joint itself, then its ancestors.
+    pub fn upwards(&self, joint: JointIndex) -> impl Iterator<Item = JointIndex> + '_ {
+        std::iter::successors(Some(joint), |&joint| self.skeleton.parent(joint))
+    }
+
+    /// Whether `below` is `above` or hangs under it.
+    pub fn is_under(&self, below: JointIndex, above: JointIndex) -> bool {
+        self.upwards(below).any(|joint| joint == above)
+    }
+
+    /// Where two chains meet.
+    pub fn meeting(&self, a: JointIndex, b: JointIndex) -> Option<JointIndex> {
+        self.upwards(a).find(|&joint| self.is_under(b, joint))
+    }
+
+    /// From `above` down to `below`, without `above` and with `below`; empty when `below` hangs elsewhere.
+    pub fn path(&self, above: JointIndex, below: JointIndex) -> Vec<JointIndex> {
+        if !self.is_under(below, above) {
+            return Vec::new();
+        }
+        let mut path: Vec<JointIndex> = self.upwards(below).take_while(|&joint| joint != above).collect();
+        path.reverse();
+        path
+    }
+
+    pub fn usable_children(&self, joint: JointIndex) -> Vec<JointIndex> {
+        self.skeleton.children(joint).filter(|child| self.usable[child.get()]).collect()
+    }
+
+    /// Takes the places from another pose.
+    pub fn stand(&mut self, pose: &Pose) {
+        self.places = places(self.skeleton, pose);
+    }
+}
+
+/// A node that holds a mesh is a part of the body only where a skin names it, or where nothing has a skin.
+fn usable(asset: &Asset) -> Vec<bool> {
+    let mut usable = vec![true; asset.skeleton.len()];
+    if asset.skins.is_empty() {
+        return usable;
+    }
+    for instance in &asset.instances {
+        usable[instance.joint.get()] = false;
+    }
+    for joint in asset.skins.iter().flat_map(|skin| skin.joints()) {
+        usable[joint.get()] = true;
+    }
+    usable
+}
+
+fn places(skeleton: &Skeleton, pose: &Pose) -> Vec<Vec3> {
+    let mut model_from = Vec::new();
+    model_from_joint(skeleton, &pose.locals, Affine3A::IDENTITY, &mut model_from);
+    model_from.into_iter().map(|transform| transform.translation.into()).collect()
+}
