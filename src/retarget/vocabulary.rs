@@ -54,6 +54,16 @@ pub(super) const VOCABULARIES: &[Vocabulary] = &[
         ],
     },
     Vocabulary {
+        name: "KayKit",
+        // The hand starts at the wrist: `hand.l` lies in the palm.
+        body: &[
+            ("hips", Hips), ("spine", Spine), ("chest", Chest), ("head", Head),
+            ("upperleg.l", LeftUpperLeg), ("lowerleg.l", LeftLowerLeg), ("foot.l", LeftFoot), ("toes.l", LeftToes),
+            ("upperarm.l", LeftUpperArm), ("lowerarm.l", LeftLowerArm), ("wrist.l", LeftHand),
+        ],
+        fingers: &[],
+    },
+    Vocabulary {
         name: "VRM 1.0",
         body: VRM_BODY,
         fingers: &[
@@ -270,16 +280,6 @@ pub(super) const VOCABULARIES: &[Vocabulary] = &[
             "CC_Base_L_Index3", "CC_Base_L_Mid1", "CC_Base_L_Mid2", "CC_Base_L_Mid3", "CC_Base_L_Ring1",
             "CC_Base_L_Ring2", "CC_Base_L_Ring3", "CC_Base_L_Pinky1", "CC_Base_L_Pinky2", "CC_Base_L_Pinky3",
         ],
-    },
-    Vocabulary {
-        name: "KayKit",
-        // The hand starts at the wrist: `hand.l` lies in the palm.
-        body: &[
-            ("hips", Hips), ("spine", Spine), ("chest", Chest), ("head", Head),
-            ("upperleg.l", LeftUpperLeg), ("lowerleg.l", LeftLowerLeg), ("foot.l", LeftFoot), ("toes.l", LeftToes),
-            ("upperarm.l", LeftUpperArm), ("lowerarm.l", LeftLowerArm), ("wrist.l", LeftHand),
-        ],
-        fingers: &[],
     },
     Vocabulary {
         name: "VRChat and MMD in English",

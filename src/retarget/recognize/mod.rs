@@ -104,6 +104,9 @@ const SURE_PARTIAL: f32 = 0.7;
 /// Fewer parts than this are no humanoid map that a file means.
 const FEWEST_OF_FILE: usize = 6;
 
+/// Cosine between upper body and legs that whoever has a tail must reach to count as human.
+const STRAIGHT: f32 = 0.8;
+
 /// Finds the parts of a human body. The same asset always gives the same answer.
 pub fn recognize(asset: &Asset) -> Recognized {
     let mut tree = Tree::new(asset);
@@ -115,7 +118,7 @@ pub fn recognize(asset: &Asset) -> Recognized {
     }
     stand_up(asset, &mut tree, &parts);
     // Four legs under a level back: names of a dog's joints are often those of a human.
-    let is_level = facing::straightness(&tree, &parts).is_some_and(|straightness| straightness < 0.5);
+    let is_level = facing::straightness(&tree, &parts).is_some_and(|straightness| straightness < STRAIGHT);
     if !says_so && is_level && has_parts_of_creature(&tree) {
         return Recognized::default();
     }
