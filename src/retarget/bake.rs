@@ -3,7 +3,7 @@
 use super::align::{Alignment, align};
 use super::law::{NewChannel, RotationLaw, Yaw};
 use super::locals::{Carry, same_skeleton};
-use super::map::Keep;
+use super::map::{Feet, Keep};
 use super::resolved::ResolvedMap;
 use super::rest::{chosen_locals, node_locals};
 use super::root::{Hips, RootMotion};
@@ -46,6 +46,8 @@ pub struct Retargeted {
     pub resampled: Vec<JointIndex>,
     /// The options ask for a root joint above the hips and there is none that is free.
     pub nowhere_to_extract: bool,
+    /// The clip before its feet were planted, if they were.
+    pub unplanted: Option<Clip>,
 }
 
 /// A pair of skeletons brought together for one clip: everything that figures and feet need besides the clip itself.
@@ -124,6 +126,14 @@ impl<'a> Retargeting<'a> {
     /// # Errors
     /// When the source's keys do not make a valid channel.
     pub fn bake(&self) -> Result<Retargeted, RetargetError> {
+        let unplanted = self.unplanted()?;
+        match self.map.feet {
+            Feet::Off => Ok(unplanted),
+            Feet::Plant => self.plant(unplanted),
+        }
+    }
+
+    fn unplanted(&self) -> Result<Retargeted, RetargetError> {
         let (laws, root_turn) = self.turned_laws();
         let rest = node_locals(&self.model.asset.skeleton);
         let mut channels: Vec<NewChannel> = self
@@ -249,6 +259,7 @@ impl<'a> Retargeting<'a> {
             keys_out,
             resampled,
             nowhere_to_extract,
+            unplanted: None,
         })
     }
 }

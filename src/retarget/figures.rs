@@ -5,7 +5,7 @@ use glam::{DQuat, DVec3};
 use serde::Serialize;
 
 use super::align::{compared_segments, degrees_between};
-use super::bake::Retargeting;
+use super::bake::{Retargeted, Retargeting};
 use super::contacts::contacts;
 use super::resample::union;
 use super::rest::{Local, Reference, unit};
@@ -59,7 +59,6 @@ impl Spread {
 
 /// One foot over time: the joints that touch the ground.
 pub(super) struct Foot {
-    pub ankle: Slot,
     pub source: JointIndex,
     pub target: JointIndex,
 }
@@ -114,7 +113,7 @@ impl Retargeting<'_> {
             .into_iter()
             .filter_map(|(ankle, toes)| {
                 let touching = pair(toes).or_else(|| pair(ankle))?;
-                Some(Foot { ankle, source: touching.source, target: touching.target })
+                Some(Foot { source: touching.source, target: touching.target })
             })
             .collect()
     }
@@ -126,8 +125,13 @@ impl Retargeting<'_> {
         (high - low).max(1e-9)
     }
 
-    /// Measures `finished`; orientations on `unplanted`, the same clip without planting.
-    pub fn figures(&self, unplanted: &Clip, finished: &Clip) -> Figures {
+    /// Measures what [`Retargeting::bake`] has made.
+    pub fn figures(&self, made: &Retargeted) -> Figures {
+        self.figures_of(&made.clip, made.unplanted.as_ref())
+    }
+
+    /// Measures any clip over the model; orientations on `unplanted`, the same without planting, if there is one.
+    pub fn figures_of(&self, finished: &Clip, unplanted: Option<&Clip>) -> Figures {
         let times = self.measured_times();
         let (laws, _) = self.turned_laws();
         let removed = self.root().map(|root| root.removed(&laws, &times)).unwrap_or_default();
@@ -155,7 +159,7 @@ impl Retargeting<'_> {
             let source = self.source_at(time);
             let [cursor, other] = &mut cursors;
             let target = self.target_at(finished, time, cursor, &mut pose);
-            let plain = (!std::ptr::eq(unplanted, finished)).then(|| self.target_at(unplanted, time, other, &mut pose));
+            let plain = unplanted.map(|unplanted| self.target_at(unplanted, time, other, &mut pose));
             let plain = plain.as_ref().unwrap_or(&target);
             let back = DQuat::from_rotation_y(-removed.yaw.as_ref().map_or(0.0, |yaw| yaw.at(time)));
             for pair in &self.map.pairs {

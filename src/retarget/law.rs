@@ -137,10 +137,6 @@ impl<'a> RotationLaw<'a> {
         unit(self.parent * turn * product * self.right)
     }
 
-    pub fn moves(&self) -> bool {
-        self.yaw.is_some() || self.factors.iter().any(|&factor| self.track(factor).moves())
-    }
-
     /// Whether any source joint in the product has a channel.
     pub fn has_channel(&self) -> bool {
         self.factors.iter().any(|factor| self.motion.has_channel[factor.joint.get()])

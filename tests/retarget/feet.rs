@@ -1,0 +1,112 @@
+//! Planted feet, on a figure that walks with its feet sliding.
+
+use gaitway::anim::{ClipBuilder, Interpolation, Keys};
+use gaitway::asset::Slot;
+use gaitway::retarget::{Feet, Figures, ResolvedMap, RestChoice, Retargeted, Retargeting, RootPart};
+use glam::{Quat, Vec3};
+
+use crate::figure::{Figure, Rig, build};
+use crate::laws::{body, map};
+
+/// Two steps of a second each: one leg stands still under the body that passes over it while the other swings.
+fn walker() -> Figure {
+    let mut figure = build(&Rig::default());
+    let skeleton = &figure.asset.skeleton;
+    let mut clip = ClipBuilder::new("walk", skeleton);
+    let times: Vec<f32> = (0..=60).map(|frame| frame as f32 / 30.0).collect();
+    let hips = figure.joint(Slot::Hips);
+    let (rest, length) = (skeleton.rest().locals[hips.get()].translation, 0.87f32);
+    // The standing leg's angle goes from +20° to −20°; hips follow so that its ankle stays.
+    let angle = |time: f32, phase: f32| {
+        let at = (time + phase).rem_euclid(2.0);
+        let degrees = if at < 1.0 { 20.0 - 40.0 * at } else { -20.0 + 40.0 * (at - 1.0) };
+        (degrees as f32).to_radians()
+    };
+    let mut forward = 0.0f32;
+    let mut places = Vec::new();
+    for (index, &time) in times.iter().enumerate() {
+        let standing = if time.rem_euclid(2.0) < 1.0 { 0.0 } else { 1.0 };
+        if index > 0 {
+            let before = angle(times[index - 1], standing).sin();
+            forward += length * (before - angle(time, standing).sin());
+        }
+        let down = length * (1.0 - angle(time, standing).cos());
+        places.push(rest + Vec3::new(0.0, -down, forward));
+    }
+    clip.channel(hips, Interpolation::Linear, &times, Keys::Translation(places)).unwrap();
+    for (upper, foot, phase) in [(Slot::LeftUpperLeg, Slot::LeftFoot, 0.0), (Slot::RightUpperLeg, Slot::RightFoot, 1.0)]
+    {
+        let knee = match upper {
+            Slot::LeftUpperLeg => Slot::LeftLowerLeg,
+            _ => Slot::RightLowerLeg,
+        };
+        // The swinging foot is lifted by a bent knee and stays level.
+        let bend = |time: f32| {
+            let at = (time + phase).rem_euclid(2.0);
+            if at < 1.0 { 0.02 } else { 0.02 + 0.9 * ((at - 1.0) * std::f32::consts::PI).sin() }
+        };
+        let mut add = |slot, radians: &dyn Fn(f32) -> f32| {
+            let keys = times.iter().map(|&time| Quat::from_rotation_x(radians(time))).collect();
+            clip.channel(figure.joint(slot), Interpolation::Linear, &times, Keys::Rotation(keys)).unwrap();
+        };
+        add(upper, &|time| -angle(time, phase));
+        add(knee, &bend);
+        add(foot, &|time| angle(time, phase) - bend(time));
+    }
+    figure.asset.clips = vec![clip.build()];
+    figure
+}
+
+fn carry(model: &Figure, motion: &Figure, map: &ResolvedMap) -> (Retargeted, Figures) {
+    let pair = Retargeting::new(body(model), body(motion), 0, map).unwrap();
+    let done = pair.bake().unwrap();
+    let figures = pair.figures(&done);
+    (done, figures)
+}
+
+#[test]
+fn planting_stops_feet_that_slide_because_legs_differ() {
+    let motion = walker();
+    // Longer thighs and shins than the hips' height over the ground accounts for.
+    let model = build(&Rig { axes: 3, leg_length: 0.6, size: 1.4, armature: true, ..Rig::default() });
+    let plain = map(&model, &motion);
+    let (_, sliding) = carry(&model, &motion, &plain);
+    let planted = ResolvedMap { feet: Feet::Plant, ..plain.clone() };
+    let (done, standing) = carry(&model, &motion, &planted);
+    let (before, after) = (sliding.foot_slide_metres_per_sec.unwrap(), standing.foot_slide_metres_per_sec.unwrap());
+    assert!(before > 0.01 && after < 0.2 * before, "{before} → {after}");
+    assert!(done.unplanted.is_some());
+    assert!(standing.orientation_error_degrees_mean.unwrap() < 0.01, "measured without planting");
+    // Knees keep bending the way they bend.
+    for frame in 0..=60 {
+        let world = model.world(&done.clip, frame as f32 / 30.0);
+        let at = |slot| world[model.joint(slot).get()].1;
+        let (hip, knee, ankle) = (at(Slot::LeftUpperLeg), at(Slot::LeftLowerLeg), at(Slot::LeftFoot));
+        assert!((knee - hip).cross(ankle - knee).x > -1e-3, "frame {frame}");
+    }
+}
+
+#[test]
+fn feet_in_place_are_planted_on_the_ground_that_moves() {
+    let motion = walker();
+    let model = build(&Rig { axes: 3, leg_length: 0.6, ..Rig::default() });
+    let mut plain = map(&model, &motion);
+    plain.root.horizontal = RootPart::InPlace;
+    let planted = ResolvedMap { feet: Feet::Plant, ..plain.clone() };
+    let (_, sliding) = carry(&model, &motion, &plain);
+    let (_, standing) = carry(&model, &motion, &planted);
+    assert!(standing.foot_slide_metres_per_sec.unwrap() < 0.5 * sliding.foot_slide_metres_per_sec.unwrap());
+}
+
+#[test]
+fn who_stands_well_is_left_alone() {
+    let motion = walker();
+    let mut same = map(&motion, &motion);
+    same.rest.model = RestChoice::Node;
+    same.feet = Feet::Plant;
+    let (_, figures) = carry(&motion, &motion, &same);
+    let (ours, theirs) =
+        (figures.foot_slide_metres_per_sec.unwrap(), figures.foot_slide_source_metres_per_sec.unwrap());
+    assert!(ours <= theirs + 1e-3, "{ours} against {theirs}");
+    assert!(figures.limb_direction_error_degrees_mean.unwrap() < 1.0, "{figures:?}");
+}
