@@ -17,7 +17,6 @@ use crate::anim::{JointIndex, Pose, SampleCursor};
 use crate::asset::{Asset, Humanoid, Slot};
 use tree::Tree;
 
-pub(super) use known::{is_finger, parent_of};
 pub(super) use names::Name;
 
 /// What [`recognize`] found. Empty for what is not a human body.

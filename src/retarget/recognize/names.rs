@@ -65,11 +65,6 @@ impl Name {
         self.words.iter().map(|word| without_zeros(word)).collect()
     }
 
-    /// The words as one, without numbers.
-    pub fn letters(&self) -> String {
-        self.words.iter().filter(|word| !is_number(word)).map(String::as_str).collect()
-    }
-
     pub fn has(&self, word: &str) -> bool {
         self.words.iter().any(|other| other == word)
     }
