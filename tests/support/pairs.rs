@@ -1,0 +1,128 @@
+//! The real characters and motions that borrow from one another, and what becomes of each pair.
+
+use std::path::Path;
+
+use gaitway::asset::{Asset, Humanoid};
+use gaitway::formats::{FileSet, load};
+use gaitway::retarget::{Body, Feet, Figures, ResolvedMap, Retargeting, propose, recognize};
+
+/// A file with a person in it: its path under the data folder, and the clip to lend; none for those that only borrow.
+pub struct Person {
+    pub file: &'static str,
+    pub clip: Option<&'static str>,
+    pub has_mesh: bool,
+}
+
+const fn person(file: &'static str, clip: &'static str) -> Person {
+    Person { file, clip: Some(clip), has_mesh: true }
+}
+
+const fn borrower(file: &'static str) -> Person {
+    Person { file, clip: None, has_mesh: true }
+}
+
+/// Without a name: the file's only clip.
+const fn motion(file: &'static str) -> Person {
+    Person { file, clip: Some(""), has_mesh: false }
+}
+
+pub const PEOPLE: [Person; 37] = [
+    person("threejs/Xbot.glb", "walk"),
+    person("threejs/Soldier.glb", "Run"),
+    person("threejs/Samba_Dancing.glb", ""),
+    person("threejs/RobotExpressive.glb", "Walking"),
+    person("mesh2motion/retarget/mixamo-original-rig.glb", ""),
+    person("mesh2motion/retarget/m2m-sample-rig.glb", ""),
+    person("mesh2motion/retarget/mixamo-sample-rig.glb", ""),
+    borrower("mesh2motion/human-male.glb"),
+    borrower("mesh2motion/human-zombie.glb"),
+    borrower("mesh2motion/human-interleaved-buffer-mesh.glb"),
+    person("kaykit/Knight.glb", "Walking_A"),
+    person("misc/godot_mannequiny.glb", "run_root.001"),
+    borrower("misc/babylon_riggedMesh.glb"),
+    borrower("cosc422/mannequin.glb"),
+    person("cosc422/ArmyPilot.glb", "Run_Forwards"),
+    person("cosc422/dwarf.glb", ""),
+    person("khronos/CesiumMan/glTF-Binary/CesiumMan.glb", ""),
+    person("khronos/RiggedFigure/glTF-Binary/RiggedFigure.glb", ""),
+    borrower("playcanvas/bitmoji.glb"),
+    borrower("vrm/vrm0_cryptovoxels.vrm"),
+    motion("cosc422/mannequin_run.glb"),
+    motion("mesh2motion/cmu_91_48.glb"),
+    motion("vrm/three-vrm_test.vrma"),
+    motion("vrm/chatvrm_idle_loop.vrma"),
+    motion("cosc422/original/Dwarf/avatar_walk.bvh"),
+    motion("bvh/cmu_01_01.bvh"),
+    motion("bvh/assimp_Boxing_Toes.bvh"),
+    motion("bvh/animateddrawings_cmu1_jumping_jacks.bvh"),
+    motion("bvh/animateddrawings_fair1_dab.bvh"),
+    motion("bvh/animateddrawings_fair1_zombie.bvh"),
+    motion("bvh/animateddrawings_rokoko_jesse_dance.bvh"),
+    motion("bvh/threejs_pirouette.bvh"),
+    motion("bvh/cosc422_Dance.bvh"),
+    motion("bvh/cosc422_Walk.bvh"),
+    motion("bvh/deepmotion_xia_neutral_16_000.bvh"),
+    motion("bvh/deepmotion_xia_depressed_18_000.bvh"),
+    motion("bvh/deepmotion_blender_example.bvh"),
+];
+
+/// Read once, used in many pairs.
+pub struct Loaded {
+    pub person: &'static Person,
+    pub name: &'static str,
+    pub asset: Asset,
+    pub slots: Humanoid,
+    pub clip: Option<usize>,
+}
+
+pub fn load_people(folder: &Path) -> Vec<Loaded> {
+    PEOPLE.iter().map(|person| load_person(folder, person)).collect()
+}
+
+fn load_person(folder: &Path, person: &'static Person) -> Loaded {
+    let bytes = std::fs::read(folder.join(person.file)).unwrap_or_else(|error| panic!("{}: {error}", person.file));
+    let name = person.file.rsplit('/').next().unwrap_or(person.file);
+    let mut files = FileSet::default();
+    files.insert(name, bytes);
+    let asset = load(&files).unwrap_or_else(|error| panic!("{error}"));
+    let slots = recognize(&asset).humanoid();
+    let clip = person.clip.map(|clip| {
+        let found = asset.clips.iter().position(|other| clip.is_empty() || other.name() == clip);
+        found.unwrap_or_else(|| panic!("{name} has no clip {clip}"))
+    });
+    Loaded { person, name, asset, slots, clip }
+}
+
+impl Loaded {
+    pub fn body(&self) -> Body<'_> {
+        Body { asset: &self.asset, slots: &self.slots }
+    }
+}
+
+/// What became of one pair.
+pub struct Outcome {
+    pub mapped: usize,
+    pub figures: Figures,
+    pub planted: Option<Figures>,
+    pub resampled: usize,
+    pub hips_scale: Option<f64>,
+    pub contradicts: bool,
+}
+
+/// The motion's clip on the model, by the map that is proposed.
+pub fn borrow(model: &Loaded, motion: &Loaded, plant: bool) -> Result<Outcome, String> {
+    let proposal = propose(&model.asset, &motion.asset);
+    let map = proposal.to_map(&model.asset, &motion.asset);
+    let mut map = map.resolve(&model.asset, &motion.asset).map_err(|error| error.to_string())?;
+    let clip = motion.clip.ok_or("no clip")?;
+    let made = |map: &ResolvedMap| {
+        let pair = Retargeting::new(model.body(), motion.body(), clip, map).map_err(|error| error.to_string())?;
+        let made = pair.bake().map_err(|error| error.to_string())?;
+        Ok::<_, String>((pair.figures(&made), made.resampled.len(), made.hips_scale))
+    };
+    let (figures, resampled, hips_scale) = made(&map)?;
+    map.feet = Feet::Plant;
+    let planted = if plant { Some(made(&map)?.0) } else { None };
+    let contradicts = !(proposal.model.contradictions.is_empty() && proposal.motion.contradictions.is_empty());
+    Ok(Outcome { mapped: map.pairs.len(), figures, planted, resampled, hips_scale, contradicts })
+}
