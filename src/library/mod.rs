@@ -14,7 +14,9 @@ pub use model::{Model, ModelId};
 pub use motion::{BorrowError, BorrowedClip, Motion, map_for};
 pub use rig::{Rig, RigBone};
 
-use crate::retarget::JointMap;
+use std::sync::OnceLock;
+
+use crate::retarget::{JointMap, MapError, Proposal, propose};
 
 fn borrow_motion(
     model: &Model,
@@ -22,8 +24,11 @@ fn borrow_motion(
     index: usize,
     map: Option<&JointMap>,
 ) -> Result<Vec<BorrowedClip>, BorrowError> {
-    let (map, _) = map_for(&model.asset, &motion.asset, map);
-    let resolved = map.resolve(&model.asset, &motion.asset);
+    let (map, proposal) = map_for(&model.asset, &motion.asset, map);
+    let resolved = match proposal {
+        Some(proposal) if proposal.pairs.is_empty() => Err(MapError::NothingInCommon),
+        _ => map.resolve(&model.asset, &motion.asset),
+    };
     let resolved = resolved.map_err(|problem| BorrowError::Map { motion: motion.source.clone(), problem })?;
     motion::borrow(model.body(), motion, index, &resolved, |clip| rig::root_of(&model.asset, clip))
 }
@@ -34,8 +39,10 @@ pub struct Library {
     models: Vec<Model>,
     /// Files that the shown model borrows clips from.
     motions: Vec<Motion>,
-    /// What the borrowed clips were made with; none when they are to be made.
-    borrowed_with: Option<Option<JointMap>>,
+    /// The map for each motion that the borrowed clips were made with; none when they are to be made.
+    borrowed_with: Option<Vec<Option<JointMap>>>,
+    /// What would be proposed for each motion over the shown model, once somebody has asked.
+    proposals: Vec<OnceLock<Proposal>>,
     borrow_errors: Vec<BorrowError>,
     next_id: u64,
 }
@@ -47,7 +54,7 @@ impl Library {
         model.id = ModelId(self.next_id);
         self.models.clear();
         self.models.push(model);
-        self.borrowed_with = None;
+        self.forget_borrowed();
         ModelId(self.next_id)
     }
 
@@ -59,7 +66,12 @@ impl Library {
     /// Undoes [`Library::take`].
     pub fn put_back(&mut self, models: Vec<Model>) {
         self.models = models;
+        self.forget_borrowed();
+    }
+
+    fn forget_borrowed(&mut self) {
         self.borrowed_with = None;
+        self.proposals = self.motions.iter().map(|_| OnceLock::new()).collect();
     }
 
     pub fn motions(&self) -> &[Motion] {
@@ -69,26 +81,40 @@ impl Library {
     /// Replaces the files that clips are borrowed from.
     pub fn set_motions(&mut self, motions: Vec<Motion>) {
         self.motions = motions;
-        self.borrowed_with = None;
+        self.forget_borrowed();
+    }
+
+    /// What is proposed for a motion over the shown model; worked out once.
+    pub fn proposal(&self, motion: usize) -> Option<&Proposal> {
+        let (model, slot) = (self.models.first()?, self.proposals.get(motion)?);
+        let motion = self.motions.get(motion)?;
+        Some(slot.get_or_init(|| propose(&model.asset, &motion.asset)))
     }
 
     /// Makes the borrowed clips of the shown model, if anything that they hang on has changed; true when it has. Without a
     /// map, one is proposed for each motion. What does not work is in [`Library::borrow_errors`]; the rest is there.
     pub fn borrow(&mut self, map: Option<&JointMap>) -> bool {
-        if self.borrowed_with.as_ref().is_some_and(|with| with.as_ref() == map) {
+        let maps = vec![map.cloned(); self.motions.len()];
+        self.borrow_each(maps)
+    }
+
+    /// As [`Library::borrow`], with a map for each motion.
+    pub fn borrow_each(&mut self, maps: Vec<Option<JointMap>>) -> bool {
+        if self.borrowed_with.as_ref() == Some(&maps) {
             return false;
         }
-        self.borrowed_with = Some(map.cloned());
         self.borrow_errors.clear();
-        let Some(model) = self.models.first_mut() else { return true };
         let mut borrowed = Vec::new();
-        for (index, motion) in self.motions.iter().enumerate() {
-            match borrow_motion(model, motion, index, map) {
-                Ok(clips) => borrowed.extend(clips),
-                Err(error) => self.borrow_errors.push(error),
+        if let Some(model) = self.models.first_mut() {
+            for (index, motion) in self.motions.iter().enumerate() {
+                match borrow_motion(model, motion, index, maps.get(index).and_then(Option::as_ref)) {
+                    Ok(clips) => borrowed.extend(clips),
+                    Err(error) => self.borrow_errors.push(error),
+                }
             }
+            model.set_borrowed(borrowed);
         }
-        model.set_borrowed(borrowed);
+        self.borrowed_with = Some(maps);
         true
     }
 

@@ -46,14 +46,15 @@ impl Model {
     /// How often a clip is looked at to find out how far it reaches.
     const SWEEP_SAMPLES: usize = 24;
 
-    pub fn new(source: String, asset: Asset, images: Vec<Option<ImageData>>) -> Self {
+    pub fn new(source: String, asset: impl Into<Arc<Asset>>, images: Vec<Option<ImageData>>) -> Self {
+        let asset = asset.into();
         let clip_titles = unique_titles(asset.clips.iter());
         let rig = Rig::new(&asset);
         let extent = Extent::new(&asset, &rig);
         Self {
             id: ModelId::default(),
             source,
-            asset: Arc::new(asset),
+            asset,
             images,
             borrowed: Vec::new(),
             clip_titles,

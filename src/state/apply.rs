@@ -5,6 +5,7 @@ use std::f32::consts::{PI, TAU};
 use glam::Vec3;
 
 use super::framing::{frame_all, resolve_camera, resolved_bounds};
+use super::maps::{self, map_in_force, settled_maps};
 use super::playhead::{active_clip, clip_secs, play_range};
 use super::{CameraChoice, Command, OrbitCamera, ViewerState};
 use crate::anim::{LoopMode, TimeRange};
@@ -92,6 +93,17 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::SetEnvironment(degrees) => set_turn(&mut state.environment_degrees, degrees),
         Command::SetBackground(background) => state.background = background,
         Command::SetEmbed(embed) => state.embed = embed,
+        Command::SetMap { motion, map } => {
+            if let (Some(model), Some(about)) = (model, library.motions().get(motion)) {
+                let map = map.map(|map| *map).or_else(|| maps::proposed(library, motion));
+                maps::set_map(state, &model.asset, about, map);
+            }
+        }
+        Command::SetSource { motion, target, source } => set_source(state, library, motion, target, source),
+        Command::SetUnmapped(unmapped) => state.unmapped = unmapped,
+        Command::SetRoot(root) => state.root = root,
+        Command::SetFeet(feet) => state.feet = feet,
+        Command::SettleMaps => state.map = settled_maps(library, state).0,
     }
 }
 
@@ -125,6 +137,19 @@ fn replace(state: &mut ViewerState, new: ViewerState) {
 fn active<'a>(state: &ViewerState, model: Option<&'a Model>) -> Option<(&'a Model, usize)> {
     let model = model?;
     Some((model, active_clip(model, state)?))
+}
+
+/// Numbers that the files do not have are left alone.
+fn set_source(state: &mut ViewerState, library: &Library, motion: usize, target: usize, source: Option<usize>) {
+    let (Some(model), Some(about)) = (library.active(), library.motions().get(motion)) else { return };
+    let has_target = model.asset.skeleton.joint_of_source(target).is_some();
+    if has_target && source.is_none_or(|source| about.asset.skeleton.joint_of_source(source).is_some()) {
+        // What is set besides the map stays beside it.
+        let bare = ViewerState { map: state.map.clone(), ..ViewerState::default() };
+        let mut map = map_in_force(library, &bare, motion).unwrap_or_default();
+        maps::set_source(&mut map, target, source);
+        maps::set_map(state, &model.asset, about, Some(map));
+    }
 }
 
 fn set_f64(slot: &mut f64, value: f64, least: f64, most: f64) {

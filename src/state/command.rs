@@ -3,6 +3,7 @@
 use super::{Background, CameraChoice, ClipChoice, UpAxis, ViewerState};
 use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
+use crate::retarget::{Feet, JointMap, RootOptions, Unmapped};
 
 #[derive(Debug, Clone, PartialEq)]
 pub enum Command {
@@ -51,4 +52,21 @@ pub enum Command {
     SetEnvironment(f32),
     SetBackground(Background),
     SetEmbed(bool),
+    /// Replaces the map for a motion of the library (and all that share its skeleton) by one in joint numbers; none:
+    /// what is proposed.
+    SetMap {
+        motion: usize,
+        map: Option<Box<JointMap>>,
+    },
+    /// Lets one joint of the model follow another joint of a motion, or none; both as their files number them.
+    SetSource {
+        motion: usize,
+        target: usize,
+        source: Option<usize>,
+    },
+    SetUnmapped(Option<Unmapped>),
+    SetRoot(Option<RootOptions>),
+    SetFeet(Option<Feet>),
+    /// Maps that fit the loaded files are turned to numbers, missing ones filled in, others dropped.
+    SettleMaps,
 }

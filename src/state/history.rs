@@ -88,6 +88,11 @@ fn is_edit(command: &Command) -> bool {
             | Command::SetExposure(_)
             | Command::SetEnvironment(_)
             | Command::SetBackground(_)
+            | Command::SetMap { .. }
+            | Command::SetSource { .. }
+            | Command::SetUnmapped(_)
+            | Command::SetRoot(_)
+            | Command::SetFeet(_)
     )
 }
 
@@ -99,6 +104,10 @@ fn take_edits(state: &mut ViewerState, from: &ViewerState) {
     state.exposure = from.exposure;
     state.environment_degrees = from.environment_degrees;
     state.background = from.background;
+    state.map.clone_from(&from.map);
+    state.unmapped.clone_from(&from.unmapped);
+    state.root = from.root;
+    state.feet = from.feet;
 }
 
 fn same_edits(a: &ViewerState, b: &ViewerState) -> bool {
@@ -109,4 +118,8 @@ fn same_edits(a: &ViewerState, b: &ViewerState) -> bool {
         && a.exposure == b.exposure
         && a.environment_degrees == b.environment_degrees
         && a.background == b.background
+        && a.map == b.map
+        && a.unmapped == b.unmapped
+        && a.root == b.root
+        && a.feet == b.feet
 }

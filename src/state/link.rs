@@ -8,8 +8,10 @@ use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_enco
 use serde_json::{Map, Value, json};
 
 use super::{Background, CameraChoice, ClipChoice, OrbitCamera, Show, UpAxis, ViewerState};
+use super::{MotionMap, map_code};
 use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
+use crate::retarget::{ClipRef, Feet, RootOptions, RootPart, Unmapped};
 
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum LinkError {
@@ -22,8 +24,13 @@ pub enum LinkError {
 }
 
 /// Keys of the link in the order they are written.
-const KEYS: [&str; 20] = [
+const KEYS: [&str; 25] = [
     "model",
+    "motion",
+    "map",
+    "unmapped",
+    "root",
+    "feet",
     "scene",
     "clip",
     "t",
@@ -45,6 +52,9 @@ const KEYS: [&str; 20] = [
     "embed",
 ];
 
+/// Keys that may stand in a link several times.
+const REPEATABLE: [&str; 3] = ["model", "motion", "map"];
+
 /// Kept readable: `/`, `:`, `,` and the like need no escape in a fragment.
 const ESCAPED: &AsciiSet =
     &CONTROLS.add(b' ').add(b'"').add(b'#').add(b'%').add(b'&').add(b'+').add(b'<').add(b'=').add(b'>').add(b'`');
@@ -60,8 +70,8 @@ pub fn to_link(state: &ViewerState) -> String {
         text.extend(utf8_percent_encode(value, ESCAPED));
     };
     for key in KEYS {
-        if key == "model" {
-            state.model.iter().for_each(|model| push(key, model));
+        if let Some(values) = values_of(state, key) {
+            values.iter().for_each(|value| push(key, value));
         } else if key == "clip" && state.clip == ClipChoice::First {
             // Absent means the first; empty means the rest pose.
         } else {
@@ -98,7 +108,10 @@ pub fn to_object(state: &ViewerState) -> Value {
     for key in KEYS {
         let text = value_of(state, key);
         let value = match key {
-            "model" => json!(state.model),
+            _ if values_of(state, key).is_some() => json!(values_of(state, key)),
+            "unmapped" if state.unmapped.is_none() => Value::Null,
+            "root" if state.root.is_none() => Value::Null,
+            "feet" if state.feet.is_none() => Value::Null,
             "clip" if state.clip == ClipChoice::First => Value::Null,
             "play" | "follow" | "embed" => json!(text == "1"),
             "t" => json!(state.time_secs),
@@ -131,7 +144,7 @@ pub fn from_object(base: &ViewerState, partial: &Value) -> (ViewerState, Vec<Lin
         return (state, errors);
     };
     for (key, value) in partial {
-        let repeatable = key == "model" || !(KEYS.contains(&key.as_str()) || key == "v");
+        let repeatable = REPEATABLE.contains(&key.as_str()) || !(KEYS.contains(&key.as_str()) || key == "v");
         let texts = match value {
             Value::Array(values) if repeatable => values.iter().map(plain_text).collect(),
             Value::Array(values) => vec![values.iter().map(plain_text).collect::<Vec<_>>().join(",")],
@@ -139,7 +152,7 @@ pub fn from_object(base: &ViewerState, partial: &Value) -> (ViewerState, Vec<Lin
             value => vec![plain_text(value)],
         };
         if repeatable {
-            state.model.retain(|_| key != "model");
+            reset(&mut state, key);
             state.unknown.remove(key);
         }
         if texts.is_empty() {
@@ -168,8 +181,23 @@ fn reset(state: &mut ViewerState, key: &str) {
         "joint" => state.joint = None,
         "range" => state.range = None,
         "model" => state.model.clear(),
+        "motion" => state.motion.clear(),
+        "map" => state.map.clear(),
+        "unmapped" => state.unmapped = None,
+        "root" => state.root = None,
+        "feet" => state.feet = None,
         key if KEYS.contains(&key) => set_value(state, key, &value_of(&ViewerState::default(), key), &mut Vec::new()),
         _ => {}
+    }
+}
+
+/// The values of a key that may have several; none for any other key.
+fn values_of(state: &ViewerState, key: &str) -> Option<Vec<String>> {
+    match key {
+        "model" => Some(state.model.clone()),
+        "motion" => Some(state.motion.clone()),
+        "map" => Some(state.map.iter().map(map_text).collect()),
+        _ => None,
     }
 }
 
@@ -177,6 +205,9 @@ fn value_of(state: &ViewerState, key: &str) -> String {
     let number = |value: Option<usize>| value.map_or(String::new(), |value| value.to_string());
     match key {
         "scene" => number(state.scene),
+        "unmapped" => state.unmapped.as_ref().map_or(String::new(), unmapped_text),
+        "root" => state.root.as_ref().map_or(String::new(), root_text),
+        "feet" => state.feet.map_or(String::new(), |feet| word_of(&FEET, &feet)),
         "clip" => match &state.clip {
             ClipChoice::Named(name) => name.clone(),
             ClipChoice::First | ClipChoice::RestPose => String::new(),
@@ -238,6 +269,20 @@ fn read_value(state: &mut ViewerState, key: &str, value: &str) -> Read {
     match key {
         "v" => return if value == "1" { Read::Done } else { Read::Bad("1, the only version there is") },
         "model" => state.model.push(value.to_owned()),
+        "motion" => state.motion.push(value.to_owned()),
+        "map" => match read_map(value) {
+            Some(map) => state.map.push(map),
+            None => return Read::Bad("an address, what a copied link has here, or a joint map in JSON"),
+        },
+        "unmapped" => {
+            let unmapped = read_unmapped(value).map(Some);
+            return put(&mut state.unmapped, unmapped, "rest, clip:CLIP or first-key:CLIP");
+        }
+        "root" => {
+            let expected = "horizontal:, vertical: or yaw: with keep, in-place or freeze, and extract";
+            return put(&mut state.root, read_root(value).map(Some), expected);
+        }
+        "feet" => return put(&mut state.feet, from_word(&FEET, value).map(Some), "off or plant"),
         "clip" if value.is_empty() => state.clip = ClipChoice::RestPose,
         "clip" => state.clip = ClipChoice::Named(value.to_owned()),
         "scene" => return put(&mut state.scene, optional(value), "a scene's index"),
@@ -281,6 +326,11 @@ fn put<T>(slot: &mut T, value: Option<T>, expected: &'static str) -> Read {
         None => Read::Bad(expected),
     }
 }
+
+const FEET: [(&str, Feet); 2] = [("off", Feet::Off), ("plant", Feet::Plant)];
+
+const ROOT_PARTS: [(&str, RootPart); 3] =
+    [("keep", RootPart::Keep), ("in-place", RootPart::InPlace), ("freeze", RootPart::Freeze)];
 
 const LOOP_MODES: [(&str, LoopMode); 3] =
     [("once", LoopMode::Once), ("loop", LoopMode::Loop), ("ping-pong", LoopMode::PingPong)];
@@ -332,6 +382,85 @@ fn finite<T: std::str::FromStr + Copy + Into<f64>>(text: &str) -> Option<T> {
 /// Empty: not set.
 fn optional(text: &str) -> Option<Option<usize>> {
     if text.is_empty() { Some(None) } else { text.parse().ok().map(Some) }
+}
+
+fn map_text(map: &MotionMap) -> String {
+    match map {
+        MotionMap::Numbers(map) => map_code::encode(map),
+        // A map is plain data: it can always be written.
+        MotionMap::Names(map) => serde_json::to_string(map).unwrap_or_default(),
+        MotionMap::File(address) => address.clone(),
+    }
+}
+
+/// The compact form, JSON, or an address.
+fn read_map(text: &str) -> Option<MotionMap> {
+    if text.starts_with('{') {
+        serde_json::from_str(text).ok().map(MotionMap::Names)
+    } else if text.starts_with(map_code::MARK) {
+        map_code::decode(text).map(MotionMap::Numbers)
+    } else {
+        (!text.is_empty()).then(|| MotionMap::File(text.to_owned()))
+    }
+}
+
+/// `rest`, `clip:CLIP` or `first-key:CLIP`; a clip's name that could be taken for its index stands in quotation marks.
+fn unmapped_text(unmapped: &Unmapped) -> String {
+    let Unmapped::Clip { clip, frozen } = unmapped else { return "rest".to_owned() };
+    let clip = match clip {
+        ClipRef::Index(index) => index.to_string(),
+        ClipRef::Name(name) if name.parse::<usize>().is_ok() || name.starts_with('"') => format!("\"{name}\""),
+        ClipRef::Name(name) => name.clone(),
+    };
+    format!("{}:{clip}", if *frozen { "first-key" } else { "clip" })
+}
+
+fn read_unmapped(text: &str) -> Option<Unmapped> {
+    if text == "rest" {
+        return Some(Unmapped::Rest);
+    }
+    let (word, clip) = text.split_once(':')?;
+    let frozen = match word {
+        "clip" => false,
+        "first-key" => true,
+        _ => return None,
+    };
+    let quoted = clip.strip_prefix('"').and_then(|clip| clip.strip_suffix('"'));
+    let clip = match (quoted, clip.parse()) {
+        (Some(name), _) => ClipRef::Name(name.to_owned()),
+        (None, Ok(index)) => ClipRef::Index(index),
+        (None, Err(_)) => ClipRef::Name(clip.to_owned()),
+    };
+    Some(Unmapped::Clip { clip, frozen })
+}
+
+/// `horizontal:PART,vertical:PART,yaw:PART,extract`, each where it is not the default; `keep` when nothing else is left.
+fn root_text(root: &RootOptions) -> String {
+    let parts = [("horizontal", root.horizontal), ("vertical", root.vertical), ("yaw", root.yaw)];
+    let parts = parts.into_iter().filter(|(_, part)| *part != RootPart::Keep);
+    let words = parts.map(|(name, part)| format!("{name}:{}", word_of(&ROOT_PARTS, &part)));
+    let text = joined(words.chain(root.extract.then(|| "extract".to_owned())));
+    if text.is_empty() { "keep".to_owned() } else { text }
+}
+
+/// As [`root_text`] writes it. `in-place` or `freeze` alone is about the travel over the ground.
+fn read_root(text: &str) -> Option<RootOptions> {
+    let mut root = RootOptions::default();
+    for word in text.split(',').map(str::trim) {
+        let (name, part) = word.split_once(':').unwrap_or(("horizontal", word));
+        if word == "extract" {
+            root.extract = true;
+            continue;
+        }
+        let slot = match name {
+            "horizontal" => &mut root.horizontal,
+            "vertical" => &mut root.vertical,
+            "yaw" => &mut root.yaw,
+            _ => return None,
+        };
+        *slot = from_word(&ROOT_PARTS, part)?;
+    }
+    Some(root)
 }
 
 fn read_range(text: &str) -> Option<Option<TimeRange>> {

@@ -6,6 +6,8 @@ mod command;
 mod framing;
 mod history;
 mod link;
+mod map_code;
+mod maps;
 mod playhead;
 mod view;
 
@@ -15,5 +17,9 @@ pub use command::Command;
 pub use framing::{frame_all, resolve_camera, resolved_bounds, world_from_file_camera};
 pub use history::History;
 pub use link::{LinkError, from_link, from_object, to_link, to_object};
+pub use maps::{
+    MapProblem, MotionMap, NumberedMap, map_in_force, maps_in_force, named, names_checksum, number_of, numbered,
+    proposed, settled_maps,
+};
 pub use playhead::{active_clip, choice_of_clip, clip_secs, play_range, sample_pose, world_from_model};
 pub use view::{Background, ClipChoice, Show, UpAxis, ViewerState};

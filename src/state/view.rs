@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::CameraChoice;
+use super::{CameraChoice, MotionMap};
 use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
+use crate::retarget::{Feet, RootOptions, Unmapped};
 
 /// Everything a person can set. Joints are named by their number in the file's own order, so that the state can be
 /// written down without the file.
@@ -15,6 +16,14 @@ use crate::mesh::SkinningMode;
 pub struct ViewerState {
     /// Where the shown model comes from: URLs, `sample:NAME`, or file names of dropped files.
     pub model: Vec<String>,
+    /// Files that clips are borrowed from, besides those that come with the model: as for `model`.
+    pub motion: Vec<String>,
+    /// Which joints follow which, one map for each pair of skeletons; what is missing is filled in automatically.
+    pub map: Vec<MotionMap>,
+    /// These three win over what the maps say; none: as they say.
+    pub unmapped: Option<Unmapped>,
+    pub root: Option<RootOptions>,
+    pub feet: Option<Feet>,
     /// Scene of the file; none: the file's default.
     pub scene: Option<usize>,
     pub clip: ClipChoice,
@@ -51,6 +60,11 @@ impl Default for ViewerState {
     fn default() -> Self {
         Self {
             model: Vec::new(),
+            motion: Vec::new(),
+            map: Vec::new(),
+            unmapped: None,
+            root: None,
+            feet: None,
             scene: None,
             clip: ClipChoice::First,
             time_secs: 0.0,

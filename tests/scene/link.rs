@@ -4,9 +4,13 @@ use std::collections::BTreeMap;
 
 use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::mesh::SkinningMode;
+use gaitway::retarget::{
+    ClipRef, Feet, JointMap, MapEntry, MutedChannel, RestChoice, RestChoices, RootOptions, RootPart, SourceRef,
+    Unmapped,
+};
 use gaitway::state::{
-    Background, CameraChoice, ClipChoice, LinkError, OrbitCamera, Show, UpAxis, ViewerState, from_link, from_object,
-    to_link, to_object,
+    Background, CameraChoice, ClipChoice, LinkError, MotionMap, NumberedMap, OrbitCamera, Show, UpAxis, ViewerState,
+    from_link, from_object, to_link, to_object,
 };
 use glam::Vec3;
 
@@ -34,6 +38,45 @@ fn check_bad(link: &str, key: &str) {
     assert_eq!(state, ViewerState::default(), "{link}");
 }
 
+/// One of each kind, with everything that a map can say.
+fn some_maps() -> Vec<MotionMap> {
+    let entry = |source| MapEntry { source, correction: glam::Quat::IDENTITY, unmapped: None };
+    let number = |number| Some(SourceRef::Number(number));
+    let frozen = Unmapped::Clip { clip: ClipRef::Index(2), frozen: true };
+    let full = JointMap {
+        joints: BTreeMap::from([
+            ("#3".to_owned(), entry(number(14))),
+            ("#12".to_owned(), entry(number(0))),
+            ("#7".to_owned(), entry(None)),
+            (
+                "#8".to_owned(),
+                MapEntry { correction: glam::Quat::from_rotation_x(0.3), unmapped: Some(frozen), ..entry(None) },
+            ),
+        ]),
+        unmapped: Unmapped::Clip { clip: ClipRef::Name("Idle & more".to_owned()), frozen: false },
+        rest: RestChoices { model: RestChoice::Bind, motion: RestChoice::FirstFrame },
+        root: RootOptions { vertical: RootPart::Freeze, ..RootOptions::default() },
+        muted_channels: vec![MutedChannel { source: SourceRef::Number(4), property: None }],
+        feet: Feet::Plant,
+        crossfade_secs: 0.25,
+        ..JointMap::default()
+    };
+    let plain = JointMap {
+        joints: BTreeMap::from([("#0".to_owned(), entry(number(5))), ("#1".to_owned(), entry(None))]),
+        ..JointMap::default()
+    };
+    let by_name = JointMap {
+        joints: BTreeMap::from([("Hüfte".to_owned(), entry(Some(SourceRef::Name("hip".to_owned()))))]),
+        ..JointMap::default()
+    };
+    vec![
+        MotionMap::Numbers(NumberedMap { checksum: 0x00c0_ffee, map: full }),
+        MotionMap::Numbers(NumberedMap { checksum: u32::MAX, map: plain }),
+        MotionMap::Names(by_name),
+        MotionMap::File("maps/knight.json".to_owned()),
+    ]
+}
+
 /// A state that differs from the default in one field each; the name is the field's.
 fn one_field_each() -> Vec<(&'static str, ViewerState)> {
     let orbit =
@@ -48,6 +91,22 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
             "model",
             with(&|state| state.model = vec!["https://host/a b.glb?x=1&y=2".to_owned(), "sample:walker".to_owned()]),
         ),
+        ("motion", with(&|state| state.motion = vec!["walk.bvh".to_owned(), "https://host/run.glb?a=1".to_owned()])),
+        ("map", with(&|state| state.map = some_maps())),
+        (
+            "unmapped",
+            with(&|state| {
+                state.unmapped = Some(Unmapped::Clip { clip: ClipRef::Name("7".to_owned()), frozen: true });
+            }),
+        ),
+        (
+            "root",
+            with(&|state| {
+                let (horizontal, yaw) = (RootPart::InPlace, RootPart::Freeze);
+                state.root = Some(RootOptions { horizontal, yaw, extract: true, ..RootOptions::default() });
+            }),
+        ),
+        ("feet", with(&|state| state.feet = Some(Feet::Plant))),
         ("scene", with(&|state| state.scene = Some(2))),
         ("clip", with(&|state| state.clip = ClipChoice::Named("Walk & run = 100 %".to_owned()))),
         ("time_secs", with(&|state| state.time_secs = 1.0 / 3.0)),
@@ -67,7 +126,7 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
         ("environment_degrees", with(&|state| state.environment_degrees = 123.4)),
         ("background", with(&|state| state.background = Background::Color([0, 128, 255]))),
         ("embed", with(&|state| state.embed = true)),
-        ("unknown", with(&|state| state.unknown = BTreeMap::from([("motion".to_owned(), "a.bvh\nb.bvh".to_owned())]))),
+        ("unknown", with(&|state| state.unknown = BTreeMap::from([("pose".to_owned(), "3:x\n4:y".to_owned())]))),
     ]
 }
 
@@ -138,6 +197,30 @@ fn links_read_as_written_down() {
     check_read("camera=90,0,4,0,1,0", ViewerState { camera: CameraChoice::Orbit(orbit), ..default });
 }
 
+/// What a plain map looks like in a link is part of what old links rely on.
+#[test]
+fn a_plain_map_is_short_and_readable() {
+    let maps = some_maps();
+    let state = ViewerState { map: maps[1..2].to_vec(), ..ViewerState::default() };
+    assert_eq!(to_link(&state), "v=1&map=1.ffffffff.0-5,1-");
+    check_read("map=1.ffffffff.1-,0-5", state);
+}
+
+#[test]
+fn parts_of_a_map_are_easy_to_write_by_hand() {
+    let default = ViewerState::default();
+    let root = |root| ViewerState { root: Some(root), ..default.clone() };
+    check_read("root=in-place", root(RootOptions { horizontal: RootPart::InPlace, ..RootOptions::default() }));
+    check_read("root=keep", root(RootOptions::default()));
+    let both = RootOptions { yaw: RootPart::Freeze, extract: true, ..RootOptions::default() };
+    check_read("root=yaw:freeze,extract", root(both));
+    let clip = |clip, frozen| ViewerState { unmapped: Some(Unmapped::Clip { clip, frozen }), ..default.clone() };
+    check_read("unmapped=clip:0", clip(ClipRef::Index(0), false));
+    check_read("unmapped=first-key:Idle", clip(ClipRef::Name("Idle".to_owned()), true));
+    check_read("unmapped=rest", ViewerState { unmapped: Some(Unmapped::Rest), ..default.clone() });
+    check_read("feet=off", ViewerState { feet: Some(Feet::Off), ..default });
+}
+
 #[test]
 fn bad_values_are_named_and_skipped() {
     check_bad("t=soon", "t");
@@ -157,11 +240,18 @@ fn bad_values_are_named_and_skipped() {
     check_bad("background=12345", "background");
     check_bad("background=+12345", "background");
     check_bad("v=2", "v");
+    for map in ["", "1.", "1.abc.", "1.ffffffff.1", "1.ffffffff.1-x", "1.ffffffff.1-2,1-3", "1.ffffffff..%%%", "{}"] {
+        check_bad(&format!("map={map}"), "map");
+    }
+    check_bad("unmapped=walk", "unmapped");
+    check_bad("root=fly", "root");
+    check_bad("root=", "root");
+    check_bad("feet=bare", "feet");
 }
 
 #[test]
 fn keys_of_other_versions_are_kept() {
-    let link = "v=1&show=skeleton,split&motion=b.bvh&motion=c.bvh&zoo=1%262";
+    let link = "v=1&show=skeleton,split&pose=b&pose=c&zoo=1%262";
     let (state, errors) = from_link(link);
     assert_eq!(errors.len(), 4, "{errors:?}");
     assert!(state.show.skeleton);
