@@ -19,6 +19,8 @@ pub(super) struct Alignment {
     pub source: Reference,
     /// Joints without a source hold their node's rest below the joint they hang on.
     pub target: Reference,
+    /// The target's rest before it was aligned, as it is built.
+    pub target_as_built: Reference,
     /// Of mapped joints, by index into [`ResolvedMap::pairs`].
     pub pair_of_slot: BTreeMap<Slot, usize>,
 }
@@ -113,8 +115,8 @@ pub(super) fn align(
         local.rotation = unit(above.conjugate() * rotation);
         rotations.push(rotation);
     }
-    let target = Reference::new(target_skeleton, locals, target_turn);
-    Alignment { source_turn, target_turn, source, target, pair_of_slot }
+    let aligned = Reference::new(target_skeleton, locals, target_turn);
+    Alignment { source_turn, target_turn, source, target: aligned, target_as_built: target, pair_of_slot }
 }
 
 /// The slot of each pair is its target's; where that has none, its source's.

@@ -154,8 +154,25 @@ impl<'a> Retargeting<'a> {
         if let Some(root) = root.filter(|_| !hips_copied) {
             channels.extend(root.channels(&laws, root_turn.as_ref()));
         }
+        let translated = |joint: JointIndex| copied.iter().any(|channel| channel.joint == joint);
+        let detached = self.detached(&channels, &translated)?;
         channels.extend(copied);
+        channels.extend(detached);
         self.finish(channels, nowhere_to_extract)
+    }
+
+    /// What keeps ends of limbs in their places that do not hang on them, but for those that move by themselves.
+    fn detached(
+        &self,
+        channels: &[NewChannel],
+        translated: &impl Fn(JointIndex) -> bool,
+    ) -> Result<Vec<NewChannel>, RetargetError> {
+        if !self.has_detached_ends() {
+            return Ok(Vec::new());
+        }
+        let so_far = self.finish(channels.to_vec(), false)?;
+        let found = self.detached_channels(&so_far.clip);
+        Ok(found.into_iter().filter(|channel| !translated(channel.joint)).collect())
     }
 
     fn translations_kept(&self) -> bool {

@@ -7,7 +7,7 @@ use glam::{DMat3, DQuat, DVec3};
 use super::bake::{RetargetError, Retargeted, Retargeting};
 use super::contacts::contacts;
 use super::law::NewChannel;
-use super::rest::{Reference, ancestry, unit};
+use super::rest::{Reference, unit};
 use super::root::Removed;
 use crate::anim::{Interpolation, JointIndex, Keys, Pose, Property, SampleCursor};
 use crate::asset::Slot;
@@ -86,7 +86,8 @@ impl Retargeting<'_> {
             .collect();
         if let Some(hips) = hips {
             let places = targets.iter().zip(&drops).map(|(target, &drop)| {
-                self.local_place(hips, target, target.positions[hips.get()] - DVec3::Y * drop).as_vec3()
+                let place = target.positions[hips.get()] - DVec3::Y * drop;
+                self.frame_above(hips, target).inverse().transform_point3(place).as_vec3()
             });
             channels.push(linear(hips, &times, Keys::Translation(places.collect())));
         }
@@ -233,15 +234,6 @@ impl Retargeting<'_> {
             turned(leg.knee, thigh_turn, shin_turn),
             turned(leg.ankle, shin_turn, DQuat::IDENTITY),
         ]
-    }
-
-    /// A place in the common frame as a translation below the joint's parent.
-    fn local_place(&self, joint: JointIndex, target: &Reference, place: DVec3) -> DVec3 {
-        let skeleton = &self.model.asset.skeleton;
-        let frame = ancestry(skeleton, joint)
-            .skip(1)
-            .fold(glam::DAffine3::IDENTITY, |below, ancestor| target.locals[ancestor.get()].to_affine() * below);
-        (glam::DAffine3::from_quat(self.alignment.target_turn) * frame).inverse().transform_point3(place)
     }
 }
 

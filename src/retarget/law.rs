@@ -62,7 +62,7 @@ impl Yaw {
 }
 
 /// A channel to be written: values for the target joint at times of its own.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct NewChannel {
     pub joint: JointIndex,
     pub interpolation: Interpolation,

@@ -4,7 +4,10 @@
 use std::collections::BTreeMap;
 
 use glam::Quat;
-use serde::{Deserialize, Serialize};
+use serde::de::{Error, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+
+use super::resolve::MapError;
 
 /// A whole map, as written. Joints that are not named in it have no source.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -13,7 +16,7 @@ pub struct JointMap {
     /// 1: the version of this form.
     pub gaitway_map: u32,
     /// By target joint: its name, or `#NODE` where it has none or shares it.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "once_each")]
     pub joints: BTreeMap<String, MapEntry>,
     #[serde(default)]
     pub unmapped: Unmapped,
@@ -52,7 +55,7 @@ fn is_identity(rotation: &Quat) -> bool {
 
 /// A source joint by its number in its own file, or by its name.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "expected a joint's name, its number (0, 1, …) or null")]
 pub enum SourceRef {
     Number(usize),
     Name(String),
@@ -60,7 +63,7 @@ pub enum SourceRef {
 
 /// A clip of the model by its index or by its name.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "expected a clip's name or its index (0, 1, …)")]
 pub enum ClipRef {
     Index(usize),
     Name(String),
@@ -80,14 +83,21 @@ pub enum Unmapped {
 }
 
 #[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(untagged)]
+#[serde(
+    untagged,
+    expecting = "expected \"rest\" or {\"clip\": NAME or INDEX}, with \"hold\": \"first-key\" if it is to stand still"
+)]
 enum UnmappedForm {
     Word(String),
-    Clip {
-        clip: ClipRef,
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        hold: Option<String>,
-    },
+    Clip(ClipForm),
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ClipForm {
+    clip: ClipRef,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    hold: Option<String>,
 }
 
 impl TryFrom<UnmappedForm> for Unmapped {
@@ -97,7 +107,7 @@ impl TryFrom<UnmappedForm> for Unmapped {
         match form {
             UnmappedForm::Word(word) if word == "rest" => Ok(Self::Rest),
             UnmappedForm::Word(word) => Err(format!("expected \"rest\" or {{\"clip\": …}}, found “{word}”")),
-            UnmappedForm::Clip { clip, hold } => match hold.as_deref() {
+            UnmappedForm::Clip(ClipForm { clip, hold }) => match hold.as_deref() {
                 None => Ok(Self::Clip { clip, frozen: false }),
                 Some("first-key") => Ok(Self::Clip { clip, frozen: true }),
                 Some(other) => Err(format!("expected \"hold\": \"first-key\", found “{other}”")),
@@ -110,9 +120,37 @@ impl From<Unmapped> for UnmappedForm {
     fn from(unmapped: Unmapped) -> Self {
         match unmapped {
             Unmapped::Rest => Self::Word("rest".to_owned()),
-            Unmapped::Clip { clip, frozen } => Self::Clip { clip, hold: frozen.then(|| "first-key".to_owned()) },
+            Unmapped::Clip { clip, frozen } => {
+                Self::Clip(ClipForm { clip, hold: frozen.then(|| "first-key".to_owned()) })
+            }
         }
     }
+}
+
+/// A joint that stands in the file twice would silently lose one of its entries.
+fn once_each<'de, D: Deserializer<'de>>(deserializer: D) -> Result<BTreeMap<String, MapEntry>, D::Error> {
+    struct Entries;
+
+    impl<'de> Visitor<'de> for Entries {
+        type Value = BTreeMap<String, MapEntry>;
+
+        fn expecting(&self, formatter: &mut std::fmt::Formatter) -> std::fmt::Result {
+            formatter.write_str("an object: target joints and what they follow")
+        }
+
+        fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+            let mut entries = BTreeMap::new();
+            while let Some((name, entry)) = map.next_entry::<String, MapEntry>()? {
+                if entries.contains_key(&name) {
+                    return Err(A::Error::custom(format!("“{name}” stands here twice; keep one of the two")));
+                }
+                entries.insert(name, entry);
+            }
+            Ok(entries)
+        }
+    }
+
+    deserializer.deserialize_map(Entries)
 }
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -193,6 +231,31 @@ pub enum Feet {
     Off,
     /// Feet stay where they touch the ground.
     Plant,
+}
+
+impl JointMap {
+    /// Reads the form that files have. Members that are not known are errors: a misspelt one would do nothing.
+    pub fn from_json(text: &str) -> Result<Self, MapError> {
+        let text = text.trim_start_matches('\u{feff}');
+        // The version first: what another one may have in it is not to be judged by this one's rules.
+        let version = serde_json::from_str(text).map(|form: serde_json::Value| form.get("gaitway_map").cloned());
+        match version {
+            Ok(Some(version)) if version == 1 => {}
+            Ok(Some(version)) => return Err(MapError::Version { found: version.to_string() }),
+            Ok(None) => return Err(MapError::NoMap),
+            Err(error) => return Err(MapError::NoJson { message: error.to_string() }),
+        }
+        serde_path_to_error::deserialize(&mut serde_json::Deserializer::from_str(text)).map_err(|error| {
+            let path = error.path().to_string();
+            MapError::Json { path, message: error.into_inner().to_string() }
+        })
+    }
+
+    /// The form that files have, with a final newline. Reading it gives the same map again.
+    pub fn to_json(&self) -> Result<String, MapError> {
+        let text = serde_json::to_string_pretty(self);
+        text.map(|text| text + "\n").map_err(|error| MapError::NoJson { message: error.to_string() })
+    }
 }
 
 impl Default for JointMap {

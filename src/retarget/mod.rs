@@ -3,6 +3,7 @@
 mod align;
 mod bake;
 mod contacts;
+mod detached;
 mod feet;
 mod figures;
 mod law;

@@ -10,10 +10,14 @@ use crate::asset::Asset;
 /// Why a joint map does not fit a model and a motion. `path` is the place in the map's JSON.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MapError {
-    #[error("not a joint map: {message}")]
-    Json { message: String },
-    #[error("gaitway_map is {found}: this program reads version 1")]
-    Version { found: u32 },
+    #[error("not JSON: {message}")]
+    NoJson { message: String },
+    #[error("not a joint map: it has no “gaitway_map”")]
+    NoMap,
+    #[error("gaitway_map is {found}; this program reads version 1")]
+    Version { found: String },
+    #[error("{path}: {message}")]
+    Json { path: String, message: String },
     #[error("{path}: the model has no joint “{name}”{}", nearest_text(.nearest))]
     NoTarget { path: String, name: String, nearest: Vec<String> },
     #[error("{path}: the motion has no joint “{name}”{}", nearest_text(.nearest))]
@@ -62,7 +66,7 @@ impl JointMap {
     /// Finds every joint and clip that the map names: targets and clips in `model`, sources in `motion`.
     pub fn resolve(&self, model: &Asset, motion: &Asset) -> Result<ResolvedMap, MapError> {
         if self.gaitway_map != 1 {
-            return Err(MapError::Version { found: self.gaitway_map });
+            return Err(MapError::Version { found: self.gaitway_map.to_string() });
         }
         if !(self.crossfade_secs >= 0.0 && self.crossfade_secs.is_finite()) {
             return Err(MapError::Crossfade { found: self.crossfade_secs });
