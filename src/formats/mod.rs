@@ -1,6 +1,7 @@
 //! From files in memory to an [`Asset`]. Knows no disk and no network: whoever has one asks [`missing_files`] what else a
 //! file names, adds it to the [`FileSet`], and then calls [`load`].
 
+mod bvh;
 mod error;
 mod file_set;
 mod gltf;
@@ -13,29 +14,70 @@ pub use file_set::FileSet;
 use crate::asset::Asset;
 use file_set::bare_name;
 
-/// Relative URIs (percent-decoded) that the model in this set refers to and that are not in the set, not even by their
-/// bare names. Empty when the set is complete or cannot be read at all ([`load`] will say why).
+/// Relative URIs (percent-decoded) that the models and motions in this set refer to and that are not in the set, not even
+/// by their bare names. Empty when the set is complete or cannot be read at all ([`load`] will say why).
 pub fn missing_files(files: &FileSet) -> Vec<String> {
     let Ok(files) = files.unpacked() else { return Vec::new() };
-    match find_model(&files) {
-        Ok((name, bytes)) => gltf::missing_files(&files, name, bytes),
-        Err(_) => Vec::new(),
+    let mut missing: Vec<String> = Vec::new();
+    for (name, bytes) in files.iter().filter(|(name, bytes)| is_gltf(name, bytes) && !is_bvh(name, bytes)) {
+        for uri in gltf::missing_files(&files, name, bytes) {
+            if !missing.contains(&uri) {
+                missing.push(uri);
+            }
+        }
     }
+    missing
+}
+
+/// What a file leaves open and a person may know better.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct LoadOptions {
+    /// Metres in one unit of a .bvh; none: guessed by the skeleton's size.
+    pub bvh_unit_metres: Option<f32>,
+    /// Whether Z points up in a .bvh (else Y); none: guessed by how the skeleton stands.
+    pub bvh_z_up: Option<bool>,
 }
 
 /// Reads the one model in a set of files. A set with none, or with several, is an error that lists what was found.
 pub fn load(files: &FileSet) -> Result<Asset, LoadError> {
+    load_with(files, &LoadOptions::default())
+}
+
+pub fn load_with(files: &FileSet, options: &LoadOptions) -> Result<Asset, LoadError> {
     let files = files.unpacked()?;
     let (name, bytes) = find_model(&files)?;
-    gltf::load(&files, name, bytes)
+    read(&files, name, bytes, options)
+}
+
+/// Names of the files in the set that are models or motions, each of which can be loaded: [`load`] wants exactly one.
+pub fn main_files(files: &FileSet) -> Result<Vec<String>, LoadError> {
+    let files = files.unpacked()?;
+    Ok(files.iter().filter(|(name, bytes)| is_model(name, bytes)).map(|(name, _)| name.to_owned()).collect())
+}
+
+/// Reads one of the set's [`main_files`]; the others may hold its parts.
+pub fn load_named(files: &FileSet, name: &str, options: &LoadOptions) -> Result<Asset, LoadError> {
+    let files = files.unpacked()?;
+    match files.get(name) {
+        Some(bytes) => read(&files, name, bytes, options),
+        None => Err(LoadError::NoModel { found: files.names().map(str::to_owned).collect() }),
+    }
+}
+
+fn read(files: &FileSet, name: &str, bytes: &[u8], options: &LoadOptions) -> Result<Asset, LoadError> {
+    if is_bvh(name, bytes) { bvh::load(name, bytes, options) } else { gltf::load(files, name, bytes) }
 }
 
 fn find_model(files: &FileSet) -> Result<(&str, &Arc<[u8]>), LoadError> {
-    let mut models = files.iter().filter(|(name, bytes)| is_gltf(name, bytes));
+    let mut models = files.iter().filter(|(name, bytes)| is_model(name, bytes));
     match (models.next(), models.next()) {
         (Some(model), None) => Ok(model),
         (Some(_), Some(_)) => Err(LoadError::SeveralModels {
-            found: files.iter().filter(|(name, bytes)| is_gltf(name, bytes)).map(|(name, _)| name.to_owned()).collect(),
+            found: files
+                .iter()
+                .filter(|(name, bytes)| is_model(name, bytes))
+                .map(|(name, _)| name.to_owned())
+                .collect(),
         }),
         (None, _) => Err(files
             .iter()
@@ -45,6 +87,14 @@ fn find_model(files: &FileSet) -> Result<(&str, &Arc<[u8]>), LoadError> {
             })
             .unwrap_or_else(|| LoadError::NoModel { found: files.names().map(str::to_owned).collect() })),
     }
+}
+
+fn is_model(name: &str, bytes: &[u8]) -> bool {
+    is_bvh(name, bytes) || is_gltf(name, bytes)
+}
+
+fn is_bvh(name: &str, bytes: &[u8]) -> bool {
+    bvh::is_bvh(bytes) || (ending(name) == "bvh" && !bytes.starts_with(b"glTF"))
 }
 
 /// By content where it can be told (addresses often have no ending), else by the name's ending.
@@ -75,7 +125,6 @@ fn foreign_format(name: &str, bytes: &[u8]) -> Option<&'static str> {
         "dae" => Some("COLLADA"),
         "blend" => Some("Blender's own"),
         "obj" => Some("OBJ"),
-        "bvh" => Some("BVH"),
         _ => None,
     }
 }

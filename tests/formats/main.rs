@@ -2,7 +2,9 @@
 
 mod behaviour;
 mod build_gltf;
+mod bvh;
 mod file_sets;
+mod humanoid;
 mod influences;
 mod invalid;
 mod mutation;

@@ -11,6 +11,10 @@ const SUPPORTED: &[&str] = &[
     "KHR_materials_emissive_strength",
     "KHR_lights_punctual",
     "EXT_texture_webp",
+    // Of these the map of humanoid bones is read.
+    "VRM",
+    "VRMC_vrm",
+    "VRMC_vrm_animation",
 ];
 
 /// Refuses required extensions that are not supported; optional ones are warned about, once each.

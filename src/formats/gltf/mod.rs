@@ -6,6 +6,7 @@ mod animations;
 mod container;
 mod data;
 mod extensions;
+mod humanoid;
 mod images;
 mod indices;
 mod influences;
@@ -98,8 +99,9 @@ fn build(
     let (scenes, default_scene) = nodes::scenes(root, &skeleton)?;
     let cameras = nodes::cameras(root, &skeleton)?;
     let lights = nodes::lights(root, &skeleton, &mut warnings)?;
+    let humanoid = humanoid::humanoid(root, &skeleton, &mut warnings);
     Ok(Asset {
-        format: if container.is_glb { "glb" } else { "gltf" },
+        format: format(container, root),
         generator: root.asset.generator.clone(),
         skeleton,
         scenes,
@@ -113,11 +115,24 @@ fn build(
         images,
         cameras,
         lights,
-        humanoid: None,
+        humanoid,
         extensions_used: root.extensions_used.clone(),
         extensions_required: root.extensions_required.clone(),
         warnings,
     })
+}
+
+fn format(container: &Container, root: &schema::Root) -> &'static str {
+    let has = |name| root.extensions.contains_key(name);
+    if has("VRMC_vrm_animation") {
+        "vrma"
+    } else if has("VRM") || has("VRMC_vrm") {
+        "vrm"
+    } else if container.is_glb {
+        "glb"
+    } else {
+        "gltf"
+    }
 }
 
 fn resolve_buffers<'a>(

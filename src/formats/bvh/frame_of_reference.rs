@@ -1,0 +1,137 @@
+//! From a file's own unit and axes to metres and Y up. A BVH says neither; both are guessed from its skeleton, a warning
+//! names the guess, and [`LoadOptions`] overrules it.
+//!
+//! Unit: the way from fingertip to toe along the bones is about one and a half times a person's height, whatever the pose.
+//! Of the units that are in use the one counts that comes nearest to 1.7 m (as a ratio); the rarer ones have to come
+//! nearer. Up: Z counts when the rest pose is half as tall again along Z as along Y, and the first, middle and last frames are taller along
+//! Z too. Rest poses alone do not tell: some lay all bones along one axis.
+
+use glam::{DQuat, DVec3, Quat, Vec3};
+
+use super::hierarchy::Hierarchy;
+use super::motion::{Motion, position, rotation};
+use crate::asset::{Warning, Warnings};
+use crate::formats::LoadOptions;
+
+const WAY_PER_HEIGHT: f64 = 1.5;
+const LIKELY_HEIGHT_METRES: f64 = 1.7;
+const REST_RATIO_OF_Z_UP: f64 = 1.5;
+
+struct Unit {
+    name: &'static str,
+    metres: f64,
+    /// A handicap for the rarer ones.
+    rarity: f64,
+}
+
+const UNITS: [Unit; 5] = [
+    Unit { name: "centimetres", metres: 0.01, rarity: 1.0 },
+    Unit { name: "metres", metres: 1.0, rarity: 1.0 },
+    Unit { name: "millimetres", metres: 0.001, rarity: 1.1 },
+    Unit { name: "inches", metres: 0.0254, rarity: 1.25 },
+    // The Carnegie Mellon database: inches divided by 0.45.
+    Unit { name: "units of 5.64 cm (as the CMU database has them)", metres: 0.0254 / 0.45, rarity: 1.6 },
+];
+
+/// Turns what the file says into the viewer's metres and axes.
+pub struct FrameOfReference {
+    unit_metres: f64,
+    z_up: bool,
+}
+
+impl FrameOfReference {
+    pub fn find(
+        hierarchy: &Hierarchy,
+        motion: Option<&Motion>,
+        options: &LoadOptions,
+        warnings: &mut Warnings,
+    ) -> Self {
+        let mut warn = |code, problem: String| {
+            warnings.push(Warning::Other { code, place: "HIERARCHY".to_owned(), problem });
+        };
+        let given = options.bvh_unit_metres.map(f64::from).filter(|unit| unit.is_finite() && *unit > 0.0);
+        let unit_metres = given.unwrap_or_else(|| {
+            let height = hierarchy.longest_way() / WAY_PER_HEIGHT;
+            let Some(unit) = likely_unit(height) else { return 1.0 };
+            let metres = height * unit.metres;
+            let name = unit.name;
+            warn(
+                "unit-guessed",
+                format!("a BVH has no unit: taken as {name}, which makes a person of about {metres:.2} m"),
+            );
+            unit.metres
+        });
+        let z_up = options.bvh_z_up.unwrap_or_else(|| {
+            let guess = is_z_up(hierarchy, motion);
+            if guess {
+                warn(
+                    "up-axis-guessed",
+                    "a BVH has no up axis: this one's skeleton stands along Z, which is turned up".to_owned(),
+                );
+            }
+            guess
+        });
+        Self { unit_metres, z_up }
+    }
+
+    /// A position or an offset, in metres.
+    pub fn point(&self, point: DVec3) -> Vec3 {
+        let point = point * self.unit_metres;
+        (if self.z_up { DVec3::new(point.x, point.z, -point.y) } else { point }).as_vec3()
+    }
+
+    /// The same rotation seen in the viewer's axes.
+    pub fn rotation(&self, rotation: DQuat) -> Quat {
+        let DQuat { x, y, z, w } = rotation;
+        (if self.z_up { DQuat::from_xyzw(x, z, -y, w) } else { rotation }).as_quat().normalize()
+    }
+}
+
+/// None when there is nothing to measure.
+fn likely_unit(height: f64) -> Option<&'static Unit> {
+    if !(height > 0.0 && height.is_finite()) {
+        return None;
+    }
+    let distance = |unit: &Unit| (height * unit.metres / LIKELY_HEIGHT_METRES).ln().abs() + unit.rarity.ln();
+    UNITS.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))
+}
+
+fn is_z_up(hierarchy: &Hierarchy, motion: Option<&Motion>) -> bool {
+    let rest = extent(hierarchy, None);
+    if rest.z <= REST_RATIO_OF_Z_UP * rest.y {
+        return false;
+    }
+    let Some(motion) = motion else { return true };
+    let last = motion.frame_count - 1;
+    [0, last / 2, last].into_iter().all(|frame| {
+        let posed = extent(hierarchy, Some(motion.frame(frame)));
+        posed.z > posed.y
+    })
+}
+
+/// Size of the box around all joints and End Sites, at rest or in one frame.
+fn extent(hierarchy: &Hierarchy, numbers: Option<&[f64]>) -> DVec3 {
+    let (mut least, mut most) = (DVec3::MAX, DVec3::MIN);
+    let mut include = |point: DVec3| {
+        least = least.min(point);
+        most = most.max(point);
+    };
+    let mut placed: Vec<(DVec3, DQuat)> = Vec::with_capacity(hierarchy.joints.len());
+    let mut first = 0;
+    for joint in &hierarchy.joints {
+        let channels = first..first + joint.channels.len();
+        first = channels.end;
+        let (at, turn) = match numbers.and_then(|numbers| numbers.get(channels)) {
+            Some(numbers) => (position(joint, numbers), rotation(joint, numbers)),
+            None => (joint.offset, DQuat::IDENTITY),
+        };
+        let (origin, parent_turn) = joint.parent.map_or((DVec3::ZERO, DQuat::IDENTITY), |parent| placed[parent]);
+        let place = (origin + parent_turn * at, parent_turn * turn);
+        include(place.0);
+        placed.push(place);
+    }
+    for &(joint, offset) in &hierarchy.ends {
+        include(placed[joint].0 + placed[joint].1 * offset);
+    }
+    most - least
+}

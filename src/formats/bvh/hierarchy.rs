@@ -1,0 +1,206 @@
+//! HIERARCHY: joints with their offsets and channels, in file order. Read without recursion: files nest as deep as they
+//! like.
+
+use glam::DVec3;
+
+use super::lines::{Lines, number, quoted, text};
+use crate::asset::{Warning, Warnings};
+use crate::formats::error::Problem;
+
+/// More channels than a joint can have a use for; some programs write scales too.
+const MOST_CHANNELS_OF_A_JOINT: usize = 16;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Axis {
+    X,
+    Y,
+    Z,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Channel {
+    Position(Axis),
+    Rotation(Axis),
+    /// Of a kind that is not read; its numbers are skipped.
+    Unknown,
+}
+
+#[derive(Debug)]
+pub struct BvhJoint {
+    pub name: String,
+    pub parent: Option<usize>,
+    pub offset: DVec3,
+    pub channels: Vec<Channel>,
+}
+
+#[derive(Debug, Default)]
+pub struct Hierarchy {
+    pub joints: Vec<BvhJoint>,
+    /// End Sites: whose, and how far from it.
+    pub ends: Vec<(usize, DVec3)>,
+    /// Of all joints together: the numbers of one frame.
+    pub channel_count: usize,
+}
+
+/// An open brace.
+#[derive(Clone, Copy)]
+enum Open {
+    Joint(usize),
+    End(usize),
+}
+
+impl Hierarchy {
+    /// Reads up to the word MOTION, which is left for the next reader, or to the end of the file.
+    pub fn read(lines: &mut Lines, warnings: &mut Warnings) -> Result<Self, Problem> {
+        let first = lines.word();
+        if !first.is_some_and(|word| is(word, "HIERARCHY")) {
+            return Err(Problem::new(lines.place(), "HIERARCHY, the first word of a BVH file", quoted(first)));
+        }
+        let mut hierarchy = Self::default();
+        let mut open: Vec<Open> = Vec::new();
+        loop {
+            // MOTION must stay where it is.
+            if lines.peek().is_none_or(|word| is(word, "MOTION")) {
+                break;
+            }
+            let word = lines.word().unwrap_or_default();
+            let place = lines.place();
+            let unexpected = |expected: &str| Problem::new(place.as_str(), expected, quoted(Some(word)));
+            match open.last().copied() {
+                None if is(word, "ROOT") => open.push(Open::Joint(hierarchy.joint(lines, None)?)),
+                None => return Err(unexpected("ROOT or MOTION")),
+                Some(Open::Joint(joint)) => match word {
+                    b"}" => {
+                        open.pop();
+                    }
+                    _ if is(word, "OFFSET") => hierarchy.joints[joint].offset = offset(lines)?,
+                    _ if is(word, "CHANNELS") => hierarchy.channels(lines, joint, warnings)?,
+                    _ if is(word, "JOINT") => open.push(Open::Joint(hierarchy.joint(lines, Some(joint))?)),
+                    _ if is(word, "End") || is(word, "EndSite") => {
+                        lines.rest_of_line();
+                        open_brace(lines)?;
+                        hierarchy.ends.push((joint, DVec3::ZERO));
+                        open.push(Open::End(hierarchy.ends.len() - 1));
+                    }
+                    _ => return Err(unexpected("OFFSET, CHANNELS, JOINT, End Site or }")),
+                },
+                Some(Open::End(end)) => match word {
+                    b"}" => {
+                        open.pop();
+                    }
+                    _ if is(word, "OFFSET") => hierarchy.ends[end].1 = offset(lines)?,
+                    _ => return Err(unexpected("OFFSET or } of an End Site")),
+                },
+            }
+        }
+        if let Some(open) = open.last() {
+            let joint = match *open {
+                Open::Joint(joint) => joint,
+                Open::End(end) => hierarchy.ends[end].0,
+            };
+            let expected = format!("}} after joint “{}”", hierarchy.joints[joint].name);
+            return Err(Problem::new(lines.next_place(), expected, quoted(lines.peek())));
+        }
+        if hierarchy.joints.is_empty() {
+            return Err(Problem::new(lines.next_place(), "ROOT and at least one joint", quoted(lines.peek())));
+        }
+        Ok(hierarchy)
+    }
+
+    /// After the word ROOT or JOINT. Names may have spaces in them, or be missing.
+    fn joint(&mut self, lines: &mut Lines, parent: Option<usize>) -> Result<usize, Problem> {
+        let name = text(lines.rest_of_line()).into_owned();
+        open_brace(lines)?;
+        self.joints.push(BvhJoint { name, parent, offset: DVec3::ZERO, channels: Vec::new() });
+        Ok(self.joints.len() - 1)
+    }
+
+    fn channels(&mut self, lines: &mut Lines, joint: usize, warnings: &mut Warnings) -> Result<(), Problem> {
+        let place = lines.place();
+        if !self.joints[joint].channels.is_empty() {
+            return Err(Problem::new(place, "one list of CHANNELS for each joint", "a second one"));
+        }
+        let word = lines.word();
+        let count = word
+            .and_then(|word| std::str::from_utf8(word).ok()?.parse::<usize>().ok())
+            .filter(|&count| count <= MOST_CHANNELS_OF_A_JOINT)
+            .ok_or_else(|| {
+                let expected = format!("a number of channels, at most {MOST_CHANNELS_OF_A_JOINT}");
+                Problem::new(place.as_str(), expected, quoted(word))
+            })?;
+        for _ in 0..count {
+            let word = lines.word();
+            let Some(channel) = word.and_then(channel) else {
+                let expected = "a channel such as Xposition or Zrotation";
+                return Err(Problem::new(lines.place(), expected, quoted(word)));
+            };
+            if channel == Channel::Unknown {
+                let problem = format!("channel {} is not read", quoted(word));
+                warnings.push(Warning::Other { code: "bvh-channel-ignored", place: lines.place(), problem });
+            }
+            self.joints[joint].channels.push(channel);
+        }
+        self.channel_count += count;
+        Ok(())
+    }
+
+    /// The longest way from one end of the skeleton to another along its bones, in the file's units.
+    pub fn longest_way(&self) -> f64 {
+        let mut below = vec![0.0_f64; self.joints.len()];
+        let mut longest = 0.0_f64;
+        let mut reach = |below: &mut [f64], joint: usize, length: f64| {
+            longest = longest.max(below[joint] + length);
+            below[joint] = below[joint].max(length);
+        };
+        for &(joint, offset) in &self.ends {
+            reach(&mut below, joint, offset.length());
+        }
+        // Children come after their parents in the file.
+        for (index, joint) in self.joints.iter().enumerate().rev() {
+            if let Some(parent) = joint.parent {
+                let length = below[index] + joint.offset.length();
+                reach(&mut below, parent, length);
+            }
+        }
+        longest
+    }
+}
+
+fn is(word: &[u8], keyword: &str) -> bool {
+    word.eq_ignore_ascii_case(keyword.as_bytes())
+}
+
+fn open_brace(lines: &mut Lines) -> Result<(), Problem> {
+    match lines.word() {
+        Some(b"{") => Ok(()),
+        other => Err(Problem::new(lines.place(), "{", quoted(other))),
+    }
+}
+
+fn offset(lines: &mut Lines) -> Result<DVec3, Problem> {
+    let mut numbers = [0.0; 3];
+    for slot in &mut numbers {
+        let word = lines.word();
+        *slot = word
+            .and_then(number)
+            .ok_or_else(|| Problem::new(lines.place(), "three finite numbers after OFFSET", quoted(word)))?;
+    }
+    Ok(DVec3::from_array(numbers))
+}
+
+/// None when it cannot be a channel at all.
+fn channel(word: &[u8]) -> Option<Channel> {
+    let (&first, kind) = word.split_first()?;
+    let axis = match first.to_ascii_uppercase() {
+        b'X' => Axis::X,
+        b'Y' => Axis::Y,
+        b'Z' => Axis::Z,
+        _ => return None,
+    };
+    match kind.to_ascii_lowercase().as_slice() {
+        b"position" | b"translation" => Some(Channel::Position(axis)),
+        b"rotation" => Some(Channel::Rotation(axis)),
+        b"scale" | b"scaling" => Some(Channel::Unknown),
+        _ => None,
+    }
+}

@@ -1,0 +1,113 @@
+//! The text of a .bvh as words with the lines they stand on. The text need not be UTF-8: names come from many code pages.
+
+use std::borrow::Cow;
+
+pub const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
+
+/// How much of a strange word is quoted in a message.
+const MOST_QUOTED: usize = 40;
+
+/// Where reading has come to. Lines end with LF, CR LF or CR; numbers of lines start at 1.
+pub struct Lines<'a> {
+    rest: &'a [u8],
+    pub line: usize,
+}
+
+impl<'a> Lines<'a> {
+    pub fn new(bytes: &'a [u8]) -> Self {
+        Self { rest: bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes), line: 1 }
+    }
+
+    /// The next word on this line or a later one. Braces are words of their own.
+    pub fn word(&mut self) -> Option<&'a [u8]> {
+        while let Some((&byte, rest)) = self.rest.split_first() {
+            if !is_space(byte) {
+                let length = match byte {
+                    b'{' | b'}' => 1,
+                    _ => self.rest.iter().take_while(|&&byte| !is_space(byte) && byte != b'{' && byte != b'}').count(),
+                };
+                let (word, rest) = self.rest.split_at(length);
+                self.rest = rest;
+                return Some(word);
+            }
+            if byte == b'\n' || (byte == b'\r' && rest.first() != Some(&b'\n')) {
+                self.line += 1;
+            }
+            self.rest = rest;
+        }
+        None
+    }
+
+    /// The next word, without going past it.
+    pub fn peek(&self) -> Option<&'a [u8]> {
+        Self { rest: self.rest, line: self.line }.word()
+    }
+
+    /// What is left of this line up to a brace, without white space around it. Stays on the line.
+    pub fn rest_of_line(&mut self) -> &'a [u8] {
+        let length = self.rest.iter().take_while(|byte| !matches!(byte, b'\n' | b'\r' | b'{' | b'}')).count();
+        let (text, rest) = self.rest.split_at(length);
+        self.rest = rest;
+        text.trim_ascii()
+    }
+
+    /// The words of the next line that has any, and the line's number.
+    pub fn next_full_line(&mut self) -> Option<(usize, &'a [u8])> {
+        loop {
+            let length = self.rest.iter().take_while(|byte| !matches!(byte, b'\n' | b'\r')).count();
+            let (text, rest) = self.rest.split_at(length);
+            let line = self.line;
+            let ending = if rest.starts_with(b"\r\n") { 2 } else { rest.len().min(1) };
+            self.rest = &rest[ending..];
+            if ending > 0 {
+                self.line += 1;
+            }
+            let text = text.trim_ascii();
+            if !text.is_empty() {
+                return Some((line, text));
+            }
+            if self.rest.is_empty() {
+                return None;
+            }
+        }
+    }
+
+    /// For messages: which line this is.
+    pub fn place(&self) -> String {
+        format!("line {}", self.line)
+    }
+
+    /// For messages: which line the next word is on.
+    pub fn next_place(&self) -> String {
+        let mut ahead = Self { rest: self.rest, line: self.line };
+        ahead.word();
+        ahead.place()
+    }
+}
+
+fn is_space(byte: u8) -> bool {
+    byte.is_ascii_whitespace() || byte == 0x0B
+}
+
+pub fn text(word: &[u8]) -> Cow<'_, str> {
+    String::from_utf8_lossy(word)
+}
+
+/// A word as messages quote it.
+pub fn quoted(word: Option<&[u8]>) -> String {
+    match word {
+        None => "the end of the file".to_owned(),
+        Some(word) => {
+            let text = text(word);
+            let cut: String = text.chars().take(MOST_QUOTED).collect();
+            let dots = if cut.len() < text.len() { "…" } else { "" };
+            format!("“{cut}{dots}”")
+        }
+    }
+}
+
+/// A finite number.
+pub fn number(word: &[u8]) -> Option<f64> {
+    let number: f64 = std::str::from_utf8(word).ok()?.parse().ok()?;
+    number.is_finite().then_some(number)
+}

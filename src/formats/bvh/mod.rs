@@ -1,0 +1,83 @@
+//! Biovision hierarchy (.bvh): a skeleton and one motion as text.
+//!
+//! ```text
+//! HIERARCHY
+//! ROOT hip { OFFSET x y z  CHANNELS 6 Xposition … Yrotation  JOINT … { … }  End Site { OFFSET x y z } }
+//! MOTION
+//! Frames: 14
+//! Frame Time: 0.066667
+//! one line of numbers for each frame, the channels in file order
+//! ```
+//!
+//! Nobody owns the format. What programs agree on: keywords in any case and any white space; angles are degrees; a joint's
+//! rotation is the product of its rotation channels in the order in which they are listed (the first is the outermost);
+//! position channels replace the OFFSET. There is no unit and no up axis: see [`frame_of_reference`]. End Sites say only how
+//! long the last bones are; they are no joints, have no number, and serve for guessing the size.
+
+mod frame_of_reference;
+mod hierarchy;
+mod lines;
+mod motion;
+
+use super::{LoadError, LoadOptions};
+use crate::anim::{Clip, Joint, Skeleton, Transform};
+use crate::asset::{Asset, Warnings};
+use crate::formats::error::Problem;
+use crate::formats::file_set::bare_name;
+use frame_of_reference::FrameOfReference;
+use hierarchy::Hierarchy;
+use lines::Lines;
+
+pub(super) fn is_bvh(bytes: &[u8]) -> bool {
+    let text = bytes.strip_prefix(lines::BYTE_ORDER_MARK).unwrap_or(bytes).trim_ascii_start();
+    text.get(..9).is_some_and(|word| word.eq_ignore_ascii_case(b"HIERARCHY"))
+}
+
+/// Reads a file's skeleton (rest pose: the OFFSETs, unrotated) and its motion, one key a frame, in metres and Y up.
+pub(super) fn load(file: &str, bytes: &[u8], options: &LoadOptions) -> Result<Asset, LoadError> {
+    read(file, bytes, options).map_err(|problem| problem.in_file(file))
+}
+
+fn read(file: &str, bytes: &[u8], options: &LoadOptions) -> Result<Asset, Problem> {
+    let mut warnings = Warnings::default();
+    let mut lines = Lines::new(bytes);
+    let hierarchy = Hierarchy::read(&mut lines, &mut warnings)?;
+    let motion = motion::read(&mut lines, &hierarchy, &mut warnings)?;
+    let frame = FrameOfReference::find(&hierarchy, motion.as_ref(), options, &mut warnings);
+    let skeleton = skeleton(&hierarchy, &frame)?;
+    let clips: Vec<Clip> = match motion {
+        Some(motion) => {
+            motion.into_clip(stem(file), &hierarchy, &frame, &skeleton, &mut warnings)?.into_iter().collect()
+        }
+        None => Vec::new(),
+    };
+    Ok(Asset { format: "bvh", skeleton, clips, warnings, ..Asset::default() })
+}
+
+fn skeleton(hierarchy: &Hierarchy, frame: &FrameOfReference) -> Result<Skeleton, Problem> {
+    let mut joints = Vec::with_capacity(hierarchy.joints.len());
+    for (index, joint) in hierarchy.joints.iter().enumerate() {
+        let translation = frame.point(joint.offset);
+        if !translation.is_finite() {
+            let found = format!("{:?}", joint.offset.to_array());
+            return Err(Problem::new(format!("OFFSET of joint {index}"), "numbers that fit into 32 bits", found));
+        }
+        joints.push(Joint {
+            name: joint.name.clone(),
+            parent: joint.parent,
+            rest: Transform::from_translation(translation),
+            morph_weights: Vec::new(),
+        });
+    }
+    Skeleton::new(joints).map_err(|problem| Problem::new("HIERARCHY", "a tree of joints", problem))
+}
+
+/// What the clip is called: the file says nothing.
+fn stem(file: &str) -> &str {
+    let bare = bare_name(file);
+    let bare = bare.split(['?', '#']).next().unwrap_or(bare);
+    match bare.rsplit_once('.').map_or(bare, |(stem, _)| stem) {
+        "" => "motion",
+        stem => stem,
+    }
+}
