@@ -3,9 +3,9 @@
 use super::align::{Alignment, align};
 use super::law::{NewChannel, RotationLaw, Yaw};
 use super::locals::{Carry, same_skeleton};
-use super::map::{Feet, Keep};
+use super::map::{Feet, Keep, RestChoice};
 use super::resolved::ResolvedMap;
-use super::rest::{chosen_locals, node_locals};
+use super::rest::{better_rest_secs, chosen_locals, clip_locals, node_locals};
 use super::root::{Hips, RootMotion};
 use super::track::Motion;
 use crate::anim::{ChannelError, Clip, ClipBuilder, JointIndex, Property};
@@ -79,7 +79,12 @@ impl<'a> Retargeting<'a> {
         }
         let (target_skeleton, source_skeleton) = (&model.asset.skeleton, &source.asset.skeleton);
         let motion = Motion::new(source_skeleton, source_clip, &map.muted);
-        let source_locals = chosen_locals(source_skeleton, &source.asset.skins, Some(source_clip), map.rest.motion);
+        let mut source_locals = chosen_locals(source_skeleton, &source.asset.skins, Some(source_clip), map.rest.motion);
+        if map.rest.motion == RestChoice::Auto
+            && let Some(time_secs) = better_rest_secs(source_skeleton, source.slots, &source_locals, source_clip)
+        {
+            source_locals = clip_locals(source_skeleton, source_clip, time_secs);
+        }
         let target_nodes = node_locals(target_skeleton);
         let own_clip = model.asset.clips.first();
         let mut target_locals = chosen_locals(target_skeleton, &model.asset.skins, own_clip, map.rest.model);

@@ -5,6 +5,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use super::map::RestChoice;
 use crate::anim::{Clip, JointIndex, Pose, SampleCursor, Skeleton};
+use crate::asset::{Humanoid, Slot};
 use crate::mesh::Skin;
 
 /// A local transform in f64.
@@ -55,6 +56,13 @@ pub(super) fn node_locals(skeleton: &Skeleton) -> Vec<Local> {
     locals_of(skeleton.rest())
 }
 
+/// The locals of a clip at a time.
+pub(super) fn clip_locals(skeleton: &Skeleton, clip: &Clip, time_secs: f32) -> Vec<Local> {
+    let mut pose = skeleton.rest().clone();
+    clip.sample(skeleton, time_secs, &mut SampleCursor::default(), &mut pose);
+    locals_of(&pose)
+}
+
 fn locals_of(pose: &Pose) -> Vec<Local> {
     pose.locals
         .iter()
@@ -76,11 +84,7 @@ pub(super) fn chosen_locals(
 ) -> Vec<Local> {
     match (choice, clip) {
         (RestChoice::Auto | RestChoice::Bind, _) => bind_locals(skeleton, skins),
-        (RestChoice::FirstFrame, Some(clip)) => {
-            let mut pose = skeleton.rest().clone();
-            clip.sample(skeleton, first_key_secs(clip), &mut SampleCursor::default(), &mut pose);
-            locals_of(&pose)
-        }
+        (RestChoice::FirstFrame, Some(clip)) => clip_locals(skeleton, clip, first_key_secs(clip)),
         (RestChoice::Node | RestChoice::FirstFrame, _) => node_locals(skeleton),
     }
 }
@@ -89,6 +93,52 @@ pub(super) fn chosen_locals(
 pub(super) fn first_key_secs(clip: &Clip) -> f32 {
     let first = clip.timelines().iter().map(|times| times[0]).fold(f32::INFINITY, f32::min);
     if first.is_finite() { first } else { 0.0 }
+}
+
+/// A rest that no body stands in (all bones along one axis, say, as some motion capture writes them) says nothing on how
+/// parts correspond: then the pose of the clip that stands best takes its place. Returned is its time, none when the rest
+/// will do or nothing is better.
+pub(super) fn better_rest_secs(skeleton: &Skeleton, slots: &Humanoid, rest: &[Local], clip: &Clip) -> Option<f32> {
+    let stands = |locals: Vec<Local>| standing(&Reference::new(skeleton, locals, DQuat::IDENTITY), slots);
+    let at_rest = stands(rest.to_vec())?;
+    if at_rest > LEAST_STANDING {
+        return None;
+    }
+    let (first_secs, last_secs) = (first_key_secs(clip), clip.duration_secs());
+    let mut cursor = SampleCursor::default();
+    let mut best = (at_rest, None);
+    for sample in 0..=REST_SAMPLES {
+        let time_secs = first_secs + (last_secs - first_secs) * sample as f32 / REST_SAMPLES as f32;
+        let mut pose = skeleton.rest().clone();
+        clip.sample(skeleton, time_secs, &mut cursor, &mut pose);
+        let found = stands(locals_of(&pose)).unwrap_or(-1.0);
+        // Clearly better, or the first of much alike.
+        if found > best.0 + 0.01 {
+            best = (found, Some(time_secs));
+        }
+    }
+    best.1
+}
+
+/// A body stands when its head is on the other side of the hips than its feet, with the legs stretched: the mean cosine of
+/// those angles.
+const LEAST_STANDING: f64 = 0.75;
+
+/// How many moments of a clip are looked at.
+const REST_SAMPLES: usize = 64;
+
+/// From −1 to 1; none without hips, head and legs.
+fn standing(pose: &Reference, slots: &Humanoid) -> Option<f64> {
+    let at = |slot| slots.joint(slot).map(|joint| pose.positions[joint.get()]);
+    let (hips, head) = (at(Slot::Hips)?, at(Slot::Head)?);
+    let up = (head - hips).try_normalize()?;
+    let leg = |upper, lower, foot| {
+        let (upper, lower, foot): (DVec3, DVec3, DVec3) = (at(upper)?, at(lower)?, at(foot)?);
+        Some([(upper - lower).try_normalize()?.dot(up), (lower - foot).try_normalize()?.dot(up)])
+    };
+    let left = leg(Slot::LeftUpperLeg, Slot::LeftLowerLeg, Slot::LeftFoot)?;
+    let right = leg(Slot::RightUpperLeg, Slot::RightLowerLeg, Slot::RightFoot)?;
+    Some((left[0] + left[1] + right[0] + right[1]) / 4.0)
 }
 
 /// Bind poses are taken relative to the nearest ancestor in the same skin: bind space may be in other units and have another

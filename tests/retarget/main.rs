@@ -1,5 +1,11 @@
 //! Borrowed motion, without GPU: laws on figures made in code, and real pairs of files.
 
+#[path = "../support/data_folder.rs"]
+mod data_folder;
+#[path = "../support/pairs.rs"]
+mod pairs_of_people;
+
 mod feet;
 mod figure;
 mod laws;
+mod pairs;

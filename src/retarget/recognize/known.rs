@@ -21,9 +21,10 @@ const FEWEST_PARTS: usize = 8;
 
 /// The vocabulary that says most; none when none says enough.
 pub(super) fn find(tree: &Tree) -> Option<Known> {
+    let keys: Vec<[Key; 2]> = tree.names.iter().map(keys).collect();
     let mut best: Option<(i32, Known)> = None;
     for vocabulary in VOCABULARIES {
-        let (known, odd) = read(tree, vocabulary);
+        let (known, odd) = read(tree, &keys, vocabulary);
         let parts = known.slots.values().filter(|slot| !is_finger(**slot)).count();
         if parts < FEWEST_PARTS {
             continue;
@@ -36,20 +37,28 @@ pub(super) fn find(tree: &Tree) -> Option<Known> {
     best.map(|(_, known)| known)
 }
 
+/// A name to compare: whether it has a side, and its words.
+type Key = (bool, String);
+
+/// With its numbers as written, and without their leading zeros.
+fn keys(name: &Name) -> [Key; 2] {
+    [name.key(), name.short_key()].map(|key| (name.side.is_some(), key))
+}
+
 /// What the vocabulary says, and how many of its words do not fit the hierarchy.
-fn read(tree: &Tree, vocabulary: &Vocabulary) -> (Known, usize) {
-    let entries: Vec<(Name, Slot)> = vocabulary
-        .body
-        .iter()
-        .copied()
-        .chain(vocabulary.fingers.iter().copied().zip(FINGERS))
-        .filter(|(name, _)| !name.is_empty())
-        .map(|(name, slot)| (Name::read(name), slot))
-        .collect();
+fn read(tree: &Tree, keys_of: &[[Key; 2]], vocabulary: &Vocabulary) -> (Known, usize) {
+    let mut entries: [BTreeMap<Key, Slot>; 2] = Default::default();
+    for &(name, slot) in vocabulary.body.iter().chain(&fingers(vocabulary)) {
+        for (entries, key) in entries.iter_mut().zip(keys(&Name::read(name))) {
+            entries.entry(key).or_insert(slot);
+        }
+    }
     let mut candidates: BTreeMap<Slot, Vec<JointIndex>> = BTreeMap::new();
     for joint in tree.skeleton.joints().filter(|joint| tree.usable[joint.get()]) {
-        if let Some(slot) = look_up(&entries, &tree.names[joint.get()]) {
-            candidates.entry(slot).or_default().push(joint);
+        let [exact, short] = &keys_of[joint.get()];
+        if let Some(&slot) = entries[0].get(exact).or_else(|| entries[1].get(short)) {
+            let is_right = tree.names[joint.get()].side == Some(Side::Right);
+            candidates.entry(if is_right { slot.mirrored() } else { slot }).or_default().push(joint);
         }
     }
     let mut known = Known { vocabulary: vocabulary.name, ..Known::default() };
@@ -70,13 +79,8 @@ fn read(tree: &Tree, vocabulary: &Vocabulary) -> (Known, usize) {
     (known, odd)
 }
 
-fn look_up(entries: &[(Name, Slot)], name: &Name) -> Option<Slot> {
-    let find = |key: &dyn Fn(&Name) -> String| {
-        let wanted = key(name);
-        entries.iter().find(|(entry, _)| entry.side.is_some() == name.side.is_some() && key(entry) == wanted)
-    };
-    let (_, slot) = find(&Name::key).or_else(|| find(&Name::short_key))?;
-    Some(if name.side == Some(Side::Right) { slot.mirrored() } else { *slot })
+fn fingers(vocabulary: &Vocabulary) -> Vec<(&'static str, Slot)> {
+    vocabulary.fingers.iter().copied().zip(FINGERS).filter(|(name, _)| !name.is_empty()).collect()
 }
 
 /// The word that a slot stands for.
@@ -114,12 +118,12 @@ pub(super) fn side_of(slot: Slot) -> Option<Side> {
     }
 }
 
-pub(in crate::retarget) fn is_finger(slot: Slot) -> bool {
+pub(super) fn is_finger(slot: Slot) -> bool {
     FINGERS.contains(&slot) || FINGERS.contains(&slot.mirrored())
 }
 
 /// The slot that a slot hangs on in VRM 1.0, optional ones included.
-pub(in crate::retarget) fn parent_of(slot: Slot) -> Option<Slot> {
+pub(super) fn parent_of(slot: Slot) -> Option<Slot> {
     use Slot::*;
     if side_of(slot) == Some(Side::Right) {
         let left = parent_of(slot.mirrored())?;

@@ -109,9 +109,12 @@ const STRAIGHT: f32 = 0.8;
 /// Finds the parts of a human body. The same asset always gives the same answer.
 pub fn recognize(asset: &Asset) -> Recognized {
     let mut tree = Tree::new(asset);
-    let own = asset.humanoid.as_ref().map(|humanoid| of_file(humanoid)).filter(|parts| parts.len() >= FEWEST_OF_FILE);
+    let own = asset.humanoid.as_ref().map(of_file).filter(|parts| parts.len() >= FEWEST_OF_FILE);
     let says_so = own.is_some();
-    let parts = own.unwrap_or_else(|| by_names(&tree).unwrap_or_else(|| shape::find(&tree)));
+    let parts = match own {
+        Some(own) => with_fingers(&tree, own),
+        None => by_names(&tree).unwrap_or_else(|| shape::find(&tree)),
+    };
     if parts.is_empty() {
         return Recognized::default();
     }
@@ -129,6 +132,22 @@ pub fn recognize(asset: &Asset) -> Recognized {
 fn of_file(humanoid: &Humanoid) -> BTreeMap<Slot, Part> {
     let part = |joint| Part { joint, reason: Reason::File, confidence: 1.0 };
     humanoid.0.iter().map(|(&slot, &joint)| (slot, part(joint))).collect()
+}
+
+/// Files often leave some fingers out that they have. Other parts that are left out may be meant to be.
+fn with_fingers(tree: &Tree, mut parts: BTreeMap<Slot, Part>) -> BTreeMap<Slot, Part> {
+    for (slot, part) in by_names(tree).unwrap_or_default() {
+        let is_free = |other: &Part| other.joint != part.joint;
+        let above = std::iter::successors(known::parent_of(slot), |slot| known::parent_of(*slot));
+        let hangs_right = above
+            .filter_map(|slot| parts.get(&slot))
+            .next()
+            .is_some_and(|above| tree.is_under(part.joint, above.joint));
+        if known::is_finger(slot) && !parts.contains_key(&slot) && parts.values().all(is_free) && hangs_right {
+            parts.insert(slot, part);
+        }
+    }
+    parts
 }
 
 /// None when the names are not those of a body, or of too little of it.
