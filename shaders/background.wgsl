@@ -1,8 +1,16 @@
 // The studio's backdrop: a soft gradient, already in the picture's sRGB.
 
+struct BackdropOut {
+    @builtin(position) position: vec4f,
+    // From the brightest place.
+    @location(0) offset: vec2f,
+}
+
 @vertex
-fn full_screen(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4f {
-    return vec4f(f32(vertex & 1u) * 4.0 - 1.0, f32(vertex >> 1u) * 4.0 - 1.0, 1.0, 1.0);
+fn full_screen(@builtin(vertex_index) vertex: u32) -> BackdropOut {
+    let at = vec2f(f32(vertex & 1u), f32(vertex >> 1u));
+    let offset = (vec2f(2.0 * at.x, 1.0 - 2.0 * at.y) - vec2f(0.5, 0.45)) * vec2f(1.1, 1.25);
+    return BackdropOut(vec4f(at * 4.0 - 1.0, 1.0, 1.0), offset);
 }
 
 // A little noise hides the steps of the gradient in eight bits (Jimenez 2014, "interleaved gradient noise").
@@ -11,8 +19,8 @@ fn dither(pixel: vec2f) -> f32 {
 }
 
 @fragment
-fn backdrop(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let offset = (position.xy / frame.viewport_pixels - vec2f(0.5, 0.45)) * vec2f(1.1, 1.25);
-    let color = mix(frame.background_center.rgb, frame.background_edge.rgb, smoothstep(0.0, 0.7, dot(offset, offset)));
-    return vec4f(color + dither(position.xy), 1.0);
+fn backdrop(in: BackdropOut) -> @location(0) vec4f {
+    let share = smoothstep(0.0, 0.7, dot(in.offset, in.offset));
+    let color = mix(frame.background_center.rgb, frame.background_edge.rgb, share);
+    return vec4f(color + dither(in.position.xy), 1.0);
 }

@@ -4,13 +4,14 @@
 @group(0) @binding(1) var palette: texture_2d<f32>;
 
 const PALETTE_WIDTH: u32 = 1280u;
-const PALETTE_ENTRY_TEXELS: u32 = 5u;
 
-fn palette_texel(index: u32) -> vec4f {
-    return textureLoad(palette, vec2i(i32(index % PALETTE_WIDTH), i32(index / PALETTE_WIDTH)), 0);
+// One of an entry's five texels. Shifts rather than divisions, which software renderers do lane by lane.
+fn palette_row(entry: u32, row: u32) -> vec4f {
+    return textureLoad(palette, vec2i(i32((entry & 255u) * 5u + row), i32(entry >> 8u)), 0);
 }
 
 // x: the target, y: its weight.
 fn morph_weight(first_texel: u32, index: u32) -> vec2f {
-    return palette_texel(first_texel + index).xy;
+    let texel = first_texel + index;
+    return textureLoad(palette, vec2i(i32(texel % PALETTE_WIDTH), i32(texel / PALETTE_WIDTH)), 0).xy;
 }

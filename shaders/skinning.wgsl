@@ -27,6 +27,7 @@ override SKINNING: u32 = 0u;
 const MODE_RIGID: u32 = 1u;
 const MODE_DUAL_QUATERNION: u32 = 2u;
 const VERTEX_TEXTURE_WIDTH: u32 = 2048u;
+const VERTEX_TEXTURE_SHIFT: u32 = 11u;
 
 struct Shape {
     position: vec3f,
@@ -41,70 +42,71 @@ struct Blend {
     translation: vec3f,
 }
 
-// A weighted sum of palette entries.
+// A weighted sum of palette entries, texel by texel.
 struct Sum {
-    rows: array<vec4f, 5>,
-    // Rotation of the first entry: q and −q are the same rotation, and all are brought to its hemisphere.
-    pivot: vec4f,
+    a: vec4f,
+    b: vec4f,
+    c: vec4f,
+    d: vec4f,
+    e: vec4f,
 }
 
 fn load_vertex_texel(source: texture_2d<f32>, index: u32) -> vec4f {
-    return textureLoad(source, vec2i(i32(index % VERTEX_TEXTURE_WIDTH), i32(index / VERTEX_TEXTURE_WIDTH)), 0);
+    return textureLoad(source, vec2i(i32(index & (VERTEX_TEXTURE_WIDTH - 1u)), i32(index >> VERTEX_TEXTURE_SHIFT)), 0);
 }
 
-fn empty_sum() -> Sum {
-    return Sum(array<vec4f, 5>(vec4f(), vec4f(), vec4f(), vec4f(), vec4f()), vec4f());
-}
-
-fn add_influence(sum: ptr<function, Sum>, joint: u32, weight: f32) {
-    if weight == 0.0 {
-        return;
-    }
-    let texel = (draw.palette + joint) * PALETTE_ENTRY_TEXELS;
-    let first = palette_texel(texel);
-    var signed_weight = weight;
+// Rotation of the first entry: q and −q are the same rotation, and all are brought to its hemisphere.
+fn pivot_of(joint: u32) -> vec4f {
     if SKINNING == MODE_DUAL_QUATERNION {
-        if all((*sum).pivot == vec4f()) {
-            (*sum).pivot = first;
-        }
-        if dot((*sum).pivot, first) < 0.0 {
-            signed_weight = -weight;
-        }
-        (*sum).rows[3] += weight * palette_texel(texel + 3u);
-        (*sum).rows[4] += weight * palette_texel(texel + 4u);
+        return palette_row(draw.palette + joint, 0u);
     }
-    (*sum).rows[0] += signed_weight * first;
-    (*sum).rows[1] += signed_weight * palette_texel(texel + 1u);
-    (*sum).rows[2] += weight * palette_texel(texel + 2u);
+    return vec4f();
 }
 
-// `strongest`: the first influence's joint.
-fn finish_sum(sum: ptr<function, Sum>, strongest: u32) -> Blend {
-    if SKINNING == MODE_RIGID {
-        return single(strongest);
+// Without branches, all sides of which software renderers run: influences that are not used name the first joint again.
+fn add_influence(sum: Sum, pivot: vec4f, joint: u32, weight: f32) -> Sum {
+    let entry = draw.palette + joint;
+    let first = palette_row(entry, 0u);
+    var signed_weight = weight;
+    var d = sum.d;
+    var e = sum.e;
+    if SKINNING == MODE_DUAL_QUATERNION {
+        signed_weight = select(weight, -weight, dot(pivot, first) < 0.0);
+        d += weight * palette_row(entry, 3u);
+        e += weight * palette_row(entry, 4u);
     }
-    return blend_from_rows(*sum);
+    return Sum(
+        sum.a + signed_weight * first,
+        sum.b + signed_weight * palette_row(entry, 1u),
+        sum.c + weight * palette_row(entry, 2u),
+        d,
+        e,
+    );
+}
+
+fn add_4(sum: Sum, pivot: vec4f, joints: vec4u, weights: vec4f) -> Sum {
+    let one = add_influence(sum, pivot, joints.x, weights.x);
+    let two = add_influence(one, pivot, joints.y, weights.y);
+    let three = add_influence(two, pivot, joints.z, weights.z);
+    return add_influence(three, pivot, joints.w, weights.w);
 }
 
 fn single(joint: u32) -> Blend {
-    var sum = empty_sum();
-    add_influence(&sum, joint, 1.0);
-    return blend_from_rows(sum);
+    return blend_from_sum(add_influence(Sum(), pivot_of(joint), joint, 1.0));
 }
 
-fn blend_from_rows(sum: Sum) -> Blend {
-    let real_length = length(sum.rows[0]);
+fn blend_from_sum(sum: Sum) -> Blend {
     if SKINNING != MODE_DUAL_QUATERNION {
-        return linear_blend(sum.rows[0], sum.rows[1], sum.rows[2]);
+        return linear_blend(sum.a, sum.b, sum.c);
     }
-    if real_length == 0.0 {
-        return linear_blend(sum.rows[2], sum.rows[3], sum.rows[4]);
+    var blend = linear_blend(sum.c, sum.d, sum.e);
+    let real_length = length(sum.a);
+    if real_length > 0.0 {
+        let real = sum.a / real_length;
+        let dual = sum.b / real_length;
+        blend.rotation = real;
+        blend.translation = 2.0 * (real.w * dual.xyz - dual.w * real.xyz + cross(real.xyz, dual.xyz));
     }
-    let real = sum.rows[0] / real_length;
-    let dual = sum.rows[1] / real_length;
-    var blend = linear_blend(sum.rows[2], sum.rows[3], sum.rows[4]);
-    blend.rotation = real;
-    blend.translation = 2.0 * (real.w * dual.xyz - dual.w * real.xyz + cross(real.xyz, dual.xyz));
     return blend;
 }
 
@@ -113,6 +115,9 @@ fn linear_blend(x: vec4f, y: vec4f, z: vec4f) -> Blend {
 }
 
 fn rotate(rotation: vec4f, vector: vec3f) -> vec3f {
+    if SKINNING != MODE_DUAL_QUATERNION {
+        return vector;
+    }
     return vector + 2.0 * cross(rotation.xyz, cross(rotation.xyz, vector) + rotation.w * vector);
 }
 
@@ -156,22 +161,18 @@ fn deform(vertex: u32, base: Shape, blend: Blend) -> Shape {
 }
 
 fn blend_4(joints: vec4u, weights: vec4f) -> Blend {
-    var sum = empty_sum();
-    for (var index = 0u; index < 4u; index++) {
-        add_influence(&sum, joints[index], weights[index]);
+    if SKINNING == MODE_RIGID {
+        return single(joints.x);
     }
-    return finish_sum(&sum, joints[0]);
+    return blend_from_sum(add_4(Sum(), pivot_of(joints.x), joints, weights));
 }
 
 fn blend_8(joints_0: vec4u, weights_0: vec4f, joints_1: vec4u, weights_1: vec4f) -> Blend {
-    var sum = empty_sum();
-    for (var index = 0u; index < 4u; index++) {
-        add_influence(&sum, joints_0[index], weights_0[index]);
+    if SKINNING == MODE_RIGID {
+        return single(joints_0.x);
     }
-    for (var index = 0u; index < 4u; index++) {
-        add_influence(&sum, joints_1[index], weights_1[index]);
-    }
-    return finish_sum(&sum, joints_0[0]);
+    let pivot = pivot_of(joints_0.x);
+    return blend_from_sum(add_4(add_4(Sum(), pivot, joints_0, weights_0), pivot, joints_1, weights_1));
 }
 
 // Two influences to a texel: joint, weight, joint, weight.
@@ -180,13 +181,18 @@ fn influence_pair(vertex: u32, pair: u32) -> vec4f {
 }
 
 fn blend_texture(vertex: u32) -> Blend {
-    var sum = empty_sum();
+    let strongest = u32(influence_pair(vertex, 0u).x);
+    if SKINNING == MODE_RIGID {
+        return single(strongest);
+    }
+    let pivot = pivot_of(strongest);
+    var sum = Sum();
     for (var pair = 0u; pair < draw.influence_stride / 2u; pair++) {
         let texel = influence_pair(vertex, pair);
-        add_influence(&sum, u32(texel.x), texel.y);
-        add_influence(&sum, u32(texel.z), texel.w);
+        sum = add_influence(sum, pivot, u32(texel.x), texel.y);
+        sum = add_influence(sum, pivot, u32(texel.z), texel.w);
     }
-    return finish_sum(&sum, u32(influence_pair(vertex, 0u).x));
+    return blend_from_sum(sum);
 }
 
 // How hard the chosen joint pulls.

@@ -50,6 +50,34 @@ fn vertex_out(in: VertexIn, blend: Blend, heat: f32) -> VertexOut {
     return out;
 }
 
+// Into the shadow map, where nothing but the place matters.
+fn position_out(in: VertexIn, blend: Blend) -> vec4f {
+    let position = morph(in.vertex, Shape(in.position, in.normal, in.tangent.xyz)).position;
+    let moved = rotate(blend.rotation, blend.linear * position) + blend.translation;
+    return frame.projection_from_world * vec4f(moved, 1.0);
+}
+
+@vertex
+fn position_0(in: VertexIn) -> @builtin(position) vec4f {
+    return position_out(in, single(0u));
+}
+
+@vertex
+fn position_4(in: VertexIn, influence: Influences4) -> @builtin(position) vec4f {
+    return position_out(in, blend_4(influence.joints, influence.weights));
+}
+
+@vertex
+fn position_8(in: VertexIn, influence: Influences8) -> @builtin(position) vec4f {
+    let blend = blend_8(influence.joints_0, influence.weights_0, influence.joints_1, influence.weights_1);
+    return position_out(in, blend);
+}
+
+@vertex
+fn position_texture(in: VertexIn) -> @builtin(position) vec4f {
+    return position_out(in, blend_texture(in.vertex));
+}
+
 @vertex
 fn vertex_0(in: VertexIn) -> VertexOut {
     return vertex_out(in, single(0u), select(0.0, 1.0, draw.heat_joint == 0u));

@@ -253,8 +253,11 @@ impl App {
 
     fn draw(&mut self, rect: egui::Rect, pixels_per_point: f32) {
         let largest = self.scene.largest_size() as f32;
-        let pixels = |points: f32| (points * pixels_per_point).round().clamp(1.0, largest) as u32;
-        let size = [pixels(rect.width()), pixels(rect.height())];
+        // As egui rounds the rectangle that the picture is painted into: it fits pixel for pixel.
+        let pixels = |from: f32, to: f32| {
+            ((to * pixels_per_point).round() - (from * pixels_per_point).round()).clamp(1.0, largest) as u32
+        };
+        let size = [pixels(rect.left(), rect.right()), pixels(rect.top(), rect.bottom())];
         if self.dirty || self.drawn_size != Some(size) {
             evaluate(&self.library, &self.state, size[0] as f32 / size[1] as f32, &mut self.frame);
             self.scene.draw(&self.frame, size);
@@ -317,9 +320,7 @@ impl eframe::App for App {
         self.advance(&context);
         if rect.is_positive() {
             self.draw(rect, context.pixels_per_point());
-            if let Some(texture) = self.scene.texture() {
-                slot.fill(texture);
-            }
+            slot.fill(|rect| self.scene.paint(rect));
         }
         self.answer();
         if acted {

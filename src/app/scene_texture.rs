@@ -1,21 +1,24 @@
 //! The scene in its own texture, drawn only when something it depends on has changed.
 
-use eframe::egui_wgpu::RenderState;
+use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait, RenderState};
 
 use crate::frame::Frame;
 use crate::library::Model;
-use crate::render::{RenderStats, Renderer, RendererOptions, UploadError};
+use crate::render::{Blit, RenderStats, Renderer, RendererOptions, UploadError};
+use crate::state::Background;
 
 pub(super) struct SceneTexture {
     gpu: RenderState,
     renderer: Renderer,
-    /// The texture as egui knows it, and the size it was registered at.
-    shown: Option<(egui::TextureId, [u32; 2])>,
+    /// Size of the texture on the screen, and whether it is opaque.
+    shown: Option<([u32; 2], bool)>,
 }
 
 impl SceneTexture {
     pub fn new(gpu: RenderState, samples: u32) -> Self {
         let renderer = Renderer::new(&gpu.device, &gpu.queue, RendererOptions { samples });
+        let blit = Blit::new(&gpu.device, gpu.target_format);
+        gpu.renderer.write().callback_resources.insert(blit);
         Self { gpu, renderer, shown: None }
     }
 
@@ -29,23 +32,18 @@ impl SceneTexture {
     pub fn draw(&mut self, frame: &Frame, size: [u32; 2]) {
         let device = &self.gpu.device;
         let view = self.renderer.draw(device, &self.gpu.queue, frame, size);
-        match self.shown {
-            Some((_, shown_size)) if shown_size == size => {}
-            Some((id, _)) => {
-                let filter = wgpu::FilterMode::Linear;
-                self.gpu.renderer.write().update_egui_texture_from_wgpu_texture(device, view, filter, id);
-                self.shown = Some((id, size));
-            }
-            None => {
-                let filter = wgpu::FilterMode::Linear;
-                let id = self.gpu.renderer.write().register_native_texture(device, view, filter);
-                self.shown = Some((id, size));
-            }
+        let shown = Some((size, frame.look.background != Background::Transparent));
+        if self.shown != shown
+            && let Some(blit) = self.gpu.renderer.write().callback_resources.get_mut::<Blit>()
+        {
+            blit.show(device, view, frame.look.background != Background::Transparent);
+            self.shown = shown;
         }
     }
 
-    pub fn texture(&self) -> Option<egui::TextureId> {
-        self.shown.map(|(id, _)| id)
+    /// What paints the last picture into a rectangle of its size.
+    pub fn paint(&self, rect: egui::Rect) -> egui::PaintCallback {
+        Callback::new_paint_callback(rect, Paint)
     }
 
     pub fn stats(&self) -> RenderStats {
@@ -59,5 +57,21 @@ impl SceneTexture {
     /// What is needed to read the last picture back, free of this struct's lifetime.
     pub fn last_picture(&self) -> (wgpu::Device, wgpu::Queue, wgpu::Texture) {
         (self.gpu.device.clone(), self.gpu.queue.clone(), self.renderer.output().clone())
+    }
+}
+
+/// The [`Blit`] is kept by egui's renderer, since it may not go to another thread.
+struct Paint;
+
+impl CallbackTrait for Paint {
+    fn paint(
+        &self,
+        _info: egui::PaintCallbackInfo,
+        pass: &mut wgpu::RenderPass<'static>,
+        resources: &CallbackResources,
+    ) {
+        if let Some(blit) = resources.get::<Blit>() {
+            blit.draw(pass);
+        }
     }
 }

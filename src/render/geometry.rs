@@ -6,7 +6,7 @@ use bytemuck::{Pod, Zeroable};
 use wgpu::util::DeviceExt;
 
 use super::UploadError;
-use crate::mesh::{Geometry, Topology};
+use crate::mesh::{Geometry, Influences, Topology};
 
 /// Texels in a row of a vertex texture; skinning.wgsl has the same number.
 pub const VERTEX_TEXTURE_WIDTH: u32 = 2048;
@@ -34,13 +34,17 @@ impl InfluenceSource {
         }
     }
 
-    /// Vertex stage in vertex.wgsl.
-    pub fn entry_point(self) -> &'static str {
-        match self {
-            Self::None => "vertex_0",
-            Self::Four => "vertex_4",
-            Self::Eight => "vertex_8",
-            Self::Texture => "vertex_texture",
+    /// Vertex stage in vertex.wgsl; `position_only`: the one that gives nothing else.
+    pub fn entry_point(self, position_only: bool) -> &'static str {
+        match (self, position_only) {
+            (Self::None, false) => "vertex_0",
+            (Self::Four, false) => "vertex_4",
+            (Self::Eight, false) => "vertex_8",
+            (Self::Texture, false) => "vertex_texture",
+            (Self::None, true) => "position_0",
+            (Self::Four, true) => "position_4",
+            (Self::Eight, true) => "position_8",
+            (Self::Texture, true) => "position_texture",
         }
     }
 }
@@ -153,10 +157,9 @@ impl GpuGeometry {
             device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
         };
         let influences = InfluenceSource::of(geometry.influences.stride);
+        let joints = used_joints(&geometry.influences);
         let influence_buffer = matches!(influences, InfluenceSource::Four | InfluenceSource::Eight).then(|| {
-            let fours: Vec<FourInfluences> = geometry
-                .influences
-                .joints
+            let fours: Vec<FourInfluences> = joints
                 .as_chunks::<4>()
                 .0
                 .iter()
@@ -167,7 +170,7 @@ impl GpuGeometry {
         });
         let influence_view = match influences {
             InfluenceSource::Texture => {
-                let pairs = geometry.influences.joints.iter().zip(&geometry.influences.weights);
+                let pairs = joints.iter().zip(&geometry.influences.weights);
                 let numbers: Vec<f32> = pairs.flat_map(|(&joint, &weight)| [f32::from(joint), weight]).collect();
                 Some(vertex_texture(device, queue, "influences", numbers).ok_or_else(too_many)?)
             }
@@ -209,6 +212,20 @@ impl GpuGeometry {
             pass.set_vertex_buffer(2, influences.slice(..));
         }
     }
+}
+
+/// The joints of all influences. Those that are not used follow the vertex's first joint, so that the vertex stage need not
+/// leave them out: nothing that a vertex does not follow moves it, not even a joint that has gone to infinity.
+fn used_joints(influences: &Influences) -> Vec<u16> {
+    let mut joints = influences.joints.clone();
+    let stride = influences.stride.max(1);
+    for (joints, weights) in joints.chunks_mut(stride).zip(influences.weights.chunks(stride)) {
+        let first = joints.first().copied().unwrap_or_default();
+        for (joint, _) in joints.iter_mut().zip(weights).filter(|(_, weight)| **weight == 0.0) {
+            *joint = first;
+        }
+    }
+    joints
 }
 
 /// Texels per vertex and target, and the deltas: targets slowest, then vertices, then position, normal, tangent.

@@ -3,6 +3,7 @@
 //! One path on all back ends, within WebGL2's limits: palettes and morph targets are textures read with `textureLoad`.
 //! A picture is a shadow map and one pass, whose stages write the colours that are shown.
 
+mod blit;
 mod draw_list;
 mod environment;
 mod frame_uniform;
@@ -19,6 +20,7 @@ mod targets;
 mod texture;
 pub mod uniforms;
 
+pub use blit::Blit;
 #[cfg(not(target_arch = "wasm32"))]
 pub use headless::headless_device;
 pub use headless::{HeadlessError, read_pixels};

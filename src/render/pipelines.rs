@@ -397,7 +397,7 @@ impl Pipelines {
             layout: Some(&self.mesh_layout),
             vertex: wgpu::VertexState {
                 module: &self.mesh_module,
-                entry_point: Some(key.influences.entry_point()),
+                entry_point: Some(key.influences.entry_point(shadow && fragment.is_none())),
                 compilation_options: options(),
                 buffers: &vertex_buffers(key.influences),
             },

@@ -13,6 +13,7 @@ const BONE: &str = include_str!("../../shaders/bone.wgsl");
 const CLEAR_DEPTH: &str = include_str!("../../shaders/clear_depth.wgsl");
 const BACKGROUND: &str = include_str!("../../shaders/background.wgsl");
 const MIP: &str = include_str!("../../shaders/mip.wgsl");
+const BLIT_PICTURE: &str = include_str!("../../shaders/blit.wgsl");
 
 /// One shader module.
 #[derive(Debug, Clone, Copy)]
@@ -28,11 +29,12 @@ pub const BONES: Shader = Shader { label: "bones", parts: &[FRAME, TONE, BONE] }
 pub const DEPTH_CLEAR: Shader = Shader { label: "clear depth", parts: &[CLEAR_DEPTH] };
 pub const BACKDROP: Shader = Shader { label: "background", parts: &[FRAME, BACKGROUND] };
 pub const MIPS: Shader = Shader { label: "mips", parts: &[MIP] };
+pub const BLIT: Shader = Shader { label: "blit", parts: &[BLIT_PICTURE] };
 /// What a vertex stage needs to move a mesh's vertices: frame, palette, skinning and its inputs.
 pub const SKINNED_VERTEX: Shader = Shader { label: "skinned vertex", parts: &[FRAME, PALETTE, SKINNING, VERTEX] };
 
 /// Every module that is drawn with.
-pub const ALL: [Shader; 7] = [MESH, GROUND_PLANE, LINES, BONES, DEPTH_CLEAR, BACKDROP, MIPS];
+pub const ALL: [Shader; 8] = [MESH, GROUND_PLANE, LINES, BONES, DEPTH_CLEAR, BACKDROP, MIPS, BLIT];
 
 impl Shader {
     pub fn source(&self) -> String {

@@ -171,13 +171,11 @@ pub const NARROW_WIDTH: f32 = 700.0;
 
 /// Shows the panels around the picture and gives back the rectangle that is left for it.
 pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Output) -> Rect {
-    let palette = style::palette(ui);
     let narrow = is_narrow(ui);
     let width = ui.ctx().content_rect().width();
-    let side =
-        egui::Frame::new().fill(palette.panel).inner_margin(egui::Margin { left: 14, right: 14, top: 14, bottom: 8 });
-    let bottom =
-        egui::Frame::new().fill(palette.panel).inner_margin(egui::Margin { left: 12, right: 12, top: 2, bottom: 6 });
+    // The screen is cleared to the panels' colour: filling them again would cost as much as the rest where the CPU draws.
+    let side = egui::Frame::new().inner_margin(egui::Margin { left: 14, right: 14, top: 14, bottom: 8 });
+    let bottom = egui::Frame::new().inner_margin(egui::Margin { left: 12, right: 12, top: 2, bottom: 6 });
     local.scrubbing = false;
     egui::Panel::bottom("transport")
         .frame(bottom)

@@ -2,9 +2,7 @@
 //! that lie on top. The pixels are filled in by whoever draws the scene.
 
 use egui::layers::ShapeIdx;
-use egui::{
-    Align, Color32, Layout, Painter, PointerButton, Pos2, Rect, Response, Sense, Shape, TextureId, Ui, pos2, vec2,
-};
+use egui::{Align, Layout, PaintCallback, Painter, PointerButton, Pos2, Rect, Response, Sense, Shape, Ui, pos2, vec2};
 use glam::Vec2;
 
 use super::icons::{Icon, icon_button};
@@ -20,9 +18,8 @@ pub struct PictureSlot {
 }
 
 impl PictureSlot {
-    pub fn fill(self, texture: TextureId) {
-        let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
-        self.painter.set(self.index, Shape::image(texture, self.rect, whole, Color32::WHITE));
+    pub fn fill(self, picture: impl FnOnce(Rect) -> PaintCallback) {
+        self.painter.set(self.index, Shape::Callback(picture(self.rect)));
     }
 }
 
@@ -35,7 +32,6 @@ const PICK_POINTS: f32 = 10.0;
 pub fn picture(ui: &mut Ui, rect: Rect, shown: Shown<'_>, local: &mut UiState, out: &mut Output) -> PictureSlot {
     let painter = ui.painter_at(rect);
     let palette = style::palette(ui);
-    painter.rect_filled(rect, 0.0, palette.panel);
     checkerboard(&painter, rect, &shown, palette);
     let index = painter.add(Shape::Noop);
     if rect.is_positive() {
