@@ -1,0 +1,118 @@
+//! The form that maps have in files.
+
+use gaitway::retarget::{
+    ClipRef, Feet, JointMap, Keep, MapEntry, MutedChannel, MutedProperty, RestChoice, RestChoices, RootOptions,
+    RootPart, SourceRef, Unmapped,
+};
+use glam::Quat;
+
+/// The example of the documentation, word for word.
+const EXAMPLE: &str = r##"{ "gaitway_map": 1,
+  "joints": {
+    "spine1": { "source": "neck" },
+    "head":   { "source": 5, "correction": [0, 0, 0, 1] },
+    "middle": { "source": null, "unmapped": { "clip": 0, "hold": "first-key" } } },
+  "unmapped": "rest",
+  "rest": { "model": "auto", "motion": "auto" },
+  "root": { "horizontal": "keep", "vertical": "keep", "yaw": "keep", "extract": false },
+  "translations": "auto", "scales": "auto",
+  "muted_channels": [ { "source": "free3dmodel_skeleton", "property": "translation" } ],
+  "feet": "off", "crossfade_secs": 0 }"##;
+
+fn check_refused(text: &str, expected: &str) {
+    let message = JointMap::from_json(text).expect_err(text).to_string();
+    assert!(message.contains(expected), "{text}\n{message}\n{expected}");
+}
+
+#[test]
+fn refuses_what_is_no_map() {
+    check_refused("", "not JSON");
+    check_refused("{", "not JSON");
+    check_refused("[]", "no “gaitway_map”");
+    check_refused("{}", "no “gaitway_map”");
+    check_refused(r#"{"gaitway_map": 2, "news": []}"#, "gaitway_map is 2; this program reads version 1");
+    check_refused(r#"{"gaitway_map": "1"}"#, "gaitway_map is \"1\"");
+}
+
+#[test]
+fn says_where_a_member_is_wrong() {
+    let joint = |entry: &str| format!(r#"{{"gaitway_map": 1, "joints": {{"head": {entry}}}}}"#);
+    check_refused(r#"{"gaitway_map": 1, "joint": {}}"#, "unknown field `joint`, expected one of");
+    check_refused(r#"{"gaitway_map": 1, "joints": []}"#, "joints: ");
+    check_refused(&joint("5"), "joints.head: ");
+    check_refused(&joint(r#"{"sauce": 2}"#), "joints.head.sauce: unknown field `sauce`");
+    check_refused(&joint(r#"{"source": -1}"#), "joints.head.source: expected a joint's name, its number");
+    check_refused(&joint(r#"{"source": 1.5}"#), "joints.head.source: ");
+    check_refused(&joint(r#"{"source": 1, "sauce": 2}"#), "unknown field `sauce`");
+    check_refused(&joint(r#"{"source": 1, "correction": [0, 0, 1]}"#), "joints.head.correction: ");
+    check_refused(&joint(r#"{"source": null, "unmapped": "rust"}"#), "joints.head.unmapped: expected \"rest\"");
+    check_refused(&joint(r#"{"source": null, "unmapped": {"clip": 0, "hold": "last"}}"#), "first-key");
+    check_refused(&joint(r#"{"source": null, "unmapped": {"clip": 0, "speed": 2}}"#), "joints.head.unmapped: ");
+    check_refused(r#"{"gaitway_map": 1, "root": {"yaw": "spin"}}"#, "root.yaw: unknown variant `spin`");
+    check_refused(r#"{"gaitway_map": 1, "rest": {"model": "pose"}}"#, "rest.model: unknown variant `pose`");
+    check_refused(
+        r#"{"gaitway_map": 1, "muted_channels": [{"source": 1}, {"property": "scale"}]}"#,
+        "muted_channels[1]",
+    );
+    check_refused(
+        r#"{"gaitway_map": 1, "joints": {"head": {"source": 1}, "head": {"source": 2}}}"#,
+        "“head” stands here twice",
+    );
+}
+
+#[test]
+fn the_documented_example_is_read() {
+    let map = JointMap::from_json(EXAMPLE).expect("the example");
+    let entry = |source| MapEntry { source, correction: Quat::IDENTITY, unmapped: None };
+    let first_key = Unmapped::Clip { clip: ClipRef::Index(0), frozen: true };
+    let expected = JointMap {
+        joints: [
+            ("spine1".to_owned(), entry(Some(SourceRef::Name("neck".to_owned())))),
+            ("head".to_owned(), entry(Some(SourceRef::Number(5)))),
+            ("middle".to_owned(), MapEntry { unmapped: Some(first_key), ..entry(None) }),
+        ]
+        .into(),
+        muted_channels: vec![MutedChannel {
+            source: SourceRef::Name("free3dmodel_skeleton".to_owned()),
+            property: Some(MutedProperty::Translation),
+        }],
+        ..JointMap::default()
+    };
+    assert_eq!(map, expected);
+    let documented =
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/joint-maps.md")).expect("the page");
+    assert!(documented.contains(EXAMPLE), "docs/joint-maps.md shows another example");
+}
+
+#[test]
+fn what_is_written_reads_the_same() {
+    let playing = |clip, frozen| Unmapped::Clip { clip, frozen };
+    let entry = |source, correction, unmapped| MapEntry { source, correction, unmapped };
+    let full = JointMap {
+        joints: [
+            ("#3".to_owned(), entry(Some(SourceRef::Number(7)), Quat::from_xyzw(0.1, -0.2, 0.3, 0.9), None)),
+            ("“quoted” \\ joint".to_owned(), entry(None, Quat::IDENTITY, Some(Unmapped::Rest))),
+            (String::new(), entry(Some(SourceRef::Name(String::new())), Quat::IDENTITY, None)),
+            ("c".to_owned(), entry(None, Quat::IDENTITY, Some(playing(ClipRef::Name("Idle".to_owned()), false)))),
+        ]
+        .into(),
+        unmapped: playing(ClipRef::Index(2), true),
+        rest: RestChoices { model: RestChoice::Bind, motion: RestChoice::FirstFrame },
+        root: RootOptions {
+            horizontal: RootPart::InPlace,
+            vertical: RootPart::Freeze,
+            yaw: RootPart::InPlace,
+            extract: true,
+        },
+        translations: Keep::Drop,
+        scales: Keep::Keep,
+        muted_channels: vec![MutedChannel { source: SourceRef::Number(0), property: None }],
+        feet: Feet::Plant,
+        crossfade_secs: 0.25,
+        ..JointMap::default()
+    };
+    for map in [JointMap::default(), full] {
+        let text = map.to_json().expect("plain data");
+        assert_eq!(JointMap::from_json(&text).expect(&text), map, "{text}");
+    }
+}
