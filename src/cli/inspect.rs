@@ -9,7 +9,7 @@ use crate::files::Opened;
 use crate::library::inspect;
 
 pub(super) fn run(arguments: &InspectArguments) -> anyhow::Result<()> {
-    let opened = open(&arguments.input)?;
+    let opened = open(&arguments.input.files)?;
     let document = inspect(&opened.model, &opened.files);
     if arguments.json {
         return print_json(&document);

@@ -1,6 +1,8 @@
 //! The command line: thin entries over the same functions as the page.
 
+mod borrow;
 mod inspect;
+mod map;
 mod pose;
 #[cfg(feature = "render")]
 mod render;
@@ -16,7 +18,8 @@ use crate::anim::LoopMode;
 use crate::files::{Opened, open_paths};
 use crate::library::{Library, Model};
 use crate::mesh::SkinningMode;
-use crate::state::{ClipChoice, Command, ViewerState, active_clip, apply};
+use crate::state::{ClipChoice, Command, ViewerState, active_clip, apply, choice_of_clip};
+use borrow::Borrowing;
 
 /// Drop in a glTF character, watch it move, and see why it bends as it does.
 #[derive(Debug, Parser)]
@@ -35,6 +38,8 @@ enum Action {
     Inspect(InspectArguments),
     /// Prints the numbers that would be drawn: joints and skinned vertices in world space.
     Pose(PoseArguments),
+    /// Proposes which joints of a model follow which joints of a motion.
+    Map(MapArguments),
     /// Draws the same picture as the page, without a window.
     #[cfg(feature = "render")]
     Render(RenderArguments),
@@ -59,7 +64,8 @@ struct InspectArguments {
 /// Which moment of the model is meant.
 #[derive(Debug, Args)]
 struct Moment {
-    /// A clip's name or index (none: the rest pose).
+    /// A clip's name or index (none: the rest pose). With --motion: a clip of the motion (none: its first), else one of the
+    /// model.
     #[arg(long, value_name = "CLIP")]
     clip: Option<String>,
     /// Seconds into the clip; past its end: its end.
@@ -78,9 +84,27 @@ enum Skinning {
 }
 
 #[derive(Debug, Args)]
+struct MapArguments {
+    /// The model whose joints are to move.
+    #[arg(long, value_name = "FILE")]
+    model: PathBuf,
+    /// The motion that moves them.
+    #[arg(long, value_name = "FILE")]
+    motion: PathBuf,
+    /// Writes the map here, to be changed by hand.
+    #[arg(long, value_name = "MAP.json")]
+    out: Option<PathBuf>,
+    /// Prints the map with slot, reason and confidence of each joint.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Args)]
 struct PoseArguments {
     #[command(flatten)]
     input: Files,
+    #[command(flatten)]
+    borrowing: Borrowing,
     #[command(flatten)]
     moment: Moment,
     /// Prints one JSON document on standard output.
@@ -93,6 +117,8 @@ struct PoseArguments {
 struct RenderArguments {
     #[command(flatten)]
     input: Files,
+    #[command(flatten)]
+    borrowing: Borrowing,
     /// The picture to write.
     #[arg(long, value_name = "PNG")]
     out: PathBuf,
@@ -131,6 +157,7 @@ pub fn main() -> ExitCode {
 fn run(arguments: Arguments) -> anyhow::Result<()> {
     match arguments.action {
         Some(Action::Inspect(arguments)) => inspect::run(&arguments),
+        Some(Action::Map(arguments)) => map::run(&arguments),
         Some(Action::Pose(arguments)) => pose::run(&arguments),
         #[cfg(feature = "render")]
         Some(Action::Render(arguments)) => render::run(&arguments),
@@ -149,8 +176,8 @@ fn open_window(_files: Vec<PathBuf>) -> anyhow::Result<()> {
 }
 
 /// Reads the model and says what was odd about it.
-fn open(input: &Files) -> anyhow::Result<Opened> {
-    let opened = open_paths(&input.files)?;
+fn open(files: &[PathBuf]) -> anyhow::Result<Opened> {
+    let opened = open_paths(files)?;
     for warning in opened.model.asset.warnings.iter() {
         eprintln!("warning: {warning}");
     }
@@ -158,11 +185,23 @@ fn open(input: &Files) -> anyhow::Result<Opened> {
 }
 
 /// Puts the model at the wanted moment. What is not given stays as the state has it.
-fn set_moment(library: &Library, moment: &Moment, state: &mut ViewerState) -> anyhow::Result<()> {
+/// `borrows`: a motion was named, so that its clips come first.
+fn set_moment(library: &Library, moment: &Moment, borrows: bool, state: &mut ViewerState) -> anyhow::Result<()> {
     state.playing = false;
-    if let (Some(name), Some(model)) = (&moment.clip, library.active()) {
-        apply(state, library, Command::SetClip(ClipChoice::Named(name.clone())));
-        if active_clip(model, state).is_none() {
+    if let Some(model) = library.active() {
+        let choice = match &moment.clip {
+            Some(name) => {
+                Some(borrowed_clip(model, name).filter(|_| borrows).unwrap_or(ClipChoice::Named(name.clone())))
+            }
+            None if borrows => borrowed_clip(model, "0"),
+            None => None,
+        };
+        if let Some(choice) = choice {
+            apply(state, library, Command::SetClip(choice));
+        }
+        if let Some(name) = &moment.clip
+            && active_clip(model, state).is_none()
+        {
             bail!("there is no clip “{name}”; {}", clips_text(model));
         }
     }
@@ -182,6 +221,14 @@ fn set_moment(library: &Library, moment: &Moment, state: &mut ViewerState) -> an
         };
     }
     Ok(())
+}
+
+/// A borrowed clip by name, or by its index among the borrowed ones.
+fn borrowed_clip(model: &Model, name: &str) -> Option<ClipChoice> {
+    let borrowed: Vec<usize> = (0..model.clip_count()).filter(|&clip| model.borrowed(clip).is_some()).collect();
+    let by_name = borrowed.iter().find(|&&clip| model.clip(clip).is_some_and(|clip| clip.name() == name));
+    let found = by_name.or_else(|| borrowed.get(name.parse::<usize>().ok()?))?;
+    Some(choice_of_clip(model, *found))
 }
 
 fn clips_text(model: &Model) -> String {

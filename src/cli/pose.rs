@@ -2,16 +2,15 @@
 
 use std::fmt::Write;
 
+use super::borrow::load_library;
 use super::{PoseArguments, open, print_bytes, print_json, set_moment};
 use crate::frame::pose_document;
-use crate::library::Library;
 use crate::state::{ClipChoice, ViewerState};
 
 pub(super) fn run(arguments: &PoseArguments) -> anyhow::Result<()> {
-    let mut library = Library::default();
-    library.set(open(&arguments.input)?.model);
+    let library = load_library(open(&arguments.input.files)?, &arguments.borrowing)?;
     let mut state = ViewerState { clip: ClipChoice::RestPose, ..ViewerState::default() };
-    set_moment(&library, &arguments.moment, &mut state)?;
+    set_moment(&library, &arguments.moment, arguments.borrowing.motion.is_some(), &mut state)?;
     let document = pose_document(&library, &state);
     if arguments.json {
         return print_json(&document);

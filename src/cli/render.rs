@@ -2,6 +2,7 @@
 
 use anyhow::{Context, bail};
 
+use super::borrow::load_library;
 use super::{RenderArguments, open, set_moment};
 use crate::frame::{Frame, evaluate};
 use crate::library::Library;
@@ -9,8 +10,7 @@ use crate::render::{Renderer, RendererOptions, headless_device, read_pixels};
 use crate::state::{CameraChoice, ClipChoice, Command, OrbitCamera, ViewerState, apply, from_link, resolve_camera};
 
 pub(super) fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
-    let mut library = Library::default();
-    library.set(open(&arguments.input)?.model);
+    let library = load_library(open(&arguments.input.files)?, &arguments.borrowing)?;
     let state = view(arguments, &library)?;
     let [width, height] = arguments.size;
     let mut frame = Frame::default();
@@ -42,7 +42,7 @@ fn view(arguments: &RenderArguments, library: &Library) -> anyhow::Result<Viewer
         }
         apply(&mut state, library, Command::Replace(Box::new(wanted)));
     }
-    set_moment(library, &arguments.moment, &mut state)?;
+    set_moment(library, &arguments.moment, arguments.borrowing.motion.is_some(), &mut state)?;
     if let Some([yaw_degrees, pitch_degrees, distance]) = arguments.camera {
         let [width, height] = arguments.size;
         let target = resolve_camera(library, &state, width as f32 / height as f32).target;

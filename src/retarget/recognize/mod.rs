@@ -10,6 +10,7 @@ mod tree;
 mod words;
 
 use std::collections::BTreeMap;
+use std::fmt;
 
 use glam::Vec3;
 
@@ -52,6 +53,20 @@ pub enum Reason {
     Hierarchy,
     /// Where it lies.
     Geometry,
+}
+
+/// For people: “Mixamo name”, “where it lies”.
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::File => f.write_str("the file says so"),
+            Self::SameName => f.write_str("same name"),
+            Self::Vocabulary(vocabulary) => write!(f, "{vocabulary} name"),
+            Self::Words => f.write_str("words in its name"),
+            Self::Hierarchy => f.write_str("what it hangs on"),
+            Self::Geometry => f.write_str("where it lies"),
+        }
+    }
 }
 
 /// Which way the character looks at its rest, in model space. Each from its own evidence, so that they can be compared.
