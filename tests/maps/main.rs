@@ -4,4 +4,5 @@ mod data;
 mod files;
 mod proposals;
 mod resolving;
+mod rigs;
 mod truth;

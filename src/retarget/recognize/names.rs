@@ -69,7 +69,23 @@ impl Name {
         self.words.iter().any(|other| other == word)
     }
 
+    /// Without a first word that all joints of a rig share, as the character's name is.
+    pub fn drop_first(&mut self, word: &str) {
+        if self.words.len() > 1 && self.words[0] == word {
+            self.words.remove(0);
+        }
+    }
+
     fn take_side(&mut self) {
+        // `LUArm`, `RFArm`: the side and one letter for upper or fore.
+        if let [letters, arm, ..] = self.words.as_mut_slice()
+            && matches!(letters.as_str(), "lu" | "lf" | "ru" | "rf")
+            && arm == "arm"
+        {
+            self.side = Some(if letters.starts_with('l') { Side::Left } else { Side::Right });
+            letters.remove(0);
+            return;
+        }
         let side = |word: &str| {
             if LEFT.contains(&word) {
                 Some(Side::Left)
@@ -202,6 +218,7 @@ mod tests {
         check("LLegUpper", left, "leg upper");
         check("RArmForearm1", right, "arm forearm 1");
         check("rShldr", right, "shldr");
+        check("LUArm", left, "u arm");
         check("lhip", left, "hip");
         check("J_Bip_C_UpperChest", None, "c upper chest");
         check("J_Bip_L_UpperArm", left, "upper arm");

@@ -1,5 +1,7 @@
 //! A skeleton as recognition looks at it: which joints may be parts of a body, their names read, where they lie.
 
+use std::collections::BTreeMap;
+
 use glam::{Affine3A, Vec3};
 
 use super::names::Name;
@@ -21,7 +23,8 @@ pub(super) struct Tree<'a> {
 impl<'a> Tree<'a> {
     pub fn new(asset: &'a Asset) -> Self {
         let skeleton = &asset.skeleton;
-        let names: Vec<Name> = skeleton.joints().map(|joint| Name::read(skeleton.name(joint))).collect();
+        let mut names: Vec<Name> = skeleton.joints().map(|joint| Name::read(skeleton.name(joint))).collect();
+        drop_shared_word(&mut names);
         let usable = usable(asset);
         let words =
             names.iter().zip(&usable).map(|(name, &usable)| if usable { words::read(name) } else { None }).collect();
@@ -68,6 +71,25 @@ impl<'a> Tree<'a> {
     /// Takes the places from another pose.
     pub fn stand(&mut self, pose: &Pose) {
         self.places = places(self.skeleton, pose);
+    }
+}
+
+/// So many of all names begin with the same word when it says nothing of the joint.
+const SHARED: f32 = 0.6;
+
+/// `hero_left_thigh`, `hero_head`: what most names begin with is the rig's, unless it is a part of the body.
+fn drop_shared_word(names: &mut [Name]) {
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    for name in names.iter().filter(|name| name.words.len() > 1) {
+        *counts.entry(&name.words[0]).or_default() += 1;
+    }
+    let most = counts.into_iter().max_by_key(|&(_, count)| count);
+    let Some((word, _)) = most.filter(|&(_, count)| count as f32 >= SHARED * names.len() as f32) else { return };
+    let word = word.to_owned();
+    if words::read(&Name { side: None, words: vec![word.clone()] }).is_none() {
+        for name in names {
+            name.drop_first(&word);
+        }
     }
 }
 
