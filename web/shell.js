@@ -8,8 +8,8 @@ const moduleUrl = new URL(meta.content, document.baseURI).href;
 const wasmUrl = new URL(meta.dataset.wasm, document.baseURI).href;
 const NAMES = { webgpu: "WebGPU", webgl2: "WebGL2" };
 
-/** What is shown now, so that it can be shown again: the items that were opened last (none: those of the link) and the link. */
-const kept = { items: [], link: location.hash.slice(1) };
+/** What is shown now, so that it can be shown again: the items that were opened last and those that are borrowed from (none: those of the link), and the link. */
+const kept = { items: [], motionItems: [], link: location.hash.slice(1) };
 /** Compiled once for all instances. */
 let compiled = null;
 /** Bindings of the running instance; null while none runs. */
@@ -174,10 +174,14 @@ async function start(renderer) {
     cannotRun([`The program could not be loaded: ${error.message}`], ["Check the connection and reload the page.", TRY_BROWSER]);
     throw error;
   }
-  const entries = await read(kept.items).catch((error) => {
-    sayProblem(error.message);
-    return [];
-  });
+  const [entries, motionEntries] = await Promise.all(
+    [kept.items, kept.motionItems].map((items) =>
+      read(items).catch((error) => {
+        sayProblem(error.message);
+        return [];
+      }),
+    ),
+  );
   const problems = [];
   for (const attempt of renderer === null ? [null, "webgl2"] : [renderer]) {
     const canvas = document.createElement("canvas");
@@ -186,7 +190,7 @@ async function start(renderer) {
     byId("stage").replaceChildren(canvas);
     backend = attempt;
     try {
-      const run = bindings.run(canvas, attempt ?? undefined, kept.link, entries, hooks(() => app === bindings || app === null));
+      const run = bindings.run(canvas, attempt ?? undefined, kept.link, entries, motionEntries, hooks(() => app === bindings || app === null));
       await Promise.race([run, new Promise((_, reject) => (giveUp = reject))]);
     } catch (error) {
       if (panel === "stopped") throw error;
@@ -216,7 +220,10 @@ const isTrap = (error) => typeof WebAssembly === "object" && error instanceof We
 
 /** What an instance tells the page; `current` is false for one that has been replaced. */
 const hooks = (current) => ({
-  choose: () => openDialog(),
+  choose: (role) => openDialog(role),
+  save: (name, bytes) => save(name, bytes),
+  motionIsModel: () => ([kept.items, kept.motionItems] = [kept.motionItems, []]),
+  motionsRemoved: () => (kept.motionItems = []),
   progress: (name, received, total) => showProgress(name, received, total),
   changed: (link) => current() && changed(link),
   warn: (message) => {
@@ -264,13 +271,14 @@ function summarise() {
   say(`${model}: ${clip ?? "rest pose"}, ${clip !== null && playing ? "playing" : "paused"}`);
   document.title = model === "" ? "Gaitway" : `${model.split("/").pop()} – Gaitway`;
   // A link to files that only this browser has would lead nowhere.
-  if (kept.items.length === 0 && kept.link !== firstLink) history.replaceState(history.state, "", `#${kept.link}`);
+  if (kept.items.length === 0 && kept.motionItems.length === 0 && kept.link !== firstLink) history.replaceState(history.state, "", `#${kept.link}`);
 }
 
 addEventListener("hashchange", async () => {
   const link = location.hash.slice(1);
   if (app === null || link === kept.link) return;
   kept.items = [];
+  kept.motionItems = [];
   try {
     await app.follow_link(link);
   } catch (error) {
@@ -311,39 +319,66 @@ function normalised(items) {
   });
 }
 
-async function open(items) {
+/** `as: "motion"`: to borrow from, whatever it is. */
+async function open(items, { as } = {}) {
   const wanted = normalised(items);
   const current = await running();
-  const document = await unlessStopped(current, (async () => current.open(await read(wanted)))());
+  const answer = await unlessStopped(current, (async () => current.open(await read(wanted), as))());
+  const { shown, document } = JSON.parse(answer);
   // A link says where addresses lead; other files have to be held on to.
-  kept.items = wanted.every((item) => typeof item === "string") ? [] : wanted;
+  const held = wanted.every((item) => typeof item === "string") ? [] : wanted;
+  if (shown === "model") kept.items = held;
+  if (shown === "motion") kept.motionItems = held;
   summarise();
-  return JSON.parse(document);
+  return document;
 }
 
 /** For the person at the page: what goes wrong is shown by the app. */
-async function openByHand(items) {
+async function openByHand(items, options) {
   if (items.length === 0) return;
   try {
-    await open(items);
+    await open(items, options);
   } catch (error) {
     sayProblem(error.message);
   }
   focusCanvas();
 }
 
+/** Hands a file over as a download. */
+function save(name, bytes) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([bytes], { type: "application/octet-stream" }));
+  link.download = name;
+  link.click();
+  // Not before the browser has begun to read it.
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}
+
 const focusCanvas = () => byId("stage").querySelector("canvas")?.focus({ preventScroll: true });
 
-function openDialog() {
+/** What the files are chosen for. */
+let openAs;
+
+const DIALOG = {
+  any: { title: "Open a model", what: ".glb, .gltf with its files, .vrm or a .zip of them; motions for it (.bvh, .vrma) can come along. Files stay in this browser.", example: "https://example.org/character.glb" },
+  motion: { title: "Borrow motion", what: ".bvh, .vrma, .glb or .gltf: the clips of any skeleton, or a joint map (.json). Files stay in this browser.", example: "https://example.org/walk.bvh" },
+};
+
+function openDialog(role = "any") {
   const dialog = byId("open");
   if (panel !== null || dialog.open) return;
+  openAs = role === "motion" ? role : undefined;
   byId("open-form").reset();
+  const { title, what, example } = DIALOG[role];
+  byId("open-title").textContent = title;
+  byId("open-what").textContent = what;
+  byId("open-url").placeholder = example;
   dialog.showModal();
 }
 
 function openFromDialog(items) {
   byId("open").close();
-  openByHand(items);
+  openByHand(items, { as: openAs });
 }
 
 byId("open-files").addEventListener("change", ({ target }) => target.files.length > 0 && openFromDialog([...target.files]));
@@ -401,7 +436,7 @@ for (const type of ["dragenter", "dragover", "dragleave", "drop"])
       } else {
         showDrop(false);
         byId("open").close();
-        dropped(event.dataTransfer).then(openByHand, (error) => sayProblem(error.message));
+        dropped(event.dataTransfer).then((items) => openByHand(items), (error) => sayProblem(error.message));
       }
     },
     { capture: true },
@@ -479,6 +514,7 @@ window.gaitway = {
     const current = await running();
     await unlessStopped(current, current.apply(JSON.stringify(partial ?? null)));
     if (partial?.model !== undefined) kept.items = [];
+    if (partial?.motion !== undefined) kept.motionItems = [];
   },
   async screenshot() {
     const current = await running();

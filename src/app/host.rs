@@ -1,18 +1,37 @@
 //! What the frame loop leaves to the platform: choosing files, links, and news for whoever embeds the page.
 
 use super::Inbox;
+use crate::files::Role;
 use crate::state::ViewerState;
 
 /// Implemented once for the page and once for the window. All calls come from the loop's thread; answers arrive
 /// through the inbox.
 pub trait Host {
     /// Lets the person choose files; false when there is no way to on this platform.
-    fn choose_files(&self, inbox: &Inbox) -> bool;
+    fn choose_files(&self, role: Role, inbox: &Inbox) -> bool;
 
     /// Opens a path that was typed, on platforms where [`Host::choose_files`] cannot help.
-    fn open_path(&self, path: &str, inbox: &Inbox) {
-        let _ = (path, inbox);
+    fn open_path(&self, path: &str, role: Role, inbox: &Inbox) {
+        let _ = (path, role, inbox);
     }
+
+    /// Gives a file to the person; false when that needs a path, which [`Host::save_path`] then gets.
+    fn save_file(&self, name: &str, bytes: &[u8]) -> bool;
+
+    /// Writes a file where the person said.
+    ///
+    /// # Errors
+    /// What the person sees when it cannot be written.
+    fn save_path(&self, path: &str, bytes: &[u8]) -> Result<(), String> {
+        let _ = (path, bytes);
+        Ok(())
+    }
+
+    /// The files that were borrowed from are shown as the model from now on.
+    fn motion_is_model(&self) {}
+
+    /// Nothing is borrowed any more.
+    fn motions_removed(&self) {}
 
     /// Opens files that were dropped on the canvas or the window, as one set.
     fn open_dropped(&self, files: Vec<egui::DroppedFileHandle>, inbox: &Inbox);

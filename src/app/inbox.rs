@@ -4,16 +4,17 @@
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
 
-use crate::library::Model;
+use crate::files::Contents;
 use crate::state::{Command, ViewerState};
 
 /// What the loop is told.
 pub enum Message {
     /// A load has begun or got further; shown until `Opened` or `OpenFailed`.
     OpenProgress(Opening),
-    /// A model is ready to be shown instead of the present one. With `state`, that state is taken over too (a link).
+    /// What was opened is ready to be shown instead of the present model, or to be borrowed from. With `state`, that state
+    /// is taken over too (a link).
     Opened {
-        model: Box<Model>,
+        contents: Box<Contents>,
         state: Option<Box<ViewerState>>,
         reply: Option<Reply<serde_json::Value>>,
     },

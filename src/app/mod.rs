@@ -5,6 +5,7 @@ mod host;
 mod inbox;
 #[cfg(not(target_arch = "wasm32"))]
 mod native;
+mod open;
 mod png;
 mod run;
 mod scene_texture;

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use super::{App, Host, Inbox, Message, Opening, native_options};
-use crate::files::{OpenError, open_paths};
-use crate::library::{Model, sample};
+use crate::files::{Contents, OpenError, Opened, Role, open_paths, read_paths};
+use crate::library::sample;
 use crate::state::ViewerState;
 
 /// Why there is no window, or no longer.
@@ -25,10 +25,14 @@ pub enum WindowError {
 /// When the first files cannot be read, or no window or graphics device is to be had.
 pub fn run_native(files: Vec<PathBuf>) -> Result<(), WindowError> {
     let sample = || sample::load(sample::NAMES[0]).ok_or(WindowError::NoSample);
-    let model = if files.is_empty() { sample()? } else { open_paths(&files)?.model };
-    let state = ViewerState { model: vec![model.source.clone()], ..ViewerState::default() };
+    let contents = if files.is_empty() {
+        Contents { model: Some(sample()?), ..Contents::default() }
+    } else {
+        let Opened { model, motions, motion_sources, map, .. } = open_paths(&files)?;
+        Contents { model: Some(model), motions: Some(motions), motion_sources, map, problems: Vec::new() }
+    };
     let create: eframe::AppCreator<'_> = Box::new(move |cc| {
-        let app = App::new(cc, Box::new(Window::new(cc.egui_ctx.clone())), model, state, |_| {})?;
+        let app = App::new(cc, Box::new(Window::new(cc.egui_ctx.clone())), contents, None, |_| {})?;
         Ok(Box::new(app))
     });
     Ok(eframe::run_native("Gaitway", native_options(), create)?)
@@ -36,8 +40,8 @@ pub fn run_native(files: Vec<PathBuf>) -> Result<(), WindowError> {
 
 struct Window {
     context: egui::Context,
-    loaded: Receiver<Result<Box<Model>, String>>,
-    sender: Sender<Result<Box<Model>, String>>,
+    loaded: Receiver<Result<Box<Contents>, String>>,
+    sender: Sender<Result<Box<Contents>, String>>,
 }
 
 impl Window {
@@ -47,13 +51,13 @@ impl Window {
     }
 
     /// Reads in the background; the answer comes with a later frame.
-    fn open(&self, paths: Vec<PathBuf>, inbox: &Inbox) {
+    fn open(&self, paths: Vec<PathBuf>, role: Role, inbox: &Inbox) {
         let name = paths.first().and_then(|path| path.file_name()).map(|name| name.to_string_lossy().into_owned());
         let opening = Opening { name: name.unwrap_or_default(), received_bytes: 0, total_bytes: 0 };
         inbox.send(Message::OpenProgress(opening));
         let (sender, context) = (self.sender.clone(), self.context.clone());
         std::thread::spawn(move || {
-            let opened = open_paths(&paths).map(|opened| Box::new(opened.model)).map_err(|error| error.to_string());
+            let opened = read_paths(&paths, role).map(Box::new).map_err(|error| error.to_string());
             // Nobody waits any more when the window was closed meanwhile.
             let _ = sender.send(opened);
             context.request_repaint();
@@ -62,16 +66,24 @@ impl Window {
 }
 
 impl Host for Window {
-    fn choose_files(&self, _inbox: &Inbox) -> bool {
+    fn choose_files(&self, _role: Role, _inbox: &Inbox) -> bool {
         false
     }
 
-    fn open_path(&self, path: &str, inbox: &Inbox) {
-        self.open(vec![PathBuf::from(path)], inbox);
+    fn open_path(&self, path: &str, role: Role, inbox: &Inbox) {
+        self.open(vec![PathBuf::from(path)], role, inbox);
+    }
+
+    fn save_file(&self, _name: &str, _bytes: &[u8]) -> bool {
+        false
+    }
+
+    fn save_path(&self, path: &str, bytes: &[u8]) -> Result<(), String> {
+        std::fs::write(path, bytes).map_err(|error| format!("{path}: {error}"))
     }
 
     fn open_dropped(&self, files: Vec<egui::DroppedFileHandle>, inbox: &Inbox) {
-        self.open(files.iter().map(|file| file.path().to_owned()).collect(), inbox);
+        self.open(files.iter().map(|file| file.path().to_owned()).collect(), Role::Any, inbox);
     }
 
     fn link(&self, fragment: &str) -> String {
@@ -89,7 +101,7 @@ impl Host for Window {
     fn before_frame(&self, inbox: &Inbox) {
         while let Ok(loaded) = self.loaded.try_recv() {
             inbox.send(match loaded {
-                Ok(model) => Message::Opened { model, state: None, reply: None },
+                Ok(contents) => Message::Opened { contents, state: None, reply: None },
                 Err(error) => Message::OpenFailed(error),
             });
         }

@@ -3,35 +3,39 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::open::Refused;
 use super::scene_texture::SceneTexture;
 use super::{Host, Inbox, Message, Opening, Reply, ScriptCall, device, encode_png};
+use crate::files::{Contents, Role};
 use crate::frame::{Frame, evaluate, pose_document};
-use crate::library::{Library, Model, inspect};
+use crate::library::{Library, inspect};
 use crate::render::read_pixels;
 use crate::state::{
-    CameraChoice, ClipChoice, Command, History, ViewerState, frame_all, from_object, resolve_camera, to_link, to_object,
+    CameraChoice, Command, History, ViewerState, frame_all, from_object, map_in_force, named, resolve_camera, to_link,
+    to_object,
 };
-use crate::ui::{self, Output, Progress, Shown, Toast, UiAction, UiState};
-
-/// How long a short message stays.
-const TOAST_SECS: f64 = 2.5;
+use crate::ui::{self, Output, PathPrompt, PathPurpose, Progress, Shown, UiAction, UiState};
 
 pub struct App {
-    library: Library,
-    state: ViewerState,
-    history: History,
+    pub(super) library: Library,
+    pub(super) state: ViewerState,
+    pub(super) history: History,
     frame: Frame,
-    panels: UiState,
+    pub(super) panels: UiState,
     output: Output,
-    scene: SceneTexture,
+    pub(super) scene: SceneTexture,
     /// Size in pixels and aspect of the last picture; none: nothing drawn yet.
     drawn_size: Option<[u32; 2]>,
     /// Something the picture depends on has changed since it was drawn.
-    dirty: bool,
+    pub(super) dirty: bool,
     /// Something was set since the host was last told.
-    changed: bool,
+    pub(super) changed: bool,
+    pub(super) refused: Option<Refused>,
+    /// What does not work about the borrowed clips and has been told.
+    pub(super) borrow_errors: Vec<String>,
     inbox: Inbox,
-    host: Box<dyn Host>,
+    pub(super) context: egui::Context,
+    pub(super) host: Box<dyn Host>,
     /// Answered once the picture shows what they asked for.
     after_draw: Vec<Box<dyn FnOnce()>>,
     screenshots: Vec<Reply<Vec<u8>>>,
@@ -45,15 +49,15 @@ pub struct App {
 }
 
 impl App {
-    /// Shows `model` in `state` at first. `inbox_ready` gets the queue through which everything else arrives.
+    /// Shows `contents`, which has a model, at first: in `state`, if there is one. `inbox_ready` gets the queue through which everything else arrives.
     ///
     /// # Errors
     /// When there is no wgpu device, or the model does not fit on it.
     pub fn new(
         cc: &eframe::CreationContext<'_>,
         host: Box<dyn Host>,
-        model: Model,
-        state: ViewerState,
+        contents: Contents,
+        state: Option<ViewerState>,
         inbox_ready: impl FnOnce(Inbox),
     ) -> Result<Self, String> {
         let gpu = cc.wgpu_render_state.clone().ok_or("there is no graphics device")?;
@@ -73,7 +77,10 @@ impl App {
             drawn_size: None,
             dirty: true,
             changed: false,
+            refused: None,
+            borrow_errors: Vec::new(),
             inbox: inbox.clone(),
+            context: cc.egui_ctx.clone(),
             host,
             after_draw: Vec::new(),
             screenshots: Vec::new(),
@@ -83,7 +90,7 @@ impl App {
             cpu_secs: 0.0,
             frames: 0,
         };
-        app.show_model(model, Some(state))?;
+        app.show(contents, state)?;
         inbox_ready(inbox);
         Ok(app)
     }
@@ -99,13 +106,11 @@ impl App {
     fn handle(&mut self, message: Message) {
         match message {
             Message::OpenProgress(opening) => self.panels.progress = Some(progress(&opening)),
-            Message::Opened { model, state, reply } => {
+            Message::Opened { contents, state, reply } => {
                 self.panels.progress = None;
-                let shown = self.show_model(*model, state.map(|state| *state));
+                let shown = self.show(*contents, state.map(|state| *state));
                 if let Err(error) = &shown {
                     self.panels.error = Some(error.clone());
-                } else {
-                    self.panels.error = None;
                 }
                 if let Some(reply) = reply {
                     match shown {
@@ -120,43 +125,12 @@ impl App {
             }
             Message::OpenFailed(error) => {
                 self.panels.progress = None;
+                self.panels.motion_refused = false;
                 self.panels.error = Some(error);
             }
             Message::Commands(commands) => commands.into_iter().for_each(|command| self.apply(command)),
             Message::Script(call) => self.script(call),
         }
-    }
-
-    /// Puts a model in place of the present one, which stays when the new one does not fit on the device. Without a
-    /// state, what is about the old model (clip, time, camera, …) starts anew and the rest is kept.
-    fn show_model(&mut self, model: Model, state: Option<ViewerState>) -> Result<(), String> {
-        let source = model.source.clone();
-        let before = self.library.take();
-        self.library.set(model);
-        let uploaded = match self.library.active() {
-            Some(model) => self.scene.upload(model).map_err(|error| error.to_string()),
-            None => Ok(()),
-        };
-        if let Err(error) = uploaded {
-            self.library.put_back(before);
-            return Err(error);
-        }
-        self.state = state.unwrap_or_else(|| ViewerState {
-            model: vec![source],
-            scene: None,
-            clip: ClipChoice::First,
-            time_secs: 0.0,
-            range: None,
-            morph: Default::default(),
-            joint: None,
-            camera: CameraChoice::Auto,
-            up: Default::default(),
-            ..std::mem::take(&mut self.state)
-        });
-        self.history.clear();
-        self.dirty = true;
-        self.changed = true;
-        Ok(())
     }
 
     fn script(&mut self, call: ScriptCall) {
@@ -165,7 +139,16 @@ impl App {
             ScriptCall::Apply(partial, reply) => {
                 let (state, errors) = from_object(&self.state, &partial);
                 if errors.is_empty() {
-                    self.apply(Command::Replace(Box::new(state)));
+                    let before = self.state.clone();
+                    self.history.apply(&mut self.state, &self.library, Command::Replace(Box::new(state)));
+                    let problems = self.refresh_motion();
+                    (self.dirty, self.changed) = (true, true);
+                    if !problems.is_empty() {
+                        self.state = before;
+                        self.refresh_motion();
+                        reply(Err(problems.join("; ")));
+                        return;
+                    }
                     self.after_draw.push(Box::new(move || reply(Ok(()))));
                 } else {
                     let errors: Vec<String> = errors.iter().map(ToString::to_string).collect();
@@ -193,7 +176,7 @@ impl App {
         })
     }
 
-    fn apply(&mut self, command: Command) {
+    pub(super) fn apply(&mut self, command: Command) {
         let aspect = self.panels.aspect;
         let relative = matches!(command, Command::Orbit { .. } | Command::Pan { .. } | Command::Zoom(_));
         // The automatic camera depends on the picture's shape, which commands do not know.
@@ -208,21 +191,54 @@ impl App {
         };
         self.changed |= !matches!(command, Command::Advance(_));
         self.dirty = true;
+        let is_about_motion = matches!(
+            command,
+            Command::Replace(_)
+                | Command::SetMap { .. }
+                | Command::SetSource { .. }
+                | Command::SetUnmapped(_)
+                | Command::SetRoot(_)
+                | Command::SetFeet(_)
+        );
         self.history.apply(&mut self.state, &self.library, command);
+        if is_about_motion {
+            let problems = self.refresh_motion();
+            self.tell(problems);
+        }
     }
 
-    fn act(&mut self, action: UiAction, context: &egui::Context) {
-        let toast = |text: &str| Toast { text: text.to_owned(), until_secs: context.input(|i| i.time) + TOAST_SECS };
+    fn act(&mut self, action: UiAction) {
         match action {
-            UiAction::OpenFiles => {
-                if !self.host.choose_files(&self.inbox) {
-                    self.panels.path_prompt = Some(String::new());
+            UiAction::OpenFiles => self.choose(Role::Any, PathPurpose::Open),
+            UiAction::ChooseMotion => self.choose(Role::Motion, PathPurpose::OpenMotion),
+            UiAction::UsePath(PathPurpose::Open, path) => self.host.open_path(&path, Role::Any, &self.inbox),
+            UiAction::UsePath(PathPurpose::OpenMotion, path) => self.host.open_path(&path, Role::Motion, &self.inbox),
+            UiAction::UsePath(PathPurpose::SaveMap { motion }, path) => {
+                let saved =
+                    self.map_file(motion).map_or(Ok(()), |(_, json)| self.host.save_path(&path, json.as_bytes()));
+                match saved {
+                    Ok(()) => self.toast(format!("Saved as {path}.")),
+                    Err(error) => self.tell(vec![error]),
                 }
             }
-            UiAction::OpenPath(path) => self.host.open_path(&path, &self.inbox),
+            UiAction::SaveMap { motion } => {
+                if let Some((name, json)) = self.map_file(motion)
+                    && !self.host.save_file(&name, json.as_bytes())
+                {
+                    self.panels.path_prompt = Some(PathPrompt { purpose: PathPurpose::SaveMap { motion }, path: name });
+                }
+            }
+            UiAction::RemoveMotions => self.remove_motions(),
+            UiAction::ShowMotionAlone(index) => {
+                if let Some(motion) = self.library.motions().get(index).cloned() {
+                    self.show_motion_alone(&motion, vec![motion.source.clone()]);
+                }
+            }
+            UiAction::ShowRefusedAlone => self.show_refused_alone(),
+            UiAction::MapRefusedByHand => self.map_refused_by_hand(),
             UiAction::CopyLink => {
-                context.copy_text(self.host.link(&to_link(&self.state)));
-                self.panels.toast = Some(toast("Link copied."));
+                self.context.copy_text(self.host.link(&to_link(&self.state)));
+                self.toast("Link copied.".to_owned());
             }
             UiAction::Undo | UiAction::Redo => {
                 let done = match action {
@@ -231,8 +247,28 @@ impl App {
                 };
                 self.dirty |= done;
                 self.changed |= done;
+                let problems = self.refresh_motion();
+                self.tell(problems);
             }
         }
+    }
+
+    fn choose(&mut self, role: Role, purpose: PathPurpose) {
+        if !self.host.choose_files(role, &self.inbox) {
+            self.panels.path_prompt = Some(PathPrompt { purpose, path: String::new() });
+        }
+    }
+
+    /// The map in force for a motion as a file, and what to call it.
+    fn map_file(&self, motion: usize) -> Option<(String, String)> {
+        let (model, about) = (self.library.active()?, self.library.motions().get(motion)?);
+        let map = map_in_force(&self.library, &self.state, motion)?;
+        let json = named(&map, &model.asset, &about.asset).to_json().ok()?;
+        let stem = |source: &str| {
+            let name = ui::short_name(source);
+            name.rsplit_once('.').map_or(name.clone(), |(stem, _)| stem.to_owned())
+        };
+        Some((format!("{}-{}.json", stem(&model.source), stem(&about.source)), json))
     }
 
     /// Time goes by while playing; nothing is asked for when it does not.
@@ -312,7 +348,7 @@ impl eframe::App for App {
         ui::overlays(ui, rect, shown, &mut self.panels, &mut output);
         let acted = !output.commands.is_empty() || !output.actions.is_empty();
         output.commands.drain(..).for_each(|command| self.apply(command));
-        output.actions.drain(..).for_each(|action| self.act(action, &context));
+        output.actions.drain(..).for_each(|action| self.act(action));
         self.output = output;
         if context.input(|input| !input.pointer.any_down() && input.keys_down.is_empty()) {
             self.history.end_gesture();

@@ -2,14 +2,20 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use super::decode_images;
-use crate::formats::{FileSet, LoadError, load, missing_files};
-use crate::library::{Model, sample};
+use super::sort::Origins;
+use super::{Contents, Role, SortError, decode_images, sort};
+use crate::formats::{FileSet, missing_files};
+use crate::library::{Model, Motion, sample};
+use crate::retarget::JointMap;
 
-/// What was read: the model, and the names of the files it came from.
+/// What was read: a model, what it may borrow from, and the names of all files.
 #[derive(Debug)]
 pub struct Opened {
     pub model: Model,
+    pub motions: Vec<Motion>,
+    /// What a view has to list besides its model to get the motions again.
+    pub motion_sources: Vec<String>,
+    pub map: Option<JointMap>,
     pub files: Vec<String>,
 }
 
@@ -25,41 +31,101 @@ pub enum OpenError {
     #[error("{name}: there is no such sample; there are: {}", sample::NAMES.map(|name| format!("sample:{name}")).join(", "))]
     NoSuchSample { name: String },
     #[error(transparent)]
-    Load(#[from] LoadError),
+    Files(#[from] SortError),
 }
 
 const MOST_BYTES: u64 = 2 << 30;
 const MOST_FILES: usize = 4096;
 const MOST_FOLDERS_DEEP: usize = 16;
 
-/// Reads one model from files and folders, together with the files that it names beside itself. `sample:NAME` alone is a
-/// built-in character.
+/// Reads one model from files and folders, together with the files that it names beside itself, motions and a joint map.
+/// `sample:NAME` is a built-in character. A motion alone is shown as a model.
 pub fn open_paths(paths: &[PathBuf]) -> Result<Opened, OpenError> {
-    if let [path] = paths
-        && let Some(name) = path.to_str().and_then(|path| path.strip_prefix("sample:"))
-    {
-        let model = sample::load(name).ok_or_else(|| OpenError::NoSuchSample { name: format!("sample:{name}") })?;
-        return Ok(Opened { files: vec![model.source.clone()], model });
+    let (set, samples, origins) = read(paths)?;
+    open_set(&set, samples, &origins, Role::Model)
+}
+
+/// The bytes behind paths, as they are: for whoever writes a file anew from them.
+pub fn read_set(paths: &[PathBuf]) -> Result<FileSet, OpenError> {
+    Ok(read(paths)?.0)
+}
+
+/// A model from files in memory, as they are dropped onto the window.
+pub fn open_bytes(files: &FileSet, source: String) -> Result<Opened, OpenError> {
+    open_set(files, Vec::new(), &Origins { other: source, ..Origins::default() }, Role::Model)
+}
+
+/// Reads whatever the files are: a model, motions, a joint map, or several of these.
+pub fn read_paths(paths: &[PathBuf], role: Role) -> Result<Contents, OpenError> {
+    let (set, samples, origins) = read(paths)?;
+    contents(&set, samples, &origins, role)
+}
+
+fn open_set(set: &FileSet, samples: Vec<Model>, origins: &Origins, role: Role) -> Result<Opened, OpenError> {
+    let has_sample = !samples.is_empty();
+    let contents = contents(set, samples, origins, role)?;
+    let model = contents.model.ok_or_else(|| SortError::NoModel { found: set.names().map(str::to_owned).collect() })?;
+    let mut files: Vec<String> = set.names().map(str::to_owned).collect();
+    if has_sample {
+        files.insert(0, model.source.clone());
     }
+    let Contents { motions, motion_sources, map, .. } = contents;
+    Ok(Opened { model, motions: motions.unwrap_or_default(), motion_sources, map, files })
+}
+
+fn contents(set: &FileSet, samples: Vec<Model>, origins: &Origins, role: Role) -> Result<Contents, OpenError> {
+    // Files beside a sample that is the model are what it borrows from, whatever they hold.
+    let role = if samples.is_empty() || role == Role::Motion { role } else { Role::Any };
+    let sorted = if set.is_empty() && !samples.is_empty() { Default::default() } else { sort(set, role)? };
+    let model = sorted.model.map(|(name, mut asset)| {
+        let images = decode_images(&mut asset);
+        Model::new(origins.of(&name).to_owned(), asset, images)
+    });
+    let (mut motions, mut motion_sources) =
+        origins.motions(sorted.motions, model.as_ref().or(samples.first()).map(|model| model.source.as_str()));
+    let mut models: Vec<Model> = Vec::new();
+    for sample in samples {
+        if role == Role::Motion {
+            motion_sources.push(sample.source.clone());
+            motions.push(Motion::new(sample.source, sample.asset));
+        } else {
+            models.push(sample);
+        }
+    }
+    models.extend(model);
+    if models.len() > 1 {
+        let found = models.iter().map(|model| model.source.clone()).collect();
+        return Err(SortError::SeveralModels { found }.into());
+    }
+    Ok(Contents {
+        model: models.pop(),
+        motions: (!motions.is_empty()).then_some(motions),
+        motion_sources,
+        map: sorted.map,
+        problems: Vec::new(),
+    })
+}
+
+/// All files that the paths stand for, with what they name beside themselves; and the samples among the paths.
+fn read(paths: &[PathBuf]) -> Result<(FileSet, Vec<Model>, Origins), OpenError> {
     let mut reader = Reader::default();
+    let mut samples = Vec::new();
+    let mut origins = Origins::default();
     for path in paths {
-        reader.add(path)?;
+        if let Some(name) = path.to_str().and_then(|path| path.strip_prefix("sample:")) {
+            let missing = || OpenError::NoSuchSample { name: format!("sample:{name}") };
+            samples.push(sample::load(name).ok_or_else(missing)?);
+        } else if let Some(name) = reader.add(path)? {
+            origins.known.push((name.clone(), name));
+        }
     }
+    origins.other = paths.iter().find_map(|path| path.file_name()).map_or_else(String::new, lossy);
     // A sidecar may name others in turn, as a .gltf inside a folder does: look again until nothing new turns up.
     let mut missing = missing_files(&reader.set);
     while reader.add_beside(&missing)? {
         missing = missing_files(&reader.set);
     }
-    let source = paths.iter().find_map(|path| path.file_name()).map_or_else(String::new, lossy);
-    open_bytes(&reader.set, source)
-}
-
-/// A model from files in memory, as they are dropped onto the window.
-pub fn open_bytes(files: &FileSet, source: String) -> Result<Opened, OpenError> {
-    let mut asset = load(files)?;
-    let images = decode_images(&mut asset);
-    let files = files.names().map(str::to_owned).collect();
-    Ok(Opened { model: Model::new(source, asset, images), files })
+    Ok((reader.set, samples, origins))
 }
 
 #[derive(Default)]
@@ -71,18 +137,20 @@ struct Reader {
 }
 
 impl Reader {
-    fn add(&mut self, path: &Path) -> Result<(), OpenError> {
+    /// The name in the set, unless the path is a folder.
+    fn add(&mut self, path: &Path) -> Result<Option<String>, OpenError> {
         let folder = if path.is_dir() { path } else { path.parent().unwrap_or(Path::new("")) };
         if !self.folders.iter().any(|other| other == folder) {
             self.folders.push(folder.to_owned());
         }
         if path.is_dir() {
-            return self.add_folder(path, path, 0);
+            return self.add_folder(path, path, 0).map(|()| None);
         }
         let name = path.file_name().map_or_else(String::new, lossy);
         // Two files of the same name from two folders: the second keeps its path.
         let name = if self.set.get(&name).is_some() { slashed(path) } else { name };
-        self.read(path, name)
+        self.read(path, name.clone())?;
+        Ok(Some(name))
     }
 
     fn add_folder(&mut self, root: &Path, folder: &Path, depth: usize) -> Result<(), OpenError> {

@@ -1,15 +1,18 @@
-//! Getting at bytes: disk, drop, picker, network; and decoding images. Produces [`crate::library::Model`]s.
+//! Getting at bytes: disk, drop, picker, network; sorting files by what they are; decoding images. Produces
+//! [`crate::library::Model`]s and [`crate::library::Motion`]s.
 
 #[cfg(not(target_arch = "wasm32"))]
 mod decode;
 #[cfg(not(target_arch = "wasm32"))]
 mod disk;
+mod sort;
 #[cfg(target_arch = "wasm32")]
 mod web;
 
 #[cfg(not(target_arch = "wasm32"))]
 pub use decode::decode_images;
 #[cfg(not(target_arch = "wasm32"))]
-pub use disk::{OpenError, Opened, open_bytes, open_paths};
+pub use disk::{OpenError, Opened, open_bytes, open_paths, read_paths, read_set};
+pub use sort::{Contents, Role, SortError, Sorted, read_map, sort};
 #[cfg(target_arch = "wasm32")]
-pub use web::{Item, OpenError, decode_images, open_items};
+pub use web::{Item, OpenError, decode_images, open_items, open_view};

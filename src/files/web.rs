@@ -5,9 +5,12 @@ use js_sys::{Array, Reflect, Uint8Array};
 use wasm_bindgen::{JsCast, JsValue};
 use wasm_bindgen_futures::JsFuture;
 
+use super::sort::Origins;
+use super::{Contents, Role, SortError, read_map, sort};
 use crate::asset::{Asset, Image, Warning};
-use crate::formats::{FileSet, LoadError, load, missing_files};
-use crate::library::{ImageData, Model, sample};
+use crate::formats::{FileSet, missing_files};
+use crate::library::{ImageData, Model, Motion, sample};
+use crate::state::{MotionMap, ViewerState};
 
 /// What is to be opened: one part of a set.
 #[derive(Debug)]
@@ -39,7 +42,7 @@ pub enum OpenError {
     #[error("{name}: more than {most} bytes together, which a browser cannot hold; try the window (`gaitway FILE`)")]
     TooLarge { name: String, most: u64 },
     #[error(transparent)]
-    Load(#[from] LoadError),
+    Files(#[from] SortError),
 }
 
 fn hint(status: u16) -> &'static str {
@@ -57,14 +60,14 @@ const MOST_PIXELS_ACROSS: u32 = 16_384;
 const MOST_ROUNDS: usize = 4;
 
 /// Opens one set. `progress` is told the name of the file on its way, the bytes received, and the total (0: not known).
-pub async fn open_items(items: Vec<Item>, progress: &dyn Fn(&str, u64, u64)) -> Result<Model, OpenError> {
-    if let [Item::Url(url)] = items.as_slice()
-        && let Some(name) = url.strip_prefix("sample:")
-    {
-        return sample::load(name).ok_or_else(|| OpenError::NoSuchSample { name: name.to_owned() });
-    }
-    let source = source_of(&items).ok_or(OpenError::Nothing)?;
+pub async fn open_items(
+    items: Vec<Item>,
+    role: Role,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<Contents, OpenError> {
+    let mut origins = Origins { other: source_of(&items).ok_or(OpenError::Nothing)?, ..Origins::default() };
     let mut set = FileSet::default();
+    let mut samples: Vec<Model> = Vec::new();
     let mut bases = Vec::new();
     let mut bytes_left = MOST_BYTES;
     for item in items {
@@ -72,27 +75,107 @@ pub async fn open_items(items: Vec<Item>, progress: &dyn Fn(&str, u64, u64)) -> 
             Item::File(name, bytes) => {
                 let too_large = || OpenError::TooLarge { name: name.clone(), most: MOST_BYTES };
                 bytes_left = bytes_left.checked_sub(bytes.len() as u64).ok_or_else(too_large)?;
+                origins.known.push((name.clone(), name.clone()));
                 set.insert(name, bytes);
             }
             Item::Url(url) => {
+                if let Some(name) = url.strip_prefix("sample:") {
+                    let missing = || OpenError::NoSuchSample { name: name.to_owned() };
+                    samples.push(sample::load(name).ok_or_else(missing)?);
+                    continue;
+                }
                 let base = absolute(&url, None).ok_or_else(|| OpenError::NotAnAddress { url: url.clone() })?;
                 let name = file_name(&base);
                 let name = if set.get(&name).is_some() { url.clone() } else { name };
                 let bytes = fetch(&base, &name, &mut bytes_left, progress).await?;
+                origins.known.push((name.clone(), url));
+                origins.are_addresses = true;
                 set.insert(name, bytes);
                 bases.push(base);
             }
         }
     }
     fetch_beside(&mut set, &bases, &mut bytes_left, progress).await?;
-    let mut asset = load(&set)?;
-    let images = decode_images(&mut asset).await;
-    Ok(Model::new(source, asset, images))
+    // Files beside a sample that is the model are what it borrows from, whatever they hold.
+    let role = if samples.is_empty() || role == Role::Motion { role } else { Role::Any };
+    let sorted = if set.is_empty() && !samples.is_empty() { Default::default() } else { sort(&set, role)? };
+    let mut models: Vec<Model> = Vec::new();
+    if let Some((name, mut asset)) = sorted.model {
+        let images = decode_images(&mut asset).await;
+        models.push(Model::new(origins.of(&name).to_owned(), asset, images));
+    }
+    let model_source = models.first().or(samples.first()).filter(|_| role != Role::Motion);
+    let (mut motions, mut motion_sources) =
+        origins.motions(sorted.motions, model_source.map(|model| model.source.as_str()));
+    for sample in samples {
+        if role == Role::Motion {
+            motion_sources.push(sample.source.clone());
+            motions.push(Motion::new(sample.source, sample.asset));
+        } else {
+            models.push(sample);
+        }
+    }
+    if models.len() > 1 {
+        let found = models.iter().map(|model| model.source.clone()).collect();
+        return Err(SortError::SeveralModels { found }.into());
+    }
+    Ok(Contents {
+        model: models.pop(),
+        motions: (!motions.is_empty()).then_some(motions),
+        motion_sources,
+        map: sorted.map,
+        problems: Vec::new(),
+    })
+}
+
+/// Opens all that a view lists; its model only if asked for. A motion or a map that cannot be had is a problem in the
+/// answer. Addresses of maps in the view are replaced by what they hold.
+pub async fn open_view(
+    state: &mut ViewerState,
+    with_model: bool,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<Contents, OpenError> {
+    let mut contents = Contents::default();
+    if with_model {
+        let items = state.model.iter().map(|model| Item::Url(model.clone())).collect();
+        contents = open_items(items, Role::Model, progress).await?;
+    }
+    let mut motions = contents.motions.take().unwrap_or_default();
+    for motion in &state.motion {
+        match open_items(vec![Item::Url(motion.clone())], Role::Motion, progress).await {
+            Ok(found) => {
+                motions.extend(found.motions.unwrap_or_default());
+                contents.map = contents.map.or(found.map);
+            }
+            Err(error) => contents.problems.push(error.to_string()),
+        }
+    }
+    contents.motions = Some(motions);
+    contents.motion_sources = state.motion.clone();
+    let mut maps = Vec::new();
+    for map in state.map.drain(..) {
+        match map {
+            MotionMap::File(url) => match fetch_map(&url, progress).await {
+                Ok(map) => maps.push(MotionMap::Names(map)),
+                Err(error) => contents.problems.push(error.to_string()),
+            },
+            map => maps.push(map),
+        }
+    }
+    state.map = maps;
+    Ok(contents)
+}
+
+async fn fetch_map(url: &str, progress: &dyn Fn(&str, u64, u64)) -> Result<crate::retarget::JointMap, OpenError> {
+    let address = absolute(url, None).ok_or_else(|| OpenError::NotAnAddress { url: url.to_owned() })?;
+    let name = file_name(&address);
+    let bytes = fetch(&address, &name, &mut MOST_BYTES.clone(), progress).await?;
+    Ok(read_map(&name, &bytes)?)
 }
 
 /// How the set is called in links and panels: after its model, else after its first part.
 fn source_of(items: &[Item]) -> Option<String> {
-    const MODELS: [&str; 4] = [".glb", ".gltf", ".vrm", ".zip"];
+    const MODELS: [&str; 6] = [".glb", ".gltf", ".vrm", ".vrma", ".bvh", ".zip"];
     let names = || {
         items.iter().map(|item| match item {
             Item::Url(name) | Item::File(name, _) => name,

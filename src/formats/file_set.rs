@@ -44,7 +44,7 @@ impl FileSet {
         self.files.is_empty()
     }
 
-    pub(super) fn iter(&self) -> impl Iterator<Item = (&str, &Arc<[u8]>)> {
+    pub fn iter(&self) -> impl Iterator<Item = (&str, &Arc<[u8]>)> {
         self.files.iter().map(|(name, bytes)| (name.as_str(), bytes))
     }
 
@@ -66,7 +66,7 @@ impl FileSet {
     }
 
     /// The set with every .zip replaced by what is in it. Sizes are bounded while unpacking: headers can lie.
-    pub(super) fn unpacked(&self) -> Result<FileSet, LoadError> {
+    pub fn unpacked(&self) -> Result<FileSet, LoadError> {
         let mut unpacked = FileSet::default();
         let mut budget = MAX_ARCHIVE_BYTES;
         for (name, bytes) in &self.files {

@@ -13,6 +13,9 @@ pub fn inspect(model: &Model, files: &[String]) -> Value {
     let primitives = || asset.meshes.iter().flat_map(|mesh| &mesh.primitives);
     let skins: Vec<Value> =
         asset.skins.iter().map(|skin| json!({ "name": skin.name(), "joints": skin.joints().len() })).collect();
+    let borrowed: Vec<Value> = (asset.clips.len()..model.clip_count())
+        .filter_map(|index| Some(clip_document(index, model.clip(index)?)))
+        .collect();
     let clips: Vec<Value> = asset.clips.iter().enumerate().map(|(index, clip)| clip_document(index, clip)).collect();
     json!({
         "files": files,
@@ -27,6 +30,7 @@ pub fn inspect(model: &Model, files: &[String]) -> Value {
         "triangles": primitives().map(Geometry::triangles).sum::<usize>(),
         "morph_targets": asset.meshes.iter().map(target_count).sum::<usize>(),
         "clips": clips,
+        "borrowed_clips": borrowed,
         "cameras": asset.cameras.len(),
         "extensions_used": asset.extensions_used,
         "extensions_required": asset.extensions_required,

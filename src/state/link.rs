@@ -11,7 +11,7 @@ use super::{Background, CameraChoice, ClipChoice, OrbitCamera, Show, UpAxis, Vie
 use super::{MotionMap, map_code};
 use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
-use crate::retarget::{ClipRef, Feet, RootOptions, RootPart, Unmapped};
+use crate::retarget::{ClipRef, Feet, JointMap, RootOptions, RootPart, Unmapped};
 
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum LinkError {
@@ -396,7 +396,7 @@ fn map_text(map: &MotionMap) -> String {
 /// The compact form, JSON, or an address.
 fn read_map(text: &str) -> Option<MotionMap> {
     if text.starts_with('{') {
-        serde_json::from_str(text).ok().map(MotionMap::Names)
+        JointMap::from_json(text).ok().map(MotionMap::Names)
     } else if text.starts_with(map_code::MARK) {
         map_code::decode(text).map(MotionMap::Numbers)
     } else {

@@ -32,11 +32,19 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
                 out.commands.push(Command::SetClip(ClipChoice::RestPose));
             }
         }
+        let mut heading = None;
         for (index, title) in titles.iter().enumerate() {
             if !title.to_lowercase().contains(&wanted) {
                 continue;
             }
             found = true;
+            let motion = model.borrowed(index).map(|borrowed| borrowed.motion);
+            if motion != heading
+                && let Some(motion) = motion.and_then(|motion| shown.library.motions().get(motion))
+            {
+                motion_heading(ui, &short_name(&motion.source));
+            }
+            heading = motion;
             let duration = model.clip(index).map_or(0.0, |clip| clip.duration_secs());
             let row = controls::list_row(ui, title, &format!("{duration:.2} s"), chosen == Some(index));
             if row.clicked() {
@@ -47,9 +55,21 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
             controls::hint(ui, format!("No clip's name contains “{}”.", local.clip_search));
         } else if titles.is_empty() {
             ui.add_space(4.0);
-            controls::hint(ui, "This file has no animation. It is shown as it rests.");
+            controls::hint(
+                ui,
+                "This file has no animation. Drop a motion to borrow one: .bvh, .vrma or another model's clips.",
+            );
         }
     });
+}
+
+/// Whose clips follow.
+fn motion_heading(ui: &mut Ui, name: &str) {
+    ui.add_space(8.0);
+    let weak = style::palette(ui).weak_text;
+    let text = RichText::new(format!("From {name}")).small().color(weak);
+    ui.add(egui::Label::new(text).truncate());
+    ui.add_space(1.0);
 }
 
 fn header(ui: &mut Ui, model: &Model, out: &mut Output) {
@@ -62,6 +82,10 @@ fn header(ui: &mut Ui, model: &Model, out: &mut Output) {
         let open = egui::Button::new("Open…").min_size(egui::vec2(76.0, 32.0));
         if ui.add(open).on_hover_text("Open a model; files can also be dropped anywhere").clicked() {
             out.actions.push(UiAction::OpenFiles);
+        }
+        let motion = egui::Button::new("Motion…").min_size(egui::vec2(76.0, 32.0));
+        if ui.add(motion).on_hover_text("Borrow motion from another file, or load a joint map").clicked() {
+            out.actions.push(UiAction::ChooseMotion);
         }
         if icon_button(ui, Icon::Link, "Copy a link to this view", false).clicked() {
             out.actions.push(UiAction::CopyLink);
@@ -80,6 +104,11 @@ fn name_and_place(source: &str) -> (String, String) {
         None if source.is_empty() => ("Untitled".to_owned(), String::new()),
         None => (source.to_owned(), "Opened from this computer".to_owned()),
     }
+}
+
+/// What a file is called without the place where it lies.
+pub fn short_name(source: &str) -> String {
+    name_and_place(source).0
 }
 
 /// A search field that can be emptied.

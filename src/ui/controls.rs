@@ -199,7 +199,16 @@ pub fn list_row(ui: &mut Ui, name: &str, right: &str, chosen: bool) -> Response 
 
 /// One line of text in a box, cut with an ellipsis where it does not fit.
 pub fn elided(ui: &Ui, rect: Rect, text: &str, color: Color32) {
-    let font = egui::TextStyle::Body.resolve(ui.style());
+    elided_in(ui, rect, text, color, egui::TextStyle::Body);
+}
+
+/// As [`elided`], in small print.
+pub fn elided_small(ui: &Ui, rect: Rect, text: &str, color: Color32) {
+    elided_in(ui, rect, text, color, egui::TextStyle::Small);
+}
+
+fn elided_in(ui: &Ui, rect: Rect, text: &str, color: Color32, style: egui::TextStyle) {
+    let font = style.resolve(ui.style());
     let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), font, color);
     job.wrap = egui::text::TextWrapping::truncate_at_width(rect.width().max(0.0));
     let galley = ui.painter().layout_job(job);

@@ -2,7 +2,7 @@
 
 use egui::{ScrollArea, Ui};
 
-use super::{Output, Shown, UiState, controls, display, report, scene_tree, view_options};
+use super::{Output, Shown, UiState, controls, display, motion, report, scene_tree, view_options};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tab {
@@ -10,10 +10,16 @@ pub enum Tab {
     Display,
     File,
     View,
+    Motion,
 }
 
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
-    let tabs = [(Tab::Scene, "Scene"), (Tab::Display, "Display"), (Tab::File, "File"), (Tab::View, "View")];
+    let mut tabs = vec![(Tab::Scene, "Scene"), (Tab::Display, "Display"), (Tab::File, "File"), (Tab::View, "View")];
+    if !shown.library.motions().is_empty() {
+        tabs.push((Tab::Motion, "Motion"));
+    } else if local.tab == Tab::Motion {
+        local.tab = Tab::Scene;
+    }
     if let Some(tab) = controls::segmented(ui, Some(local.tab), &tabs) {
         local.tab = tab;
     }
@@ -23,6 +29,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
         Tab::Scene => scene_tree::show(ui, shown, local, out),
         Tab::Display => scrolled(ui, "display", |ui| display::show(ui, shown, out)),
         Tab::File => scrolled(ui, "file", |ui| report::show(ui, shown)),
+        Tab::Motion => motion::show(ui, shown, local, out),
         Tab::View => scrolled(ui, "view", |ui| view_options::show(ui, shown, local.aspect, out)),
     }
 }

@@ -121,6 +121,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
                 local.sheet = None;
             } else if local.error.is_some() {
                 local.error = None;
+                local.motion_refused = false;
             } else if shown.state.joint.is_some() {
                 out.commands.push(Command::SelectJoint(None));
             }
@@ -130,7 +131,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
 
 /// Listens, unless someone is typing or a control has the keyboard.
 pub(super) fn listen(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
-    if context.egui_wants_keyboard_input() || local.path_prompt.is_some() {
+    if context.egui_wants_keyboard_input() || local.path_prompt.is_some() || local.motion.is_picking() {
         return;
     }
     let undo = egui::KeyboardShortcut::new(Modifiers::COMMAND, Key::Z);

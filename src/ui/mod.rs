@@ -7,6 +7,7 @@ mod display;
 mod icons;
 mod inspector;
 mod keys;
+mod motion;
 mod overlays;
 mod picture;
 mod report;
@@ -25,6 +26,7 @@ use crate::frame::Frame;
 use crate::library::{Library, ModelId};
 use crate::state::{Command, ViewerState, active_clip, clip_secs};
 
+pub use clips::short_name;
 pub use inspector::Tab;
 pub use keys::{KEY_TABLE, KeyHelp};
 pub use overlays::overlays;
@@ -79,9 +81,11 @@ pub struct UiState {
     pub help_open: bool,
     /// Shown until dismissed.
     pub error: Option<String>,
+    /// The error is about motions that were refused: what else can be done with them is offered.
+    pub motion_refused: bool,
     pub progress: Option<Progress>,
     /// Asks for a path, where the platform has no way to choose files: what has been typed so far.
-    pub path_prompt: Option<String>,
+    pub path_prompt: Option<PathPrompt>,
     /// The playhead is held: time stands still meanwhile.
     pub scrubbing: bool,
     /// The joint under the pointer, as the file numbers it.
@@ -92,6 +96,7 @@ pub struct UiState {
     pub toast: Option<Toast>,
     /// The help was open in the last pass already.
     help_shown: bool,
+    motion: motion::MotionTab,
     key_marks: scrub::KeyMarks,
     /// Joints whose children are folded away, as the file numbers them, and the model they belong to.
     folded: HashSet<usize>,
@@ -111,6 +116,7 @@ impl Default for UiState {
             joint_search: String::new(),
             help_open: false,
             error: None,
+            motion_refused: false,
             progress: None,
             path_prompt: None,
             scrubbing: false,
@@ -118,6 +124,7 @@ impl Default for UiState {
             aspect: 1.6,
             toast: None,
             help_shown: false,
+            motion: Default::default(),
             key_marks: scrub::KeyMarks::default(),
             folded: HashSet::new(),
             folded_of: None,
@@ -139,6 +146,20 @@ pub struct Progress {
     pub fraction: Option<f32>,
 }
 
+/// A path that is being typed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PathPrompt {
+    pub purpose: PathPurpose,
+    pub path: String,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PathPurpose {
+    Open,
+    OpenMotion,
+    SaveMap { motion: usize },
+}
+
 #[derive(Debug, Clone, PartialEq)]
 pub struct Toast {
     pub text: String,
@@ -158,8 +179,21 @@ pub struct Output {
 pub enum UiAction {
     /// Let the person choose files.
     OpenFiles,
-    /// Open what was typed into [`UiState::path_prompt`].
-    OpenPath(String),
+    /// Let the person choose files to borrow motion from, or a joint map.
+    ChooseMotion,
+    /// Do what the prompt was for with what was typed into it.
+    UsePath(PathPurpose, String),
+    /// Give the person the joint map for a motion as a file.
+    SaveMap {
+        motion: usize,
+    },
+    /// Borrow nothing any more.
+    RemoveMotions,
+    /// Show the skeleton of a motion by itself instead of the model.
+    ShowMotionAlone(usize),
+    /// What is offered for motions that were refused.
+    ShowRefusedAlone,
+    MapRefusedByHand,
     /// Put a link to this view on the clipboard.
     CopyLink,
     Undo,

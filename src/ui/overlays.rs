@@ -3,7 +3,10 @@
 use egui::{Align, Align2, Area, Color32, Context, Id, Layout, Order, Rect, RichText, Stroke, Ui, pos2, vec2};
 
 use super::icons::{Icon, icon_button};
-use super::{KEY_TABLE, Output, Sheet, Shown, UiAction, UiState, clips, inspector, is_narrow, style};
+use super::{
+    KEY_TABLE, Output, PathPrompt, PathPurpose, Sheet, Shown, UiAction, UiState, clips, inspector, is_narrow, motion,
+    style,
+};
 
 /// Call last; `picture` is the rectangle the picture has.
 pub fn overlays(ui: &mut Ui, picture: Rect, shown: Shown<'_>, local: &mut UiState, out: &mut Output) {
@@ -12,7 +15,7 @@ pub fn overlays(ui: &mut Ui, picture: Rect, shown: Shown<'_>, local: &mut UiStat
     } else {
         local.sheet = None;
     }
-    notices(ui, picture, local);
+    notices(ui, picture, local, out);
     // Shown from the next pass on: the press that opened it would count as one beside it, which closes it.
     if local.help_open && local.help_shown {
         help(ui.ctx(), local);
@@ -21,6 +24,7 @@ pub fn overlays(ui: &mut Ui, picture: Rect, shown: Shown<'_>, local: &mut UiStat
     }
     local.help_shown = local.help_open;
     path_prompt(ui.ctx(), local, out);
+    motion::picker(ui.ctx(), &shown, local, out);
     if ui.input(|input| !input.raw.hovered_files.is_empty()) {
         drop_target(ui);
     }
@@ -59,7 +63,7 @@ fn sheet(ui: &mut Ui, picture: Rect, shown: &Shown<'_>, local: &mut UiState, out
 }
 
 /// Progress, errors and short messages, at the bottom of the picture.
-fn notices(ui: &mut Ui, picture: Rect, local: &mut UiState) {
+fn notices(ui: &mut Ui, picture: Rect, local: &mut UiState, out: &mut Output) {
     let now_secs = ui.input(|input| input.time);
     if let Some(toast) = &local.toast {
         let left_secs = toast.until_secs - now_secs;
@@ -96,18 +100,40 @@ fn notices(ui: &mut Ui, picture: Rect, local: &mut UiState) {
                 ui.with_layout(Layout::right_to_left(Align::Min), |ui| {
                     if icon_button(ui, Icon::Close, "Dismiss the error", false).clicked() {
                         local.error = None;
+                        local.motion_refused = false;
                     }
                     ui.with_layout(Layout::top_down(Align::Min), |ui| {
                         ui.label(RichText::new("That did not work").strong().color(palette.error));
                         egui::ScrollArea::vertical().max_height(180.0).show(ui, |ui| {
                             ui.add(egui::Label::new(error).wrap().selectable(true));
                         });
+                        if local.motion_refused {
+                            refused_offers(ui, local, out);
+                        }
                     });
                 });
             });
         }
         if let Some(toast) = &local.toast {
             notice(ui, palette.line, |ui| ui.label(&toast.text));
+        }
+    });
+}
+
+/// What else can be done with motions that do not fit.
+fn refused_offers(ui: &mut Ui, local: &mut UiState, out: &mut Output) {
+    ui.add_space(4.0);
+    ui.horizontal_wrapped(|ui| {
+        let offers = [
+            ("Show its own skeleton", UiAction::ShowRefusedAlone),
+            ("Choose joints by hand", UiAction::MapRefusedByHand),
+        ];
+        for (label, action) in offers {
+            if ui.button(label).clicked() {
+                out.actions.push(action);
+                local.error = None;
+                local.motion_refused = false;
+            }
         }
     });
 }
@@ -123,7 +149,7 @@ fn notice<R>(ui: &mut Ui, line: Color32, contents: impl FnOnce(&mut Ui) -> R) {
         .show(ui, contents);
 }
 
-fn modal(name: &str, context: &Context) -> egui::Modal {
+pub(super) fn modal(name: &str, context: &Context) -> egui::Modal {
     let frame = egui::Frame::window(&context.global_style()).inner_margin(egui::Margin::same(18));
     egui::Modal::new(Id::unique(name)).frame(frame)
 }
@@ -166,14 +192,19 @@ fn help(context: &Context, local: &mut UiState) {
 }
 
 fn path_prompt(context: &Context, local: &mut UiState, out: &mut Output) {
-    let Some(path) = &mut local.path_prompt else { return };
+    let Some(PathPrompt { purpose, path }) = &mut local.path_prompt else { return };
+    let (title, hint, button) = match purpose {
+        PathPurpose::Open => ("Open a file", "Path of a .glb, .gltf, .bvh, .zip or folder", "Open"),
+        PathPurpose::OpenMotion => ("Borrow motion", "Path of a .bvh, .glb, .vrma or joint map .json", "Open"),
+        PathPurpose::SaveMap { .. } => ("Save the joint map", "Path of the file to write", "Save"),
+    };
     let mut done = false;
     let modal = modal("path prompt", context).show(context, |ui| {
         ui.set_width((ui.ctx().content_rect().width() - 64.0).min(460.0));
-        ui.heading("Open a file");
+        ui.heading(title);
         ui.add_space(4.0);
         let field = egui::TextEdit::singleline(path)
-            .hint_text("Path of a .glb, .gltf, .zip or folder")
+            .hint_text(hint)
             .margin(egui::Margin::symmetric(10, 6))
             .desired_width(f32::INFINITY);
         let field = ui.add(field).accessible_name("Path");
@@ -181,12 +212,14 @@ fn path_prompt(context: &Context, local: &mut UiState, out: &mut Output) {
         if !field.has_focus() && !entered {
             field.request_focus();
         }
-        super::controls::hint(ui, "Files can also be dropped anywhere on the window.");
+        if !matches!(purpose, PathPurpose::SaveMap { .. }) {
+            super::controls::hint(ui, "Files can also be dropped anywhere on the window.");
+        }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let filled = !path.trim().is_empty();
-            let open = ui.add_enabled(filled, egui::Button::new("Open"));
-            if filled && (open.clicked() || entered) {
-                out.actions.push(UiAction::OpenPath(path.trim().to_owned()));
+            let go = ui.add_enabled(filled, egui::Button::new(button));
+            if filled && (go.clicked() || entered) {
+                out.actions.push(UiAction::UsePath(*purpose, path.trim().to_owned()));
                 done = true;
             }
             done |= ui.button("Cancel").clicked();
@@ -207,7 +240,7 @@ fn drop_target(ui: &Ui) {
     painter.extend(egui::Shape::dashed_line(&corners, Stroke::new(2.0, palette.accent), 10.0, 8.0));
     let center = whole.center();
     painter.text(center, Align2::CENTER_BOTTOM, "Drop to open", egui::FontId::proportional(28.0), palette.text);
-    let below = "A .glb, a .gltf with its files, a folder or a .zip";
+    let below = "A model with its files, motions for it, a folder or a .zip";
     let at = center + vec2(0.0, 10.0);
     painter.text(at, Align2::CENTER_TOP, below, egui::FontId::proportional(15.0), palette.weak_text);
 }

@@ -23,14 +23,16 @@ pub enum Scrubbed {
 /// Where the keys of a clip lie, thinned to what can be told apart at the bar's width; kept from frame to frame.
 #[derive(Debug, Default)]
 pub struct KeyMarks {
-    of: Option<(ModelId, usize, u32)>,
+    of: Option<(ModelId, usize, u32, u32, usize)>,
     /// From 0 (start) to 1 (end).
     positions: Vec<f32>,
 }
 
 impl KeyMarks {
     fn refresh(&mut self, clip: &Clip, of: (ModelId, usize), width: f32) {
-        let of = (of.0, of.1, width as u32);
+        // A borrowed clip may become another one under the same number.
+        let keys = clip.timelines().iter().map(|times| times.len()).sum();
+        let of = (of.0, of.1, width as u32, clip.duration_secs().to_bits(), keys);
         if self.of == Some(of) {
             return;
         }

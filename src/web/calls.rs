@@ -8,18 +8,22 @@ use wasm_bindgen::prelude::*;
 
 use super::page::{Page, page, state_of_link};
 use crate::app::{App, Message, Opening, Reply, ScriptCall};
-use crate::files::{Item, open_items};
+use crate::files::{Contents, Item, OpenError, Role, open_items, open_view};
 use crate::frame::pose_document;
 use crate::library::sample;
-use crate::state::{Command, ViewerState, active_clip, from_object, to_object};
+use crate::state::{Command, MotionMap, ViewerState, active_clip, from_object, to_object};
 
-/// Opens one set instead of what is shown: an array of addresses and of `[name, Uint8Array]`. Resolves to the inspect
-/// document once it is on the screen; what is shown stays when that fails.
+/// Opens one set: an array of addresses and of `[name, Uint8Array]`. A model takes the place of what is shown; motions and
+/// joint maps are used for it. With the role `motion` everything is borrowed from, models too. Resolves to
+/// `{shown, document}` once it is on the screen: which of `model`, `motion` and `map` it was, and the inspect document.
+/// What is shown stays when that fails.
 #[wasm_bindgen]
-pub async fn open(items: Array) -> Result<String, JsError> {
+pub async fn open(items: Array, role: Option<String>) -> Result<String, JsError> {
     let page = page().map_err(error)?;
     let items = items_of(&items).map_err(error)?;
-    show(&page, items, None).await.map(|document| document.to_string()).map_err(error)
+    let role = if role.as_deref() == Some("motion") { Role::Motion } else { Role::Any };
+    let (shown, document) = show(&page, What::Items(items, role)).await.map_err(error)?;
+    Ok(json!({ "shown": shown, "document": document }).to_string())
 }
 
 /// Takes over another part after `#`, with its model when that is another one.
@@ -40,7 +44,7 @@ pub async fn apply(partial: String) -> Result<(), JsError> {
     let partial: Value = serde_json::from_str(&partial).map_err(|problem| error(problem.to_string()))?;
     let before = with_app(&page, |app| app.state().clone()).map_err(error)?;
     let (mut state, errors) = from_object(&before, &partial);
-    if !errors.is_empty() || state.model == before.model {
+    if !errors.is_empty() || !needs_files(&before, &state) {
         let (promise, reply) = promise::<()>(|()| JsValue::UNDEFINED);
         page.inbox.send(Message::Script(ScriptCall::Apply(partial, reply)));
         return settled(promise).await.map(|_| ()).map_err(error);
@@ -93,18 +97,33 @@ pub fn summary() -> Result<String, JsError> {
     with_app(&page, summary).map_err(error)
 }
 
-/// Shows a state, with its model when that is another one than what is shown.
+/// Whether files have to be read before `state` can be shown instead of `before`.
+fn needs_files(before: &ViewerState, state: &ViewerState) -> bool {
+    let has_map_file = || state.map.iter().any(|map| matches!(map, MotionMap::File(_)));
+    state.model != before.model || state.motion != before.motion || has_map_file()
+}
+
+/// Shows a state, with its files where they are others than those shown.
 async fn take_over(page: &Rc<Page>, state: ViewerState) -> Result<(), String> {
-    if with_app(page, |app| app.state().model == state.model)? {
+    let before = with_app(page, |app| app.state().clone())?;
+    if !needs_files(&before, &state) {
         page.inbox.send(Message::Commands(vec![Command::Replace(Box::new(state))]));
         return Ok(());
     }
-    let items = state.model.iter().map(|model| Item::Url(model.clone())).collect();
-    show(page, items, Some(Box::new(state))).await.map(|_| ())
+    let with_model = state.model != before.model;
+    show(page, What::View(Box::new(state), with_model)).await.map(|_| ())
 }
 
-/// Loads and shows one set; without a state the present one is kept as far as it fits. Gives the inspect document.
-async fn show(page: &Rc<Page>, items: Vec<Item>, state: Option<Box<ViewerState>>) -> Result<Value, String> {
+/// What is to be opened.
+enum What {
+    /// The present state is kept as far as it fits.
+    Items(Vec<Item>, Role),
+    /// A whole view, with its model or with the one that is shown.
+    View(Box<ViewerState>, bool),
+}
+
+/// Loads and shows; says which of model, motion and map it was, and gives the inspect document.
+async fn show(page: &Rc<Page>, what: What) -> Result<(&'static str, Value), String> {
     let load = page.loads.get() + 1;
     page.loads.set(load);
     let progress = |name: &str, received_bytes: u64, total_bytes: u64| {
@@ -113,18 +132,31 @@ async fn show(page: &Rc<Page>, items: Vec<Item>, state: Option<Box<ViewerState>>
             page.inbox.send(Message::OpenProgress(opening));
         }
     };
-    let opened = open_items(items, &progress).await.map_err(|error| error.to_string());
+    let opened: Result<(Contents, Option<Box<ViewerState>>), OpenError> = match what {
+        What::Items(items, role) => open_items(items, role, &progress).await.map(|contents| (contents, None)),
+        What::View(mut state, with_model) => {
+            open_view(&mut state, with_model, &progress).await.map(|contents| (contents, Some(state)))
+        }
+    };
     if page.loads.get() != load {
         return Err("something else was opened meanwhile".to_owned());
     }
     match opened {
-        Ok(model) => {
+        Ok((contents, state)) => {
+            let shown = match &contents {
+                Contents { model: Some(_), .. } => "model",
+                Contents { motions: Some(_), .. } => "motion",
+                _ => "map",
+            };
+            contents.problems.iter().for_each(|problem| page.shell.warn(problem));
             let (promise, reply) = promise::<Value>(|document| JsValue::from_str(&document.to_string()));
-            page.inbox.send(Message::Opened { model: Box::new(model), state, reply: Some(reply) });
+            page.inbox.send(Message::Opened { contents: Box::new(contents), state, reply: Some(reply) });
             let text = settled(promise).await?.as_string().unwrap_or_default();
-            serde_json::from_str(&text).map_err(|error| error.to_string())
+            let document = serde_json::from_str(&text).map_err(|error| error.to_string())?;
+            Ok((shown, document))
         }
         Err(problem) => {
+            let problem = problem.to_string();
             page.inbox.send(Message::OpenFailed(problem.clone()));
             Err(problem)
         }

@@ -7,8 +7,8 @@ use wasm_bindgen::prelude::*;
 
 use super::shell::{self, Shell};
 use crate::app::{App, Backend, Host, Inbox, set_fatal_hook, web_options};
-use crate::files::open_items;
-use crate::library::{Model, sample};
+use crate::files::{Contents, Role, open_items, open_view};
+use crate::library::sample;
 use crate::state::{ViewerState, from_link, to_link};
 
 /// One instance draws on one canvas.
@@ -36,7 +36,8 @@ pub fn start() {
     set_fatal_hook(shell::stopped);
 }
 
-/// Shows what the link says, or `items` (see [`super::calls::open`]) in the link's view; resolves when the first picture
+/// Shows what the link says, or `items` (see [`super::calls::open`]) in the link's view, borrowing from `motion_items` or
+/// what the link lists; resolves when the first picture
 /// is on its way. `renderer` is `webgpu`, `webgl2` or nothing. Rejects when no device is to be had; call again with a new
 /// canvas then.
 #[wasm_bindgen]
@@ -45,10 +46,12 @@ pub async fn run(
     renderer: Option<String>,
     link: String,
     items: Array,
+    motion_items: Array,
     shell: Shell,
 ) -> Result<(), JsError> {
     shell::keep(shell.clone());
-    let (model, state, problem) = first_model(&link, &items, &shell).await.map_err(|error| JsError::new(&error))?;
+    let first = first_contents(&link, &items, &motion_items, &shell).await;
+    let (contents, state, problem) = first.map_err(|error| JsError::new(&error))?;
     let backend = match renderer.as_deref() {
         Some("webgpu") => Some(Backend::WebGpu),
         Some("webgl2") => Some(Backend::WebGl2),
@@ -59,7 +62,7 @@ pub async fn run(
     let inbox_slot = made.clone();
     let host = Box::new(PageHost { shell: shell.clone() });
     let create: eframe::AppCreator<'static> = Box::new(move |cc| {
-        let app = App::new(cc, host, model, state, |inbox| *inbox_slot.borrow_mut() = Some(inbox))?;
+        let app = App::new(cc, host, contents, Some(state), |inbox| *inbox_slot.borrow_mut() = Some(inbox))?;
         Ok(Box::new(app))
     });
     runner.start(canvas, web_options(backend), create).await.map_err(|error| JsError::new(&text_of(&error)))?;
@@ -73,25 +76,52 @@ pub async fn run(
     Ok(())
 }
 
-/// What is shown first: the items, else the link's model, else the sample, which also stands in for what cannot be opened;
-/// the reason comes along.
-async fn first_model(link: &str, items: &Array, shell: &Shell) -> Result<(Model, ViewerState, Option<String>), String> {
+/// What is shown first: the items, else what the link lists, else the sample, which also stands in for what cannot be
+/// opened; the reason comes along.
+async fn first_contents(
+    link: &str,
+    items: &Array,
+    motion_items: &Array,
+    shell: &Shell,
+) -> Result<(Contents, ViewerState, Option<String>), String> {
     let mut state = state_of_link(link, shell);
-    let items = if items.length() > 0 {
-        super::calls::items_of(items)?
-    } else {
-        if state.model.is_empty() {
-            state.model.push(format!("sample:{}", sample::NAMES[0]));
-        }
-        state.model.iter().map(|model| crate::files::Item::Url(model.clone())).collect()
-    };
+    let items = super::calls::items_of(items)?;
+    let motion_items = super::calls::items_of(motion_items)?;
+    if state.model.is_empty() {
+        state.model.push(format!("sample:{}", sample::NAMES[0]));
+    }
     let progress = |name: &str, received: u64, total: u64| shell.progress(name, received as f64, total as f64);
-    match open_items(items, &progress).await {
-        Ok(model) => Ok((model, state, None)),
+    let listed = std::mem::take(&mut state.motion);
+    if motion_items.is_empty() {
+        state.motion.clone_from(&listed);
+    }
+    let opened = async {
+        let mut contents = open_view(&mut state, items.is_empty(), &progress).await?;
+        if !items.is_empty() {
+            let own = open_items(items, Role::Model, &progress).await?;
+            let motions = own.motions.into_iter().chain(contents.motions).flatten().collect();
+            contents = Contents { model: own.model, motions: Some(motions), ..contents };
+        }
+        if !motion_items.is_empty() {
+            match open_items(motion_items, Role::Motion, &progress).await {
+                Ok(found) => contents.motions.get_or_insert_default().extend(found.motions.into_iter().flatten()),
+                Err(error) => contents.problems.push(error.to_string()),
+            }
+        }
+        Ok(contents)
+    };
+    let opened: Result<Contents, crate::files::OpenError> = opened.await;
+    state.motion = listed;
+    match opened {
+        Ok(contents) => {
+            contents.problems.iter().for_each(|problem| shell.warn(problem));
+            Ok((contents, state, None))
+        }
         Err(error) => {
             let model = sample::load(sample::NAMES[0]).ok_or_else(|| error.to_string())?;
             let state = ViewerState { model: vec![model.source.clone()], ..ViewerState::default() };
-            Ok((model, calm(state), Some(error.to_string())))
+            let contents = Contents { model: Some(model), motions: Some(Vec::new()), ..Contents::default() };
+            Ok((contents, calm(state), Some(error.to_string())))
         }
     }
 }
@@ -132,9 +162,22 @@ struct PageHost {
 }
 
 impl Host for PageHost {
-    fn choose_files(&self, _inbox: &Inbox) -> bool {
-        self.shell.choose();
+    fn choose_files(&self, role: Role, _inbox: &Inbox) -> bool {
+        self.shell.choose(if role == Role::Motion { "motion" } else { "any" });
         true
+    }
+
+    fn save_file(&self, name: &str, bytes: &[u8]) -> bool {
+        self.shell.save(name, bytes);
+        true
+    }
+
+    fn motion_is_model(&self) {
+        self.shell.motion_is_model();
+    }
+
+    fn motions_removed(&self) {
+        self.shell.motions_removed();
     }
 
     /// The shell takes every drop before the canvas sees it, since it keeps the files and reads folders.

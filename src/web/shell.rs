@@ -10,9 +10,21 @@ extern "C" {
     #[derive(Clone)]
     pub type Shell;
 
-    /// Shows the dialog in which files are chosen.
+    /// Shows the dialog in which files are chosen: `any`, or `motion` for files to borrow from.
     #[wasm_bindgen(method)]
-    pub fn choose(this: &Shell);
+    pub fn choose(this: &Shell, role: &str);
+
+    /// Gives the person a file, as a download.
+    #[wasm_bindgen(method)]
+    pub fn save(this: &Shell, name: &str, bytes: &[u8]);
+
+    /// The files that were borrowed from are shown as the model from now on.
+    #[wasm_bindgen(method, js_name = motionIsModel)]
+    pub fn motion_is_model(this: &Shell);
+
+    /// Nothing is borrowed any more.
+    #[wasm_bindgen(method, js_name = motionsRemoved)]
+    pub fn motions_removed(this: &Shell);
 
     /// Bytes of a file that have arrived before there is anything to see; a total of 0 is not known.
     #[wasm_bindgen(method)]

@@ -1,7 +1,7 @@
 //! What fits where: wide, narrow, folded, embedded; and what lies over the picture.
 
 use egui_kittest::kittest::Queryable;
-use gaitway::ui::{Progress, Sheet, UiAction};
+use gaitway::ui::{PathPrompt, PathPurpose, Progress, Sheet, UiAction};
 
 use crate::bench::{NARROW, WIDE, bench, model_with_clips, press, sample_bench};
 
@@ -98,11 +98,11 @@ fn nothing_repaints_by_itself() {
 #[test]
 fn a_path_can_be_typed_where_there_is_no_dialog() {
     let mut harness = sample_bench(WIDE);
-    harness.state_mut().panels.path_prompt = Some(String::new());
+    harness.state_mut().panels.path_prompt = Some(PathPrompt { purpose: PathPurpose::Open, path: String::new() });
     harness.run();
     harness.get_by_label("Path").type_text("models/fox.glb");
     harness.run();
     assert!(press(&mut harness, "Open").is_empty());
-    assert_eq!(harness.state().actions, [UiAction::OpenPath("models/fox.glb".to_owned())]);
+    assert_eq!(harness.state().actions, [UiAction::UsePath(PathPurpose::Open, "models/fox.glb".to_owned())]);
     assert_eq!(harness.state().panels.path_prompt, None);
 }

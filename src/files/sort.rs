@@ -1,0 +1,163 @@
+//! What a set of files is: a model, motions to borrow, a joint map. The same on disk and on the page.
+
+use crate::asset::Asset;
+use crate::formats::{FileSet, LoadError, LoadOptions, load, load_named, main_files};
+use crate::library::{Model, Motion};
+use crate::retarget::{JointMap, MapError};
+
+/// What the files were chosen for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Role {
+    /// As it turns out: what has a mesh is the model, what has none is motion.
+    #[default]
+    Any,
+    /// There has to be a model; a motion by itself is shown as one.
+    Model,
+    /// To borrow from, meshes or not.
+    Motion,
+}
+
+/// A set of files by what they are, each with its name in the set.
+#[derive(Debug, Default)]
+pub struct Sorted {
+    pub model: Option<(String, Asset)>,
+    pub motions: Vec<(String, Asset)>,
+    pub map: Option<JointMap>,
+}
+
+/// What was opened, ready for the library.
+#[derive(Debug, Default)]
+pub struct Contents {
+    pub model: Option<Model>,
+    /// None: those that are there stay.
+    pub motions: Option<Vec<Motion>>,
+    /// What a view has to list besides its model to get the motions again.
+    pub motion_sources: Vec<String>,
+    pub map: Option<JointMap>,
+    /// What could not be had, though the rest could.
+    pub problems: Vec<String>,
+}
+
+/// Why a set of files is of no use.
+#[derive(Debug, thiserror::Error)]
+pub enum SortError {
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    #[error(
+        "several models at once ({}); open one of them with its own files. To borrow the motion of another, choose it with \
+         “Motion…”",
+        found.join(", ")
+    )]
+    SeveralModels { found: Vec<String> },
+    #[error("several motions and no model ({}); open one of them, or a model together with them", found.join(", "))]
+    NoModel { found: Vec<String> },
+    #[error("{file}: {problem}")]
+    Map { file: String, problem: MapError },
+    #[error("several joint maps at once ({}); one counts, open it alone", found.join(", "))]
+    SeveralMaps { found: Vec<String> },
+    #[error("{found} motions at once; at most {most} are borrowed from, choose some of them")]
+    TooManyMotions { found: usize, most: usize },
+}
+
+/// Every clip of every motion is made over for the model, which takes time and memory.
+const MOST_MOTIONS: usize = 64;
+/// As many names are told of what is too many.
+const MOST_NAMES: usize = 8;
+
+/// Reads every main file of a set.
+pub fn sort(files: &FileSet, role: Role) -> Result<Sorted, SortError> {
+    let files = files.unpacked()?;
+    let mut sorted = Sorted { map: find_map(&files)?, ..Sorted::default() };
+    let names = main_files(&files)?;
+    if names.is_empty() && (sorted.map.is_none() || role == Role::Model) {
+        // Which says what is there instead.
+        let asset = load(&files)?;
+        sorted.model = Some((String::new(), asset));
+        return Ok(sorted);
+    }
+    if names.len() > MOST_MOTIONS {
+        return Err(SortError::TooManyMotions { found: names.len(), most: MOST_MOTIONS });
+    }
+    let mut models: Vec<(String, Asset)> = Vec::new();
+    for name in names {
+        let asset = load_named(&files, &name, &LoadOptions::default())?;
+        let has_mesh = !asset.instances.is_empty();
+        if has_mesh && role != Role::Motion { models.push((name, asset)) } else { sorted.motions.push((name, asset)) }
+    }
+    if models.len() > 1 {
+        return Err(SortError::SeveralModels { found: few_names(&models) });
+    }
+    sorted.model = models.pop();
+    if role == Role::Model && sorted.model.is_none() {
+        if sorted.motions.len() > 1 {
+            return Err(SortError::NoModel { found: few_names(&sorted.motions) });
+        }
+        sorted.model = sorted.motions.pop();
+    }
+    Ok(sorted)
+}
+
+fn few_names(files: &[(String, Asset)]) -> Vec<String> {
+    let mut names: Vec<String> = files.iter().take(MOST_NAMES).map(|(name, _)| name.clone()).collect();
+    if files.len() > MOST_NAMES {
+        names.push(format!("{} more", files.len() - MOST_NAMES));
+    }
+    names
+}
+
+/// The joint map among the files: JSON that says so. Other JSON is none of our business.
+fn find_map(files: &FileSet) -> Result<Option<JointMap>, SortError> {
+    let mut found: Option<(String, JointMap)> = None;
+    for (name, bytes) in files.iter() {
+        let says_so = || bytes.windows(13).any(|window| window == b"\"gaitway_map\"");
+        if !name.to_lowercase().ends_with(".json") || !says_so() {
+            continue;
+        }
+        let map = read_map(name, bytes)?;
+        if let Some((first, _)) = found {
+            return Err(SortError::SeveralMaps { found: vec![first, name.to_owned()] });
+        }
+        found = Some((name.to_owned(), map));
+    }
+    Ok(found.map(|(_, map)| map))
+}
+
+/// A joint map; `file` is what errors call it.
+pub fn read_map(file: &str, bytes: &[u8]) -> Result<JointMap, SortError> {
+    JointMap::from_json(&String::from_utf8_lossy(bytes))
+        .map_err(|problem| SortError::Map { file: file.to_owned(), problem })
+}
+
+/// Where the files of a set came from: by their names in it, the path or address that a view lists.
+#[derive(Debug, Default)]
+pub(super) struct Origins {
+    pub known: Vec<(String, String)>,
+    /// For files that came out of a folder or an archive: its own.
+    pub other: String,
+    /// Whether what is listed can be fetched again.
+    pub are_addresses: bool,
+}
+
+impl Origins {
+    pub fn of(&self, name: &str) -> &str {
+        self.known.iter().find(|(known, _)| known == name).map_or(&self.other, |(_, origin)| origin)
+    }
+
+    fn is_known(&self, name: &str) -> bool {
+        self.known.iter().any(|(known, _)| known == name)
+    }
+
+    /// The motions of a sorted set, and what a view has to list for them besides `model`.
+    pub fn motions(&self, motions: Vec<(String, Asset)>, model: Option<&str>) -> (Vec<Motion>, Vec<String>) {
+        let mut sources: Vec<String> = Vec::new();
+        let motions = motions.into_iter().map(|(name, asset)| {
+            let origin = self.of(&name).to_owned();
+            // What comes with the model's own set comes with it again.
+            if (model.is_none() || self.are_addresses && model != Some(&origin)) && !sources.contains(&origin) {
+                sources.push(origin.clone());
+            }
+            Motion::new(if self.is_known(&name) { origin } else { name }, asset.into())
+        });
+        (motions.collect(), sources)
+    }
+}

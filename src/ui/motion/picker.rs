@@ -1,0 +1,113 @@
+//! Choosing what one joint follows: a list of the motion's joints to be searched by name or number.
+
+use egui::{Context, Key, ScrollArea, Ui};
+
+use super::{Pairing, joint_text};
+use crate::anim::JointIndex;
+use crate::state::{Command, map_in_force};
+use crate::ui::{Output, Shown, UiState, controls, overlays, scene_tree};
+
+/// Which joint a source is chosen for.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Picking {
+    motion: usize,
+    /// The joint's number in the model's file.
+    target: usize,
+    search: String,
+}
+
+impl Picking {
+    pub fn new(motion: usize, target: usize) -> Self {
+        Self { motion, target, search: String::new() }
+    }
+}
+
+/// Shown over everything while a source is chosen.
+pub fn show(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
+    let Some(picking) = &mut local.motion.picking else { return };
+    let Some(pairing) = Pairing::of(shown.library, picking.motion) else {
+        local.motion.picking = None;
+        return;
+    };
+    let mut chosen: Option<Option<usize>> = None;
+    let mut closed = false;
+    let modal = overlays::modal("source", context).show(context, |ui| {
+        let screen = ui.ctx().content_rect();
+        ui.set_width((screen.width() - 64.0).min(380.0));
+        let asset = &pairing.model.asset;
+        let target = asset.skeleton.joint_of_source(picking.target);
+        let name = target.map_or_else(String::new, |joint| scene_tree::title(asset, joint));
+        ui.heading(format!("What does {name} follow?"));
+        ui.add_space(4.0);
+        let field = egui::TextEdit::singleline(&mut picking.search)
+            .hint_text("Name or number")
+            .margin(egui::Margin::symmetric(10, 6))
+            .desired_width(f32::INFINITY);
+        let field = ui.add(field).accessible_name("Name or number of a joint of the motion");
+        let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+        if ui.memory(|memory| memory.focused().is_none()) && !entered {
+            field.request_focus();
+        }
+        let found = matching(&pairing, &picking.search);
+        if entered && let Some(&first) = found.first() {
+            chosen = Some(Some(pairing.motion.asset.skeleton.source_index(first)));
+        }
+        ui.add_space(4.0);
+        let map = map_in_force(shown.library, shown.state, picking.motion).unwrap_or_default();
+        let now = pairing.source_in(&map, picking.target).flatten();
+        list(ui, &pairing, &found, now, screen.height(), &mut chosen);
+        ui.add_space(4.0);
+        closed |= ui.button("Cancel").clicked();
+    });
+    if let Some(source) = chosen {
+        out.commands.push(Command::SetSource { motion: picking.motion, target: picking.target, source });
+        closed = true;
+    }
+    if closed || modal.should_close() {
+        local.motion.picking = None;
+    }
+}
+
+fn list(
+    ui: &mut Ui,
+    pairing: &Pairing<'_>,
+    found: &[JointIndex],
+    now: Option<JointIndex>,
+    screen_height: f32,
+    chosen: &mut Option<Option<usize>>,
+) {
+    let height = (screen_height - 260.0).clamp(90.0, 380.0);
+    ScrollArea::vertical().id_salt("sources").max_height(height).min_scrolled_height(height).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 2.0;
+        if controls::list_row(ui, "Nothing", "keeps its rest", now.is_none()).clicked() {
+            *chosen = Some(None);
+        }
+        for &joint in found {
+            let asset = &pairing.motion.asset;
+            if controls::list_row(ui, &joint_text(asset, joint), "", now == Some(joint)).clicked() {
+                *chosen = Some(Some(asset.skeleton.source_index(joint)));
+            }
+        }
+        if found.is_empty() {
+            controls::hint(ui, "No joint of the motion has this name or number.");
+        }
+    });
+}
+
+/// Joints by the file's order; the one with exactly this number or name comes first.
+fn matching(pairing: &Pairing<'_>, search: &str) -> Vec<JointIndex> {
+    let asset = &pairing.motion.asset;
+    let skeleton = &asset.skeleton;
+    let wanted = search.trim().to_lowercase();
+    let number: Option<usize> = wanted.parse().ok();
+    let mut found: Vec<(bool, usize, JointIndex)> = skeleton
+        .joints()
+        .filter_map(|joint| {
+            let (at, name) = (skeleton.source_index(joint), scene_tree::title(asset, joint).to_lowercase());
+            let exact = number == Some(at) || name == wanted;
+            (exact || name.contains(&wanted)).then_some((!exact, at, joint))
+        })
+        .collect();
+    found.sort_unstable();
+    found.into_iter().map(|(_, _, joint)| joint).collect()
+}
