@@ -115,18 +115,22 @@ fn alike(model: &Skeleton, motion: &Skeleton) -> BTreeMap<JointIndex, JointIndex
             }
         }
     }
+    let mut children: Vec<BTreeMap<&str, Vec<JointIndex>>> = vec![BTreeMap::new(); motion.len()];
+    for source in motion.joints().filter(|source| !taken.contains(source)).rev() {
+        if let Some(parent) = motion.parent(source) {
+            children[parent.get()].entry(motion.name(source)).or_default().push(source);
+        }
+    }
     // Parents come first, so that children of joints found here are found as well.
     for target in model.joints() {
         let Some(&source_parent) = model.parent(target).and_then(|parent| found.get(&parent)) else { continue };
         if found.contains_key(&target) || model.name(target).is_empty() {
             continue;
         }
-        let twin = motion
-            .children(source_parent)
-            .find(|&source| motion.name(source) == model.name(target) && !taken.contains(&source));
+        // The list runs backwards: its last is the first of that name.
+        let twin = children[source_parent.get()].get_mut(model.name(target)).and_then(Vec::pop);
         if let Some(source) = twin {
             found.insert(target, source);
-            taken.insert(source);
         }
     }
     found
@@ -216,20 +220,28 @@ fn pair_left_over(
     moved: &[JointIndex],
     [targets, sources]: [&Recognized; 2],
 ) {
-    let above = |skeleton: &Skeleton, joint: JointIndex| {
-        std::iter::successors(skeleton.parent(joint), |&joint| skeleton.parent(joint)).collect::<Vec<_>>()
-    };
+    // The source that the nearest paired ancestor of each target follows, and the nearest paired ancestor of each source.
+    let target_above = nearest(&model.skeleton, |joint| pairs.by_target.get(&joint).map(|pair| pair.source));
+    let source_above = nearest(&motion.skeleton, |joint| pairs.sources.contains(&joint).then_some(joint));
     for (&target, &source) in alike {
         let is_part = targets.slot(target).is_some() || sources.slot(source).is_some();
         if is_part || moved.binary_search(&source).is_err() {
             continue;
         }
-        let target_above = above(&model.skeleton, target).into_iter().find_map(|joint| pairs.by_target.get(&joint));
-        let source_above = above(&motion.skeleton, source).into_iter().find(|joint| pairs.sources.contains(joint));
-        if target_above.is_some() && target_above.map(|pair| pair.source) == source_above {
+        let (target_above, source_above) = (target_above[target.get()], source_above[source.get()]);
+        if target_above.is_some() && target_above == source_above {
             pairs.add(target, source, None, Reason::SameName, SURE_LEFT_OVER);
         }
     }
+}
+
+/// For each joint what its nearest ancestor has that has anything.
+fn nearest<T: Copy>(skeleton: &Skeleton, of: impl Fn(JointIndex) -> Option<T>) -> Vec<Option<T>> {
+    let mut found: Vec<Option<T>> = Vec::with_capacity(skeleton.len());
+    for joint in skeleton.joints() {
+        found.push(skeleton.parent(joint).and_then(|parent| of(parent).or(found[parent.get()])));
+    }
+    found
 }
 
 impl Proposal {

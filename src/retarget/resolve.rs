@@ -1,5 +1,7 @@
 //! Looks the names of a joint map up in two skeletons.
 
+use std::collections::{BTreeMap, HashSet};
+
 use glam::Quat;
 
 use super::map::{ClipRef, JointMap, MutedProperty, SourceRef, Unmapped};
@@ -71,18 +73,19 @@ impl JointMap {
         if !(self.crossfade_secs >= 0.0 && self.crossfade_secs.is_finite()) {
             return Err(MapError::Crossfade { found: self.crossfade_secs });
         }
+        let (target_names, source_names) = (Names::new(&model.skeleton), Names::new(&motion.skeleton));
         let mut targets: Vec<Option<&str>> = vec![None; model.skeleton.len()];
         let mut pairs = Vec::new();
         let mut own = vec![None; model.skeleton.len()];
         for (name, entry) in &self.joints {
             let path = format!("joints.{name}");
-            let target = find_target(&model.skeleton, name, &path)?;
+            let target = target_names.find_target(name, &path)?;
             if let Some(first) = targets[target.get()].replace(name) {
                 return Err(MapError::SameTarget { path, first: first.to_owned(), second: name.clone() });
             }
             let correction = unit(entry.correction, &path)?;
             if let Some(source) = &entry.source {
-                let source = find_source(&motion.skeleton, source, &format!("{path}.source"))?;
+                let source = source_names.find_source(source, &format!("{path}.source"))?;
                 pairs.push(Pair { target, source, correction });
             }
             own[target.get()] = match &entry.unmapped {
@@ -104,9 +107,9 @@ impl JointMap {
                 layers.push(Layer { joint, clip, frozen });
             }
         }
-        let mut muted = Vec::new();
+        let (mut muted, mut seen) = (Vec::new(), HashSet::new());
         for (index, channel) in self.muted_channels.iter().enumerate() {
-            let joint = find_source(&motion.skeleton, &channel.source, &format!("muted_channels[{index}].source"))?;
+            let joint = source_names.find_source(&channel.source, &format!("muted_channels[{index}].source"))?;
             let properties: &[Property] = match channel.property {
                 Some(MutedProperty::Translation) => &[Property::Translation],
                 Some(MutedProperty::Rotation) => &[Property::Rotation],
@@ -114,7 +117,7 @@ impl JointMap {
                 None => &[Property::Translation, Property::Rotation, Property::Scale],
             };
             for &property in properties {
-                if !muted.contains(&(joint, property)) {
+                if seen.insert((joint, property)) {
                     muted.push((joint, property));
                 }
             }
@@ -133,49 +136,74 @@ impl JointMap {
     }
 }
 
-/// A name, or `#NODE`. A joint that is really called `#3` is found by that name first.
-fn find_target(skeleton: &Skeleton, name: &str, path: &str) -> Result<JointIndex, MapError> {
-    let same = named(skeleton, name);
-    match (same.as_slice(), name.strip_prefix('#')) {
-        ([joint], _) => return Ok(*joint),
-        ([], Some(number)) => {
-            let found = number.parse().ok().and_then(|number| skeleton.joint_of_source(number));
-            return found.ok_or_else(|| MapError::TargetOutOfRange {
-                path: path.to_owned(),
-                number: number.to_owned(),
-                count: skeleton.len(),
-            });
-        }
-        ([], None) => {}
-        _ => {
-            let numbers = numbers_of(skeleton, &same);
-            return Err(MapError::AmbiguousTarget { path: path.to_owned(), name: name.to_owned(), numbers });
-        }
-    }
-    Err(MapError::NoTarget { path: path.to_owned(), name: name.to_owned(), nearest: nearest(skeleton, name) })
+/// The joints of a skeleton by name.
+struct Names<'a> {
+    skeleton: &'a Skeleton,
+    joints: BTreeMap<&'a str, Vec<JointIndex>>,
 }
 
-fn find_source(skeleton: &Skeleton, source: &SourceRef, path: &str) -> Result<JointIndex, MapError> {
-    let path = path.to_owned();
-    match source {
-        SourceRef::Number(number) => skeleton.joint_of_source(*number).ok_or_else(|| MapError::SourceOutOfRange {
-            path,
-            number: *number,
-            count: skeleton.len(),
-        }),
-        SourceRef::Name(name) => match named(skeleton, name).as_slice() {
-            [joint] => Ok(*joint),
-            [] => Err(MapError::NoSource { path, name: name.clone(), nearest: nearest(skeleton, name) }),
-            same => {
-                let numbers = numbers_of(skeleton, same);
-                Err(MapError::AmbiguousSource { path, name: name.clone(), numbers })
+impl<'a> Names<'a> {
+    fn new(skeleton: &'a Skeleton) -> Self {
+        let mut joints: BTreeMap<&str, Vec<JointIndex>> = BTreeMap::new();
+        for joint in skeleton.joints() {
+            joints.entry(skeleton.name(joint)).or_default().push(joint);
+        }
+        Self { skeleton, joints }
+    }
+
+    fn called(&self, name: &str) -> &[JointIndex] {
+        self.joints.get(name).map(Vec::as_slice).unwrap_or_default()
+    }
+
+    /// A name, or `#NODE`. A joint that is really called `#3` is found by that name first.
+    fn find_target(&self, name: &str, path: &str) -> Result<JointIndex, MapError> {
+        let (path, name) = (path.to_owned(), name.to_owned());
+        match (self.called(&name), name.strip_prefix('#')) {
+            ([joint], _) => Ok(*joint),
+            ([], Some(number)) => {
+                let found = number.parse().ok().and_then(|number| self.skeleton.joint_of_source(number));
+                let number = number.to_owned();
+                found.ok_or(MapError::TargetOutOfRange { path, number, count: self.skeleton.len() })
             }
-        },
+            ([], None) => Err(MapError::NoTarget { path, nearest: self.nearest(&name), name }),
+            (same, _) => {
+                let numbers = numbers_of(self.skeleton, same);
+                Err(MapError::AmbiguousTarget { path, name, numbers })
+            }
+        }
     }
-}
 
-fn named(skeleton: &Skeleton, name: &str) -> Vec<JointIndex> {
-    skeleton.joints().filter(|&joint| skeleton.name(joint) == name).collect()
+    fn find_source(&self, source: &SourceRef, path: &str) -> Result<JointIndex, MapError> {
+        let path = path.to_owned();
+        match source {
+            SourceRef::Number(number) => {
+                let found = self.skeleton.joint_of_source(*number);
+                found.ok_or(MapError::SourceOutOfRange { path, number: *number, count: self.skeleton.len() })
+            }
+            SourceRef::Name(name) => match self.called(name) {
+                [joint] => Ok(*joint),
+                [] => Err(MapError::NoSource { path, nearest: self.nearest(name), name: name.clone() }),
+                same => {
+                    let numbers = numbers_of(self.skeleton, same);
+                    Err(MapError::AmbiguousSource { path, name: name.clone(), numbers })
+                }
+            },
+        }
+    }
+
+    /// The names most alike, best first; none when nothing is alike.
+    fn nearest(&self, name: &str) -> Vec<String> {
+        let wanted = name.to_lowercase();
+        let mut scored: Vec<(f64, &str)> = self
+            .joints
+            .keys()
+            .filter(|other| !other.is_empty())
+            .map(|&other| (strsim::jaro_winkler(&wanted, &other.to_lowercase()), other))
+            .filter(|(score, _)| *score >= ALIKE)
+            .collect();
+        scored.sort_by(|a, b| b.0.total_cmp(&a.0).then_with(|| a.1.cmp(b.1)));
+        scored.into_iter().take(OFFERED).map(|(_, other)| other.to_owned()).collect()
+    }
 }
 
 fn numbers_of(skeleton: &Skeleton, joints: &[JointIndex]) -> Vec<usize> {
@@ -215,17 +243,5 @@ fn unit(correction: Quat, path: &str) -> Result<Quat, MapError> {
 /// How many names are offered for one that is not there.
 const OFFERED: usize = 3;
 
-/// The names most alike, best first; none when nothing is alike.
-fn nearest(skeleton: &Skeleton, name: &str) -> Vec<String> {
-    let wanted = name.to_lowercase();
-    let mut scored: Vec<(f64, &str)> = skeleton
-        .joints()
-        .map(|joint| skeleton.name(joint))
-        .filter(|other| !other.is_empty())
-        .map(|other| (strsim::jaro_winkler(&wanted, &other.to_lowercase()), other))
-        .filter(|(score, _)| *score >= 0.6)
-        .collect();
-    scored.sort_by(|a, b| b.0.total_cmp(&a.0).then_with(|| a.1.cmp(b.1)));
-    scored.dedup_by(|a, b| a.1 == b.1);
-    scored.into_iter().take(OFFERED).map(|(_, other)| other.to_owned()).collect()
-}
+/// So much alike (0 nothing, 1 the same) a name must be to be offered.
+const ALIKE: f64 = 0.6;

@@ -1,8 +1,9 @@
 //! What is proposed for two files.
 
-use gaitway::anim::JointIndex;
+use gaitway::anim::{Joint, JointIndex, Skeleton, Transform};
 use gaitway::asset::Asset;
-use gaitway::retarget::{Proposal, propose};
+use gaitway::retarget::{JointMap, Proposal, propose};
+use glam::Vec3;
 
 use crate::data::open;
 
@@ -52,4 +53,100 @@ fn names_decide_where_most_are_shared() {
     assert!(proposal.unused_sources.is_empty() && proposal.unmapped_targets.is_empty());
     let name = |asset: &Asset, joint: JointIndex| asset.skeleton.name(joint).to_owned();
     assert!(proposal.pairs.iter().all(|pair| name(&mannequin, pair.target) == name(&run, pair.source)));
+}
+
+/// Every file for itself: all joints follow themselves.
+#[test]
+fn a_file_follows_itself() {
+    for path in [
+        "threejs/RobotExpressive.glb",
+        "threejs/Xbot.glb",
+        "kaykit/Knight.glb",
+        "khronos/Fox/glTF-Binary/Fox.glb",
+        "khronos/RiggedFigure/glTF-Binary/RiggedFigure.glb",
+        "mesh2motion/spider-animations.glb",
+    ] {
+        let Some(asset) = open(path) else { return };
+        let proposal = propose(&asset, &asset);
+        assert_eq!(proposal.pairs.len(), asset.skeleton.len(), "{path}");
+        assert!(proposal.pairs.iter().all(|pair| pair.target == pair.source), "{path}");
+        let map = proposal.to_map(&asset, &asset);
+        let read = JointMap::from_json(&map.to_json().expect("plain data")).expect("what was written");
+        let resolved = read.resolve(&asset, &asset).expect(path);
+        assert!(resolved.pairs.iter().all(|pair| pair.target == pair.source), "{path}");
+        assert_eq!(resolved.pairs.len(), asset.skeleton.len(), "{path}");
+    }
+}
+
+/// What a proposal says in names says the same when it is read back.
+#[test]
+fn proposals_survive_their_file() {
+    for (model, motion) in [
+        ("threejs/RobotExpressive.glb", "threejs/Xbot.glb"),
+        ("khronos/CesiumMan/glTF-Binary/CesiumMan.glb", "bvh/cmu_01_01.bvh"),
+        ("cosc422/ArmyPilot.glb", "vrm/chatvrm_idle_loop.vrma"),
+    ] {
+        let (Some(model), Some(motion)) = (open(model), open(motion)) else { return };
+        let proposal = propose(&model, &motion);
+        let text = proposal.to_map(&model, &motion).to_json().expect("plain data");
+        let resolved = JointMap::from_json(&text).expect(&text).resolve(&model, &motion).expect(&text);
+        let proposed: Vec<_> = proposal.pairs.iter().map(|pair| (pair.target, pair.source)).collect();
+        assert_eq!(resolved.pairs.iter().map(|pair| (pair.target, pair.source)).collect::<Vec<_>>(), proposed);
+        assert!(proposed.len() > 10);
+    }
+}
+
+#[test]
+fn what_has_nothing_in_common_gets_no_pairs() {
+    let (Some(snake), Some(walk)) = (open("mesh2motion/snake-animations.glb"), open("bvh/cosc422_Walk.bvh")) else {
+        return;
+    };
+    let proposal = propose(&snake, &walk);
+    assert!(proposal.pairs.is_empty(), "{:?}", proposal.pairs);
+    assert_eq!(proposal.unused_sources.len(), walk.skeleton.len());
+}
+
+/// Trunks of different length are matched at their ends.
+#[test]
+fn trunks_meet_at_their_ends() {
+    let (Some(bot), Some(mannequiny)) = (open("threejs/Xbot.glb"), open("misc/godot_mannequiny.glb")) else { return };
+    let source = |model: &Asset, motion: &Asset, name: &str| {
+        let target = model.skeleton.find(name).expect(name);
+        let proposal = propose(model, motion);
+        let pair = proposal.pairs.iter().find(|pair| pair.target == target).copied();
+        pair.map(|pair| motion.skeleton.name(pair.source).to_owned())
+    };
+    let to_bot = |name: &str| source(&bot, &mannequiny, name);
+    assert_eq!(to_bot("mixamorig:Spine").as_deref(), Some("spine_01"));
+    assert_eq!(to_bot("mixamorig:Spine1"), None);
+    assert_eq!(to_bot("mixamorig:Spine2").as_deref(), Some("spine_02"));
+    let from_bot = |name: &str| source(&mannequiny, &bot, name);
+    assert_eq!(from_bot("spine_01").as_deref(), Some("mixamorig:Spine"));
+    assert_eq!(from_bot("spine_02").as_deref(), Some("mixamorig:Spine2"));
+}
+
+/// A scene of very many joints that all mean something must not take minutes.
+#[test]
+fn large_scenes_are_quick() {
+    let count = 40_000;
+    let chain = |at: usize| at.checked_sub(1);
+    let star = |at: usize| (at > 0).then_some(0);
+    let comb = |at: usize| (at > 0).then(|| at - 1 - usize::from(at % 3 == 0 && at > 1));
+    let names = ["head", "LeftArm", "", "hips", "Spine", "twin"];
+    for parent in [chain as fn(usize) -> Option<usize>, star, comb] {
+        let joints = (0..count).map(|at| Joint {
+            name: names[at % names.len()].to_owned(),
+            parent: parent(at),
+            rest: Transform::from_translation(Vec3::new((at % 7) as f32, 1.0, 0.0)),
+            ..Joint::default()
+        });
+        let unnamed = joints.clone().map(|joint| Joint { name: String::new(), ..joint });
+        let asset = |joints| Asset { skeleton: Skeleton::new(joints).expect("a tree"), ..Asset::default() };
+        let (named, unnamed) = (asset(joints.collect()), asset(unnamed.collect()));
+        let start = std::time::Instant::now();
+        propose(&named, &unnamed);
+        propose(&unnamed, &named);
+        propose(&named, &named);
+        assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
+    }
 }

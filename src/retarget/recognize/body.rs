@@ -16,6 +16,9 @@ const SURE_VOCABULARY: f32 = 0.95;
 const SURE_WORDS: f32 = 0.8;
 const SURE_HIERARCHY: f32 = 0.6;
 
+/// Of so many heads one is looked for; a crowd is not a body.
+const MOST_HEADS: usize = 64;
+
 /// The joints of one leg or arm, from the body outwards; `root` is the toes' or the collar bone's.
 #[derive(Debug, Default, Clone, Copy)]
 struct Limb {
@@ -160,7 +163,7 @@ impl Search<'_> {
         let heads = self.all(None, Word::Head);
         let Some(body) = shoulders.or(pelvis) else { return heads.first().copied() };
         let mut best: Option<(usize, JointIndex)> = None;
-        for head in heads {
+        for head in heads.into_iter().take(MOST_HEADS) {
             let Some(meeting) = self.tree.meeting(head, body) else { continue };
             let depth = self.tree.upwards(meeting).count();
             if best.is_none_or(|(other, _)| depth > other) {
@@ -169,7 +172,7 @@ impl Search<'_> {
         }
         best.map(|(_, head)| head).or_else(|| {
             let neck = self.all(None, Word::Neck).last().copied()?;
-            self.tree.usable_children(neck).first().copied()
+            self.tree.children(neck).first().copied()
         })
     }
 

@@ -72,7 +72,7 @@ fn toes(tree: &Tree, parts: &BTreeMap<Slot, Part>, up: Vec3) -> Option<Vec3> {
         let foot = parts.get(&foot)?.joint;
         let toes = match parts.get(&toes) {
             Some(toes) => toes.joint,
-            None => tree.skeleton.children(foot).next()?,
+            None => *tree.children(foot).first()?,
         };
         across(tree.place(toes) - tree.place(foot), up).try_normalize()
     };

@@ -13,53 +13,76 @@ use crate::asset::Slot::{self, *};
 
 const SURE_GEOMETRY: f32 = 0.5;
 
+/// No body has more limbs on one joint, or more joints in one limb. It keeps the search short in large scenes.
+const MOST: usize = 16;
+
 /// Two chains that mirror each other.
 struct Twins {
     chains: [Vec<JointIndex>; 2],
 }
 
-/// Empty where nothing looks like a body.
-pub(super) fn find(tree: &Tree) -> BTreeMap<Slot, Part> {
-    tree.skeleton.joints().find_map(|hips| body(tree, hips)).unwrap_or_default()
+/// The skeleton with what hangs under each joint summed up.
+struct Shape<'a> {
+    tree: &'a Tree<'a>,
+    /// Joints on the longest way down.
+    lengths: Vec<u32>,
+    lowest: Vec<f32>,
+    highest: Vec<f32>,
 }
 
-fn body(tree: &Tree, hips: JointIndex) -> Option<BTreeMap<Slot, Part>> {
-    let below: Vec<f32> =
-        tree.skeleton.joints().filter(|&joint| tree.is_under(joint, hips)).map(|joint| tree.place(joint).y).collect();
-    let (lowest, highest) = below.iter().fold((f32::MAX, f32::MIN), |(low, high), &y| (low.min(y), high.max(y)));
+/// Empty where nothing looks like a body.
+pub(super) fn find(tree: &Tree) -> BTreeMap<Slot, Part> {
+    let heights: Vec<f32> = tree.places.iter().map(|place| place.y).collect();
+    let mut shape = Shape { tree, lengths: vec![0; heights.len()], lowest: heights.clone(), highest: heights };
+    for joint in tree.skeleton.joints().rev() {
+        if let Some(parent) = tree.skeleton.parent(joint) {
+            let (joint, parent) = (joint.get(), parent.get());
+            shape.lengths[parent] = shape.lengths[parent].max(shape.lengths[joint] + 1);
+            shape.lowest[parent] = shape.lowest[parent].min(shape.lowest[joint]);
+            shape.highest[parent] = shape.highest[parent].max(shape.highest[joint]);
+        }
+    }
+    tree.skeleton.joints().find_map(|hips| body(&shape, hips)).unwrap_or_default()
+}
+
+fn body(shape: &Shape, hips: JointIndex) -> Option<BTreeMap<Slot, Part>> {
+    let tree = shape.tree;
+    let (lowest, highest) = (shape.lowest[hips.get()], shape.highest[hips.get()]);
     let height = highest - lowest;
     let ends =
         |twins: &Twins| twins.chains.each_ref().map(|chain| chain.last().map_or(f32::MAX, |&end| tree.place(end).y));
     let on_ground = |twins: &Twins| ends(twins).into_iter().all(|y| y < lowest + 0.15 * height);
-    let legs =
-        twins(tree, hips, 3).into_iter().find(|legs| on_ground(legs) && tree.place(hips).y > lowest + 0.25 * height)?;
+    let legs = twins(shape, hips, 3)
+        .into_iter()
+        .find(|legs| on_ground(legs) && tree.place(hips).y > lowest + 0.25 * height)?;
     let sideways = apart(tree, &legs, 0)?;
     let mut trunk = Vec::new();
     let mut at = *tree
-        .usable_children(hips)
+        .children(hips)
         .iter()
         .filter(|child| !legs.chains.iter().any(|chain| chain.first() == Some(child)))
-        .max_by(|&&a, &&b| top(tree, a).total_cmp(&top(tree, b)).then(b.cmp(&a)))?;
+        .max_by(|&&a, &&b| shape.top(a).total_cmp(&shape.top(b)).then(b.cmp(&a)))?;
     let arms = loop {
         trunk.push(at);
-        let arms = twins(tree, at, 2).into_iter().find(|arms| {
+        let arms = twins(shape, at, 2).into_iter().find(|arms| {
             apart(tree, arms, 0).is_some_and(|line| line.dot(sideways).abs() > 0.9)
                 && ends(arms).into_iter().all(|y| y > lowest + 0.2 * height)
         });
         match arms {
             Some(arms) => break arms,
-            None => match tree.usable_children(at).as_slice() {
-                [child] => at = *child,
+            None => match tree.children(at) {
+                [child] if trunk.len() < MOST => at = *child,
                 _ => return None,
             },
         }
     };
     let head = tree
-        .usable_children(at)
-        .into_iter()
+        .children(at)
+        .iter()
+        .copied()
         .filter(|child| !arms.chains.iter().any(|chain| chain.first() == Some(child)))
-        .filter(|&child| top(tree, child) > tree.place(at).y)
-        .max_by(|&a, &b| top(tree, a).total_cmp(&top(tree, b)).then(b.cmp(&a)))?;
+        .filter(|&child| shape.top(child) > tree.place(at).y)
+        .max_by(|&a, &b| shape.top(a).total_cmp(&shape.top(b)).then(b.cmp(&a)))?;
     let mut found = BTreeMap::new();
     let mut put = |slot, joint| {
         found.insert(slot, Part { joint, reason: Reason::Geometry, confidence: SURE_GEOMETRY });
@@ -68,7 +91,7 @@ fn body(tree: &Tree, hips: JointIndex) -> Option<BTreeMap<Slot, Part>> {
     for (slot, joint) in spread(&trunk) {
         put(slot, joint);
     }
-    match chain(tree, head).as_slice() {
+    match chain(shape, head).as_slice() {
         [head] => put(Head, *head),
         [neck, head, ..] => {
             put(Neck, *neck);
@@ -107,37 +130,29 @@ fn has_collar(tree: &Tree, arm: &[JointIndex]) -> bool {
     }
 }
 
-/// The joint and what follows it, along the longest way where it forks.
-fn chain(tree: &Tree, first: JointIndex) -> Vec<JointIndex> {
-    let mut chain = vec![first];
-    let mut at = first;
-    while let Some(&next) =
-        tree.usable_children(at).iter().max_by(|&&a, &&b| length(tree, a).cmp(&length(tree, b)).then(b.cmp(&a)))
-    {
-        chain.push(next);
-        at = next;
+impl Shape<'_> {
+    fn top(&self, joint: JointIndex) -> f32 {
+        self.highest[joint.get()]
     }
-    chain
 }
 
-/// Joints on the longest way down.
-fn length(tree: &Tree, joint: JointIndex) -> usize {
-    let end = tree.skeleton.joints().filter(|&other| tree.is_under(other, joint));
-    end.map(|end| tree.path(joint, end).len()).max().unwrap_or(0)
-}
-
-fn top(tree: &Tree, joint: JointIndex) -> f32 {
-    tree.skeleton
-        .joints()
-        .filter(|&other| tree.is_under(other, joint))
-        .map(|other| tree.place(other).y)
-        .fold(f32::MIN, f32::max)
+/// The joint and what follows it, along the longest way where it forks.
+fn chain(shape: &Shape, first: JointIndex) -> Vec<JointIndex> {
+    let length = |joint: &JointIndex| shape.lengths[joint.get()];
+    let longest = |at: &JointIndex| {
+        shape.tree.children(*at).iter().copied().max_by(|a, b| length(a).cmp(&length(b)).then(b.cmp(a)))
+    };
+    std::iter::successors(Some(first), longest).take(MOST).collect()
 }
 
 /// All pairs of chains from the children of a joint that lie side by side all the way, of at least `shortest` joints.
-fn twins(tree: &Tree, joint: JointIndex, shortest: usize) -> Vec<Twins> {
-    let chains: Vec<Vec<JointIndex>> =
-        tree.usable_children(joint).into_iter().map(|child| chain(tree, child)).collect();
+fn twins(shape: &Shape, joint: JointIndex, shortest: usize) -> Vec<Twins> {
+    let (tree, children) = (shape.tree, shape.tree.children(joint));
+    // Two limbs and what goes on between them.
+    if !(3..=MOST).contains(&children.len()) {
+        return Vec::new();
+    }
+    let chains: Vec<Vec<JointIndex>> = children.iter().map(|&child| chain(shape, child)).collect();
     let mut found = Vec::new();
     for (at, a) in chains.iter().enumerate() {
         for b in &chains[at + 1..] {

@@ -18,6 +18,9 @@ pub(super) struct Tree<'a> {
     pub usable: Vec<bool>,
     /// In model space, of the pose that looks most like a body at rest.
     pub places: Vec<Vec3>,
+    children: Vec<Vec<JointIndex>>,
+    /// One past the last joint that hangs under each: joints are in depth-first order.
+    ends: Vec<u32>,
 }
 
 impl<'a> Tree<'a> {
@@ -28,7 +31,19 @@ impl<'a> Tree<'a> {
         let usable = usable(asset);
         let words =
             names.iter().zip(&usable).map(|(name, &usable)| if usable { words::read(name) } else { None }).collect();
-        Self { skeleton, names, words, usable, places: places(skeleton, skeleton.rest()) }
+        let mut children = vec![Vec::new(); skeleton.len()];
+        let mut ends: Vec<u32> = (1..=skeleton.len() as u32).collect();
+        for joint in skeleton.joints() {
+            if let Some(parent) = skeleton.parent(joint).filter(|_| usable[joint.get()]) {
+                children[parent.get()].push(joint);
+            }
+        }
+        for joint in skeleton.joints().rev() {
+            if let Some(parent) = skeleton.parent(joint) {
+                ends[parent.get()] = ends[parent.get()].max(ends[joint.get()]);
+            }
+        }
+        Self { skeleton, names, words, usable, places: places(skeleton, skeleton.rest()), children, ends }
     }
 
     pub fn word(&self, joint: JointIndex) -> Option<Word> {
@@ -46,7 +61,7 @@ impl<'a> Tree<'a> {
 
     /// Whether `below` is `above` or hangs under it.
     pub fn is_under(&self, below: JointIndex, above: JointIndex) -> bool {
-        self.upwards(below).any(|joint| joint == above)
+        (above.0..self.ends[above.get()]).contains(&below.0)
     }
 
     /// Where two chains meet.
@@ -64,8 +79,9 @@ impl<'a> Tree<'a> {
         path
     }
 
-    pub fn usable_children(&self, joint: JointIndex) -> Vec<JointIndex> {
-        self.skeleton.children(joint).filter(|child| self.usable[child.get()]).collect()
+    /// Usable ones, as listed.
+    pub fn children(&self, joint: JointIndex) -> &[JointIndex] {
+        &self.children[joint.get()]
     }
 
     /// Takes the places from another pose.
