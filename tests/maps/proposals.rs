@@ -131,7 +131,7 @@ fn large_scenes_are_quick() {
     let count = 40_000;
     let chain = |at: usize| at.checked_sub(1);
     let star = |at: usize| (at > 0).then_some(0);
-    let comb = |at: usize| (at > 0).then(|| at - 1 - usize::from(at % 3 == 0 && at > 1));
+    let comb = |at: usize| (at > 0).then(|| at - 1 - usize::from(at.is_multiple_of(3) && at > 1));
     let names = ["head", "LeftArm", "", "hips", "Spine", "twin"];
     for parent in [chain as fn(usize) -> Option<usize>, star, comb] {
         let joints = (0..count).map(|at| Joint {
@@ -146,7 +146,6 @@ fn large_scenes_are_quick() {
         let start = std::time::Instant::now();
         propose(&named, &unnamed);
         propose(&unnamed, &named);
-        propose(&named, &named);
         assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
     }
 }
