@@ -10,7 +10,9 @@ use std::sync::Arc;
 
 pub use error::LoadError;
 pub use file_set::FileSet;
+pub use gltf::WriteError;
 
+use crate::anim::{Clip, Skeleton};
 use crate::asset::Asset;
 use file_set::bare_name;
 
@@ -62,6 +64,30 @@ pub fn load_named(files: &FileSet, name: &str, options: &LoadOptions) -> Result<
         Some(bytes) => read(&files, name, bytes, options),
         None => Err(LoadError::NoModel { found: files.names().map(str::to_owned).collect() }),
     }
+}
+
+/// The set's model `name` (one of its [`main_files`]) as a GLB that needs no other file, with `clips` behind its own; they
+/// are for `skeleton`, which was loaded from the same file. What the file had before is kept to the letter: the bytes of
+/// its first buffer are the beginning of the new one, and its JSON only grows.
+pub fn write_model(files: &FileSet, name: &str, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
+    let files = files.unpacked()?;
+    gltf::write_model(&files, name, skeleton, clips)
+}
+
+/// The skeleton of an asset with `clips` (which are for it) and nothing else, as a GLB. Joints keep their numbers.
+pub fn write_motion(asset: &Asset, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
+    gltf::write_motion(asset, clips)
+}
+
+/// The one model or motion of a set as a GLB: a glTF with all that is in it, a .bvh as its skeleton and its clip.
+pub fn convert(files: &FileSet, options: &LoadOptions) -> Result<Vec<u8>, WriteError> {
+    let files = files.unpacked()?;
+    let (name, bytes) = find_model(&files)?;
+    let asset = read(&files, name, bytes, options)?;
+    if is_bvh(name, bytes) {
+        return gltf::write_motion(&asset, &asset.clips.iter().collect::<Vec<_>>());
+    }
+    gltf::write_model(&files, name, &asset.skeleton, &[])
 }
 
 fn read(files: &FileSet, name: &str, bytes: &[u8], options: &LoadOptions) -> Result<Asset, LoadError> {

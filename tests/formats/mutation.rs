@@ -3,7 +3,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use gaitway::formats::{load, missing_files};
+use gaitway::formats::{LoadOptions, convert, load, missing_files, write_motion};
 
 use crate::build_gltf::{Build, one};
 use crate::data_folder::data_folder;
@@ -42,7 +42,7 @@ const NUMBERS: [&str; 14] = [
 
 fn damage(file: &[u8], random: &mut Random) -> Vec<u8> {
     let mut file = file.to_vec();
-    match random.below(6) {
+    match random.below(7) {
         0 => file.truncate(random.below(file.len())),
         1 => {
             for _ in 0..=random.below(8) {
@@ -55,6 +55,7 @@ fn damage(file: &[u8], random: &mut Random) -> Vec<u8> {
             let end = (at + length).min(file.len());
             file[at..end].fill([0, 0x7F, 0xFF][random.below(3)]);
         }
+        3 => repeat_or_drop(&mut file, random),
         // Most damage is done to numbers of the JSON: they are what the reader trusts or does not.
         _ => {
             for _ in 0..=random.below(2) {
@@ -63,6 +64,17 @@ fn damage(file: &[u8], random: &mut Random) -> Vec<u8> {
         }
     }
     file
+}
+
+/// Takes a piece out, or puts it in a second time: words and braces that are missing or too many.
+fn repeat_or_drop(file: &mut Vec<u8>, random: &mut Random) {
+    let at = random.below(file.len());
+    let end = (at + random.below(40)).min(file.len());
+    let piece = file[at..end].to_vec();
+    match random.below(2) {
+        0 => drop(file.drain(at..end)),
+        _ => drop(file.splice(at..at, piece)),
+    }
 }
 
 /// Puts another number in place of one in the text, and keeps a GLB's lengths right so that it is looked at at all.
@@ -106,6 +118,15 @@ fn check(name: &str, file: &[u8], random: &mut Random, failures: &mut Vec<String
                         geometry.validate(skinned(index)).expect("what is read is consistent");
                     }
                 }
+                assert!(asset.skeleton.rest().locals.iter().all(|local| local.is_finite()));
+                // What is read can be written, or there is a word about why not.
+                let clips: Vec<_> = asset.clips.iter().collect();
+                for written in [write_motion(&asset, &clips), convert(&files, &LoadOptions::default())] {
+                    match written {
+                        Ok(written) => drop(load(&one("written.glb", written)).expect("what is written can be read")),
+                        Err(problem) => assert!(!problem.to_string().is_empty()),
+                    }
+                }
             })
         }));
         match result {
@@ -126,11 +147,12 @@ fn generated() -> Vec<(&'static str, Vec<u8>)> {
         ("skinned.glb", Build::skinned(joints, weights).glb()),
         ("animated.glb", Build::animated("translation", &[0.0, 1.0, 2.0], "VEC3", 3, &moved).glb()),
         ("textured.glb", crate::behaviour::textured_square().glb()),
+        ("walk.bvh", crate::bvh::TWO_JOINTS.into()),
     ]
 }
 
 /// Small, and of different kinds.
-const REAL: [&str; 10] = [
+const REAL: [&str; 13] = [
     "khronos/SimpleSkin/glTF-Embedded/SimpleSkin.gltf",
     "khronos/SimpleMorph/glTF-Embedded/SimpleMorph.gltf",
     "khronos/RiggedSimple/glTF-Binary/RiggedSimple.glb",
@@ -141,6 +163,9 @@ const REAL: [&str; 10] = [
     "validator-invalid/animation/valid.gltf",
     "validator-invalid/accessor/valid.gltf",
     "validator-invalid/glb/two_images.glb",
+    "cosc422/original/Dwarf/avatar_walk.bvh",
+    "bvh/cosc422_Test.bvh",
+    "bvh/deepmotion_rest.bvh",
 ];
 
 #[test]

@@ -22,7 +22,7 @@ pub fn file_set(path: &Path) -> FileSet {
     files
 }
 
-fn models_under(folder: &Path, endings: &[&str], out: &mut Vec<PathBuf>) {
+pub fn models_under(folder: &Path, endings: &[&str], out: &mut Vec<PathBuf>) {
     let mut entries: Vec<PathBuf> =
         std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()).collect();
     entries.sort();
@@ -35,7 +35,7 @@ fn models_under(folder: &Path, endings: &[&str], out: &mut Vec<PathBuf>) {
     }
 }
 
-const GLTF: [&str; 4] = ["glb", "gltf", "vrm", "vrma"];
+pub const GLTF: [&str; 4] = ["glb", "gltf", "vrm", "vrma"];
 
 /// Loads every model; the outcome as text where `check` does not like it, panics included.
 fn sweep(folders: &[&str], endings: &[&str], check: impl Fn(&str, Result<Asset, LoadError>) -> Result<(), String>) {

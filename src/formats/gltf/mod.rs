@@ -15,12 +15,16 @@ mod meshes;
 mod nodes;
 mod schema;
 mod skins;
+mod write;
 
 use crate::asset::{Asset, Warnings};
 use crate::formats::error::Problem;
 use crate::formats::{FileSet, LoadError};
 use accessor::{Accessors, Bytes};
 use container::Container;
+
+pub use write::WriteError;
+pub(super) use write::{model as write_model, motion as write_motion};
 
 /// URIs of the files that a model names besides itself, decoded, which are not in the set. Empty when it cannot be read.
 pub(super) fn missing_files(files: &FileSet, file: &str, bytes: &[u8]) -> Vec<String> {

@@ -1,0 +1,169 @@
+//! A clip as an animation with its accessors (§3.11): the clip's own keys, nothing resampled. Channels that share their key
+//! times share an accessor.
+
+use std::collections::BTreeMap;
+
+use glam::{DQuat, Quat, Vec3};
+use serde_json::json;
+use serde_json::value::RawValue;
+
+use super::WriteError;
+use super::glb::pad;
+use super::json::{Array, raw};
+use crate::anim::{Channel, Clip, Interpolation, Keys, Property, Skeleton};
+
+/// How far the square of a rotation's length may be from 1 before the rotation is made shorter or longer. Rounding alone
+/// stays far below; so a clip that was read comes back to the bit.
+const UNIT_TOLERANCE: f32 = 1e-5;
+
+/// What clips add to a file: elements for its arrays, and bytes for its first buffer.
+#[derive(Default)]
+pub struct Added {
+    pub animations: Array,
+    pub accessors: Array,
+    pub buffer_views: Array,
+}
+
+/// Where the arrays that are added to end already.
+#[derive(Clone, Copy, Default)]
+pub struct Counts {
+    pub accessors: usize,
+    pub buffer_views: usize,
+}
+
+/// Writes the keys of `clips` behind `binary`, which is the beginning of the buffer. `weights`: morph weights too.
+pub fn add(
+    clips: &[&Clip],
+    skeleton: &Skeleton,
+    weights: bool,
+    counts: Counts,
+    binary: &mut Vec<u8>,
+) -> Result<Added, WriteError> {
+    let mut added = Added::default();
+    for clip in clips {
+        pad(binary, 0);
+        let mut data = Data {
+            start: binary.len(),
+            binary: &mut *binary,
+            view: counts.buffer_views + added.buffer_views.len(),
+            first: counts.accessors,
+            accessors: &mut added.accessors,
+        };
+        let animation = animation(clip, skeleton, weights, &mut data)?;
+        let (start, end) = (data.start, data.binary.len());
+        added.animations.push(animation);
+        added.buffer_views.push(raw(&json!({ "buffer": 0, "byteOffset": start, "byteLength": end - start })));
+    }
+    Ok(added)
+}
+
+/// The buffer view of one clip.
+struct Data<'a> {
+    start: usize,
+    binary: &'a mut Vec<u8>,
+    view: usize,
+    /// Accessors that the file has already.
+    first: usize,
+    accessors: &'a mut Array,
+}
+
+impl Data<'_> {
+    /// Index of a new accessor over `numbers`, `width` of which make an element.
+    fn accessor(&mut self, shape: &str, width: usize, numbers: &[f32], with_bounds: bool) -> usize {
+        let mut accessor = json!({
+            "bufferView": self.view,
+            "byteOffset": self.binary.len() - self.start,
+            "componentType": 5126,
+            "count": numbers.len() / width,
+            "type": shape,
+        });
+        if with_bounds {
+            let least = numbers.iter().copied().fold(f32::INFINITY, f32::min);
+            let most = numbers.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+            // All digits: readers compare them with the data.
+            accessor["min"] = json!([f64::from(least)]);
+            accessor["max"] = json!([f64::from(most)]);
+        }
+        self.binary.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+        self.accessors.push(raw(&accessor));
+        self.first + self.accessors.len() - 1
+    }
+}
+
+fn animation(clip: &Clip, skeleton: &Skeleton, weights: bool, data: &mut Data) -> Result<Box<RawValue>, WriteError> {
+    let written = written(clip, skeleton, weights);
+    if written.is_empty() {
+        return Err(WriteError::EmptyClip { clip: clip.name().to_owned() });
+    }
+    let mut times: BTreeMap<u32, usize> = BTreeMap::new();
+    let (mut channels, mut samplers) = (Vec::new(), Vec::new());
+    for channel in written {
+        let input = match times.get(&channel.timeline) {
+            Some(&input) => input,
+            None => {
+                let secs = &clip.timelines()[channel.timeline as usize];
+                *times.entry(channel.timeline).or_insert(data.accessor("SCALAR", 1, secs, true))
+            }
+        };
+        let (path, shape, width, numbers) = numbers(channel);
+        if numbers.iter().any(|number| !number.is_finite()) {
+            let (clip, joint) = (clip.name().to_owned(), skeleton.name(channel.joint).to_owned());
+            return Err(WriteError::NotFinite { clip, joint });
+        }
+        let output = data.accessor(shape, width, &numbers, false);
+        let interpolation = match channel.interpolation {
+            Interpolation::Linear => "LINEAR",
+            Interpolation::Step => "STEP",
+            Interpolation::CubicSpline => "CUBICSPLINE",
+        };
+        let node = skeleton.source_index(channel.joint);
+        channels.push(json!({ "sampler": samplers.len(), "target": { "node": node, "path": path } }));
+        samplers.push(json!({ "input": input, "interpolation": interpolation, "output": output }));
+    }
+    let mut animation = json!({ "name": clip.name(), "channels": channels, "samplers": samplers });
+    if clip.name().is_empty()
+        && let Some(animation) = animation.as_object_mut()
+    {
+        animation.shift_remove("name");
+    }
+    Ok(raw(&animation))
+}
+
+/// The channels that count: of several for one property the last, as the player has it. A file may have only one.
+pub fn written<'a>(clip: &'a Clip, skeleton: &Skeleton, weights: bool) -> Vec<&'a Channel> {
+    let mut last: BTreeMap<(u32, u8), usize> = BTreeMap::new();
+    let key = |channel: &Channel| (channel.joint.0, channel.keys.property() as u8);
+    for (index, channel) in clip.channels().iter().enumerate() {
+        last.insert(key(channel), index);
+    }
+    let counts = |(index, channel): &(usize, &Channel)| {
+        last.get(&key(channel)) == Some(index)
+            && channel.joint.get() < skeleton.len()
+            && (weights || channel.keys.property() != Property::MorphWeights)
+    };
+    clip.channels().iter().enumerate().filter(counts).map(|(_, channel)| channel).collect()
+}
+
+/// A channel's path, the shape of its accessor, and its numbers.
+fn numbers(channel: &Channel) -> (&'static str, &'static str, usize, Vec<f32>) {
+    let vectors = |values: &[Vec3]| values.iter().flat_map(|value| value.to_array()).collect();
+    match &channel.keys {
+        Keys::Translation(values) => ("translation", "VEC3", 3, vectors(values)),
+        Keys::Scale(values) => ("scale", "VEC3", 3, vectors(values)),
+        Keys::Rotation(values) if channel.interpolation == Interpolation::CubicSpline => {
+            ("rotation", "VEC4", 4, values.iter().flat_map(|value| value.to_array()).collect())
+        }
+        Keys::Rotation(values) => ("rotation", "VEC4", 4, values.iter().flat_map(|value| unit(*value)).collect()),
+        Keys::MorphWeights { values, .. } => ("weights", "SCALAR", 1, values.clone()),
+    }
+}
+
+/// A rotation as files must have it. One without a length turns nothing.
+fn unit(rotation: Quat) -> [f32; 4] {
+    if (rotation.length_squared() - 1.0).abs() <= UNIT_TOLERANCE || !rotation.is_finite() {
+        return rotation.to_array();
+    }
+    let exact: DQuat = rotation.as_dquat();
+    let length = exact.length();
+    if length > 0.0 { (exact / length).as_quat().to_array() } else { Quat::IDENTITY.to_array() }
+}

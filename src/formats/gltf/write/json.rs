@@ -1,0 +1,99 @@
+//! JSON of which only some members are looked at: the rest stays the text that it was.
+
+use std::fmt;
+
+use serde::de::{MapAccess, Visitor};
+use serde::ser::SerializeMap;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::value::{RawValue, to_raw_value};
+
+/// An object's members in their order, values as text.
+#[derive(Debug, Default, Clone)]
+pub struct Object(Vec<(String, Box<RawValue>)>);
+
+/// An array's elements as text.
+pub type Array = Vec<Box<RawValue>>;
+
+impl Object {
+    /// The member read as something; none when it is missing or something else.
+    pub fn read<'a, T: Deserialize<'a>>(&'a self, key: &str) -> Option<T> {
+        let (_, value) = self.0.iter().find(|(other, _)| other == key)?;
+        serde_json::from_str(value.get()).ok()
+    }
+
+    /// All members that can be read so.
+    pub fn values<'a, T: Deserialize<'a>>(&'a self) -> impl Iterator<Item = T> {
+        self.0.iter().filter_map(|(_, value)| serde_json::from_str(value.get()).ok())
+    }
+
+    /// Replaces a member where it stands, or adds it at the end.
+    pub fn set(&mut self, key: &str, value: &impl Serialize) {
+        let Ok(value) = to_raw_value(value) else { return };
+        match self.0.iter_mut().find(|(other, _)| other == key) {
+            Some((_, old)) => *old = value,
+            None => self.0.push((key.to_owned(), value)),
+        }
+    }
+
+    pub fn remove(&mut self, key: &str) {
+        self.0.retain(|(other, _)| other != key);
+    }
+
+    /// Puts other members where `key` stands.
+    pub fn replace(&mut self, key: &str, members: Vec<(&str, Box<RawValue>)>) {
+        if let Some(at) = self.0.iter().position(|(other, _)| other == key) {
+            self.0.splice(at..=at, members.into_iter().map(|(key, value)| (key.to_owned(), value)));
+        }
+    }
+
+    /// Adds elements to the array `key`, which is made if there is none.
+    pub fn extend(&mut self, key: &str, elements: Array) {
+        if !elements.is_empty() {
+            let mut array: Array = self.read(key).unwrap_or_default();
+            array.extend(elements);
+            self.set(key, &array);
+        }
+    }
+
+    /// The number of elements of the array `key`.
+    pub fn count(&self, key: &str) -> usize {
+        self.read::<Array>(key).map_or(0, |array| array.len())
+    }
+}
+
+/// Any value that serde can write as text. None of what is written here can fail: no maps with odd keys, no streams.
+pub fn raw(value: &impl Serialize) -> Box<RawValue> {
+    to_raw_value(value).unwrap_or_else(|_| RawValue::NULL.to_owned())
+}
+
+impl Serialize for Object {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.len()))?;
+        for (key, value) in &self.0 {
+            map.serialize_entry(key, value)?;
+        }
+        map.end()
+    }
+}
+
+impl<'de> Deserialize<'de> for Object {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Members;
+        impl<'de> Visitor<'de> for Members {
+            type Value = Object;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("an object")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Object, A::Error> {
+                let mut members = Vec::new();
+                while let Some(member) = map.next_entry()? {
+                    members.push(member);
+                }
+                Ok(Object(members))
+            }
+        }
+        deserializer.deserialize_map(Members)
+    }
+}

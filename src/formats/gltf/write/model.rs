@@ -1,0 +1,237 @@
+//! A model's own file as one GLB, with clips added behind its own.
+
+use std::borrow::Cow;
+
+use base64::Engine;
+use imagesize::ImageType;
+use serde_json::json;
+use serde_json::value::RawValue;
+
+use super::clip::{self, Counts};
+use super::json::{Array, Object, raw};
+use super::{WriteError, glb};
+use crate::anim::{Clip, JointIndex, Skeleton};
+use crate::asset::Warnings;
+use crate::formats::gltf::accessor::Bytes;
+use crate::formats::gltf::{container, data, parse, resolve_buffers, schema};
+use crate::formats::{FileSet, LoadError};
+
+/// The file `file` of the set as a GLB that needs no other file, with `clips` (of `skeleton`, which was read from the same
+/// file) behind its own. The bytes of its first buffer are the beginning of the new one; indices, numbers and everything
+/// unknown stay as they are. Only a node that a clip moves and that has a matrix gets the parts of it instead, because
+/// the specification forbids moving a matrix. A GLB that needs nothing done comes back as it is.
+pub fn model(files: &FileSet, file: &str, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
+    let bytes =
+        files.get(file).ok_or_else(|| LoadError::NoModel { found: files.names().map(str::to_owned).collect() })?;
+    let container = container::open(file, bytes)?;
+    let schema = parse(file, container.json)?;
+    let mut json: Object = serde_json::from_slice(container.json).map_err(|problem| LoadError::Json {
+        file: file.to_owned(),
+        line: problem.line(),
+        column: problem.column(),
+        problem: problem.to_string(),
+    })?;
+    if schema.nodes.len() != skeleton.len() {
+        let (nodes, joints) = (schema.nodes.len(), skeleton.len());
+        return Err(WriteError::OtherSkeleton { file: file.to_owned(), nodes, joints });
+    }
+    let outside = Outside::new(&schema, container.is_glb);
+    if container.is_glb && clips.is_empty() && !outside.buffers && outside.images.is_empty() {
+        return Ok(bytes.to_vec());
+    }
+    let mut warnings = Warnings::default();
+    let buffers = resolve_buffers(files, file, &container, &schema, &mut warnings).map_err(|p| p.in_file(file))?;
+    let mut binary = match buffers.first() {
+        Some(Some(first)) => first.as_slice().to_vec(),
+        None => Vec::new(),
+        Some(None) => return Err(WriteError::NoBuffer { file: file.to_owned() }),
+    };
+    let chunk = binary.len();
+    join_buffers(&mut json, &schema, &buffers, &outside, &mut binary);
+    embed_images(files, file, &mut json, &schema, &outside, &mut binary);
+    let counts = Counts { accessors: json.count("accessors"), buffer_views: json.count("bufferViews") };
+    let added = clip::add(clips, skeleton, true, counts, &mut binary)?;
+    json.extend("accessors", added.accessors);
+    json.extend("bufferViews", added.buffer_views);
+    json.extend("animations", added.animations);
+    for clip in clips {
+        split_matrices(&mut json, clip, skeleton);
+    }
+    // A GLB's chunk is up to three bytes longer than its buffer; files may have more in them than a buffer says, and
+    // views reach there that work all the same.
+    let byte_length = match schema.buffers.first() {
+        Some(first) if container.is_glb && binary.len() == chunk => first.byte_length,
+        _ => binary.len(),
+    };
+    set_first_buffer(&mut json, byte_length);
+    let json = serde_json::to_vec(&json).unwrap_or_default();
+    glb::glb(json, binary)
+}
+
+/// What lies outside the file, and is brought in. In a .gltf data URIs count too: text takes a third more room.
+struct Outside {
+    buffers: bool,
+    images: Vec<usize>,
+}
+
+impl Outside {
+    fn new(schema: &schema::Root, is_glb: bool) -> Self {
+        let outside = |uri: &Option<String>| uri.as_deref().is_some_and(|uri| !is_glb || !data::is_data_uri(uri));
+        Self {
+            buffers: schema.buffers.iter().any(|buffer| outside(&buffer.uri)),
+            images: (0..schema.images.len()).filter(|&index| outside(&schema.images[index].uri)).collect(),
+        }
+    }
+}
+
+/// Puts the other buffers behind the first. Where that cannot be done (one has no data, or an extension names buffers by
+/// number) they stay, as data URIs.
+fn join_buffers(
+    json: &mut Object,
+    schema: &schema::Root,
+    buffers: &[Option<Bytes>],
+    outside: &Outside,
+    binary: &mut Vec<u8>,
+) {
+    if !outside.buffers || buffers.len() < 2 {
+        return;
+    }
+    let mut views: Vec<Object> = json.read("bufferViews").unwrap_or_default();
+    let named_elsewhere = views.iter().any(|view| {
+        let extensions: Object = view.read("extensions").unwrap_or_default();
+        extensions.values().any(|extension: Object| extension.read::<u64>("buffer").is_some())
+    });
+    let Some(all) = buffers.iter().map(Option::as_ref).collect::<Option<Vec<&Bytes>>>().filter(|_| !named_elsewhere)
+    else {
+        keep_as_data(json, schema, buffers);
+        return;
+    };
+    let mut starts = vec![0];
+    for bytes in all.into_iter().skip(1) {
+        glb::pad(binary, 0);
+        starts.push(binary.len());
+        binary.extend_from_slice(bytes.as_slice());
+    }
+    for (view, read) in views.iter_mut().zip(&schema.buffer_views) {
+        if let Some(&start) = starts.get(read.buffer).filter(|_| read.buffer > 0) {
+            view.set("buffer", &0);
+            view.set("byteOffset", &(start + read.byte_offset));
+        }
+    }
+    let first: Array = json.read::<Array>("buffers").unwrap_or_default().into_iter().take(1).collect();
+    json.set("buffers", &first);
+    json.set("bufferViews", &views);
+}
+
+fn keep_as_data(json: &mut Object, schema: &schema::Root, buffers: &[Option<Bytes>]) {
+    let mut written: Vec<Object> = json.read("buffers").unwrap_or_default();
+    for ((buffer, read), bytes) in written.iter_mut().zip(&schema.buffers).zip(buffers).skip(1) {
+        if let (Some(uri), Some(bytes)) = (&read.uri, bytes)
+            && !data::is_data_uri(uri)
+        {
+            let text = base64::engine::general_purpose::STANDARD.encode(bytes.as_slice());
+            buffer.set("uri", &format!("data:application/octet-stream;base64,{text}"));
+        }
+    }
+    json.set("buffers", &written);
+}
+
+/// Images that are not among the files stay as they are named.
+fn embed_images(
+    files: &FileSet,
+    file: &str,
+    json: &mut Object,
+    schema: &schema::Root,
+    outside: &Outside,
+    binary: &mut Vec<u8>,
+) {
+    if outside.images.is_empty() {
+        return;
+    }
+    let mut images: Array = json.read("images").unwrap_or_default();
+    let mut views: Array = Vec::new();
+    let first_view = json.count("bufferViews");
+    for &index in &outside.images {
+        let Some(uri) = schema.images[index].uri.as_deref() else { continue };
+        let bytes: Option<Cow<[u8]>> = match data::is_data_uri(uri) {
+            true => data::data_uri("", uri).ok().map(Cow::Owned),
+            false => data::find(files, file, uri).map(|found| Cow::Borrowed(&found.bytes[..])),
+        };
+        let (Some(bytes), Some(text)) = (bytes, images.get_mut(index)) else { continue };
+        let Ok(mut image) = serde_json::from_str::<Object>(text.get()) else { continue };
+        let Some(mime) = mime(&bytes, uri, image.read("mimeType")) else { continue };
+        glb::pad(binary, 0);
+        views.push(raw(&json!({ "buffer": 0, "byteOffset": binary.len(), "byteLength": bytes.len() })));
+        binary.extend_from_slice(&bytes);
+        image.remove("uri");
+        image.set("mimeType", &mime);
+        image.set("bufferView", &(first_view + views.len() - 1));
+        *text = raw(&image);
+    }
+    json.extend("bufferViews", views);
+    json.set("images", &images);
+}
+
+/// What kind of image it is: by content, else by what the file says.
+fn mime(bytes: &[u8], uri: &str, said: Option<String>) -> Option<String> {
+    let by_content = match imagesize::image_type(bytes) {
+        Ok(ImageType::Png) => Some("image/png"),
+        Ok(ImageType::Jpeg) => Some("image/jpeg"),
+        Ok(ImageType::Webp) => Some("image/webp"),
+        _ if bytes.starts_with(b"\xABKTX 20") => Some("image/ktx2"),
+        _ => None,
+    };
+    let in_uri = || {
+        let (kind, _) = uri.get(5..).filter(|_| data::is_data_uri(uri))?.split_once([';', ','])?;
+        kind.starts_with("image/").then(|| kind.to_owned())
+    };
+    by_content.map(str::to_owned).or(said).or_else(in_uri)
+}
+
+/// The first buffer is what the GLB's binary chunk holds.
+fn set_first_buffer(json: &mut Object, byte_length: usize) {
+    let mut buffers: Array = json.read("buffers").unwrap_or_default();
+    let mut first: Object =
+        buffers.first().and_then(|first| serde_json::from_str(first.get()).ok()).unwrap_or_default();
+    if buffers.is_empty() && byte_length == 0 {
+        return;
+    }
+    first.remove("uri");
+    first.set("byteLength", &byte_length);
+    match buffers.first_mut() {
+        Some(buffer) => *buffer = raw(&first),
+        None => buffers.push(raw(&first)),
+    }
+    json.set("buffers", &buffers);
+}
+
+/// Nodes that the clip moves get translation, rotation and scale in place of a matrix.
+fn split_matrices(json: &mut Object, clip: &Clip, skeleton: &Skeleton) {
+    let mut nodes: Array = json.read("nodes").unwrap_or_default();
+    let mut changed = false;
+    for channel in clip::written(clip, skeleton, false) {
+        let Some(text) = nodes.get_mut(skeleton.source_index(channel.joint)) else { continue };
+        if !text.get().contains("matrix") {
+            continue;
+        }
+        let Ok(mut node) = serde_json::from_str::<Object>(text.get()) else { continue };
+        if node.read::<[f64; 16]>("matrix").is_some() {
+            node.replace("matrix", parts(skeleton, channel.joint));
+            *text = raw(&node);
+            changed = true;
+        }
+    }
+    if changed {
+        json.set("nodes", &nodes);
+    }
+}
+
+fn parts(skeleton: &Skeleton, joint: JointIndex) -> Vec<(&'static str, Box<RawValue>)> {
+    let rest = skeleton.rest().locals[joint.get()];
+    // With all digits: the shortest form of 32 bits may be read as its neighbour by way of 64.
+    vec![
+        ("translation", raw(&rest.translation.as_dvec3().to_array())),
+        ("rotation", raw(&rest.rotation.as_dquat().to_array())),
+        ("scale", raw(&rest.scale.as_dvec3().to_array())),
+    ]
+}

@@ -1,0 +1,76 @@
+//! A skeleton with clips and nothing else: what other programs read as an animation file.
+
+use serde_json::{Value, json};
+
+use super::{WriteError, clip, glb};
+use crate::anim::{Clip, JointIndex, Skeleton};
+use crate::asset::Asset;
+
+/// A GLB with the asset's joints as nodes, numbered as in the file it came from, its scenes, and `clips` (of this skeleton).
+/// Meshes are left out, and with them channels of morph weights.
+pub fn motion(asset: &Asset, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
+    let skeleton = &asset.skeleton;
+    let nodes: Vec<Value> = (0..skeleton.len())
+        .filter_map(|source| skeleton.joint_of_source(source))
+        .map(|joint| node(skeleton, joint))
+        .collect();
+    let mut root =
+        json!({ "asset": { "version": "2.0", "generator": concat!("Gaitway ", env!("CARGO_PKG_VERSION")) } });
+    let source = |joints: &mut dyn Iterator<Item = JointIndex>| -> Vec<usize> {
+        let mut sources: Vec<usize> = joints.map(|joint| skeleton.source_index(joint)).collect();
+        sources.sort_unstable();
+        sources
+    };
+    if !nodes.is_empty() {
+        let mut scenes: Vec<Value> = Vec::new();
+        for scene in &asset.scenes {
+            let mut value = json!({});
+            if !scene.name.is_empty() {
+                value["name"] = json!(scene.name);
+            }
+            if !scene.roots.is_empty() {
+                value["nodes"] = json!(source(&mut scene.roots.iter().copied()));
+            }
+            scenes.push(value);
+        }
+        if scenes.is_empty() {
+            let mut roots = skeleton.joints().filter(|&joint| skeleton.parent(joint).is_none());
+            scenes.push(json!({ "nodes": source(&mut roots) }));
+        }
+        root["scene"] = json!(asset.default_scene.unwrap_or(0));
+        root["scenes"] = json!(scenes);
+        root["nodes"] = json!(nodes);
+    }
+    let mut binary = Vec::new();
+    let added = clip::add(clips, skeleton, false, clip::Counts::default(), &mut binary)?;
+    if !added.animations.is_empty() {
+        root["animations"] = json!(added.animations);
+        root["accessors"] = json!(added.accessors);
+        root["bufferViews"] = json!(added.buffer_views);
+        root["buffers"] = json!([{ "byteLength": binary.len() }]);
+    }
+    glb::glb(root.to_string().into_bytes(), binary)
+}
+
+fn node(skeleton: &Skeleton, joint: JointIndex) -> Value {
+    let mut node = json!({});
+    if !skeleton.name(joint).is_empty() {
+        node["name"] = json!(skeleton.name(joint));
+    }
+    let rest = skeleton.rest().locals[joint.get()];
+    let mut part = |key: &str, numbers: &[f32], usual: f32, last: f32| {
+        let (end, others) = numbers.split_last().unwrap_or((&last, &[]));
+        if *end != last || others.iter().any(|number| *number != usual) {
+            node[key] = json!(numbers);
+        }
+    };
+    part("translation", &rest.translation.to_array(), 0.0, 0.0);
+    part("rotation", &rest.rotation.to_array(), 0.0, 1.0);
+    part("scale", &rest.scale.to_array(), 1.0, 1.0);
+    let mut children: Vec<usize> = skeleton.children(joint).map(|child| skeleton.source_index(child)).collect();
+    if !children.is_empty() {
+        children.sort_unstable();
+        node["children"] = json!(children);
+    }
+    node
+}
