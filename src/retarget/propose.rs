@@ -160,7 +160,8 @@ fn names_decide(
     let count = moved.iter().filter(|joint| named.contains(joint)).count();
     let means_same = |(&target, &source): (&JointIndex, &JointIndex)| match (targets.slot(target), sources.slot(source))
     {
-        (Some(a), Some(b)) => a == b,
+        // A trunk of two joints spreads over other slots than one of three; its ends are looked at below.
+        (Some(a), Some(b)) => a == b || TRUNK.contains(&a) && TRUNK.contains(&b),
         _ => true,
     };
     let tops_agree = match (trunk(targets).last(), trunk(sources).last()) {

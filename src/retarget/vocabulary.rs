@@ -54,6 +54,18 @@ pub(super) const VOCABULARIES: &[Vocabulary] = &[
         ],
     },
     Vocabulary {
+        name: "Quaternius",
+        // The joint `Hips` is a part of the belly: legs and spine meet in Body.
+        body: &[
+            ("Body", Hips), ("Abdomen", Spine), ("Torso", Chest), ("Neck", Neck), ("Head", Head),
+            ("UpperLeg.L", LeftUpperLeg), ("LowerLeg.L", LeftLowerLeg), ("Foot.L", LeftFoot),
+            ("Shoulder.L", LeftShoulder), ("UpperArm.L", LeftUpperArm), ("LowerArm.L", LeftLowerArm),
+        ],
+        fingers: &[
+            "Thumb.L", "Thumb2.L", "", "Index.L", "Index2.L", "", "Middle1.L", "Middle2.L", "", "Ring1.L", "Ring2.L",
+        ],
+    },
+    Vocabulary {
         name: "KayKit",
         // The hand starts at the wrist: `hand.l` lies in the palm.
         body: &[

@@ -2,7 +2,7 @@
 
 use gaitway::anim::{Joint, JointIndex, Skeleton, Transform};
 use gaitway::asset::Asset;
-use gaitway::retarget::{JointMap, Proposal, propose};
+use gaitway::retarget::{JointMap, Proposal, Reason, propose};
 use glam::Vec3;
 
 use crate::data::open;
@@ -53,6 +53,32 @@ fn names_decide_where_most_are_shared() {
     assert!(proposal.unused_sources.is_empty() && proposal.unmapped_targets.is_empty());
     let name = |asset: &Asset, joint: JointIndex| asset.skeleton.name(joint).to_owned();
     assert!(proposal.pairs.iter().all(|pair| name(&mannequin, pair.target) == name(&run, pair.source)));
+}
+
+/// Files made for each other: names decide although the motion leaves joints of the trunk out.
+#[test]
+fn a_motion_with_fewer_joints_goes_by_names() {
+    let (Some(model), Some(motion)) = (open("playcanvas/bitmoji.glb"), open("playcanvas/bitmoji-anim/jump-flip.glb"))
+    else {
+        return;
+    };
+    let proposal = propose(&model, &motion);
+    assert_eq!(proposal.pairs.len(), motion.skeleton.len());
+    for pair in &proposal.pairs {
+        assert_eq!(model.skeleton.name(pair.target), motion.skeleton.name(pair.source));
+    }
+}
+
+/// Exporters write names in their own ways: `upper_arm.L` is `upper_armFBXASC046L`.
+#[test]
+fn names_of_two_exporters_are_the_same() {
+    let (Some(model), Some(motion)) = (open("misc/babylon_riggedMesh.glb"), open("cosc422/mannequin_run.glb")) else {
+        return;
+    };
+    let proposal = propose(&model, &motion);
+    // All but the root that only wraps the skeleton.
+    assert_eq!(proposal.pairs.len(), motion.skeleton.len() - 1);
+    assert!(proposal.pairs.iter().all(|pair| pair.reason == Reason::SameName));
 }
 
 /// Every file for itself: all joints follow themselves.
