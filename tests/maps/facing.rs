@@ -1,0 +1,99 @@
+//! Which way bodies look, and whether what is called left lies there.
+
+use gaitway::anim::{Joint, Skeleton, Transform};
+use gaitway::asset::{Asset, Slot};
+use gaitway::retarget::{Contradiction, recognize};
+use glam::Vec3;
+
+use crate::data::open;
+
+/// Hips, legs with feet, a spine, arms and a head in T-pose, looking along +Z, left at `left` (+1 or -1) times +X.
+fn figure(left: f32, toes: bool) -> Asset {
+    let mut joints: Vec<Joint> = Vec::new();
+    let mut place = |name: &str, parent: Option<usize>, at: Vec3| {
+        let rest = Transform::from_translation(at);
+        joints.push(Joint { name: name.to_owned(), parent, rest, ..Joint::default() });
+        joints.len() - 1
+    };
+    let hips = place("Hips", None, Vec3::Y);
+    let spine = place("Spine", Some(hips), Vec3::Y * 0.2);
+    let neck = place("Neck", Some(spine), Vec3::Y * 0.3);
+    place("Head", Some(neck), Vec3::Y * 0.1);
+    for (side, out) in [("Left", left), ("Right", -left)] {
+        let mut at = hips;
+        for (name, step) in [
+            ("UpLeg", Vec3::new(0.1 * out, 0.0, 0.0)),
+            ("Leg", Vec3::Y * -0.45),
+            ("Foot", Vec3::Y * -0.45),
+            ("ToeBase", Vec3::new(0.0, -0.05, 0.15)),
+        ] {
+            if name != "ToeBase" || toes {
+                at = place(&format!("{side}{name}"), Some(at), step);
+            }
+        }
+        let mut at = spine;
+        for (name, step) in [("Arm", 0.2), ("ForeArm", 0.25), ("Hand", 0.25)] {
+            at = place(&format!("{side}{name}"), Some(at), Vec3::new(step * out, 0.0, 0.0));
+        }
+    }
+    Asset { skeleton: Skeleton::new(joints).expect("a tree"), ..Asset::default() }
+}
+
+#[test]
+fn a_figure_with_names_that_fit() {
+    let found = recognize(&figure(1.0, true));
+    assert_eq!(
+        (found.facing.up, found.facing.left, found.facing.forward),
+        (Some(Vec3::Y), Some(Vec3::X), Some(Vec3::Z))
+    );
+    assert!(!found.facing.is_mirrored());
+    assert_eq!(found.contradictions, []);
+}
+
+#[test]
+fn names_beat_shape_and_it_is_said() {
+    let asset = figure(-1.0, true);
+    let found = recognize(&asset);
+    let called = |slot: Slot| found.joint(slot).map(|joint| asset.skeleton.name(joint));
+    assert_eq!(called(Slot::LeftUpperLeg), Some("LeftUpLeg"));
+    assert!(found.facing.is_mirrored());
+    assert_eq!(found.facing.forward, Some(Vec3::Z));
+    // Both sides of four joints of the legs and three of the arms.
+    assert_eq!(found.contradictions.len(), 14);
+    let is_leg = |contradiction: &Contradiction| {
+        let Contradiction::Side { slot, joint, name } = contradiction;
+        *slot == Slot::LeftUpperLeg && name == "LeftUpLeg" && found.joint(*slot) == Some(*joint)
+    };
+    assert!(found.contradictions.iter().any(is_leg));
+}
+
+#[test]
+fn without_toes_eyes_and_bent_knees_nobody_can_tell() {
+    let found = recognize(&figure(-1.0, false));
+    assert_eq!(found.facing.left, Some(Vec3::NEG_X));
+    assert_eq!(found.facing.forward, None);
+    assert_eq!(found.contradictions, []);
+}
+
+#[test]
+fn real_bodies_look_where_they_look() {
+    for (path, forward, mirrored) in [
+        ("threejs/Xbot.glb", Vec3::Z, false),
+        ("threejs/Soldier.glb", Vec3::NEG_Z, false),
+        ("vrm/vrm0_cryptovoxels.vrm", Vec3::NEG_Z, false),
+        ("khronos/CesiumMan/glTF-Binary/CesiumMan.glb", Vec3::X, false),
+        ("kaykit/Knight.glb", Vec3::Z, false),
+        // Bones along one axis at rest: the first frame is looked at.
+        ("bvh/animateddrawings_rokoko_jesse_dance.bvh", Vec3::Z, false),
+        ("cosc422/original/Dwarf/avatar_walk.bvh", Vec3::Z, false),
+        // A converter mirrored these and left the names.
+        ("cosc422/dwarf.glb", Vec3::Z, true),
+        ("cosc422/ArmyPilot.glb", Vec3::NEG_Z, true),
+    ] {
+        let Some(asset) = open(path) else { return };
+        let found = recognize(&asset);
+        assert!(found.facing.forward.is_some_and(|seen| seen.dot(forward) > 0.99), "{path}: {:?}", found.facing);
+        assert_eq!(found.facing.is_mirrored(), mirrored, "{path}");
+        assert_eq!(!found.contradictions.is_empty(), mirrored, "{path}");
+    }
+}
