@@ -1,11 +1,13 @@
 //! The command line: thin entries over the same functions as the page.
 
 mod borrow;
+mod convert;
 mod inspect;
 mod map;
 mod pose;
 #[cfg(feature = "render")]
 mod render;
+mod retarget;
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -18,6 +20,7 @@ use crate::anim::LoopMode;
 use crate::files::{Opened, open_paths};
 use crate::library::{Library, Model};
 use crate::mesh::SkinningMode;
+use crate::retarget::{Feet, Keep, RestChoice, RootPart};
 use crate::state::{ClipChoice, Command, ViewerState, active_clip, apply, choice_of_clip};
 use borrow::Borrowing;
 
@@ -40,6 +43,10 @@ enum Action {
     Pose(PoseArguments),
     /// Proposes which joints of a model follow which joints of a motion.
     Map(MapArguments),
+    /// Writes a model with a borrowed clip behind its own, and says how well it fits.
+    Retarget(Box<RetargetArguments>),
+    /// Writes any readable model as one .glb.
+    Convert(ConvertArguments),
     /// Draws the same picture as the page, without a window.
     #[cfg(feature = "render")]
     Render(RenderArguments),
@@ -97,6 +104,129 @@ struct MapArguments {
     /// Prints the map with slot, reason and confidence of each joint.
     #[arg(long)]
     json: bool,
+}
+
+#[derive(Debug, Args)]
+struct RetargetArguments {
+    /// The model that is to move.
+    #[arg(long, value_name = "FILE")]
+    model: PathBuf,
+    /// The file whose clip it borrows: .glb, .gltf, .vrma, .bvh.
+    #[arg(long, value_name = "FILE")]
+    motion: PathBuf,
+    /// A clip's name or index in the motion (none: its first).
+    #[arg(long, value_name = "CLIP")]
+    clip: Option<String>,
+    /// Which joints follow which (none: as `gaitway map` proposes).
+    #[arg(long, value_name = "MAP.json")]
+    map: Option<PathBuf>,
+    #[command(flatten)]
+    options: RetargetOptions,
+    /// Rounds of the clip that are written (none: as few as make the model's own clips below it come out even).
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
+    loops: Option<u16>,
+    /// The file to write.
+    #[arg(long, value_name = "OUT.glb")]
+    out: PathBuf,
+    /// Writes skeleton and clip alone, without meshes.
+    #[arg(long)]
+    clip_only: bool,
+    /// Prints what was mapped and the quality figures as one JSON document.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Each wins over what the map says.
+#[derive(Debug, Args)]
+struct RetargetOptions {
+    /// Travel over the ground.
+    #[arg(long, value_enum)]
+    horizontal: Option<RootPartArgument>,
+    /// Travel up and down.
+    #[arg(long, value_enum)]
+    vertical: Option<RootPartArgument>,
+    /// Turning about the vertical.
+    #[arg(long, value_enum)]
+    yaw: Option<RootPartArgument>,
+    /// Moves travel to the joint above the hips.
+    #[arg(long)]
+    extract_root: bool,
+    #[arg(long, value_enum)]
+    feet: Option<FeetArgument>,
+    /// Translations of joints other than the hips.
+    #[arg(long, value_enum)]
+    translations: Option<KeepArgument>,
+    /// Scales of joints other than the hips.
+    #[arg(long, value_enum)]
+    scales: Option<KeepArgument>,
+    /// What counts as the model's rest.
+    #[arg(long, value_enum)]
+    rest_model: Option<RestArgument>,
+    /// What counts as the motion's rest.
+    #[arg(long, value_enum)]
+    rest_motion: Option<RestArgument>,
+    /// What joints without a source do: `rest`, or play the model's own clip of this name or index.
+    #[arg(long, value_name = "rest|CLIP")]
+    unmapped: Option<String>,
+}
+
+macro_rules! arguments_of {
+    ($($name:ident of $kind:ty { $($choice:ident),* })*) => {
+        $(
+            #[derive(Debug, Clone, Copy, ValueEnum)]
+            enum $name {
+                $($choice,)*
+            }
+
+            impl From<$name> for $kind {
+                fn from(argument: $name) -> Self {
+                    match argument {
+                        $($name::$choice => Self::$choice,)*
+                    }
+                }
+            }
+        )*
+    };
+}
+
+arguments_of! {
+    RootPartArgument of RootPart { Keep, InPlace, Freeze }
+    FeetArgument of Feet { Off, Plant }
+    KeepArgument of Keep { Auto, Keep, Drop }
+    RestArgument of RestChoice { Auto, Node, Bind, FirstFrame }
+}
+
+#[derive(Debug, Args)]
+struct ConvertArguments {
+    #[command(flatten)]
+    input: Files,
+    /// The file to write.
+    #[arg(long, value_name = "OUT.glb")]
+    out: PathBuf,
+    /// The unit of a .bvh (none: guessed by the size of its skeleton).
+    #[arg(long, value_enum)]
+    unit: Option<Unit>,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Unit {
+    M,
+    Cm,
+    Mm,
+    In,
+    Ft,
+}
+
+impl Unit {
+    fn metres(self) -> f32 {
+        match self {
+            Self::M => 1.0,
+            Self::Cm => 0.01,
+            Self::Mm => 0.001,
+            Self::In => 0.0254,
+            Self::Ft => 0.3048,
+        }
+    }
 }
 
 #[derive(Debug, Args)]
@@ -159,6 +289,8 @@ fn run(arguments: Arguments) -> anyhow::Result<()> {
         Some(Action::Inspect(arguments)) => inspect::run(&arguments),
         Some(Action::Map(arguments)) => map::run(&arguments),
         Some(Action::Pose(arguments)) => pose::run(&arguments),
+        Some(Action::Retarget(arguments)) => retarget::run(&arguments),
+        Some(Action::Convert(arguments)) => convert::run(&arguments),
         #[cfg(feature = "render")]
         Some(Action::Render(arguments)) => render::run(&arguments),
         None => open_window(arguments.files),
