@@ -19,7 +19,7 @@ const SURE_HIERARCHY: f32 = 0.6;
 /// Of so many heads one is looked for; a crowd is not a body.
 const MOST_HEADS: usize = 64;
 
-/// The joints of one leg or arm, from the body outwards; `root` is the toes' or the collar bone's.
+/// The joints of one leg or arm; `extra` are its toes or its collar bone.
 #[derive(Debug, Default, Clone, Copy)]
 struct Limb {
     extra: Option<JointIndex>,
