@@ -14,8 +14,10 @@ pub(super) fn run(arguments: &MapArguments) -> anyhow::Result<()> {
     let motion = open_motion(&arguments.motion)?.asset;
     let proposal = propose(&model, &motion);
     let map = proposal.to_map(&model, &motion);
-    for contradiction in proposal.model.contradictions.iter().chain(&proposal.motion.contradictions) {
-        eprintln!("warning: {}", contradiction_text(contradiction));
+    for (file, found) in [(&arguments.model, &proposal.model), (&arguments.motion, &proposal.motion)] {
+        if let Some(text) = contradictions_text(&found.contradictions) {
+            eprintln!("warning: {}: {text}", file.display());
+        }
     }
     if proposal.pairs.is_empty() {
         bail!(
@@ -34,10 +36,12 @@ pub(super) fn run(arguments: &MapArguments) -> anyhow::Result<()> {
         };
         document["unmapped_targets"] = json!(names(&model.skeleton, &proposal.unmapped_targets));
         document["unused_sources"] = json!(names(&motion.skeleton, &proposal.unused_sources));
-        let both = proposal.model.contradictions.iter().chain(&proposal.motion.contradictions);
-        document["warnings"] = both
-            .map(|found| json!({ "code": "sides-contradict", "message": contradiction_text(found), "where": place(found) }))
-            .collect();
+        let warnings = [&proposal.model, &proposal.motion].into_iter().filter_map(|found| {
+            let text = contradictions_text(&found.contradictions)?;
+            let place: Vec<&str> = found.contradictions.iter().map(place).collect();
+            Some(json!({ "code": "sides-contradict", "message": text, "where": place.join(", ") }))
+        });
+        document["warnings"] = warnings.collect();
         return print_json(&document);
     }
     let mut text = String::new();
@@ -68,11 +72,13 @@ fn place(contradiction: &Contradiction) -> &str {
     name
 }
 
-pub(super) fn contradiction_text(contradiction: &Contradiction) -> String {
-    let Contradiction::Side { slot, name, .. } = contradiction;
-    format!(
-        "“{name}” is taken for {} by its name, but lies on the other side as the toes point: the model is mirrored, or its \
-         names are swapped",
-        slot.name()
-    )
+/// All contradictions of one file in one sentence; none when there are none.
+fn contradictions_text(contradictions: &[Contradiction]) -> Option<String> {
+    let names: Vec<&str> = contradictions.iter().map(place).collect();
+    let (first, last) = (names.first()?, names.last()?);
+    Some(format!(
+        "{} joints from “{first}” to “{last}” are named for one side and lie on the other as the toes point: the model is \
+         mirrored, or its names are swapped",
+        names.len()
+    ))
 }

@@ -4,8 +4,8 @@ use super::align::{Alignment, align};
 use super::law::{NewChannel, RotationLaw, Yaw};
 use super::locals::{Carry, same_skeleton};
 use super::map::{Feet, Keep, RestChoice};
-use super::resolved::ResolvedMap;
-use super::rest::{better_rest_secs, chosen_locals, clip_locals, node_locals};
+use super::resolved::{Pair, ResolvedMap};
+use super::rest::{ancestry, better_rest_secs, chosen_locals, clip_locals, node_locals};
 use super::root::{Hips, RootMotion};
 use super::track::Motion;
 use crate::anim::{ChannelError, Clip, ClipBuilder, JointIndex, Property};
@@ -210,7 +210,7 @@ impl<'a> Retargeting<'a> {
         let on_path = |joint: JointIndex| {
             root.as_ref().is_some_and(|root| {
                 let hips = self.map.pairs[root.hips.pair].target;
-                super::rest::ancestry(skeletons[1], hips).any(|ancestor| ancestor == joint)
+                ancestry(skeletons[1], hips).any(|ancestor| ancestor == joint)
             })
         };
         let mut channels = Vec::new();
@@ -236,12 +236,37 @@ impl<'a> Retargeting<'a> {
         channels
     }
 
+    /// Keys of the source channels that went into these target properties: rotations of all joints on the way to a mapped
+    /// one, all that carries the hips, and what was copied.
+    fn keys_in(&self, written: &[(JointIndex, Property)]) -> usize {
+        let skeleton = &self.source.asset.skeleton;
+        let above = |source: JointIndex, joint: JointIndex| ancestry(skeleton, source).any(|other| other == joint);
+        let hips = self.hips.map(|hips| self.map.pairs[hips.pair]);
+        let used = |joint: JointIndex, property: Property| match property {
+            Property::Rotation => self.map.pairs.iter().any(|pair| above(pair.source, joint)),
+            property => {
+                let copied = |pair: &Pair| pair.source == joint && written.contains(&(pair.target, property));
+                let carries =
+                    |pair: Pair| written.contains(&(pair.target, Property::Translation)) && above(pair.source, joint);
+                self.map.pairs.iter().any(copied) || hips.is_some_and(carries)
+            }
+        };
+        let muted = |joint, property| self.map.muted.contains(&(joint, property));
+        let channels = self.source_clip.channels().iter().filter(|channel| {
+            let property = channel.keys.property();
+            used(channel.joint, property) && !muted(channel.joint, property)
+        });
+        channels.map(|channel| self.source_clip.timelines()[channel.timeline as usize].len()).sum()
+    }
+
     pub(super) fn finish(
         &self,
         mut channels: Vec<NewChannel>,
         nowhere_to_extract: bool,
     ) -> Result<Retargeted, RetargetError> {
         let skeleton = &self.model.asset.skeleton;
+        let written: Vec<(JointIndex, Property)> =
+            channels.iter().map(|channel| (channel.joint, channel.keys.property())).collect();
         let mut builder = ClipBuilder::new(self.source_clip.name(), skeleton);
         let mut resampled: Vec<JointIndex> = Vec::new();
         let last = channels.iter().filter_map(|channel| channel.times.last().copied()).fold(0.0, f32::max);
@@ -258,21 +283,7 @@ impl<'a> Retargeting<'a> {
                 RetargetError::Channel { joint: skeleton.name(channel.joint).to_owned(), problem }
             })?;
         }
-        let used = |joint: JointIndex| {
-            self.map
-                .pairs
-                .iter()
-                .any(|pair| super::rest::ancestry(&self.source.asset.skeleton, pair.source).any(|a| a == joint))
-        };
-        let keys_in = self
-            .source_clip
-            .channels()
-            .iter()
-            .filter(|channel| {
-                used(channel.joint) && !self.map.muted.contains(&(channel.joint, channel.keys.property()))
-            })
-            .map(|channel| self.source_clip.timelines()[channel.timeline as usize].len())
-            .sum();
+        let keys_in = self.keys_in(&written);
         resampled.sort();
         Ok(Retargeted {
             clip: builder.build(),

@@ -245,6 +245,7 @@ impl JointMap {
             Ok(None) => return Err(MapError::NoMap),
             Err(error) => return Err(MapError::NoJson { message: error.to_string() }),
         }
+        let text = &without_comments(text);
         serde_path_to_error::deserialize(&mut serde_json::Deserializer::from_str(text)).map_err(|error| {
             let path = error.path().to_string();
             MapError::Json { path, message: error.into_inner().to_string() }
@@ -256,6 +257,25 @@ impl JointMap {
         let text = serde_json::to_string_pretty(self);
         text.map(|text| text + "\n").map_err(|error| MapError::NoJson { message: error.to_string() })
     }
+}
+
+/// `gaitway map --json` says more than a map has: what it says can be used as a map all the same.
+fn without_comments(text: &str) -> String {
+    let Ok(mut form) = serde_json::from_str::<serde_json::Value>(text) else { return text.to_owned() };
+    if let Some(map) = form.as_object_mut() {
+        for comment in ["unmapped_targets", "unused_sources", "warnings"] {
+            map.remove(comment);
+        }
+        let entries = map.get_mut("joints").and_then(serde_json::Value::as_object_mut);
+        for entry in entries.into_iter().flat_map(|joints| joints.values_mut()) {
+            if let Some(entry) = entry.as_object_mut() {
+                for comment in ["slot", "reason", "confidence"] {
+                    entry.remove(comment);
+                }
+            }
+        }
+    }
+    form.to_string()
 }
 
 impl Default for JointMap {

@@ -1,0 +1,147 @@
+// What `gaitway convert` and `gaitway retarget` write: the Khronos validator finds no error in it that the original lacks,
+// nothing of the original is lost, and three.js shows the borrowed clip where `gaitway pose` has it.
+import assert from "node:assert/strict";
+import fs from "node:fs";
+import os from "node:os";
+import path from "node:path";
+import { after, describe, test } from "node:test";
+import validator from "gltf-validator";
+import { dataFolder, gltfFiles, readGltf, skipWithoutData } from "./data.mjs";
+import { document, run } from "./gaitway.mjs";
+import { loadScene } from "./scene.mjs";
+
+/** Largest distance allowed between three.js and `gaitway pose`, in diagonals of the rest bounds. */
+const TOLERANCE = 1e-4;
+const FRACTIONS = [0, 0.3217, 0.6789, 1];
+
+/** Model and motion. */
+const PAIRS = [
+  ["cosc422/dwarf.glb", "cosc422/original/Dwarf/avatar_walk.bvh"],
+  ["cosc422/mannequin.glb", "cosc422/mannequin_run.glb"],
+  ["threejs/Xbot.glb", "threejs/Soldier.glb"],
+  ["threejs/Soldier.glb", "bvh/cmu_01_01.bvh"],
+  ["kaykit/Knight.glb", "mesh2motion/cmu_91_48.glb"],
+  ["misc/godot_mannequiny.glb", "vrm/chatvrm_idle_loop.vrma"],
+  ["vrm/vrm0_cryptovoxels.vrm", "vrm/three-vrm_test.vrma"],
+  ["vrm/vrm0_EmissionMigration_v0.107.0.vrm", "bvh/threejs_pirouette.bvh"],
+  ["khronos/CesiumMan/glTF/CesiumMan.gltf", "khronos/CesiumMan/glTF-Binary/CesiumMan.glb"],
+  ["mesh2motion/human-male.glb", "bvh/animateddrawings_fair1_dab.bvh"],
+];
+
+/** Members that grow when a clip is added; all others stay as they are. */
+const GROWING = ["accessors", "animations", "bufferViews", "buffers"];
+
+const folder = fs.mkdtempSync(path.join(os.tmpdir(), "gaitway-written-"));
+after(() => fs.rmSync(folder, { recursive: true }));
+
+let written = 0;
+const newFile = () => path.join(folder, `${written++}.glb`);
+
+/** How often the validator finds each error, `{code: count}`; with warnings when asked for. */
+async function issues(file, withWarnings = false) {
+  const report = await validator.validateBytes(new Uint8Array(fs.readFileSync(file)), {
+    maxIssues: 0,
+    externalResourceFunction: async (uri) => new Uint8Array(fs.readFileSync(path.join(path.dirname(file), decodeURIComponent(uri)))),
+  });
+  const counts = {};
+  for (const { code, severity } of report.issues.messages)
+    if (severity === 0 || (withWarnings && severity === 1)) counts[code] = (counts[code] ?? 0) + 1;
+  return counts;
+}
+
+async function noNewErrors(original, file) {
+  const [before, found] = await Promise.all([issues(original), issues(file)]);
+  for (const [code, count] of Object.entries(found))
+    assert.ok(count <= (before[code] ?? 0), `${code}: ${count} times, in the original ${before[code] ?? 0} times`);
+}
+
+async function write(...args) {
+  const out = newFile();
+  const { status, stderr } = await run(...args, "--out", out);
+  assert.equal(status, 0, stderr);
+  return out;
+}
+
+describe("converted files are valid", { skip: skipWithoutData }, () => {
+  if (skipWithoutData) return;
+  for (const { name, file } of gltfFiles().filter(({ refused }) => refused === null))
+    test(name, async () => {
+      const out = await write("convert", file);
+      await noNewErrors(file, out);
+      fs.rmSync(out);
+    });
+  const motions = fs.readdirSync(path.join(dataFolder, "bvh")).filter((name) => name.endsWith(".bvh"));
+  for (const name of motions)
+    test(name, async () => {
+      const out = await write("convert", path.join(dataFolder, "bvh", name));
+      assert.deepEqual(await issues(out, true), {});
+      fs.rmSync(out);
+    });
+});
+
+describe("borrowed clips are written as they are played", { skip: skipWithoutData }, () => {
+  if (skipWithoutData) return;
+  for (const pair of PAIRS) {
+    const [model, motion] = pair.map((name) => path.join(dataFolder, name));
+    const name = pair.map((name) => path.basename(name)).join(" ← ");
+    test(name, async () => {
+      const out = await write("retarget", "--model", model, "--motion", motion);
+      await noNewErrors(model, out);
+      nothingIsLost(model, out);
+      await sameAsPose(out, model, motion);
+    });
+    test(`${name}, skeleton and clip alone`, async () => {
+      const out = await write("retarget", "--model", model, "--motion", motion, "--clip-only");
+      assert.deepEqual(await issues(out), {});
+      const { json } = readGltf(out);
+      assert.equal(json.animations.length, 1);
+      assert.ok(!("meshes" in json));
+      assert.equal(json.nodes.length, readGltf(model).json.nodes.length);
+    });
+  }
+});
+
+function nothingIsLost(original, file) {
+  const [before, after] = [readGltf(original), readGltf(file)];
+  if (before.binary === null) return;
+  assert.ok(after.binary.subarray(0, before.binary.length).equals(before.binary), "the buffer's bytes changed");
+  // Members in their order, then those that the clip brought.
+  const keys = Object.keys(before.json);
+  assert.deepEqual(Object.keys(after.json).slice(0, keys.length), keys);
+  for (const [key, value] of Object.entries(before.json)) {
+    if (key === "buffers") assert.equal(after.json.buffers.length, value.length);
+    else if (GROWING.includes(key)) assert.deepEqual(after.json[key].slice(0, value.length), value, key);
+    else assert.deepEqual(after.json[key], value, key);
+  }
+  assert.equal(after.json.animations.length, (before.json.animations ?? []).length + 1);
+}
+
+/** three.js with the written file against the model that borrows the motion while it is played. */
+async function sameAsPose(file, model, motion) {
+  const scene = await loadScene(file);
+  const inspected = await document("inspect", file);
+  const clip = inspected.clips.at(-1);
+  assert.equal(scene.clips.length, clip.index + 1);
+  const { min, max } = inspected.bounds;
+  const size = Math.hypot(...min.map((low, axis) => max[axis] - low));
+  for (const fraction of FRACTIONS) {
+    const secs = fraction * clip.duration_secs;
+    scene.play(clip.index, secs);
+    const shown = new Map(scene.nodes().map(({ node, world }) => [node, world]));
+    const posed = [
+      await document("pose", file, "--clip", String(clip.index), "--time", String(secs)),
+      await document("pose", model, "--motion", motion, "--time", String(secs)),
+    ];
+    for (const [index, { nodes }] of posed.entries()) {
+      let compared = 0;
+      for (const { node, name, world } of nodes) {
+        if (!shown.has(node)) continue;
+        compared++;
+        const distance = Math.hypot(...[12, 13, 14].map((entry) => world[entry] - shown.get(node)[entry]));
+        const what = index === 0 ? "the written clip" : "the borrowed clip";
+        assert.ok(distance <= TOLERANCE * size, `${what}, ${name} (node ${node}) at ${secs} s: ${distance / size} diagonals off`);
+      }
+      assert.ok(compared > 10, `only ${compared} nodes compared`);
+    }
+  }
+}
