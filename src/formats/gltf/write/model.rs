@@ -120,7 +120,10 @@ fn join_buffers(
     }
     let first: Array = json.read::<Array>("buffers").unwrap_or_default().into_iter().take(1).collect();
     json.set("buffers", &first);
-    json.set("bufferViews", &views);
+    // An empty list is not allowed.
+    if !views.is_empty() {
+        json.set("bufferViews", &views);
+    }
 }
 
 fn keep_as_data(json: &mut Object, schema: &schema::Root, buffers: &[Option<Bytes>]) {
