@@ -45,6 +45,12 @@ pub(super) fn run(arguments: &RetargetArguments) -> anyhow::Result<()> {
         write_motion(&model.asset, &[&clip])?
     } else {
         let set = read_set(files)?;
+        if set.is_empty() {
+            bail!(
+                "{}: a sample is made in code and has no file to add a clip to; --clip-only writes skeleton and clip",
+                model.source
+            );
+        }
         let names = main_files(&set)?;
         let [name] = names.as_slice() else {
             bail!("{}: expected one model to write, found {}", arguments.model.display(), names.len());

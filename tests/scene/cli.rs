@@ -72,6 +72,7 @@ fn inspect_is_the_document_that_scripts_rely_on() {
         "triangles",
         "morph_targets",
         "clips",
+        "borrowed_clips",
         "cameras",
         "extensions_used",
         "extensions_required",

@@ -1,0 +1,152 @@
+//! The subcommands that borrow motion, as a script sees them.
+
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+use serde_json::{Value, json};
+
+/// A person of nine joints in BVH, walking on the spot, in centimetres.
+const BVH: &str = "HIERARCHY\nROOT Hips\n{\nOFFSET 0 90 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n\
+JOINT Spine\n{\nOFFSET 0 15 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nJOINT Head\n{\nOFFSET 0 45 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 20 0\n}\n}\n}\n\
+JOINT LeftUpLeg\n{\nOFFSET 10 -5 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nJOINT LeftLeg\n{\nOFFSET 0 -40 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nJOINT LeftFoot\n{\nOFFSET 0 -40 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 -5 15\n}\n}\n}\n}\n\
+JOINT RightUpLeg\n{\nOFFSET -10 -5 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nJOINT RightLeg\n{\nOFFSET 0 -40 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nJOINT RightFoot\n{\nOFFSET 0 -40 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 -5 15\n}\n}\n}\n}\n}\n\
+MOTION\nFrames: 2\nFrame Time: 0.5\n\
+0 90 0 0 0 0  0 0 0  0 0 0  0 -20 0 0 0 0 0 0 0  0 20 0 0 10 0 0 0 0\n\
+0 90 30 0 0 0  0 5 0  0 0 0  0 20 0 0 10 0 0 0 0  0 -20 0 0 0 0 0 0 0\n";
+
+fn run(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_gaitway")).args(arguments).output().expect("the program runs")
+}
+
+fn document(arguments: &[&str]) -> Value {
+    let output = run(arguments);
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).expect("one JSON document")
+}
+
+fn check_fails(arguments: &[&str], status: i32, says: &str) {
+    let output = run(arguments);
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(status), "{arguments:?}: {error}");
+    assert!(error.contains(says), "{arguments:?}: {error}");
+    assert!(output.stdout.is_empty(), "{arguments:?}");
+}
+
+/// A folder of this test's own with the walking person in it.
+fn folder(name: &str) -> (PathBuf, String) {
+    let folder = std::env::temp_dir().join(format!("gaitway-{name}-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let motion = folder.join("walk.bvh");
+    std::fs::write(&motion, BVH).expect("a file");
+    (folder, motion.to_str().expect("a plain path").to_owned())
+}
+
+#[test]
+fn a_map_is_proposed_explained_and_used_again() {
+    let (folder, motion) = folder("map");
+    let out = folder.join("map.json");
+    let out = out.to_str().expect("a plain path");
+    let call = ["map", "--model", "sample:walker", "--motion", &motion, "--out", out, "--json"];
+    let proposed = document(&call);
+    assert_eq!(proposed["gaitway_map"], 1);
+    let joints = proposed["joints"].as_object().expect("joints");
+    assert!(joints.len() >= 8, "{joints:?}");
+    let leg = joints.values().find(|entry| entry["slot"] == "leftLowerLeg").expect("a shin");
+    assert_eq!(leg["source"], "LeftLeg");
+    assert!(leg["confidence"].as_f64().expect("a number") > 0.5 && leg["reason"].is_string());
+    // What was written, and what was printed, are both maps.
+    let printed = folder.join("printed.json");
+    std::fs::write(&printed, proposed.to_string()).expect("a file");
+    let pose =
+        |map: &str| document(&["pose", "sample:walker", "--motion", &motion, "--map", map, "--time", "0.3", "--json"]);
+    let (written, printed) = (pose(out), pose(printed.to_str().expect("a plain path")));
+    assert_eq!(written, printed);
+    assert_eq!(written["clip"], "walk");
+    let unposed = document(&["pose", "sample:walker", "--json"]);
+    assert_ne!(unposed["nodes"], written["nodes"]);
+}
+
+#[test]
+fn retarget_reports_what_scripts_rely_on() {
+    let (folder, motion) = folder("retarget");
+    let out = folder.join("out.glb");
+    let out = out.to_str().expect("a plain path");
+    let call = ["retarget", "--model", "sample:walker", "--motion", &motion, "--clip-only", "--out", out, "--json"];
+    let report = document(&call);
+    for key in [
+        "mapped",
+        "unmapped_targets",
+        "unused_sources",
+        "hips_scale",
+        "duration_secs",
+        "keys_in",
+        "keys_out",
+        "resampled",
+        "figures",
+        "warnings",
+    ] {
+        assert!(report.get(key).is_some(), "{key}");
+    }
+    for key in [
+        "orientation_error_degrees_mean",
+        "orientation_error_degrees_max",
+        "limb_direction_error_degrees_mean",
+        "limb_direction_error_degrees_max",
+        "foot_slide_metres_per_sec",
+        "foot_slide_source_metres_per_sec",
+        "ground_penetration_metres_max",
+        "coverage",
+    ] {
+        assert!(report["figures"].get(key).is_some(), "{key}");
+    }
+    assert_eq!(report["duration_secs"], 0.5);
+    assert_eq!(report["resampled"], false);
+    assert!(report["figures"]["orientation_error_degrees_max"].as_f64().expect("a number") < 0.01);
+    let written = document(&["inspect", out, "--json"]);
+    assert_eq!(written["clips"][0]["name"], "walk");
+    assert_eq!(written["meshes"], 0);
+}
+
+#[test]
+fn convert_makes_a_glb_of_a_motion_in_the_unit_asked_for() {
+    let (folder, motion) = folder("convert");
+    let out = folder.join("out.glb");
+    let out = out.to_str().expect("a plain path");
+    let height = |unit: &str| {
+        let done = run(&["convert", &motion, "--unit", unit, "--out", out]);
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        let bounds = &document(&["inspect", out, "--json"])["bounds"];
+        bounds["max"][1].as_f64().expect("a number") - bounds["min"][1].as_f64().expect("a number")
+    };
+    let (centimetres, inches) = (height("cm"), height("in"));
+    assert!((centimetres - 1.45).abs() < 0.01 && (inches / centimetres - 2.54).abs() < 1e-3, "{centimetres}, {inches}");
+}
+
+#[test]
+fn errors_say_what_to_do() {
+    let (folder, motion) = folder("errors");
+    let file = |name: &str, content: Value| {
+        let path = folder.join(name);
+        std::fs::write(&path, content.to_string()).expect("a file");
+        path.to_str().expect("a plain path").to_owned()
+    };
+    let pose = |map: &str| ["pose", "sample:walker", "--motion", &motion, "--map", map].map(str::to_owned);
+    let check = |map: Value, says: &str| {
+        let path = file("map.json", map);
+        let arguments = pose(&path);
+        check_fails(&arguments.each_ref().map(String::as_str), 1, says);
+    };
+    check(json!({ "gaitway_map": 1, "joints": { "Heed": { "source": "Head" } } }), "Head");
+    check(json!({ "gaitway_map": 1, "joints": { "Head": { "source": 99 } } }), "99");
+    check(json!({ "gaitway_map": 2, "joints": {} }), "version 1");
+    check(json!({ "joints": {} }), "gaitway_map");
+    check_fails(&["pose", "sample:walker", "--map", &file("map.json", json!({ "gaitway_map": 1 }))], 1, "--motion");
+    check_fails(&["pose", "sample:walker", "--motion", &motion, "--clip", "Fly"], 1, "walk");
+    let out = folder.join("no.glb");
+    let out = out.to_str().expect("a plain path");
+    let retarget = ["retarget", "--model", "sample:walker", "--motion", &motion, "--out", out];
+    check_fails(&[&retarget[..], &["--clip", "Fly"]].concat(), 1, "walk");
+    check_fails(&retarget, 1, "--clip-only");
+    assert!(!std::path::Path::new(out).exists(), "nothing is written when something fails");
+    check_fails(&["retarget", "--model", "sample:walker", "--out", out], 2, "--motion");
+}
