@@ -8,6 +8,7 @@ mod native;
 mod open;
 mod png;
 mod run;
+mod save;
 mod scene_texture;
 
 pub use device::{Backend, FatalHook, set_fatal_hook};

@@ -28,8 +28,8 @@ pub fn run_native(files: Vec<PathBuf>) -> Result<(), WindowError> {
     let contents = if files.is_empty() {
         Contents { model: Some(sample()?), ..Contents::default() }
     } else {
-        let Opened { model, motions, motion_sources, map, .. } = open_paths(&files)?;
-        Contents { model: Some(model), motions: Some(motions), motion_sources, map, problems: Vec::new() }
+        let Opened { model, model_files, motions, motion_sources, map, .. } = open_paths(&files)?;
+        Contents { model: Some(model), model_files, motions: Some(motions), motion_sources, map, problems: Vec::new() }
     };
     let create: eframe::AppCreator<'_> = Box::new(move |cc| {
         let app = App::new(cc, Box::new(Window::new(cc.egui_ctx.clone())), contents, None, |_| {})?;

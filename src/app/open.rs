@@ -20,12 +20,18 @@ pub(super) struct Refused {
 impl App {
     /// Shows what was opened. With a state, that is taken over too (a link) and nothing is chosen anew.
     pub(super) fn show(&mut self, contents: Contents, state: Option<ViewerState>) -> Result<(), String> {
-        let Contents { model, motions, motion_sources, map, problems } = contents;
+        let Contents { model, model_files, motions, motion_sources, map, problems } = contents;
         self.refused = None;
         self.panels.error = None;
         self.panels.motion_refused = false;
         let shown = match (model, motions) {
-            (Some(model), motions) => self.show_model(model, motions, motion_sources, map, state),
+            (Some(model), motions) => {
+                let shown = self.show_model(model, motions, motion_sources, map, state);
+                if shown.is_ok() {
+                    self.model_files = model_files;
+                }
+                shown
+            }
             (None, Some(motions)) => self.borrow_from(motions, motion_sources, map, state),
             (None, None) => map.map_or(Ok(()), |map| self.use_map(&map)),
         };
@@ -283,6 +289,7 @@ impl App {
         let model = Model::new(motion.source.clone(), motion.asset.clone(), vec![None; motion.asset.images.len()]);
         match self.show_model(model, Some(Vec::new()), Vec::new(), None, None) {
             Ok(()) => {
+                self.model_files = None;
                 self.state.model = sources;
                 self.host.motion_is_model();
             }

@@ -7,12 +7,12 @@ use super::open::Refused;
 use super::scene_texture::SceneTexture;
 use super::{Host, Inbox, Message, Opening, Reply, ScriptCall, device, encode_png};
 use crate::files::{Contents, Role};
+use crate::formats::FileSet;
 use crate::frame::{Frame, evaluate, pose_document};
 use crate::library::{Library, inspect};
 use crate::render::read_pixels;
 use crate::state::{
-    CameraChoice, Command, History, ViewerState, frame_all, from_object, map_in_force, named, resolve_camera, to_link,
-    to_object,
+    CameraChoice, Command, History, ViewerState, frame_all, from_object, resolve_camera, to_link, to_object,
 };
 use crate::ui::{self, Output, PathPrompt, PathPurpose, Progress, Shown, UiAction, UiState};
 
@@ -31,6 +31,8 @@ pub struct App {
     /// Something was set since the host was last told.
     pub(super) changed: bool,
     pub(super) refused: Option<Refused>,
+    /// What the shown model was read from, and which of it is the model; none for a sample.
+    pub(super) model_files: Option<(FileSet, String)>,
     /// What does not work about the borrowed clips and has been told.
     pub(super) borrow_errors: Vec<String>,
     inbox: Inbox,
@@ -78,6 +80,7 @@ impl App {
             dirty: true,
             changed: false,
             refused: None,
+            model_files: None,
             borrow_errors: Vec::new(),
             inbox: inbox.clone(),
             context: cc.egui_ctx.clone(),
@@ -213,21 +216,24 @@ impl App {
             UiAction::ChooseMotion => self.choose(Role::Motion, PathPurpose::OpenMotion),
             UiAction::UsePath(PathPurpose::Open, path) => self.host.open_path(&path, Role::Any, &self.inbox),
             UiAction::UsePath(PathPurpose::OpenMotion, path) => self.host.open_path(&path, Role::Motion, &self.inbox),
-            UiAction::UsePath(PathPurpose::SaveMap { motion }, path) => {
-                let saved =
-                    self.map_file(motion).map_or(Ok(()), |(_, json)| self.host.save_path(&path, json.as_bytes()));
+            UiAction::UsePath(PathPurpose::Save(what), path) => {
+                let saved = self.file_to_save(what).and_then(|file| self.host.save_path(&path, &file.bytes));
                 match saved {
                     Ok(()) => self.toast(format!("Saved as {path}.")),
                     Err(error) => self.tell(vec![error]),
                 }
             }
-            UiAction::SaveMap { motion } => {
-                if let Some((name, json)) = self.map_file(motion)
-                    && !self.host.save_file(&name, json.as_bytes())
-                {
-                    self.panels.path_prompt = Some(PathPrompt { purpose: PathPurpose::SaveMap { motion }, path: name });
+            UiAction::Save(what) => match self.file_to_save(what) {
+                Ok(file) if self.host.save_file(&file.name, &file.bytes) => {
+                    if let Some(remark) = file.remark {
+                        self.toast(remark);
+                    }
                 }
-            }
+                Ok(file) => {
+                    self.panels.path_prompt = Some(PathPrompt { purpose: PathPurpose::Save(what), path: file.name });
+                }
+                Err(error) => self.tell(vec![error]),
+            },
             UiAction::RemoveMotions => self.remove_motions(),
             UiAction::ShowMotionAlone(index) => {
                 if let Some(motion) = self.library.motions().get(index).cloned() {
@@ -257,18 +263,6 @@ impl App {
         if !self.host.choose_files(role, &self.inbox) {
             self.panels.path_prompt = Some(PathPrompt { purpose, path: String::new() });
         }
-    }
-
-    /// The map in force for a motion as a file, and what to call it.
-    fn map_file(&self, motion: usize) -> Option<(String, String)> {
-        let (model, about) = (self.library.active()?, self.library.motions().get(motion)?);
-        let map = map_in_force(&self.library, &self.state, motion)?;
-        let json = named(&map, &model.asset, &about.asset).to_json().ok()?;
-        let stem = |source: &str| {
-            let name = ui::short_name(source);
-            name.rsplit_once('.').map_or(name.clone(), |(stem, _)| stem.to_owned())
-        };
-        Some((format!("{}-{}.json", stem(&model.source), stem(&about.source)), json))
     }
 
     /// Time goes by while playing; nothing is asked for when it does not.

@@ -12,6 +12,8 @@ use crate::retarget::JointMap;
 #[derive(Debug)]
 pub struct Opened {
     pub model: Model,
+    /// What the model was read from, and which of it is the model; none for a sample.
+    pub model_files: Option<(FileSet, String)>,
     pub motions: Vec<Motion>,
     /// What a view has to list besides its model to get the motions again.
     pub motion_sources: Vec<String>,
@@ -69,14 +71,15 @@ fn open_set(set: &FileSet, samples: Vec<Model>, origins: &Origins, role: Role) -
     if has_sample {
         files.insert(0, model.source.clone());
     }
-    let Contents { motions, motion_sources, map, .. } = contents;
-    Ok(Opened { model, motions: motions.unwrap_or_default(), motion_sources, map, files })
+    let Contents { model_files, motions, motion_sources, map, .. } = contents;
+    Ok(Opened { model, model_files, motions: motions.unwrap_or_default(), motion_sources, map, files })
 }
 
 fn contents(set: &FileSet, samples: Vec<Model>, origins: &Origins, role: Role) -> Result<Contents, OpenError> {
     // Files beside a sample that is the model are what it borrows from, whatever they hold.
     let role = if samples.is_empty() || role == Role::Motion { role } else { Role::Any };
     let sorted = if set.is_empty() && !samples.is_empty() { Default::default() } else { sort(set, role)? };
+    let model_files = sorted.model.as_ref().map(|(name, _)| (set.clone(), name.clone()));
     let model = sorted.model.map(|(name, mut asset)| {
         let images = decode_images(&mut asset);
         Model::new(origins.of(&name).to_owned(), asset, images)
@@ -99,6 +102,7 @@ fn contents(set: &FileSet, samples: Vec<Model>, origins: &Origins, role: Role) -
     }
     Ok(Contents {
         model: models.pop(),
+        model_files,
         motions: (!motions.is_empty()).then_some(motions),
         motion_sources,
         map: sorted.map,

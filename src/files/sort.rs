@@ -29,6 +29,8 @@ pub struct Sorted {
 #[derive(Debug, Default)]
 pub struct Contents {
     pub model: Option<Model>,
+    /// What the model was read from, and which of it is the model: for writing it with another clip. None for samples.
+    pub model_files: Option<(FileSet, String)>,
     /// None: those that are there stay.
     pub motions: Option<Vec<Motion>>,
     /// What a view has to list besides its model to get the motions again.

@@ -100,7 +100,9 @@ pub async fn open_items(
     let role = if samples.is_empty() || role == Role::Motion { role } else { Role::Any };
     let sorted = if set.is_empty() && !samples.is_empty() { Default::default() } else { sort(&set, role)? };
     let mut models: Vec<Model> = Vec::new();
+    let mut model_files = None;
     if let Some((name, mut asset)) = sorted.model {
+        model_files = Some((set.clone(), name.clone()));
         let images = decode_images(&mut asset).await;
         models.push(Model::new(origins.of(&name).to_owned(), asset, images));
     }
@@ -121,6 +123,7 @@ pub async fn open_items(
     }
     Ok(Contents {
         model: models.pop(),
+        model_files,
         motions: (!motions.is_empty()).then_some(motions),
         motion_sources,
         map: sorted.map,

@@ -47,6 +47,16 @@ pub fn switch(ui: &mut Ui, label: &str, on: bool) -> bool {
 
 /// Equal buttons side by side, one of them chosen; the value of the one that was pressed.
 pub fn segmented<T: Copy + PartialEq>(ui: &mut Ui, chosen: Option<T>, choices: &[(T, &str)]) -> Option<T> {
+    segmented_about(ui, "", chosen, choices)
+}
+
+/// As [`segmented`], for choices that only say together with what they are about which button is which.
+pub fn segmented_about<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    about: &str,
+    chosen: Option<T>,
+    choices: &[(T, &str)],
+) -> Option<T> {
     let mut pressed = None;
     let palette = style::palette(ui);
     let (bar, whole) = ui.allocate_exact_size(vec2(ui.available_width(), 30.0), Sense::hover());
@@ -57,7 +67,8 @@ pub fn segmented<T: Copy + PartialEq>(ui: &mut Ui, chosen: Option<T>, choices: &
         let response = ui.interact(cell, whole.id.with(index), Sense::click());
         let on = chosen == Some(*value);
         let role = egui::accesskit::Role::RadioButton;
-        response.widget_info(|| WidgetInfo::selected(role, ui.is_enabled(), on, *label));
+        let name = if about.is_empty() { (*label).to_owned() } else { format!("{about}: {label}") };
+        response.widget_info(|| WidgetInfo::selected(role, ui.is_enabled(), on, &name));
         segment(ui, cell, &response, on, label);
         if response.clicked() {
             pressed = Some(*value);

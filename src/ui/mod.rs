@@ -157,7 +157,16 @@ pub struct PathPrompt {
 pub enum PathPurpose {
     Open,
     OpenMotion,
-    SaveMap { motion: usize },
+    Save(Saved),
+}
+
+/// A file that can be had.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Saved {
+    /// The joint map for a motion.
+    Map { motion: usize },
+    /// The model with one of its borrowed clips.
+    Model { clip: usize },
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -183,10 +192,8 @@ pub enum UiAction {
     ChooseMotion,
     /// Do what the prompt was for with what was typed into it.
     UsePath(PathPurpose, String),
-    /// Give the person the joint map for a motion as a file.
-    SaveMap {
-        motion: usize,
-    },
+    /// Give the person a file.
+    Save(Saved),
     /// Borrow nothing any more.
     RemoveMotions,
     /// Show the skeleton of a motion by itself instead of the model.

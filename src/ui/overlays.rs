@@ -4,8 +4,8 @@ use egui::{Align, Align2, Area, Color32, Context, Id, Layout, Order, Rect, RichT
 
 use super::icons::{Icon, icon_button};
 use super::{
-    KEY_TABLE, Output, PathPrompt, PathPurpose, Sheet, Shown, UiAction, UiState, clips, inspector, is_narrow, motion,
-    style,
+    KEY_TABLE, Output, PathPrompt, PathPurpose, Saved, Sheet, Shown, UiAction, UiState, clips, inspector, is_narrow,
+    motion, style,
 };
 
 /// Call last; `picture` is the rectangle the picture has.
@@ -196,7 +196,8 @@ fn path_prompt(context: &Context, local: &mut UiState, out: &mut Output) {
     let (title, hint, button) = match purpose {
         PathPurpose::Open => ("Open a file", "Path of a .glb, .gltf, .bvh, .zip or folder", "Open"),
         PathPurpose::OpenMotion => ("Borrow motion", "Path of a .bvh, .glb, .vrma or joint map .json", "Open"),
-        PathPurpose::SaveMap { .. } => ("Save the joint map", "Path of the file to write", "Save"),
+        PathPurpose::Save(Saved::Map { .. }) => ("Save the joint map", "Path of the file to write", "Save"),
+        PathPurpose::Save(Saved::Model { .. }) => ("Save the model", "Path of the .glb to write", "Save"),
     };
     let mut done = false;
     let modal = modal("path prompt", context).show(context, |ui| {
@@ -212,7 +213,7 @@ fn path_prompt(context: &Context, local: &mut UiState, out: &mut Output) {
         if !field.has_focus() && !entered {
             field.request_focus();
         }
-        if !matches!(purpose, PathPurpose::SaveMap { .. }) {
+        if !matches!(purpose, PathPurpose::Save(_)) {
             super::controls::hint(ui, "Files can also be dropped anywhere on the window.");
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {

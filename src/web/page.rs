@@ -100,7 +100,7 @@ async fn first_contents(
         if !items.is_empty() {
             let own = open_items(items, Role::Model, &progress).await?;
             let motions = own.motions.into_iter().chain(contents.motions).flatten().collect();
-            contents = Contents { model: own.model, motions: Some(motions), ..contents };
+            contents = Contents { model: own.model, model_files: own.model_files, motions: Some(motions), ..contents };
         }
         if !motion_items.is_empty() {
             match open_items(motion_items, Role::Motion, &progress).await {

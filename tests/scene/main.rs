@@ -2,6 +2,7 @@
 
 mod allocation;
 mod cli;
+mod cli_borrow;
 mod data;
 mod decode;
 mod extent;
@@ -10,7 +11,9 @@ mod framing;
 mod generator_animations;
 mod history;
 mod link;
+mod motion;
 mod real_models;
 mod scale;
+mod sets;
 mod state;
 mod walker;

@@ -5,8 +5,8 @@ use egui_kittest::kittest::Queryable;
 use gaitway::anim::{ClipBuilder, Interpolation, Joint, JointIndex, Keys, Skeleton};
 use gaitway::asset::{Asset, Warning};
 use gaitway::frame::{Frame, evaluate};
-use gaitway::library::{Library, Model, sample};
-use gaitway::state::{Command, ViewerState, apply};
+use gaitway::library::{Library, Model, Motion, sample};
+use gaitway::state::{Command, ViewerState, apply, maps_in_force};
 use gaitway::ui::{self, Output, Shown, UiAction, UiState};
 
 pub struct Bench {
@@ -27,11 +27,29 @@ pub fn sample_bench(size: [f32; 2]) -> Harness<'static, Bench> {
     bench(size, sample::load("walker").expect("the sample is there"))
 }
 
+/// The sample with the sample's own clips to borrow, as if they came from other files.
+pub fn motion_bench(size: [f32; 2], motions: &[&str]) -> Harness<'static, Bench> {
+    let mut library = Library::default();
+    library.set(sample::load("walker").expect("the sample is there"));
+    let asset = library.active().expect("just set").asset.clone();
+    library.set_motions(motions.iter().map(|name| Motion::new((*name).to_owned(), asset.clone())).collect());
+    bench_of(size, library)
+}
+
 pub fn bench(size: [f32; 2], model: Model) -> Harness<'static, Bench> {
     let mut library = Library::default();
     library.set(model);
+    bench_of(size, library)
+}
+
+fn settle(bench: &mut Bench) {
+    apply(&mut bench.state, &bench.library, Command::SettleMaps);
+    bench.library.borrow_each(maps_in_force(&bench.library, &bench.state));
+}
+
+fn bench_of(size: [f32; 2], library: Library) -> Harness<'static, Bench> {
     let state = ViewerState { playing: false, ..ViewerState::default() };
-    let bench = Bench {
+    let mut bench = Bench {
         library,
         state,
         frame: Frame::default(),
@@ -40,6 +58,7 @@ pub fn bench(size: [f32; 2], model: Model) -> Harness<'static, Bench> {
         actions: Vec::new(),
         picture: egui::Rect::NOTHING,
     };
+    settle(&mut bench);
     let mut harness = Harness::builder()
         .with_size(size)
         .with_step_dt(1.0 / 60.0)
@@ -61,6 +80,7 @@ pub fn bench(size: [f32; 2], model: Model) -> Harness<'static, Bench> {
                 for command in output.commands {
                     bench.commands.push(command.clone());
                     apply(&mut bench.state, &bench.library, command);
+                    settle(bench);
                     ui.ctx().request_repaint();
                 }
                 bench.actions.extend(output.actions);

@@ -5,5 +5,6 @@ mod clips;
 mod inspector;
 mod keys;
 mod layout;
+mod motion;
 mod picture;
 mod transport;

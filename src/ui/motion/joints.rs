@@ -1,6 +1,6 @@
 //! The channel table: every joint of the model, what it follows, and why that was proposed.
 
-use egui::{Align2, Rect, ScrollArea, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
+use egui::{Rect, ScrollArea, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 
 use super::picker::Picking;
 use super::{MotionTab, Pairing, joint_text};
@@ -17,6 +17,7 @@ const UNSURE: f32 = 0.6;
 pub(super) fn show(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, tab: &mut MotionTab) {
     clips::search_field(ui, &mut tab.search, "Search joints of the model");
     ui.add_space(2.0);
+    let prefix = common_prefix(pairing);
     let wanted = tab.search.to_lowercase();
     let rows: Vec<Row> = rows(pairing, map)
         .into_iter()
@@ -37,13 +38,23 @@ pub(super) fn show(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, tab: &mut
         rows.len(),
         |ui, visible| {
             for row in rows.get(visible).unwrap_or_default() {
-                if show_row(ui, row) {
+                if show_row(ui, row, prefix) {
                     tab.picking = Some(Picking::new(pairing.index, row.number));
                 }
             }
         },
     );
     ui.spacing_mut().item_spacing.y = spacing;
+}
+
+/// What the names of all skinned joints begin with, such as `mixamorig:`: left out where there is little room.
+fn common_prefix<'a>(pairing: &Pairing<'a>) -> &'a str {
+    let asset = &pairing.model.asset;
+    let mut names = asset.skins.iter().flat_map(|skin| skin.joints()).map(|&joint| asset.skeleton.name(joint));
+    let Some(first) = names.next() else { return "" };
+    let Some((namespace, _)) = first.rsplit_once(':') else { return "" };
+    let prefix = &first[..=namespace.len()];
+    if names.all(|name| name.starts_with(prefix)) { prefix } else { "" }
 }
 
 struct Row {
@@ -114,7 +125,7 @@ fn slot_text(slot: Slot) -> String {
 }
 
 /// The target at the left, a button with its source at the right, the reason under both; true when pressed.
-fn show_row(ui: &mut Ui, row: &Row) -> bool {
+fn show_row(ui: &mut Ui, row: &Row, prefix: &str) -> bool {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT), Sense::click());
     let label = format!("{} follows {}", row.target, row.source);
     let role = egui::accesskit::Role::Button;
@@ -141,9 +152,10 @@ fn show_row(ui: &mut Ui, row: &Row) -> bool {
     let middle = inner.left() + 0.5 * (right - inner.left());
     let top = |from: f32, to: f32| Rect::from_min_max(pos2(from, inner.top()), pos2(to, inner.top() + 20.0));
     let bright = if row.follows { palette.text } else { palette.weak_text };
-    controls::elided(ui, top(inner.left(), middle - 14.0), &row.target, bright);
-    let arrow = top(middle - 14.0, middle + 4.0).center();
-    ui.painter().text(arrow, Align2::CENTER_CENTER, "←", egui::FontId::proportional(13.0), palette.weak_text);
+    let target = row.target.strip_prefix(prefix).unwrap_or(&row.target);
+    controls::elided(ui, top(inner.left(), middle - 14.0), target, bright);
+    let arrow = pos2(middle + 1.0, inner.top() + 10.0);
+    ui.painter().arrow(arrow, vec2(-12.0, 0.0), Stroke::new(1.2, palette.weak_text));
     let source = if row.follows { palette.accent } else { palette.weak_text };
     controls::elided(ui, top(middle + 6.0, right), &row.source, source);
     let below = Rect::from_min_max(pos2(inner.left(), inner.top() + 20.0), pos2(right, inner.bottom()));

@@ -6,7 +6,7 @@ mod picker;
 
 use egui::{RichText, ScrollArea, Ui};
 
-use super::{Output, Shown, UiAction, UiState, controls, scene_tree, short_name, style};
+use super::{Output, Saved, Shown, UiAction, UiState, controls, scene_tree, short_name, style};
 use crate::anim::JointIndex;
 use crate::asset::Asset;
 use crate::library::{Library, Model, Motion};
@@ -115,16 +115,30 @@ fn header(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, map: &JointMap,
         ui.add(egui::Label::new(RichText::new(text).small().color(palette.warning)).wrap());
     }
     ui.add_space(4.0);
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = egui::vec2(6.0, 6.0);
-        if ui.button("Automatic").on_hover_text("Match the joints anew by names and shape").clicked() {
+    let clip = active_clip(pairing.model, shown.state).filter(|&clip| pairing.model.borrowed(clip).is_some());
+    let width = (ui.available_width() - 6.0) / 2.0;
+    let button = |ui: &mut Ui, enabled: bool, text: &str, hover: &str| {
+        let button = egui::Button::new(text).min_size(egui::vec2(width, 30.0));
+        ui.add_enabled(enabled, button).on_hover_text(hover).clicked()
+    };
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        if button(ui, true, "Match anew", "Match the joints by names and shape, as at first") {
             out.commands.push(Command::SetMap { motion: pairing.index, map: None });
         }
-        if ui.button("Save map…").on_hover_text("Which joint follows which, as a JSON file").clicked() {
-            out.actions.push(UiAction::SaveMap { motion: pairing.index });
+        if button(ui, clip.is_some(), "Save GLB", "The model with this clip behind its own")
+            && let Some(clip) = clip
+        {
+            out.actions.push(UiAction::Save(Saved::Model { clip }));
         }
-        if ui.button("Load map…").on_hover_text("A joint map in JSON").clicked() {
+    });
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        if button(ui, true, "Load map", "A joint map in JSON") {
             out.actions.push(UiAction::ChooseMotion);
+        }
+        if button(ui, true, "Save map", "Which joint follows which, as JSON") {
+            out.actions.push(UiAction::Save(Saved::Map { motion: pairing.index }));
         }
     });
 }

@@ -20,17 +20,14 @@ const RESTS: [(RestChoice, &str); 4] = [
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, map: &JointMap, out: &mut Output) {
     let root = map.root;
     let set = |root: RootOptions| Command::SetRoot(Some(root));
-    controls::section(ui, "OVER THE GROUND");
-    if let Some(horizontal) = parts(ui, "ground", root.horizontal) {
+    if let Some(horizontal) = parts(ui, "Over the ground", root.horizontal) {
         out.commands.push(set(RootOptions { horizontal, ..root }));
     }
     controls::hint(ui, "In place takes the way out and leaves the sway.");
-    controls::section(ui, "UP AND DOWN");
-    if let Some(vertical) = parts(ui, "height", root.vertical) {
+    if let Some(vertical) = parts(ui, "Up and down", root.vertical) {
         out.commands.push(set(RootOptions { vertical, ..root }));
     }
-    controls::section(ui, "TURNING");
-    if let Some(yaw) = parts(ui, "turn", root.yaw) {
+    if let Some(yaw) = parts(ui, "Turning", root.yaw) {
         out.commands.push(set(RootOptions { yaw, ..root }));
     }
     ui.add_space(4.0);
@@ -70,9 +67,9 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, map: &
     });
 }
 
-/// Three choices; `what` keeps their ids apart.
-fn parts(ui: &mut Ui, what: &str, chosen: RootPart) -> Option<RootPart> {
-    ui.push_id(what, |ui| controls::segmented(ui, Some(chosen), &PARTS)).inner
+fn parts(ui: &mut Ui, about: &str, chosen: RootPart) -> Option<RootPart> {
+    controls::section(ui, &about.to_uppercase());
+    controls::segmented_about(ui, about, Some(chosen), &PARTS)
 }
 
 /// The rest poses are part of the map, with everything else that it says.

@@ -1,0 +1,243 @@
+//! Motions and maps in a view: what is filled in, what is kept, what a link brings back.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use gaitway::anim::{Clip, Joint, Skeleton, Transform};
+use gaitway::asset::Asset;
+use gaitway::frame::pose_document;
+use gaitway::library::{Library, Motion};
+use gaitway::retarget::{ClipRef, Feet, JointMap, MapEntry, MutedChannel, RootOptions, RootPart, SourceRef, Unmapped};
+use gaitway::state::{
+    ClipChoice, Command, History, MapProblem, MotionMap, ViewerState, apply, from_link, map_in_force, maps_in_force,
+    named, names_checksum, numbered, settled_maps, to_link,
+};
+use glam::{Quat, Vec3};
+
+use crate::data::walker;
+
+/// The walker, and its own clips to borrow.
+fn dancing() -> Library {
+    let mut library = walker();
+    let asset = library.active().expect("a model").asset.clone();
+    library.set_motions(vec![Motion::new("dance.glb".to_owned(), asset)]);
+    library
+}
+
+/// A skeleton of these names, one under the other, without any clip.
+fn chain(names: &[&str]) -> Asset {
+    let joint = |(index, name): (usize, &&str)| Joint {
+        name: (*name).to_owned(),
+        parent: index.checked_sub(1),
+        rest: Transform::from_translation(Vec3::Y),
+        morph_weights: Vec::new(),
+    };
+    let skeleton = Skeleton::new(names.iter().enumerate().map(joint).collect()).expect("a chain");
+    Asset { format: "test", skeleton, ..Asset::default() }
+}
+
+fn settled(library: &mut Library, state: &mut ViewerState) -> Vec<MapProblem> {
+    let (_, problems) = settled_maps(library, state);
+    apply(state, library, Command::SettleMaps);
+    library.borrow_each(maps_in_force(library, state));
+    problems
+}
+
+fn number(library: &Library, name: &str) -> usize {
+    let skeleton = &library.active().expect("a model").asset.skeleton;
+    skeleton.source_index(skeleton.find(name).expect("a joint of the walker"))
+}
+
+fn follows(source: Option<SourceRef>) -> MapEntry {
+    MapEntry { source, correction: Quat::IDENTITY, unmapped: None }
+}
+
+fn name(name: &str) -> Option<SourceRef> {
+    Some(SourceRef::Name(name.to_owned()))
+}
+
+/// By name: the neck follows the head, the head nothing.
+fn by_name() -> JointMap {
+    let joints = [("Hips", name("Hips")), ("Neck", name("Head")), ("Head", None)];
+    JointMap {
+        joints: joints.into_iter().map(|(target, source)| (target.to_owned(), follows(source))).collect(),
+        muted_channels: vec![MutedChannel { source: SourceRef::Name("Hips".to_owned()), property: None }],
+        ..JointMap::default()
+    }
+}
+
+#[test]
+fn a_map_is_filled_in_for_every_motion() {
+    let mut library = dancing();
+    let mut state = ViewerState::default();
+    assert_eq!(settled(&mut library, &mut state), []);
+    let [MotionMap::Numbers(map)] = &state.map[..] else { panic!("{:?}", state.map) };
+    let asset = &library.active().expect("a model").asset;
+    assert_eq!(map.checksum, names_checksum(asset, asset));
+    let hips = number(&library, "Hips");
+    assert_eq!(map.map.joints[&format!("#{hips}")].source, Some(SourceRef::Number(hips)));
+    assert_eq!(library.borrow_errors(), []);
+    assert_eq!(library.active().expect("a model").clip_count(), 6);
+    // Once there, it is left alone.
+    let before = state.clone();
+    assert_eq!(settled(&mut library, &mut state), []);
+    assert_eq!(state, before);
+}
+
+#[test]
+fn without_motions_nothing_is_filled_in_and_nothing_lost() {
+    let mut library = walker();
+    let map = vec![MotionMap::Names(by_name()), MotionMap::File("map.json".to_owned())];
+    let mut state = ViewerState { map: map.clone(), ..ViewerState::default() };
+    assert_eq!(settled(&mut library, &mut state), []);
+    assert_eq!(state.map, map);
+}
+
+#[test]
+fn a_map_by_name_becomes_numbers_and_comes_back() {
+    let mut library = dancing();
+    let mut state = ViewerState { map: vec![MotionMap::Names(by_name())], ..ViewerState::default() };
+    assert_eq!(settled(&mut library, &mut state), []);
+    let map = map_in_force(&library, &state, 0).expect("the given map");
+    let (neck, head) = (number(&library, "Neck"), number(&library, "Head"));
+    assert_eq!(map.joints[&format!("#{neck}")].source, Some(SourceRef::Number(head)));
+    assert_eq!(map.joints[&format!("#{head}")].source, None);
+    assert_eq!(map.joints.len(), 3);
+    assert_eq!(map.muted_channels[0].source, SourceRef::Number(number(&library, "Hips")));
+    let asset = &library.active().expect("a model").asset;
+    assert_eq!(named(&map, asset, asset), by_name());
+    assert_eq!(numbered(&named(&map, asset, asset), asset, asset), Ok(map));
+}
+
+#[test]
+fn a_map_that_fits_nothing_is_named_and_replaced() {
+    let mut library = dancing();
+    let wrong =
+        JointMap { joints: BTreeMap::from([("Hips".to_owned(), follows(name("Pelvis")))]), ..JointMap::default() };
+    let mut state = ViewerState { map: vec![MotionMap::Names(wrong)], ..ViewerState::default() };
+    let problems = settled(&mut library, &mut state);
+    assert!(matches!(&problems[..], [MapProblem::NoFit { motion, .. }] if motion == "dance.glb"), "{problems:?}");
+    assert!(problems[0].to_string().contains("Pelvis"), "{}", problems[0]);
+    assert!(map_in_force(&library, &state, 0).expect("an automatic map").joints.len() > 10);
+}
+
+/// Names that changed under a link: its numbers may mean other joints now.
+#[test]
+fn numbers_for_other_names_are_not_used() {
+    let mut library = dancing();
+    let mut state = ViewerState::default();
+    settled(&mut library, &mut state);
+    let link = to_link(&state);
+    let (mut other, errors) = from_link(&link);
+    assert_eq!(errors, []);
+    let asset = library.active().expect("a model").asset.clone();
+    let mut names: Vec<&str> = asset.skeleton.joints().map(|joint| asset.skeleton.name(joint)).collect();
+    names[3] = "Else";
+    library.set_motions(vec![Motion::new("else.bvh".to_owned(), Arc::new(chain(&names)))]);
+    assert_eq!(settled(&mut library, &mut other), [MapProblem::OtherFiles]);
+    assert_ne!(other.map, state.map);
+}
+
+#[test]
+fn one_source_is_changed_and_taken_back() {
+    let mut library = dancing();
+    let (mut state, mut history) = (ViewerState::default(), History::default());
+    settled(&mut library, &mut state);
+    let before = state.clone();
+    let (neck, head) = (number(&library, "Neck"), number(&library, "Head"));
+    let change = Command::SetSource { motion: 0, target: neck, source: Some(head) };
+    history.apply(&mut state, &library, change);
+    let source = |state: &ViewerState| {
+        map_in_force(&library, state, 0).expect("a map").joints[&format!("#{neck}")].source.clone()
+    };
+    assert_eq!(source(&state), Some(SourceRef::Number(head)));
+    history.end_gesture();
+    history.apply(&mut state, &library, Command::SetFeet(Some(Feet::Plant)));
+    assert!(history.undo(&mut state) && history.undo(&mut state) && !history.can_undo());
+    assert_eq!(state, before);
+    assert!(history.redo(&mut state));
+    assert_eq!(source(&state), Some(SourceRef::Number(head)));
+    for (target, source) in [(9999, None), (neck, Some(9999))] {
+        let now = state.clone();
+        apply(&mut state, &library, Command::SetSource { motion: 0, target, source });
+        assert_eq!(state, now, "numbers that are not there change nothing");
+    }
+    apply(&mut state, &library, Command::SetMap { motion: 0, map: None });
+    assert_eq!(state.map, before.map, "automatic again");
+}
+
+#[test]
+fn what_is_set_besides_wins_over_the_map() {
+    let mut library = dancing();
+    let mut state = ViewerState::default();
+    settled(&mut library, &mut state);
+    let root = RootOptions { vertical: RootPart::Freeze, ..RootOptions::default() };
+    let unmapped = Unmapped::Clip { clip: ClipRef::Index(1), frozen: true };
+    let own = map_in_force(&library, &state, 0).expect("a map");
+    for command in [
+        Command::SetRoot(Some(root)),
+        Command::SetUnmapped(Some(unmapped.clone())),
+        Command::SetFeet(Some(Feet::Plant)),
+    ] {
+        apply(&mut state, &library, command);
+    }
+    let map = map_in_force(&library, &state, 0).expect("a map");
+    assert_eq!(map, JointMap { root, unmapped, feet: Feet::Plant, ..own.clone() });
+    // A joint that is changed now does not write them into the map.
+    let head = number(&library, "Head");
+    apply(&mut state, &library, Command::SetSource { motion: 0, target: head, source: None });
+    for command in [Command::SetRoot(None), Command::SetUnmapped(None), Command::SetFeet(None)] {
+        apply(&mut state, &library, command);
+    }
+    let map = map_in_force(&library, &state, 0).expect("a map");
+    assert_eq!((map.root, map.unmapped, map.feet), (own.root, own.unmapped, own.feet));
+}
+
+#[test]
+fn a_motion_without_anything_in_common_has_no_map() {
+    let mut library = walker();
+    library.set_motions(vec![Motion::new("snake.bvh".to_owned(), Arc::new(chain(&["s1", "s2", "s3"])))]);
+    let mut state = ViewerState::default();
+    assert_eq!(settled(&mut library, &mut state), []);
+    assert_eq!(state.map, []);
+    let [error] = library.borrow_errors() else { panic!("{:?}", library.borrow_errors()) };
+    assert!(error.to_string().starts_with("snake.bvh: "), "{error}");
+    assert!(error.to_string().contains("no joint in common"), "{error}");
+    assert_eq!(library.active().expect("a model").clip_count(), 3);
+    // By hand it can still be mapped.
+    let head = number(&library, "Head");
+    apply(&mut state, &library, Command::SetSource { motion: 0, target: head, source: Some(1) });
+    let map = map_in_force(&library, &state, 0).expect("a map");
+    assert_eq!(map.joints.len(), 1);
+    let before = state.map.clone();
+    settled(&mut library, &mut state);
+    assert_eq!(state.map, before, "what was begun by hand is not filled up");
+}
+
+/// The link says all: whoever opens it with the same files has the same pose.
+#[test]
+fn a_link_brings_the_same_pose_back() {
+    let mut library = dancing();
+    let mut state = ViewerState { playing: false, time_secs: 0.3, ..ViewerState::default() };
+    settled(&mut library, &mut state);
+    let arm = number(&library, "LeftUpperArm");
+    state.clip = ClipChoice::Named("3".to_owned());
+    apply(&mut state, &library, Command::SetSource { motion: 0, target: arm, source: None });
+    apply(&mut state, &library, Command::SetUnmapped(Some(Unmapped::Clip { clip: ClipRef::Index(2), frozen: false })));
+    let root = RootOptions { horizontal: RootPart::InPlace, ..RootOptions::default() };
+    apply(&mut state, &library, Command::SetRoot(Some(root)));
+    assert_eq!(settled(&mut library, &mut state), []);
+    let pose = pose_document(&library, &state);
+    assert_eq!(library.active().expect("a model").clip(3).map(Clip::name), Some("Walk"));
+
+    let (mut back, errors) = from_link(&to_link(&state));
+    assert_eq!(errors, []);
+    let mut fresh = dancing();
+    assert_eq!(settled(&mut fresh, &mut back), []);
+    assert_eq!(back, state);
+    assert_eq!(pose_document(&fresh, &back), pose);
+    let plain = ViewerState { clip: ClipChoice::Named("3".to_owned()), ..ViewerState::default() };
+    let mut plain = ViewerState { playing: false, time_secs: 0.3, ..plain };
+    settled(&mut fresh, &mut plain);
+    assert_ne!(pose_document(&fresh, &plain), pose, "and it is not what comes without them");
+}
