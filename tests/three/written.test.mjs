@@ -1,5 +1,5 @@
-// What `gaitway convert` and `gaitway retarget` write: the Khronos validator finds no error in it that the original lacks,
-// nothing of the original is lost, and three.js shows the borrowed clip where `gaitway pose` has it.
+// What `gaitway convert` and `gaitway retarget` write: the Khronos validator finds no error in it that the original lacks, and
+// nothing of the original is lost. What it shows is looked at in retarget.test.mjs.
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import os from "node:os";
@@ -7,12 +7,7 @@ import path from "node:path";
 import { after, describe, test } from "node:test";
 import validator from "gltf-validator";
 import { dataFolder, gltfFiles, readGltf, skipWithoutData } from "./data.mjs";
-import { document, run } from "./gaitway.mjs";
-import { loadScene } from "./scene.mjs";
-
-/** Largest distance allowed between three.js and `gaitway pose`, in diagonals of the rest bounds. */
-const TOLERANCE = 1e-4;
-const FRACTIONS = [0, 0.3217, 0.6789, 1];
+import { run } from "./gaitway.mjs";
 
 /** Model and motion. */
 const PAIRS = [
@@ -79,7 +74,7 @@ describe("converted files are valid", { skip: skipWithoutData }, () => {
     });
 });
 
-describe("borrowed clips are written as they are played", { skip: skipWithoutData }, () => {
+describe("borrowed clips are added and nothing is lost", { skip: skipWithoutData }, () => {
   if (skipWithoutData) return;
   for (const pair of PAIRS) {
     const [model, motion] = pair.map((name) => path.join(dataFolder, name));
@@ -88,7 +83,6 @@ describe("borrowed clips are written as they are played", { skip: skipWithoutDat
       const out = await write("retarget", "--model", model, "--motion", motion);
       await noNewErrors(model, out);
       nothingIsLost(model, out);
-      await sameAsPose(out, model, motion);
     });
     test(`${name}, skeleton and clip alone`, async () => {
       const out = await write("retarget", "--model", model, "--motion", motion, "--clip-only");
@@ -114,34 +108,4 @@ function nothingIsLost(original, file) {
     else assert.deepEqual(after.json[key], value, key);
   }
   assert.equal(after.json.animations.length, (before.json.animations ?? []).length + 1);
-}
-
-/** three.js with the written file against the model that borrows the motion while it is played. */
-async function sameAsPose(file, model, motion) {
-  const scene = await loadScene(file);
-  const inspected = await document("inspect", file);
-  const clip = inspected.clips.at(-1);
-  assert.equal(scene.clips.length, clip.index + 1);
-  const { min, max } = inspected.bounds;
-  const size = Math.hypot(...min.map((low, axis) => max[axis] - low));
-  for (const fraction of FRACTIONS) {
-    const secs = fraction * clip.duration_secs;
-    scene.play(clip.index, secs);
-    const shown = new Map(scene.nodes().map(({ node, world }) => [node, world]));
-    const posed = [
-      await document("pose", file, "--clip", String(clip.index), "--time", String(secs)),
-      await document("pose", model, "--motion", motion, "--time", String(secs)),
-    ];
-    for (const [index, { nodes }] of posed.entries()) {
-      let compared = 0;
-      for (const { node, name, world } of nodes) {
-        if (!shown.has(node)) continue;
-        compared++;
-        const distance = Math.hypot(...[12, 13, 14].map((entry) => world[entry] - shown.get(node)[entry]));
-        const what = index === 0 ? "the written clip" : "the borrowed clip";
-        assert.ok(distance <= TOLERANCE * size, `${what}, ${name} (node ${node}) at ${secs} s: ${distance / size} diagonals off`);
-      }
-      assert.ok(compared > 10, `only ${compared} nodes compared`);
-    }
-  }
 }
