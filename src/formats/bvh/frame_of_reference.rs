@@ -3,8 +3,8 @@
 //!
 //! Unit: the way from fingertip to toe along the bones is about one and a half times a person's height, whatever the pose.
 //! Of the units that are in use the one counts that comes nearest to 1.7 m (as a ratio); the rarer ones have to come
-//! nearer. Up: Z counts when the rest pose is half as tall again along Z as along Y, and the first, middle and last frames are taller along
-//! Z too. Rest poses alone do not tell: some lay all bones along one axis.
+//! nearer. Up: Z counts when the rest pose is half as tall again along Z as along Y, and the first, middle and last frames
+//! are taller along Z too. Rest poses alone do not tell: some lay all bones along one axis.
 
 use glam::{DQuat, DVec3, Quat, Vec3};
 
