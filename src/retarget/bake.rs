@@ -172,7 +172,8 @@ impl<'a> Retargeting<'a> {
         channels: &[NewChannel],
         translated: &impl Fn(JointIndex) -> bool,
     ) -> Result<Vec<NewChannel>, RetargetError> {
-        if !self.has_detached_ends() {
+        // The same skeleton has its ends where its own translations put them.
+        if !self.has_detached_ends() || (self.translations_kept() && self.same()) {
             return Ok(Vec::new());
         }
         let so_far = self.finish(channels.to_vec(), false)?;

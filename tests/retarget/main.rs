@@ -5,6 +5,7 @@ mod data_folder;
 #[path = "../support/pairs.rs"]
 mod pairs_of_people;
 
+mod coursework;
 mod feet;
 mod figure;
 mod laws;
