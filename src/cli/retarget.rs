@@ -9,7 +9,7 @@ use crate::anim::{Clip, JointIndex};
 use crate::asset::Asset;
 use crate::files::read_set;
 use crate::formats::{main_files, write_model, write_motion};
-use crate::library::{Motion, map_for};
+use crate::library::{Motion, map_for, warning_documents};
 use crate::retarget::{
     ClipRef, Figures, JointMap, ResolvedMap, Retargeted, Retargeting, Unmapped, bake_layers, baking, layer_clips,
 };
@@ -160,10 +160,11 @@ fn document(
         .map(|joint| joint_name(source, joint))
         .collect();
     let resampled: Vec<String> = made.resampled.iter().map(|&joint| joint_name(target, joint)).collect();
-    let warnings: Vec<Value> = warnings
-        .iter()
-        .map(|(code, message)| json!({ "code": code, "message": message, "where": clip.name() }))
-        .collect();
+    let of_clip =
+        warnings.iter().map(|(code, message)| json!({ "code": code, "message": message, "where": clip.name() }));
+    let of_files = [model, &motion.asset].map(|asset| warning_documents(&asset.warnings));
+    let warnings: Vec<Value> =
+        of_files.into_iter().filter_map(|list| list.as_array().cloned()).flatten().chain(of_clip).collect();
     json!({
         "clip": clip.name(),
         "mapped": mapped,
