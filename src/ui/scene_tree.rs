@@ -5,10 +5,10 @@ use glam::{Affine3A, EulerRot, Quat, Vec3};
 
 use super::report::short;
 use super::{Output, Shown, UiState, clips, controls, style};
-use crate::anim::{JointIndex, Pose, SampleCursor, Transform};
+use crate::anim::{JointIndex, Transform};
 use crate::asset::Asset;
 use crate::library::Model;
-use crate::state::{Command, sample_pose};
+use crate::state::{Command, PoseSampler};
 
 const ROW_HEIGHT: f32 = 26.0;
 
@@ -237,9 +237,9 @@ fn joint_card(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, 
             }
         });
     });
-    let mut pose = Pose::default();
-    sample_pose(model, shown.state, &mut SampleCursor::default(), &mut pose);
-    let local = pose.locals.get(joint.get()).copied().unwrap_or_default();
+    let mut sampler = PoseSampler::default();
+    sampler.sample(model, shown.state);
+    let local = sampler.pose.locals.get(joint.get()).copied().unwrap_or_default();
     let parent = asset.skeleton.parent(joint).map_or("no parent".to_owned(), |parent| title(asset, parent));
     transform(ui, &format!("Local, in {parent}"), &local);
     let character = shown.frame.characters.first();

@@ -212,7 +212,9 @@ fn everything_fits_on_a_narrow_screen() {
             let rect = harness.get_by_label(label).rect();
             assert!(screen.contains_rect(rect), "{label} at {rect:?} on {size:?}");
         }
-        harness.get_by_label_contains("Hips follows").click();
+        harness.get_by_label_contains("RightHand follows").scroll_to_me();
+        harness.run();
+        harness.get_by_label_contains("RightHand follows").click();
         harness.run();
         for label in ["Nothing", "Cancel", "Name or number of a joint of the motion"] {
             let rect = harness.get_by_label(label).rect();

@@ -1,13 +1,13 @@
 //! The channel table: every joint of the model, what it follows, and why that was proposed.
 
-use egui::{Rect, ScrollArea, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
+use egui::{Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 
 use super::picker::Picking;
 use super::{MotionTab, Pairing, joint_text};
 use crate::anim::JointIndex;
 use crate::asset::Slot;
 use crate::retarget::JointMap;
-use crate::ui::{clips, controls, scene_tree, style};
+use crate::ui::{controls, scene_tree, style};
 
 const ROW_HEIGHT: f32 = 44.0;
 
@@ -15,8 +15,6 @@ const ROW_HEIGHT: f32 = 44.0;
 const UNSURE: f32 = 0.6;
 
 pub(super) fn show(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, tab: &mut MotionTab) {
-    clips::search_field(ui, &mut tab.search, "Search joints of the model");
-    ui.add_space(2.0);
     let prefix = common_prefix(pairing);
     let wanted = tab.search.to_lowercase();
     let rows: Vec<Row> = rows(pairing, map)
@@ -31,20 +29,12 @@ pub(super) fn show(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, tab: &mut
         controls::hint(ui, format!("No joint's name contains “{}”.", tab.search));
         return;
     }
-    let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
-    ScrollArea::vertical().id_salt("channels").auto_shrink([false, false]).show_rows(
-        ui,
-        ROW_HEIGHT,
-        rows.len(),
-        |ui, visible| {
-            for row in rows.get(visible).unwrap_or_default() {
-                if show_row(ui, row, prefix) {
-                    tab.picking = Some(Picking::new(pairing.index, row.number));
-                }
-            }
-        },
-    );
-    ui.spacing_mut().item_spacing.y = spacing;
+    ui.spacing_mut().item_spacing.y = 0.0;
+    for row in &rows {
+        if show_row(ui, row, prefix) {
+            tab.picking = Some(Picking::new(pairing.index, row.number));
+        }
+    }
 }
 
 /// What the names of all skinned joints begin with, such as `mixamorig:`: left out where there is little room.
@@ -147,8 +137,7 @@ fn show_row(ui: &mut Ui, row: &Row, prefix: &str) -> bool {
         ui.painter().rect_stroke(rect.shrink(1.0), style::CORNER, stroke, StrokeKind::Inside);
     }
     let inner = rect.shrink2(vec2(8.0, 4.0));
-    // Room for the floating scroll bar.
-    let right = inner.right() - 4.0;
+    let right = inner.right();
     let middle = inner.left() + 0.5 * (right - inner.left());
     let top = |from: f32, to: f32| Rect::from_min_max(pos2(from, inner.top()), pos2(to, inner.top() + 20.0));
     let bright = if row.follows { palette.text } else { palette.weak_text };

@@ -6,7 +6,7 @@ mod picker;
 
 use egui::{RichText, ScrollArea, Ui};
 
-use super::{Output, Saved, Shown, UiAction, UiState, controls, scene_tree, short_name, style};
+use super::{Output, Saved, Shown, UiAction, UiState, clips, controls, scene_tree, short_name, style};
 use crate::anim::JointIndex;
 use crate::asset::Asset;
 use crate::library::{Library, Model, Motion};
@@ -65,25 +65,52 @@ impl<'a> Pairing<'a> {
     }
 }
 
+/// With less height than this the whole tab scrolls, else only what is under its head.
+const ROOMY_HEIGHT: f32 = 480.0;
+
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     let Some(pairing) = Pairing::shown(shown) else { return };
     let map = map_in_force(shown.library, shown.state, pairing.index).unwrap_or_default();
-    header(ui, shown, &pairing, &map, out);
+    let tab = &mut local.motion;
+    if ui.available_height() >= ROOMY_HEIGHT {
+        head(ui, shown, &pairing, &map, tab, out);
+        scrolled(ui, |ui| body(ui, shown, &pairing, &map, tab, out));
+    } else {
+        scrolled(ui, |ui| {
+            head(ui, shown, &pairing, &map, tab, out);
+            body(ui, shown, &pairing, &map, tab, out);
+        });
+    }
+}
+
+fn scrolled(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
+    ScrollArea::vertical().id_salt("motion").auto_shrink([false, false]).show(ui, |ui| {
+        // Room for the floating scroll bar.
+        ui.set_max_width(ui.available_width() - 6.0);
+        contents(ui);
+        ui.add_space(12.0);
+    });
+}
+
+fn head(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, map: &JointMap, tab: &mut MotionTab, out: &mut Output) {
+    header(ui, shown, pairing, map, out);
     ui.add_space(4.0);
     let parts = [(false, "Joints"), (true, "Options")];
-    if let Some(options) = controls::segmented(ui, Some(local.motion.options), &parts) {
-        local.motion.options = options;
+    if let Some(options) = controls::segmented(ui, Some(tab.options), &parts) {
+        tab.options = options;
     }
     ui.add_space(2.0);
-    if local.motion.options {
-        ScrollArea::vertical().id_salt("motion options").auto_shrink([false, false]).show(ui, |ui| {
-            // Room for the floating scroll bar.
-            ui.set_max_width(ui.available_width() - 6.0);
-            options::show(ui, shown, &pairing, &map, out);
-            ui.add_space(12.0);
-        });
+    if !tab.options {
+        clips::search_field(ui, &mut tab.search, "Search joints of the model");
+        ui.add_space(2.0);
+    }
+}
+
+fn body(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, map: &JointMap, tab: &mut MotionTab, out: &mut Output) {
+    if tab.options {
+        options::show(ui, shown, pairing, map, out);
     } else {
-        joints::show(ui, &pairing, &map, &mut local.motion);
+        joints::show(ui, pairing, map, tab);
     }
 }
 

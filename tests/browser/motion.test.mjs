@@ -1,0 +1,206 @@
+// Borrowed motion on the page: dropped, by script and by link, on each back end; maps in and out; what does not fit.
+import assert from "node:assert/strict";
+import fs from "node:fs";
+import { after, before, describe, test } from "node:test";
+import { skipWithoutData } from "../three/data.mjs";
+import { BACK_ENDS, apply, drop, meanDifference, open, picture, pose, startSite, state, until, whenReady } from "./browser.mjs";
+
+const XBOT = "threejs/Xbot.glb";
+const XBOT_CLIPS = 7;
+const SOLDIER = "threejs/Soldier.glb";
+const DANCE = "bvh/cosc422_Dance.bvh";
+const SNAKE = "mesh2motion/snake-animations.glb";
+
+/** Nothing of Xbot's names or shape is in it, and it has no mesh: a worm of three joints. */
+const WORM = `HIERARCHY
+ROOT seg0
+{
+  OFFSET 0 0 0
+  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
+  JOINT seg1
+  {
+    OFFSET 0 0 10
+    CHANNELS 3 Zrotation Xrotation Yrotation
+    End Site
+    {
+      OFFSET 0 0 10
+    }
+  }
+}
+MOTION
+Frames: 2
+Frame Time: 0.5
+0 0 0 0 0 0 0 0 0
+0 0 0 0 0 0 0 40 0
+`;
+
+describe("borrowed motion", { skip: skipWithoutData }, () => {
+  for (const renderer of BACK_ENDS)
+    describe(`on ${renderer}`, () => {
+      let site;
+      before(async () => (site = await startSite()));
+      after(() => site?.close());
+
+      const onPage = (name, link, body) =>
+        test(name, async () => {
+          const page = await site.page({ renderer, link: link?.(site) ?? "" });
+          try {
+            await body(page);
+            assert.deepEqual(page.troubles, []);
+          } finally {
+            await page.finish();
+          }
+        });
+
+      const model = (site) => `model=${encodeURIComponent(site.data(XBOT))}`;
+
+      onPage("a dropped .bvh plays on the model that is shown", model, async (page) => {
+        await apply(page, { clip: "", play: 1 });
+        const rest = await pose(page);
+        await drop(page, [{ name: "dance.bvh", url: site.data(DANCE) }]);
+        await until(page, async () => (await window.gaitway.pose()).clip === "dance");
+        const { motion, map, model } = await state(page);
+        assert.deepEqual(motion, ["dance.bvh"]);
+        assert.equal(map.length, 1);
+        assert.deepEqual(model, [site.data(XBOT)]);
+        await until(page, async () => (await window.gaitway.pose()).time_secs > 0.2);
+        const dancing = await pose(page);
+        assert.equal(dancing.meshes[0].positions.length, rest.meshes[0].positions.length);
+        assert.ok(furthest(dancing, rest) > 0.1, `moved by ${furthest(dancing, rest)} m`);
+      });
+
+      onPage("another character's clips are borrowed by role", model, async (page) => {
+        const document = await page.evaluate(async (url) => await window.gaitway.open(url, { as: "motion" }), site.data(SOLDIER));
+        assert.equal(document.clips.length, XBOT_CLIPS);
+        assert.ok(document.borrowed_clips.some(({ name }) => name === "Run"), JSON.stringify(document.borrowed_clips));
+        await apply(page, { clip: "Run", t: 0.3, play: 0 });
+        const run = await pose(page);
+        assert.equal(run.clip, "Run");
+        await apply(page, { clip: "" });
+        assert.ok(furthest(run, await pose(page)) > 0.1);
+        assert.deepEqual((await state(page)).motion, [site.data(SOLDIER)]);
+      });
+
+      onPage("a link with model and motion gives the same pose again", model, async (page) => {
+        await open(page, site.data(DANCE));
+        await apply(page, { t: 2, play: 0, root: "in-place", feet: "plant" });
+        const shown = await pose(page);
+        const link = await page.evaluate(async () => {
+          const { model, motion, map, clip, root, feet } = await window.gaitway.state();
+          const all = Object.entries({ model, motion, map, clip, root, feet, t: 2, play: 0 });
+          return all.flatMap(([key, value]) => [value].flat().map((value) => `${key}=${encodeURIComponent(value)}`)).join("&");
+        });
+        const again = await site.page({ renderer, link });
+        try {
+          const other = await pose(again);
+          assert.equal(other.clip, shown.clip);
+          assert.equal(furthest(other, shown), 0);
+          await apply(again, { root: null });
+          assert.ok(furthest(await pose(again), shown) > 0, "the root option should matter");
+        } finally {
+          await again.finish();
+        }
+      });
+
+      onPage("what has nothing in common is refused and changes nothing", model, async (page) => {
+        await apply(page, { clip: "walk", t: 0.4, play: 0 });
+        const [earlier, before] = [await state(page), await picture(page)];
+        const refused = await page.evaluate(async (text) => {
+          const bytes = new TextEncoder().encode(text);
+          return await window.gaitway.open({ "worm.bvh": bytes.buffer }).then(() => null, (error) => error.message);
+        }, WORM);
+        assert.match(refused, /worm\.bvh.*no joint in common/);
+        assert.deepEqual(await state(page), earlier);
+        assert.equal(meanDifference(await picture(page), before), 0);
+        // It can still be looked at by itself.
+        await apply(page, { model: await page.evaluate((text) => URL.createObjectURL(new Blob([text])), WORM) });
+        assert.equal((await pose(page)).nodes.length, 2);
+        assert.equal((await state(page)).motion.length, 0);
+      });
+
+      onPage("a joint map is dropped, changed by script, and kept when it is wrong", model, async (page) => {
+        const alone = await page.evaluate(async () => {
+          const bytes = new TextEncoder().encode('{"gaitway_map":1,"joints":{}}');
+          return await window.gaitway.open({ "map.json": bytes.buffer }).then(() => null, (error) => error.message);
+        });
+        assert.match(alone, /no motion/);
+        await open(page, site.data(DANCE));
+        await apply(page, { t: 1, play: 0 });
+        const automatic = await pose(page);
+        const joints = { "mixamorig:Hips": { source: "Hips" }, "mixamorig:LeftArm": { source: "RightUpArm" } };
+        await drop(page, [{ name: "map.json", text: JSON.stringify({ gaitway_map: 1, joints }) }]);
+        await until(page, async () => (await window.gaitway.state()).map[0].split(",").length === 2);
+        assert.ok(furthest(await pose(page), automatic) > 0.05);
+        const wrong = { gaitway_map: 1, joints: { "mixamorig:Hip": { source: 0 } } };
+        await assert.rejects(apply(page, { map: wrong }), /mixamorig:Hip.*nearest.*mixamorig:Hips/);
+        assert.equal((await state(page)).map[0].split(",").length, 2);
+        await apply(page, { map: null });
+        assert.equal(furthest(await pose(page), automatic), 0);
+      });
+
+      onPage("a model and its motion come together, and the motion stays for the next model", null, async (page) => {
+        await drop(page, [
+          { name: "Xbot.glb", url: site.data(XBOT) },
+          { name: "dance.bvh", url: site.data(DANCE) },
+        ]);
+        await until(page, async () => (await window.gaitway.pose()).clip === "dance");
+        assert.deepEqual((await state(page)).model, ["Xbot.glb"]);
+        await drop(page, [{ name: "Soldier.glb", url: site.data(SOLDIER) }]);
+        await until(page, async () => (await window.gaitway.state()).model[0] === "Soldier.glb");
+        assert.equal((await pose(page)).clip, "dance");
+        // A snake has arms and legs to borrow from nobody.
+        await drop(page, [{ name: "snake.glb", url: site.data(SNAKE) }]);
+        await until(page, async () => (await window.gaitway.state()).model[0] === "snake.glb");
+        assert.notEqual((await pose(page)).clip, "dance");
+      });
+
+      test("everything comes back after a crash, dropped motion too", async () => {
+        const own = await startSite();
+        try {
+          const page = await own.page({ renderer });
+          await drop(page, [{ name: "Xbot.glb", url: own.data(XBOT) }]);
+          await until(page, async () => (await window.gaitway.state()).model[0] === "Xbot.glb");
+          await drop(page, [{ name: "dance.bvh", url: own.data(DANCE) }]);
+          await until(page, async () => (await window.gaitway.pose()).clip === "dance");
+          await apply(page, { t: 1, play: 0 });
+          const shown = await pose(page);
+          const session = await own.browser.newBrowserCDPSession();
+          await session.send("Browser.crashGpuProcess").catch(() => {});
+          const again = page.getByRole("button", { name: "Start again" });
+          await again.waitFor({ state: "visible" });
+          await again.click();
+          await whenReady(page);
+          assert.equal(furthest(await pose(page), shown), 0);
+        } finally {
+          await own.close();
+        }
+      });
+
+      onPage("the map in force is handed over as a file", model, async (page) => {
+        await open(page, site.data(DANCE));
+        await page.setViewportSize({ width: 1280, height: 800 });
+        await page.waitForTimeout(500);
+        const download = page.waitForEvent("download");
+        // The tab, then the button: the canvas has no elements to ask for.
+        await page.mouse.click(1237, 29);
+        await page.waitForTimeout(500);
+        await page.mouse.click(1200, 125);
+        const file = await download;
+        assert.equal(file.suggestedFilename(), "Xbot-cosc422_Dance.json");
+        const saved = JSON.parse(fs.readFileSync(await file.path(), "utf8"));
+        assert.equal(saved.gaitway_map, 1);
+        assert.deepEqual(saved.joints["mixamorig:Hips"], { source: "Hips" });
+      });
+    });
+});
+
+/** The longest way between two poses' vertices, in metres. */
+function furthest(a, b) {
+  let longest = 0;
+  for (const [mesh, { positions }] of a.meshes.entries())
+    for (let at = 0; at < positions.length; at += 3) {
+      const other = b.meshes[mesh].positions;
+      longest = Math.max(longest, Math.hypot(...[0, 1, 2].map((axis) => positions[at + axis] - other[at + axis])));
+    }
+  return longest;
+}
