@@ -530,7 +530,10 @@ addEventListener("pagehide", () => clearTimeout(soon));
 launch(forced()).then(
   () => {
     // Only in a build for benches/web.
-    if (app?.bench_characters !== undefined) window.gaitway.benchCharacters = (...work) => app.bench_characters(...work);
+    if (app?.bench_characters !== undefined) {
+      window.gaitway.benchCharacters = (...work) => app.bench_characters(...work);
+      window.gaitway.benchRetarget = (...work) => app.bench_retarget(...work);
+    }
   },
   () => {},
 );

@@ -48,6 +48,7 @@ const gaitway = async (link) => {
 
 try {
   await measureCharacters();
+  await measureRetargeting();
   await measureLoads();
   await measureFrames();
 } finally {
@@ -75,6 +76,30 @@ async function measureCharacters() {
     }
     const [slow, fast] = [median(figures.three), median(figures.gaitway)];
     row(count, slow.toFixed(2), fast.toFixed(3), `${(slow / fast).toFixed(1)}×`);
+  }
+  await theirs.close();
+  await ours.close();
+}
+
+async function measureRetargeting() {
+  console.log("\nMaking a clip over for another skeleton, ms\n");
+  row("clip", "SkeletonUtils.retargetClip", "Gaitway", "ratio");
+  row("--", "--", "--", "--");
+  const [theirs, ours] = [await three(), await gaitway("play=0")];
+  if (!(await ours.evaluate(() => window.gaitway.benchRetarget !== undefined))) return;
+  for (const [model, motion, clip] of [[SOLDIER, XBOT, "walk"], [SOLDIER, XBOT, "idle"], [XBOT, SOLDIER, "Walk"], [XBOT, SOLDIER, "Idle"]]) {
+    await theirs.evaluate((pair) => window.bench.prepareRetarget(...pair), [`/data/${model}`, `/data/${motion}`, clip]);
+    await ours.evaluate(
+      async (urls) => void (window.pair = await Promise.all(urls.map(async (url) => new Uint8Array(await (await fetch(url)).arrayBuffer())))),
+      [`/data/${model}`, `/data/${motion}`],
+    );
+    const figures = { three: [], gaitway: [] };
+    for (let round = 0; round < ROUNDS; round++) {
+      figures.three.push(await theirs.evaluate(() => window.bench.retarget(5)));
+      figures.gaitway.push(await ours.evaluate((clip) => window.gaitway.benchRetarget(...window.pair, clip, 100), clip));
+    }
+    const [slow, fast] = [median(figures.three), median(figures.gaitway)];
+    row(`${path.basename(motion)} ${clip} → ${path.basename(model)}`, slow.toFixed(2), fast.toFixed(3), `${(slow / fast).toFixed(1)}×`);
   }
   await theirs.close();
   await ours.close();

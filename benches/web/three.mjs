@@ -27,6 +27,7 @@ async function crowd(url, clipName, count) {
 }
 
 let characters = [];
+let retargeting;
 
 window.bench = {
   async prepareCharacters(url, clipName, count) {
@@ -44,6 +45,26 @@ window.bench = {
         for (const skeleton of skeletons) skeleton.update();
       }
     return ((performance.now() - start) * 1000) / (frames * characters.length);
+  },
+
+  async prepareRetarget(modelUrl, motionUrl, clipName) {
+    const [model, motion] = [await parse(await bytesOf(modelUrl)), await parse(await bytesOf(motionUrl))];
+    const largest = ({ scene }) => {
+      const meshes = [];
+      scene.updateMatrixWorld(true);
+      scene.traverse((object) => object.isSkinnedMesh && meshes.push(object));
+      return meshes.sort((a, b) => b.skeleton.bones.length - a.skeleton.bones.length)[0];
+    };
+    retargeting = { target: largest(model), source: largest(motion), clip: motion.animations.find(({ name }) => name === clipName) };
+  },
+
+  /** Milliseconds of SkeletonUtils.retargetClip. */
+  retarget(rounds) {
+    const { target, source, clip } = retargeting;
+    const start = performance.now();
+    for (let round = 0; round < rounds; round++)
+      SkeletonUtils.retargetClip(target, source, clip, { hip: "mixamorigHips", getBoneName: ({ name }) => name });
+    return (performance.now() - start) / rounds;
   },
 
   /** Milliseconds of GLTFLoader.parse from bytes in memory, textures included. */

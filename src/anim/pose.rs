@@ -18,6 +18,20 @@ impl Pose {
         self.locals.clone_from(&other.locals);
         self.morph_weights.clone_from(&other.morph_weights);
     }
+
+    /// Turns `self` into a mixture: `weight` 1 leaves it as it is, 0 makes it `other`. Rotations take the shorter way, at
+    /// nearly constant speed. Both have the same skeleton.
+    pub fn blend(&mut self, other: &Pose, weight: f32) {
+        for (local, other) in self.locals.iter_mut().zip(&other.locals) {
+            local.translation = other.translation.lerp(local.translation, weight);
+            local.scale = other.scale.lerp(local.scale, weight);
+            // Rotations may be unnormalised splines by a hair; `lerp` minds the sign and makes them unit again.
+            local.rotation = other.rotation.lerp(local.rotation, weight);
+        }
+        for (own, other) in self.morph_weights.iter_mut().zip(&other.morph_weights) {
+            *own = other + (*own - other) * weight;
+        }
+    }
 }
 
 /// Model-space transform of every joint. `locals` and `out` have one entry per joint; joints without a parent are

@@ -7,13 +7,12 @@ use crate::anim::{JointIndex, Pose, SampleCursor, model_from_joint};
 use crate::asset::MeshInstance;
 use crate::library::{Library, Model, ModelId};
 use crate::mesh::{Bounds, palette_entry, write_palette};
-use crate::state::{ViewerState, active_clip, resolved_bounds, sample_pose, world_from_model};
+use crate::state::{PoseSampler, ViewerState, active_clip, resolved_bounds, world_from_model};
 
 /// What one evaluation leaves for the next, so that nothing is allocated or looked for again.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
-    pose: Pose,
-    cursor: SampleCursor,
+    sampler: PoseSampler,
     first_pose: Pose,
     first_cursor: SampleCursor,
     pub world_from_first: Vec<Affine3A>,
@@ -53,10 +52,15 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
     let Frame { characters, scratch, .. } = frame;
     let character = &mut characters[0];
     character.model = model.id;
-    sample_pose(model, state, &mut scratch.cursor, &mut scratch.pose);
-    character.morph_weights.clone_from(&scratch.pose.morph_weights);
+    scratch.sampler.sample(model, state);
+    character.morph_weights.clone_from(&scratch.sampler.pose.morph_weights);
     let world_from_model = world_from_model(state.up);
-    model_from_joint(&model.asset.skeleton, &scratch.pose.locals, world_from_model, &mut character.world_from_joint);
+    model_from_joint(
+        &model.asset.skeleton,
+        &scratch.sampler.pose.locals,
+        world_from_model,
+        &mut character.world_from_joint,
+    );
     write_draws(model, state, &scratch.in_scene, character);
 
     let travel = travel(model, state, scratch, &character.world_from_joint);

@@ -89,6 +89,13 @@ impl Model {
         self.borrowed(clip).map_or(&[], |borrowed| &borrowed.layers)
     }
 
+    /// How long a change from one clip to another takes: what the maps of borrowed ones ask for; none is the rest pose.
+    pub fn crossfade_secs(&self, from: Option<usize>, to: Option<usize>) -> f64 {
+        let secs =
+            |clip: Option<usize>| clip.and_then(|clip| self.borrowed(clip)).map_or(0.0, |clip| clip.crossfade_secs);
+        secs(from).max(secs(to))
+    }
+
     /// Replaces the borrowed clips.
     pub(super) fn set_borrowed(&mut self, borrowed: Vec<BorrowedClip>) {
         self.borrowed = borrowed;

@@ -39,6 +39,8 @@ pub struct BorrowedClip {
     pub motion: usize,
     pub source_clip: usize,
     pub root: Option<JointIndex>,
+    /// How long a change to or from this clip takes.
+    pub crossfade_secs: f64,
 }
 
 /// Why a motion cannot be borrowed.
@@ -75,7 +77,14 @@ pub(super) fn borrow(
         let baked = Retargeting::new(model, motion.body(), source_clip, map).and_then(|pair| pair.bake());
         let baked = baked.map_err(|problem| BorrowError::Retarget { motion: motion.source.clone(), problem })?;
         let root = root_of(&baked.clip);
-        Ok(BorrowedClip { clip: baked.clip, layers: layers.clone(), motion: index, source_clip, root })
+        Ok(BorrowedClip {
+            clip: baked.clip,
+            layers: layers.clone(),
+            motion: index,
+            source_clip,
+            root,
+            crossfade_secs: map.crossfade_secs,
+        })
     };
     clips.map(borrow).collect()
 }

@@ -6,8 +6,8 @@ use glam::Vec3;
 
 use super::framing::{frame_all, resolve_camera, resolved_bounds};
 use super::maps::{self, map_in_force, settled_maps};
-use super::playhead::{active_clip, clip_secs, play_range};
-use super::{CameraChoice, Command, OrbitCamera, ViewerState};
+use super::playhead::{active_clip, choice_of_clip, clip_of, clip_secs, play_range};
+use super::{CameraChoice, ClipChoice, Command, Fade, OrbitCamera, ViewerState};
 use crate::anim::{LoopMode, TimeRange};
 use crate::library::{Library, Model};
 
@@ -29,7 +29,14 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
             }
         }
         Command::SetClip(clip) => {
+            let before = model.map(|model| (model, active_clip(model, state)));
+            let time_secs = state.time_secs;
             state.clip = clip;
+            state.fade = before.filter(|_| state.playing).and_then(|(model, from)| {
+                let fades = model.crossfade_secs(from, active_clip(model, state)) > 0.0;
+                let clip = from.map_or(ClipChoice::RestPose, |from| choice_of_clip(model, from));
+                fades.then_some(Fade { clip, time_secs, elapsed_secs: 0.0 })
+            });
             state.time_secs = 0.0;
             state.range = None;
         }
@@ -116,6 +123,8 @@ fn replace(state: &mut ViewerState, new: ViewerState) {
     if !wanted.time_secs.is_finite() {
         state.time_secs = default.time_secs;
     }
+    let finite = |fade: &Fade| fade.time_secs.is_finite() && fade.elapsed_secs.is_finite();
+    state.fade = wanted.fade.filter(finite);
     state.speed = default.speed;
     set_f64(&mut state.speed, wanted.speed, 0.1, 4.0);
     state.fov_degrees = default.fov_degrees;
@@ -202,6 +211,13 @@ fn advance(state: &mut ViewerState, model: Option<&Model>, clock_secs: f64) {
     let range = play_range(model, clip, state);
     let length = range.length_secs();
     state.time_secs += clock_secs * state.speed;
+    if let Some(fade) = &mut state.fade {
+        fade.elapsed_secs += clock_secs * state.speed;
+        let from = clip_of(model, &fade.clip);
+        if fade.elapsed_secs >= model.crossfade_secs(from, Some(clip)) {
+            state.fade = None;
+        }
+    }
     match state.loop_mode {
         LoopMode::Once if state.time_secs >= range.end_secs => {
             state.time_secs = range.end_secs;

@@ -2,9 +2,9 @@
 
 use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 
-use super::playhead::{active_clip, sample_pose, world_from_model};
+use super::playhead::{PoseSampler, active_clip, world_from_model};
 use super::{CameraChoice, OrbitCamera, ViewerState};
-use crate::anim::{Pose, SampleCursor, model_from_joint};
+use crate::anim::model_from_joint;
 use crate::library::{Library, Model};
 use crate::mesh::Bounds;
 
@@ -82,9 +82,9 @@ pub fn world_from_file_camera(world_from_joint: &Affine3A) -> Option<Affine3A> {
 
 fn file_orbit(model: &Model, state: &ViewerState, index: usize) -> Option<OrbitCamera> {
     let camera = model.asset.cameras.get(index)?;
-    let (mut pose, mut world_from_joint) = (Pose::default(), Vec::new());
-    sample_pose(model, state, &mut SampleCursor::default(), &mut pose);
-    model_from_joint(&model.asset.skeleton, &pose.locals, world_from_model(state.up), &mut world_from_joint);
+    let (mut sampler, mut world_from_joint) = (PoseSampler::default(), Vec::new());
+    sampler.sample(model, state);
+    model_from_joint(&model.asset.skeleton, &sampler.pose.locals, world_from_model(state.up), &mut world_from_joint);
     let world_from_camera = world_from_file_camera(&world_from_joint[camera.joint.get()])?;
     let towards_eye = world_from_camera.matrix3.z_axis;
     let eye = world_from_camera.translation;

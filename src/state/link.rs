@@ -7,7 +7,7 @@ use std::fmt::Display;
 use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_encode};
 use serde_json::{Map, Value, json};
 
-use super::{Background, CameraChoice, ClipChoice, OrbitCamera, Show, UpAxis, ViewerState};
+use super::{Background, CameraChoice, ClipChoice, Fade, OrbitCamera, Show, UpAxis, ViewerState};
 use super::{MotionMap, map_code};
 use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
@@ -24,7 +24,7 @@ pub enum LinkError {
 }
 
 /// Keys of the link in the order they are written.
-const KEYS: [&str; 25] = [
+const KEYS: [&str; 26] = [
     "model",
     "motion",
     "map",
@@ -34,6 +34,7 @@ const KEYS: [&str; 25] = [
     "scene",
     "clip",
     "t",
+    "fade",
     "play",
     "speed",
     "loop",
@@ -122,6 +123,7 @@ pub fn to_object(state: &ViewerState) -> Value {
             "scene" => json!(state.scene),
             "joint" => json!(state.joint),
             "range" if state.range.is_none() => Value::Null,
+            "fade" if state.fade.is_none() => Value::Null,
             _ => Value::String(text),
         };
         object.insert(key.to_owned(), value);
@@ -180,6 +182,7 @@ fn reset(state: &mut ViewerState, key: &str) {
         "scene" => state.scene = None,
         "joint" => state.joint = None,
         "range" => state.range = None,
+        "fade" => state.fade = None,
         "model" => state.model.clear(),
         "motion" => state.motion.clear(),
         "map" => state.map.clear(),
@@ -213,6 +216,7 @@ fn value_of(state: &ViewerState, key: &str) -> String {
             ClipChoice::First | ClipChoice::RestPose => String::new(),
         },
         "t" => state.time_secs.to_string(),
+        "fade" => state.fade.as_ref().map_or(String::new(), fade_text),
         "play" => flag_text(state.playing).to_owned(),
         "speed" => state.speed.to_string(),
         "loop" => word_of(&LOOP_MODES, &state.loop_mode),
@@ -288,6 +292,8 @@ fn read_value(state: &mut ViewerState, key: &str, value: &str) -> Read {
         "scene" => return put(&mut state.scene, optional(value), "a scene's index"),
         "joint" => return put(&mut state.joint, optional(value), "a joint's number in the file"),
         "t" => return put(&mut state.time_secs, finite(value), "seconds"),
+        "fade" if value.is_empty() => state.fade = None,
+        "fade" => return put(&mut state.fade, read_fade(value), "two times in seconds and a clip: 0.1,1.5,Walk"),
         "play" => return put(&mut state.playing, flag(value), "0 or 1"),
         "speed" => return put(&mut state.speed, finite(value), "a factor such as 0.5"),
         "loop" => return put(&mut state.loop_mode, from_word(&LOOP_MODES, value), "once, loop or ping-pong"),
@@ -467,6 +473,25 @@ fn read_range(text: &str) -> Option<Option<TimeRange>> {
     let (start, end) = text.split_once(',')?;
     let (start_secs, end_secs) = (finite(start)?, finite(end)?);
     (start_secs <= end_secs).then_some(Some(TimeRange { start_secs, end_secs }))
+}
+
+/// Since the change, where the clip was, its name: nothing for the rest pose.
+fn fade_text(fade: &Fade) -> String {
+    let clip = match &fade.clip {
+        ClipChoice::Named(name) => name,
+        ClipChoice::First | ClipChoice::RestPose => "",
+    };
+    format!("{},{},{clip}", fade.elapsed_secs, fade.time_secs)
+}
+
+fn read_fade(text: &str) -> Option<Option<Fade>> {
+    let mut parts = text.splitn(3, ',');
+    let (elapsed_secs, time_secs) = (finite(parts.next()?)?, finite(parts.next()?)?);
+    let clip = match parts.next()? {
+        "" => ClipChoice::RestPose,
+        name => ClipChoice::Named(name.to_owned()),
+    };
+    Some(Some(Fade { clip, time_secs, elapsed_secs }))
 }
 
 fn read_morph(text: &str) -> Option<BTreeMap<usize, f32>> {

@@ -21,5 +21,5 @@ pub use maps::{
     MapProblem, MotionMap, NumberedMap, map_in_force, maps_in_force, named, names_checksum, number_of, numbered,
     proposed, settled_maps,
 };
-pub use playhead::{active_clip, choice_of_clip, clip_secs, play_range, sample_pose, world_from_model};
-pub use view::{Background, ClipChoice, Show, UpAxis, ViewerState};
+pub use playhead::{PoseSampler, active_clip, choice_of_clip, clip_secs, play_range, world_from_model};
+pub use view::{Background, ClipChoice, Fade, Show, UpAxis, ViewerState};

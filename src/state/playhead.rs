@@ -8,7 +8,12 @@ use crate::library::Model;
 
 /// The clip that plays, by index; none for the rest pose, for a model without clips, or when no clip is called that.
 pub fn active_clip(model: &Model, state: &ViewerState) -> Option<usize> {
-    match &state.clip {
+    clip_of(model, &state.clip)
+}
+
+/// The clip that a choice stands for.
+pub(super) fn clip_of(model: &Model, choice: &ClipChoice) -> Option<usize> {
+    match choice {
         ClipChoice::First => (model.clip_count() > 0).then_some(0),
         ClipChoice::RestPose => None,
         ClipChoice::Named(name) => clip_called(model, name),
@@ -48,24 +53,59 @@ pub fn clip_secs(model: &Model, clip: usize, state: &ViewerState) -> f64 {
     clip_time(state.time_secs, play_range(model, clip, state), state.loop_mode)
 }
 
-/// The pose that is shown: rest, then what plays below the clip, then the clip, then the morph weights set by hand. Allocates nothing once `pose` and
-/// `cursor` have grown.
-pub fn sample_pose(model: &Model, state: &ViewerState, cursor: &mut SampleCursor, pose: &mut Pose) {
+/// A pose, and what it takes to sample the next one without allocating.
+#[derive(Debug, Default)]
+pub struct PoseSampler {
+    pub pose: Pose,
+    cursor: SampleCursor,
+    before: Pose,
+    before_cursor: SampleCursor,
+}
+
+impl PoseSampler {
+    /// The pose that is shown: rest, then what plays below the clip, then the clip, blended with the one before while that
+    /// fades, then the morph weights set by hand. Allocates nothing once it has grown.
+    pub fn sample(&mut self, model: &Model, state: &ViewerState) {
+        let clip = active_clip(model, state);
+        let time_secs = clip.map_or(0.0, |clip| clip_secs(model, clip, state));
+        sample_clip(model, clip, time_secs, state.time_secs, &mut self.cursor, &mut self.pose);
+        if let Some(fade) = &state.fade {
+            let from = clip_of(model, &fade.clip);
+            let length_secs = model.crossfade_secs(from, clip);
+            let weight = if length_secs > 0.0 { (fade.elapsed_secs / length_secs).clamp(0.0, 1.0) } else { 1.0 };
+            let elapsed_secs = fade.time_secs + fade.elapsed_secs;
+            let duration_secs =
+                from.and_then(|from| model.clip(from)).map_or(0.0, |clip| f64::from(clip.duration_secs()));
+            let range = TimeRange { start_secs: 0.0, end_secs: duration_secs };
+            let time_secs = clip_time(elapsed_secs, range, state.loop_mode);
+            sample_clip(model, from, time_secs, elapsed_secs, &mut self.before_cursor, &mut self.before);
+            // Slow at both ends, so that nothing starts or stops at once.
+            self.pose.blend(&self.before, (weight * weight * (3.0 - 2.0 * weight)) as f32);
+        }
+        for (&index, &weight) in &state.morph {
+            if let Some(slot) = self.pose.morph_weights.get_mut(index) {
+                *slot = weight;
+            }
+        }
+    }
+}
+
+/// A clip at a time over the rest, what plays below it at a time of its own; no clip: the rest.
+fn sample_clip(
+    model: &Model,
+    clip: Option<usize>,
+    time_secs: f64,
+    elapsed_secs: f64,
+    cursor: &mut SampleCursor,
+    pose: &mut Pose,
+) {
     let skeleton = &model.asset.skeleton;
     pose.copy_from(skeleton.rest());
-    if let Some(index) = active_clip(model, state)
-        && let Some(clip) = model.clip(index)
-    {
-        for layer in model.layers(index) {
-            layer.sample(skeleton, state.time_secs, cursor, pose);
-        }
-        clip.sample(skeleton, clip_secs(model, index, state) as f32, cursor, pose);
+    let Some((index, clip)) = clip.and_then(|index| Some((index, model.clip(index)?))) else { return };
+    for layer in model.layers(index) {
+        layer.sample(skeleton, elapsed_secs, cursor, pose);
     }
-    for (&index, &weight) in &state.morph {
-        if let Some(slot) = pose.morph_weights.get_mut(index) {
-            *slot = weight;
-        }
-    }
+    clip.sample(skeleton, time_secs as f32, cursor, pose);
 }
 
 /// Turns the file's up axis to +Y by quarter turns.

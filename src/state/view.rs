@@ -29,6 +29,8 @@ pub struct ViewerState {
     pub clip: ClipChoice,
     /// The playhead in clip seconds; runs on beyond the range while looping.
     pub time_secs: f64,
+    /// The clip before, while it blends into the present one.
+    pub fade: Option<Fade>,
     pub playing: bool,
     pub speed: f64,
     pub loop_mode: LoopMode,
@@ -68,6 +70,7 @@ impl Default for ViewerState {
             scene: None,
             clip: ClipChoice::First,
             time_secs: 0.0,
+            fade: None,
             playing: true,
             speed: 1.0,
             loop_mode: LoopMode::Loop,
@@ -87,6 +90,16 @@ impl Default for ViewerState {
             unknown: BTreeMap::new(),
         }
     }
+}
+
+/// What is left of a clip that was changed for another.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Fade {
+    pub clip: ClipChoice,
+    /// Where the clip was then, in its own seconds; it goes on from there.
+    pub time_secs: f64,
+    /// Since the change, in clip seconds.
+    pub elapsed_secs: f64,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]

@@ -1,11 +1,14 @@
-//! The work of one character in one frame, measured in the page for benches/web.
+//! The work of one character in one frame, and of making a clip over for another skeleton, measured in the page for
+//! benches/web.
 
 use glam::Affine3A;
 use wasm_bindgen::prelude::*;
 
 use crate::anim::{Pose, SampleCursor, model_from_joint};
+use crate::asset::Asset;
 use crate::formats::{FileSet, load};
 use crate::mesh::{PaletteEntry, SkinningMode, write_palette};
+use crate::retarget::{Body, Retargeting, propose, recognize};
 
 struct Character {
     phase_secs: f64,
@@ -26,9 +29,7 @@ extern "C" {
 /// When the file cannot be read or has no clip of that name.
 #[wasm_bindgen]
 pub fn bench_characters(bytes: &[u8], clip: &str, characters: u32, frames: u32) -> Result<f64, JsError> {
-    let mut set = FileSet::default();
-    set.insert("model.glb", bytes);
-    let asset = load(&set).map_err(|error| JsError::new(&error.to_string()))?;
+    let asset = read(bytes)?;
     let clip = asset.clips.iter().find(|other| other.name() == clip).ok_or_else(|| JsError::new("no such clip"))?;
     let skeleton = &asset.skeleton;
     let duration_secs = f64::from(clip.duration_secs()).max(1e-3);
@@ -55,4 +56,30 @@ pub fn bench_characters(bytes: &[u8], clip: &str, characters: u32, frames: u32) 
         }
     }
     Ok(1000.0 * (now() - start_ms) / (f64::from(frames.max(1)) * f64::from(characters.max(1))))
+}
+
+/// ms to make a clip of one .glb over for another, by the map that is proposed (which is not timed).
+///
+/// # Errors
+/// When a file cannot be read, has no clip of that name, or nothing in common with the other.
+#[wasm_bindgen]
+pub fn bench_retarget(model: &[u8], motion: &[u8], clip: &str, rounds: u32) -> Result<f64, JsError> {
+    let error = |message: &dyn std::fmt::Display| JsError::new(&message.to_string());
+    let (model, motion) = (read(model)?, read(motion)?);
+    let clip = motion.clips.iter().position(|other| other.name() == clip).ok_or_else(|| error(&"no such clip"))?;
+    let map = propose(&model, &motion).to_map(&model, &motion).resolve(&model, &motion).map_err(|e| error(&e))?;
+    let slots = [recognize(&model).humanoid(), recognize(&motion).humanoid()];
+    let start_ms = now();
+    for _ in 0..rounds {
+        let bodies = [Body { asset: &model, slots: &slots[0] }, Body { asset: &motion, slots: &slots[1] }];
+        let made = Retargeting::new(bodies[0], bodies[1], clip, &map).and_then(|pair| pair.bake());
+        std::hint::black_box(made.map_err(|e| error(&e))?);
+    }
+    Ok((now() - start_ms) / f64::from(rounds.max(1)))
+}
+
+fn read(bytes: &[u8]) -> Result<Asset, JsError> {
+    let mut set = FileSet::default();
+    set.insert("model.glb", bytes);
+    load(&set).map_err(|error| JsError::new(&error.to_string()))
 }

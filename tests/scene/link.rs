@@ -9,8 +9,8 @@ use gaitway::retarget::{
     Unmapped,
 };
 use gaitway::state::{
-    Background, CameraChoice, ClipChoice, LinkError, MotionMap, NumberedMap, OrbitCamera, Show, UpAxis, ViewerState,
-    from_link, from_object, to_link, to_object,
+    Background, CameraChoice, ClipChoice, Fade, LinkError, MotionMap, NumberedMap, OrbitCamera, Show, UpAxis,
+    ViewerState, from_link, from_object, to_link, to_object,
 };
 use glam::Vec3;
 
@@ -110,6 +110,13 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
         ("scene", with(&|state| state.scene = Some(2))),
         ("clip", with(&|state| state.clip = ClipChoice::Named("Walk & run = 100 %".to_owned()))),
         ("time_secs", with(&|state| state.time_secs = 1.0 / 3.0)),
+        (
+            "fade",
+            with(&|state| {
+                let clip = ClipChoice::Named("Walk, slow".to_owned());
+                state.fade = Some(Fade { clip, time_secs: 1.0 / 3.0, elapsed_secs: 0.1 });
+            }),
+        ),
         ("playing", with(&|state| state.playing = false)),
         ("speed", with(&|state| state.speed = 0.1)),
         ("loop_mode", with(&|state| state.loop_mode = LoopMode::PingPong)),

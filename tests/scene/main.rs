@@ -3,6 +3,7 @@
 mod allocation;
 mod cli;
 mod cli_borrow;
+mod crossfade;
 mod data;
 mod decode;
 mod extent;

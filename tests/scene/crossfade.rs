@@ -1,0 +1,59 @@
+//! One clip blends into another for as long as the joint map says.
+
+use gaitway::library::{Library, Motion};
+use gaitway::retarget::{JointMap, propose};
+use gaitway::state::{ClipChoice, Command, PoseSampler, ViewerState, apply};
+
+use crate::data::walker;
+
+/// The walker, which borrows its own clips with a crossfade of 0.4 s.
+fn dancing() -> Library {
+    let mut library = walker();
+    let asset = library.active().expect("a model").asset.clone();
+    let map = JointMap { crossfade_secs: 0.4, ..propose(&asset, &asset).to_map(&asset, &asset) };
+    library.set_motions(vec![Motion::new("dance.glb".to_owned(), asset)]);
+    library.borrow(Some(&map));
+    assert_eq!(library.borrow_errors(), []);
+    library
+}
+
+fn pose(library: &Library, state: &ViewerState) -> gaitway::anim::Pose {
+    let mut sampler = PoseSampler::default();
+    sampler.sample(library.active().expect("a model"), state);
+    sampler.pose
+}
+
+#[test]
+fn a_change_of_clip_takes_its_time_and_no_longer() {
+    let library = dancing();
+    let own = library.active().expect("a model").asset.clips.len();
+    let mut state = ViewerState { clip: ClipChoice::Named("0".to_owned()), ..ViewerState::default() };
+    apply(&mut state, &library, Command::Advance(0.3));
+    let before = pose(&library, &state);
+    apply(&mut state, &library, Command::SetClip(ClipChoice::Named(own.to_string())));
+    for (now, before) in pose(&library, &state).locals.iter().zip(&before.locals) {
+        assert!(now.rotation.angle_between(before.rotation) < 1e-3, "nothing jumps");
+        assert!(now.translation.abs_diff_eq(before.translation, 1e-6), "nothing jumps");
+    }
+    apply(&mut state, &library, Command::Advance(0.2));
+    assert!(state.fade.is_some());
+    let (mixed, alone) = (pose(&library, &state), pose(&library, &ViewerState { fade: None, ..state.clone() }));
+    assert_ne!(mixed, alone);
+    assert!(mixed.locals.iter().all(|local| local.rotation.is_normalized()));
+    apply(&mut state, &library, Command::Advance(0.21));
+    assert_eq!(state.fade, None);
+}
+
+#[test]
+fn nothing_fades_at_rest_or_between_own_clips() {
+    let library = dancing();
+    let change = |state: &mut ViewerState, clip: usize| {
+        apply(state, &library, Command::SetClip(ClipChoice::Named(clip.to_string())));
+        state.fade.clone()
+    };
+    let mut playing = ViewerState::default();
+    assert_eq!(change(&mut playing, 1), None, "the model's own clips have no map");
+    let own = library.active().expect("a model").asset.clips.len();
+    let mut paused = ViewerState { playing: false, ..ViewerState::default() };
+    assert_eq!(change(&mut paused, own), None);
+}
