@@ -109,16 +109,16 @@ fn surface_normal(in: VertexOut, front: bool) -> vec3f {
             tangent = side * normalize_or_zero(in.tangent.xyz);
             bitangent = in.tangent.w * cross(normal, tangent);
         } else {
-            // The directions in which the texture coordinates grow (Schüler, "Followup: Normal Mapping Without
-            // Precomputed Tangents").
+            // The directions in which the texture coordinates grow, turned around: the screen's y points down (Schüler,
+            // "Followup: Normal Mapping Without Precomputed Tangents").
             let across = -dpdx(in.to_eye);
             let down = -dpdy(in.to_eye);
             let uv_across = dpdx(uv);
             let uv_down = dpdy(uv);
             let a = cross(down, normal);
             let b = cross(normal, across);
-            tangent = a * uv_across.x + b * uv_down.x;
-            // glTF's v points down, its bitangent up.
+            tangent = -(a * uv_across.x + b * uv_down.x);
+            // glTF's v points down as well, its bitangent up.
             bitangent = a * uv_across.y + b * uv_down.y;
             let scale = inverseSqrt(max(max(dot(tangent, tangent), dot(bitangent, bitangent)), 1e-38));
             tangent *= scale;

@@ -2,7 +2,10 @@
 
 mod device;
 mod layouts;
+mod lights;
+mod maps;
 mod pictures;
+mod scene;
 mod shaders;
 mod skinning;
 #[path = "../support/skinning_cases.rs"]

@@ -2,120 +2,19 @@
 
 use std::path::Path;
 
-use gaitway::asset::Asset;
-use gaitway::frame::{Bone, Character, Draw, Frame, Line, View, evaluate};
-use gaitway::library::{ImageData, Library, Model, ModelId, sample};
+use gaitway::frame::{Bone, Frame, Line, evaluate};
+use gaitway::library::{ImageData, Library, sample};
 use gaitway::mesh::{
-    AlphaMode, Bounds, Geometry, Influences, Material, Mesh, SkinningMode, Texture, TextureRef, Topology, UvTransform,
+    AlphaMode, Bounds, Geometry, Influences, Material, SkinningMode, Texture, TextureRef, Topology, UvTransform,
     palette_entry,
 };
 use gaitway::render::{Renderer, RendererOptions, read_pixels};
 use gaitway::state::{Background, ViewerState};
-use glam::camera::rh::proj::directx::orthographic;
 use glam::camera::rh::view::look_at_mat4;
 use glam::{Affine3A, Vec2, Vec3, Vec4};
 
 use crate::device::{Gpu, gpu};
-
-const SIZE: u32 = 32;
-
-/// A square from −0.5 to 0.5 at z = 0, facing +Z.
-fn square(material: usize) -> Geometry {
-    let corners = [Vec2::new(0.0, 1.0), Vec2::new(1.0, 1.0), Vec2::new(1.0, 0.0), Vec2::ZERO];
-    Geometry {
-        positions: corners.map(|uv| Vec3::new(uv.x - 0.5, 0.5 - uv.y, 0.0)).to_vec(),
-        normals: vec![Vec3::Z; 4],
-        uvs: [corners.to_vec(), Vec::new()],
-        indices: vec![0, 1, 2, 0, 2, 3],
-        material: Some(material),
-        file_vertices: 4,
-        ..Default::default()
-    }
-}
-
-fn unlit(color: Vec4) -> Material {
-    Material { base_color: color, unlit: true, metallic: 0.0, ..Default::default() }
-}
-
-/// One mesh per geometry, all drawn where they are, seen from +Z; the picture spans −1 to 1.
-struct Scene {
-    model: Model,
-    frame: Frame,
-}
-
-impl Scene {
-    fn new(geometries: Vec<Geometry>, materials: Vec<Material>) -> Self {
-        Self::textured(geometries, materials, Vec::new(), Vec::new())
-    }
-
-    fn textured(
-        geometries: Vec<Geometry>,
-        materials: Vec<Material>,
-        textures: Vec<Texture>,
-        images: Vec<Option<ImageData>>,
-    ) -> Self {
-        let count = geometries.len();
-        let meshes =
-            geometries.into_iter().map(|geometry| Mesh { primitives: vec![geometry], ..Default::default() }).collect();
-        let asset = Asset { meshes, materials, textures, ..Default::default() };
-        let eye = Vec3::new(0.0, 0.0, 5.0);
-        let mut frame = Frame::default();
-        frame.view = View {
-            view_from_world: look_at_mat4(eye, Vec3::ZERO, Vec3::Y),
-            projection_from_view: orthographic(-1.0, 1.0, -1.0, 1.0, 1.0, 9.0),
-            eye,
-        };
-        frame.bounds = Bounds { min: Vec3::splat(-0.5), max: Vec3::splat(0.5) };
-        frame.look.shadow = false;
-        frame.look.background = Background::Transparent;
-        frame.characters.push(Character {
-            model: ModelId::default(),
-            palette: vec![palette_entry(&Affine3A::IDENTITY, SkinningMode::Linear)],
-            draws: (0..count)
-                .map(|mesh| Draw {
-                    instance: mesh,
-                    mesh,
-                    palette: 0..1,
-                    morph_weights: 0..0,
-                    mirrored: false,
-                    heat_joint: None,
-                    center: Vec3::ZERO,
-                })
-                .collect(),
-            ..Default::default()
-        });
-        Self { model: Model::new(String::new(), asset, images), frame }
-    }
-
-    fn draw(&self, gpu: &Gpu) -> Picture {
-        let Gpu { device, queue } = gpu;
-        let mut renderer = Renderer::new(device, queue, RendererOptions { samples: 1 });
-        renderer.upload(device, queue, &self.model).unwrap();
-        renderer.draw(device, queue, &self.frame, [SIZE, SIZE]);
-        Picture(pollster::block_on(read_pixels(device, queue, renderer.output())))
-    }
-}
-
-struct Picture(Vec<u8>);
-
-impl Picture {
-    /// At −1 to 1, up and right.
-    fn at(&self, x: f32, y: f32) -> [u8; 4] {
-        let pixel = |at: f32| ((0.5 + 0.5 * at) * SIZE as f32) as usize;
-        let offset = 4 * (pixel(-y) * SIZE as usize + pixel(x));
-        self.0[offset..offset + 4].try_into().unwrap()
-    }
-
-    fn covered(&self) -> usize {
-        self.0.as_chunks::<4>().0.iter().filter(|pixel| pixel[3] > 0).count()
-    }
-}
-
-#[track_caller]
-fn near(found: [u8; 4], expected: [u8; 4], tolerance: u8) {
-    let differs = found.iter().zip(expected).any(|(a, b)| a.abs_diff(b) > tolerance);
-    assert!(!differs, "{found:?} instead of {expected:?}");
-}
+use crate::scene::{Picture, SIZE, Scene, near, square, unlit};
 
 fn linear(color: [u8; 3]) -> Vec4 {
     let linear = |value: u8| {

@@ -1,0 +1,130 @@
+//! A material's maps and how they are read: laws rather than colours.
+
+use gaitway::library::ImageData;
+use gaitway::mesh::{Filter, Geometry, Material, MipFilter, Sampler, Texture, TextureRef, UvTransform};
+use gaitway::render::RendererOptions;
+use glam::{Affine2, Vec2, Vec3, Vec4};
+
+use crate::device::{Gpu, gpu};
+use crate::scene::{SIZE, Scene, near, square, unlit};
+
+const MAP: Option<TextureRef> = Some(TextureRef { texture: 0, uv_set: 0, uv_transform: UvTransform::IDENTITY });
+
+/// Gray, half rough, not metal.
+fn gray() -> Material {
+    Material { base_color: Vec4::new(0.4, 0.4, 0.4, 1.0), metallic: 0.0, roughness: 0.5, ..Default::default() }
+}
+
+fn flat_image(pixel: [u8; 4]) -> ImageData {
+    ImageData::Rgba8 { width: 1, height: 1, pixels: pixel.to_vec() }
+}
+
+fn middle(gpu: &Gpu, geometry: Geometry, material: Material, image: ImageData) -> [u8; 4] {
+    let texture = Texture { image: Some(0), sampler: Sampler::default() };
+    Scene::textured(vec![geometry], vec![material], vec![texture], vec![Some(image)]).draw(gpu).at(0.1, 0.1)
+}
+
+/// The square, with tangents and without.
+fn squares() -> [Geometry; 2] {
+    let tangents = vec![Vec4::new(1.0, 0.0, 0.0, 1.0); 4];
+    [Geometry { tangents, ..square(0) }, square(0)]
+}
+
+#[test]
+fn a_flat_normal_map_equals_none_and_a_tilted_one_turns_to_its_light() {
+    let Some(gpu) = gpu() else { return };
+    let plain = Scene::new(vec![square(0)], vec![gray()]).draw(&gpu).at(0.1, 0.1);
+    let mapped = |geometry, normal_scale, pixel| {
+        let material = Material { normal_texture: MAP, normal_scale, ..gray() };
+        middle(&gpu, geometry, material, flat_image(pixel))
+    };
+    for geometry in squares() {
+        near(mapped(geometry.clone(), 1.0, [128, 128, 255, 255]), plain, 2);
+        // The key light comes from the left, above.
+        let [left, right, up, down] =
+            [[38, 128, 218, 255], [218, 128, 218, 255], [128, 218, 218, 255], [128, 38, 218, 255]]
+                .map(|pixel| mapped(geometry.clone(), 1.0, pixel)[1]);
+        assert!(left > right + 20, "left {left}, right {right}, tangents {}", geometry.tangents.len());
+        assert!(up > down + 20, "up {up}, down {down}, tangents {}", geometry.tangents.len());
+        near(mapped(geometry, 0.0, [38, 128, 218, 255]), plain, 2);
+    }
+    let [with_tangents, without] = squares().map(|geometry| mapped(geometry, 1.0, [70, 90, 210, 255]));
+    near(with_tangents, without, 2);
+}
+
+#[test]
+fn white_occlusion_equals_none_and_black_darkens_by_its_strength() {
+    let Some(gpu) = gpu() else { return };
+    let plain = Scene::new(vec![square(0)], vec![gray()]).draw(&gpu).at(0.1, 0.1);
+    let shown = |occlusion_strength, red| {
+        let material = Material { occlusion_texture: MAP, occlusion_strength, ..gray() };
+        middle(&gpu, square(0), material, flat_image([red, 77, 77, 255]))
+    };
+    near(shown(1.0, 255), plain, 0);
+    near(shown(0.0, 0), plain, 0);
+    let (half, full) = (shown(0.5, 0)[1], shown(1.0, 0)[1]);
+    assert!(full + 5 < half && half + 5 < plain[1], "{full} < {half} < {}", plain[1]);
+    near(shown(1.0, 128), shown(0.5, 0), 2);
+}
+
+#[test]
+fn a_metallic_roughness_map_multiplies_the_factors() {
+    let Some(gpu) = gpu() else { return };
+    let material = |metallic, roughness| Material { metallic, roughness, ..gray() };
+    let mapped = |material: Material, green, blue| {
+        let material = Material { metallic_roughness_texture: MAP, ..material };
+        middle(&gpu, square(0), material, flat_image([9, green, blue, 255]))
+    };
+    let plain = |material| Scene::new(vec![square(0)], vec![material]).draw(&gpu).at(0.1, 0.1);
+    near(mapped(material(0.8, 0.4), 255, 255), plain(material(0.8, 0.4)), 1);
+    near(mapped(material(1.0, 1.0), 102, 51), plain(material(0.2, 0.4)), 1);
+    assert_ne!(mapped(material(1.0, 0.3), 255, 0), mapped(material(1.0, 0.3), 255, 255));
+}
+
+#[test]
+fn smaller_levels_hold_averages_of_light() {
+    let Some(gpu) = gpu() else { return };
+    let edge = 8 * SIZE;
+    let pixels = (0..edge * edge).flat_map(|at| [255 * ((at + at / edge) % 2) as u8; 3].into_iter().chain([255]));
+    let image = ImageData::Rgba8 { width: edge, height: edge, pixels: pixels.collect() };
+    let material = Material { base_color_texture: MAP, ..unlit(Vec4::ONE) };
+    let shown = |mip| {
+        let sampler = Sampler { mip, min: Filter::Linear, mag: Filter::Linear, ..Sampler::default() };
+        let texture = Texture { image: Some(0), sampler };
+        let images = vec![Some(image.clone())];
+        Scene::textured(vec![square(0)], vec![material.clone()], vec![texture], images).draw(&gpu)
+    };
+    // Half of the light is 188 of 255 in sRGB, not 128.
+    for mip in [MipFilter::Nearest, MipFilter::Linear] {
+        for (x, y) in [(0.1, 0.1), (-0.3, 0.2), (0.4, -0.4)] {
+            near(shown(mip).at(x, y), [188, 188, 188, 255], 2);
+        }
+    }
+}
+
+#[test]
+fn an_image_larger_than_the_device_holds_is_drawn_smaller() {
+    let Some(gpu) = gpu() else { return };
+    let width = gpu.device.limits().max_texture_dimension_2d + 2;
+    let image = ImageData::Rgba8 { width, height: 1, pixels: [10, 200, 30, 255].repeat(width as usize) };
+    let material = Material { base_color_texture: MAP, ..unlit(Vec4::ONE) };
+    near(middle(&gpu, square(0), material, image), [10, 200, 30, 255], 1);
+}
+
+#[test]
+fn four_samples_smooth_edges_and_keep_the_area() {
+    let Some(gpu) = gpu() else { return };
+    let mut turned = square(0);
+    for position in &mut turned.positions {
+        let at = Affine2::from_angle(0.4).transform_point2(Vec2::new(position.x, position.y));
+        *position = Vec3::new(at.x, at.y, 0.0);
+    }
+    let scene = Scene::new(vec![turned], vec![unlit(Vec4::ONE)]);
+    let [hard, smooth] = [1, 4].map(|samples| scene.draw_with(&gpu, RendererOptions { samples }));
+    let between = |pixels: &[u8]| pixels.as_chunks::<4>().0.iter().filter(|pixel| !matches!(pixel[3], 0 | 255)).count();
+    assert_eq!(between(&hard.0), 0);
+    assert!(between(&smooth.0) > SIZE as usize, "{}", between(&smooth.0));
+    let area: f32 = smooth.0.as_chunks::<4>().0.iter().map(|pixel| f32::from(pixel[3]) / 255.0).sum();
+    let expected = (SIZE * SIZE / 4) as f32;
+    assert!((area - expected).abs() < 0.03 * expected, "{area} of {expected} pixels");
+}
