@@ -36,9 +36,25 @@ pub fn deform(
             let strongest = |vertex: usize| influences.joints[vertex * influences.stride] as usize;
             transform(out, |vertex| matrix_of(&palette[strongest(vertex)], mode));
         }
-        SkinningMode::Linear if influences.stride == 4 && palette.iter().flatten().all(|row| row.is_finite()) => {
+        SkinningMode::Linear if palette.iter().flatten().all(|row| row.is_finite()) => {
             let (joints, weights) = (influences.joints.as_chunks::<4>().0, influences.weights.as_chunks::<4>().0);
-            transform(out, |vertex| blend_4(joints[vertex], weights[vertex], palette));
+            if influences.stride == 4 {
+                return transform(out, |vertex| blend_4(joints[vertex], weights[vertex], palette));
+            }
+            let sets = influences.stride / 4;
+            transform(out, |vertex| {
+                let mut sum = [Vec4::ZERO; 3];
+                let sets = vertex * sets..(vertex + 1) * sets;
+                for (joints, weights) in joints[sets.clone()].iter().zip(&weights[sets]) {
+                    // The strongest come first: all that follow pull at nothing.
+                    if weights[0] == 0.0 {
+                        break;
+                    }
+                    let [x, y, z] = blend_4(*joints, *weights, palette);
+                    sum = [sum[0] + x, sum[1] + y, sum[2] + z];
+                }
+                sum
+            });
         }
         SkinningMode::Linear => transform(out, |vertex| blend(influences.of_vertex(vertex), palette)),
         SkinningMode::DualQuaternion => {
@@ -73,11 +89,14 @@ fn matrix_of(entry: &PaletteEntry, mode: SkinningMode) -> Rows {
 /// All four at once, those of weight 0 as well: the palette must be finite.
 #[inline(always)]
 fn blend_4(joints: [u16; 4], weights: [f32; 4], palette: &[PaletteEntry]) -> Rows {
-    let entries = joints.map(|joint| &palette[joint as usize]);
-    std::array::from_fn(|row| {
-        let part = |at: usize| weights[at] * entries[at][row];
-        (part(0) + part(1)) + (part(2) + part(3))
-    })
+    let [a, b, c, d] = [
+        &palette[joints[0] as usize],
+        &palette[joints[1] as usize],
+        &palette[joints[2] as usize],
+        &palette[joints[3] as usize],
+    ];
+    let row = |row: usize| (weights[0] * a[row] + weights[1] * b[row]) + (weights[2] * c[row] + weights[3] * d[row]);
+    [row(0), row(1), row(2)]
 }
 
 fn blend(influences: impl Iterator<Item = (u16, f32)>, palette: &[PaletteEntry]) -> Rows {
@@ -122,13 +141,15 @@ fn matrix_of_dual(&[real, dual, x, y, z]: &PaletteEntry) -> Rows {
     [row(rotation.x_axis, translation.x), row(rotation.y_axis, translation.y), row(rotation.z_axis, translation.z)]
 }
 
-/// Moves all vertices, four at a time: `matrix` gives the matrix of a vertex.
+/// Moves all vertices, four at a time: `matrix` gives the matrix of a vertex. Written out lane by lane: arrays that are
+/// mapped by closures go through memory.
 #[inline(always)]
 fn transform(out: &mut DeformedVertices, matrix: impl Fn(usize) -> Rows) {
     let (positions, last_positions) = out.positions.as_chunks_mut::<4>();
     let (normals, last_normals) = out.normals.as_chunks_mut::<4>();
     for (at, positions) in positions.iter_mut().enumerate() {
-        let blended = Four::new([0, 1, 2, 3].map(|lane| matrix(4 * at + lane)));
+        let first = 4 * at;
+        let blended = Four::new(matrix(first), matrix(first + 1), matrix(first + 2), matrix(first + 3));
         *positions = blended.points(*positions);
         if let Some(normals) = normals.get_mut(at) {
             *normals = blended.normals(*normals);
@@ -136,7 +157,8 @@ fn transform(out: &mut DeformedVertices, matrix: impl Fn(usize) -> Rows) {
     }
     let first = 4 * positions.len();
     for (lane, position) in last_positions.iter_mut().enumerate() {
-        let blended = Four::new([matrix(first + lane); 4]);
+        let rows = matrix(first + lane);
+        let blended = Four::new(rows, rows, rows, rows);
         *position = blended.points([*position; 4])[0];
         if let Some(normal) = last_normals.get_mut(lane) {
             *normal = blended.normals([*normal; 4])[0];
@@ -144,67 +166,81 @@ fn transform(out: &mut DeformedVertices, matrix: impl Fn(usize) -> Rows) {
     }
 }
 
-/// Matrices of four vertices: one lane each.
+/// Matrices of four vertices, a lane each: three rows of x, y, z and translation.
 struct Four {
-    /// The 3×3 part by rows and columns.
-    linear: [Lanes; 3],
-    translation: Lanes,
+    x: Mat4,
+    y: Mat4,
+    z: Mat4,
 }
 
 /// x, y and z of four vectors.
-type Lanes = [Vec4; 3];
+#[derive(Clone, Copy)]
+struct Lanes {
+    x: Vec4,
+    y: Vec4,
+    z: Vec4,
+}
 
 impl Four {
     #[inline(always)]
-    fn new(matrices: [Rows; 4]) -> Self {
-        let [x, y, z] = [0, 1, 2].map(|row| {
-            let [a, b, c, d] = matrices.map(|rows| rows[row]);
-            Mat4::from_cols(a, b, c, d).transpose()
-        });
-        let linear = [x, y, z].map(|row| [row.x_axis, row.y_axis, row.z_axis]);
-        Self { linear, translation: [x.w_axis, y.w_axis, z.w_axis] }
+    fn new(a: Rows, b: Rows, c: Rows, d: Rows) -> Self {
+        Self {
+            x: Mat4::from_cols(a[0], b[0], c[0], d[0]).transpose(),
+            y: Mat4::from_cols(a[1], b[1], c[1], d[1]).transpose(),
+            z: Mat4::from_cols(a[2], b[2], c[2], d[2]).transpose(),
+        }
     }
 
     #[inline(always)]
     fn points(&self, points: [Vec3; 4]) -> [Vec3; 4] {
-        let points = lanes(points);
-        unlanes([0, 1, 2].map(|row| dot(self.linear[row], points) + self.translation[row]))
+        let points = Lanes::new(points);
+        let moved = |row: &Mat4| dot(linear(row), points) + row.w_axis;
+        Lanes { x: moved(&self.x), y: moved(&self.y), z: moved(&self.z) }.vectors()
     }
 
     /// By the cofactor matrix, which is the inverse transpose times the determinant: no division, and right for flat scales.
     #[inline(always)]
     fn normals(&self, normals: [Vec3; 4]) -> [Vec3; 4] {
-        let [x, y, z] = self.linear;
-        let cofactor = [cross(y, z), cross(z, x), cross(x, y)];
-        let normals = lanes(normals);
-        let turned = cofactor.map(|row| dot(row, normals));
-        let mirrored = dot(x, cofactor[0]).cmplt(Vec4::ZERO);
+        let (x, y, z) = (linear(&self.x), linear(&self.y), linear(&self.z));
+        let (cofactor_x, cofactor_y, cofactor_z) = (cross(y, z), cross(z, x), cross(x, y));
+        let normals = Lanes::new(normals);
+        let turned = Lanes { x: dot(cofactor_x, normals), y: dot(cofactor_y, normals), z: dot(cofactor_z, normals) };
+        let mirrored = dot(x, cofactor_x).cmplt(Vec4::ZERO);
         let scale = dot(turned, turned).sqrt().recip();
         let known = scale.is_finite_mask() & scale.cmpgt(Vec4::ZERO);
         let scale = Vec4::select(mirrored, -scale, scale);
-        unlanes(turned.map(|part| Vec4::select(known, part * scale, Vec4::ZERO)))
+        let unit = |part: Vec4| Vec4::select(known, part * scale, Vec4::ZERO);
+        Lanes { x: unit(turned.x), y: unit(turned.y), z: unit(turned.z) }.vectors()
+    }
+}
+
+impl Lanes {
+    #[inline(always)]
+    fn new(vectors: [Vec3; 4]) -> Self {
+        let [a, b, c, d] = vectors;
+        let lanes = Mat4::from_cols(a.extend(0.0), b.extend(0.0), c.extend(0.0), d.extend(0.0)).transpose();
+        Self { x: lanes.x_axis, y: lanes.y_axis, z: lanes.z_axis }
+    }
+
+    #[inline(always)]
+    fn vectors(self) -> [Vec3; 4] {
+        let vectors = Mat4::from_cols(self.x, self.y, self.z, Vec4::ZERO).transpose();
+        let Mat4 { x_axis, y_axis, z_axis, w_axis } = vectors;
+        [x_axis.truncate(), y_axis.truncate(), z_axis.truncate(), w_axis.truncate()]
     }
 }
 
 #[inline(always)]
+fn linear(row: &Mat4) -> Lanes {
+    Lanes { x: row.x_axis, y: row.y_axis, z: row.z_axis }
+}
+
+#[inline(always)]
 fn dot(a: Lanes, b: Lanes) -> Vec4 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    a.x * b.x + a.y * b.y + a.z * b.z
 }
 
 #[inline(always)]
 fn cross(a: Lanes, b: Lanes) -> Lanes {
-    [a[1] * b[2] - b[1] * a[2], a[2] * b[0] - b[2] * a[0], a[0] * b[1] - b[0] * a[1]]
-}
-
-#[inline(always)]
-fn lanes(vectors: [Vec3; 4]) -> Lanes {
-    let [a, b, c, d] = vectors.map(|vector| vector.extend(0.0));
-    let transposed = Mat4::from_cols(a, b, c, d).transpose();
-    [transposed.x_axis, transposed.y_axis, transposed.z_axis]
-}
-
-#[inline(always)]
-fn unlanes([x, y, z]: Lanes) -> [Vec3; 4] {
-    let vectors = Mat4::from_cols(x, y, z, Vec4::ZERO).transpose();
-    [vectors.x_axis, vectors.y_axis, vectors.z_axis, vectors.w_axis].map(Vec4::truncate)
+    Lanes { x: a.y * b.z - b.y * a.z, y: a.z * b.x - b.z * a.x, z: a.x * b.y - b.x * a.y }
 }
