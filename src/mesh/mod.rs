@@ -4,6 +4,7 @@
 mod bounds;
 mod geometry;
 mod material;
+mod mikktspace;
 mod palette;
 mod skin;
 mod skinning;
@@ -15,4 +16,4 @@ pub use material::{AlphaMode, Filter, Material, MipFilter, Sampler, Texture, Tex
 pub use palette::{PaletteEntry, SkinningMode, palette_entry, write_palette};
 pub use skin::{Skin, SkinError};
 pub use skinning::{DeformedVertices, deform};
-pub use tangents::add_tangents;
+pub use tangents::{add_tangents, corner_tangents};

@@ -2,52 +2,21 @@
 
 use glam::{Vec2, Vec3, Vec4};
 
-use super::Geometry;
+use super::{Geometry, mikktspace};
 
 /// How many copies of one vertex are looked through for a tangent that fits. Corners that share one are near each other;
 /// a vertex with thousands of copies exists only to keep us busy.
 const COPIES_COMPARED: usize = 64;
 
-struct Corners<'a> {
-    geometry: &'a Geometry,
-    uv_set: usize,
-    tangents: Vec<Vec4>,
-}
-
-impl Corners<'_> {
-    fn vertex(&self, face: usize, corner: usize) -> usize {
-        self.geometry.indices[3 * face + corner] as usize
-    }
-}
-
-impl bevy_mikktspace::Geometry for Corners<'_> {
-    fn num_faces(&self) -> usize {
-        self.geometry.indices.len() / 3
-    }
-
-    fn num_vertices_of_face(&self, _face: usize) -> usize {
-        3
-    }
-
-    fn position(&self, face: usize, corner: usize) -> [f32; 3] {
-        self.geometry.positions[self.vertex(face, corner)].into()
-    }
-
-    fn normal(&self, face: usize, corner: usize) -> [f32; 3] {
-        self.geometry.normals[self.vertex(face, corner)].into()
-    }
-
-    fn tex_coord(&self, face: usize, corner: usize) -> [f32; 2] {
-        self.geometry.uvs[self.uv_set][self.vertex(face, corner)].into()
-    }
-
-    fn set_tangent(&mut self, tangent: Option<bevy_mikktspace::TangentSpace>, face: usize, corner: usize) {
-        if let Some(tangent) = tangent {
-            let [x, y, z, sign] = tangent.tangent_encoded();
-            // MikkTSpace's V points up, glTF's down.
-            self.tangents[3 * face + corner] = Vec4::new(x, y, z, -sign);
-        }
-    }
+/// The tangents of a triangle list's corners, before any vertex is copied. Normals and the texture coordinates are there.
+pub fn corner_tangents(geometry: &Geometry, uv_set: usize) -> Vec<Vec4> {
+    let Geometry { positions, normals, uvs, indices, .. } = geometry;
+    // MikkTSpace's V points up, glTF's down.
+    let as_gltf = |tangent: Vec4| Vec4::new(tangent.x, tangent.y, tangent.z, -tangent.w);
+    mikktspace::corner_tangents(positions, normals, &uvs[uv_set], indices)
+        .into_iter()
+        .map(|tangent| tangent.map_or(Vec4::new(1.0, 0.0, 0.0, 1.0), as_gltf))
+        .collect()
 }
 
 /// Adds tangents to a triangle list with normals and the given texture coordinates; without these nothing happens.
@@ -60,12 +29,7 @@ pub fn add_tangents(geometry: &mut Geometry, uv_set: usize, most_copied_bytes: u
     }
     let vertex_bytes = vertex_bytes(geometry);
     let most_copies = most_copied_bytes / vertex_bytes;
-    let corners = geometry.indices.len();
-    let mut interface = Corners { geometry, uv_set, tangents: vec![Vec4::new(1.0, 0.0, 0.0, 1.0); corners] };
-    if bevy_mikktspace::generate_tangents(&mut interface).is_err() {
-        return 0;
-    }
-    let corner_tangents = interface.tangents;
+    let corner_tangents = corner_tangents(geometry, uv_set);
     let mut tangents: Vec<Option<Vec4>> = vec![None; geometry.positions.len()];
     // Which vertex each copy is of, and the copies of each vertex.
     let mut copies: Vec<u32> = Vec::new();

@@ -9,6 +9,7 @@ mod influences;
 mod invalid;
 mod mutation;
 mod sweep;
+mod tangents;
 mod write;
 
 #[path = "../support/data_folder.rs"]
