@@ -532,6 +532,7 @@ launch(forced()).then(
     // Only in a build for benches/web.
     if (app?.bench_characters !== undefined) {
       window.gaitway.benchCharacters = (...work) => app.bench_characters(...work);
+      window.gaitway.benchLoad = (bytes) => app.bench_load(new Uint8Array(bytes));
       window.gaitway.benchRetarget = (...work) => app.bench_retarget(...work);
     }
   },

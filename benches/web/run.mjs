@@ -1,6 +1,6 @@
 // Measures three.js and Gaitway on the same work in the same headless Chromium, round by round in turn, and prints medians.
 // `node benches/web/run.mjs`, after `cargo xtask build --bench` (or with GAITWAY_DIST). Asserts nothing:
-// figures move from machine to machine, ratios less.
+// figures move from machine to machine, ratios less. `characters`, `retargeting`, `loads` or `frames` on the command line: only these.
 import path from "node:path";
 import { chromium } from "playwright-core";
 import { FLAGS, dist, until } from "../../tests/browser/browser.mjs";
@@ -16,6 +16,7 @@ const ROUNDS = 9;
 const CHARACTER_FRAMES = 4000;
 const DRAWN_FRAMES = 40;
 
+const wanted = (part) => process.argv.length < 3 || process.argv.includes(part);
 const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
 const row = (...cells) => console.log(`| ${cells.join(" | ")} |`);
 
@@ -47,10 +48,10 @@ const gaitway = async (link) => {
 };
 
 try {
-  await measureCharacters();
-  await measureRetargeting();
-  await measureLoads();
-  await measureFrames();
+  if (wanted("characters")) await measureCharacters();
+  if (wanted("retargeting")) await measureRetargeting();
+  if (wanted("loads")) await measureLoads();
+  if (wanted("frames")) await measureFrames();
 } finally {
   await browser.close();
   await site.close();
@@ -106,29 +107,58 @@ async function measureRetargeting() {
 }
 
 async function measureLoads() {
-  console.log("\nLoading from bytes in memory, textures included, ms (Gaitway: until it is on the screen)\n");
-  row("file", "GLTFLoader.parse", "gaitway.open");
-  row("--", "--", "--");
-  const [theirs, ours] = [await three(), await gaitway("play=0")];
-  // A small picture: what drawing it in software takes is measured below.
-  await ours.setViewportSize({ width: 320, height: 240 });
+  console.log("\nLoading from bytes in memory, images decoded, ms; shown: until the call that draws it returns\n");
+  row("file", "GLTFLoader.parse", "Gaitway", "three.js, shown", "Gaitway, shown");
+  row("--", "--", "--", "--", "--");
+  const pages = await loadPages();
   for (const name of LOADED) {
-    const figures = { three: [], gaitway: [] };
-    for (let round = 0; round < ROUNDS; round++) {
-      figures.three.push(await theirs.evaluate((url) => window.bench.load(url), `/data/${name}`));
-      figures.gaitway.push(
-        await ours.evaluate(async (url) => {
-          const bytes = await (await fetch(url)).arrayBuffer();
-          const start = performance.now();
-          await window.gaitway.open({ "model.glb": bytes });
-          return performance.now() - start;
-        }, `/data/${name}`),
-      );
-    }
-    row(path.basename(name), median(figures.three).toFixed(1), median(figures.gaitway).toFixed(1));
+    const figures = { parse: [], load: [], render: [], open: [] };
+    for (let round = 0; round < ROUNDS; round++) await measureLoad(pages, name, figures);
+    row(path.basename(name), ...Object.values(figures).map((values) => median(values).toFixed(1)));
   }
-  await theirs.close();
-  await ours.close();
+  await closeAll(pages);
+  console.log("\nThe same, first in a fresh page (median of 3 pages)\n");
+  row("file", "GLTFLoader.parse", "Gaitway");
+  row("--", "--", "--");
+  for (const name of LOADED) {
+    const figures = { parse: [], load: [] };
+    for (let round = 0; round < 3; round++) {
+      const pages = await loadPages();
+      await measureLoad(pages, name, figures);
+      await closeAll(pages);
+    }
+    row(path.basename(name), median(figures.parse).toFixed(1), median(figures.load).toFixed(1));
+  }
+}
+
+/** Small pictures: what drawing them in software takes is measured below. */
+async function loadPages() {
+  const pages = [await three(), await gaitway("play=0")];
+  for (const page of pages) await page.setViewportSize({ width: 320, height: 240 });
+  return pages;
+}
+
+async function closeAll(pages) {
+  for (const page of pages) await page.close();
+}
+
+/** Adds one measure of each kind that `figures` asks for. */
+async function measureLoad([theirs, ours], name, figures) {
+  const url = `/data/${name}`;
+  const timed = ([url, work]) =>
+    fetch(url)
+      .then((response) => response.arrayBuffer())
+      .then(async (bytes) => {
+        const start = performance.now();
+        await (work === "load" ? window.gaitway.benchLoad(bytes) : window.gaitway.open({ "model.glb": bytes }));
+        return performance.now() - start;
+      });
+  await theirs.bringToFront();
+  figures.parse.push(await theirs.evaluate((url) => window.bench.load(url), url));
+  if (figures.render) figures.render.push(await theirs.evaluate((url) => window.bench.open(url), url));
+  await ours.bringToFront();
+  figures.load.push(await ours.evaluate(timed, [url, "load"]));
+  if (figures.open) figures.open.push(await ours.evaluate(timed, [url, "open"]));
 }
 
 async function measureFrames() {
@@ -136,7 +166,7 @@ async function measureFrames() {
   row("picture", "three.js", "Gaitway");
   row("--", "--", "--");
   const figures = { plain: [], smooth: [], gaitway: [] };
-  for (let round = 0; round < 3; round++) {
+  for (let round = 0; round < 5; round++) {
     for (const [kind, samples] of [["plain", 1], ["smooth", 4]]) {
       const page = await three();
       await page.evaluate(([url, samples]) => window.bench.draw(url, "Walk", samples), [`/data/${SOLDIER}`, samples]);
@@ -152,23 +182,39 @@ async function measureFrames() {
   row("4 samples a pixel", median(figures.smooth).toFixed(1), "one sample on a software adapter");
 }
 
-/** Median of frames from their start until everything asked of the graphics process is done, which reading a pixel waits for. */
+/**
+ * Median of frames from the start of the page's own work until everything asked of the graphics process is done, which
+ * reading a pixel waits for. What went before is waited for first, and bringing the picture to the screen is left out.
+ */
 async function frameMs(page) {
   await page.bringToFront();
   await page.waitForTimeout(1500);
   const frames = await page.evaluate(async (count) => {
     const context = document.querySelector("canvas").getContext("webgl2");
     const pixel = new Uint8Array(4);
+    const finish = () => context.readPixels(0, 0, 1, 1, context.RGBA, context.UNSIGNED_BYTE, pixel);
+    let start = null;
+    const request = window.requestAnimationFrame.bind(window);
+    window.requestAnimationFrame = (callback) =>
+      request((time) => {
+        if (start === null) {
+          finish();
+          start = performance.now();
+        }
+        callback(time);
+      });
     const afterCallbacks = new MessageChannel();
     const frames = [];
     while (frames.length < count) {
-      const start = await new Promise((resolve) => requestAnimationFrame(resolve));
+      await new Promise((resolve) => request(resolve));
       await new Promise((resolve) => {
         afterCallbacks.port1.onmessage = resolve;
         afterCallbacks.port2.postMessage(null);
       });
-      context.readPixels(0, 0, 1, 1, context.RGBA, context.UNSIGNED_BYTE, pixel);
+      if (start === null) continue;
+      finish();
       frames.push(performance.now() - start);
+      start = null;
     }
     return frames;
   }, DRAWN_FRAMES);

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::open::Refused;
 use super::scene_texture::SceneTexture;
 use super::{Host, Inbox, Message, Opening, Reply, ScriptCall, device, encode_png};
-use crate::files::{Contents, Role};
+use crate::files::{Contents, Role, set_largest_image};
 use crate::formats::FileSet;
 use crate::frame::{Frame, evaluate, pose_document};
 use crate::library::{Library, inspect};
@@ -65,6 +65,7 @@ impl App {
         let gpu = cc.wgpu_render_state.clone().ok_or("there is no graphics device")?;
         let closing = Arc::new(AtomicBool::new(false));
         device::watch(&gpu.device, &closing);
+        set_largest_image(gpu.device.limits().max_texture_dimension_2d);
         let info = gpu.adapter.get_info();
         ui::install(&cc.egui_ctx);
         let inbox = Inbox::new(cc.egui_ctx.clone());

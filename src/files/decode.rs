@@ -4,6 +4,7 @@ use std::io::Cursor;
 
 use image::{ImageReader, Limits};
 
+use super::image_limit::{fitted, made_smaller};
 use crate::asset::{Asset, Image, Warning};
 use crate::library::ImageData;
 
@@ -16,14 +17,17 @@ pub fn decode_images(asset: &mut Asset) -> Vec<Option<ImageData>> {
     let mut left = MOST_BYTES;
     let mut decoded = Vec::with_capacity(asset.images.len());
     for (index, image) in asset.images.iter().enumerate() {
+        let name = if image.name.is_empty() { index.to_string() } else { image.name.clone() };
         match decode(image, left) {
-            Ok(data) => {
+            Ok((data, whole)) => {
+                if whole != data.size() {
+                    asset.warnings.push(made_smaller(&name, whole.into(), data.size().into()));
+                }
                 let (width, height) = data.size();
                 left = left.saturating_sub(4 * u64::from(width) * u64::from(height));
                 decoded.push(Some(data));
             }
             Err(problem) => {
-                let name = if image.name.is_empty() { index.to_string() } else { image.name.clone() };
                 asset.warnings.push(Warning::ImageUnreadable { image: name, problem });
                 decoded.push(None);
             }
@@ -32,7 +36,8 @@ pub fn decode_images(asset: &mut Asset) -> Vec<Option<ImageData>> {
     decoded
 }
 
-fn decode(image: &Image, most_bytes: u64) -> Result<ImageData, String> {
+/// The image, and how large it was before it was made to fit the device.
+fn decode(image: &Image, most_bytes: u64) -> Result<(ImageData, (u32, u32)), String> {
     let mut reader = ImageReader::new(Cursor::new(&image.bytes)).with_guessed_format().map_err(|e| e.to_string())?;
     let mut limits = Limits::default();
     limits.max_image_width = Some(MOST_PIXELS_ACROSS);
@@ -44,5 +49,11 @@ fn decode(image: &Image, most_bytes: u64) -> Result<ImageData, String> {
     if width == 0 || height == 0 || 4 * u64::from(width) * u64::from(height) > most_bytes {
         return Err(format!("{width} × {height} pixels"));
     }
-    Ok(ImageData::Rgba8 { width, height, pixels: pixels.into_raw() })
+    let whole = (width, height);
+    let pixels = match fitted(width, height) {
+        Some([width, height]) => image::imageops::thumbnail(&pixels, width, height),
+        None => pixels,
+    };
+    let (width, height) = pixels.dimensions();
+    Ok((ImageData::Rgba8 { width, height, pixels: pixels.into_raw() }, whole))
 }

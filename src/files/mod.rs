@@ -5,6 +5,7 @@
 mod decode;
 #[cfg(not(target_arch = "wasm32"))]
 mod disk;
+mod image_limit;
 mod sort;
 #[cfg(target_arch = "wasm32")]
 mod web;
@@ -13,6 +14,7 @@ mod web;
 pub use decode::decode_images;
 #[cfg(not(target_arch = "wasm32"))]
 pub use disk::{OpenError, Opened, open_bytes, open_paths, read_paths, read_set};
+pub use image_limit::set_largest_image;
 pub use sort::{Contents, Role, SortError, Sorted, read_map, sort};
 #[cfg(target_arch = "wasm32")]
-pub use web::{Item, OpenError, decode_images, open_items, open_view};
+pub use web::{Item, OpenError, open_items, open_view};

@@ -1,7 +1,7 @@
 //! What a set of files is: a model, motions to borrow, a joint map. The same on disk and on the page.
 
-use crate::asset::Asset;
-use crate::formats::{FileSet, LoadError, LoadOptions, load, load_named, main_files};
+use crate::asset::{Asset, Image};
+use crate::formats::{FileSet, LoadError, LoadOptions, load, load_noticing_images, main_files};
 use crate::library::{Model, Motion};
 use crate::retarget::{JointMap, MapError};
 
@@ -68,6 +68,15 @@ const MOST_NAMES: usize = 8;
 
 /// Reads every main file of a set.
 pub fn sort(files: &FileSet, role: Role) -> Result<Sorted, SortError> {
+    sort_noticing_images(files, role, &mut |_, _| ())
+}
+
+/// As [`sort`]; `on_images` gets the name of each file with its images as soon as these are known.
+pub(super) fn sort_noticing_images(
+    files: &FileSet,
+    role: Role,
+    on_images: &mut dyn FnMut(&str, &[Image]),
+) -> Result<Sorted, SortError> {
     let files = files.unpacked()?;
     let mut sorted = Sorted { map: find_map(&files)?, ..Sorted::default() };
     let names = main_files(&files)?;
@@ -82,7 +91,8 @@ pub fn sort(files: &FileSet, role: Role) -> Result<Sorted, SortError> {
     }
     let mut models: Vec<(String, Asset)> = Vec::new();
     for name in names {
-        let asset = load_named(&files, &name, &LoadOptions::default())?;
+        let on_images = &mut |images: &[Image]| on_images(&name, images);
+        let asset = load_noticing_images(&files, &name, &LoadOptions::default(), on_images)?;
         let has_mesh = !asset.instances.is_empty();
         if has_mesh && role != Role::Motion { models.push((name, asset)) } else { sorted.motions.push((name, asset)) }
     }

@@ -5,8 +5,9 @@ use js_sys::{Array, Reflect, Uint8Array};
 use wasm_bindgen::{JsCast, JsValue};
 use wasm_bindgen_futures::JsFuture;
 
-use super::sort::Origins;
-use super::{Contents, Role, SortError, read_map, sort};
+use super::image_limit::{fitted, made_smaller};
+use super::sort::{Origins, sort_noticing_images};
+use super::{Contents, Role, SortError, read_map};
 use crate::asset::{Asset, Image, Warning};
 use crate::formats::{FileSet, missing_files};
 use crate::library::{ImageData, Model, Motion, sample};
@@ -98,12 +99,24 @@ pub async fn open_items(
     fetch_beside(&mut set, &bases, &mut bytes_left, progress).await?;
     // Files beside a sample that is the model are what it borrows from, whatever they hold.
     let role = if samples.is_empty() || role == Role::Motion { role } else { Role::Any };
-    let sorted = if set.is_empty() && !samples.is_empty() { Default::default() } else { sort(&set, role)? };
+    // The browser decodes on other threads while the rest is read here.
+    let mut decoding: Vec<(String, Vec<Decoding>)> = Vec::new();
+    let sorted = if set.is_empty() && !samples.is_empty() {
+        Default::default()
+    } else {
+        sort_noticing_images(&set, role, &mut |name, images| {
+            if role != Role::Motion {
+                decoding.push((name.to_owned(), start_decoding(images)));
+            }
+        })?
+    };
     let mut models: Vec<Model> = Vec::new();
     let mut model_files = None;
     if let Some((name, mut asset)) = sorted.model {
         model_files = Some((set.clone(), name.clone()));
-        let images = decode_images(&mut asset).await;
+        let started = decoding.into_iter().find(|(of, _)| *of == name).map(|(_, started)| started);
+        let started = started.unwrap_or_else(|| start_decoding(&asset.images));
+        let images = decoded(&mut asset, started).await;
         models.push(Model::new(origins.of(&name).to_owned(), asset, images));
     }
     let model_source = models.first().or(samples.first()).filter(|_| role != Role::Motion);
@@ -200,9 +213,12 @@ async fn fetch_beside(
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<(), OpenError> {
     let mut tried: Vec<String> = Vec::new();
+    if bases.is_empty() {
+        return Ok(());
+    }
     for _ in 0..MOST_ROUNDS {
         let missing: Vec<String> = missing_files(set).into_iter().filter(|name| !tried.contains(name)).collect();
-        if missing.is_empty() || bases.is_empty() {
+        if missing.is_empty() {
             break;
         }
         for name in missing {
@@ -290,26 +306,40 @@ async fn fetch(
     Ok(bytes)
 }
 
-/// One entry per image of the asset, all decoded at once. What cannot be decoded is none, and a warning of the asset says
-/// why.
-pub async fn decode_images(asset: &mut Asset) -> Vec<Option<ImageData>> {
+/// An image on its way, or why there will be none. Not to wait for it is fine.
+type Decoding = Result<JsFuture, String>;
+
+fn start_decoding(images: &[Image]) -> Vec<Decoding> {
     let mut bytes_left = MOST_IMAGE_BYTES;
-    let promises: Vec<Result<js_sys::Promise, String>> =
-        asset.images.iter().map(|image| start_decoding(image, &mut bytes_left)).collect();
-    let mut decoded = Vec::with_capacity(promises.len());
-    for (index, promise) in promises.into_iter().enumerate() {
-        let bitmap = match promise {
-            Ok(promise) => JsFuture::from(promise)
+    images.iter().map(|image| start_decoding_one(image, &mut bytes_left)).collect()
+}
+
+/// One entry per image of the asset. What cannot be decoded is none, and a warning of the asset says why.
+async fn decoded(asset: &mut Asset, decoding: Vec<Decoding>) -> Vec<Option<ImageData>> {
+    let name = |asset: &Asset, index: usize| {
+        let name = asset.images.get(index).map(|image| image.name.clone()).filter(|name| !name.is_empty());
+        name.unwrap_or_else(|| index.to_string())
+    };
+    let mut decoded = Vec::with_capacity(decoding.len());
+    for (index, image) in decoding.into_iter().enumerate() {
+        let bitmap = match image {
+            Ok(image) => image
                 .await
                 .map_err(|_| "the browser cannot decode it".to_owned())
                 .and_then(|bitmap| bitmap.dyn_into().map_err(|_| "the browser cannot decode it".to_owned())),
             Err(problem) => Err(problem),
         };
         match bitmap {
-            Ok(bitmap) => decoded.push(Some(ImageData::Bitmap(bitmap))),
+            Ok(bitmap) => {
+                if let Some(whole) = asset.images.get(index).map(|image| [image.width, image.height])
+                    && let Some(shown) = fitted(whole[0], whole[1])
+                {
+                    asset.warnings.push(made_smaller(&name(asset, index), whole, shown));
+                }
+                decoded.push(Some(ImageData::Bitmap(bitmap)));
+            }
             Err(problem) => {
-                let name = asset.images.get(index).map(|image| image.name.clone()).filter(|name| !name.is_empty());
-                let image = name.unwrap_or_else(|| index.to_string());
+                let image = name(asset, index);
                 asset.warnings.push(Warning::ImageUnreadable { image, problem });
                 decoded.push(None);
             }
@@ -319,7 +349,7 @@ pub async fn decode_images(asset: &mut Asset) -> Vec<Option<ImageData>> {
 }
 
 /// What the header says is checked first: the browser would take any amount of memory.
-fn start_decoding(image: &Image, bytes_left: &mut u64) -> Result<js_sys::Promise, String> {
+fn start_decoding_one(image: &Image, bytes_left: &mut u64) -> Decoding {
     let bytes = 4 * u64::from(image.width) * u64::from(image.height);
     if bytes == 0 || image.width.max(image.height) > MOST_PIXELS_ACROSS || bytes > *bytes_left {
         return Err(format!("{} × {} pixels", image.width, image.height));
@@ -331,6 +361,11 @@ fn start_decoding(image: &Image, bytes_left: &mut u64) -> Result<js_sys::Promise
     let options = web_sys::ImageBitmapOptions::new();
     options.set_premultiply_alpha(web_sys::PremultiplyAlpha::None);
     options.set_color_space_conversion(web_sys::ColorSpaceConversion::None);
+    if let Some([width, height]) = fitted(image.width, image.height) {
+        options.set_resize_width(width);
+        options.set_resize_height(height);
+    }
     let window = web_sys::window().ok_or_else(|| "there is no window".to_owned())?;
-    window.create_image_bitmap_with_blob_and_image_bitmap_options(&blob, &options).map_err(failed)
+    let bitmap = window.create_image_bitmap_with_blob_and_image_bitmap_options(&blob, &options).map_err(failed)?;
+    Ok(JsFuture::from(bitmap))
 }

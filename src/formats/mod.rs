@@ -13,7 +13,7 @@ pub use file_set::FileSet;
 pub use gltf::WriteError;
 
 use crate::anim::{Clip, Skeleton};
-use crate::asset::Asset;
+use crate::asset::{Asset, Image};
 use file_set::bare_name;
 
 /// Relative URIs (percent-decoded) that the models and motions in this set refer to and that are not in the set, not even
@@ -48,7 +48,7 @@ pub fn load(files: &FileSet) -> Result<Asset, LoadError> {
 pub fn load_with(files: &FileSet, options: &LoadOptions) -> Result<Asset, LoadError> {
     let files = files.unpacked()?;
     let (name, bytes) = find_model(&files)?;
-    read(&files, name, bytes, options)
+    read(&files, name, bytes, options, &mut |_| ())
 }
 
 /// Names of the files in the set that are models or motions, each of which can be loaded: [`load`] wants exactly one.
@@ -59,9 +59,20 @@ pub fn main_files(files: &FileSet) -> Result<Vec<String>, LoadError> {
 
 /// Reads one of the set's [`main_files`]; the others may hold its parts.
 pub fn load_named(files: &FileSet, name: &str, options: &LoadOptions) -> Result<Asset, LoadError> {
+    load_noticing_images(files, name, options, &mut |_| ())
+}
+
+/// As [`load_named`]; `on_images` gets the asset's images as soon as they are known, before the rest is read, for a platform
+/// that decodes them meanwhile.
+pub fn load_noticing_images(
+    files: &FileSet,
+    name: &str,
+    options: &LoadOptions,
+    on_images: &mut dyn FnMut(&[Image]),
+) -> Result<Asset, LoadError> {
     let files = files.unpacked()?;
     match files.get(name) {
-        Some(bytes) => read(&files, name, bytes, options),
+        Some(bytes) => read(&files, name, bytes, options, on_images),
         None => Err(LoadError::NoModel { found: files.names().map(str::to_owned).collect() }),
     }
 }
@@ -83,15 +94,21 @@ pub fn write_motion(asset: &Asset, clips: &[&Clip]) -> Result<Vec<u8>, WriteErro
 pub fn convert(files: &FileSet, options: &LoadOptions) -> Result<Vec<u8>, WriteError> {
     let files = files.unpacked()?;
     let (name, bytes) = find_model(&files)?;
-    let asset = read(&files, name, bytes, options)?;
+    let asset = read(&files, name, bytes, options, &mut |_| ())?;
     if is_bvh(name, bytes) {
         return gltf::write_motion(&asset, &asset.clips.iter().collect::<Vec<_>>());
     }
     gltf::write_model(&files, name, &asset.skeleton, &[])
 }
 
-fn read(files: &FileSet, name: &str, bytes: &[u8], options: &LoadOptions) -> Result<Asset, LoadError> {
-    if is_bvh(name, bytes) { bvh::load(name, bytes, options) } else { gltf::load(files, name, bytes) }
+fn read(
+    files: &FileSet,
+    name: &str,
+    bytes: &[u8],
+    options: &LoadOptions,
+    on_images: &mut dyn FnMut(&[Image]),
+) -> Result<Asset, LoadError> {
+    if is_bvh(name, bytes) { bvh::load(name, bytes, options) } else { gltf::load(files, name, bytes, on_images) }
 }
 
 fn find_model(files: &FileSet) -> Result<(&str, &Arc<[u8]>), LoadError> {

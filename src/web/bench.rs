@@ -1,11 +1,11 @@
-//! The work of one character in one frame, and of making a clip over for another skeleton, measured in the page for
-//! benches/web.
+//! Work that is measured in the page, for benches/web.
 
 use glam::Affine3A;
 use wasm_bindgen::prelude::*;
 
 use crate::anim::{Pose, SampleCursor, model_from_joint};
 use crate::asset::Asset;
+use crate::files::{Item, Role, open_items};
 use crate::formats::{FileSet, load};
 use crate::mesh::{PaletteEntry, SkinningMode, write_palette};
 use crate::retarget::{Body, Retargeting, propose, recognize};
@@ -20,6 +20,19 @@ struct Character {
 extern "C" {
     #[wasm_bindgen(js_namespace = performance)]
     fn now() -> f64;
+}
+
+/// Reads a .glb with its images, up to what can be shown, but shows nothing: what GLTFLoader.parse does.
+///
+/// # Errors
+/// When the file cannot be read.
+#[wasm_bindgen]
+pub async fn bench_load(bytes: Vec<u8>) -> Result<(), JsError> {
+    let items = vec![Item::File("model.glb".to_owned(), bytes)];
+    let model =
+        open_items(items, Role::Model, &|_, _, _| ()).await.map_err(|error| JsError::new(&error.to_string()))?;
+    std::hint::black_box(model);
+    Ok(())
 }
 
 /// µs per character and frame to sample a clip of a .glb, go to model space and write the skins' palettes. Each character

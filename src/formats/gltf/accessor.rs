@@ -2,6 +2,7 @@
 //! towards a budget, so that a small file cannot ask for a large memory.
 
 use std::cell::Cell;
+use std::fmt::Display;
 use std::sync::Arc;
 
 use super::schema;
@@ -109,14 +110,14 @@ impl<'a> Accessors<'a> {
     }
 
     /// Counts `count` items of `size` bytes towards the budget, before they take any memory.
-    pub fn charge(&self, count: usize, size: usize, place: &str) -> Result<(), Problem> {
+    pub fn charge(&self, count: usize, size: usize, place: &dyn Display) -> Result<(), Problem> {
         let spent = count
             .checked_mul(size)
             .and_then(|bytes| bytes.checked_add(self.spent_bytes.get()))
             .filter(|&bytes| bytes <= BUDGET_BYTES)
             .ok_or_else(|| {
                 let expected = format!("at most {} MiB of data in all", BUDGET_BYTES >> 20);
-                Problem::new(place, expected, format!("{count} more items of {size} bytes"))
+                Problem::new(place.to_string(), expected, format!("{count} more items of {size} bytes"))
             })?;
         self.spent_bytes.set(spent);
         Ok(())
@@ -128,10 +129,10 @@ impl<'a> Accessors<'a> {
     }
 
     /// Bytes of a buffer view, and its stride.
-    pub fn view(&self, index: usize, place: &str) -> Result<(&[u8], Option<usize>), Problem> {
+    pub fn view(&self, index: usize, place: &dyn Display) -> Result<(&[u8], Option<usize>), Problem> {
         let view = get(&self.root.buffer_views, index, place, "bufferViews")?;
-        let here = format!("bufferViews[{index}]");
-        get(&self.root.buffers, view.buffer, &format!("{here}.buffer"), "buffers")?;
+        let here = format_args!("bufferViews[{index}]");
+        get(&self.root.buffers, view.buffer, &format_args!("{here}.buffer"), "buffers")?;
         let Some(Some(buffer)) = self.buffers.get(view.buffer) else {
             return Err(Problem::new(format!("buffers[{}]", view.buffer), "a URI or a binary chunk", "neither"));
         };
@@ -139,19 +140,20 @@ impl<'a> Accessors<'a> {
         let range = view.byte_offset..view.byte_offset.saturating_add(view.byte_length);
         let bytes = buffer.get(range.clone()).ok_or_else(|| {
             let expected = format!("bytes {}..{} of buffer {}", range.start, range.end, view.buffer);
-            Problem::new(here, expected, format!("only {} bytes", buffer.len()))
+            Problem::new(here.to_string(), expected, format!("only {} bytes", buffer.len()))
         })?;
         Ok((bytes, view.byte_stride))
     }
 
     /// How many elements an accessor has.
-    pub fn count(&self, index: usize, place: &str) -> Result<usize, Problem> {
+    pub fn count(&self, index: usize, place: &dyn Display) -> Result<usize, Problem> {
         Ok(get(&self.root.accessors, index, place, "accessors")?.count)
     }
 
-    fn layout(&self, index: usize, place: &str, components: usize, what: &str) -> Result<Layout<'_>, Problem> {
+    fn layout(&self, index: usize, place: &dyn Display, components: usize, what: &str) -> Result<Layout<'_>, Problem> {
         let accessor = get(&self.root.accessors, index, place, "accessors")?;
-        let here = || format!("accessors[{index}]");
+        let place_here = format_args!("accessors[{index}]");
+        let here = || place_here.to_string();
         let found = match accessor.shape.as_str() {
             "SCALAR" => 1,
             "VEC2" => 2,
@@ -167,11 +169,11 @@ impl<'a> Accessors<'a> {
         let component = Component::new(accessor.component_type)
             .ok_or_else(|| Problem::new(here(), "a known componentType", accessor.component_type))?;
         let size = component.size() * components;
-        self.charge(accessor.count, components * 4, &here())?;
+        self.charge(accessor.count, components * 4, &place_here)?;
         let (bytes, stride) = match accessor.buffer_view {
             None => (None, size),
             Some(view) => {
-                let (bytes, stride) = self.view(view, &here())?;
+                let (bytes, stride) = self.view(view, &place_here)?;
                 let stride = stride.unwrap_or(size);
                 if stride < size && accessor.count > 1 {
                     return Err(Problem::new(here(), format!("a byteStride of at least {size}"), stride));
@@ -218,12 +220,19 @@ impl<'a> Accessors<'a> {
     }
 
     /// Elements of `N` numbers. `what` says in words what is expected, for the error.
-    pub fn floats<const N: usize>(&self, index: usize, place: &str, what: &str) -> Result<Vec<[f32; N]>, Problem> {
+    pub fn floats<const N: usize>(
+        &self,
+        index: usize,
+        place: &dyn Display,
+        what: &str,
+    ) -> Result<Vec<[f32; N]>, Problem> {
         let layout = self.layout(index, place, N, what)?;
         let (component, normalized, size) = (layout.component, layout.normalized, layout.component.size());
         let read = |bytes: &[u8]| std::array::from_fn(|at| component.to_f32(&bytes[at * size..], normalized));
         let mut out = match layout.bytes {
             None => vec![[0.0; N]; layout.count],
+            // By far the most, and fast when its kind is not asked for again and again.
+            Some(bytes) if component == Component::F32 => decoded(bytes, &layout, f32::from_le_bytes),
             Some(bytes) => elements(bytes, &layout).map(read).collect(),
         };
         self.sparse(index, &layout, |element, bytes| out[element] = read(bytes))?;
@@ -231,8 +240,17 @@ impl<'a> Accessors<'a> {
     }
 
     /// As [`Self::floats`], refusing numbers that are not finite.
-    pub fn finite<const N: usize>(&self, index: usize, place: &str, what: &str) -> Result<Vec<[f32; N]>, Problem> {
+    pub fn finite<const N: usize>(
+        &self,
+        index: usize,
+        place: &dyn Display,
+        what: &str,
+    ) -> Result<Vec<[f32; N]>, Problem> {
         let values = self.floats::<N>(index, place, what)?;
+        // Without stopping at the first, so that several are looked at at once.
+        if values.as_flattened().iter().fold(true, |finite, number| finite & number.is_finite()) {
+            return Ok(values);
+        }
         match values.iter().position(|value| value.iter().any(|number| !number.is_finite())) {
             Some(at) => {
                 Err(Problem::new(format!("{place}, element {at}"), "finite numbers", format!("{:?}", values[at])))
@@ -242,7 +260,12 @@ impl<'a> Accessors<'a> {
     }
 
     /// Elements of `N` unsigned integers.
-    pub fn integers<const N: usize>(&self, index: usize, place: &str, what: &str) -> Result<Vec<[u32; N]>, Problem> {
+    pub fn integers<const N: usize>(
+        &self,
+        index: usize,
+        place: &dyn Display,
+        what: &str,
+    ) -> Result<Vec<[u32; N]>, Problem> {
         let layout = self.layout(index, place, N, what)?;
         let (component, size) = (layout.component, layout.component.size());
         if !matches!(component, Component::U8 | Component::U16 | Component::U32) {
@@ -252,11 +275,28 @@ impl<'a> Accessors<'a> {
         let read = |bytes: &[u8]| std::array::from_fn(|at| component.to_u32(&bytes[at * size..]));
         let mut out = match layout.bytes {
             None => vec![[0; N]; layout.count],
-            Some(bytes) => elements(bytes, &layout).map(read).collect(),
+            Some(bytes) => match component {
+                Component::U8 => decoded(bytes, &layout, |[byte]: [u8; 1]| u32::from(byte)),
+                Component::U16 => decoded(bytes, &layout, |bytes: [u8; 2]| u32::from(u16::from_le_bytes(bytes))),
+                _ => decoded(bytes, &layout, u32::from_le_bytes),
+            },
         };
         self.sparse(index, &layout, |element, bytes| out[element] = read(bytes))?;
         Ok(out)
     }
+}
+
+/// Elements of `N` components of `SIZE` bytes, which is what the layout says they have.
+fn decoded<T: Copy + Default, const N: usize, const SIZE: usize>(
+    bytes: &[u8],
+    layout: &Layout,
+    value: impl Fn([u8; SIZE]) -> T,
+) -> Vec<[T; N]> {
+    let read = |element: &[u8]| {
+        let components = element.as_chunks::<SIZE>().0.first_chunk::<N>();
+        components.map_or([T::default(); N], |components| components.map(&value))
+    };
+    elements(bytes, layout).map(read).collect()
 }
 
 fn elements<'a>(bytes: &'a [u8], layout: &Layout) -> impl Iterator<Item = &'a [u8]> + use<'a> {
@@ -274,6 +314,7 @@ fn check_range(available: usize, stride: usize, size: usize, count: usize) -> Re
 }
 
 /// `list[index]`, or an error at `place` that says how many there are.
-pub fn get<'a, T>(list: &'a [T], index: usize, place: &str, name: &str) -> Result<&'a T, Problem> {
-    list.get(index).ok_or_else(|| Problem::new(place, format!("an index into the {} {name}", list.len()), index))
+pub fn get<'a, T>(list: &'a [T], index: usize, place: &dyn Display, name: &str) -> Result<&'a T, Problem> {
+    list.get(index)
+        .ok_or_else(|| Problem::new(place.to_string(), format!("an index into the {} {name}", list.len()), index))
 }

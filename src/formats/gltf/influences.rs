@@ -16,8 +16,10 @@ pub struct InfluenceSet {
 }
 
 pub fn merge(mesh: &str, vertices: usize, sets: &[InfluenceSet], warnings: &mut Warnings) -> Influences {
-    if sets.is_empty() {
-        return Influences::default();
+    match sets {
+        [] => return Influences::default(),
+        [set] => return single_set(mesh, set, warnings),
+        _ => {}
     }
     let of_vertex = |vertex: usize, pairs: &mut Vec<(u16, f32)>| {
         pairs.clear();
@@ -60,16 +62,52 @@ pub fn merge(mesh: &str, vertices: usize, sets: &[InfluenceSet], warnings: &mut 
             influences.weights[vertex * stride + at] = weight / kept;
         }
     }
-    let mesh = mesh.to_owned();
     if most > MAX_INFLUENCES {
         let (found, kept) = (most, MAX_INFLUENCES);
-        warnings.push(Warning::InfluencesDropped { mesh: mesh.clone(), found, kept, largest_lost_weight });
+        warnings.push(Warning::InfluencesDropped { mesh: mesh.to_owned(), found, kept, largest_lost_weight });
     }
+    warn(mesh, missing, normalized, warnings);
+    influences
+}
+
+/// The usual case, without lists that grow: at most four influences a vertex.
+fn single_set(mesh: &str, set: &InfluenceSet, warnings: &mut Warnings) -> Influences {
+    let vertices = set.joints.len();
+    let mut influences =
+        Influences { stride: 4, joints: Vec::with_capacity(4 * vertices), weights: Vec::with_capacity(4 * vertices) };
+    let (mut normalized, mut missing) = (0, 0);
+    for (joints, weights) in set.joints.iter().zip(&set.weights) {
+        let mut pairs: [(u16, f32); 4] = std::array::from_fn(|at| {
+            let (joint, weight) = (joints[at].min(u32::from(u16::MAX)) as u16, weights[at]);
+            if weight > 0.0 && weight < LARGEST_WEIGHT { (joint, weight) } else { (0, 0.0) }
+        });
+        // Neighbours change places only when the second is heavier: equal weights keep the file's order.
+        for (a, b) in [(0, 1), (1, 2), (2, 3), (0, 1), (1, 2), (0, 1)] {
+            if pairs[a].1 < pairs[b].1 {
+                pairs.swap(a, b);
+            }
+        }
+        let total: f32 = pairs.iter().map(|pair| pair.1).sum();
+        if total == 0.0 {
+            missing += 1;
+            pairs[0].1 = 1.0;
+        } else if (total - 1.0).abs() > SUM_TOLERANCE {
+            normalized += 1;
+        }
+        let total = if total == 0.0 { 1.0 } else { total };
+        influences.joints.extend(pairs.map(|pair| pair.0));
+        influences.weights.extend(pairs.map(|pair| pair.1 / total));
+    }
+    warn(mesh, missing, normalized, warnings);
+    influences
+}
+
+fn warn(mesh: &str, missing: usize, normalized: usize, warnings: &mut Warnings) {
+    let mesh = mesh.to_owned();
     if missing > 0 {
         warnings.push(Warning::WeightsMissing { mesh: mesh.clone(), vertices: missing });
     }
     if normalized > 0 {
         warnings.push(Warning::WeightsNormalized { mesh, vertices: normalized });
     }
-    influences
 }

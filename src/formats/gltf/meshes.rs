@@ -178,7 +178,7 @@ fn read_primitive(
         && geometry.tangents.is_empty()
     {
         let copied_bytes = add_tangents(&mut geometry, texture.uv_set, accessors.bytes_left());
-        accessors.charge(1, copied_bytes, place)?;
+        accessors.charge(1, copied_bytes, &place)?;
     }
     Ok(geometry)
 }

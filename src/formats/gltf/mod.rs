@@ -17,7 +17,7 @@ mod schema;
 mod skins;
 mod write;
 
-use crate::asset::{Asset, Warnings};
+use crate::asset::{Asset, Image, Warnings};
 use crate::formats::error::Problem;
 use crate::formats::{FileSet, LoadError};
 use accessor::{Accessors, Bytes};
@@ -47,12 +47,17 @@ pub(super) fn missing_files(files: &FileSet, file: &str, bytes: &[u8]) -> Vec<St
     uris
 }
 
-pub(super) fn load(files: &FileSet, file: &str, bytes: &[u8]) -> Result<Asset, LoadError> {
+pub(super) fn load(
+    files: &FileSet,
+    file: &str,
+    bytes: &[u8],
+    on_images: &mut dyn FnMut(&[Image]),
+) -> Result<Asset, LoadError> {
     let container = container::open(file, bytes)?;
     let root = parse(file, container.json)?;
     let mut warnings = Warnings::default();
     extensions::check(file, &root, &mut warnings)?;
-    build(files, file, &container, &root, warnings).map_err(|problem| problem.in_file(file))
+    build(files, file, &container, &root, warnings, on_images).map_err(|problem| problem.in_file(file))
 }
 
 fn parse(file: &str, json: &[u8]) -> Result<schema::Root, LoadError> {
@@ -62,25 +67,33 @@ fn parse(file: &str, json: &[u8]) -> Result<schema::Root, LoadError> {
         column: problem.column(),
         problem: problem.to_string(),
     };
-    let versions: schema::Versions = serde_json::from_slice(json).map_err(error)?;
-    let text = |key: &str| match versions.asset.get(key) {
+    // Most files are read once; one that does not fit may be of another version.
+    let root = serde_json::from_slice::<schema::Root>(json);
+    let version = match &root {
+        Ok(root) => root.asset.version.clone(),
+        Err(_) => serde_json::from_slice::<schema::Versions>(json).map_err(error)?.asset,
+    };
+    check_version(file, &version)?;
+    root.map_err(error)
+}
+
+fn check_version(file: &str, found: &schema::Version) -> Result<(), LoadError> {
+    let text = |value: &Option<serde_json::Value>| match value {
         Some(serde_json::Value::String(text)) => Some(text.clone()),
         Some(other) => Some(other.to_string()),
         None => None,
     };
     let unsupported = |found: String| LoadError::UnsupportedVersion { file: file.to_owned(), found };
-    match text("version") {
+    match text(&found.version) {
         // glTF 1.0 allowed an asset without a version.
         None => return Err(unsupported("of no stated version (asset.version is missing)".to_owned())),
         Some(version) if !version.starts_with("2.") => return Err(unsupported(version)),
         Some(_) => {}
     }
-    if let Some(least) = text("minVersion")
-        && least != "2.0"
-    {
-        return Err(unsupported(format!("{least} at least (asset.minVersion)")));
+    match text(&found.min_version) {
+        Some(least) if least != "2.0" => Err(unsupported(format!("{least} at least (asset.minVersion)"))),
+        _ => Ok(()),
     }
-    serde_json::from_slice(json).map_err(error)
 }
 
 fn build(
@@ -89,12 +102,14 @@ fn build(
     container: &Container,
     root: &schema::Root,
     mut warnings: Warnings,
+    on_images: &mut dyn FnMut(&[Image]),
 ) -> Result<Asset, Problem> {
     let buffers = resolve_buffers(files, file, container, root, &mut warnings)?;
     let accessors = Accessors::new(root, buffers);
     let materials = materials::materials(root, &mut warnings)?;
     let textures = materials::textures(root)?;
     let images = images::images(files, file, &accessors, &mut warnings)?;
+    on_images(&images);
     let meshes = meshes::meshes(&accessors, &materials, &mut warnings)?;
     let skeleton = nodes::skeleton(root, &meshes, &mut warnings)?;
     let skins = skins::skins(&accessors, &skeleton, &mut warnings)?;

@@ -164,7 +164,7 @@ pub fn scenes(root: &schema::Root, skeleton: &Skeleton) -> Result<(Vec<Scene>, O
         scenes.push(Scene { name: scene.name.clone(), roots });
     }
     if let Some(scene) = root.scene {
-        get(&root.scenes, scene, "scene", "scenes")?;
+        get(&root.scenes, scene, &"scene", "scenes")?;
     }
     let default_scene = root.scene.or(if scenes.is_empty() { None } else { Some(0) });
     Ok((scenes, default_scene))

@@ -28,17 +28,26 @@ pub struct Root {
     pub extensions: Extensions,
 }
 
-/// Only the version, read before all else: older files have another structure altogether.
+/// Only the version, for files whose structure is another one: older files'.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub struct Versions {
-    pub asset: Map<String, Value>,
+    pub asset: Version,
+}
+
+#[derive(Debug, Default, Clone, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Version {
+    pub version: Option<Value>,
+    pub min_version: Option<Value>,
 }
 
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub struct AssetInfo {
     pub generator: String,
+    #[serde(flatten)]
+    pub version: Version,
 }
 
 #[derive(Debug, Default, Deserialize)]
