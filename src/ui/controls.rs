@@ -26,8 +26,7 @@ pub fn switch(ui: &mut Ui, label: &str, on: bool) -> bool {
     let palette = style::palette(ui);
     let painter = ui.painter_at(rect.expand(2.0));
     let text = if ui.is_enabled() { palette.text } else { palette.weak_text.gamma_multiply(0.7) };
-    let font = egui::TextStyle::Body.resolve(ui.style());
-    painter.text(rect.left_center(), egui::Align2::LEFT_CENTER, label, font, text);
+    elided(ui, Rect::from_min_max(rect.min, rect.max - vec2(42.0, 0.0)), label, text);
 
     let how_on = ui.ctx().animate_bool_responsive(response.id, on);
     let track = Rect::from_min_size(rect.right_center() - vec2(34.0, 9.0), vec2(34.0, 18.0));

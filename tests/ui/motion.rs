@@ -1,7 +1,7 @@
 //! Borrowed motion: its clips at the left, the channel table and its options at the right, offers when it does not fit.
 
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use gaitway::retarget::{ClipRef, Feet, JointMap, RestChoice, RootOptions, RootPart, SourceRef, Unmapped};
 use gaitway::state::{ClipChoice, Command, map_in_force};
 use gaitway::ui::{PathPrompt, PathPurpose, Saved, UiAction};
@@ -119,7 +119,7 @@ fn the_options_say_how_the_motion_is_carried_over() {
     root.extract = true;
     assert_eq!(reach(&mut harness, "Travel on the root joint"), [Command::SetRoot(Some(root))]);
     let plant = Command::SetFeet(Some(Feet::Plant));
-    assert_eq!(reach(&mut harness, "Hold feet where they touch the ground"), [plant]);
+    assert_eq!(reach(&mut harness, "Hold feet on the ground"), [plant]);
     reach(&mut harness, "Rest pose of the model");
     press(&mut harness, "As the mesh was bound");
     let now = map(&harness, 0);
@@ -139,6 +139,13 @@ fn joints_without_a_source_can_play_a_clip() {
     let wave = |frozen| Command::SetUnmapped(Some(Unmapped::Clip { clip: ClipRef::Index(2), frozen }));
     assert_eq!(harness.state().commands, [wave(false)]);
     assert_eq!(press(&mut harness, "Stand still at the clip's first key"), [wave(true)]);
+    let head = number(&harness, "Head");
+    press(&mut harness, "Joints");
+    press(&mut harness, &format!("Head follows {head}  Head"));
+    press(&mut harness, "Nothing");
+    let row = harness.get_by_label("Head follows none");
+    let why = row.accesskit_node().placeholder().map(str::to_owned);
+    assert_eq!(why.as_deref(), Some("head · deliberately none · first key of Wave"));
 }
 
 #[test]

@@ -70,12 +70,18 @@ fn rows(pairing: &Pairing<'_>, map: &JointMap) -> Vec<Row> {
         let number = asset.skeleton.source_index(joint);
         let given = pairing.source_in(map, number);
         let matters = given.is_some() || !has_skins || in_skin[joint.get()];
-        matters.then(|| row(pairing, joint, number, given))
+        matters.then(|| row(pairing, map, joint, number, given))
     });
     rows.collect()
 }
 
-fn row(pairing: &Pairing<'_>, joint: JointIndex, number: usize, given: Option<Option<JointIndex>>) -> Row {
+fn row(
+    pairing: &Pairing<'_>,
+    map: &JointMap,
+    joint: JointIndex,
+    number: usize,
+    given: Option<Option<JointIndex>>,
+) -> Row {
     let proposed = pairing.proposal.and_then(|proposal| proposal.pairs.iter().find(|pair| pair.target == joint));
     let slot = proposed.and_then(|pair| pair.slot);
     let slot = slot.or_else(|| pairing.proposal.and_then(|proposal| proposal.model.slot(joint)));
@@ -88,6 +94,14 @@ fn row(pairing: &Pairing<'_>, joint: JointIndex, number: usize, given: Option<Op
         (None, Some(None), None) => "deliberately none".to_owned(),
         _ => "follows nothing".to_owned(),
     });
+    if source.is_none() {
+        let own = map.joints.get(&format!("#{number}")).and_then(|entry| entry.unmapped.as_ref());
+        match pairing.own_clip(own.unwrap_or(&map.unmapped)) {
+            Some((clip, true)) => why.push(format!("first key of {}", pairing.clip_title(clip))),
+            Some((clip, false)) => why.push(format!("plays {}", pairing.clip_title(clip))),
+            None => {}
+        }
+    }
     let unsure = as_proposed.is_some_and(|pair| pair.confidence < UNSURE);
     if unsure {
         why.push("unsure, look at it".to_owned());

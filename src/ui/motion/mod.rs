@@ -10,7 +10,7 @@ use super::{Output, Saved, Shown, UiAction, UiState, clips, controls, scene_tree
 use crate::anim::JointIndex;
 use crate::asset::Asset;
 use crate::library::{Library, Model, Motion};
-use crate::retarget::{Contradiction, JointMap, Proposal, SourceRef};
+use crate::retarget::{ClipRef, Contradiction, JointMap, Proposal, SourceRef, Unmapped};
 use crate::state::{Command, active_clip, choice_of_clip, map_in_force};
 
 pub(super) use picker::show as picker;
@@ -52,6 +52,21 @@ impl<'a> Pairing<'a> {
     fn of(library: &'a Library, index: usize) -> Option<Self> {
         let (model, motion) = (library.active()?, library.motions().get(index)?);
         Some(Self { model, motion, index, proposal: library.proposal(index) })
+    }
+
+    /// Which of the model's clips joints without a source play, and whether it stands still; none: they rest.
+    fn own_clip(&self, unmapped: &Unmapped) -> Option<(usize, bool)> {
+        let Unmapped::Clip { clip, frozen } = unmapped else { return None };
+        let clips = &self.model.asset.clips;
+        let index = match clip {
+            ClipRef::Index(index) => *index,
+            ClipRef::Name(name) => clips.iter().position(|clip| clip.name() == name).unwrap_or(usize::MAX),
+        };
+        Some((index, *frozen))
+    }
+
+    fn clip_title(&self, clip: usize) -> &'a str {
+        self.model.clip_titles().get(clip).map_or("a clip that is not there", String::as_str)
     }
 
     /// The source that a map gives to a target. None: the map does not speak of it; `Some(None)`: deliberately none.
@@ -120,7 +135,8 @@ fn header(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, map: &JointMap,
     if motions.len() > 1 {
         ui.add_space(4.0);
         let name = short_name(&pairing.motion.source);
-        let combo = egui::ComboBox::from_id_salt("motion").width(ui.available_width()).truncate().selected_text(name);
+        let combo =
+            egui::ComboBox::from_id_salt("motion file").width(ui.available_width()).truncate().selected_text(name);
         let response = combo.show_ui(ui, |ui| {
             for (index, motion) in motions.iter().enumerate() {
                 if ui.selectable_label(index == pairing.index, short_name(&motion.source)).clicked() {

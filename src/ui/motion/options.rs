@@ -37,7 +37,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, map: &
 
     controls::section(ui, "FEET");
     let planted = map.feet == Feet::Plant;
-    if controls::switch(ui, "Hold feet where they touch the ground", planted) {
+    if controls::switch(ui, "Hold feet on the ground", planted) {
         out.commands.push(Command::SetFeet(Some(if planted { Feet::Off } else { Feet::Plant })));
     }
 
@@ -102,23 +102,14 @@ fn rest_choice(ui: &mut Ui, label: &str, chosen: RestChoice) -> Option<RestChoic
 fn unmapped(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, out: &mut Output) {
     let clips = &pairing.model.asset.clips;
     let titles = pairing.model.clip_titles();
-    let playing = match &map.unmapped {
-        Unmapped::Rest => None,
-        Unmapped::Clip { clip, frozen } => {
-            let index = match clip {
-                ClipRef::Index(index) => *index,
-                ClipRef::Name(name) => clips.iter().position(|clip| clip.name() == name).unwrap_or(usize::MAX),
-            };
-            Some((index, *frozen))
-        }
-    };
+    let playing = pairing.own_clip(&map.unmapped);
     let plays = |clip: usize, frozen: bool| {
         let unmapped = Unmapped::Clip { clip: ClipRef::Index(clip), frozen };
         Command::SetUnmapped(Some(unmapped))
     };
     let text = match playing {
         None => "Rest",
-        Some((clip, _)) => titles.get(clip).map_or("A clip that is not there", String::as_str),
+        Some((clip, _)) => pairing.clip_title(clip),
     };
     let combo = egui::ComboBox::from_id_salt("unmapped").width(ui.available_width()).truncate().selected_text(text);
     let response = combo.show_ui(ui, |ui| {
