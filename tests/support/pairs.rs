@@ -99,14 +99,13 @@ impl Loaded {
     }
 }
 
-/// What became of one pair.
+/// What became of one pair. Whoever includes this file reads a part of it.
+#[allow(dead_code)]
 pub struct Outcome {
     pub mapped: usize,
     pub figures: Figures,
     pub planted: Option<Figures>,
-    pub resampled: usize,
     pub hips_scale: Option<f64>,
-    pub contradicts: bool,
 }
 
 /// The motion's clip on the model, by the map that is proposed.
@@ -118,11 +117,10 @@ pub fn borrow(model: &Loaded, motion: &Loaded, plant: bool) -> Result<Outcome, S
     let made = |map: &ResolvedMap| {
         let pair = Retargeting::new(model.body(), motion.body(), clip, map).map_err(|error| error.to_string())?;
         let made = pair.bake().map_err(|error| error.to_string())?;
-        Ok::<_, String>((pair.figures(&made), made.resampled.len(), made.hips_scale))
+        Ok::<_, String>((pair.figures(&made), made.hips_scale))
     };
-    let (figures, resampled, hips_scale) = made(&map)?;
+    let (figures, hips_scale) = made(&map)?;
     map.feet = Feet::Plant;
     let planted = if plant { Some(made(&map)?.0) } else { None };
-    let contradicts = !(proposal.model.contradictions.is_empty() && proposal.motion.contradictions.is_empty());
-    Ok(Outcome { mapped: map.pairs.len(), figures, planted, resampled, hips_scale, contradicts })
+    Ok(Outcome { mapped: map.pairs.len(), figures, planted, hips_scale })
 }

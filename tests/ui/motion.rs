@@ -1,7 +1,7 @@
 //! Borrowed motion: its clips at the left, the channel table and its options at the right, offers when it does not fit.
 
 use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
+use egui_kittest::kittest::Queryable;
 use gaitway::retarget::{ClipRef, Feet, JointMap, RestChoice, RootOptions, RootPart, SourceRef, Unmapped};
 use gaitway::state::{ClipChoice, Command, map_in_force};
 use gaitway::ui::{PathPrompt, PathPurpose, Saved, UiAction};
@@ -23,6 +23,12 @@ fn reach(harness: &mut Harness<'_, Bench>, label: &str) -> Vec<Command> {
     harness.get_by_label(label).scroll_to_me();
     harness.run();
     press(harness, label)
+}
+
+/// Presses the line of the table that begins so.
+fn press_row(harness: &mut Harness<'_, Bench>, start: &str) {
+    harness.get_by_label_contains(start).click();
+    harness.run();
 }
 
 #[test]
@@ -49,8 +55,8 @@ fn the_table_says_who_follows_whom_and_why() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
     press(&mut harness, "Motion");
     let (hips, spine) = (number(&harness, "Hips"), number(&harness, "Spine"));
-    assert!(harness.query_by_label(&format!("Hips follows {hips}  Hips")).is_some());
-    assert!(harness.query_by_label(&format!("Spine follows {spine}  Spine")).is_some());
+    assert!(harness.query_by_label_contains(&format!("Hips follows {hips}  Hips (")).is_some());
+    assert!(harness.query_by_label_contains(&format!("Spine follows {spine}  Spine (")).is_some());
     assert!(harness.query_by_label_contains("joints follow the motion").is_some());
     harness.get_by_label("Search joints of the model").click();
     harness.run();
@@ -65,19 +71,19 @@ fn another_source_is_chosen_from_a_list() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
     press(&mut harness, "Motion");
     let (neck, head) = (number(&harness, "Neck"), number(&harness, "Head"));
-    press(&mut harness, &format!("Neck follows {neck}  Neck"));
+    press_row(&mut harness, "Neck follows");
     assert!(harness.query_by_label("What does Neck follow?").is_some());
     let commands = press(&mut harness, &format!("{head}  Head"));
     assert_eq!(commands, [Command::SetSource { motion: 0, target: neck, source: Some(head) }]);
     assert!(harness.query_by_label("What does Neck follow?").is_none());
-    assert!(harness.query_by_label(&format!("Neck follows {head}  Head")).is_some());
+    assert!(harness.query_by_label_contains(&format!("Neck follows {head}  Head (")).is_some());
     assert_eq!(map(&harness, 0).joints[&format!("#{neck}")].source, Some(SourceRef::Number(head)));
-    press(&mut harness, &format!("Neck follows {head}  Head"));
+    press_row(&mut harness, "Neck follows");
     press(&mut harness, "Nothing");
-    assert!(harness.query_by_label("Neck follows none").is_some());
+    assert!(harness.query_by_label_contains("Neck follows none (").is_some());
     // And all the way back.
     press(&mut harness, "Match anew");
-    assert!(harness.query_by_label(&format!("Neck follows {neck}  Neck")).is_some());
+    assert!(harness.query_by_label_contains(&format!("Neck follows {neck}  Neck (")).is_some());
 }
 
 #[test]
@@ -86,9 +92,7 @@ fn a_source_is_typed_by_number_or_name() {
     press(&mut harness, "Motion");
     let (neck, head, chest) = (number(&harness, "Neck"), number(&harness, "Head"), number(&harness, "Chest"));
     for (typed, source) in [(head.to_string(), head), ("chest".to_owned(), chest)] {
-        let row = harness.get_by_label_contains("Neck follows");
-        row.click();
-        harness.run();
+        press_row(&mut harness, "Neck follows");
         harness.get_by_label("Name or number of a joint of the motion").type_text(&typed);
         harness.run();
         let commands = press_key(&mut harness, egui::Key::Enter);
@@ -100,8 +104,7 @@ fn a_source_is_typed_by_number_or_name() {
 fn keys_do_nothing_else_while_a_source_is_chosen() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
     press(&mut harness, "Motion");
-    harness.get_by_label_contains("Neck follows").click();
-    harness.run();
+    press_row(&mut harness, "Neck follows");
     assert_eq!(press_key(&mut harness, egui::Key::Space), []);
     assert_eq!(press_key(&mut harness, egui::Key::Escape), []);
     assert!(harness.query_by_label("What does Neck follow?").is_none());
@@ -139,13 +142,11 @@ fn joints_without_a_source_can_play_a_clip() {
     let wave = |frozen| Command::SetUnmapped(Some(Unmapped::Clip { clip: ClipRef::Index(2), frozen }));
     assert_eq!(harness.state().commands, [wave(false)]);
     assert_eq!(press(&mut harness, "Stand still at the clip's first key"), [wave(true)]);
-    let head = number(&harness, "Head");
     press(&mut harness, "Joints");
-    press(&mut harness, &format!("Head follows {head}  Head"));
+    press_row(&mut harness, "Head follows");
     press(&mut harness, "Nothing");
-    let row = harness.get_by_label("Head follows none");
-    let why = row.accesskit_node().placeholder().map(str::to_owned);
-    assert_eq!(why.as_deref(), Some("head · deliberately none · first key of Wave"));
+    let row = "Head follows none (head · deliberately none · first key of Wave)";
+    assert!(harness.query_by_label(row).is_some());
 }
 
 #[test]

@@ -131,13 +131,9 @@ fn slot_text(slot: Slot) -> String {
 /// The target at the left, a button with its source at the right, the reason under both; true when pressed.
 fn show_row(ui: &mut Ui, row: &Row, prefix: &str) -> bool {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT), Sense::click());
-    let label = format!("{} follows {}", row.target, row.source);
+    let label = format!("{} follows {} ({})", row.target, row.source, row.why);
     let role = egui::accesskit::Role::Button;
-    response.widget_info(|| {
-        let mut info = WidgetInfo::labeled(role, true, &label);
-        info.hint_text = Some(row.why.clone());
-        info
-    });
+    response.widget_info(|| WidgetInfo::labeled(role, true, &label));
     if !ui.is_rect_visible(rect) {
         return response.clicked();
     }
@@ -164,5 +160,5 @@ fn show_row(ui: &mut Ui, row: &Row, prefix: &str) -> bool {
     let below = Rect::from_min_max(pos2(inner.left(), inner.top() + 20.0), pos2(right, inner.bottom()));
     let color = if row.unsure { palette.warning } else { palette.weak_text };
     controls::elided_small(ui, below, &row.why, color);
-    response.on_hover_text(format!("{label}: {}. Click to choose another.", row.why)).clicked()
+    response.on_hover_text(format!("{label}. Click to choose another.")).clicked()
 }

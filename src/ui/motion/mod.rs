@@ -89,17 +89,18 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
     let tab = &mut local.motion;
     if ui.available_height() >= ROOMY_HEIGHT {
         head(ui, shown, &pairing, &map, tab, out);
-        scrolled(ui, |ui| body(ui, shown, &pairing, &map, tab, out));
+        scrolled(ui, tab.options, |ui| body(ui, shown, &pairing, &map, tab, out));
     } else {
-        scrolled(ui, |ui| {
+        scrolled(ui, tab.options, |ui| {
             head(ui, shown, &pairing, &map, tab, out);
             body(ui, shown, &pairing, &map, tab, out);
         });
     }
 }
 
-fn scrolled(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
-    ScrollArea::vertical().id_salt("motion").auto_shrink([false, false]).show(ui, |ui| {
+/// `options` keeps the places of the two parts apart.
+fn scrolled(ui: &mut Ui, options: bool, contents: impl FnOnce(&mut Ui)) {
+    ScrollArea::vertical().id_salt(("motion", options)).auto_shrink([false, false]).show(ui, |ui| {
         // Room for the floating scroll bar.
         ui.set_max_width(ui.available_width() - 6.0);
         contents(ui);
