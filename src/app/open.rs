@@ -4,12 +4,12 @@
 use super::App;
 use crate::files::Contents;
 use crate::library::{BorrowError, Model, Motion};
-use crate::retarget::{JointMap, MapError};
+use crate::retarget::{JointMap, MapError, propose};
 use crate::state::{
     ClipChoice, Command, MotionMap, NumberedMap, ViewerState, active_clip, choice_of_clip, maps_in_force,
     names_checksum, numbered, settled_maps,
 };
-use crate::ui::{Tab, Toast};
+use crate::ui::{Tab, Toast, short_name};
 
 /// Motions that could not be borrowed from, kept so that the person can say what to do with them.
 pub(super) struct Refused {
@@ -151,12 +151,27 @@ impl App {
             self.refresh_motion();
             self.refused = Some(Refused { motions, sources });
             self.panels.motion_refused = true;
-            return Err(problems.join("\n"));
+            return Err(self.why_refused(problems));
         }
         self.history.clear();
         self.tell(problems);
         self.choose_borrowed(Some((0, 0)));
         Ok(())
+    }
+
+    /// The page offers what else can be done, where other places say how to write a map.
+    fn why_refused(&self, problems: Vec<String>) -> String {
+        let Some(Refused { motions, .. }) = &self.refused else { return problems.join("\n") };
+        let (Some(model), [motion]) = (self.library.active(), &motions[..]) else { return problems.join("\n") };
+        let has_clips = !motion.asset.clips.is_empty();
+        if has_clips && propose(&model.asset, &motion.asset).pairs.is_empty() {
+            return format!(
+                "{}: it has no joint in common with {}: neither names nor parts of a body agree",
+                short_name(&motion.source),
+                short_name(&model.source)
+            );
+        }
+        problems.join("\n")
     }
 
     /// Puts a map in force for every motion that it fits.

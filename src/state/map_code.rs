@@ -5,6 +5,7 @@
 use base64::Engine;
 use base64::engine::general_purpose::URL_SAFE_NO_PAD;
 use glam::Quat;
+use serde_json::Value;
 
 use super::maps::{NumberedMap, number_of};
 use crate::retarget::{JointMap, MapEntry, SourceRef};
@@ -29,12 +30,21 @@ pub(super) fn encode(numbered: &NumberedMap) -> String {
     });
     let mut code = format!("{MARK}{:08x}.{}", numbered.checksum, pairs.collect::<Vec<_>>().join(","));
     if rest != JointMap::default() {
-        // A map is plain data: it can always be written.
-        let json = serde_json::to_vec(&rest).unwrap_or_default();
         code.push('.');
-        code.push_str(&URL_SAFE_NO_PAD.encode(json));
+        code.push_str(&URL_SAFE_NO_PAD.encode(without_defaults(&rest).to_string()));
     }
     code
+}
+
+/// Members that say what holds anyway are left out, but for the version, without which it is no map.
+fn without_defaults(map: &JointMap) -> Value {
+    // A map is plain data: it can always be written.
+    let written = |map: &JointMap| serde_json::to_value(map).unwrap_or_default();
+    let (mut form, default) = (written(map), written(&JointMap::default()));
+    if let (Some(form), Some(default)) = (form.as_object_mut(), default.as_object()) {
+        form.retain(|key, value| key == "gaitway_map" || default.get(key) != Some(value));
+    }
+    form
 }
 
 /// None when it is no such code.
@@ -46,7 +56,10 @@ pub(super) fn decode(code: &str) -> Option<NumberedMap> {
     }
     let checksum = u32::from_str_radix(checksum, 16).ok()?;
     let mut map: JointMap = match rest {
-        Some(rest) => serde_json::from_slice(&URL_SAFE_NO_PAD.decode(rest).ok()?).ok()?,
+        Some(rest) => {
+            let json = String::from_utf8(URL_SAFE_NO_PAD.decode(rest).ok()?).ok()?;
+            JointMap::from_json(&json).ok()?
+        }
         None => JointMap::default(),
     };
     for pair in pairs.split(',').filter(|pair| !pair.is_empty()) {

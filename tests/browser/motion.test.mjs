@@ -176,6 +176,28 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
         }
       });
 
+      onPage("the model is handed over with the borrowed clip in it", model, async (page) => {
+        await open(page, site.data(DANCE));
+        await apply(page, { t: 1.5, play: 0 });
+        const shown = await pose(page);
+        await page.setViewportSize({ width: 1280, height: 800 });
+        await page.waitForTimeout(500);
+        const download = page.waitForEvent("download");
+        await page.mouse.click(1237, 29);
+        await page.waitForTimeout(500);
+        await page.mouse.click(1200, 93);
+        const file = await download;
+        assert.equal(file.suggestedFilename(), "Xbot-cosc422_Dance.glb");
+        const base64 = fs.readFileSync(await file.path()).toString("base64");
+        const document = await page.evaluate(async (base64) => {
+          const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+          return await window.gaitway.open({ "again.glb": bytes.buffer });
+        }, base64);
+        assert.equal(document.clips.length, XBOT_CLIPS + 1);
+        await apply(page, { clip: String(XBOT_CLIPS), t: 1.5, play: 0 });
+        assert.ok(furthest(await pose(page), shown) < 1e-6);
+      });
+
       onPage("the map in force is handed over as a file", model, async (page) => {
         await open(page, site.data(DANCE));
         await page.setViewportSize({ width: 1280, height: 800 });

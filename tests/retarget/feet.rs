@@ -19,8 +19,8 @@ fn walker() -> Figure {
     // The standing leg's angle goes from +20° to −20°; hips follow so that its ankle stays.
     let angle = |time: f32, phase: f32| {
         let at = (time + phase).rem_euclid(2.0);
-        let degrees = if at < 1.0 { 20.0 - 40.0 * at } else { -20.0 + 40.0 * (at - 1.0) };
-        (degrees as f32).to_radians()
+        let degrees: f32 = if at < 1.0 { 20.0 - 40.0 * at } else { -20.0 + 40.0 * (at - 1.0) };
+        degrees.to_radians()
     };
     let mut forward = 0.0f32;
     let mut places = Vec::new();

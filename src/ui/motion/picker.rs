@@ -14,11 +14,13 @@ pub(super) struct Picking {
     /// The joint's number in the model's file.
     target: usize,
     search: String,
+    /// Shown for the first time: the present source is scrolled to.
+    fresh: bool,
 }
 
 impl Picking {
     pub fn new(motion: usize, target: usize) -> Self {
-        Self { motion, target, search: String::new() }
+        Self { motion, target, search: String::new(), fresh: true }
     }
 }
 
@@ -49,13 +51,18 @@ pub fn show(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut
             field.request_focus();
         }
         let found = matching(&pairing, &picking.search);
-        if entered && let Some(&first) = found.first() {
+        // Nothing typed chooses nothing.
+        if entered
+            && !picking.search.trim().is_empty()
+            && let Some(&first) = found.first()
+        {
             chosen = Some(Some(pairing.motion.asset.skeleton.source_index(first)));
         }
         ui.add_space(4.0);
         let map = map_in_force(shown.library, shown.state, picking.motion).unwrap_or_default();
         let now = pairing.source_in(&map, picking.target).flatten();
-        list(ui, &pairing, &found, now, screen.height(), &mut chosen);
+        let fresh = std::mem::take(&mut picking.fresh);
+        list(ui, &pairing, &found, now.filter(|_| fresh), now, &mut chosen);
         ui.add_space(4.0);
         closed |= ui.button("Cancel").clicked();
     });
@@ -72,19 +79,23 @@ fn list(
     ui: &mut Ui,
     pairing: &Pairing<'_>,
     found: &[JointIndex],
+    scroll_to: Option<JointIndex>,
     now: Option<JointIndex>,
-    screen_height: f32,
     chosen: &mut Option<Option<usize>>,
 ) {
-    let height = (screen_height - 260.0).clamp(90.0, 380.0);
+    let height = (ui.ctx().content_rect().height() - 260.0).clamp(90.0, 380.0);
     ScrollArea::vertical().id_salt("sources").max_height(height).min_scrolled_height(height).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
-        if controls::list_row(ui, "Nothing", "keeps its rest", now.is_none()).clicked() {
+        if controls::list_row(ui, "Nothing", "", now.is_none()).clicked() {
             *chosen = Some(None);
         }
         for &joint in found {
             let asset = &pairing.motion.asset;
-            if controls::list_row(ui, &joint_text(asset, joint), "", now == Some(joint)).clicked() {
+            let row = controls::list_row(ui, &joint_text(asset, joint), "", now == Some(joint));
+            if scroll_to == Some(joint) {
+                row.scroll_to_me(Some(egui::Align::Center));
+            }
+            if row.clicked() {
                 *chosen = Some(Some(asset.skeleton.source_index(joint)));
             }
         }
