@@ -83,12 +83,12 @@ fn list(
     now: Option<JointIndex>,
     chosen: &mut Option<Option<usize>>,
 ) {
-    let height = (ui.ctx().content_rect().height() - 260.0).clamp(90.0, 380.0);
+    if controls::list_row(ui, "Nothing", "", now.is_none()).clicked() {
+        *chosen = Some(None);
+    }
+    let height = (ui.ctx().content_rect().height() - 292.0).clamp(90.0, 360.0);
     ScrollArea::vertical().id_salt("sources").max_height(height).min_scrolled_height(height).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
-        if controls::list_row(ui, "Nothing", "", now.is_none()).clicked() {
-            *chosen = Some(None);
-        }
         for &joint in found {
             let asset = &pairing.motion.asset;
             let row = controls::list_row(ui, &joint_text(asset, joint), "", now == Some(joint));
