@@ -245,7 +245,8 @@ impl JointMap {
             Ok(None) => return Err(MapError::NoMap),
             Err(error) => return Err(MapError::NoJson { message: error.to_string() }),
         }
-        let text = &without_comments(text);
+        let explained = without_explanations(text);
+        let text = explained.as_deref().unwrap_or(text);
         serde_path_to_error::deserialize(&mut serde_json::Deserializer::from_str(text)).map_err(|error| {
             let path = error.path().to_string();
             MapError::Json { path, message: error.into_inner().to_string() }
@@ -259,23 +260,21 @@ impl JointMap {
     }
 }
 
-/// `gaitway map --json` says more than a map has: what it says can be used as a map all the same.
-fn without_comments(text: &str) -> String {
-    let Ok(mut form) = serde_json::from_str::<serde_json::Value>(text) else { return text.to_owned() };
-    if let Some(map) = form.as_object_mut() {
-        for comment in ["unmapped_targets", "unused_sources", "warnings"] {
-            map.remove(comment);
-        }
-        let entries = map.get_mut("joints").and_then(serde_json::Value::as_object_mut);
-        for entry in entries.into_iter().flat_map(|joints| joints.values_mut()) {
-            if let Some(entry) = entry.as_object_mut() {
-                for comment in ["slot", "reason", "confidence"] {
-                    entry.remove(comment);
-                }
-            }
+/// `gaitway map --json` says more than a map has, and its "unused_sources" tell; what it says can be used as a map all the
+/// same. None for other text, which is read to the letter.
+fn without_explanations(text: &str) -> Option<String> {
+    let mut form: serde_json::Value = serde_json::from_str(text).ok()?;
+    let map = form.as_object_mut()?;
+    map.remove("unused_sources")?;
+    map.remove("unmapped_targets");
+    map.remove("warnings");
+    let entries = map.get_mut("joints").and_then(serde_json::Value::as_object_mut);
+    for entry in entries.into_iter().flat_map(|joints| joints.values_mut()).filter_map(|entry| entry.as_object_mut()) {
+        for explanation in ["slot", "reason", "confidence"] {
+            entry.remove(explanation);
         }
     }
-    form.to_string()
+    Some(form.to_string())
 }
 
 impl Default for JointMap {

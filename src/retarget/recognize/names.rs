@@ -171,9 +171,10 @@ fn words(text: &str) -> Vec<String> {
 /// Rigs may have several, as `Armature_mixamorig`. Never the whole name: `Bip01` and `Character1` stay.
 fn drop_prefix(words: &mut Vec<String>) {
     for _ in 0..2 {
+        let leaves_a_word = |prefix: &[&str]| words.iter().skip(prefix.len()).any(|word| !is_number(word));
         let Some(prefix) = PREFIXES
             .iter()
-            .find(|prefix| words.len() > prefix.len() && words.iter().zip(**prefix).all(|(word, part)| word == part))
+            .find(|prefix| leaves_a_word(prefix) && words.iter().zip(**prefix).all(|(word, part)| word == part))
         else {
             return;
         };
