@@ -5,7 +5,7 @@
 
 #![no_main]
 
-use gaitway::formats::{FileSet, load, missing_files};
+use gaitway::formats::{FileSet, LoadOptions, convert, load, missing_files};
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     let mut files = FileSet::default();
@@ -19,5 +19,11 @@ libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
         for geometry in &mesh.primitives {
             geometry.validate(smallest_skin).expect("what is read is consistent");
         }
+    }
+    // What is written must be readable again; that a file cannot be written is an answer too.
+    if let Ok(written) = convert(&files, &LoadOptions::default()) {
+        let mut files = FileSet::default();
+        files.insert("written.glb", written);
+        load(&files).expect("what is written can be read");
     }
 });
