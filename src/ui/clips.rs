@@ -2,11 +2,13 @@
 
 use egui::{RichText, ScrollArea, Ui};
 
-use super::icons::{Icon, icon_button};
+use super::icons::{Icon, icon_button, icon_button_sized};
 use super::{Output, Shown, UiAction, UiState, controls, style};
 use crate::library::Model;
 use crate::state::{ClipChoice, Command, choice_of_clip};
 
+/// As high as a search field, so that nothing moves when the first letter is typed.
+const CLEAR_SIZE: f32 = 28.0;
 /// With more clips than this there is a search field.
 const MANY_CLIPS: usize = 8;
 
@@ -113,16 +115,22 @@ pub fn short_name(source: &str) -> String {
 
 /// A search field that can be emptied.
 pub(super) fn search_field(ui: &mut Ui, text: &mut String, hint: &str) {
+    // As the pass began: typing does not make room for the button before the next.
+    let filled = !text.is_empty();
     ui.horizontal(|ui| {
-        let clear_width = if text.is_empty() { 0.0 } else { 34.0 };
+        // All of the button and its distance: a row that is too wide makes the panel grow, in every pass again.
+        let clear_width = if filled { CLEAR_SIZE + ui.spacing().item_spacing.x } else { 0.0 };
         let field = ui.add(
             egui::TextEdit::singleline(text)
                 .hint_text(hint)
                 .margin(egui::Margin::symmetric(10, 6))
                 .desired_width(ui.available_width() - clear_width),
         );
+        if field.changed() {
+            ui.ctx().request_repaint();
+        }
         field.accessible_name(hint);
-        if !text.is_empty() && icon_button(ui, Icon::Close, "Clear the search", false).clicked() {
+        if filled && icon_button_sized(ui, Icon::Close, "Clear the search", false, CLEAR_SIZE).clicked() {
             text.clear();
         }
     });

@@ -181,6 +181,7 @@ pub fn list_row(ui: &mut Ui, name: &str, right: &str, chosen: bool) -> Response 
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 30.0), Sense::click());
     let role = egui::accesskit::Role::Button;
     response.widget_info(|| WidgetInfo::selected(role, ui.is_enabled(), chosen, name));
+    let mut cut = false;
     if ui.is_rect_visible(rect) {
         let palette = style::palette(ui);
         let fill = if chosen {
@@ -202,26 +203,28 @@ pub fn list_row(ui: &mut Ui, name: &str, right: &str, chosen: bool) -> Response 
             left.max.x = drawn.left() - 8.0;
         }
         let color = if chosen { palette.accent } else { palette.text };
-        elided(ui, left, name, color);
+        cut = elided(ui, left, name, color);
     }
-    response
+    if cut { response.on_hover_text(name) } else { response }
 }
 
-/// One line of text in a box, cut with an ellipsis where it does not fit.
-pub fn elided(ui: &Ui, rect: Rect, text: &str, color: Color32) {
-    elided_in(ui, rect, text, color, egui::TextStyle::Body);
+/// One line of text in a box, cut with an ellipsis where it does not fit; true when it was cut.
+pub fn elided(ui: &Ui, rect: Rect, text: &str, color: Color32) -> bool {
+    elided_in(ui, rect, text, color, egui::TextStyle::Body)
 }
 
 /// As [`elided`], in small print.
-pub fn elided_small(ui: &Ui, rect: Rect, text: &str, color: Color32) {
-    elided_in(ui, rect, text, color, egui::TextStyle::Small);
+pub fn elided_small(ui: &Ui, rect: Rect, text: &str, color: Color32) -> bool {
+    elided_in(ui, rect, text, color, egui::TextStyle::Small)
 }
 
-fn elided_in(ui: &Ui, rect: Rect, text: &str, color: Color32, style: egui::TextStyle) {
+fn elided_in(ui: &Ui, rect: Rect, text: &str, color: Color32, style: egui::TextStyle) -> bool {
     let font = style.resolve(ui.style());
     let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), font, color);
     job.wrap = egui::text::TextWrapping::truncate_at_width(rect.width().max(0.0));
     let galley = ui.painter().layout_job(job);
     let at = rect.left_center() - vec2(0.0, galley.size().y / 2.0);
+    let cut = galley.elided;
     ui.painter().galley(at, galley, color);
+    cut
 }

@@ -187,7 +187,9 @@ fn tree_row(ui: &mut Ui, row: &Row, name: &str, kind: Kind, chosen: bool, folded
     } else {
         palette.text
     };
-    controls::elided(ui, text, name, color);
+    if controls::elided(ui, text, name, color) {
+        response.on_hover_text(name);
+    }
     pressed
 }
 

@@ -1,6 +1,7 @@
 //! The left panel.
 
 use egui_kittest::kittest::Queryable;
+use gaitway::anim::ClipBuilder;
 use gaitway::state::{ClipChoice, Command};
 use gaitway::ui::UiAction;
 
@@ -34,6 +35,34 @@ fn search_narrows_many_clips_and_can_be_cleared() {
     assert_eq!(press(&mut harness, "Move 11"), [expected]);
     press(&mut harness, "Clear the search");
     assert!(harness.query_by_label("Move 3").is_some());
+}
+
+/// A row that is wider than its panel widens the panel, again in every pass.
+#[test]
+fn a_search_leaves_the_panels_as_wide_as_they_are() {
+    let mut harness = bench(WIDE, model_with_clips(12));
+    let width = harness.state().picture.width();
+    for field in ["Search 12 clips", "Search nodes by name"] {
+        harness.get_by_label(field).click();
+        harness.run();
+        harness.get_by_label(field).type_text("o");
+        harness.run_steps(20);
+        assert_eq!(harness.state().picture.width(), width, "{field}");
+    }
+}
+
+#[test]
+fn a_name_that_is_cut_is_told_in_full_under_the_pointer() {
+    let mut model = model_with_clips(2);
+    let long = "One_Handed_Melee_Attack_Slice_Horizontal";
+    let asset = std::sync::Arc::get_mut(&mut model.asset).expect("nobody else has it");
+    asset.clips[1] = ClipBuilder::new(long.to_owned(), &asset.skeleton).build();
+    let mut harness = bench(WIDE, model);
+    for (name, told) in [("Move 0", 1), (long, 2)] {
+        harness.get_by_label(name).hover();
+        harness.run_steps(60);
+        assert_eq!(harness.query_all_by_label(name).count(), told, "{name}");
+    }
 }
 
 #[test]
