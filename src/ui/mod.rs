@@ -96,6 +96,8 @@ pub struct UiState {
     pub toast: Option<Toast>,
     /// The help was open in the last pass already.
     help_shown: bool,
+    /// Where the open sheet is.
+    sheet_rect: Option<Rect>,
     motion: motion::MotionTab,
     key_marks: scrub::KeyMarks,
     /// Joints whose children are folded away, as the file numbers them, and the model they belong to.
@@ -124,6 +126,7 @@ impl Default for UiState {
             aspect: 1.6,
             toast: None,
             help_shown: false,
+            sheet_rect: None,
             motion: Default::default(),
             key_marks: scrub::KeyMarks::default(),
             folded: HashSet::new(),
@@ -241,7 +244,13 @@ pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Outp
                 .show(ui, |ui| inspector::show(ui, &shown, local, out));
         }
     }
-    ui.available_rect_before_wrap()
+    let free = ui.available_rect_before_wrap();
+    local.sheet_rect = (narrow && !shown.state.embed && local.sheet.is_some()).then(|| overlays::sheet_rect(free));
+    match local.sheet_rect {
+        // Above the sheet, or the character would be behind it.
+        Some(sheet) => free.with_max_y(sheet.top() + f32::from(overlays::SHEET_CORNER)),
+        None => free,
+    }
 }
 
 fn is_narrow(ui: &Ui) -> bool {

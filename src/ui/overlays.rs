@@ -11,7 +11,7 @@ use super::{
 /// Call last; `picture` is the rectangle the picture has.
 pub fn overlays(ui: &mut Ui, picture: Rect, shown: Shown<'_>, local: &mut UiState, out: &mut Output) {
     if is_narrow(ui) && !shown.state.embed {
-        sheet(ui, picture, &shown, local, out);
+        sheet(ui, &shown, local, out);
     } else {
         local.sheet = None;
     }
@@ -30,13 +30,25 @@ pub fn overlays(ui: &mut Ui, picture: Rect, shown: Shown<'_>, local: &mut UiStat
     }
 }
 
-fn sheet(ui: &mut Ui, picture: Rect, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
+/// How round the upper corners of a sheet are; the picture goes on behind them.
+pub(super) const SHEET_CORNER: u8 = 16;
+
+/// The rectangle of a sheet at the bottom of what the panels leave free. It leaves a strip of the picture.
+pub(super) fn sheet_rect(free: Rect) -> Rect {
+    let height = (free.height() * 0.62).max(240.0).min(free.height() - 56.0).max(0.0);
+    Rect::from_min_max(pos2(free.left(), free.bottom() - height), free.right_bottom())
+}
+
+fn sheet(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     let Some(sheet) = local.sheet else { return };
+    // Opened in this very pass, after the room was shared out.
+    let Some(rect) = local.sheet_rect else {
+        ui.ctx().request_repaint();
+        return;
+    };
     let palette = style::palette(ui);
-    let height = (picture.height() * 0.62).max(240.0).min(picture.height() - 56.0);
-    let rect = Rect::from_min_max(pos2(picture.left(), picture.bottom() - height), picture.right_bottom());
     Area::new(Id::unique(("sheet", sheet as u8))).order(Order::Middle).fixed_pos(rect.min).show(ui.ctx(), |ui| {
-        let corners = egui::CornerRadius { nw: 16, ne: 16, sw: 0, se: 0 };
+        let corners = egui::CornerRadius { nw: SHEET_CORNER, ne: SHEET_CORNER, sw: 0, se: 0 };
         ui.painter().rect_filled(rect, corners, palette.panel);
         let line = Stroke::new(1.0, palette.line);
         ui.painter().rect_stroke(rect, corners, line, egui::StrokeKind::Inside);
@@ -157,7 +169,8 @@ pub(super) fn modal(name: &str, context: &Context) -> egui::Modal {
 fn help(context: &Context, local: &mut UiState) {
     let modal = modal("help", context).show(context, |ui| {
         let palette = style::palette(ui);
-        ui.set_width((ui.ctx().content_rect().width() - 64.0).min(400.0));
+        let width = (ui.ctx().content_rect().width() - 64.0).min(400.0);
+        ui.set_width(width);
         ui.horizontal(|ui| {
             ui.heading("Keys and gestures");
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -177,10 +190,18 @@ fn help(context: &Context, local: &mut UiState) {
         let lines = KEY_TABLE.iter().map(|line| (line.keys, line.does)).chain(pointer);
         let most = (ui.ctx().content_rect().height() - 160.0).max(120.0);
         egui::ScrollArea::vertical().max_height(most).min_scrolled_height(most).show(ui, |ui| {
+            // Small screens have no room for the longest keys and the longest words side by side.
+            let columns = [0.37 * width, 0.63 * width - 18.0];
             egui::Grid::new("keys").num_columns(2).min_row_height(18.0).spacing([18.0, 7.0]).show(ui, |ui| {
                 for (keys, does) in lines {
-                    ui.label(RichText::new(keys).color(palette.accent));
-                    ui.label(does);
+                    for (text, width) in
+                        [RichText::new(keys).color(palette.accent), does.into()].into_iter().zip(columns)
+                    {
+                        ui.vertical(|ui| {
+                            ui.set_width(width);
+                            ui.add(egui::Label::new(text).wrap());
+                        });
+                    }
                     ui.end_row();
                 }
             });

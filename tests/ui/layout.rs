@@ -33,6 +33,43 @@ fn a_narrow_screen_has_sheets_one_at_a_time() {
     assert_eq!(harness.state().panels.sheet, None);
 }
 
+/// The picture is what a sheet leaves free: the character stays in sight while a clip is chosen.
+#[test]
+fn a_sheet_does_not_hide_the_picture() {
+    for size in [NARROW, [320.0, 240.0]] {
+        let mut harness = sample_bench(size);
+        let whole = harness.state().picture;
+        press(&mut harness, "Clips");
+        let above = harness.state().picture;
+        assert!(above.height() >= 56.0 && above.height() < whole.height(), "{above:?} of {whole:?}");
+        let row = harness.get_by_label("Rest pose").rect();
+        assert!(above.bottom() <= row.top(), "{above:?} and {row:?}");
+        press(&mut harness, "Close the sheet");
+        assert_eq!(harness.state().picture, whole);
+    }
+}
+
+#[test]
+fn the_help_fits_small_screens() {
+    for size in [[320.0, 240.0], NARROW, WIDE] {
+        let mut harness = sample_bench(size);
+        harness.state_mut().panels.help_open = true;
+        harness.run();
+        let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
+        for label in ["Keys and gestures", "Close the help"] {
+            let rect = harness.get_by_label(label).rect();
+            assert!(screen.contains_rect(rect), "{label} at {rect:?} on {size:?}");
+        }
+        for label in ["Comma, period", "One frame back, one frame on"] {
+            let rect = harness.get_by_label(label).rect();
+            assert!(
+                screen.x_range().contains(rect.left()) && screen.x_range().contains(rect.right()),
+                "{label}: {rect:?}"
+            );
+        }
+    }
+}
+
 /// The transport is cut off nowhere, and no tab makes a side panel grow.
 #[test]
 fn everything_stays_on_the_screen() {
