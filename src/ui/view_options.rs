@@ -38,7 +38,11 @@ fn camera(ui: &mut Ui, shown: &Shown<'_>, aspect: f32, out: &mut Output) {
                 out.commands.push(look_from(shown, aspect, yaw_degrees, pitch_degrees));
             }
         }
-        if ui.add_sized([width, 30.0], egui::Button::new("Frame")).on_hover_text("Fit it all in (F)").clicked() {
+        if ui
+            .add_sized([width, 30.0], egui::Button::new("Fit"))
+            .on_hover_text("Fit everything into the picture (F)")
+            .clicked()
+        {
             out.commands.push(Command::FrameAll);
         }
     });
