@@ -1,4 +1,5 @@
 //! Making a clip over for another skeleton, and what comes before and after: recognising, proposing, measuring.
+//! `-- over`, `-- proposed`, `-- figures`: only these.
 
 mod support;
 
@@ -14,6 +15,7 @@ fn main() {
     let Some(folder) = data_folder() else { return };
     let read = |name: &str| -> Option<Asset> { load(&files_of(&folder.join(name))?).ok() };
     let (Some(xbot), Some(soldier)) = (read("threejs/Xbot.glb"), read("threejs/Soldier.glb")) else { return };
+    let word = std::env::args().skip(1).find(|argument| !argument.starts_with('-'));
     println!("{:<36} {:>12} {:>12}", "", "µs", "(fastest)");
     for (name, model, motion, clip) in [
         ("Xbot walk → Soldier", &soldier, &xbot, "walk"),
@@ -26,6 +28,9 @@ fn main() {
         let Ok(map) = propose(model, motion).to_map(model, motion).resolve(model, motion) else { continue };
         let bodies = || (Body { asset: model, slots: &slots[0] }, Body { asset: motion, slots: &slots[1] });
         let row = |what: &str, work: &mut dyn FnMut()| {
+            if word.as_ref().is_some_and(|word| !what.contains(word)) {
+                return;
+            }
             let nanos = measure(work);
             println!("{:<36} {:>12.1} {:>12.1}", format!("{name}, {what}"), nanos.median / 1e3, nanos.fastest / 1e3);
         };

@@ -203,6 +203,8 @@ impl<'a> Retargeting<'a> {
         };
         let translations = self.translations_kept();
         let skeletons = [&self.source.asset.skeleton, &self.model.asset.skeleton];
+        let locals = skeletons.map(node_locals);
+        let rests = [(skeletons[0], &locals[0][..]), (skeletons[1], &locals[1][..])];
         let hips_scale = self.hips.map_or(1.0, |hips| hips.scale);
         let root = self.root();
         let root_is_free = root.as_ref().is_none_or(RootMotion::keeps_all);
@@ -216,7 +218,6 @@ impl<'a> Retargeting<'a> {
         };
         let mut channels = Vec::new();
         for pair in &self.map.pairs {
-            let carry = Carry::new(pair, same, hips_scale, &self.alignment, skeletons);
             let morphs = match skeletons[1].name(pair.target) == skeletons[0].name(pair.source) {
                 true => skeletons[1].morph_range(pair.target).len(),
                 false => 0,
@@ -230,6 +231,7 @@ impl<'a> Retargeting<'a> {
                     Property::Rotation => false,
                 };
                 if wanted && !self.map.muted.contains(&(pair.source, property)) {
+                    let carry = Carry::new(pair, same, hips_scale, &self.alignment, rests);
                     channels.extend(carry.channel(self.source_clip, channel, morphs));
                 }
             }
@@ -243,8 +245,12 @@ impl<'a> Retargeting<'a> {
         let skeleton = &self.source.asset.skeleton;
         let above = |source: JointIndex, joint: JointIndex| ancestry(skeleton, source).any(|other| other == joint);
         let hips = self.hips.map(|hips| self.map.pairs[hips.pair]);
+        let mut on_the_way = vec![false; skeleton.len()];
+        for pair in &self.map.pairs {
+            ancestry(skeleton, pair.source).for_each(|joint| on_the_way[joint.get()] = true);
+        }
         let used = |joint: JointIndex, property: Property| match property {
-            Property::Rotation => self.map.pairs.iter().any(|pair| above(pair.source, joint)),
+            Property::Rotation => on_the_way[joint.get()],
             property => {
                 let copied = |pair: &Pair| pair.source == joint && written.contains(&(pair.target, property));
                 let carries =

@@ -43,22 +43,21 @@ pub(super) struct Carry<'a> {
 }
 
 impl<'a> Carry<'a> {
-    /// `hips_scale` is target units per source unit in the common frame.
+    /// `hips_scale` is target units per source unit in the common frame; the locals are those of the nodes' rests.
     pub fn new(
         pair: &'a Pair,
         same: bool,
         hips_scale: f64,
         alignment: &Alignment,
-        [source, target]: [&Skeleton; 2],
+        [(source, source_locals), (target, target_locals)]: [(&Skeleton, &[Local]); 2],
     ) -> Self {
         let above = |skeleton: &Skeleton, joint, rotations: &[DQuat], turn| {
             skeleton.parent(joint).map_or(turn, |parent: JointIndex| rotations[parent.get()])
         };
         let source_above = above(source, pair.source, &alignment.source.rotations, alignment.source_turn);
         let target_above = above(target, pair.target, &alignment.target.rotations, alignment.target_turn);
-        let (source_locals, target_locals) = (node_locals(source), node_locals(target));
-        let factor = hips_scale * scale_above(source, &source_locals, pair.source)
-            / scale_above(target, &target_locals, pair.target);
+        let factor = hips_scale * scale_above(source, source_locals, pair.source)
+            / scale_above(target, target_locals, pair.target);
         Self {
             pair,
             turn: target_above.conjugate() * source_above,

@@ -255,6 +255,9 @@ impl RootMotion<'_> {
 
     /// Sets what turning is taken from the figure. Gives the turn that goes to the root joint, if any.
     pub fn stop_turning(&self, laws: &mut [RotationLaw]) -> Option<Yaw> {
+        if self.map.root.yaw == RootPart::Keep && !self.extracts() {
+            return None;
+        }
         let top = self.top_pair();
         let hips = self.target_joint();
         let rest = self.alignment.target.rotations[hips.get()];
