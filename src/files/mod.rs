@@ -1,6 +1,7 @@
 //! Getting at bytes: disk, drop, picker, network; sorting files by what they are; decoding images. Produces
 //! [`crate::library::Model`]s and [`crate::library::Motion`]s.
 
+mod address;
 #[cfg(not(target_arch = "wasm32"))]
 mod decode;
 #[cfg(not(target_arch = "wasm32"))]
@@ -10,6 +11,7 @@ mod sort;
 #[cfg(target_arch = "wasm32")]
 mod web;
 
+pub use address::raw_address;
 #[cfg(not(target_arch = "wasm32"))]
 pub use decode::decode_images;
 #[cfg(not(target_arch = "wasm32"))]

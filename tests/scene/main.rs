@@ -1,5 +1,6 @@
 //! From a model and a view state to a picture's numbers: library, state, link, frame, and the command line. No GPU.
 
+mod address;
 mod allocation;
 mod cli;
 mod cli_borrow;
