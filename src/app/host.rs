@@ -36,6 +36,12 @@ pub trait Host {
     /// Opens files that were dropped on the canvas or the window, as one set.
     fn open_dropped(&self, files: Vec<egui::DroppedFileHandle>, inbox: &Inbox);
 
+    /// Shows the link, from the part after `#`, with all that can be done with it; false where it can only be copied.
+    fn share(&self, fragment: &str) -> bool {
+        let _ = fragment;
+        false
+    }
+
     /// A link that a person can pass on, from the part after `#`.
     fn link(&self, fragment: &str) -> String;
 

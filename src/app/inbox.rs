@@ -20,6 +20,8 @@ pub enum Message {
     },
     /// What is on the screen stays; the message is shown.
     OpenFailed(String),
+    /// As `OpenFailed`, but whoever asked for it says what was wrong.
+    OpenGivenUp,
     Commands(Vec<Command>),
     Script(ScriptCall),
 }

@@ -132,6 +132,7 @@ impl App {
                 self.panels.motion_refused = false;
                 self.panels.error = Some(error);
             }
+            Message::OpenGivenUp => self.panels.progress = None,
             Message::Commands(commands) => commands.into_iter().for_each(|command| self.apply(command)),
             Message::Script(call) => self.script(call),
         }
@@ -244,8 +245,11 @@ impl App {
             UiAction::ShowRefusedAlone => self.show_refused_alone(),
             UiAction::MapRefusedByHand => self.map_refused_by_hand(),
             UiAction::CopyLink => {
-                self.context.copy_text(self.host.link(&to_link(&self.state)));
-                self.toast("Link copied.".to_owned());
+                let link = to_link(&self.state);
+                if !self.host.share(&link) {
+                    self.context.copy_text(self.host.link(&link));
+                    self.toast("Link copied.".to_owned());
+                }
             }
             UiAction::Undo | UiAction::Redo => {
                 let done = match action {

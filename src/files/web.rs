@@ -1,13 +1,15 @@
 //! Models on the page: fetched by URL together with the files they name beside themselves, or from buffers that were
 //! dropped; images are decoded by the browser. Nothing is sent anywhere.
 
+use std::cell::Cell;
+
 use js_sys::{Array, Reflect, Uint8Array};
 use wasm_bindgen::{JsCast, JsValue};
 use wasm_bindgen_futures::JsFuture;
 
 use super::image_limit::{fitted, made_smaller};
 use super::sort::{Origins, sort_noticing_images};
-use super::{Contents, Role, SortError, read_map};
+use super::{Contents, Role, SortError, raw_address, read_map};
 use crate::asset::{Asset, Image, Warning};
 use crate::formats::{FileSet, missing_files};
 use crate::library::{ImageData, Model, Motion, sample};
@@ -34,10 +36,14 @@ pub enum OpenError {
     #[error("{url}: the server answered {status}{}", hint(*status))]
     Status { url: String, status: u16 },
     #[error(
-        "{url}: it could not be fetched. Either the site cannot be reached, or it does not let other pages read its files \
-         (CORS); download the file and drop it here instead"
+        "{url}: the site is there, but it does not let other pages read this file (CORS), or there is no such file; \
+         download the file and drop it here instead"
     )]
+    Refused { url: String },
+    #[error("{url}: the site cannot be reached; check the address and the connection")]
     Unreachable { url: String },
+    #[error("{url}: a page that came over https may not read http addresses; try the same address with https")]
+    Insecure { url: String },
     #[error("{url}: the connection broke off after {received} bytes")]
     BrokeOff { url: String, received: u64 },
     #[error("{name}: more than {most} bytes together, which a browser cannot hold; try the window (`gaitway FILE`)")]
@@ -145,19 +151,27 @@ pub async fn open_items(
 }
 
 /// Opens all that a view lists; its model only if asked for. A motion or a map that cannot be had is a problem in the
-/// answer. Addresses of maps in the view are replaced by what they hold.
+/// answer. Addresses of maps in the view are replaced by what they hold. `progress` is told which part of how many it is.
 pub async fn open_view(
     state: &mut ViewerState,
     with_model: bool,
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<Contents, OpenError> {
     let mut contents = Contents::default();
+    let files = state.map.iter().filter(|map| matches!(map, MotionMap::File(_))).count();
+    let parts = usize::from(with_model) + state.motion.len() + files;
+    let part = Cell::new(usize::from(with_model));
+    let progress = &|name: &str, received: u64, total: u64| match parts {
+        0 | 1 => progress(name, received, total),
+        _ => progress(&format!("{} of {parts}: {name}", part.get()), received, total),
+    };
     if with_model {
         let items = state.model.iter().map(|model| Item::Url(model.clone())).collect();
         contents = open_items(items, Role::Model, progress).await?;
     }
     let mut motions = contents.motions.take().unwrap_or_default();
     for motion in &state.motion {
+        part.set(part.get() + 1);
         match open_items(vec![Item::Url(motion.clone())], Role::Motion, progress).await {
             Ok(found) => {
                 motions.extend(found.motions.unwrap_or_default());
@@ -171,10 +185,13 @@ pub async fn open_view(
     let mut maps = Vec::new();
     for map in state.map.drain(..) {
         match map {
-            MotionMap::File(url) => match fetch_map(&url, progress).await {
-                Ok(map) => maps.push(MotionMap::Names(map)),
-                Err(error) => contents.problems.push(error.to_string()),
-            },
+            MotionMap::File(url) => {
+                part.set(part.get() + 1);
+                match fetch_map(&url, progress).await {
+                    Ok(map) => maps.push(MotionMap::Names(map)),
+                    Err(error) => contents.problems.push(error.to_string()),
+                }
+            }
             map => maps.push(map),
         }
     }
@@ -247,11 +264,11 @@ fn escaped(path: &str) -> String {
     format!("./{path}")
 }
 
-/// `url` seen from `base`, or from the page.
+/// `url` seen from `base`, or from the page; of a page about a file, the file.
 fn absolute(url: &str, base: Option<&str>) -> Option<String> {
     let page = web_sys::window().and_then(|window| window.location().href().ok());
-    let url = web_sys::Url::new_with_base(url, base.or(page.as_deref())?).ok()?;
-    Some(url.href())
+    let url = web_sys::Url::new_with_base(url, base.or(page.as_deref())?).ok()?.href();
+    Some(raw_address(&url).into_owned())
 }
 
 /// The last part of an address, as a person would write it.
@@ -270,7 +287,10 @@ async fn fetch(
     progress(name, 0, 0);
     let unreachable = || OpenError::Unreachable { url: url.to_owned() };
     let window = web_sys::window().ok_or_else(unreachable)?;
-    let response = JsFuture::from(window.fetch_with_str(url)).await.map_err(|_| unreachable())?;
+    let response = match JsFuture::from(window.fetch_with_str(url)).await {
+        Ok(response) => response,
+        Err(_) => return Err(why_not_fetched(&window, url).await),
+    };
     let response: web_sys::Response = response.dyn_into().map_err(|_| unreachable())?;
     if !response.ok() {
         return Err(OpenError::Status { url: url.to_owned(), status: response.status() });
@@ -304,6 +324,21 @@ async fn fetch(
         progress(name, received, if received > total { 0 } else { total });
     }
     Ok(bytes)
+}
+
+/// Browsers say no more than that it failed. A request whose answer nobody may read still tells whether there is one.
+async fn why_not_fetched(window: &web_sys::Window, url: &str) -> OpenError {
+    let is_https = window.location().protocol().is_ok_and(|protocol| protocol == "https:");
+    if is_https && url.starts_with("http://") {
+        return OpenError::Insecure { url: url.to_owned() };
+    }
+    let probe = web_sys::RequestInit::new();
+    probe.set_method("HEAD");
+    probe.set_mode(web_sys::RequestMode::NoCors);
+    match JsFuture::from(window.fetch_with_str_and_init(url, &probe)).await {
+        Ok(_) => OpenError::Refused { url: url.to_owned() },
+        Err(_) => OpenError::Unreachable { url: url.to_owned() },
+    }
 }
 
 /// An image on its way, or why there will be none. Not to wait for it is fine.

@@ -22,24 +22,26 @@ pub async fn open(items: Array, role: Option<String>) -> Result<String, JsError>
     let page = page().map_err(error)?;
     let items = items_of(&items).map_err(error)?;
     let role = if role.as_deref() == Some("motion") { Role::Motion } else { Role::Any };
-    let (shown, document) = show(&page, What::Items(items, role)).await.map_err(error)?;
-    Ok(json!({ "shown": shown, "document": document }).to_string())
+    let shown = show(&page, What::Items(items, role)).await.map_err(error)?;
+    Ok(json!({ "shown": shown.what, "document": shown.document }).to_string())
 }
 
-/// Takes over another part after `#`, with its model when that is another one.
+/// Takes over another part after `#`, with its files when they are others than those shown, or when all is to be read
+/// `again`. Resolves to `{loaded, problems}`: whether the `model` and the `motion` come from the link's addresses now, and
+/// what of the link could not be had.
 #[wasm_bindgen]
-pub async fn follow_link(link: String) -> Result<(), JsError> {
+pub async fn follow_link(link: String, again: bool) -> Result<String, JsError> {
     let page = page().map_err(error)?;
     let mut state = state_of_link(&link, &page.shell);
     if state.model.is_empty() {
         state.model.push(format!("sample:{}", sample::NAMES[0]));
     }
-    take_over(&page, state).await.map_err(error)
+    take_over(&page, state, again, true).await.map_err(error)
 }
 
-/// Sets some keys of the link; resolves after the frame that shows them.
+/// Sets some keys of the link; resolves after the frame that shows them, to the same as [`follow_link`].
 #[wasm_bindgen]
-pub async fn apply(partial: String) -> Result<(), JsError> {
+pub async fn apply(partial: String) -> Result<String, JsError> {
     let page = page().map_err(error)?;
     let partial: Value = serde_json::from_str(&partial).map_err(|problem| error(problem.to_string()))?;
     let before = with_app(&page, |app| app.state().clone()).map_err(error)?;
@@ -47,12 +49,23 @@ pub async fn apply(partial: String) -> Result<(), JsError> {
     if !errors.is_empty() || !needs_files(&before, &state) {
         let (promise, reply) = promise::<()>(|()| JsValue::UNDEFINED);
         page.inbox.send(Message::Script(ScriptCall::Apply(partial, reply)));
-        return settled(promise).await.map(|_| ()).map_err(error);
+        return settled(promise).await.map(|_| news(&[], &[])).map_err(error);
     }
     if state.model.is_empty() {
         state.model.push(format!("sample:{}", sample::NAMES[0]));
     }
-    take_over(&page, state).await.map_err(error)
+    take_over(&page, state, false, false).await.map_err(error)
+}
+
+/// The picture of a QR code: a line of `0` and `1` for each row. None for a text too long to be read off a screen.
+#[wasm_bindgen]
+pub fn qr(text: &str) -> Option<String> {
+    let largest = qrcodegen::Version::new(30);
+    let segments = qrcodegen::QrSegment::make_segments(text);
+    let (least, smallest) = (qrcodegen::QrCodeEcc::Low, qrcodegen::Version::MIN);
+    let code = qrcodegen::QrCode::encode_segments_advanced(&segments, least, smallest, largest, None, true).ok()?;
+    let row = |y| (0..code.size()).map(|x| if code.get_module(x, y) { '1' } else { '0' }).collect();
+    Some((0..code.size()).map(row).collect::<Vec<String>>().join("\n"))
 }
 
 /// The link's keys as JSON.
@@ -103,27 +116,43 @@ fn needs_files(before: &ViewerState, state: &ViewerState) -> bool {
     state.model != before.model || state.motion != before.motion || has_map_file()
 }
 
-/// Shows a state, with its files where they are others than those shown.
-async fn take_over(page: &Rc<Page>, state: ViewerState) -> Result<(), String> {
+/// Shows a state, with its files where they are others than those shown, or in any case. What a link lacks is for the shell
+/// to say.
+async fn take_over(page: &Rc<Page>, state: ViewerState, again: bool, is_link: bool) -> Result<String, String> {
     let before = with_app(page, |app| app.state().clone())?;
-    if !needs_files(&before, &state) {
+    if !again && !needs_files(&before, &state) {
         page.inbox.send(Message::Commands(vec![Command::Replace(Box::new(state))]));
-        return Ok(());
+        return Ok(news(&[], &[]));
     }
-    let with_model = state.model != before.model;
-    show(page, What::View(Box::new(state), with_model)).await.map(|_| ())
+    let with_model = again || state.model != before.model;
+    let loaded: &[&str] = if with_model { &["model", "motion"] } else { &["motion"] };
+    let shown = show(page, What::View { state: Box::new(state), with_model, is_link }).await?;
+    Ok(news(loaded, &shown.problems))
+}
+
+fn news(loaded: &[&str], problems: &[String]) -> String {
+    json!({ "loaded": loaded, "problems": problems }).to_string()
 }
 
 /// What is to be opened.
 enum What {
     /// The present state is kept as far as it fits.
     Items(Vec<Item>, Role),
-    /// A whole view, with its model or with the one that is shown.
-    View(Box<ViewerState>, bool),
+    /// A whole view, with its model or with the one that is shown; of a link, the shell says what is missing.
+    View { state: Box<ViewerState>, with_model: bool, is_link: bool },
 }
 
-/// Loads and shows; says which of model, motion and map it was, and gives the inspect document.
-async fn show(page: &Rc<Page>, what: What) -> Result<(&'static str, Value), String> {
+struct Shown {
+    /// `model`, `motion` or `map`.
+    what: &'static str,
+    /// The inspect document.
+    document: Value,
+    /// What could not be had.
+    problems: Vec<String>,
+}
+
+/// Loads and shows.
+async fn show(page: &Rc<Page>, what: What) -> Result<Shown, String> {
     let load = page.loads.get() + 1;
     page.loads.set(load);
     let progress = |name: &str, received_bytes: u64, total_bytes: u64| {
@@ -132,9 +161,10 @@ async fn show(page: &Rc<Page>, what: What) -> Result<(&'static str, Value), Stri
             page.inbox.send(Message::OpenProgress(opening));
         }
     };
+    let shell_tells = matches!(what, What::View { is_link: true, .. });
     let opened: Result<(Contents, Option<Box<ViewerState>>), OpenError> = match what {
         What::Items(items, role) => open_items(items, role, &progress).await.map(|contents| (contents, None)),
-        What::View(mut state, with_model) => {
+        What::View { mut state, with_model, .. } => {
             open_view(&mut state, with_model, &progress).await.map(|contents| (contents, Some(state)))
         }
     };
@@ -142,22 +172,28 @@ async fn show(page: &Rc<Page>, what: What) -> Result<(&'static str, Value), Stri
         return Err("something else was opened meanwhile".to_owned());
     }
     match opened {
-        Ok((contents, state)) => {
-            let shown = match &contents {
+        Ok((mut contents, state)) => {
+            let what = match &contents {
                 Contents { model: Some(_), .. } => "model",
                 Contents { motions: Some(_), .. } => "motion",
                 _ => "map",
             };
-            contents.problems.iter().for_each(|problem| page.shell.warn(problem));
+            let problems = contents.problems.clone();
+            if shell_tells {
+                contents.problems.clear();
+            } else {
+                problems.iter().for_each(|problem| page.shell.warn(problem));
+            }
             let (promise, reply) = promise::<Value>(|document| JsValue::from_str(&document.to_string()));
             page.inbox.send(Message::Opened { contents: Box::new(contents), state, reply: Some(reply) });
             let text = settled(promise).await?.as_string().unwrap_or_default();
             let document = serde_json::from_str(&text).map_err(|error| error.to_string())?;
-            Ok((shown, document))
+            Ok(Shown { what, document, problems })
         }
         Err(problem) => {
             let problem = problem.to_string();
-            page.inbox.send(Message::OpenFailed(problem.clone()));
+            let told = if shell_tells { Message::OpenGivenUp } else { Message::OpenFailed(problem.clone()) };
+            page.inbox.send(told);
             Err(problem)
         }
     }

@@ -7,7 +7,7 @@ use wasm_bindgen::prelude::*;
 
 use super::shell::{self, Shell};
 use crate::app::{App, Backend, Host, Inbox, set_fatal_hook, web_options};
-use crate::files::{Contents, Role, open_items, open_view};
+use crate::files::{Contents, Item, OpenError, Role, open_items, open_view};
 use crate::library::sample;
 use crate::state::{ViewerState, from_link, to_link};
 
@@ -37,9 +37,8 @@ pub fn start() {
 }
 
 /// Shows what the link says, or `items` (see [`super::calls::open`]) in the link's view, borrowing from `motion_items` or
-/// what the link lists; resolves when the first picture
-/// is on its way. `renderer` is `webgpu`, `webgl2` or nothing. Rejects when no device is to be had; call again with a new
-/// canvas then.
+/// what the link lists; resolves when the first picture is on its way, to a JSON list of what could not be had. `renderer`
+/// is `webgpu`, `webgl2` or nothing. Rejects when no device is to be had; call again with a new canvas then.
 #[wasm_bindgen]
 pub async fn run(
     canvas: web_sys::HtmlCanvasElement,
@@ -48,10 +47,10 @@ pub async fn run(
     items: Array,
     motion_items: Array,
     shell: Shell,
-) -> Result<(), JsError> {
+) -> Result<String, JsError> {
     shell::keep(shell.clone());
     let first = first_contents(&link, &items, &motion_items, &shell).await;
-    let (contents, state, problem) = first.map_err(|error| JsError::new(&error))?;
+    let (contents, state, problems) = first.map_err(|error| JsError::new(&error))?;
     let backend = match renderer.as_deref() {
         Some("webgpu") => Some(Backend::WebGpu),
         Some("webgl2") => Some(Backend::WebGl2),
@@ -67,23 +66,19 @@ pub async fn run(
     });
     runner.start(canvas, web_options(backend), create).await.map_err(|error| JsError::new(&text_of(&error)))?;
     let inbox = made.borrow_mut().take().ok_or_else(|| JsError::new("the app did not start"))?;
-    if let Some(problem) = problem {
-        shell.warn(&problem);
-        inbox.send(crate::app::Message::OpenFailed(problem));
-    }
     let page = Page { runner, inbox, shell, loads: Cell::new(0) };
     PAGE.with_borrow_mut(|slot| *slot = Some(std::rc::Rc::new(page)));
-    Ok(())
+    Ok(serde_json::json!(problems).to_string())
 }
 
-/// What is shown first: the items, else what the link lists, else the sample, which also stands in for what cannot be
-/// opened; the reason comes along.
+/// What is shown first: the items, else what the link lists, and what of that could not be had. A model that cannot be had
+/// gives way to the skeleton of the first motion that can, else to the sample.
 async fn first_contents(
     link: &str,
     items: &Array,
     motion_items: &Array,
     shell: &Shell,
-) -> Result<(Contents, ViewerState, Option<String>), String> {
+) -> Result<(Contents, ViewerState, Vec<String>), String> {
     let mut state = state_of_link(link, shell);
     let items = super::calls::items_of(items)?;
     let motion_items = super::calls::items_of(motion_items)?;
@@ -110,19 +105,45 @@ async fn first_contents(
         }
         Ok(contents)
     };
-    let opened: Result<Contents, crate::files::OpenError> = opened.await;
-    state.motion = listed;
+    let opened: Result<Contents, OpenError> = opened.await;
+    state.motion.clone_from(&listed);
     match opened {
-        Ok(contents) => {
-            contents.problems.iter().for_each(|problem| shell.warn(problem));
-            Ok((contents, state, None))
+        Ok(mut contents) => {
+            let problems = std::mem::take(&mut contents.problems);
+            Ok((contents, state, problems))
         }
         Err(error) => {
-            let model = sample::load(sample::NAMES[0]).ok_or_else(|| error.to_string())?;
-            let state = ViewerState { model: vec![model.source.clone()], ..ViewerState::default() };
-            let contents = Contents { model: Some(model), motions: Some(Vec::new()), ..Contents::default() };
-            Ok((contents, calm(state), Some(error.to_string())))
+            let mut problems = vec![error.to_string()];
+            let mut model = None;
+            for motion in listed {
+                match open_items(vec![Item::Url(motion)], Role::Model, &progress).await {
+                    Ok(found) => {
+                        model = found.model;
+                        break;
+                    }
+                    Err(error) => problems.push(error.to_string()),
+                }
+            }
+            let model = model.or_else(|| sample::load(sample::NAMES[0])).ok_or_else(|| problems.join("\n"))?;
+            let state = about_no_model(state, model.source.clone());
+            Ok((Contents { model: Some(model), motions: Some(Vec::new()), ..Contents::default() }, state, problems))
         }
+    }
+}
+
+/// The view of a model instead of another one: what is about the other goes.
+fn about_no_model(state: ViewerState, model: String) -> ViewerState {
+    ViewerState {
+        model: vec![model],
+        playing: state.playing,
+        speed: state.speed,
+        skinning: state.skinning,
+        show: state.show,
+        exposure: state.exposure,
+        environment_degrees: state.environment_degrees,
+        background: state.background,
+        embed: state.embed,
+        ..ViewerState::default()
     }
 }
 
@@ -133,11 +154,13 @@ pub(super) fn state_of_link(link: &str, shell: &Shell) -> ViewerState {
     calm(state)
 }
 
-/// A wish for less motion overrides `play` when a link is opened.
+/// A wish for less motion overrides `play` and the turntable when a link is opened.
 fn calm(mut state: ViewerState) -> ViewerState {
     let query =
         web_sys::window().and_then(|window| window.match_media("(prefers-reduced-motion: reduce)").ok()).flatten();
-    state.playing &= !query.is_some_and(|query| query.matches());
+    if query.is_some_and(|query| query.matches()) {
+        (state.playing, state.turntable) = (false, 0.0);
+    }
     state
 }
 
@@ -182,6 +205,11 @@ impl Host for PageHost {
 
     /// The shell takes every drop before the canvas sees it, since it keeps the files and reads folders.
     fn open_dropped(&self, _files: Vec<egui::DroppedFileHandle>, _inbox: &Inbox) {}
+
+    fn share(&self, fragment: &str) -> bool {
+        self.shell.share(fragment);
+        true
+    }
 
     fn link(&self, fragment: &str) -> String {
         let href = web_sys::window().and_then(|window| window.location().href().ok()).unwrap_or_default();

@@ -34,6 +34,10 @@ extern "C" {
     #[wasm_bindgen(method)]
     pub fn changed(this: &Shell, link: &str);
 
+    /// Shows what there is to pass on: the text is the part after `#`.
+    #[wasm_bindgen(method)]
+    pub fn share(this: &Shell, link: &str);
+
     /// Something a person should know, though nothing is lost.
     #[wasm_bindgen(method)]
     pub fn warn(this: &Shell, message: &str);
