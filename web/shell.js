@@ -10,6 +10,10 @@ const NAMES = { webgpu: "WebGPU", webgl2: "WebGL2" };
 
 /** What is shown now, so that it can be shown again: the items that were opened last and those that are borrowed from (none: those of the link), and the link. */
 const kept = { items: [], motionItems: [], link: location.hash.slice(1) };
+/** Which parts of what is shown are a person's own files: see `isPrivate`. */
+const own = { model: false, motion: false, map: false };
+/** What was opened and not taken, of which the app may still make something: `{items, isOwn}`. */
+let refused = null;
 /** Compiled once for all instances. */
 let compiled = null;
 /** Bindings of the running instance; null while none runs. */
@@ -81,17 +85,22 @@ function stopped(message) {
   const ended = app;
   app = null;
   show("stopped");
-  byId("open").close();
+  for (const dialog of document.querySelectorAll("dialog")) dialog.close();
   byId("stopped-again").focus();
   // Not from inside the instance's own call.
   setTimeout(() => {
-    try {
-      ended?.destroy();
-    } catch {
-      // After a panic nothing of the instance answers any more.
-    }
+    end(ended);
     byId("stage").replaceChildren();
   });
+}
+
+function end(instance) {
+  if (app === instance) app = null;
+  try {
+    instance?.destroy();
+  } catch {
+    // After a panic nothing of the instance answers any more.
+  }
 }
 
 // ---- What this browser can do ----
@@ -189,9 +198,11 @@ async function start(renderer) {
     canvas.setAttribute("aria-label", "The model and its controls. Ctrl+O opens files.");
     byId("stage").replaceChildren(canvas);
     backend = attempt;
+    const link = kept.link;
+    let missing;
     try {
-      const run = bindings.run(canvas, attempt ?? undefined, kept.link, entries, motionEntries, hooks(() => app === bindings || app === null));
-      await Promise.race([run, new Promise((_, reject) => (giveUp = reject))]);
+      const run = bindings.run(canvas, attempt ?? undefined, link, entries, motionEntries, hooks(() => app === bindings || app === null));
+      missing = JSON.parse(await Promise.race([run, new Promise((_, reject) => (giveUp = reject))]));
     } catch (error) {
       if (panel === "stopped") throw error;
       problems.push(`${NAMES[attempt] ?? "Graphics"}: ${error.message}`);
@@ -204,6 +215,7 @@ async function start(renderer) {
     if (stopReason !== null) throw new Error(stopReason);
     show(null);
     summarise();
+    showMissing(missing, link);
     return;
   }
   const other = renderer === null ? null : renderer === "webgpu" ? "webgl2" : "webgpu";
@@ -222,8 +234,9 @@ const isTrap = (error) => typeof WebAssembly === "object" && error instanceof We
 const hooks = (current) => ({
   choose: (role) => openDialog(role),
   save: (name, bytes) => save(name, bytes),
-  motionIsModel: () => ([kept.items, kept.motionItems] = [kept.motionItems, []]),
-  motionsRemoved: () => (kept.motionItems = []),
+  motionIsModel,
+  motionsRemoved,
+  share: (link) => share(link),
   progress: (name, received, total) => showProgress(name, received, total),
   changed: (link) => current() && changed(link),
   warn: (message) => {
@@ -252,12 +265,11 @@ function restart(renderer) {
 // ---- What was set ----
 
 let soon = null;
-/** The link as the instance first gave it back: until something is set, the address bar keeps what was typed. */
-let firstLink = null;
 
 function changed(link) {
   kept.link = link;
-  firstLink ??= link;
+  if (visit.files === null) keepTyped();
+  adoptRefused(link);
   clearTimeout(soon);
   soon = setTimeout(summarise, 250);
   // After the frame, so that whoever hears it may ask for the state.
@@ -270,21 +282,172 @@ function summarise() {
   const { model, clip, playing } = JSON.parse(app.summary());
   say(`${model}: ${clip ?? "rest pose"}, ${clip !== null && playing ? "playing" : "paused"}`);
   document.title = model === "" ? "Gaitway" : `${model.split("/").pop()} – Gaitway`;
-  // A link to files that only this browser has would lead nowhere.
-  if (kept.items.length === 0 && kept.motionItems.length === 0 && kept.link !== firstLink) history.replaceState(history.state, "", `#${kept.link}`);
+  record();
 }
 
-addEventListener("hashchange", async () => {
-  const link = location.hash.slice(1);
-  if (app === null || link === kept.link) return;
-  kept.items = [];
-  kept.motionItems = [];
+// ---- Links: the address bar, back and forward ----
+
+/** The pairs of a link, decoded. */
+const pairsOf = (link) => link.split("&").filter((pair) => pair !== "").map((pair) => [pair.split("=", 1)[0], decoded(pair.slice(pair.indexOf("=") + 1)), pair]);
+
+function decoded(text) {
   try {
-    await app.follow_link(link);
-  } catch (error) {
-    sayProblem(error.message);
+    return decodeURIComponent(text);
+  } catch {
+    return text;
   }
+}
+
+/** What a link shows and borrows from, each with its key. */
+function filesOf(link) {
+  const files = pairsOf(link).filter(([key]) => key === "model" || key === "motion");
+  if (!files.some(([key]) => key === "model")) files.unshift(["model", "sample:walker"]);
+  return files.map(([key, value]) => `${key}=${value}`);
+}
+
+/** The parts of a link that lie on this computer alone: `[key, name]`. */
+function localParts(link) {
+  const addresses = [...kept.items, ...kept.motionItems].filter((item) => typeof item === "string");
+  const held = { model: kept.items, motion: kept.motionItems };
+  return pairsOf(link).filter(([key, value]) => held[key]?.length > 0 && !addresses.includes(value) && !value.startsWith("sample:"));
+}
+
+/** A link without what lies on this computer alone, which would lead nowhere. */
+function publicLink(link) {
+  const local = localParts(link).map(([, , pair]) => pair);
+  return link.split("&").filter((pair) => !local.includes(pair)).join("&");
+}
+
+/**
+ * The entry of the browser's history that is shown: its number, what files it shows, and the link as the instance gave it
+ * back at first where the address bar keeps what was typed until something is set.
+ */
+const visit = { number: history.state?.gaitway ?? 0, files: null, typed: null };
+let lastVisit = visit.number;
+/** Entries that show files of this computer, for as long as the page lives: number → `{link, items, motionItems}`. */
+const visited = new Map();
+const MOST_VISITED = 16;
+/** Links that are being followed; what the app shows on the way is no entry. */
+let following = 0;
+
+/** Other files are a new entry, everything else changes the present one. */
+function record() {
+  const files = filesOf(kept.link).join("\n");
+  if (following > 0 || kept.link === visit.typed) return;
+  visit.typed = null;
+  const address = `#${publicLink(kept.link)}`;
+  if (files === visit.files) {
+    history.replaceState({ gaitway: visit.number }, "", address);
+  } else {
+    lastVisit += 1;
+    [visit.number, visit.files] = [lastVisit, files];
+    history.pushState({ gaitway: visit.number }, "", address);
+  }
+  remember();
+}
+
+function keepTyped() {
+  [visit.files, visit.typed] = [filesOf(kept.link).join("\n"), kept.link];
+}
+
+function remember() {
+  visited.delete(visit.number);
+  if (kept.items.length + kept.motionItems.length === 0) return;
+  visited.set(visit.number, { link: kept.link, items: kept.items, motionItems: kept.motionItems, own: { ...own } });
+  if (visited.size > MOST_VISITED) visited.delete(visited.keys().next().value);
+}
+
+// Back, forward, and another address typed after the `#`.
+addEventListener("popstate", ({ state }) => {
+  clearTimeout(soon);
+  // The entry's link is behind what was set in the last moment.
+  if (visited.has(visit.number)) visited.get(visit.number).link = kept.link;
+  if (state?.gaitway === undefined) {
+    lastVisit += 1;
+    visit.number = lastVisit;
+    history.replaceState({ gaitway: visit.number }, "");
+  } else {
+    visit.number = state.gaitway;
+    lastVisit = Math.max(lastVisit, visit.number);
+  }
+  const link = location.hash.slice(1);
+  // What has not started yet begins with this one.
+  if (app === null) kept.link = link;
+  else follow(link, visited.get(visit.number));
 });
+
+let follows = 0;
+
+/** Shows what a link says, with the files that its entry of the history held. */
+async function follow(link, { items = [], motionItems = [], link: heldLink = link, own: heldOwn } = {}, again = false) {
+  const current = app;
+  follows += 1;
+  const number = follows;
+  following += 1;
+  byId("missing").close();
+  [visit.files, visit.typed] = [filesOf(heldLink).join("\n"), null];
+  const lacking = (problems) => {
+    if (number !== follows || problems.length === 0) return;
+    // What is shown now lacks something that the address still has.
+    keepTyped();
+    showMissing(problems, link);
+  };
+  try {
+    if (items.length > 0 && items !== kept.items) await bring(items, undefined, heldOwn.model);
+    if (motionItems.length > 0 && motionItems !== kept.motionItems) await bring(motionItems, "motion", heldOwn.motion);
+    if (number !== follows) return;
+    // Files of the same name are others now.
+    const isOther = (items.length === 0 && kept.items.length > 0) || (motionItems.length === 0 && kept.motionItems.length > 0);
+    if (!again && !isOther && heldLink === kept.link) return;
+    const all = again || (isOther && items.length + motionItems.length === 0);
+    const { problems } = loaded(await unlessStopped(current, current.follow_link(heldLink, all)));
+    own.map &&= heldOwn?.map === true;
+    lacking(problems);
+  } catch (error) {
+    lacking([error.message]);
+  } finally {
+    following -= 1;
+    clearTimeout(soon);
+    soon = setTimeout(summarise, 250);
+  }
+}
+
+/** Takes note of what was read from a link's addresses, which takes the place of files that are held on to. */
+function loaded(answer) {
+  const news = JSON.parse(answer);
+  if (news.loaded.includes("model")) [kept.items, own.model] = [[], false];
+  if (news.loaded.includes("motion")) [kept.motionItems, own.motion, refused] = [[], false, null];
+  return news;
+}
+
+/** What of a link could not be had, and the way to try again. */
+function showMissing(problems, link) {
+  if (problems.length === 0) return;
+  sayProblem(problems.join(" "));
+  list("missing-parts", problems);
+  byId("missing-again").onclick = () => {
+    byId("missing").close();
+    if (kept.items.length + kept.motionItems.length === 0) {
+      follow(link, {}, true);
+    } else {
+      kept.link = link;
+      end(app);
+      restart(drawnWith());
+    }
+  };
+  if (panel === null && !byId("missing").open) byId("missing").showModal();
+}
+
+/** Shows what there is to pass on: see share.js. */
+function share(link) {
+  if (app === null) return;
+  const page = location.href.split("#")[0];
+  const rest = publicLink(link);
+  const address = `${page}#${rest}`;
+  const local = localParts(link).map(([key, name]) => ({ key, name }));
+  const embedded = `${page}#${rest.split("&").filter((pair) => !pair.startsWith("embed=")).join("&")}&embed=1`;
+  dispatchEvent(new CustomEvent("gaitway:share", { detail: { address, embedded, local, qr: app.qr(address) ?? null } }));
+}
 
 // ---- Opening ----
 
@@ -321,16 +484,85 @@ function normalised(items) {
 
 /** `as: "motion"`: to borrow from, whatever it is. */
 async function open(items, { as } = {}) {
+  return await openAll(items, { as });
+}
+
+/** `isOwn`: files among them are a person's own, which a page around this one gets to know nothing of. */
+async function openAll(items, { as, isOwn = true } = {}) {
   const wanted = normalised(items);
-  const current = await running();
-  const answer = await unlessStopped(current, (async () => current.open(await read(wanted), as))());
-  const { shown, document } = JSON.parse(answer);
-  // A link says where addresses lead; other files have to be held on to.
-  const held = wanted.every((item) => typeof item === "string") ? [] : wanted;
-  if (shown === "model") kept.items = held;
-  if (shown === "motion") kept.motionItems = held;
+  await running();
+  const { shown, document } = await bring(wanted, as, isOwn);
+  tellOpened(shown, document);
   summarise();
   return document;
+}
+
+/** Files of a person's own that are on their way to the screen. */
+let ownOnTheWay = 0;
+
+/** Reads and shows items, and holds on to them. */
+async function bring(items, as, isOwn) {
+  const isLocal = !items.every((item) => typeof item === "string");
+  const isOwnNow = isLocal && isOwn;
+  ownOnTheWay += isOwnNow ? 1 : 0;
+  try {
+    const current = app;
+    const answer = await unlessStopped(current, (async () => current.open(await read(items), as))());
+    const { shown, document } = JSON.parse(answer);
+    // A link says where addresses lead; other files have to be held on to.
+    const held = isLocal ? items : [];
+    if (shown === "model") {
+      [kept.items, own.model] = [held, isOwnNow];
+      // Motions may come along in the same set; those that are there stay.
+      const isSet = held.length > 1 || /\.zip$/i.test(held[0]?.name ?? "");
+      own.motion ||= (isOwnNow && isSet) || refused?.isOwn === true;
+    }
+    if (shown === "motion") [kept.motionItems, own.motion, own.map] = [held, isOwnNow, false];
+    // A set of motions may have a map in it.
+    if (shown !== "model") own.map ||= isOwnNow;
+    refused = null;
+    return { shown, document };
+  } catch (error) {
+    if (isLocal) refused = { items, isOwn: isOwnNow || refused?.isOwn === true };
+    throw error;
+  } finally {
+    ownOnTheWay -= isOwnNow ? 1 : 0;
+  }
+}
+
+/** Whether a page around this one must not get to know what is shown: dropped and chosen files are for the person's eyes. */
+const isPrivate = () => own.model || own.motion || own.map || refused?.isOwn === true || ownOnTheWay > 0;
+
+/** Files that were borrowed from a moment ago. */
+let removed = { items: [], isOwn: false };
+
+function motionsRemoved() {
+  removed = { items: kept.motionItems, isOwn: own.motion };
+  [kept.motionItems, own.motion, own.map] = [[], false, false];
+}
+
+function motionIsModel() {
+  const { items, isOwn } = kept.motionItems.length > 0 ? { items: kept.motionItems, isOwn: own.motion } : removed;
+  [kept.items, own.model] = [items, isOwn];
+  [kept.motionItems, own.motion] = [[], false];
+}
+
+/** What was refused may be shown or borrowed from after all, if the person says so. */
+function adoptRefused(link) {
+  if (refused === null) return;
+  const names = refused.items.map((item) => (typeof item === "string" ? item : item.name));
+  const has = (key) => pairsOf(link).some(([other, value]) => other === key && names.includes(value));
+  if (has("motion")) [kept.motionItems, own.motion] = [refused.items, refused.isOwn];
+  else if (has("model")) [kept.items, own.model] = [refused.items, refused.isOwn];
+  else return;
+  refused = null;
+}
+
+function tellOpened(shown, { files, clips, borrowed_clips: borrowed, joints, triangles }) {
+  const count = (number, one, many) => `${number} ${number === 1 ? one : many}`;
+  const model = `Opened ${files.join(", ")}: ${count(clips.length, "clip", "clips")}, ${count(joints, "joint", "joints")}, ${count(triangles, "triangle", "triangles")}.`;
+  const text = { model, motion: `Borrowed motion: ${count(borrowed?.length ?? 0, "clip", "clips")} can be played.`, map: "The joint map is in force." };
+  byId("news").textContent = text[shown];
 }
 
 /** For the person at the page: what goes wrong is shown by the app. */
@@ -512,9 +744,7 @@ window.gaitway = {
   stats: () => ask("stats"),
   async apply(partial) {
     const current = await running();
-    await unlessStopped(current, current.apply(JSON.stringify(partial ?? null)));
-    if (partial?.model !== undefined) kept.items = [];
-    if (partial?.motion !== undefined) kept.motionItems = [];
+    loaded(await unlessStopped(current, current.apply(JSON.stringify(partial ?? null))));
   },
   async screenshot() {
     const current = await running();
@@ -527,6 +757,15 @@ byId("stopped-reload").addEventListener("click", () => location.reload());
 byId("cannot-run-reload").addEventListener("click", () => location.reload());
 addEventListener("pagehide", () => clearTimeout(soon));
 
+// ---- Buttons for those whom the canvas says nothing ----
+
+byId("do-open").addEventListener("click", () => openDialog());
+byId("do-play").addEventListener("click", async () => {
+  const { play } = await window.gaitway.state();
+  await window.gaitway.apply({ play: !play });
+});
+byId("do-share").addEventListener("click", () => share(kept.link));
+
 launch(forced()).then(
   () => {
     // Only in a build for benches/web.
@@ -538,3 +777,6 @@ launch(forced()).then(
   },
   () => {},
 );
+
+// For embed.js.
+dispatchEvent(new CustomEvent("gaitway:shell", { detail: { isPrivate, open: (items, { as } = {}) => openAll(items, { as, isOwn: false }) } }));
