@@ -6,7 +6,7 @@ use crate::files::Contents;
 use crate::library::{BorrowError, Model, Motion};
 use crate::retarget::{JointMap, MapError, propose};
 use crate::state::{
-    ClipChoice, Command, MotionMap, NumberedMap, ViewerState, active_clip, choice_of_clip, maps_in_force,
+    ClipChoice, Command, MapEdit, MotionMap, NumberedMap, ViewerState, active_clip, choice_of_clip, maps_in_force,
     names_checksum, numbered, settled_maps,
 };
 use crate::ui::{Tab, Toast, short_name};
@@ -57,7 +57,7 @@ impl App {
         let before = self.library.take();
         self.library.set(model);
         let uploaded = match self.library.active() {
-            Some(model) => self.scene.upload(model).map_err(|error| error.to_string()),
+            Some(model) => self.scene.upload(model, None).map_err(|error| error.to_string()),
             None => Ok(()),
         };
         if let Err(error) = uploaded {
@@ -195,12 +195,8 @@ impl App {
             return Err(problem);
         }
         for (motion, map) in fitting {
-            self.apply(Command::SetMap { motion, map: Some(Box::new(map)) });
+            self.apply(Command::EditMap { motion, edit: MapEdit::Load(Box::new(map)) });
         }
-        // All of the map counts.
-        self.apply(Command::SetUnmapped(None));
-        self.apply(Command::SetRoot(None));
-        self.apply(Command::SetFeet(None));
         Ok(())
     }
 

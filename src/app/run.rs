@@ -12,7 +12,8 @@ use crate::frame::{Frame, evaluate, pose_document};
 use crate::library::{Library, inspect};
 use crate::render::read_pixels;
 use crate::state::{
-    CameraChoice, Command, History, ViewerState, frame_all, from_object, resolve_camera, to_link, to_object,
+    CameraChoice, Command, History, ViewerState, frame_all, from_object, resolve_camera, source_on_stage, to_link,
+    to_object,
 };
 use crate::ui::{self, Output, PathPrompt, PathPurpose, Progress, Shown, UiAction, UiState};
 
@@ -183,7 +184,9 @@ impl App {
 
     pub(super) fn apply(&mut self, command: Command) {
         let aspect = self.panels.aspect;
-        let relative = matches!(command, Command::Orbit { .. } | Command::Pan { .. } | Command::Zoom(_));
+        let turns = self.state.turntable != 0.0 && matches!(self.state.camera, CameraChoice::Auto);
+        let relative = matches!(command, Command::Orbit { .. } | Command::Pan { .. } | Command::Zoom(_))
+            || (turns && matches!(command, Command::Advance(_)));
         // The automatic camera depends on the picture's shape, which commands do not know.
         let command = if matches!(command, Command::FrameAll) && self.state.camera != CameraChoice::Auto {
             Command::SetCamera(CameraChoice::Orbit(frame_all(&self.library, &self.state, aspect)))
@@ -201,6 +204,7 @@ impl App {
             Command::Replace(_)
                 | Command::SetMap { .. }
                 | Command::SetSource { .. }
+                | Command::EditMap { .. }
                 | Command::SetUnmapped(_)
                 | Command::SetRoot(_)
                 | Command::SetFeet(_)
@@ -274,7 +278,8 @@ impl App {
     fn advance(&mut self, context: &egui::Context) {
         let shown = Shown { library: &self.library, state: &self.state, frame: &self.frame };
         let moves = shown.clip().is_some_and(|clip| clip.duration_secs() > 0.0);
-        if self.state.playing && moves && !self.panels.scrubbing {
+        let turns = self.state.turntable != 0.0 && !matches!(self.state.camera, CameraChoice::File(_));
+        if ((self.state.playing && moves) || turns) && !self.panels.scrubbing {
             let (secs, unsmoothed_secs) = context.input(|input| (input.stable_dt, input.unstable_dt));
             // A pause (a hidden page, a long load) is not made up for.
             self.apply(Command::Advance(f64::from(secs.min(0.25))));
@@ -294,6 +299,10 @@ impl App {
         };
         let size = [pixels(rect.left(), rect.right()), pixels(rect.top(), rect.bottom())];
         if self.dirty || self.drawn_size != Some(size) {
+            if let (Some(model), Some(source)) = (self.library.active(), source_on_stage(&self.library, &self.state)) {
+                // A source too large for the device is shown by its bones alone.
+                let _ = self.scene.upload(model, Some(source.model));
+            }
             evaluate(&self.library, &self.state, size[0] as f32 / size[1] as f32, &mut self.frame);
             self.scene.draw(&self.frame, size);
             self.drawn_size = Some(size);

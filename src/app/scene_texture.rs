@@ -22,9 +22,13 @@ impl SceneTexture {
         Self { gpu, renderer, shown: None }
     }
 
-    pub fn upload(&mut self, model: &Model) -> Result<(), UploadError> {
+    /// Brings a model to the device, and with it what else may be drawn; everything else is let go.
+    pub fn upload(&mut self, model: &Model, beside: Option<&Model>) -> Result<(), UploadError> {
         self.renderer.upload(&self.gpu.device, &self.gpu.queue, model)?;
-        self.renderer.retain(&[model.id]);
+        if let Some(beside) = beside {
+            self.renderer.upload(&self.gpu.device, &self.gpu.queue, beside)?;
+        }
+        self.renderer.retain(&[model.id, beside.unwrap_or(model).id]);
         Ok(())
     }
 

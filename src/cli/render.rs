@@ -11,7 +11,7 @@ use crate::library::Library;
 use crate::render::{Renderer, RendererOptions, headless_device, read_pixels};
 use crate::state::{
     CameraChoice, ClipChoice, Command, MotionMap, OrbitCamera, ViewerState, apply, from_link, maps_in_force,
-    resolve_camera, settled_maps,
+    resolve_camera, settled_maps, source_on_stage,
 };
 
 pub(super) fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
@@ -24,7 +24,8 @@ pub(super) fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     let (device, queue, adapter) = headless_device()?;
     eprintln!("drawing with {} ({})", adapter.name, adapter.backend);
     let mut renderer = Renderer::new(&device, &queue, RendererOptions { samples: 4 });
-    for model in library.models() {
+    let source = source_on_stage(&library, &state).map(|source| source.model);
+    for model in library.models().iter().chain(source) {
         renderer.upload(&device, &queue, model)?;
     }
     renderer.draw(&device, &queue, &frame, arguments.size);

@@ -6,8 +6,14 @@ use super::{Character, Draw, Frame, FrameLight, Look, overlays, view};
 use crate::anim::{JointIndex, Pose, SampleCursor, model_from_joint};
 use crate::asset::MeshInstance;
 use crate::library::{Library, Model, ModelId};
-use crate::mesh::{Bounds, palette_entry, write_palette};
-use crate::state::{PoseSampler, ViewerState, active_clip, resolved_bounds, world_from_model};
+use crate::mesh::{Bounds, SkinningMode, palette_entry, write_palette};
+use crate::state::{
+    PoseSampler, SourceOnStage, ViewerState, active_clip, clip_secs, panes, resolved_bounds, source_on_stage,
+    world_from_model,
+};
+
+/// What is compared side by side.
+const COMPARED: [SkinningMode; 3] = [SkinningMode::Linear, SkinningMode::Rigid, SkinningMode::DualQuaternion];
 
 /// What one evaluation leaves for the next, so that nothing is allocated or looked for again.
 #[derive(Debug, Default)]
@@ -16,9 +22,17 @@ pub(super) struct Scratch {
     first_pose: Pose,
     first_cursor: SampleCursor,
     pub world_from_first: Vec<Affine3A>,
-    /// The model and scene that `in_scene` is for.
-    scene_of: Option<(ModelId, Option<usize>)>,
-    pub in_scene: Vec<bool>,
+    source_pose: Pose,
+    source_cursor: SampleCursor,
+    pub shown: InScene,
+    pub source: InScene,
+}
+
+/// Which joints of a model are in the scene that is shown.
+#[derive(Debug, Default)]
+pub(super) struct InScene {
+    of: Option<(ModelId, Option<usize>)>,
+    pub joints: Vec<bool>,
 }
 
 /// Fills `frame` for a picture of the given aspect ratio (width over height).
@@ -28,7 +42,6 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
     frame.bones.clear();
     frame.lights.clear();
     frame.look = Look {
-        skinning: state.skinning,
         exposure: state.exposure.exp2(),
         environment_radians: state.environment_degrees.to_radians(),
         background: state.background,
@@ -38,52 +51,77 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
         grid: None,
         ground_height: 0.0,
     };
+    frame.panes = panes(state, aspect);
     let Some(model) = library.active() else {
         frame.characters.clear();
         frame.bounds = Bounds::EMPTY;
         view::place_camera(library, state, aspect, Vec3::ZERO, frame);
         return;
     };
-    frame.characters.truncate(1);
-    if frame.characters.is_empty() {
-        frame.characters.push(Character::default());
+    let source = source_on_stage(library, state);
+    let modes = if state.show.split { &COMPARED[..] } else { std::slice::from_ref(&state.skinning) };
+    frame.characters.resize_with(modes.len() + usize::from(source.is_some()), Character::default);
+    frame.scratch.shown.choose(model, state.scene);
+    if let Some(source) = &source {
+        frame.scratch.source.choose(source.model, None);
     }
-    frame.scratch.choose_scene(model, state.scene);
     let Frame { characters, scratch, .. } = frame;
-    let character = &mut characters[0];
-    character.model = model.id;
     scratch.sampler.sample(model, state);
-    character.morph_weights.clone_from(&scratch.sampler.pose.morph_weights);
-    let world_from_model = world_from_model(state.up);
-    model_from_joint(
-        &model.asset.skeleton,
-        &scratch.sampler.pose.locals,
-        world_from_model,
-        &mut character.world_from_joint,
-    );
-    write_draws(model, state, &scratch.in_scene, character);
+    for (pane, (character, &skinning)) in characters.iter_mut().zip(modes).enumerate() {
+        character.model = model.id;
+        character.skinning = skinning;
+        character.pane = state.show.split.then_some(pane as u32);
+        character.morph_weights.clone_from(&scratch.sampler.pose.morph_weights);
+        let (skeleton, locals) = (&model.asset.skeleton, &scratch.sampler.pose.locals);
+        model_from_joint(skeleton, locals, world_from_model(state.up), &mut character.world_from_joint);
+        let chosen = state.joint.and_then(|joint| skeleton.joint_of_source(joint)).filter(|_| state.show.weights);
+        write_draws(model, chosen, &scratch.shown.joints, character);
+    }
+    if let (Some(source), Some(character)) = (&source, characters.last_mut()) {
+        write_source(source, clip_now(model, state), scratch, character);
+    }
 
-    let travel = travel(model, state, scratch, &character.world_from_joint);
-    frame.bounds = moved(resolved_bounds(model, state), travel);
+    let travel = travel(model, state, scratch, &characters[0].world_from_joint);
+    frame.bounds = moved(resolved_bounds(library, state), travel);
     write_lights(model, frame);
     overlays::write_ground(model, state, frame);
     view::place_camera(library, state, aspect, travel, frame);
-    overlays::write_overlays(model, state, frame);
+    overlays::write_overlays(model, state, source.as_ref(), frame);
 }
 
-impl Scratch {
-    fn choose_scene(&mut self, model: &Model, scene: Option<usize>) {
+fn clip_now(model: &Model, state: &ViewerState) -> f32 {
+    active_clip(model, state).map_or(0.0, |clip| clip_secs(model, clip, state) as f32)
+}
+
+/// The source plays its own clip at the same time, bent in the ordinary way.
+fn write_source(source: &SourceOnStage, time_secs: f32, scratch: &mut Scratch, character: &mut Character) {
+    let skeleton = &source.model.asset.skeleton;
+    scratch.source_pose.copy_from(skeleton.rest());
+    if let Some(clip) = source.model.clip(source.clip) {
+        clip.sample(skeleton, time_secs, &mut scratch.source_cursor, &mut scratch.source_pose);
+    }
+    character.model = source.model.id;
+    character.skinning = SkinningMode::Linear;
+    character.pane = None;
+    character.morph_weights.clone_from(&scratch.source_pose.morph_weights);
+    let locals = &scratch.source_pose.locals;
+    model_from_joint(skeleton, locals, source.world_from_source, &mut character.world_from_joint);
+    write_draws(source.model, None, &scratch.source.joints, character);
+}
+
+impl InScene {
+    fn choose(&mut self, model: &Model, scene: Option<usize>) {
         let key = (model.id, model.scene(scene));
-        if self.scene_of != Some(key) || self.in_scene.len() != model.asset.skeleton.len() {
-            self.in_scene = model.asset.joints_in_scene(key.1);
-            self.scene_of = Some(key);
+        if self.of != Some(key) || self.joints.len() != model.asset.skeleton.len() {
+            self.joints = model.asset.joints_in_scene(key.1);
+            self.of = Some(key);
         }
     }
 }
 
-fn write_draws(model: &Model, state: &ViewerState, in_scene: &[bool], character: &mut Character) {
+/// With `chosen`, surfaces show the influence of that joint.
+fn write_draws(model: &Model, chosen: Option<JointIndex>, in_scene: &[bool], character: &mut Character) {
     let asset = &model.asset;
-    let chosen = state.joint.and_then(|joint| asset.skeleton.joint_of_source(joint));
     character.palette.clear();
     character.draws.clear();
     for (index, instance) in asset.instances.iter().enumerate() {
@@ -94,8 +132,8 @@ fn write_draws(model: &Model, state: &ViewerState, in_scene: &[bool], character:
         let skin = instance.skin.map(|skin| &asset.skins[skin]);
         let start = character.palette.len() as u32;
         match skin {
-            Some(skin) => write_palette(skin, &character.world_from_joint, state.skinning, &mut character.palette),
-            None => character.palette.push(palette_entry(&world_from_node, state.skinning)),
+            Some(skin) => write_palette(skin, &character.world_from_joint, character.skinning, &mut character.palette),
+            None => character.palette.push(palette_entry(&world_from_node, character.skinning)),
         }
         let morphs = asset.skeleton.morph_range(instance.joint);
         character.draws.push(Draw {
@@ -104,7 +142,7 @@ fn write_draws(model: &Model, state: &ViewerState, in_scene: &[bool], character:
             palette: start..character.palette.len() as u32,
             morph_weights: morphs.start as u32..morphs.end as u32,
             mirrored: skin.is_none() && world_from_node.matrix3.determinant() < 0.0,
-            heat_joint: chosen.filter(|_| state.show.weights).map(|chosen| heat_joint(model, instance, chosen)),
+            heat_joint: chosen.map(|chosen| heat_joint(model, instance, chosen)),
             center: model.instance_center(index, &character.world_from_joint),
         });
     }
@@ -142,7 +180,7 @@ fn moved(bounds: Bounds, by: Vec3) -> Bounds {
 fn write_lights(model: &Model, frame: &mut Frame) {
     let world_from_joint = &frame.characters[0].world_from_joint;
     for light in &model.asset.lights {
-        if !frame.scratch.in_scene[light.joint.get()] {
+        if !frame.scratch.shown.joints[light.joint.get()] {
             continue;
         }
         let world_from_light = &world_from_joint[light.joint.get()];

@@ -17,7 +17,7 @@ use crate::mesh::{Bounds, PaletteEntry, SkinningMode};
 use crate::state::Background;
 
 pub use evaluate::evaluate;
-pub use pick::pick_joint;
+pub use pick::{PickedJoint, pick_joint};
 pub use pose_document::pose_document;
 
 /// What the renderer reads. Reused from frame to frame, so that nothing is allocated once it has grown.
@@ -25,6 +25,9 @@ pub use pose_document::pose_document;
 pub struct Frame {
     pub view: View,
     pub look: Look,
+    /// How the picture is divided: columns and rows of panes of one size, all seen by the same camera.
+    pub panes: [u32; 2],
+    /// The shown model first: once, or once for each pane. Then the source, if it is on the stage.
     pub characters: Vec<Character>,
     /// The file's own lights in world space; empty: the studio's key light shines.
     pub lights: Vec<FrameLight>,
@@ -47,7 +50,6 @@ pub struct View {
 
 #[derive(Debug, Clone, Copy)]
 pub struct Look {
-    pub skinning: SkinningMode,
     /// Factor on linear colours: 2^stops.
     pub exposure: f32,
     pub environment_radians: f32,
@@ -75,6 +77,9 @@ pub struct Grid {
 #[derive(Debug, Default)]
 pub struct Character {
     pub model: ModelId,
+    pub skinning: SkinningMode,
+    /// The one pane it is in, row by row; none: in all of them.
+    pub pane: Option<u32>,
     pub world_from_joint: Vec<Affine3A>,
     /// Palettes of all draws, one after the other, in world space.
     pub palette: Vec<PaletteEntry>,
@@ -133,14 +138,15 @@ pub struct Bone {
     pub radius: f32,
     /// Linear.
     pub color: Vec4,
-    /// The joint at the head, as the file numbers it.
+    /// The joint at the head, as its file numbers it.
     pub joint: u32,
+    /// It is the source's, not the model's.
+    pub of_source: bool,
 }
 
 impl Default for Look {
     fn default() -> Self {
         Self {
-            skinning: SkinningMode::Linear,
             exposure: 1.0,
             environment_radians: 0.0,
             background: Background::Studio,

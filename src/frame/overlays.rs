@@ -3,10 +3,15 @@
 use glam::{Affine3A, Vec3, Vec4};
 
 use super::{Bone, Frame, Grid, Line};
+use crate::anim::JointIndex;
 use crate::library::Model;
-use crate::state::ViewerState;
+use crate::state::{SourceOnStage, ViewerState};
 
 const BONE: Vec4 = Vec4::new(0.62, 0.72, 0.86, 1.0);
+/// Joints that follow nothing.
+const NO_ERROR: Vec4 = Vec4::new(0.3, 0.3, 0.32, 1.0);
+const MOST_ERROR_DEGREES: f32 = 15.0;
+const SOURCE_BONE: Vec4 = Vec4::new(0.86, 0.62, 0.28, 1.0);
 const CHOSEN: Vec4 = Vec4::new(1.0, 0.42, 0.05, 1.0);
 const BOX: Vec4 = Vec4::new(0.95, 0.75, 0.2, 0.9);
 const AXES: [(Vec3, Vec4); 3] = [
@@ -32,34 +37,65 @@ pub(super) fn write_ground(model: &Model, state: &ViewerState, frame: &mut Frame
 }
 
 /// Expects the joints and bounds. Without a mesh to look at the skeleton is drawn by itself.
-pub(super) fn write_overlays(model: &Model, state: &ViewerState, frame: &mut Frame) {
+pub(super) fn write_overlays(model: &Model, state: &ViewerState, source: Option<&SourceOnStage>, frame: &mut Frame) {
     let Frame { characters, scratch, lines, bones, .. } = frame;
     let Some(character) = characters.first() else { return };
     let world_from_joint = &character.world_from_joint;
     let size = model.rest_bounds().diagonal().max(1e-6);
     let chosen = state.joint.and_then(|joint| model.asset.skeleton.joint_of_source(joint));
-    if state.show.skeleton || character.draws.is_empty() {
-        write_bones(model, world_from_joint, &scratch.in_scene, chosen.map(|joint| joint.0), size, bones);
+    // Beside its source the model shows its bones too, or there would be nothing to compare.
+    let skeleton = state.show.skeleton || character.draws.is_empty() || source.is_some();
+    if skeleton {
+        let look = BoneLook { plain: BONE, chosen, of_source: false, size };
+        write_bones(model, world_from_joint, &scratch.shown.joints, look, bones);
     }
-    if let Some(joint) = chosen.filter(|joint| scratch.in_scene[joint.get()]) {
+    if let (Some(source), Some(on_stage)) = (source.filter(|_| state.show.error), characters.last()) {
+        for bone in bones.iter_mut() {
+            let joint = model.asset.skeleton.joint_of_source(bone.joint as usize);
+            let pair = source.borrowed.pairs.iter().find(|pair| Some(pair.target) == joint);
+            let error = pair.and_then(|pair| {
+                let source = on_stage.world_from_joint.get(pair.source.get())?;
+                pair.error_radians(world_from_joint.get(pair.target.get())?, source)
+            });
+            bone.color = error.map_or(NO_ERROR, |radians| error_color(radians.to_degrees()));
+        }
+    }
+    if let (Some(source), Some(on_stage)) = (source, characters.last()) {
+        let partner = source.borrowed.pairs.iter().find(|pair| Some(pair.target) == chosen).map(|pair| pair.source);
+        let size = source.model.rest_bounds().transformed(&source.world_from_source).diagonal().max(1e-6);
+        let look = BoneLook { plain: SOURCE_BONE, chosen: partner, of_source: true, size };
+        write_bones(source.model, &on_stage.world_from_joint, &scratch.source.joints, look, bones);
+    }
+    if let Some(joint) = chosen.filter(|joint| scratch.shown.joints[joint.get()]) {
         write_axes(&world_from_joint[joint.get()], 0.06 * size, lines);
     }
     if state.show.bounds {
-        let bounds = model.pose_bounds(world_from_joint, &character.morph_weights, &scratch.in_scene);
+        let bounds = model.pose_bounds(world_from_joint, &character.morph_weights, &scratch.shown.joints);
         if !bounds.is_empty() {
             write_box(bounds.corners(), lines);
         }
     }
 }
 
-fn write_bones(
-    model: &Model,
-    world_from_joint: &[Affine3A],
-    in_scene: &[bool],
-    chosen: Option<u32>,
+/// Green where nothing is apart, through yellow to red at [`MOST_ERROR_DEGREES`] and more.
+fn error_color(degrees: f32) -> Vec4 {
+    let share = (degrees / MOST_ERROR_DEGREES).clamp(0.0, 1.0);
+    let (green, yellow, red) =
+        (Vec4::new(0.1, 0.6, 0.2, 1.0), Vec4::new(0.9, 0.75, 0.1, 1.0), Vec4::new(0.9, 0.05, 0.05, 1.0));
+    if share < 0.5 { green.lerp(yellow, 2.0 * share) } else { yellow.lerp(red, 2.0 * share - 1.0) }
+}
+
+#[derive(Clone, Copy)]
+struct BoneLook {
+    plain: Vec4,
+    chosen: Option<JointIndex>,
+    of_source: bool,
+    /// Of the whole skeleton, metres.
     size: f32,
-    bones: &mut Vec<Bone>,
-) {
+}
+
+fn write_bones(model: &Model, world_from_joint: &[Affine3A], in_scene: &[bool], look: BoneLook, bones: &mut Vec<Bone>) {
+    let size = look.size;
     let skeleton = &model.asset.skeleton;
     let place = |joint: usize| Vec3::from(world_from_joint[joint].translation);
     for bone in model.rig().bones() {
@@ -80,9 +116,16 @@ fn write_bones(
         if !length.is_finite() || length <= 1e-5 * size {
             continue;
         }
-        let color = if chosen == Some(bone.head.0) { CHOSEN } else { BONE };
+        let color = if look.chosen == Some(bone.head) { CHOSEN } else { look.plain };
         let radius = (0.1 * length).clamp(0.002 * size, 0.02 * size);
-        bones.push(Bone { head, tail, radius, color, joint: skeleton.source_index(bone.head) as u32 });
+        bones.push(Bone {
+            head,
+            tail,
+            radius,
+            color,
+            joint: skeleton.source_index(bone.head) as u32,
+            of_source: look.of_source,
+        });
     }
 }
 

@@ -6,7 +6,7 @@ use super::{Frame, evaluate};
 use crate::anim::Clip;
 use crate::library::{Library, Model, warning_documents};
 use crate::mesh::{DeformedVertices, deform};
-use crate::state::{ViewerState, active_clip, clip_secs};
+use crate::state::{Show, ViewerState, active_clip, clip_secs};
 
 /// What `gaitway pose --json` prints. World-space positions and normals of every mesh of the shown scene.
 pub fn pose_document(library: &Library, state: &ViewerState) -> Value {
@@ -14,6 +14,8 @@ pub fn pose_document(library: &Library, state: &ViewerState) -> Value {
         return json!({ "clip": null, "time_secs": 0.0, "nodes": [], "meshes": [], "warnings": [] });
     };
     let mut frame = Frame::default();
+    // One model, bent in the way that is chosen, also where the picture compares.
+    let state = &ViewerState { show: Show { split: false, source: false, ..state.show }, ..state.clone() };
     evaluate(library, state, 1.0, &mut frame);
     let clip = active_clip(model, state);
     json!({

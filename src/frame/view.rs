@@ -8,15 +8,16 @@ use glam::{Affine3A, Mat4, Vec3};
 use super::{Frame, View};
 use crate::asset::CameraProjection;
 use crate::library::Library;
-use crate::state::{CameraChoice, ViewerState, resolve_camera, world_from_file_camera};
+use crate::state::{CameraChoice, ViewerState, pane_aspect, resolve_camera, world_from_file_camera};
 
 /// The near plane is never nearer than this part of the far plane: more than 24 bits of depth can tell apart otherwise.
 const LEAST_NEAR: f32 = 1e-4;
 
 /// Expects bounds, ground and joints of the frame to be there already. `travel` is how far the camera has followed.
 pub(super) fn place_camera(library: &Library, state: &ViewerState, aspect: f32, travel: Vec3, frame: &mut Frame) {
+    let pane_aspect = pane_aspect(state, aspect);
     if let CameraChoice::File(index) = state.camera
-        && let Some(view) = file_view(library, index, aspect, frame)
+        && let Some(view) = file_view(library, index, pane_aspect, frame)
     {
         frame.view = view;
         return;
@@ -25,7 +26,7 @@ pub(super) fn place_camera(library: &Library, state: &ViewerState, aspect: f32, 
     orbit.target += travel;
     let eye = orbit.eye();
     let (near, far) = planes(frame, eye, orbit.target - eye, orbit.distance);
-    let projection_from_view = perspective(state.fov_degrees.to_radians(), aspect, near, far);
+    let projection_from_view = perspective(state.fov_degrees.to_radians(), pane_aspect, near, far);
     frame.view = View { view_from_world: look_at_mat4(eye, orbit.target, Vec3::Y), projection_from_view, eye };
 }
 

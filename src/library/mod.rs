@@ -79,7 +79,11 @@ impl Library {
     }
 
     /// Replaces the files that clips are borrowed from.
-    pub fn set_motions(&mut self, motions: Vec<Motion>) {
+    pub fn set_motions(&mut self, mut motions: Vec<Motion>) {
+        for motion in motions.iter_mut().filter(|motion| motion.stage_id == ModelId::default()) {
+            self.next_id += 1;
+            motion.stage_id = ModelId(self.next_id);
+        }
         self.motions = motions;
         self.forget_borrowed();
     }

@@ -1,12 +1,15 @@
 //! Files that clips are borrowed from, and the borrowed clips.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
+use glam::Affine3A;
+
+use super::{Model, ModelId};
 use crate::anim::{Clip, JointIndex};
 use crate::asset::{Asset, Humanoid};
 use crate::retarget::{
-    Body, JointMap, LayerClip, MapError, Proposal, ResolvedMap, RetargetError, Retargeting, layer_clips, propose,
-    recognize,
+    Body, JointMap, LayerClip, MapError, Proposal, ResolvedMap, RetargetError, Retargeting, StagePair, layer_clips,
+    propose, recognize,
 };
 
 /// A loaded file whose clips others may borrow.
@@ -16,12 +19,25 @@ pub struct Motion {
     pub source: String,
     pub asset: Arc<Asset>,
     pub slots: Humanoid,
+    /// Given by the library.
+    pub(super) stage_id: ModelId,
+    stage: Arc<OnceLock<Model>>,
 }
 
 impl Motion {
     pub fn new(source: String, asset: Arc<Asset>) -> Self {
         let slots = recognize(&asset).humanoid();
-        Self { source, asset, slots }
+        Self { source, asset, slots, stage_id: ModelId::default(), stage: Arc::default() }
+    }
+
+    /// The file as something to look at, without its images; made when somebody first asks.
+    pub fn stage(&self) -> &Model {
+        self.stage.get_or_init(|| {
+            let images = vec![None; self.asset.images.len()];
+            let mut model = Model::new(self.source.clone(), self.asset.clone(), images);
+            model.id = self.stage_id;
+            model
+        })
     }
 
     pub fn body(&self) -> Body<'_> {
@@ -39,6 +55,9 @@ pub struct BorrowedClip {
     pub motion: usize,
     pub source_clip: usize,
     pub root: Option<JointIndex>,
+    /// Where the source stands in this model's space.
+    pub model_from_source: Affine3A,
+    pub pairs: Vec<StagePair>,
     /// How long a change to or from this clip takes.
     pub crossfade_secs: f64,
 }
@@ -74,8 +93,9 @@ pub(super) fn borrow(
     let layers = layer_clips(model.asset, map);
     let clips = 0..motion.asset.clips.len().max(1);
     let borrow = |source_clip| {
-        let baked = Retargeting::new(model, motion.body(), source_clip, map).and_then(|pair| pair.bake());
-        let baked = baked.map_err(|problem| BorrowError::Retarget { motion: motion.source.clone(), problem })?;
+        let error = |problem| BorrowError::Retarget { motion: motion.source.clone(), problem };
+        let pair = Retargeting::new(model, motion.body(), source_clip, map).map_err(error)?;
+        let baked = pair.bake().map_err(error)?;
         let root = root_of(&baked.clip);
         Ok(BorrowedClip {
             clip: baked.clip,
@@ -83,6 +103,8 @@ pub(super) fn borrow(
             motion: index,
             source_clip,
             root,
+            model_from_source: pair.model_from_source(),
+            pairs: pair.stage_pairs(),
             crossfade_secs: map.crossfade_secs,
         })
     };

@@ -15,6 +15,8 @@ const WIREFRAME_ALONE: [f32; 4] = [0.15, 0.25, 0.38, 0.75];
 /// One draw call.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Item {
+    /// As [`crate::frame::Character::pane`].
+    pub pane: Option<u32>,
     model: usize,
     mesh: usize,
     primitive: usize,
@@ -134,13 +136,14 @@ impl DrawList {
                     let key = MeshKey {
                         shading,
                         influences: geometry.influences,
-                        skinning: frame.look.skinning,
+                        skinning: character.skinning,
                         topology: geometry.topology,
                         features,
                         cull: (!primitive.double_sided).then_some(wgpu::Face::Back),
                         mirrored: draw.mirrored,
                     };
                     let mut item = |key: MeshKey, offset, edges| Item {
+                        pane: character.pane,
                         model: model_index,
                         mesh: draw.mesh,
                         primitive: primitive_index,
@@ -160,7 +163,8 @@ impl DrawList {
                         } else {
                             self.blended.push(item(key, offset, false));
                         }
-                        if shadow && primitive.casts_shadow {
+                        // One shadow map serves all panes.
+                        if shadow && primitive.casts_shadow && character.pane.is_none_or(|pane| pane == 0) {
                             let holes = features.has(Features::MASK) || features.has(Features::BLEND);
                             let kept = Features::BASE_COLOR_MAP.with(Features::VERTEX_COLORS, true);
                             let features = if holes {

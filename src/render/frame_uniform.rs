@@ -55,7 +55,7 @@ impl GroundPlane {
 pub(super) fn frame_uniform(
     frame: &Frame,
     ground: Option<&GroundPlane>,
-    size: [u32; 2],
+    size: [f32; 2],
     irradiance: &[[f32; 4]; 9],
 ) -> (FrameUniform, Option<FrameUniform>) {
     let look = &frame.look;
@@ -79,7 +79,7 @@ pub(super) fn frame_uniform(
         shadow_from_world: shadow.map_or_else(Default::default, |view| view.shadow_from_world.to_cols_array_2d()),
         eye: frame.view.eye.to_array(),
         exposure: look.exposure.max(1e-6),
-        viewport_pixels: size.map(|edge| edge as f32),
+        viewport_pixels: size,
         light_count: frame.lights.len().min(MAX_LIGHTS) as u32,
         padding: 0,
         environment: [cos, sin],

@@ -175,7 +175,8 @@ impl Renderer {
         }
 
         let ground = GroundPlane::of(frame);
-        let (uniform, shadow_uniform) = frame_uniform(frame, ground.as_ref(), size, &self.environment.irradiance);
+        let panes = Panes::new(frame.panes, size);
+        let (uniform, shadow_uniform) = frame_uniform(frame, ground.as_ref(), panes.size, &self.environment.irradiance);
         self.frame_buffer.write(queue, uniform);
         let shadow = shadow_uniform.is_some();
         if let Some(uniform) = shadow_uniform {
@@ -193,7 +194,7 @@ impl Renderer {
         if shadow {
             self.draw_shadow(&mut encoder);
         }
-        self.draw_scene(&mut encoder, frame.look.background, ground.as_ref());
+        self.draw_scene(&mut encoder, frame.look.background, ground.as_ref(), &panes);
         queue.submit([encoder.finish()]);
         &self.targets.output_view
     }
@@ -220,11 +221,18 @@ impl Renderer {
         });
         pass.set_bind_group(0, &self.shadow_group, &[]);
         pass.set_bind_group(1, &self.no_light_group, &[]);
-        let stats = draw_items(&mut pass, self.draws.shadow(), self.draws.bind_group(), &self.models, &self.pipelines);
+        let draw = self.draws.bind_group();
+        let stats = draw_items(&mut pass, self.draws.shadow(), 0, draw, &self.models, &self.pipelines);
         self.stats.draw_calls += stats.draw_calls;
     }
 
-    fn draw_scene(&mut self, encoder: &mut wgpu::CommandEncoder, background: Background, ground: Option<&GroundPlane>) {
+    fn draw_scene(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        background: Background,
+        ground: Option<&GroundPlane>,
+        panes: &Panes,
+    ) {
         let (view, resolve_target) = match &self.targets.multisampled {
             Some(samples) => (samples, Some(&self.targets.output_view)),
             None => (&self.targets.output_view, None),
@@ -256,6 +264,22 @@ impl Renderer {
         });
         pass.set_bind_group(0, &self.frame_group, &[]);
         pass.set_bind_group(1, &self.light_group, &[]);
+        for pane in 0..panes.count() {
+            let [x, y] = panes.corner(pane);
+            pass.set_viewport(x, y, panes.size[0], panes.size[1], 0.0, 1.0);
+            let stats = self.draw_pane(&mut pass, background, ground, pane);
+            self.stats.draw_calls += stats.draw_calls;
+            self.stats.triangles += stats.triangles;
+        }
+    }
+
+    fn draw_pane(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        background: Background,
+        ground: Option<&GroundPlane>,
+        pane: u32,
+    ) -> RenderStats {
         let mut stats = RenderStats::default();
         let mut add = |more: RenderStats| {
             stats.draw_calls += more.draw_calls;
@@ -267,7 +291,7 @@ impl Renderer {
             add(RenderStats { draw_calls: 1, triangles: 0 });
         }
         let draw = self.draws.bind_group();
-        add(draw_items(&mut pass, self.draws.solid(), draw, &self.models, &self.pipelines));
+        add(draw_items(pass, self.draws.solid(), pane, draw, &self.models, &self.pipelines));
         if ground.is_some_and(|ground| ground.grid) {
             pass.set_pipeline(&self.pipelines.grid);
             pass.draw(0..18, 0..1);
@@ -279,7 +303,7 @@ impl Renderer {
             pass.draw(0..6, 0..1);
             add(RenderStats { draw_calls: 1, triangles: 0 });
         }
-        add(draw_items(&mut pass, self.draws.blended(), draw, &self.models, &self.pipelines));
+        add(draw_items(pass, self.draws.blended(), pane, draw, &self.models, &self.pipelines));
         for on_top in [false, true] {
             if on_top && (self.overlay.bones() > 0 || !self.overlay.lines(true).is_empty()) {
                 pass.set_pipeline(&self.pipelines.clear_depth);
@@ -288,31 +312,53 @@ impl Renderer {
             }
             if on_top && self.overlay.bones() > 0 {
                 pass.set_pipeline(&self.pipelines.bones);
-                self.overlay.draw_bones(&mut pass);
+                self.overlay.draw_bones(pass);
                 add(RenderStats { draw_calls: 1, triangles: self.overlay.bone_triangles() });
             }
             if !self.overlay.lines(on_top).is_empty() {
                 pass.set_pipeline(&self.pipelines.lines);
-                self.overlay.draw_lines(&mut pass, on_top);
+                self.overlay.draw_lines(pass, on_top);
                 add(RenderStats { draw_calls: 1, triangles: 0 });
             }
         }
-        drop(pass);
-        self.stats.draw_calls += stats.draw_calls;
-        self.stats.triangles += stats.triangles;
+        stats
+    }
+}
+
+/// The panes of a picture: equal rectangles, row by row.
+struct Panes {
+    columns: u32,
+    rows: u32,
+    /// Of one pane, in pixels.
+    size: [f32; 2],
+}
+
+impl Panes {
+    fn new([columns, rows]: [u32; 2], [width, height]: [u32; 2]) -> Self {
+        let (columns, rows) = (columns.max(1), rows.max(1));
+        Self { columns, rows, size: [width as f32 / columns as f32, height as f32 / rows as f32] }
+    }
+
+    fn count(&self) -> u32 {
+        self.columns * self.rows
+    }
+
+    fn corner(&self, pane: u32) -> [f32; 2] {
+        [(pane % self.columns) as f32 * self.size[0], (pane / self.columns) as f32 * self.size[1]]
     }
 }
 
 fn draw_items(
     pass: &mut wgpu::RenderPass<'_>,
     items: &[Item],
+    pane: u32,
     draw_group: &wgpu::BindGroup,
     models: &[GpuModel],
     pipelines: &Pipelines,
 ) -> RenderStats {
     let mut stats = RenderStats::default();
     let mut pipeline = None;
-    for item in items {
+    for item in items.iter().filter(|item| item.pane.is_none_or(|only| only == pane)) {
         let Some(primitive) = item.primitive(models) else { continue };
         let (indices, count) = match (&primitive.edges, item.edges) {
             (Some((edges, count)), true) => (edges, *count),

@@ -17,6 +17,8 @@ mod resolve;
 mod resolved;
 mod rest;
 mod root;
+mod sides;
+mod stage;
 mod track;
 mod vocabulary;
 
@@ -31,3 +33,5 @@ pub use propose::{Proposal, ProposedPair, propose};
 pub use recognize::{Contradiction, Facing, Part, Reason, Recognized, recognize};
 pub use resolve::MapError;
 pub use resolved::{Layer, Pair, ResolvedMap};
+pub use sides::opposite_joints;
+pub use stage::StagePair;

@@ -43,7 +43,10 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::SetPlaying(playing) => set_playing(state, model, playing),
         Command::TogglePlaying => set_playing(state, model, !state.playing),
         Command::Seek(time_secs) => seek(state, model, time_secs),
-        Command::Advance(clock_secs) => advance(state, model, clock_secs),
+        Command::Advance(clock_secs) => {
+            turn(state, library, clock_secs);
+            advance(state, model, clock_secs);
+        }
         Command::StepFrames(frames) => step(state, model, frames),
         Command::SetSpeed(speed) => set_f64(&mut state.speed, speed, 0.1, 4.0),
         Command::SetLoopMode(mode) => {
@@ -57,6 +60,8 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::SetSkinning(mode) => state.skinning = mode,
         Command::SetMorph { index, weight } => set_morph(state, model, index, weight),
         Command::ClearMorphs => state.morph.clear(),
+        Command::SetPose { joint, degrees } => set_pose(state, model, joint, degrees),
+        Command::ClearPose => state.pose.clear(),
         Command::SetShow(show) => state.show = show,
         Command::SelectJoint(joint) => {
             let known = |joint: usize| model.is_none_or(|model| joint < model.asset.skeleton.len());
@@ -81,7 +86,7 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         }
         Command::Zoom(factor) => {
             let mut orbit = resolve_camera(library, state, USUAL_ASPECT);
-            let size = model.map_or(1.0, |model| resolved_bounds(model, state).diagonal().max(1e-6));
+            let size = model.map_or(1.0, |_| resolved_bounds(library, state).diagonal().max(1e-6));
             if factor > 0.0 {
                 orbit.distance = (orbit.distance * factor).clamp(0.01 * size, 100.0 * size);
                 set_camera(state, model, CameraChoice::Orbit(orbit));
@@ -95,6 +100,7 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         }
         Command::SetFov(degrees) => set_f32(&mut state.fov_degrees, degrees, 5.0, 120.0),
         Command::SetFollow(follow) => state.follow = follow,
+        Command::SetTurntable(speed) => set_f32(&mut state.turntable, speed, -360.0, 360.0),
         Command::SetUp(up) => state.up = up,
         Command::SetExposure(stops) => set_f32(&mut state.exposure, stops, -10.0, 10.0),
         Command::SetEnvironment(degrees) => set_turn(&mut state.environment_degrees, degrees),
@@ -107,6 +113,7 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
             }
         }
         Command::SetSource { motion, target, source } => set_source(state, library, motion, target, source),
+        Command::EditMap { motion, edit } => super::map_edit::edit_map(state, library, motion, edit),
         Command::SetUnmapped(unmapped) => state.unmapped = unmapped,
         Command::SetRoot(root) => state.root = root,
         Command::SetFeet(feet) => state.feet = feet,
@@ -139,6 +146,12 @@ fn replace(state: &mut ViewerState, new: ViewerState) {
     for (index, weight) in wanted.morph {
         set_morph(state, None, index, Some(weight));
     }
+    state.pose.clear();
+    for (joint, degrees) in wanted.pose {
+        set_pose(state, None, joint, Some(degrees));
+    }
+    state.turntable = default.turntable;
+    set_f32(&mut state.turntable, wanted.turntable, -360.0, 360.0);
     state.camera = CameraChoice::Auto;
     set_camera(state, None, wanted.camera);
 }
@@ -282,6 +295,34 @@ fn set_morph(state: &mut ViewerState, model: Option<&Model>, index: usize, weigh
             state.morph.insert(index, weight.clamp(-10.0, 10.0));
         }
         Some(_) => {}
+    }
+}
+
+fn set_pose(state: &mut ViewerState, model: Option<&Model>, joint: usize, degrees: Option<[f32; 3]>) {
+    let known = model.is_none_or(|model| model.asset.skeleton.joint_of_source(joint).is_some());
+    match degrees {
+        None => {
+            state.pose.remove(&joint);
+        }
+        Some(degrees) if known && degrees.iter().all(|angle| angle.is_finite()) => {
+            state.pose.insert(joint, degrees.map(half_turn));
+        }
+        Some(_) => {}
+    }
+}
+
+/// From −180° to 180°.
+fn half_turn(degrees: f32) -> f32 {
+    if (-180.0..=180.0).contains(&degrees) { degrees } else { (degrees + 180.0).rem_euclid(360.0) - 180.0 }
+}
+
+/// The turntable. A file's own camera stays where it is.
+fn turn(state: &mut ViewerState, library: &Library, clock_secs: f64) {
+    let radians = f64::from(state.turntable).to_radians() * clock_secs;
+    if radians != 0.0 && radians.is_finite() && !matches!(state.camera, CameraChoice::File(_)) {
+        let mut orbit = resolve_camera(library, state, USUAL_ASPECT);
+        orbit.yaw_radians += radians as f32;
+        set_camera(state, library.active(), CameraChoice::Orbit(orbit));
     }
 }
 

@@ -1,6 +1,6 @@
 //! Everything a person can do to the view. Menu, keys, links, scripts and tests all use this list.
 
-use super::{Background, CameraChoice, ClipChoice, UpAxis, ViewerState};
+use super::{Background, CameraChoice, ClipChoice, MapEdit, UpAxis, ViewerState};
 use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
 use crate::retarget::{Feet, JointMap, RootOptions, Unmapped};
@@ -28,6 +28,12 @@ pub enum Command {
         weight: Option<f32>,
     },
     ClearMorphs,
+    /// Turns a joint by hand (its number in the file; Euler angles in degrees from its rest), or lets the clip have it.
+    SetPose {
+        joint: usize,
+        degrees: Option<[f32; 3]>,
+    },
+    ClearPose,
     SetShow(super::Show),
     SelectJoint(Option<usize>),
     SetCamera(CameraChoice),
@@ -47,6 +53,8 @@ pub enum Command {
     FrameAll,
     SetFov(f32),
     SetFollow(bool),
+    /// Degrees per second; 0: the camera stands.
+    SetTurntable(f32),
     SetUp(UpAxis),
     SetExposure(f32),
     SetEnvironment(f32),
@@ -63,6 +71,11 @@ pub enum Command {
         motion: usize,
         target: usize,
         source: Option<usize>,
+    },
+    /// Changes the map for a motion in another way.
+    EditMap {
+        motion: usize,
+        edit: MapEdit,
     },
     SetUnmapped(Option<Unmapped>),
     SetRoot(Option<RootOptions>),

@@ -3,6 +3,7 @@
 use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 
 use super::playhead::{PoseSampler, active_clip, world_from_model};
+use super::stage::source_on_stage;
 use super::{CameraChoice, OrbitCamera, ViewerState};
 use crate::anim::model_from_joint;
 use crate::library::{Library, Model};
@@ -14,10 +15,18 @@ const AUTO_PITCH_RADIANS: f32 = 0.17;
 const MARGIN: f32 = 1.08;
 
 /// World-space box of all that the chosen clip shows, as the camera, the grid and the shadow see it: with the up axis
-/// turned, and without the root's travel while the camera follows. A unit box when there is nothing.
-pub fn resolved_bounds(model: &Model, state: &ViewerState) -> Bounds {
-    let bounds = model.clip_bounds(state.scene, active_clip(model, state), state.follow);
-    let bounds = bounds.transformed(&world_from_model(state.up));
+/// turned, without the root's travel while the camera follows, and with the source where that is shown too. A unit box
+/// when there is nothing.
+pub fn resolved_bounds(library: &Library, state: &ViewerState) -> Bounds {
+    let bounds = library.active().map_or(Bounds::EMPTY, |model| {
+        let bounds = model.clip_bounds(state.scene, active_clip(model, state), state.follow);
+        bounds.transformed(&world_from_model(state.up))
+    });
+    let source = source_on_stage(library, state).map_or(Bounds::EMPTY, |source| {
+        let bounds = source.model.clip_bounds(None, Some(source.clip), state.follow);
+        bounds.transformed(&source.world_from_source)
+    });
+    let bounds = bounds.union(source);
     if bounds.is_empty() || !bounds.size().is_finite() {
         Bounds { min: Vec3::splat(-0.5), max: Vec3::splat(0.5) }
     } else {
@@ -25,11 +34,28 @@ pub fn resolved_bounds(model: &Model, state: &ViewerState) -> Bounds {
     }
 }
 
-/// The orbit camera that shows what the state asks for at this aspect ratio (width over height). A camera of the file
+/// How a picture of this aspect ratio is divided: columns and rows. The compared skinning modes are side by side, or one
+/// above the other where there is more room for that.
+pub fn panes(state: &ViewerState, aspect: f32) -> [u32; 2] {
+    match state.show.split {
+        false => [1, 1],
+        true if aspect >= 1.0 => [3, 1],
+        true => [1, 3],
+    }
+}
+
+/// Width over height of one pane of a picture of this aspect ratio.
+pub fn pane_aspect(state: &ViewerState, aspect: f32) -> f32 {
+    let [columns, rows] = panes(state, aspect);
+    aspect * rows as f32 / columns as f32
+}
+
+/// The orbit camera that shows what the state asks for in a picture of this aspect ratio (width over height). A camera of the file
 /// becomes the orbit camera nearest to it: same place and direction, no roll.
 pub fn resolve_camera(library: &Library, state: &ViewerState, aspect: f32) -> OrbitCamera {
+    let aspect = pane_aspect(state, aspect);
     let auto = |yaw, pitch| match library.active() {
-        Some(model) => fit(resolved_bounds(model, state), yaw, pitch, state.fov_degrees, aspect),
+        Some(_) => fit(resolved_bounds(library, state), yaw, pitch, state.fov_degrees, aspect),
         None => OrbitCamera { yaw_radians: yaw, pitch_radians: pitch, distance: 3.0, target: Vec3::ZERO },
     };
     match state.camera {
@@ -37,7 +63,7 @@ pub fn resolve_camera(library: &Library, state: &ViewerState, aspect: f32) -> Or
         CameraChoice::Auto => auto(AUTO_YAW_RADIANS, AUTO_PITCH_RADIANS),
         CameraChoice::File(index) => library
             .active()
-            .and_then(|model| file_orbit(model, state, index))
+            .and_then(|model| file_orbit(library, model, state, index))
             .unwrap_or_else(|| auto(AUTO_YAW_RADIANS, AUTO_PITCH_RADIANS)),
     }
 }
@@ -46,8 +72,9 @@ pub fn resolve_camera(library: &Library, state: &ViewerState, aspect: f32) -> Or
 pub fn frame_all(library: &Library, state: &ViewerState, aspect: f32) -> OrbitCamera {
     let now = resolve_camera(library, state, aspect);
     match library.active() {
-        Some(model) => {
-            fit(resolved_bounds(model, state), now.yaw_radians, now.pitch_radians, state.fov_degrees, aspect)
+        Some(_) => {
+            let aspect = pane_aspect(state, aspect);
+            fit(resolved_bounds(library, state), now.yaw_radians, now.pitch_radians, state.fov_degrees, aspect)
         }
         None => now,
     }
@@ -80,7 +107,7 @@ pub fn world_from_file_camera(world_from_joint: &Affine3A) -> Option<Affine3A> {
     world_from_joint.translation.is_finite().then_some(Affine3A { matrix3, translation: world_from_joint.translation })
 }
 
-fn file_orbit(model: &Model, state: &ViewerState, index: usize) -> Option<OrbitCamera> {
+fn file_orbit(library: &Library, model: &Model, state: &ViewerState, index: usize) -> Option<OrbitCamera> {
     let camera = model.asset.cameras.get(index)?;
     let (mut sampler, mut world_from_joint) = (PoseSampler::default(), Vec::new());
     sampler.sample(model, state);
@@ -88,7 +115,7 @@ fn file_orbit(model: &Model, state: &ViewerState, index: usize) -> Option<OrbitC
     let world_from_camera = world_from_file_camera(&world_from_joint[camera.joint.get()])?;
     let towards_eye = world_from_camera.matrix3.z_axis;
     let eye = world_from_camera.translation;
-    let bounds = resolved_bounds(model, state);
+    let bounds = resolved_bounds(library, state);
     let to_middle = (eye - Vec3A::from(bounds.center())).dot(towards_eye);
     let distance = to_middle.max(0.1 * bounds.diagonal()).max(1e-4);
     Some(OrbitCamera {

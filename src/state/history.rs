@@ -83,6 +83,8 @@ fn is_edit(command: &Command) -> bool {
         Command::SetSkinning(_)
             | Command::SetMorph { .. }
             | Command::ClearMorphs
+            | Command::SetPose { .. }
+            | Command::ClearPose
             | Command::SetShow(_)
             | Command::SetUp(_)
             | Command::SetExposure(_)
@@ -90,6 +92,7 @@ fn is_edit(command: &Command) -> bool {
             | Command::SetBackground(_)
             | Command::SetMap { .. }
             | Command::SetSource { .. }
+            | Command::EditMap { .. }
             | Command::SetUnmapped(_)
             | Command::SetRoot(_)
             | Command::SetFeet(_)
@@ -99,6 +102,7 @@ fn is_edit(command: &Command) -> bool {
 fn take_edits(state: &mut ViewerState, from: &ViewerState) {
     state.skinning = from.skinning;
     state.morph.clone_from(&from.morph);
+    state.pose.clone_from(&from.pose);
     state.show = from.show;
     state.up = from.up;
     state.exposure = from.exposure;
@@ -113,6 +117,7 @@ fn take_edits(state: &mut ViewerState, from: &ViewerState) {
 fn same_edits(a: &ViewerState, b: &ViewerState) -> bool {
     a.skinning == b.skinning
         && a.morph == b.morph
+        && a.pose == b.pose
         && a.show == b.show
         && a.up == b.up
         && a.exposure == b.exposure

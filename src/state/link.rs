@@ -24,7 +24,7 @@ pub enum LinkError {
 }
 
 /// Keys of the link in the order they are written.
-const KEYS: [&str; 26] = [
+const KEYS: [&str; 28] = [
     "model",
     "motion",
     "map",
@@ -41,11 +41,13 @@ const KEYS: [&str; 26] = [
     "range",
     "skinning",
     "morph",
+    "pose",
     "show",
     "joint",
     "camera",
     "fov",
     "follow",
+    "turntable",
     "up",
     "exposure",
     "environment",
@@ -118,6 +120,7 @@ pub fn to_object(state: &ViewerState) -> Value {
             "t" => json!(state.time_secs),
             "speed" => json!(state.speed),
             "fov" => json!(state.fov_degrees),
+            "turntable" => json!(state.turntable),
             "exposure" => json!(state.exposure),
             "environment" => json!(state.environment_degrees),
             "scene" => json!(state.scene),
@@ -223,11 +226,13 @@ fn value_of(state: &ViewerState, key: &str) -> String {
         "range" => state.range.map_or(String::new(), |range| format!("{},{}", range.start_secs, range.end_secs)),
         "skinning" => word_of(&SKINNING_MODES, &state.skinning),
         "morph" => joined(state.morph.iter().map(|(index, weight)| format!("{index}:{weight}"))),
+        "pose" => joined(state.pose.iter().map(|(joint, [x, y, z])| format!("{joint}:{x}:{y}:{z}"))),
         "show" => show_text(state),
         "joint" => number(state.joint),
         "camera" => camera_text(&state.camera),
         "fov" => state.fov_degrees.to_string(),
         "follow" => flag_text(state.follow).to_owned(),
+        "turntable" => state.turntable.to_string(),
         "up" => word_of(&UP_AXES, &state.up),
         "exposure" => state.exposure.to_string(),
         "environment" => state.environment_degrees.to_string(),
@@ -304,6 +309,10 @@ fn read_value(state: &mut ViewerState, key: &str, value: &str) -> Read {
             return put(&mut state.skinning, mode, "linear, rigid or dual-quaternion");
         }
         "morph" => return put(&mut state.morph, read_morph(value), "pairs of index and weight: 0:0.5,3:1"),
+        "pose" => {
+            let expected = "joints with three angles in degrees: 4:30:0:-15,7:0:90:0";
+            return put(&mut state.pose, read_pose(value), expected);
+        }
         "show" => return read_show(state, value),
         "camera" => {
             let expected = "yaw,pitch,distance,x,y,z in degrees and metres, gltf:INDEX or auto";
@@ -311,6 +320,7 @@ fn read_value(state: &mut ViewerState, key: &str, value: &str) -> Read {
         }
         "fov" => return put(&mut state.fov_degrees, finite(value), "degrees"),
         "follow" => return put(&mut state.follow, flag(value), "0 or 1"),
+        "turntable" => return put(&mut state.turntable, finite(value), "degrees per second"),
         "up" => return put(&mut state.up, from_word(&UP_AXES, value), "x, y, z, -x, -y or -z"),
         "exposure" => return put(&mut state.exposure, finite(value), "stops"),
         "environment" => return put(&mut state.environment_degrees, finite(value), "degrees"),
@@ -502,9 +512,19 @@ fn read_morph(text: &str) -> Option<BTreeMap<usize, f32>> {
     text.split(',').filter(|part| !part.is_empty()).map(pair).collect()
 }
 
+fn read_pose(text: &str) -> Option<BTreeMap<usize, [f32; 3]>> {
+    let turned = |part: &str| {
+        let (joint, angles) = part.split_once(':')?;
+        let mut angles = angles.split(':').map(finite::<f32>);
+        let degrees = [angles.next()??, angles.next()??, angles.next()??];
+        angles.next().is_none().then_some((joint.trim().parse().ok()?, degrees))
+    };
+    text.split(',').filter(|part| !part.is_empty()).map(turned).collect()
+}
+
 /// The words of `show`, each with its flag, and what the flag is when the word is there. The mesh and its shadow belong to
 /// any picture, so the words for them take them away.
-fn show_flags(show: &mut Show) -> [(&'static str, &mut bool, bool); 7] {
+fn show_flags(show: &mut Show) -> [(&'static str, &mut bool, bool); 11] {
     [
         ("no-mesh", &mut show.mesh, false),
         ("skeleton", &mut show.skeleton, true),
@@ -513,6 +533,10 @@ fn show_flags(show: &mut Show) -> [(&'static str, &mut bool, bool); 7] {
         ("wireframe", &mut show.wireframe, true),
         ("grid", &mut show.grid, true),
         ("no-shadow", &mut show.shadow, false),
+        ("split", &mut show.split, true),
+        ("source", &mut show.source, true),
+        ("over", &mut show.over, true),
+        ("error", &mut show.error, true),
     ]
 }
 

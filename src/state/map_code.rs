@@ -43,8 +43,24 @@ fn without_defaults(map: &JointMap) -> Value {
     let (mut form, default) = (written(map), written(&JointMap::default()));
     if let (Some(form), Some(default)) = (form.as_object_mut(), default.as_object()) {
         form.retain(|key, value| key == "gaitway_map" || default.get(key) != Some(value));
+        form.get_mut("joints").into_iter().for_each(shorten);
     }
     form
+}
+
+/// Corrections are single precision: as doubles they would have twice the digits, which say nothing.
+fn shorten(value: &mut Value) {
+    match value {
+        Value::Object(members) => members.values_mut().for_each(shorten),
+        Value::Array(items) => items.iter_mut().for_each(shorten),
+        Value::Number(number) if number.is_f64() => {
+            let shortest = number.as_f64().and_then(|number| (number as f32).to_string().parse().ok());
+            if let Some(shortest) = shortest.and_then(serde_json::Number::from_f64) {
+                *number = shortest;
+            }
+        }
+        _ => {}
+    }
 }
 
 /// None when it is no such code.

@@ -7,19 +7,26 @@ mod framing;
 mod history;
 mod link;
 mod map_code;
+mod map_edit;
 mod maps;
 mod playhead;
+mod stage;
 mod view;
 
 pub use apply::apply;
 pub use camera::{CameraChoice, OrbitCamera};
 pub use command::Command;
-pub use framing::{frame_all, resolve_camera, resolved_bounds, world_from_file_camera};
+pub use framing::{frame_all, pane_aspect, panes, resolve_camera, resolved_bounds, world_from_file_camera};
 pub use history::History;
 pub use link::{LinkError, from_link, from_object, to_link, to_object};
+pub use map_edit::{MapEdit, muted_properties};
 pub use maps::{
     MapProblem, MotionMap, NumberedMap, map_in_force, maps_in_force, named, names_checksum, number_of, numbered,
     proposed, settled_maps,
 };
-pub use playhead::{PoseSampler, active_clip, choice_of_clip, clip_secs, play_range, world_from_model};
+pub use playhead::{
+    PoseSampler, active_clip, choice_of_clip, clip_secs, degrees_by_hand, play_range, rotation_by_hand,
+    world_from_model,
+};
+pub use stage::{SourceOnStage, source_on_stage};
 pub use view::{Background, ClipChoice, Fade, Show, UpAxis, ViewerState};

@@ -1,6 +1,6 @@
 //! Which clip is meant, and at which time of it: the step from a view state to a pose.
 
-use glam::{Affine3A, Quat};
+use glam::{Affine3A, EulerRot, Quat};
 
 use super::{ClipChoice, UpAxis, ViewerState};
 use crate::anim::{Pose, SampleCursor, TimeRange, clip_time};
@@ -64,7 +64,7 @@ pub struct PoseSampler {
 
 impl PoseSampler {
     /// The pose that is shown: rest, then what plays below the clip, then the clip, blended with the one before while that
-    /// fades, then the morph weights set by hand. Allocates nothing once it has grown.
+    /// fades, then the joints and morph weights set by hand. Allocates nothing once it has grown.
     pub fn sample(&mut self, model: &Model, state: &ViewerState) {
         let clip = active_clip(model, state);
         let time_secs = clip.map_or(0.0, |clip| clip_secs(model, clip, state));
@@ -82,12 +82,30 @@ impl PoseSampler {
             // Slow at both ends, so that nothing starts or stops at once.
             self.pose.blend(&self.before, (weight * weight * (3.0 - 2.0 * weight)) as f32);
         }
+        for (&joint, &degrees) in &state.pose {
+            if let Some(joint) = model.asset.skeleton.joint_of_source(joint) {
+                let rest = model.asset.skeleton.rest().locals[joint.get()].rotation;
+                self.pose.locals[joint.get()].rotation = rotation_by_hand(rest, degrees);
+            }
+        }
         for (&index, &weight) in &state.morph {
             if let Some(slot) = self.pose.morph_weights.get_mut(index) {
                 *slot = weight;
             }
         }
     }
+}
+
+/// A joint's local rotation when it is turned by hand: about its own X, then its new Y, then its new Z, from its rest.
+pub fn rotation_by_hand(rest: Quat, degrees: [f32; 3]) -> Quat {
+    let [x, y, z] = degrees.map(f32::to_radians);
+    (rest * Quat::from_euler(EulerRot::XYZ, x, y, z)).normalize()
+}
+
+/// The angles of [`rotation_by_hand`] for a local rotation.
+pub fn degrees_by_hand(rest: Quat, rotation: Quat) -> [f32; 3] {
+    let (x, y, z) = (rest.conjugate() * rotation).normalize().to_euler(EulerRot::XYZ);
+    [x, y, z].map(f32::to_degrees)
 }
 
 /// A clip at a time over the rest, what plays below it at a time of its own; no clip: the rest.

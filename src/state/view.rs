@@ -39,6 +39,9 @@ pub struct ViewerState {
     pub skinning: SkinningMode,
     /// Morph weights set by hand, by index in `Pose::morph_weights`; they win over the clip.
     pub morph: BTreeMap<usize, f32>,
+    /// Joints turned by hand, by their numbers in the file: Euler angles in degrees, see [`super::rotation_by_hand`]. They
+    /// win over the clip.
+    pub pose: BTreeMap<usize, [f32; 3]>,
     pub show: Show,
     /// The chosen joint, by its number in the file: its transforms are shown, and its influence with `show.weights`.
     pub joint: Option<usize>,
@@ -46,6 +49,8 @@ pub struct ViewerState {
     pub fov_degrees: f32,
     /// The camera stays with the character's root.
     pub follow: bool,
+    /// How fast the camera goes around the target by itself, degrees per second of the clock.
+    pub turntable: f32,
     pub up: UpAxis,
     /// In stops: the picture is multiplied by 2^exposure.
     pub exposure: f32,
@@ -77,11 +82,13 @@ impl Default for ViewerState {
             range: None,
             skinning: SkinningMode::Linear,
             morph: BTreeMap::new(),
+            pose: BTreeMap::new(),
             show: Show::default(),
             joint: None,
             camera: CameraChoice::Auto,
             fov_degrees: 35.0,
             follow: false,
+            turntable: 0.0,
             up: UpAxis::Y,
             exposure: 0.0,
             environment_degrees: 0.0,
@@ -123,11 +130,31 @@ pub struct Show {
     pub wireframe: bool,
     pub grid: bool,
     pub shadow: bool,
+    /// The three skinning modes side by side.
+    pub split: bool,
+    /// The file that the clip is borrowed from, beside the model.
+    pub source: bool,
+    /// The same, in the model's own place.
+    pub over: bool,
+    /// With the source: bones are coloured by how far their turns away from the rest differ from the source's.
+    pub error: bool,
 }
 
 impl Default for Show {
     fn default() -> Self {
-        Self { mesh: true, skeleton: false, weights: false, bounds: false, wireframe: false, grid: true, shadow: true }
+        Self {
+            mesh: true,
+            skeleton: false,
+            weights: false,
+            bounds: false,
+            wireframe: false,
+            grid: true,
+            shadow: true,
+            split: false,
+            source: false,
+            over: false,
+            error: false,
+        }
     }
 }
 

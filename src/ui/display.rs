@@ -6,10 +6,19 @@ use super::controls::{self, SliderSettings};
 use super::{Output, Shown};
 use crate::library::Model;
 use crate::mesh::SkinningMode;
-use crate::state::{Command, Show};
+use crate::state::{Command, Show, active_clip};
 
 const MODES: [(SkinningMode, &str); 3] =
     [(SkinningMode::Linear, "Linear"), (SkinningMode::Rigid, "Rigid"), (SkinningMode::DualQuaternion, "Dual quat.")];
+
+/// What a skinning mode is called.
+pub(super) fn title(mode: SkinningMode) -> &'static str {
+    match mode {
+        SkinningMode::Linear => "Linear",
+        SkinningMode::Rigid => "Rigid",
+        SkinningMode::DualQuaternion => "Dual quaternion",
+    }
+}
 
 fn explanation(mode: SkinningMode) -> &'static str {
     match mode {
@@ -33,9 +42,12 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     }
     ui.add_space(2.0);
     controls::hint(ui, explanation(state.skinning));
+    if controls::switch(ui, "Compare all three", state.show.split) {
+        out.commands.push(Command::SetShow(Show { split: !state.show.split, ..state.show }));
+    }
 
     controls::section(ui, "SHOW");
-    let Show { mesh, skeleton, weights, bounds, wireframe, grid, shadow } = state.show;
+    let Show { mesh, skeleton, weights, bounds, wireframe, grid, shadow, .. } = state.show;
     type Flip = fn(&mut Show);
     let switches: [(&str, bool, Flip); 7] = [
         ("Mesh", mesh, |show| show.mesh = !show.mesh),
@@ -56,8 +68,49 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
             controls::hint(ui, "Choose a joint in the picture or in the Scene tab to see what it pulls.");
         }
     }
+    source(ui, shown, out);
     if let Some(model) = shown.library.active() {
         morphs(ui, shown, model, out);
+    }
+}
+
+/// Where the file is shown that the playing clip is borrowed from.
+fn source(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
+    let show = shown.state.show;
+    let Some(model) = shown.library.active().filter(|_| !shown.library.motions().is_empty()) else { return };
+    controls::section(ui, "SOURCE OF THE MOTION");
+    #[derive(Clone, Copy, PartialEq)]
+    enum Place {
+        Away,
+        Beside,
+        Over,
+    }
+    let place = match (show.source, show.over) {
+        (false, _) => Place::Away,
+        (true, false) => Place::Beside,
+        (true, true) => Place::Over,
+    };
+    let places = [(Place::Away, "Hidden"), (Place::Beside, "Beside"), (Place::Over, "Over")];
+    if let Some(place) = controls::segmented(ui, Some(place), &places) {
+        let (source, over) = (place != Place::Away, place == Place::Over);
+        out.commands.push(Command::SetShow(Show { source, over, ..show }));
+    }
+    if !show.source {
+        return;
+    }
+    if active_clip(model, shown.state).and_then(|clip| model.borrowed(clip)).is_none() {
+        controls::hint(ui, "This clip is the model's own: choose a borrowed one to see where it comes from.");
+        return;
+    }
+    if controls::switch(ui, "Colour bones by error", show.error) {
+        out.commands.push(Command::SetShow(Show { error: !show.error, ..show }));
+    }
+    if show.error {
+        controls::hint(
+            ui,
+            "How far a joint's turn away from its rest differs from its source's: green 0°, yellow 7.5°, red 15° and \
+             more; grey follows nothing. Hover a joint for the number.",
+        );
     }
 }
 

@@ -24,6 +24,8 @@ pub enum Icon {
     MarkIn,
     MarkOut,
     Frame,
+    Undo,
+    Redo,
 }
 
 /// A square button that shows an icon; `label` names it for people who cannot see it and is shown on hover.
@@ -176,6 +178,12 @@ pub fn paint(painter: &Painter, icon: Icon, square: Rect, color: Color32) {
         Icon::Close => {
             line(&[(0.15, 0.15), (0.85, 0.85)]);
             line(&[(0.85, 0.15), (0.15, 0.85)]);
+        }
+        Icon::Undo | Icon::Redo => {
+            let x = |x: f32| if icon == Icon::Undo { x } else { 1.0 - x };
+            let curve = [(0.1, 0.36), (0.62, 0.36), (0.8, 0.43), (0.88, 0.6), (0.8, 0.77), (0.62, 0.84), (0.36, 0.84)];
+            line(&curve.map(|(along, y)| (x(along), y)));
+            line(&[(x(0.36), 0.1), (x(0.1), 0.36), (x(0.36), 0.62)]);
         }
         Icon::MarkIn => line(&[(0.7, 0.08), (0.35, 0.08), (0.35, 0.92), (0.7, 0.92)]),
         Icon::MarkOut => line(&[(0.3, 0.08), (0.65, 0.08), (0.65, 0.92), (0.3, 0.92)]),

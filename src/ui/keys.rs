@@ -3,7 +3,7 @@
 use egui::{Context, Key, Modifiers};
 
 use super::transport::range_here;
-use super::{Output, Shown, UiAction, UiState};
+use super::{Output, Shown, UiAction, UiState, motion};
 use crate::anim::LoopMode;
 use crate::state::{CameraChoice, Command, Show, choice_of_clip};
 
@@ -117,6 +117,8 @@ pub const KEY_TABLE: &[KeyHelp] = &[
         act: |shown, local, _, out| {
             if local.help_open {
                 local.help_open = false;
+            } else if motion::stop_clicking(local) {
+                // That was all.
             } else if local.sheet.is_some() {
                 local.sheet = None;
             } else if local.error.is_some() {
@@ -129,19 +131,16 @@ pub const KEY_TABLE: &[KeyHelp] = &[
     },
 ];
 
-/// Listens, unless someone is typing or a control has the keyboard.
+/// Listens, unless someone is typing or a control has the keyboard; to undo and redo also when a mere button has it.
 pub(super) fn listen(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
-    if context.egui_wants_keyboard_input() || local.path_prompt.is_some() || local.motion.is_picking() {
+    if local.path_prompt.is_some() || local.motion.is_picking() {
         return;
     }
-    let undo = egui::KeyboardShortcut::new(Modifiers::COMMAND, Key::Z);
-    let redo = egui::KeyboardShortcut::new(Modifiers::COMMAND, Key::Y);
-    let redo_too = egui::KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
-    // The longer one first: the shorter would swallow it.
-    if context.input_mut(|input| input.consume_shortcut(&redo_too) || input.consume_shortcut(&redo)) {
-        out.actions.push(UiAction::Redo);
-    } else if context.input_mut(|input| input.consume_shortcut(&undo)) {
-        out.actions.push(UiAction::Undo);
+    if !context.text_edit_focused() {
+        undo_and_redo(context, out);
+    }
+    if context.egui_wants_keyboard_input() {
+        return;
     }
     // The help is modal: only the keys that close it count.
     let modal = local.help_open;
@@ -158,6 +157,18 @@ pub(super) fn listen(context: &Context, shown: &Shown<'_>, local: &mut UiState, 
                 (line.act)(shown, local, which, out);
             }
         }
+    }
+}
+
+fn undo_and_redo(context: &Context, out: &mut Output) {
+    let undo = egui::KeyboardShortcut::new(Modifiers::COMMAND, Key::Z);
+    let redo = egui::KeyboardShortcut::new(Modifiers::COMMAND, Key::Y);
+    let redo_too = egui::KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    // The longer one first: the shorter would swallow it.
+    if context.input_mut(|input| input.consume_shortcut(&redo_too) || input.consume_shortcut(&redo)) {
+        out.actions.push(UiAction::Redo);
+    } else if context.input_mut(|input| input.consume_shortcut(&undo)) {
+        out.actions.push(UiAction::Undo);
     }
 }
 

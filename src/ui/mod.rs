@@ -4,6 +4,7 @@
 mod clips;
 mod controls;
 mod display;
+mod gizmo;
 mod icons;
 mod inspector;
 mod keys;
@@ -92,8 +93,14 @@ pub struct UiState {
     pub hovered_joint: Option<usize>,
     /// Width over height of the picture, as last shown.
     pub aspect: f32,
+    /// Whether there is an edit to take back, or one to do again.
+    pub can_undo: bool,
+    pub can_redo: bool,
     /// Says briefly that something was done.
     pub toast: Option<Toast>,
+    /// The chosen joint can be turned by hand.
+    pub turning: bool,
+    grab: Option<gizmo::Grab>,
     /// The help was open in the last pass already.
     help_shown: bool,
     /// Where the open sheet is.
@@ -118,12 +125,16 @@ impl Default for UiState {
             joint_search: String::new(),
             help_open: false,
             error: None,
+            turning: false,
+            grab: None,
             motion_refused: false,
             progress: None,
             path_prompt: None,
             scrubbing: false,
             hovered_joint: None,
             aspect: 1.6,
+            can_undo: false,
+            can_redo: false,
             toast: None,
             help_shown: false,
             sheet_rect: None,

@@ -24,6 +24,7 @@ pub fn overlays(ui: &mut Ui, picture: Rect, shown: Shown<'_>, local: &mut UiStat
     }
     local.help_shown = local.help_open;
     path_prompt(ui.ctx(), local, out);
+    motion::banner(ui.ctx(), picture, &shown, local);
     motion::picker(ui.ctx(), &shown, local, out);
     if ui.input(|input| !input.raw.hovered_files.is_empty()) {
         drop_target(ui);

@@ -6,9 +6,9 @@ use egui::{Align, Layout, PaintCallback, Painter, PointerButton, Pos2, Rect, Res
 use glam::Vec2;
 
 use super::icons::{Icon, icon_button};
-use super::{Output, Sheet, Shown, UiAction, UiState, is_narrow, keys, scene_tree, style};
-use crate::frame::pick_joint;
-use crate::state::Command;
+use super::{Output, Sheet, Shown, UiAction, UiState, display, gizmo, is_narrow, keys, motion, scene_tree, style};
+use crate::frame::{PickedJoint, pick_joint};
+use crate::state::{Command, source_on_stage};
 
 /// Where the pixels go: under everything that was painted on the picture.
 pub struct PictureSlot {
@@ -38,8 +38,11 @@ pub fn picture(ui: &mut Ui, rect: Rect, shown: Shown<'_>, local: &mut UiState, o
         local.aspect = rect.width() / rect.height().max(1.0);
         let response = ui.interact(rect, ui.scope_id().with("picture"), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Image, true, "Picture"));
-        camera(ui, &response, out);
+        if !gizmo::show(ui, &painter, &response, &shown, local, out) {
+            camera(ui, &response, &shown, out);
+        }
         joints(ui, &painter, &response, &shown, local, out);
+        compared(ui, &painter, rect, &shown);
         keys::listen(ui.ctx(), &shown, local, out);
         if !shown.state.embed {
             buttons(ui, rect, local, out);
@@ -65,8 +68,8 @@ fn checkerboard(painter: &Painter, rect: Rect, shown: &Shown<'_>, palette: style
     painter.add(mesh);
 }
 
-fn camera(ui: &Ui, response: &Response, out: &mut Output) {
-    let height = response.rect.height().max(1.0);
+fn camera(ui: &Ui, response: &Response, shown: &Shown<'_>, out: &mut Output) {
+    let height = pane_at(shown, response.rect, None).height().max(1.0);
     let pan = |by: egui::Vec2| Command::Pan { right: -by.x / height, up: by.y / height };
     let (touch, shift) = ui.input(|input| (input.multi_touch(), input.modifiers.shift));
     if let Some(touch) = touch.filter(|touch| response.rect.contains(touch.start_pos)) {
@@ -104,51 +107,137 @@ fn camera(ui: &Ui, response: &Response, out: &mut Output) {
     }
 }
 
-/// Hover names a joint, a click chooses it, a click beside all of them chooses none.
+/// Hover names a joint, a click chooses it, a click beside all of them chooses none. With the source on the stage, what is
+/// under the pointer is lit on both sides; a click on the source's joint chooses the one that follows it.
 fn joints(ui: &Ui, painter: &Painter, response: &Response, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
-    let Some(model) = shown.library.active() else { return };
+    if motion::clicking(ui, painter, response, shown, local, out) {
+        return;
+    }
     let at = |position: Pos2| joint_at(shown, response.rect, position);
-    local.hovered_joint = response.hover_pos().filter(|_| !response.dragged()).and_then(at);
+    let hovered = response.hover_pos().filter(|_| !response.dragged()).and_then(at);
+    let of_model = |picked| match picked {
+        PickedJoint::Model(joint) => Some(joint),
+        PickedJoint::Source(_) => partner(shown, picked).and_then(|picked| match picked {
+            PickedJoint::Model(joint) => Some(joint),
+            PickedJoint::Source(_) => None,
+        }),
+    };
+    local.hovered_joint = hovered.and_then(of_model);
     if response.clicked() {
         if local.sheet.take().is_some() {
             return;
         }
-        let clicked = response.interact_pointer_pos().and_then(at);
+        let clicked = response.interact_pointer_pos().and_then(at).and_then(of_model);
         // Without bones to click on, a joint chosen in the tree stays chosen.
         if clicked != shown.state.joint && !shown.frame.bones.is_empty() {
             out.commands.push(Command::SelectJoint(clicked));
         }
     }
-    let label = |source: usize, strong: bool| {
-        let joint = model.asset.skeleton.joint_of_source(source)?;
-        let world = shown.frame.characters.first()?.world_from_joint.get(joint.get())?;
-        let position = to_screen(shown, response.rect, world.translation.into())?;
-        let palette = style::palette(ui);
-        let font = egui::FontId::proportional(13.0);
-        let text = scene_tree::title(&model.asset, joint);
-        let color = if strong { palette.on_accent } else { palette.text };
-        let galley = painter.layout_no_wrap(text, font, color);
-        let half = galley.size().x / 2.0 + 8.0;
-        let x = position
-            .x
-            .clamp(response.rect.left() + half, (response.rect.right() - half).max(response.rect.left() + half));
-        let box_ = Rect::from_center_size(pos2(x, position.y - 24.0), galley.size() + vec2(16.0, 6.0));
-        let fill = if strong { palette.accent } else { palette.panel.gamma_multiply(0.92) };
-        painter.rect_filled(box_, 6.0, fill);
-        painter.galley(box_.center() - galley.size() / 2.0, galley, color);
-        painter.circle_stroke(position, 6.0, egui::Stroke::new(2.0, palette.accent));
-        Some(())
-    };
-    if let Some(chosen) = shown.state.joint {
-        label(chosen, true);
+    let pane = pane_at(shown, response.rect, response.hover_pos());
+    let chosen = shown.state.joint.map(PickedJoint::Model);
+    let both = |picked: Option<PickedJoint>| [picked, picked.and_then(|picked| partner(shown, picked))];
+    for picked in both(chosen).into_iter().flatten() {
+        label(ui, painter, pane, shown, picked, true);
     }
-    if let Some(hovered) = local.hovered_joint.filter(|&joint| Some(joint) != shown.state.joint) {
-        label(hovered, false);
+    for picked in both(hovered).into_iter().flatten().filter(|&picked| !both(chosen).contains(&Some(picked))) {
+        label(ui, painter, pane, shown, picked, false);
     }
 }
 
-/// A world-space point on the screen; none behind the camera.
-fn to_screen(shown: &Shown<'_>, rect: Rect, world: glam::Vec3) -> Option<Pos2> {
+/// The joint on the other side of the map, while both sides are on the stage.
+fn partner(shown: &Shown<'_>, picked: PickedJoint) -> Option<PickedJoint> {
+    let source = source_on_stage(shown.library, shown.state)?;
+    let skeletons = [&shown.library.active()?.asset.skeleton, &source.model.asset.skeleton];
+    let mut pairs = source.borrowed.pairs.iter();
+    match picked {
+        PickedJoint::Model(joint) => {
+            let joint = skeletons[0].joint_of_source(joint)?;
+            let pair = pairs.find(|pair| pair.target == joint)?;
+            Some(PickedJoint::Source(skeletons[1].source_index(pair.source)))
+        }
+        PickedJoint::Source(joint) => {
+            let joint = skeletons[1].joint_of_source(joint)?;
+            let pair = pairs.find(|pair| pair.source == joint)?;
+            Some(PickedJoint::Model(skeletons[0].source_index(pair.target)))
+        }
+    }
+}
+
+/// A ring around a joint and its name above it; where both sides are on the stage, how far apart they are.
+fn label(ui: &Ui, painter: &Painter, pane: Rect, shown: &Shown<'_>, picked: PickedJoint, strong: bool) -> Option<()> {
+    let model = shown.library.active()?;
+    let source = source_on_stage(shown.library, shown.state);
+    let characters = &shown.frame.characters;
+    let (asset, joint, character) = match picked {
+        PickedJoint::Model(joint) => (&model.asset, joint, characters.first()?),
+        PickedJoint::Source(joint) => (&source.as_ref()?.model.asset, joint, characters.last()?),
+    };
+    let joint = asset.skeleton.joint_of_source(joint)?;
+    let position = to_screen(shown, pane, character.world_from_joint.get(joint.get())?.translation.into())?;
+    let mut text = scene_tree::title(asset, joint);
+    if let (PickedJoint::Model(_), Some(source)) = (picked, &source) {
+        let pair = source.borrowed.pairs.iter().find(|pair| pair.target == joint);
+        let error = pair.and_then(|pair| {
+            let world_from_source = characters.last()?.world_from_joint.get(pair.source.get())?;
+            pair.error_radians(character.world_from_joint.get(joint.get())?, world_from_source)
+        });
+        text += &error.map_or(" · follows nothing".to_owned(), |error| format!(" · {:.1}° apart", error.to_degrees()));
+    }
+    let palette = style::palette(ui);
+    let color = if strong { palette.on_accent } else { palette.text };
+    let galley = painter.layout_no_wrap(text, egui::FontId::proportional(13.0), color);
+    let half = galley.size().x / 2.0 + 8.0;
+    let x = position.x.clamp(pane.left() + half, (pane.right() - half).max(pane.left() + half));
+    let box_ = Rect::from_center_size(pos2(x, position.y - 24.0), galley.size() + vec2(16.0, 6.0));
+    let fill = if strong { palette.accent } else { palette.panel.gamma_multiply(0.92) };
+    painter.rect_filled(box_, 6.0, fill);
+    painter.galley(box_.center() - galley.size() / 2.0, galley, color);
+    painter.circle_stroke(position, 6.0, egui::Stroke::new(2.0, palette.accent));
+    Some(())
+}
+
+/// The names of the skinning modes, where they are compared.
+fn compared(ui: &Ui, painter: &Painter, rect: Rect, shown: &Shown<'_>) {
+    let panes = pane_rects(shown, rect);
+    if panes.len() < 2 {
+        return;
+    }
+    let palette = style::palette(ui);
+    for (pane, character) in panes.iter().zip(&shown.frame.characters) {
+        let text = display::title(character.skinning).to_owned();
+        let galley = painter.layout_no_wrap(text, egui::FontId::proportional(13.0), palette.text);
+        let middle = pos2(pane.center().x, pane.bottom() - 18.0);
+        painter.rect_filled(
+            Rect::from_center_size(middle, galley.size() + vec2(16.0, 6.0)),
+            6.0,
+            palette.panel.gamma_multiply(0.86),
+        );
+        painter.galley(middle - galley.size() / 2.0, galley, palette.text);
+        if pane.left() > rect.left() + 1.0 {
+            painter.vline(pane.left(), pane.y_range(), egui::Stroke::new(1.0, palette.line));
+        }
+        if pane.top() > rect.top() + 1.0 {
+            painter.hline(pane.x_range(), pane.top(), egui::Stroke::new(1.0, palette.line));
+        }
+    }
+}
+
+fn pane_rects(shown: &Shown<'_>, rect: Rect) -> Vec<Rect> {
+    let [columns, rows] = shown.frame.panes.map(|count| count.max(1));
+    let size = rect.size() / vec2(columns as f32, rows as f32);
+    let at = |row: u32, column: u32| Rect::from_min_size(rect.min + vec2(column as f32, row as f32) * size, size);
+    (0..rows).flat_map(|row| (0..columns).map(move |column| at(row, column))).collect()
+}
+
+/// The pane of the picture under a point, the first one by default.
+pub(super) fn pane_at(shown: &Shown<'_>, rect: Rect, position: Option<Pos2>) -> Rect {
+    let panes = pane_rects(shown, rect);
+    let under = position.and_then(|position| panes.iter().find(|pane| pane.contains(position)));
+    under.or(panes.first()).copied().unwrap_or(rect)
+}
+
+/// A world-space point on the screen, in this pane of the picture; none behind the camera.
+pub(super) fn to_screen(shown: &Shown<'_>, rect: Rect, world: glam::Vec3) -> Option<Pos2> {
     let view = &shown.frame.view;
     let projected = view.projection_from_view * view.view_from_world * world.extend(1.0);
     let ndc = Vec2::new(projected.x, projected.y) / projected.w;
@@ -160,12 +249,13 @@ fn to_screen(shown: &Shown<'_>, rect: Rect, world: glam::Vec3) -> Option<Pos2> {
     })
 }
 
-/// The joint of the drawn bone under a point of the screen, as the file numbers it.
-fn joint_at(shown: &Shown<'_>, rect: Rect, position: Pos2) -> Option<usize> {
+/// The joint of the drawn bone under a point of the screen.
+fn joint_at(shown: &Shown<'_>, rect: Rect, position: Pos2) -> Option<PickedJoint> {
+    let rect = pane_at(shown, rect, Some(position));
     let part = (position - rect.min) / rect.size();
     let point = Vec2::new(2.0 * part.x - 1.0, 1.0 - 2.0 * part.y);
     let tolerance = 2.0 * PICK_POINTS / rect.height().max(1.0);
-    pick_joint(shown.frame, point, tolerance).map(|joint| joint as usize)
+    pick_joint(shown.frame, point, tolerance)
 }
 
 fn buttons(ui: &mut Ui, rect: Rect, local: &mut UiState, out: &mut Output) {

@@ -3,12 +3,13 @@
 use egui::{Color32, Rect, RichText, ScrollArea, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
 use glam::{Affine3A, EulerRot, Quat, Vec3};
 
+use super::controls::SliderSettings;
 use super::report::short;
 use super::{Output, Shown, UiState, clips, controls, style};
 use crate::anim::{JointIndex, Transform};
 use crate::asset::Asset;
 use crate::library::Model;
-use crate::state::{Command, PoseSampler};
+use crate::state::{Command, PoseSampler, degrees_by_hand};
 
 const ROW_HEIGHT: f32 = 26.0;
 
@@ -23,7 +24,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
     let chosen = shown.state.joint.and_then(|joint| model.asset.skeleton.joint_of_source(joint));
     if let Some(joint) = chosen {
         ui.add_space(4.0);
-        controls::card(ui, |ui| joint_card(ui, shown, model, joint, out));
+        controls::card(ui, |ui| joint_card(ui, shown, model, joint, local, out));
     } else {
         controls::hint(ui, "Click a joint here or in the picture to see its transforms.");
     }
@@ -223,7 +224,7 @@ fn kind_mark(ui: &Ui, kind: Kind, center: egui::Pos2, palette: style::Palette) {
     }
 }
 
-fn joint_card(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, out: &mut Output) {
+fn joint_card(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, panel: &mut UiState, out: &mut Output) {
     let asset = &model.asset;
     ui.horizontal(|ui| {
         let name = RichText::new(title(asset, joint)).strong().size(15.0);
@@ -247,6 +248,43 @@ fn joint_card(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, 
     let character = shown.frame.characters.first();
     if let Some(world) = character.and_then(|character| character.world_from_joint.get(joint.get())) {
         transform(ui, "World", &decomposed(world));
+    }
+    ui.add_space(2.0);
+    if controls::switch(ui, "Turn by hand", panel.turning) {
+        panel.turning = !panel.turning;
+    }
+    if panel.turning {
+        by_hand(ui, shown, asset, joint, local.rotation, out);
+    }
+    if !shown.state.pose.is_empty() {
+        let count = shown.state.pose.len();
+        let is_turned = shown.state.pose.contains_key(&asset.skeleton.source_index(joint));
+        ui.horizontal_wrapped(|ui| {
+            if ui.add_enabled(is_turned, egui::Button::new("Reset joint")).clicked() {
+                out.commands.push(Command::SetPose { joint: asset.skeleton.source_index(joint), degrees: None });
+            }
+            let all = format!("Reset all {count}");
+            if ui.button(all).on_hover_text("Gives all joints turned by hand back to the clip").clicked() {
+                out.commands.push(Command::ClearPose);
+            }
+        });
+    }
+}
+
+/// Three angles from the joint's rest; they follow the clip until they are touched.
+fn by_hand(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, rotation: Quat, out: &mut Output) {
+    let number = asset.skeleton.source_index(joint);
+    let rest = asset.skeleton.rest().locals.get(joint.get()).map_or(Quat::IDENTITY, |local| local.rotation);
+    let now = shown.state.pose.get(&number).copied().unwrap_or_else(|| degrees_by_hand(rest, rotation));
+    controls::hint(ui, "From its rest: about its X, then its Y, then its Z. Or drag the rings in the picture.");
+    for (axis, name) in ["Turn X", "Turn Y", "Turn Z"].into_iter().enumerate() {
+        let settings =
+            SliderSettings { range: (-180.0, 180.0), default: 0.0, decimals: 1, suffix: "°", logarithmic: false };
+        if let Some(angle) = controls::slider(ui, name, f64::from(now[axis]), settings) {
+            let mut degrees = now;
+            degrees[axis] = angle as f32;
+            out.commands.push(Command::SetPose { joint: number, degrees: Some(degrees) });
+        }
     }
 }
 

@@ -69,6 +69,11 @@ fn camera(ui: &mut Ui, shown: &Shown<'_>, aspect: f32, out: &mut Output) {
     if controls::switch(ui, "Follow the character", state.follow) {
         out.commands.push(Command::SetFollow(!state.follow));
     }
+    let settings =
+        SliderSettings { range: (-90.0, 90.0), default: 0.0, decimals: 0, suffix: "°/s", logarithmic: false };
+    if let Some(speed) = controls::slider(ui, "Turntable", f64::from(state.turntable), settings) {
+        out.commands.push(Command::SetTurntable(speed as f32));
+    }
 }
 
 /// An orbit camera that looks from a fixed side and sees everything.

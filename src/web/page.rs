@@ -117,10 +117,7 @@ async fn first_contents(
             let mut model = None;
             for motion in listed {
                 match open_items(vec![Item::Url(motion)], Role::Model, &progress).await {
-                    Ok(found) => {
-                        model = found.model;
-                        break;
-                    }
+                    Ok(found) => model = model.or(found.model),
                     Err(error) => problems.push(error.to_string()),
                 }
             }

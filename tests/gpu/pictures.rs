@@ -46,6 +46,21 @@ fn a_silhouette_covers_its_pixels_and_no_others() {
 }
 
 #[test]
+fn a_pane_shows_what_is_in_it_alone() {
+    let Some(gpu) = gpu() else { return };
+    let mut scene = Scene::new(vec![square(0)], vec![unlit(Vec4::ONE)]);
+    let whole = scene.draw(&gpu).covered();
+    scene.frame.panes = [2, 1];
+    let both = scene.draw(&gpu);
+    assert!(both.covered() > whole / 2, "what is in no pane of its own is in all of them");
+    assert_eq!((both.at(-0.5, 0.0)[3], both.at(0.5, 0.0)[3]), (255, 255));
+    scene.frame.characters[0].pane = Some(1);
+    let right = scene.draw(&gpu);
+    assert_eq!((right.at(-0.5, 0.0)[3], right.at(0.5, 0.0)[3]), (0, 255));
+    assert_eq!(2 * right.covered(), both.covered());
+}
+
+#[test]
 fn a_mask_cuts_and_does_not_blend() {
     let Some(gpu) = gpu() else { return };
     for (alpha, shown) in [(0.4, 0), (0.5, 255), (0.6, 255)] {
@@ -248,6 +263,7 @@ fn bones_are_seen_through_the_mesh() {
         radius: 0.15,
         color: Vec4::new(0.0, 0.0, 1.0, 1.0),
         joint: 0,
+        of_source: false,
     }];
     let [r, _, b, _] = scene.draw(&gpu).at(0.0, -0.15);
     assert!(b > 100 && r < 100, "{r} {b}");

@@ -47,6 +47,8 @@ fn a_second_round_of_the_clip_allocates_nothing() {
     state.show.skeleton = true;
     state.show.bounds = true;
     state.show.weights = true;
+    state.show.split = true;
+    state.pose.insert(15, [20.0, 0.0, 0.0]);
     let mut frame = Frame::default();
     let mut play = |frames: usize| {
         for _ in 0..frames {

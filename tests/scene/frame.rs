@@ -1,6 +1,6 @@
 //! What a frame says about models, overlays and clicks.
 
-use gaitway::frame::{Frame, evaluate, pick_joint};
+use gaitway::frame::{Frame, PickedJoint, evaluate, pick_joint};
 use gaitway::library::Library;
 use gaitway::mesh::SkinningMode;
 use gaitway::state::{Background, Show, ViewerState};
@@ -99,7 +99,7 @@ fn a_click_finds_the_nearest_bone() {
     let projection_from_world = frame.view.projection_from_view * frame.view.view_from_world;
     let middle = projection_from_world * shin.head.midpoint(shin.tail).extend(1.0);
     let point = middle.xy() / middle.w;
-    assert_eq!(pick_joint(&frame, point, 0.02), Some(15));
+    assert_eq!(pick_joint(&frame, point, 0.02), Some(PickedJoint::Model(15)));
     assert_eq!(pick_joint(&frame, Vec2::new(0.95, 0.95), 0.02), None);
 }
 

@@ -11,7 +11,7 @@ fn reach(library: &gaitway::library::Library, state: &ViewerState, aspect: f32) 
     let mut frame = Frame::default();
     evaluate(library, state, aspect, &mut frame);
     let projection_from_world = frame.view.projection_from_view * frame.view.view_from_world;
-    let corners = resolved_bounds(library.active().expect("a model"), state).corners();
+    let corners = resolved_bounds(library, state).corners();
     let on_picture = corners.map(|corner| projection_from_world * corner.extend(1.0));
     assert!(on_picture.iter().all(|corner| (0.0..=corner.w).contains(&corner.z)), "out of the depth range");
     on_picture.iter().map(|corner| (corner.xy() / corner.w).abs().max_element()).fold(0.0, f32::max)

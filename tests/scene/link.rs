@@ -123,17 +123,25 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
         ("range", with(&|state| state.range = Some(TimeRange { start_secs: 0.25, end_secs: 1.1 }))),
         ("skinning", with(&|state| state.skinning = SkinningMode::DualQuaternion)),
         ("morph", with(&|state| state.morph = BTreeMap::from([(0, 0.3), (12, -1.0)]))),
-        ("show", with(&|state| state.show = Show { skeleton: true, mesh: false, grid: false, ..Show::default() })),
+        ("pose", with(&|state| state.pose = BTreeMap::from([(3, [30.5, 0.0, -179.9]), (12, [0.0, 1.0 / 3.0, 0.0])]))),
+        (
+            "show",
+            with(&|state| {
+                let overlays = Show { skeleton: true, mesh: false, grid: false, ..Show::default() };
+                state.show = Show { split: true, source: true, over: true, error: true, ..overlays };
+            }),
+        ),
         ("joint", with(&|state| state.joint = Some(0))),
         ("camera", with(&|state| state.camera = CameraChoice::Orbit(orbit))),
         ("fov_degrees", with(&|state| state.fov_degrees = 50.0)),
         ("follow", with(&|state| state.follow = true)),
+        ("turntable", with(&|state| state.turntable = -12.5)),
         ("up", with(&|state| state.up = UpAxis::MinusZ)),
         ("exposure", with(&|state| state.exposure = -0.7)),
         ("environment_degrees", with(&|state| state.environment_degrees = 123.4)),
         ("background", with(&|state| state.background = Background::Color([0, 128, 255]))),
         ("embed", with(&|state| state.embed = true)),
-        ("unknown", with(&|state| state.unknown = BTreeMap::from([("pose".to_owned(), "3:x\n4:y".to_owned())]))),
+        ("unknown", with(&|state| state.unknown = BTreeMap::from([("zoo".to_owned(), "3:x\n4:y".to_owned())]))),
     ]
 }
 
@@ -254,11 +262,15 @@ fn bad_values_are_named_and_skipped() {
     check_bad("root=fly", "root");
     check_bad("root=", "root");
     check_bad("feet=bare", "feet");
+    check_bad("pose=3:1:2", "pose");
+    check_bad("pose=3:1:2:3:4", "pose");
+    check_bad("pose=hips:1:2:3", "pose");
+    check_bad("turntable=fast", "turntable");
 }
 
 #[test]
 fn keys_of_other_versions_are_kept() {
-    let link = "v=1&show=skeleton,split&pose=b&pose=c&zoo=1%262";
+    let link = "v=1&show=skeleton,fur&crowd=b&crowd=c&zoo=1%262";
     let (state, errors) = from_link(link);
     assert_eq!(errors.len(), 4, "{errors:?}");
     assert!(state.show.skeleton);

@@ -2,6 +2,7 @@
 
 mod address;
 mod allocation;
+mod by_hand;
 mod cli;
 mod cli_borrow;
 mod crossfade;
@@ -13,9 +14,11 @@ mod framing;
 mod generator_animations;
 mod history;
 mod link;
+mod map_edits;
 mod motion;
 mod real_models;
 mod scale;
 mod sets;
+mod stage;
 mod state;
 mod walker;

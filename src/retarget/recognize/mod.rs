@@ -18,7 +18,7 @@ use crate::anim::{JointIndex, Pose, SampleCursor};
 use crate::asset::{Asset, Humanoid, Slot};
 use tree::Tree;
 
-pub(super) use names::Name;
+pub(super) use names::{Name, Side};
 
 /// What [`recognize`] found. Empty for what is not a human body.
 #[derive(Debug, Clone, Default, PartialEq)]

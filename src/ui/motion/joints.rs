@@ -1,38 +1,142 @@
-//! The channel table: every joint of the model, what it follows, and why that was proposed.
+//! The channel table: every joint of the model, what it follows, how sure that is, and why.
 
-use egui::{Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
+use std::collections::HashSet;
+
+use egui::{Align2, FontId, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 
 use super::picker::Picking;
-use super::{MotionTab, Pairing, joint_text};
-use crate::anim::JointIndex;
-use crate::asset::Slot;
+use super::rows::{BodyPart, Filter, Row, State, rows};
+use super::{MotionTab, Pairing, detail};
 use crate::retarget::JointMap;
-use crate::ui::{controls, scene_tree, style};
+use crate::state::Command;
+use crate::ui::{Output, Shown, controls, style};
 
 const ROW_HEIGHT: f32 = 44.0;
+const HEADING_HEIGHT: f32 = 32.0;
+/// How far a joint stands to the right of the one it hangs under, and how often at most.
+const INDENT: f32 = 8.0;
+const MOST_INDENTS: usize = 7;
 
-/// Below this a proposal is marked: look at it.
-const UNSURE: f32 = 0.6;
+/// How the table is ordered and what of it is shown.
+#[derive(Debug, Default)]
+pub(super) struct TableView {
+    pub search: String,
+    pub filter: Filter,
+    /// As the skeleton hangs together, even where parts of a body are known.
+    pub tree: bool,
+    folded: HashSet<BodyPart>,
+    /// The joint that was last scrolled to.
+    scrolled_to: Option<usize>,
+}
 
-pub(super) fn show(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, tab: &mut MotionTab) {
+/// Whether the table can be ordered by parts of the body.
+pub(super) fn has_body(pairing: &Pairing<'_>) -> bool {
+    pairing.proposal.is_some_and(|proposal| !proposal.model.parts.is_empty())
+}
+
+/// The choices above the table.
+pub(super) fn choices(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, table: &mut TableView) {
+    let rows = rows(pairing, map);
+    let count = |filter: Filter| rows.iter().filter(|row| filter.lets_through(row)).count();
+    let name = |filter: Filter| Filter::ALL.iter().find(|(other, _)| *other == filter).map_or("", |(_, name)| name);
+    let text = |filter: Filter| format!("{} ({})", name(filter), count(filter));
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        let half = (ui.available_width() - 6.0) / 2.0;
+        if has_body(pairing) {
+            ui.scope(|ui| {
+                ui.set_max_width(half);
+                let orders = [(false, "Body"), (true, "Tree")];
+                if let Some(tree) = controls::segmented_about(ui, "Order", Some(table.tree), &orders) {
+                    table.tree = tree;
+                }
+            });
+        }
+        let combo = egui::ComboBox::from_id_salt("joint filter").width(ui.available_width()).truncate();
+        let response = combo.selected_text(text(table.filter)).show_ui(ui, |ui| {
+            for (filter, _) in Filter::ALL {
+                if ui.selectable_label(filter == table.filter, text(filter)).clicked() {
+                    table.filter = filter;
+                }
+            }
+        });
+        response.response.accessible_name("Which joints are shown");
+    });
+}
+
+pub(super) fn show(
+    ui: &mut Ui,
+    shown: &Shown<'_>,
+    pairing: &Pairing<'_>,
+    map: &JointMap,
+    tab: &mut MotionTab,
+    out: &mut Output,
+) {
     let prefix = common_prefix(pairing);
-    let wanted = tab.search.to_lowercase();
+    let chosen = shown.state.joint;
+    let wanted = tab.table.search.to_lowercase();
     let rows: Vec<Row> = rows(pairing, map)
         .into_iter()
+        .filter(|row| tab.table.filter.lets_through(row) || Some(row.number) == chosen)
         .filter(|row| {
             wanted.is_empty()
                 || row.target.to_lowercase().contains(&wanted)
-                || row.source.to_lowercase().contains(&wanted)
+                || row.source_text.to_lowercase().contains(&wanted)
         })
         .collect();
     if rows.is_empty() {
-        controls::hint(ui, format!("No joint's name contains “{}”.", tab.search));
+        let nothing = match wanted.is_empty() {
+            true if tab.table.filter == Filter::Look => "There is nothing that needs a look.".to_owned(),
+            true => "There are no such joints.".to_owned(),
+            false => format!("No such joint's name contains “{}”.", tab.table.search),
+        };
+        controls::hint(ui, nothing);
         return;
     }
+    let scroll = tab.table.scrolled_to != chosen;
+    tab.table.scrolled_to = chosen;
     ui.spacing_mut().item_spacing.y = 0.0;
-    for row in &rows {
-        if show_row(ui, row, prefix) {
-            tab.picking = Some(Picking::new(pairing.index, row.number));
+    let by_body = !tab.table.tree && has_body(pairing);
+    let mut line = |ui: &mut Ui, row: &Row, tab: &mut MotionTab| {
+        let is_chosen = chosen == Some(row.number);
+        let indents = if by_body || !wanted.is_empty() { 0 } else { row.depth.min(MOST_INDENTS) };
+        match show_row(ui, row, prefix, is_chosen, indents as f32 * INDENT, scroll) {
+            Some(Pressed::Target) => {
+                let joint = (!is_chosen).then_some(row.number);
+                // Already in sight: it was just pressed.
+                tab.table.scrolled_to = joint;
+                out.commands.push(Command::SelectJoint(joint));
+            }
+            Some(Pressed::Source) => tab.picking = Some(Picking::new(pairing.index, row.number)),
+            None => {}
+        }
+        if is_chosen {
+            detail::show(ui, shown, pairing, map, row, tab, out);
+        }
+    };
+    if !by_body {
+        rows.iter().for_each(|row| line(ui, row, tab));
+        return;
+    }
+    for part in BodyPart::ALL {
+        let rows: Vec<&Row> = rows.iter().filter(|row| row.part == part).collect();
+        if rows.is_empty() {
+            continue;
+        }
+        let has_chosen = rows.iter().any(|row| Some(row.number) == chosen);
+        let open = !tab.table.folded.contains(&part) || (has_chosen && scroll) || !wanted.is_empty();
+        if open {
+            tab.table.folded.remove(&part);
+        }
+        if heading(ui, part, &rows, open) {
+            if open {
+                tab.table.folded.insert(part)
+            } else {
+                tab.table.folded.remove(&part)
+            };
+        }
+        if open {
+            rows.iter().for_each(|row| line(ui, row, tab));
         }
     }
 }
@@ -47,118 +151,114 @@ fn common_prefix<'a>(pairing: &Pairing<'a>) -> &'a str {
     if names.all(|name| name.starts_with(prefix)) { prefix } else { "" }
 }
 
-struct Row {
-    /// The target's number in its file.
-    number: usize,
-    target: String,
-    source: String,
-    follows: bool,
-    why: String,
-    unsure: bool,
-}
-
-/// Joints that follow something first by the file's order, as all; only those that could matter: what the map or the
-/// proposal speaks of, and joints of skins.
-fn rows(pairing: &Pairing<'_>, map: &JointMap) -> Vec<Row> {
-    let asset = &pairing.model.asset;
-    let mut in_skin = vec![false; asset.skeleton.len()];
-    for joint in asset.skins.iter().flat_map(|skin| skin.joints()) {
-        in_skin[joint.get()] = true;
+/// A part of the body, how many of its joints follow something, and whether one of them needs a look; true when pressed.
+fn heading(ui: &mut Ui, part: BodyPart, rows: &[&Row], open: bool) -> bool {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEADING_HEIGHT), Sense::click());
+    let follow = rows.iter().filter(|row| row.source.is_some()).count();
+    let look = rows.iter().filter(|row| row.look).count();
+    let mut right = format!("{follow} of {}", rows.len());
+    if look > 0 {
+        right = format!("{look} to look at · {right}");
     }
-    let has_skins = !asset.skins.is_empty();
-    let rows = asset.skeleton.joints().filter_map(|joint| {
-        let number = asset.skeleton.source_index(joint);
-        let given = pairing.source_in(map, number);
-        let matters = given.is_some() || !has_skins || in_skin[joint.get()];
-        matters.then(|| row(pairing, map, joint, number, given))
-    });
-    rows.collect()
-}
-
-fn row(
-    pairing: &Pairing<'_>,
-    map: &JointMap,
-    joint: JointIndex,
-    number: usize,
-    given: Option<Option<JointIndex>>,
-) -> Row {
-    let proposed = pairing.proposal.and_then(|proposal| proposal.pairs.iter().find(|pair| pair.target == joint));
-    let slot = proposed.and_then(|pair| pair.slot);
-    let slot = slot.or_else(|| pairing.proposal.and_then(|proposal| proposal.model.slot(joint)));
-    let source = given.flatten();
-    let as_proposed = proposed.filter(|pair| Some(pair.source) == source);
-    let mut why: Vec<String> = slot.map(slot_text).into_iter().collect();
-    why.push(match (source, given, as_proposed) {
-        (_, _, Some(pair)) => pair.reason.to_string(),
-        (Some(_), _, None) => "chosen by hand".to_owned(),
-        (None, Some(None), None) => "deliberately none".to_owned(),
-        _ => "follows nothing".to_owned(),
-    });
-    if source.is_none() {
-        let own = map.joints.get(&format!("#{number}")).and_then(|entry| entry.unmapped.as_ref());
-        match pairing.own_clip(own.unwrap_or(&map.unmapped)) {
-            Some((clip, true)) => why.push(format!("first key of {}", pairing.clip_title(clip))),
-            Some((clip, false)) => why.push(format!("plays {}", pairing.clip_title(clip))),
-            None => {}
-        }
-    }
-    let unsure = as_proposed.is_some_and(|pair| pair.confidence < UNSURE);
-    if unsure {
-        why.push("unsure, look at it".to_owned());
-    }
-    Row {
-        number,
-        target: scene_tree::title(&pairing.model.asset, joint),
-        source: source.map_or_else(|| "none".to_owned(), |source| joint_text(&pairing.motion.asset, source)),
-        follows: source.is_some(),
-        why: why.join(" · "),
-        unsure,
-    }
-}
-
-/// `leftUpperArm` as “left upper arm”.
-fn slot_text(slot: Slot) -> String {
-    let mut text = String::new();
-    for letter in slot.name().chars() {
-        if letter.is_uppercase() {
-            text.push(' ');
-        }
-        text.extend(letter.to_lowercase());
-    }
-    text
-}
-
-/// The target at the left, a button with its source at the right, the reason under both; true when pressed.
-fn show_row(ui: &mut Ui, row: &Row, prefix: &str) -> bool {
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT), Sense::click());
-    let label = format!("{} follows {} ({})", row.target, row.source, row.why);
+    let label = format!("{}, {right}", part.title());
     let role = egui::accesskit::Role::Button;
-    response.widget_info(|| WidgetInfo::labeled(role, true, &label));
-    if !ui.is_rect_visible(rect) {
-        return response.clicked();
+    response.widget_info(|| WidgetInfo::selected(role, true, open, &label));
+    if ui.is_rect_visible(rect) {
+        let palette = style::palette(ui);
+        lit(ui, rect, &response);
+        let middle = rect.left() + 10.0;
+        let turn = if open { vec2(0.0, 1.0) } else { vec2(1.0, 0.0) };
+        let side = vec2(-turn.y, turn.x) * 3.5;
+        let tip = pos2(middle, rect.center().y) + turn * 2.0;
+        let points = vec![tip - turn * 4.0 + side, tip, tip - turn * 4.0 - side];
+        ui.painter().line(points, Stroke::new(1.4, palette.weak_text));
+        let font = FontId::proportional(12.0);
+        let color = if look > 0 { palette.warning } else { palette.weak_text };
+        let at = rect.right_center() - vec2(8.0, 0.0);
+        let drawn = ui.painter().text(at, Align2::RIGHT_CENTER, right, font, color);
+        let left = Rect::from_min_max(pos2(rect.left() + 22.0, rect.top()), pos2(drawn.left() - 6.0, rect.bottom()));
+        controls::elided(ui, left, part.title(), palette.text);
     }
+    response.clicked()
+}
+
+fn lit(ui: &Ui, rect: Rect, response: &egui::Response) {
     let palette = style::palette(ui);
-    let lit = response.hovered() || response.has_focus();
-    if lit {
+    if response.hovered() || response.has_focus() {
         ui.painter().rect_filled(rect.shrink2(vec2(0.0, 1.0)), style::CORNER, palette.hover);
     }
     if response.has_focus() {
         let stroke = Stroke::new(1.0, palette.accent);
         ui.painter().rect_stroke(rect.shrink(1.0), style::CORNER, stroke, StrokeKind::Inside);
     }
-    let inner = rect.shrink2(vec2(8.0, 4.0));
-    let right = inner.right();
-    let middle = inner.left() + 0.5 * (right - inner.left());
-    let top = |from: f32, to: f32| Rect::from_min_max(pos2(from, inner.top()), pos2(to, inner.top() + 20.0));
-    let bright = if row.follows { palette.text } else { palette.weak_text };
-    let target = row.target.strip_prefix(prefix).unwrap_or(&row.target);
-    controls::elided(ui, top(inner.left(), middle - 14.0), target, bright);
-    let arrow = pos2(middle + 1.0, inner.top() + 10.0);
-    ui.painter().arrow(arrow, vec2(-12.0, 0.0), Stroke::new(1.2, palette.weak_text));
-    let source = if row.follows { palette.accent } else { palette.weak_text };
-    controls::elided(ui, top(middle + 6.0, right), &row.source, source);
-    let below = Rect::from_min_max(pos2(inner.left(), inner.top() + 20.0), pos2(right, inner.bottom()));
-    let color = if row.unsure { palette.warning } else { palette.weak_text };
-    controls::elided_small(ui, below, &row.why, color);
-    response.on_hover_text(format!("{label}. Click to choose another.")).clicked()
+}
+
+enum Pressed {
+    Target,
+    Source,
+}
+
+/// How it stands and the target at the left, its source at the right, the reason under both. Either half is a button.
+fn show_row(ui: &mut Ui, row: &Row, prefix: &str, chosen: bool, indent: f32, scroll: bool) -> Option<Pressed> {
+    let (rect, whole) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT), Sense::hover());
+    if chosen && scroll {
+        whole.scroll_to_me(Some(egui::Align::Center));
+    }
+    let middle = rect.center().x;
+    let id = ui.scope_id().with(("map row", row.number));
+    let target = ui.interact(rect.with_max_x(middle), id.with("target"), Sense::click());
+    let source = ui.interact(rect.with_min_x(middle), id.with("source"), Sense::click());
+    let role = egui::accesskit::Role::Button;
+    let follows = format!("{} follows {} ({}: {})", row.target, row.source_text, row.state.word(), row.why);
+    target.widget_info(|| WidgetInfo::selected(role, true, chosen, format!("Edit {}", row.target)));
+    source.widget_info(|| WidgetInfo::labeled(role, true, &follows));
+    if ui.is_rect_visible(rect) {
+        let palette = style::palette(ui);
+        if chosen {
+            ui.painter().rect_filled(rect.shrink2(vec2(0.0, 1.0)), style::CORNER, palette.chosen);
+        }
+        lit(ui, target.rect, &target);
+        lit(ui, source.rect, &source);
+        let inner = rect.shrink2(vec2(6.0, 4.0)).with_min_x(rect.left() + 6.0 + indent);
+        let right = inner.right();
+        let top = |from: f32, to: f32| Rect::from_min_max(pos2(from, inner.top()), pos2(to, inner.top() + 20.0));
+        badge(ui, pos2(inner.left() + 7.0, inner.top() + 10.0), row.state);
+        let bright = if row.source.is_some() { palette.text } else { palette.weak_text };
+        let name = row.target.strip_prefix(prefix).unwrap_or(&row.target);
+        controls::elided(ui, top(inner.left() + 20.0, middle - 16.0), name, bright);
+        let arrow = pos2(middle + 1.0, inner.top() + 10.0);
+        ui.painter().arrow(arrow, vec2(-12.0, 0.0), Stroke::new(1.2, palette.weak_text));
+        let color = if row.source.is_some() { palette.accent } else { palette.weak_text };
+        controls::elided(ui, top(middle + 6.0, right), &row.source_text, color);
+        let below = Rect::from_min_max(pos2(inner.left() + 20.0, inner.top() + 20.0), pos2(right, inner.bottom()));
+        let color = if row.look { palette.warning } else { palette.weak_text };
+        controls::elided_small(ui, below, &row.why, color);
+    }
+    let target = target.on_hover_text(format!("{follows}. Click for more."));
+    let source = source.on_hover_text(format!("{follows}. Click to choose another."));
+    if target.clicked() { Some(Pressed::Target) } else { source.clicked().then_some(Pressed::Source) }
+}
+
+/// A sign for each state, so that the colour is not the only one.
+pub(super) fn badge(ui: &Ui, center: egui::Pos2, state: State) {
+    let palette = style::palette(ui);
+    let painter = ui.painter();
+    let line = |points: &[(f32, f32)], color| {
+        let points = points.iter().map(|&(x, y)| center + vec2(x, y)).collect();
+        painter.line(points, Stroke::new(1.6, color));
+    };
+    let letter = |letter: &str, color| {
+        painter.circle_stroke(center, 7.0, Stroke::new(1.2, color));
+        painter.text(center, Align2::CENTER_CENTER, letter, FontId::proportional(12.0), color);
+    };
+    match state {
+        State::Sure => line(&[(-5.0, 0.5), (-1.5, 4.0), (5.0, -4.0)], palette.accent),
+        State::Guess => letter("?", palette.warning),
+        State::Conflict => letter("!", palette.error),
+        State::None => line(&[(-5.0, 0.0), (5.0, 0.0)], palette.weak_text),
+        State::Muted => {
+            painter.circle_stroke(center, 6.0, Stroke::new(1.4, palette.weak_text));
+            line(&[(-4.2, 4.2), (4.2, -4.2)], palette.weak_text);
+        }
+    }
 }

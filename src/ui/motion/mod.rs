@@ -1,28 +1,46 @@
 //! The Motion tab: which joint follows which, why, and how the motion is carried over.
 
+mod clicking;
+mod detail;
 mod joints;
 mod options;
 mod picker;
+mod rows;
 
 use egui::{RichText, ScrollArea, Ui};
 
-use super::{Output, Saved, Shown, UiAction, UiState, clips, controls, scene_tree, short_name, style};
+use super::icons::{Icon, icon_button_sized};
+use super::{Output, Shown, UiAction, UiState, clips, controls, scene_tree, short_name, style};
 use crate::anim::JointIndex;
 use crate::asset::Asset;
 use crate::library::{Library, Model, Motion};
 use crate::retarget::{ClipRef, Contradiction, JointMap, Proposal, SourceRef, Unmapped};
-use crate::state::{Command, active_clip, choice_of_clip, map_in_force};
+use crate::state::{Command, MapEdit, active_clip, choice_of_clip, map_in_force};
 
+pub(super) use clicking::{banner, show as clicking, stop as stop_clicking};
 pub(super) use picker::show as picker;
 
 /// What the tab remembers.
 #[derive(Debug, Default)]
 pub(super) struct MotionTab {
-    /// The options are shown instead of the joints.
-    options: bool,
-    search: String,
-    /// A joint's source is being chosen.
+    part: Part,
+    table: joints::TableView,
+    /// The motion that was last shown: one whose map has been cleared has no clip to play.
+    motion: usize,
+    /// A joint's source is being chosen from the list.
     picking: Option<picker::Picking>,
+    /// A joint is being chosen in the picture.
+    clicking: Option<clicking::Clicking>,
+    typed: Option<detail::Typed>,
+    turn: Option<detail::Turn>,
+}
+
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
+enum Part {
+    #[default]
+    Joints,
+    Options,
+    Files,
 }
 
 impl MotionTab {
@@ -42,11 +60,12 @@ struct Pairing<'a> {
 }
 
 impl<'a> Pairing<'a> {
-    /// The motion whose clip plays, else the first.
-    fn shown(shown: &Shown<'a>) -> Option<Self> {
+    /// The motion whose clip plays, else the one before, else the first.
+    fn shown(shown: &Shown<'a>, before: usize) -> Option<Self> {
         let model = shown.library.active()?;
         let playing = active_clip(model, shown.state).and_then(|clip| model.borrowed(clip));
-        Self::of(shown.library, playing.map_or(0, |borrowed| borrowed.motion))
+        let index = playing.map_or(before, |borrowed| borrowed.motion);
+        Self::of(shown.library, index).or_else(|| Self::of(shown.library, 0))
     }
 
     fn of(library: &'a Library, index: usize) -> Option<Self> {
@@ -84,23 +103,24 @@ impl<'a> Pairing<'a> {
 const ROOMY_HEIGHT: f32 = 480.0;
 
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
-    let Some(pairing) = Pairing::shown(shown) else { return };
+    let Some(pairing) = Pairing::shown(shown, local.motion.motion) else { return };
     let map = map_in_force(shown.library, shown.state, pairing.index).unwrap_or_default();
-    let tab = &mut local.motion;
+    local.motion.motion = pairing.index;
+    let part = local.motion.part;
     if ui.available_height() >= ROOMY_HEIGHT {
-        head(ui, shown, &pairing, &map, tab, out);
-        scrolled(ui, tab.options, |ui| body(ui, shown, &pairing, &map, tab, out));
+        head(ui, shown, &pairing, &map, local, out);
+        scrolled(ui, part, |ui| body(ui, shown, &pairing, &map, &mut local.motion, out));
     } else {
-        scrolled(ui, tab.options, |ui| {
-            head(ui, shown, &pairing, &map, tab, out);
-            body(ui, shown, &pairing, &map, tab, out);
+        scrolled(ui, part, |ui| {
+            head(ui, shown, &pairing, &map, local, out);
+            body(ui, shown, &pairing, &map, &mut local.motion, out);
         });
     }
 }
 
-/// `options` keeps the places of the two parts apart.
-fn scrolled(ui: &mut Ui, options: bool, contents: impl FnOnce(&mut Ui)) {
-    ScrollArea::vertical().id_salt(("motion", options)).auto_shrink([false, false]).show(ui, |ui| {
+/// `part` keeps the places of the parts apart.
+fn scrolled(ui: &mut Ui, part: Part, contents: impl FnOnce(&mut Ui)) {
+    ScrollArea::vertical().id_salt(("motion", part)).auto_shrink([false, false]).show(ui, |ui| {
         // Room for the floating scroll bar.
         ui.set_max_width(ui.available_width() - 6.0);
         contents(ui);
@@ -108,26 +128,76 @@ fn scrolled(ui: &mut Ui, options: bool, contents: impl FnOnce(&mut Ui)) {
     });
 }
 
-fn head(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, map: &JointMap, tab: &mut MotionTab, out: &mut Output) {
+fn head(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, map: &JointMap, local: &mut UiState, out: &mut Output) {
     header(ui, shown, pairing, map, out);
     ui.add_space(4.0);
-    let parts = [(false, "Joints"), (true, "Options")];
-    if let Some(options) = controls::segmented(ui, Some(tab.options), &parts) {
-        tab.options = options;
+    let parts = [(Part::Joints, "Joints"), (Part::Options, "Options"), (Part::Files, "Files")];
+    if let Some(part) = controls::segmented(ui, Some(local.motion.part), &parts) {
+        local.motion.part = part;
     }
     ui.add_space(2.0);
-    if !tab.options {
-        clips::search_field(ui, &mut tab.search, "Search joints of the model");
+    if local.motion.part == Part::Joints {
+        edits(ui, pairing, map, local, out);
+        clips::search_field(ui, &mut local.motion.table.search, "Search joints of the model");
+        joints::choices(ui, pairing, map, &mut local.motion.table);
         ui.add_space(2.0);
     }
 }
 
 fn body(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, map: &JointMap, tab: &mut MotionTab, out: &mut Output) {
-    if tab.options {
-        options::show(ui, shown, pairing, map, out);
-    } else {
-        joints::show(ui, pairing, map, tab);
+    match tab.part {
+        Part::Joints => joints::show(ui, shown, pairing, map, tab, out),
+        Part::Options => options::show(ui, pairing, map, out),
+        Part::Files => options::files(ui, shown, pairing, out),
     }
+}
+
+/// What is done to the whole map.
+fn edits(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, local: &mut UiState, out: &mut Output) {
+    const HEIGHT: f32 = 30.0;
+    let button = |ui: &mut Ui, width: f32, enabled: bool, text: &str, hover: &str| {
+        let button = egui::Button::new(text).min_size(egui::vec2(width, HEIGHT)).truncate();
+        ui.add_enabled_ui(enabled, |ui| ui.add_sized([width, HEIGHT], button)).inner.on_hover_text(hover).clicked()
+    };
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        let width = ui.available_width() - 2.0 * (HEIGHT + 6.0);
+        let clicking = local.motion.clicking.is_some();
+        let (text, hover) = if clicking {
+            ("Stop clicking here", "Choose no joint in the picture")
+        } else {
+            ("Choose by clicking", "Click a joint of the model in the picture, then choose what it follows")
+        };
+        if button(ui, width, true, text, hover) {
+            local.motion.clicking = (!clicking).then(|| clicking::Clicking::Target { motion: pairing.index });
+            // On a narrow screen the sheet makes room for the picture.
+            local.sheet = None;
+        }
+        for (icon, label, enabled, action) in [
+            (Icon::Undo, "Undo (Ctrl+Z)", local.can_undo, UiAction::Undo),
+            (Icon::Redo, "Redo (Ctrl+Y)", local.can_redo, UiAction::Redo),
+        ] {
+            let pressed = ui.add_enabled_ui(enabled, |ui| icon_button_sized(ui, icon, label, false, HEIGHT)).inner;
+            if pressed.clicked() {
+                out.actions.push(action);
+            }
+        }
+    });
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        let width = (ui.available_width() - 12.0) / 3.0;
+        let motion = pairing.index;
+        let any = map.joints.values().any(|entry| entry.source.is_some());
+        if button(ui, width, true, "Match anew", "Back to what is proposed: by names and shape, as at first") {
+            out.commands.push(Command::SetMap { motion, map: None });
+        }
+        if button(ui, width, any, "Swap sides", "Left follows right and right follows left") {
+            out.commands.push(Command::EditMap { motion, edit: MapEdit::SwapSides });
+        }
+        if button(ui, width, any, "Clear all", "No joint follows anything") {
+            out.commands.push(Command::EditMap { motion, edit: MapEdit::Clear });
+        }
+    });
 }
 
 fn header(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, map: &JointMap, out: &mut Output) {
@@ -158,33 +228,6 @@ fn header(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, map: &JointMap,
     for text in remarks(pairing) {
         ui.add(egui::Label::new(RichText::new(text).small().color(palette.warning)).wrap());
     }
-    ui.add_space(4.0);
-    let clip = active_clip(pairing.model, shown.state).filter(|&clip| pairing.model.borrowed(clip).is_some());
-    let width = (ui.available_width() - 6.0) / 2.0;
-    let button = |ui: &mut Ui, enabled: bool, text: &str, hover: &str| {
-        let button = egui::Button::new(text).min_size(egui::vec2(width, 30.0));
-        ui.add_enabled(enabled, button).on_hover_text(hover).clicked()
-    };
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 6.0;
-        if button(ui, true, "Match anew", "Match the joints by names and shape, as at first") {
-            out.commands.push(Command::SetMap { motion: pairing.index, map: None });
-        }
-        if button(ui, clip.is_some(), "Save GLB", "The model with this clip behind its own")
-            && let Some(clip) = clip
-        {
-            out.actions.push(UiAction::Save(Saved::Model { clip }));
-        }
-    });
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 6.0;
-        if button(ui, true, "Load map", "A joint map in JSON") {
-            out.actions.push(UiAction::ChooseMotion);
-        }
-        if button(ui, true, "Save map", "Which joint follows which, as JSON") {
-            out.actions.push(UiAction::Save(Saved::Map { motion: pairing.index }));
-        }
-    });
 }
 
 fn first_clip_of(model: &Model, motion: usize) -> Option<Command> {

@@ -1,11 +1,11 @@
-//! How the motion is carried over: what becomes of its travel, of joints that follow nothing, of the feet.
+//! How the motion is carried over: what becomes of its travel, of joints that follow nothing, of the feet. And the files.
 
 use egui::{RichText, Ui};
 
 use super::Pairing;
-use crate::retarget::{ClipRef, Feet, JointMap, RestChoice, RestChoices, RootOptions, RootPart, Unmapped};
-use crate::state::Command;
-use crate::ui::{Output, Shown, UiAction, controls, style};
+use crate::retarget::{ClipRef, Feet, JointMap, Keep, RestChoice, RestChoices, RootOptions, RootPart, Unmapped};
+use crate::state::{Command, MapEdit, active_clip};
+use crate::ui::{Output, Saved, Shown, UiAction, controls, style};
 
 const PARTS: [(RootPart, &str); 3] =
     [(RootPart::Keep, "Keep"), (RootPart::InPlace, "In place"), (RootPart::Freeze, "Freeze")];
@@ -17,7 +17,10 @@ const RESTS: [(RestChoice, &str); 4] = [
     (RestChoice::FirstFrame, "The clip's first frame"),
 ];
 
-pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, map: &JointMap, out: &mut Output) {
+const KEEPS: [(Keep, &str); 3] = [(Keep::Auto, "Automatic"), (Keep::Keep, "Keep"), (Keep::Drop, "Drop")];
+
+pub(super) fn show(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, out: &mut Output) {
+    let edit = |edit| Command::EditMap { motion: pairing.index, edit };
     let root = map.root;
     let set = |root: RootOptions| Command::SetRoot(Some(root));
     if let Some(horizontal) = parts(ui, "Over the ground", root.horizontal) {
@@ -47,37 +50,82 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, map: &
     controls::section(ui, "REST POSES THAT ARE MATCHED");
     let rest = map.rest;
     if let Some(model) = rest_choice(ui, "Model", rest.model) {
-        out.commands.push(set_rest(pairing, map, shown, RestChoices { model, ..rest }));
+        out.commands.push(edit(MapEdit::Rest(RestChoices { model, ..rest })));
     }
     if let Some(motion) = rest_choice(ui, "Motion", rest.motion) {
-        out.commands.push(set_rest(pairing, map, shown, RestChoices { motion, ..rest }));
+        out.commands.push(edit(MapEdit::Rest(RestChoices { motion, ..rest })));
     }
 
-    controls::section(ui, "THE FILE");
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = egui::vec2(6.0, 6.0);
-        let alone =
-            ui.button("Show its own skeleton").on_hover_text("Look at the motion by itself instead of the model");
-        if alone.clicked() {
-            out.actions.push(UiAction::ShowMotionAlone(pairing.index));
+    let keep = |ui: &mut Ui, about: &str, chosen: Keep| {
+        controls::section(ui, &about.to_uppercase());
+        controls::segmented_about(ui, about, Some(chosen), &KEEPS)
+    };
+    if let Some(translations) = keep(ui, "Translations of joints", map.translations) {
+        out.commands.push(edit(MapEdit::Translations(translations)));
+    }
+    if let Some(scales) = keep(ui, "Scales of joints", map.scales) {
+        out.commands.push(edit(MapEdit::Scales(scales)));
+    }
+    controls::hint(ui, "Automatic keeps them when both skeletons are the same. The hips always travel.");
+
+    controls::section(ui, "CHANGING CLIPS");
+    let settings =
+        controls::SliderSettings { range: (0.0, 2.0), default: 0.0, decimals: 2, suffix: " s", logarithmic: false };
+    if let Some(secs) = controls::slider(ui, "Crossfade", map.crossfade_secs, settings) {
+        out.commands.push(edit(MapEdit::CrossfadeSecs(secs)));
+    }
+
+    controls::section(ui, "LEFT OUT OF THE MOTION");
+    let joints: std::collections::BTreeSet<_> =
+        map.muted_channels.iter().map(|channel| format!("{:?}", channel.source)).collect();
+    match joints.len() {
+        0 => controls::hint(ui, "Nothing. Choose a joint in the table to leave out channels of its source."),
+        count => {
+            let joints = if count == 1 { "joint".to_owned() } else { format!("{count} joints") };
+            controls::hint(ui, format!("Channels of {joints} of the motion."));
+            if ui.button("Take everything in again").clicked() {
+                out.commands.push(edit(MapEdit::UnmuteAll));
+            }
         }
-        if ui.button("Remove motion").on_hover_text("Borrow nothing any more").clicked() {
-            out.actions.push(UiAction::RemoveMotions);
-        }
-    });
+    }
+}
+
+/// What can be opened, saved and put away.
+pub(super) fn files(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, out: &mut Output) {
+    let wide = |ui: &mut Ui, enabled: bool, text: &str| {
+        let button = egui::Button::new(text).min_size(egui::vec2(ui.available_width(), 32.0));
+        ui.add_enabled(enabled, button).clicked()
+    };
+    controls::section(ui, "JOINT MAP");
+    controls::hint(ui, "Which joint follows which and how, as JSON. A map can also be dropped anywhere.");
+    ui.add_space(2.0);
+    if wide(ui, true, "Save map") {
+        out.actions.push(UiAction::Save(Saved::Map { motion: pairing.index }));
+    }
+    if wide(ui, true, "Load map") {
+        out.actions.push(UiAction::ChooseMotion);
+    }
+    controls::section(ui, "MODEL WITH THIS CLIP");
+    let clip = active_clip(pairing.model, shown.state).filter(|&clip| pairing.model.borrowed(clip).is_some());
+    controls::hint(ui, "The model's file with the clip that plays behind its own.");
+    ui.add_space(2.0);
+    if wide(ui, clip.is_some(), "Save GLB")
+        && let Some(clip) = clip
+    {
+        out.actions.push(UiAction::Save(Saved::Model { clip }));
+    }
+    controls::section(ui, "MOTION");
+    if wide(ui, true, "Show its own skeleton") {
+        out.actions.push(UiAction::ShowMotionAlone(pairing.index));
+    }
+    if wide(ui, true, "Remove motion") {
+        out.actions.push(UiAction::RemoveMotions);
+    }
 }
 
 fn parts(ui: &mut Ui, about: &str, chosen: RootPart) -> Option<RootPart> {
     controls::section(ui, &about.to_uppercase());
     controls::segmented_about(ui, about, Some(chosen), &PARTS)
-}
-
-/// The rest poses are part of the map, with everything else that it says.
-fn set_rest(pairing: &Pairing<'_>, map: &JointMap, shown: &Shown<'_>, rest: RestChoices) -> Command {
-    // What the view sets over the map stays where it is.
-    let bare = crate::state::ViewerState { map: shown.state.map.clone(), ..Default::default() };
-    let own = crate::state::map_in_force(shown.library, &bare, pairing.index).unwrap_or_else(|| map.clone());
-    Command::SetMap { motion: pairing.index, map: Some(Box::new(JointMap { rest, ..own })) }
 }
 
 fn rest_choice(ui: &mut Ui, label: &str, chosen: RestChoice) -> Option<RestChoice> {
@@ -97,6 +145,27 @@ fn rest_choice(ui: &mut Ui, label: &str, chosen: RestChoice) -> Option<RestChoic
         response.response.accessible_name(format!("Rest pose of the {}", label.to_lowercase()));
     });
     pressed
+}
+
+/// What joints without a source can do, with words for people.
+pub(super) fn policies(pairing: &Pairing<'_>) -> Vec<(Unmapped, String)> {
+    let mut policies = vec![(Unmapped::Rest, "Rest".to_owned())];
+    for index in 0..pairing.model.asset.clips.len() {
+        for frozen in [false, true] {
+            let policy = Unmapped::Clip { clip: ClipRef::Index(index), frozen };
+            let text = policy_text(pairing, &policy);
+            policies.push((policy, text));
+        }
+    }
+    policies
+}
+
+pub(super) fn policy_text(pairing: &Pairing<'_>, policy: &Unmapped) -> String {
+    match pairing.own_clip(policy) {
+        None => "Rest".to_owned(),
+        Some((clip, false)) => format!("Play {}", pairing.clip_title(clip)),
+        Some((clip, true)) => format!("First key of {}", pairing.clip_title(clip)),
+    }
 }
 
 fn unmapped(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, out: &mut Output) {

@@ -1,0 +1,40 @@
+//! The file that the playing clip is borrowed from, shown beside the model or in its place.
+
+use glam::{Affine3A, Vec3};
+
+use super::ViewerState;
+use super::playhead::{active_clip, world_from_model};
+use crate::library::{BorrowedClip, Library, Model};
+use crate::mesh::Bounds;
+
+/// What is played as it is in its own file.
+#[derive(Debug, Clone, Copy)]
+pub struct SourceOnStage<'a> {
+    pub model: &'a Model,
+    /// Of its own clips.
+    pub clip: usize,
+    pub borrowed: &'a BorrowedClip,
+    pub world_from_source: Affine3A,
+}
+
+/// None when the state does not ask for it, or the clip is the model's own.
+pub fn source_on_stage<'a>(library: &'a Library, state: &ViewerState) -> Option<SourceOnStage<'a>> {
+    let model = library.active().filter(|_| state.show.source)?;
+    let borrowed = model.borrowed(active_clip(model, state)?)?;
+    let source = library.motions().get(borrowed.motion)?.stage();
+    let in_place = world_from_model(state.up) * borrowed.model_from_source;
+    let half_width = |bounds: Bounds| if bounds.is_empty() { 0.0 } else { 0.5 * bounds.size().x };
+    let sizes =
+        [model.rest_bounds().transformed(&world_from_model(state.up)), source.rest_bounds().transformed(&in_place)];
+    let apart = match state.show.over {
+        true => 0.0,
+        false => 1.15 * (half_width(sizes[0]) + half_width(sizes[1])),
+    };
+    let world_from_source = Affine3A::from_translation(apart * Vec3::NEG_X) * in_place;
+    world_from_source.is_finite().then_some(SourceOnStage {
+        model: source,
+        clip: borrowed.source_clip,
+        borrowed,
+        world_from_source,
+    })
+}

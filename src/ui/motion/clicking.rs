@@ -1,0 +1,176 @@
+//! Choosing by clicking in the picture: a joint of the model, then the joint of the motion that it is to follow, in the
+//! picture where the motion's skeleton stands there, else in the list.
+
+use egui::{Align2, Area, Context, FontId, Id, Order, Painter, Pos2, Rect, Response, Stroke, Ui, pos2, vec2};
+
+use super::Pairing;
+use super::picker::Picking;
+use super::rows::rows;
+use crate::anim::JointIndex;
+use crate::frame::Character;
+use crate::state::{Command, map_in_force};
+use crate::ui::inspector::Tab;
+use crate::ui::{Output, Sheet, Shown, UiState, picture, scene_tree, style};
+
+/// What the next click in the picture means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Clicking {
+    /// The joint of the model that a source is chosen for.
+    Target { motion: usize },
+    /// The joint of the motion that this joint of the model is to follow.
+    Source { motion: usize, target: usize },
+}
+
+/// How far beside a joint a click or a finger still means it.
+const REACH_POINTS: f32 = 28.0;
+
+/// Whether the motion's own skeleton stands on the stage, so that its joints can be clicked.
+pub(super) fn source_is_shown(shown: &Shown<'_>, pairing: &Pairing<'_>) -> bool {
+    source_character(shown, pairing).is_some()
+}
+
+fn source_character<'a>(shown: &Shown<'a>, pairing: &Pairing<'_>) -> Option<&'a Character> {
+    let stage = pairing.motion.stage().id;
+    shown.frame.characters.iter().skip(1).find(|character| character.model == stage)
+}
+
+/// Ends choosing by clicking; true when it was on.
+pub(in crate::ui) fn stop(local: &mut UiState) -> bool {
+    local.motion.clicking.take().is_some()
+}
+
+/// Takes the pointer while a joint is chosen by clicking, and paints a dot on every joint that can be; false otherwise.
+pub(in crate::ui) fn show(
+    ui: &Ui,
+    painter: &Painter,
+    response: &Response,
+    shown: &Shown<'_>,
+    local: &mut UiState,
+    out: &mut Output,
+) -> bool {
+    let Some(clicking) = local.motion.clicking else { return false };
+    let (Clicking::Target { motion } | Clicking::Source { motion, .. }) = clicking;
+    let Some(pairing) = Pairing::of(shown.library, motion) else {
+        local.motion.clicking = None;
+        return false;
+    };
+    let (asset, character, joints) = match clicking {
+        Clicking::Target { .. } => {
+            let map = map_in_force(shown.library, shown.state, motion).unwrap_or_default();
+            let joints = rows(&pairing, &map).iter().map(|row| row.joint).collect();
+            (&pairing.model.asset, shown.frame.characters.first(), joints)
+        }
+        Clicking::Source { .. } => {
+            let joints: Vec<JointIndex> = pairing.motion.asset.skeleton.joints().collect();
+            (&pairing.motion.asset, source_character(shown, &pairing), joints)
+        }
+    };
+    let pane = picture::pane_at(shown, response.rect, response.hover_pos());
+    let places = places(shown, pane, character, &joints);
+    let palette = style::palette(ui);
+    let dot = |at: Pos2, radius: f32| {
+        painter.circle(at, radius, palette.accent, Stroke::new(1.5, palette.panel));
+    };
+    places.iter().for_each(|&(_, at)| dot(at, 3.5));
+    local.hovered_joint = None;
+    if let Some((joint, at)) = response.hover_pos().and_then(|position| nearest(&places, position)) {
+        dot(at, 6.0);
+        let galley =
+            painter.layout_no_wrap(scene_tree::title(asset, joint), FontId::proportional(13.0), palette.on_accent);
+        let tag = Rect::from_center_size(at - vec2(0.0, 24.0), galley.size() + vec2(16.0, 6.0));
+        painter.rect_filled(tag, 6.0, palette.accent);
+        painter.galley(tag.center() - galley.size() / 2.0, galley, palette.on_accent);
+    }
+    let clicked = response.interact_pointer_pos().filter(|_| response.clicked());
+    if let Some((joint, _)) = clicked.and_then(|position| nearest(&places, position)) {
+        let number = asset.skeleton.source_index(joint);
+        match clicking {
+            Clicking::Target { .. } => {
+                out.commands.push(Command::SelectJoint(Some(number)));
+                if source_is_shown(shown, &pairing) {
+                    local.motion.clicking = Some(Clicking::Source { motion, target: number });
+                } else {
+                    local.motion.picking = Some(Picking::new(motion, number));
+                    finish(local);
+                }
+            }
+            Clicking::Source { target, .. } => {
+                out.commands.push(Command::SetSource { motion, target, source: Some(number) });
+                finish(local);
+            }
+        }
+        ui.ctx().request_repaint();
+    }
+    true
+}
+
+/// The table comes back, and with it the sheet that went away for the picture.
+fn finish(local: &mut UiState) {
+    local.motion.clicking = None;
+    local.tab = Tab::Motion;
+    local.sheet = Some(Sheet::Inspector);
+}
+
+/// Where joints are on the screen.
+fn places(
+    shown: &Shown<'_>,
+    pane: Rect,
+    character: Option<&Character>,
+    joints: &[JointIndex],
+) -> Vec<(JointIndex, Pos2)> {
+    let Some(character) = character else { return Vec::new() };
+    let place = |&joint: &JointIndex| {
+        let world = character.world_from_joint.get(joint.get())?;
+        Some((joint, picture::to_screen(shown, pane, world.translation.into())?))
+    };
+    joints.iter().filter_map(place).collect()
+}
+
+fn nearest(places: &[(JointIndex, Pos2)], position: Pos2) -> Option<(JointIndex, Pos2)> {
+    let near = places.iter().filter(|(_, at)| at.distance(position) <= REACH_POINTS);
+    near.min_by(|(_, a), (_, b)| a.distance(position).total_cmp(&b.distance(position))).copied()
+}
+
+/// Says over the picture what to click, and offers other ways.
+pub(in crate::ui) fn banner(context: &Context, picture: Rect, shown: &Shown<'_>, local: &mut UiState) {
+    let Some(clicking) = local.motion.clicking else { return };
+    let (Clicking::Target { motion } | Clicking::Source { motion, .. }) = clicking;
+    let Some(pairing) = Pairing::of(shown.library, motion) else { return };
+    let text = match clicking {
+        Clicking::Target { .. } => "Click a joint of the model".to_owned(),
+        Clicking::Source { target, .. } => {
+            let asset = &pairing.model.asset;
+            let joint = asset.skeleton.joint_of_source(target);
+            let name = joint.map_or_else(String::new, |joint| scene_tree::title(asset, joint));
+            format!("Click the joint of the motion that {name} is to follow")
+        }
+    };
+    let area = Area::new(Id::unique("clicking"))
+        .order(Order::Foreground)
+        .pivot(Align2::CENTER_TOP)
+        .fixed_pos(pos2(picture.center().x, picture.top() + 54.0));
+    area.show(context, |ui| {
+        let palette = style::palette(ui);
+        let frame = egui::Frame::new()
+            .fill(palette.panel)
+            .stroke(Stroke::new(1.0, palette.accent))
+            .corner_radius(10)
+            .inner_margin(egui::Margin::symmetric(12, 8));
+        frame.show(ui, |ui| {
+            ui.set_max_width((picture.width() - 56.0).clamp(120.0, 420.0));
+            ui.add(egui::Label::new(text).wrap());
+            ui.horizontal_wrapped(|ui| {
+                ui.spacing_mut().item_spacing = vec2(6.0, 6.0);
+                if let Clicking::Source { target, .. } = clicking
+                    && ui.button("Choose from the list").clicked()
+                {
+                    local.motion.picking = Some(Picking::new(motion, target));
+                    finish(local);
+                }
+                if ui.button("Stop clicking").on_hover_text("Escape does the same").clicked() {
+                    finish(local);
+                }
+            });
+        });
+    });
+}

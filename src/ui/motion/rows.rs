@@ -1,0 +1,366 @@
+//! What the channel table says of each joint of the model: its source, how sure that is, and in which part of the body it
+//! stands. Knows nothing of how it is drawn.
+
+use std::collections::BTreeMap;
+
+use super::{Pairing, joint_text};
+use crate::anim::JointIndex;
+use crate::asset::Slot;
+use crate::retarget::{Contradiction, JointMap};
+use crate::state::muted_properties;
+use crate::ui::scene_tree;
+
+/// Below this a proposal is a guess.
+const UNSURE: f32 = 0.6;
+
+pub(super) struct Row {
+    pub joint: JointIndex,
+    /// The joint's number in its file.
+    pub number: usize,
+    pub target: String,
+    pub source: Option<JointIndex>,
+    /// The source's number and name, or “none”.
+    pub source_text: String,
+    pub state: State,
+    /// What the joint is, why it follows what it does, what speaks against it.
+    pub why: String,
+    /// Nobody has looked at it and something speaks against it.
+    pub look: bool,
+    pub part: BodyPart,
+    /// How many joints of the table it hangs under.
+    pub depth: usize,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum State {
+    Sure,
+    Guess,
+    /// Something speaks against it.
+    Conflict,
+    /// Follows nothing.
+    None,
+    /// Some of what its source does is left out.
+    Muted,
+}
+
+impl State {
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Sure => "sure",
+            Self::Guess => "guess",
+            Self::Conflict => "conflict",
+            Self::None => "none",
+            Self::Muted => "muted",
+        }
+    }
+}
+
+/// Which rows are shown.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) enum Filter {
+    #[default]
+    All,
+    Look,
+    Of(State),
+}
+
+impl Filter {
+    pub const ALL: [(Self, &str); 7] = [
+        (Self::All, "All joints"),
+        (Self::Look, "To look at"),
+        (Self::Of(State::Sure), "Sure"),
+        (Self::Of(State::Guess), "Guesses"),
+        (Self::Of(State::Conflict), "Conflicts"),
+        (Self::Of(State::None), "Follow nothing"),
+        (Self::Of(State::Muted), "Muted"),
+    ];
+
+    pub fn lets_through(self, row: &Row) -> bool {
+        match self {
+            Self::All => true,
+            Self::Look => row.look,
+            Self::Of(state) => row.state == state,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum BodyPart {
+    Trunk,
+    LeftArm,
+    LeftHand,
+    RightArm,
+    RightHand,
+    LeftLeg,
+    RightLeg,
+    Other,
+}
+
+impl BodyPart {
+    pub const ALL: [Self; 8] = [
+        Self::Trunk,
+        Self::LeftArm,
+        Self::LeftHand,
+        Self::RightArm,
+        Self::RightHand,
+        Self::LeftLeg,
+        Self::RightLeg,
+        Self::Other,
+    ];
+
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Trunk => "Trunk and head",
+            Self::LeftArm => "Left arm",
+            Self::LeftHand => "Left fingers",
+            Self::RightArm => "Right arm",
+            Self::RightHand => "Right fingers",
+            Self::LeftLeg => "Left leg",
+            Self::RightLeg => "Right leg",
+            Self::Other => "Other joints",
+        }
+    }
+
+    fn of(slot: Slot) -> Self {
+        let name = slot.name();
+        let has = |words: &[&str]| words.iter().any(|word| name.contains(word));
+        let is_left = name.starts_with("left");
+        if side(slot).is_none() || has(&["Eye"]) {
+            Self::Trunk
+        } else if has(&["Leg", "Foot", "Toes"]) {
+            if is_left { Self::LeftLeg } else { Self::RightLeg }
+        } else if has(&["Thumb", "Index", "Middle", "Ring", "Little"]) {
+            if is_left { Self::LeftHand } else { Self::RightHand }
+        } else if is_left {
+            Self::LeftArm
+        } else {
+            Self::RightArm
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Side {
+    Left,
+    Right,
+}
+
+impl Side {
+    fn other(self) -> Self {
+        match self {
+            Self::Left => Self::Right,
+            Self::Right => Self::Left,
+        }
+    }
+}
+
+fn side(slot: Slot) -> Option<Side> {
+    let name = slot.name();
+    if name.starts_with("left") {
+        Some(Side::Left)
+    } else if name.starts_with("right") {
+        Some(Side::Right)
+    } else {
+        None
+    }
+}
+
+/// All joints that could matter, by the file's order: what the map speaks of, and joints of skins.
+pub(super) fn rows(pairing: &Pairing<'_>, map: &JointMap) -> Vec<Row> {
+    let asset = &pairing.model.asset;
+    let skeleton = &asset.skeleton;
+    let mut in_skin = vec![false; skeleton.len()];
+    for joint in asset.skins.iter().flat_map(|skin| skin.joints()) {
+        in_skin[joint.get()] = true;
+    }
+    let has_skins = !asset.skins.is_empty();
+    let given: Vec<Option<Option<JointIndex>>> =
+        skeleton.joints().map(|joint| pairing.source_in(map, skeleton.source_index(joint))).collect();
+    let whole = Whole::new(pairing, &given);
+    // Of each joint or its nearest ancestor: what it is, and how deep in the table.
+    let mut parts: Vec<BodyPart> = Vec::with_capacity(skeleton.len());
+    let mut depths: Vec<usize> = Vec::with_capacity(skeleton.len());
+    let mut rows = Vec::new();
+    for joint in skeleton.joints() {
+        let given = given[joint.get()];
+        let matters = given.is_some() || !has_skins || in_skin[joint.get()];
+        let parent = skeleton.parent(joint);
+        let slot = whole.target_slots.get(&joint).copied();
+        let above = parent.map_or(BodyPart::Other, |parent| parts[parent.get()]);
+        parts.push(slot.map_or(above, BodyPart::of));
+        let depth = parent.map_or(0, |parent| depths[parent.get()]);
+        depths.push(depth + usize::from(matters));
+        if matters {
+            let mut row = whole.row(pairing, map, joint, slot, given);
+            (row.part, row.depth) = (parts[joint.get()], depth);
+            rows.push(row);
+        }
+    }
+    rows
+}
+
+/// What is known of all pairs together.
+struct Whole {
+    target_slots: BTreeMap<JointIndex, Slot>,
+    source_slots: BTreeMap<JointIndex, Slot>,
+    /// Joints named for one side that lie on the other.
+    misplaced_targets: Vec<JointIndex>,
+    misplaced_sources: Vec<JointIndex>,
+    /// Who follows each source.
+    followers: BTreeMap<JointIndex, Vec<JointIndex>>,
+    /// Most of what is left follows what is right: sides were swapped on purpose.
+    swapped: bool,
+}
+
+impl Whole {
+    fn new(pairing: &Pairing<'_>, given: &[Option<Option<JointIndex>>]) -> Self {
+        let misplaced = |contradictions: &[Contradiction]| -> Vec<JointIndex> {
+            let joint = |contradiction: &Contradiction| {
+                let Contradiction::Side { joint, .. } = contradiction;
+                *joint
+            };
+            contradictions.iter().map(joint).collect()
+        };
+        let mut whole = Self {
+            target_slots: BTreeMap::new(),
+            source_slots: BTreeMap::new(),
+            misplaced_targets: Vec::new(),
+            misplaced_sources: Vec::new(),
+            followers: BTreeMap::new(),
+            swapped: false,
+        };
+        if let Some(proposal) = pairing.proposal {
+            let slots = |parts: &BTreeMap<Slot, crate::retarget::Part>| {
+                parts.iter().map(|(&slot, part)| (part.joint, slot)).collect()
+            };
+            whole.target_slots = slots(&proposal.model.parts);
+            whole.source_slots = slots(&proposal.motion.parts);
+            whole.misplaced_targets = misplaced(&proposal.model.contradictions);
+            whole.misplaced_sources = misplaced(&proposal.motion.contradictions);
+        }
+        let mut crossing = 0_i32;
+        for (target, source) in pairing.model.asset.skeleton.joints().zip(given) {
+            let Some(source) = source.flatten() else { continue };
+            whole.followers.entry(source).or_default().push(target);
+            if let Some((target, source)) = whole.sides(target, source) {
+                crossing += if target == source { -1 } else { 1 };
+            }
+        }
+        whole.swapped = crossing > 0;
+        whole
+    }
+
+    fn sides(&self, target: JointIndex, source: JointIndex) -> Option<(Side, Side)> {
+        let of = |slots: &BTreeMap<JointIndex, Slot>, joint| slots.get(&joint).copied().and_then(side);
+        Some((of(&self.target_slots, target)?, of(&self.source_slots, source)?))
+    }
+
+    /// What speaks against a pair.
+    fn conflict(&self, pairing: &Pairing<'_>, target: JointIndex, source: JointIndex) -> Option<String> {
+        let misplaced = [self.misplaced_targets.contains(&target), self.misplaced_sources.contains(&source)];
+        if let Some((target_side, source_side)) = self.sides(target, source) {
+            let lies = |side: Side, misplaced| if misplaced { side.other() } else { side };
+            if misplaced != [false; 2] {
+                if lies(target_side, misplaced[0]) != lies(source_side, misplaced[1]) {
+                    return Some("named for one side, lies on the other".to_owned());
+                }
+            } else if (target_side != source_side) != self.swapped {
+                return Some("sides differ".to_owned());
+            }
+        }
+        let mut others = self.followers.get(&source).into_iter().flatten().filter(|&&other| other != target);
+        let first = others.next()?;
+        let asset = &pairing.model.asset;
+        let more = others.count();
+        let and = if more == 0 { String::new() } else { format!(" and {more} more") };
+        Some(format!("{}{and} follows the same", scene_tree::title(asset, *first)))
+    }
+
+    fn row(
+        &self,
+        pairing: &Pairing<'_>,
+        map: &JointMap,
+        joint: JointIndex,
+        slot: Option<Slot>,
+        given: Option<Option<JointIndex>>,
+    ) -> Row {
+        let number = pairing.model.asset.skeleton.source_index(joint);
+        let pairs = pairing.proposal.map(|proposal| proposal.pairs.as_slice()).unwrap_or_default();
+        let proposed = pairs.binary_search_by_key(&joint, |pair| pair.target).ok().map(|at| &pairs[at]);
+        let source = given.flatten();
+        let as_proposed = proposed.filter(|pair| Some(pair.source) == source);
+        let slot = slot.or_else(|| proposed.and_then(|pair| pair.slot));
+        let mut why: Vec<String> = slot.map(slot_text).into_iter().collect();
+        why.push(match (source, given, as_proposed) {
+            (_, _, Some(pair)) => format!("{} · {:.0} %", pair.reason, 100.0 * pair.confidence),
+            (Some(_), _, None) => "chosen by hand".to_owned(),
+            (None, Some(None), None) => "deliberately none".to_owned(),
+            _ => "follows nothing".to_owned(),
+        });
+        let (mut state, mut look) = (State::Sure, false);
+        match source {
+            None => {
+                state = State::None;
+                // The motion has such a part and nobody said that it is not wanted.
+                let has_part = slot.is_some_and(|slot| self.source_slots.values().any(|&other| other == slot));
+                look = given.is_none() && has_part;
+                let own = map.joints.get(&format!("#{number}")).and_then(|entry| entry.unmapped.as_ref());
+                match pairing.own_clip(own.unwrap_or(&map.unmapped)) {
+                    Some((clip, true)) => why.push(format!("first key of {}", pairing.clip_title(clip))),
+                    Some((clip, false)) => why.push(format!("plays {}", pairing.clip_title(clip))),
+                    None => {}
+                }
+            }
+            Some(source) => {
+                let conflict = self.conflict(pairing, joint, source);
+                let muted = muted_text(muted_properties(map, pairing.motion.asset.skeleton.source_index(source)));
+                if conflict.is_some() {
+                    (state, look) = (State::Conflict, true);
+                } else if muted.is_some() {
+                    state = State::Muted;
+                } else if as_proposed.is_some_and(|pair| pair.confidence < UNSURE) {
+                    (state, look) = (State::Guess, true);
+                }
+                let turned = map.joints.get(&format!("#{number}"));
+                let turned = turned.is_some_and(|entry| entry.correction != glam::Quat::IDENTITY);
+                why.extend(conflict);
+                why.extend(muted);
+                why.extend(turned.then(|| "turned further".to_owned()));
+            }
+        }
+        Row {
+            joint,
+            number,
+            target: scene_tree::title(&pairing.model.asset, joint),
+            source,
+            source_text: source.map_or_else(|| "none".to_owned(), |source| joint_text(&pairing.motion.asset, source)),
+            state,
+            why: why.join(" · "),
+            look,
+            part: BodyPart::Other,
+            depth: 0,
+        }
+    }
+}
+
+fn muted_text(muted: [bool; 3]) -> Option<String> {
+    let names = ["translation", "rotation", "scale"];
+    let muted: Vec<&str> = names.into_iter().zip(muted).filter(|(_, muted)| *muted).map(|(name, _)| name).collect();
+    match muted.len() {
+        0 => None,
+        3 => Some("all of it left out".to_owned()),
+        _ => Some(format!("{} left out", muted.join(" and "))),
+    }
+}
+
+/// `leftUpperArm` as “left upper arm”.
+fn slot_text(slot: Slot) -> String {
+    let mut text = String::new();
+    for letter in slot.name().chars() {
+        if letter.is_uppercase() {
+            text.push(' ');
+        }
+        text.extend(letter.to_lowercase());
+    }
+    text
+}

@@ -1,0 +1,112 @@
+//! Joints turned by hand, and the turntable.
+
+use gaitway::anim::JointIndex;
+use gaitway::frame::{Frame, evaluate};
+use gaitway::library::Library;
+use gaitway::state::{
+    CameraChoice, ClipChoice, Command, History, PoseSampler, ViewerState, apply, degrees_by_hand, rotation_by_hand,
+};
+use glam::{EulerRot, Quat, Vec3};
+
+use crate::data::walker;
+
+/// Joints of the walker as the file numbers them.
+const HEAD: usize = 5;
+const SHIN: usize = 15;
+
+fn local_rotation(library: &Library, state: &ViewerState, joint: usize) -> Quat {
+    let model = library.active().expect("a model");
+    let mut sampler = PoseSampler::default();
+    sampler.sample(model, state);
+    sampler.pose.locals[model.asset.skeleton.joint_of_source(joint).expect("a joint").get()].rotation
+}
+
+fn rest_rotation(library: &Library, joint: usize) -> Quat {
+    let skeleton = &library.active().expect("a model").asset.skeleton;
+    skeleton.rest().locals[skeleton.joint_of_source(joint).expect("a joint").get()].rotation
+}
+
+#[test]
+fn a_turn_wins_over_the_clip_and_begins_at_the_rest() {
+    let library = walker();
+    let mut state = ViewerState { time_secs: 0.3, ..ViewerState::default() };
+    let before = local_rotation(&library, &state, SHIN);
+    let head = local_rotation(&library, &state, HEAD);
+    apply(&mut state, &library, Command::SetPose { joint: SHIN, degrees: Some([90.0, 0.0, 0.0]) });
+    let expected = rest_rotation(&library, SHIN) * Quat::from_rotation_x(std::f32::consts::FRAC_PI_2);
+    assert!(local_rotation(&library, &state, SHIN).angle_between(expected) < 1e-5);
+    assert_eq!(local_rotation(&library, &state, HEAD), head);
+    apply(&mut state, &library, Command::SetPose { joint: SHIN, degrees: None });
+    assert_eq!(local_rotation(&library, &state, SHIN), before);
+}
+
+#[test]
+fn a_turned_joint_takes_along_what_hangs_on_it() {
+    let library = walker();
+    let foot = |state: &ViewerState| {
+        let mut frame = Frame::default();
+        evaluate(&library, state, 1.5, &mut frame);
+        let skeleton = &library.active().expect("a model").asset.skeleton;
+        let shin = skeleton.joint_of_source(SHIN).expect("a joint");
+        let foot: JointIndex = skeleton.children(shin).next().expect("a foot");
+        Vec3::from(frame.characters[0].world_from_joint[foot.get()].translation)
+    };
+    let rest = ViewerState { clip: ClipChoice::RestPose, ..ViewerState::default() };
+    let mut turned = rest.clone();
+    apply(&mut turned, &library, Command::SetPose { joint: SHIN, degrees: Some([90.0, 0.0, 0.0]) });
+    assert!(foot(&rest).distance(foot(&turned)) > 0.2);
+}
+
+#[test]
+fn angles_there_and_back_are_the_same_turn() {
+    let rest = Quat::from_euler(EulerRot::ZXY, 0.4, -1.0, 2.0);
+    for degrees in [[0.0, 0.0, 0.0], [10.0, -70.0, 160.0], [-120.0, 35.0, 5.0], [90.0, 90.0, -30.0]] {
+        let rotation = rotation_by_hand(rest, degrees);
+        let again = rotation_by_hand(rest, degrees_by_hand(rest, rotation));
+        assert!(rotation.angle_between(again) < 2e-3, "{degrees:?}");
+    }
+}
+
+#[test]
+fn joints_that_are_not_there_and_numbers_that_are_none_change_nothing() {
+    let library = walker();
+    for (joint, degrees) in [(4000, [1.0, 2.0, 3.0]), (HEAD, [f32::NAN, 0.0, 0.0]), (HEAD, [0.0, f32::INFINITY, 0.0])] {
+        let mut state = ViewerState::default();
+        apply(&mut state, &library, Command::SetPose { joint, degrees: Some(degrees) });
+        assert_eq!(state, ViewerState::default());
+    }
+    let mut state = ViewerState::default();
+    apply(&mut state, &library, Command::SetPose { joint: HEAD, degrees: Some([190.0, -540.0, 180.0]) });
+    assert_eq!(state.pose[&HEAD], [-170.0, -180.0, 180.0]);
+}
+
+#[test]
+fn turns_are_undone_one_gesture_at_a_time() {
+    let library = walker();
+    let (mut state, mut history) = (ViewerState::default(), History::default());
+    for angle in [5.0, 10.0, 15.0] {
+        history.apply(&mut state, &library, Command::SetPose { joint: HEAD, degrees: Some([angle, 0.0, 0.0]) });
+    }
+    history.end_gesture();
+    history.apply(&mut state, &library, Command::ClearPose);
+    assert!(state.pose.is_empty());
+    assert!(history.undo(&mut state));
+    assert_eq!(state.pose[&HEAD], [15.0, 0.0, 0.0]);
+    assert!(history.undo(&mut state));
+    assert!(state.pose.is_empty());
+}
+
+#[test]
+fn the_turntable_turns_while_paused_and_a_camera_of_the_file_stays() {
+    let library = walker();
+    let mut state = ViewerState { playing: false, turntable: 90.0, ..ViewerState::default() };
+    apply(&mut state, &library, Command::Advance(0.5));
+    let CameraChoice::Orbit(first) = state.camera else { panic!("an orbit camera") };
+    apply(&mut state, &library, Command::Advance(0.5));
+    let CameraChoice::Orbit(second) = state.camera else { panic!("an orbit camera") };
+    assert!((second.yaw_radians - first.yaw_radians - std::f32::consts::FRAC_PI_4).abs() < 1e-5);
+    assert_eq!(state.time_secs, 0.0);
+    let mut fixed = ViewerState { camera: CameraChoice::File(0), ..state };
+    apply(&mut fixed, &library, Command::Advance(0.5));
+    assert_eq!(fixed.camera, CameraChoice::File(0));
+}

@@ -1,0 +1,364 @@
+//! Edits of the joint map: what each does, that each can be taken back, and that the link holds all of it.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use gaitway::frame::pose_document;
+use gaitway::library::{Library, Motion};
+use gaitway::retarget::{
+    ClipRef, Feet, JointMap, Keep, MapEntry, MutedChannel, MutedProperty, RestChoice, RestChoices, RootOptions,
+    RootPart, SourceRef, Unmapped,
+};
+use gaitway::state::{
+    ClipChoice, Command, History, MapEdit, MotionMap, NumberedMap, ViewerState, apply, from_link, map_in_force,
+    maps_in_force, muted_properties, settled_maps, to_link,
+};
+use glam::Quat;
+
+use crate::data::walker;
+
+/// The walker with its own clips to borrow, the first of them playing, a bit after its start.
+fn dancing() -> (Library, ViewerState) {
+    let mut library = walker();
+    let asset = library.active().expect("a model").asset.clone();
+    library.set_motions(vec![Motion::new("dance.glb".to_owned(), asset)]);
+    let clip = ClipChoice::Named("3".to_owned());
+    let mut state = ViewerState { playing: false, time_secs: 0.3, clip, ..ViewerState::default() };
+    settle(&mut library, &mut state);
+    (library, state)
+}
+
+fn settle(library: &mut Library, state: &mut ViewerState) {
+    apply(state, library, Command::SettleMaps);
+    library.borrow_each(maps_in_force(library, state));
+}
+
+fn number(library: &Library, name: &str) -> usize {
+    let skeleton = &library.active().expect("a model").asset.skeleton;
+    skeleton.source_index(skeleton.find(name).expect("a joint of the walker"))
+}
+
+fn map(library: &Library, state: &ViewerState) -> JointMap {
+    map_in_force(library, state, 0).expect("a map")
+}
+
+fn source(map: &JointMap, target: usize) -> Option<SourceRef> {
+    map.joints.get(&format!("#{target}")).and_then(|entry| entry.source.clone())
+}
+
+fn edited(library: &Library, state: &ViewerState, edit: MapEdit) -> ViewerState {
+    let mut state = state.clone();
+    apply(&mut state, library, Command::EditMap { motion: 0, edit });
+    state
+}
+
+fn turn() -> Quat {
+    Quat::from_rotation_z(0.6)
+}
+
+/// One of each kind.
+fn all_edits(library: &Library) -> Vec<MapEdit> {
+    let [neck, head, hips] = ["Neck", "Head", "Hips"].map(|name| number(library, name));
+    let frozen = Unmapped::Clip { clip: ClipRef::Index(1), frozen: true };
+    let loaded = JointMap {
+        joints: BTreeMap::from([(
+            format!("#{hips}"),
+            MapEntry { source: Some(SourceRef::Number(hips)), correction: Quat::IDENTITY, unmapped: None },
+        )]),
+        feet: Feet::Plant,
+        ..JointMap::default()
+    };
+    vec![
+        MapEdit::SwapSides,
+        MapEdit::Correction { target: neck, correction: turn() },
+        MapEdit::Mute { source: head, property: MutedProperty::Rotation, muted: true },
+        MapEdit::Unmapped { target: head, unmapped: Some(frozen) },
+        MapEdit::Rest(RestChoices { model: RestChoice::Bind, motion: RestChoice::FirstFrame }),
+        MapEdit::Translations(Keep::Drop),
+        MapEdit::Scales(Keep::Keep),
+        MapEdit::CrossfadeSecs(0.4),
+        MapEdit::UnmuteAll,
+        MapEdit::Clear,
+        MapEdit::Load(Box::new(loaded)),
+    ]
+}
+
+#[test]
+fn sides_are_swapped_and_swapped_back() {
+    let (library, state) = dancing();
+    let swapped = edited(&library, &state, MapEdit::SwapSides);
+    let now = map(&library, &swapped);
+    for (target, expected) in
+        [("LeftUpperArm", "RightUpperArm"), ("RightFoot", "LeftFoot"), ("Neck", "Neck"), ("Hips", "Hips")]
+    {
+        let expected = Some(SourceRef::Number(number(&library, expected)));
+        assert_eq!(source(&now, number(&library, target)), expected, "{target}");
+    }
+    assert_eq!(edited(&library, &swapped, MapEdit::SwapSides), state);
+}
+
+#[test]
+fn a_correction_turns_the_playing_joint() {
+    let (mut library, mut state) = dancing();
+    let before = pose_document(&library, &state);
+    let neck = number(&library, "Neck");
+    apply(
+        &mut state,
+        &library,
+        Command::EditMap { motion: 0, edit: MapEdit::Correction { target: neck, correction: turn() * 3.0 } },
+    );
+    let correction = map(&library, &state).joints[&format!("#{neck}")].correction;
+    assert!(correction.abs_diff_eq(turn(), 1e-6), "as long as one: {correction}");
+    settle(&mut library, &mut state);
+    assert_ne!(pose_document(&library, &state), before);
+    for bad in [Quat::from_xyzw(0.0, 0.0, 0.0, 0.0), Quat::from_xyzw(f32::NAN, 0.0, 0.0, 1.0)] {
+        assert_eq!(edited(&library, &state, MapEdit::Correction { target: neck, correction: bad }), state);
+    }
+}
+
+#[test]
+fn channels_are_muted_one_by_one() {
+    let (mut library, state) = dancing();
+    let arm = number(&library, "LeftUpperArm");
+    let mute =
+        |state: &ViewerState, property, muted| edited(&library, state, MapEdit::Mute { source: arm, property, muted });
+    let rotation = mute(&state, MutedProperty::Rotation, true);
+    assert_eq!(muted_properties(&map(&library, &rotation), arm), [false, true, false]);
+    let two = mute(&rotation, MutedProperty::Scale, true);
+    assert_eq!(muted_properties(&map(&library, &two), arm), [false, true, true]);
+    let all = mute(&two, MutedProperty::Translation, true);
+    let whole = MutedChannel { source: SourceRef::Number(arm), property: None };
+    assert_eq!(map(&library, &all).muted_channels, [whole]);
+    // One of a joint that is left out as a whole comes back alone.
+    let back = mute(&all, MutedProperty::Rotation, false);
+    assert_eq!(muted_properties(&map(&library, &back), arm), [true, false, true]);
+    assert_eq!(edited(&library, &back, MapEdit::UnmuteAll), state);
+
+    let before = pose_document(&library, &state);
+    let mut rotation = rotation;
+    settle(&mut library, &mut rotation);
+    assert_ne!(pose_document(&library, &rotation), before, "the arm hangs still");
+}
+
+#[test]
+fn a_cleared_map_is_a_start_to_go_on_from() {
+    let (mut library, state) = dancing();
+    let mut cleared = edited(&library, &state, MapEdit::Clear);
+    assert_eq!(map(&library, &cleared).joints.len(), 0);
+    settle(&mut library, &mut cleared);
+    assert_eq!(map(&library, &cleared).joints.len(), 0, "it is not filled up again");
+    let hips = number(&library, "Hips");
+    apply(&mut cleared, &library, Command::SetSource { motion: 0, target: hips, source: Some(hips) });
+    settle(&mut library, &mut cleared);
+    assert_eq!(library.borrow_errors(), []);
+    let mut again = cleared.clone();
+    apply(&mut again, &library, Command::SetMap { motion: 0, map: None });
+    assert_eq!(again.map, state.map);
+}
+
+#[test]
+fn all_of_a_loaded_map_counts() {
+    let (library, mut state) = dancing();
+    apply(&mut state, &library, Command::SetFeet(Some(Feet::Off)));
+    apply(&mut state, &library, Command::SetRoot(Some(RootOptions { yaw: RootPart::Freeze, ..Default::default() })));
+    let new = JointMap { feet: Feet::Plant, ..map(&library, &state) };
+    let state = edited(&library, &state, MapEdit::Load(Box::new(new.clone())));
+    assert_eq!(map(&library, &state), new);
+    assert_eq!((state.root, state.feet), (None, None));
+}
+
+#[test]
+fn what_is_not_there_changes_nothing() {
+    let (library, state) = dancing();
+    let nothing = [
+        MapEdit::Correction { target: 9999, correction: turn() },
+        MapEdit::Unmapped { target: 9999, unmapped: Some(Unmapped::Rest) },
+        MapEdit::Mute { source: 9999, property: MutedProperty::Scale, muted: true },
+        MapEdit::CrossfadeSecs(f64::NAN),
+    ];
+    for edit in nothing {
+        assert_eq!(edited(&library, &state, edit.clone()), state, "{edit:?}");
+    }
+    assert_eq!(map(&library, &edited(&library, &state, MapEdit::CrossfadeSecs(-1.0))).crossfade_secs, 0.0);
+    let mut other = state.clone();
+    apply(&mut other, &library, Command::EditMap { motion: 7, edit: MapEdit::Clear });
+    assert_eq!(other, state);
+}
+
+/// With the borrowed clips made anew after each step, as the page does it.
+#[test]
+fn fifty_edits_are_undone_and_done_again() {
+    let (mut library, mut state) = dancing();
+    let mut history = History::default();
+    let edits = all_edits(&library);
+    let first = state.clone();
+    let mut seen = vec![state.clone()];
+    let targets: Vec<usize> =
+        library.active().expect("a model").asset.skeleton.joints().map(|joint| joint.get()).collect();
+    let mut at = 0;
+    while seen.len() <= 50 {
+        let command = match at % 3 {
+            0 => Command::EditMap { motion: 0, edit: edits[at / 3 % edits.len()].clone() },
+            1 => Command::SetSource { motion: 0, target: targets[at % 15], source: Some(targets[(7 * at) % 15]) },
+            _ => Command::SetMap { motion: 0, map: None },
+        };
+        history.apply(&mut state, &library, command);
+        history.end_gesture();
+        settle(&mut library, &mut state);
+        if state != seen[seen.len() - 1] {
+            seen.push(state.clone());
+        }
+        at += 1;
+        assert!(at < 200, "edits that change something");
+    }
+    let last = pose_document(&library, &state);
+    for expected in seen.iter().rev().skip(1) {
+        assert!(history.undo(&mut state));
+        settle(&mut library, &mut state);
+        assert_eq!(&state, expected);
+    }
+    assert_eq!(state, first);
+    assert!(!history.can_undo());
+    for expected in &seen[1..] {
+        assert!(history.redo(&mut state));
+        settle(&mut library, &mut state);
+        assert_eq!(&state, expected);
+    }
+    assert!(!history.can_redo());
+    assert_eq!(pose_document(&library, &state), last);
+}
+
+#[test]
+fn a_drag_is_one_step() {
+    let (library, mut state) = dancing();
+    let mut history = History::default();
+    let before = state.clone();
+    let neck = number(&library, "Neck");
+    for step in 1..40 {
+        let correction = Quat::from_rotation_x(0.01 * step as f32);
+        let edit = MapEdit::Correction { target: neck, correction };
+        history.apply(&mut state, &library, Command::EditMap { motion: 0, edit });
+        history.apply(&mut state, &library, Command::Advance(0.01));
+    }
+    history.end_gesture();
+    assert!(history.undo(&mut state));
+    assert_eq!(state, before);
+    assert!(!history.can_undo());
+}
+
+#[test]
+fn every_edit_is_in_the_link() {
+    let (mut library, state) = dancing();
+    for edit in all_edits(&library) {
+        let mut state = edited(&library, &state, edit.clone());
+        settle(&mut library, &mut state);
+        let (mut back, errors) = from_link(&to_link(&state));
+        assert_eq!(errors, [], "{edit:?}");
+        assert_eq!(settled_maps(&library, &back).1, [], "{edit:?}");
+        settle(&mut library, &mut back);
+        assert_eq!(back, state, "{edit:?}");
+    }
+}
+
+/// Maps that differ from the default in one member each; a member that is added has to be added here.
+fn one_member_each() -> Vec<(&'static str, JointMap)> {
+    let JointMap {
+        gaitway_map: _,
+        joints: _,
+        unmapped: _,
+        rest: _,
+        root: _,
+        translations: _,
+        scales: _,
+        muted_channels: _,
+        feet: _,
+        crossfade_secs: _,
+    } = JointMap::default();
+    let with = |change: &dyn Fn(&mut JointMap)| {
+        let mut map = JointMap::default();
+        change(&mut map);
+        map
+    };
+    let frozen = Unmapped::Clip { clip: ClipRef::Index(2), frozen: true };
+    let entry = |source, correction, unmapped| MapEntry { source, correction, unmapped };
+    let number = |number| Some(SourceRef::Number(number));
+    let odd = Quat::from_xyzw(0.1, -0.7, 1.0 / 3.0, 0.2).normalize();
+    vec![
+        (
+            "joints",
+            with(&|map| {
+                map.joints.insert("#4".to_owned(), entry(number(9), Quat::IDENTITY, None));
+                map.joints.insert("#5".to_owned(), entry(number(9), odd, None));
+                map.joints.insert("#6".to_owned(), entry(None, Quat::IDENTITY, Some(frozen.clone())));
+                map.joints.insert("#7".to_owned(), entry(None, Quat::IDENTITY, None));
+            }),
+        ),
+        ("unmapped", with(&|map| map.unmapped = frozen.clone())),
+        ("rest", with(&|map| map.rest.motion = RestChoice::FirstFrame)),
+        ("root", with(&|map| map.root = RootOptions { yaw: RootPart::InPlace, extract: true, ..Default::default() })),
+        ("translations", with(&|map| map.translations = Keep::Keep)),
+        ("scales", with(&|map| map.scales = Keep::Drop)),
+        (
+            "muted_channels",
+            with(&|map| {
+                let properties =
+                    [None, Some(MutedProperty::Rotation), Some(MutedProperty::Translation), Some(MutedProperty::Scale)];
+                map.muted_channels = (1..)
+                    .zip(properties)
+                    .map(|(number, property)| MutedChannel { source: SourceRef::Number(number), property })
+                    .collect();
+            }),
+        ),
+        ("feet", with(&|map| map.feet = Feet::Plant)),
+        ("crossfade_secs", with(&|map| map.crossfade_secs = 0.15)),
+    ]
+}
+
+#[test]
+fn the_map_key_holds_every_member() {
+    let members = one_member_each();
+    let form =
+        serde_json::to_value(JointMap { muted_channels: members[6].1.muted_channels.clone(), ..Default::default() });
+    let form = form.expect("plain data");
+    let all: BTreeSet<&str> = form.as_object().expect("an object").keys().map(String::as_str).collect();
+    let tried: BTreeSet<&str> = members.iter().map(|(name, _)| *name).chain(["gaitway_map"]).collect();
+    assert_eq!(tried, all);
+    for (name, map) in members {
+        let map = MotionMap::Numbers(NumberedMap { checksum: 0x0123_4567, map });
+        let state = ViewerState { map: vec![map], ..ViewerState::default() };
+        assert_ne!(state.map, ViewerState::default().map, "{name}");
+        let link = to_link(&state);
+        let (back, errors) = from_link(&link);
+        assert_eq!(errors, [], "{name}: {link}");
+        assert_eq!(back, state, "{name}: {link}");
+    }
+}
+
+/// Sixty joints, ten of them turned further, muted channels, and every option.
+#[test]
+fn a_large_map_stays_short() {
+    let mut map = JointMap {
+        rest: RestChoices { model: RestChoice::Bind, motion: RestChoice::FirstFrame },
+        root: RootOptions { horizontal: RootPart::InPlace, ..RootOptions::default() },
+        translations: Keep::Drop,
+        scales: Keep::Drop,
+        feet: Feet::Plant,
+        crossfade_secs: 0.25,
+        ..JointMap::default()
+    };
+    for joint in 0..60 {
+        let angle = 0.1 * joint as f32;
+        let correction =
+            if joint % 6 == 5 { Quat::from_euler(glam::EulerRot::XYZ, angle, 0.3, -angle) } else { Quat::IDENTITY };
+        let source = Some(SourceRef::Number(joint + 40));
+        map.joints.insert(format!("#{}", joint + 100), MapEntry { source, correction, unmapped: None });
+    }
+    for number in 0..4 {
+        map.muted_channels
+            .push(MutedChannel { source: SourceRef::Number(number), property: Some(MutedProperty::Rotation) });
+    }
+    let maps = vec![MotionMap::Numbers(NumberedMap { checksum: 7, map })];
+    let state = ViewerState { map: maps, ..ViewerState::default() };
+    let link = to_link(&state);
+    assert!(link.len() < 2000, "{} characters", link.len());
+    assert_eq!(from_link(&link).0, state);
+}

@@ -1,0 +1,177 @@
+//! Skinning modes side by side, and the source of a borrowed clip beside the model.
+
+use std::sync::Arc;
+
+use gaitway::anim::{Clip, ClipBuilder, Joint, Keys, Skeleton, Transform};
+use gaitway::asset::Asset;
+use gaitway::frame::{Frame, PickedJoint, evaluate, pick_joint, pose_document};
+use gaitway::library::{Library, Motion};
+use gaitway::mesh::SkinningMode;
+use gaitway::state::{ClipChoice, Show, ViewerState, choice_of_clip, resolved_bounds, source_on_stage};
+use glam::{Vec2, Vec3, Vec4Swizzles};
+
+use crate::data::walker;
+
+fn frame_of(library: &Library, state: &ViewerState, aspect: f32) -> Frame {
+    let mut frame = Frame::default();
+    evaluate(library, state, aspect, &mut frame);
+    frame
+}
+
+/// The walker borrowing from a copy of itself, twice as large.
+fn borrowing() -> (Library, ViewerState) {
+    let mut library = walker();
+    let asset = library.active().expect("a model").asset.clone();
+    library.set_motions(vec![Motion::new("twice.glb".to_owned(), Arc::new(twice(&asset)))]);
+    library.borrow(None);
+    assert_eq!(library.borrow_errors(), []);
+    let model = library.active().expect("a model");
+    let clip = choice_of_clip(model, model.asset.clips.len());
+    (library, ViewerState { clip, time_secs: 0.3, ..ViewerState::default() })
+}
+
+/// The same skeleton with all lengths doubled, and its first clip with the translations doubled too.
+fn twice(asset: &Asset) -> Asset {
+    let skeleton = &asset.skeleton;
+    let joints = skeleton.joints().map(|joint| {
+        let rest = skeleton.rest().locals[joint.get()];
+        Joint {
+            name: skeleton.name(joint).to_owned(),
+            parent: skeleton.parent(joint).map(|parent| parent.get()),
+            rest: Transform { translation: 2.0 * rest.translation, ..rest },
+            morph_weights: Vec::new(),
+        }
+    });
+    let doubled = Skeleton::new(joints.collect()).expect("the same joints");
+    let clip: &Clip = &asset.clips[0];
+    let mut builder = ClipBuilder::new(clip.name(), &doubled);
+    for channel in clip.channels() {
+        let times = &clip.timelines()[channel.timeline as usize];
+        let keys = match &channel.keys {
+            Keys::Translation(values) => Keys::Translation(values.iter().map(|value| 2.0 * *value).collect()),
+            Keys::MorphWeights { .. } => continue,
+            keys => keys.clone(),
+        };
+        builder.channel(channel.joint, channel.interpolation, times, keys).expect("a channel of that joint");
+    }
+    let clips = vec![builder.build()];
+    Asset { format: "test", skeleton: doubled, clips, ..Asset::default() }
+}
+
+fn showing(base: &ViewerState, change: impl Fn(&mut Show)) -> ViewerState {
+    let mut state = base.clone();
+    change(&mut state.show);
+    state
+}
+
+#[test]
+fn compared_modes_have_a_pane_each_and_one_pose() {
+    let library = walker();
+    let state = showing(&ViewerState { time_secs: 0.3, ..ViewerState::default() }, |show| show.split = true);
+    let frame = frame_of(&library, &state, 1.5);
+    let modes: Vec<_> = frame.characters.iter().map(|character| (character.pane, character.skinning)).collect();
+    let expected = [SkinningMode::Linear, SkinningMode::Rigid, SkinningMode::DualQuaternion];
+    assert_eq!(modes, (0..3).map(Some).zip(expected).collect::<Vec<_>>());
+    assert_eq!(frame.panes, [3, 1]);
+    assert_eq!(frame_of(&library, &state, 0.5).panes, [1, 3]);
+    for mode in expected {
+        let alone = frame_of(&library, &ViewerState { skinning: mode, show: Show::default(), ..state.clone() }, 0.5);
+        let compared = frame.characters.iter().find(|character| character.skinning == mode).expect("a pane");
+        assert_eq!(compared.palette, alone.characters[0].palette);
+        // A pane is as high as a picture of its own shape.
+        assert_eq!(frame.view.projection_from_view, alone.view.projection_from_view);
+    }
+}
+
+#[test]
+fn numbers_are_of_the_chosen_mode_alone() {
+    let library = walker();
+    let plain = ViewerState { skinning: SkinningMode::Rigid, time_secs: 0.3, ..ViewerState::default() };
+    let compared = showing(&plain, |show| show.split = true);
+    assert_eq!(pose_document(&library, &compared), pose_document(&library, &plain));
+}
+
+#[test]
+fn the_source_stands_beside_in_the_models_size_and_does_the_same() {
+    let (library, state) = borrowing();
+    let model = library.active().expect("a model");
+    let state = showing(&state, |show| show.source = true);
+    let frame = frame_of(&library, &state, 1.5);
+    let [own, source] = &frame.characters[..] else { panic!("{} characters", frame.characters.len()) };
+    let apart = source.world_from_joint[0].translation - own.world_from_joint[0].translation;
+    assert!(apart.x < -0.5 && apart.y.abs() < 1e-3 && apart.z.abs() < 1e-3, "{apart}");
+    for joint in model.asset.skeleton.joints().filter(|&joint| model.rig().is_real(joint)) {
+        let (a, b) = (own.world_from_joint[joint.get()].translation, source.world_from_joint[joint.get()].translation);
+        assert!((b - a - apart).length() < 1e-3, "{}: {a} {b}", model.asset.skeleton.name(joint));
+    }
+    // The camera sees both.
+    let alone = showing(&state, |show| show.source = false);
+    assert!(resolved_bounds(&library, &state).size().x > resolved_bounds(&library, &alone).size().x + 0.5);
+}
+
+#[test]
+fn over_means_in_the_same_place() {
+    let (library, state) = borrowing();
+    let frame = frame_of(&library, &showing(&state, |show| (show.source, show.over) = (true, true)), 1.5);
+    let roots = [0, 1].map(|character: usize| frame.characters[character].world_from_joint[0].translation);
+    assert!((roots[0] - roots[1]).length() < 1e-3, "{roots:?}");
+}
+
+#[test]
+fn a_clip_of_the_models_own_has_no_source() {
+    let (library, state) = borrowing();
+    let own = showing(&ViewerState { clip: ClipChoice::First, ..state }, |show| show.source = true);
+    assert!(source_on_stage(&library, &own).is_none());
+    assert_eq!(frame_of(&library, &own, 1.5).characters.len(), 1);
+}
+
+#[test]
+fn the_chosen_joint_and_its_partner_are_lit_and_both_can_be_clicked() {
+    let (library, state) = borrowing();
+    let chosen = 15;
+    let state = ViewerState { joint: Some(chosen), ..showing(&state, |show| show.source = true) };
+    let frame = frame_of(&library, &state, 1.5);
+    let plain = |of_source| {
+        frame.bones.iter().find(|bone| bone.of_source == of_source && bone.joint != 15).map(|bone| bone.color)
+    };
+    assert_ne!(plain(false), plain(true), "the two sides can be told apart");
+    let lit: Vec<_> = frame.bones.iter().filter(|bone| bone.joint == 15).collect();
+    assert_eq!((lit.len(), lit[0].color), (2, lit[1].color));
+    assert_ne!(Some(lit[0].color), plain(false));
+    let projection_from_world = frame.view.projection_from_view * frame.view.view_from_world;
+    let on_picture = |place: Vec3| {
+        let middle = projection_from_world * place.extend(1.0);
+        Vec2::new(middle.x, middle.y) / middle.xyzw().w
+    };
+    for bone in lit {
+        let picked = pick_joint(&frame, on_picture(bone.head.midpoint(bone.tail)), 0.02);
+        let expected = if bone.of_source { PickedJoint::Source(chosen) } else { PickedJoint::Model(chosen) };
+        assert_eq!(picked, Some(expected));
+    }
+}
+
+#[test]
+fn errors_colour_the_bones_and_grow_with_a_turn_by_hand() {
+    let (library, state) = borrowing();
+    let state = showing(&state, |show| (show.source, show.error) = (true, true));
+    let color = |state: &ViewerState| {
+        let frame = frame_of(&library, state, 1.5);
+        let bone = frame.bones.iter().find(|bone| bone.joint == 15 && !bone.of_source).expect("a shin");
+        (bone.color.x, bone.color.y)
+    };
+    let (red, green) = color(&state);
+    assert!(green > 3.0 * red, "a faithful copy is green: {red} {green}");
+    let mut wrong = state.clone();
+    wrong.pose.insert(15, [120.0, 0.0, 0.0]);
+    let (red, green) = color(&wrong);
+    assert!(red > 3.0 * green, "{red} {green}");
+}
+
+#[test]
+fn the_source_moves_with_the_time() {
+    let (library, state) = borrowing();
+    let state = showing(&state, |show| show.source = true);
+    let early = frame_of(&library, &state, 1.5);
+    let late = frame_of(&library, &ViewerState { time_secs: 0.6, ..state }, 1.5);
+    assert_ne!(early.characters[1].world_from_joint, late.characters[1].world_from_joint);
+}
