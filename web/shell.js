@@ -441,7 +441,10 @@ function showMissing(problems, link) {
 /** Shows what there is to pass on: see share.js. */
 function share(link) {
   if (app === null) return;
-  const page = location.href.split("#")[0];
+  const url = new URL(location.href);
+  // Which back end draws is this machine's own affair.
+  url.searchParams.delete("renderer");
+  const page = url.href.split("#")[0];
   const rest = publicLink(link);
   const address = `${page}#${rest}`;
   const local = localParts(link).map(([key, name]) => ({ key, name }));

@@ -27,7 +27,7 @@ export function launch() {
   return chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: FLAGS });
 }
 
-/** The two servers and one Chromium: `{browser, open, data, close}`. */
+/** The two servers and one Chromium: `{browser, address, data, page, close}`. */
 export async function startSite() {
   if (!fs.existsSync(path.join(dist, "index.html"))) throw new Error(`no built page in ${dist}: run \`cargo xtask build\``);
   const site = await serve({ "/some/folder/": dist });
@@ -35,6 +35,8 @@ export async function startSite() {
   const browser = await launch();
   return {
     browser,
+    /** URL of the page itself. */
+    address: `${site.origin}/some/folder/`,
     /** URL of a file of the data folder, on another origin than the page. */
     data: (name) => `${data.origin}/${name}`,
     page: (options) => openPage(browser, `${site.origin}/some/folder/`, options),
