@@ -349,6 +349,7 @@ impl eframe::App for App {
         if !dropped.is_empty() {
             self.host.open_dropped(dropped, &self.inbox);
         }
+        (self.panels.can_undo, self.panels.can_redo) = (self.history.can_undo(), self.history.can_redo());
         let mut output = std::mem::take(&mut self.output);
         let shown = Shown { library: &self.library, state: &self.state, frame: &self.frame };
         let rect = ui::panels(ui, shown, &mut self.panels, &mut output);

@@ -6,12 +6,13 @@ use gaitway::anim::{ClipBuilder, Interpolation, Joint, JointIndex, Keys, Skeleto
 use gaitway::asset::{Asset, Warning};
 use gaitway::frame::{Frame, evaluate};
 use gaitway::library::{Library, Model, Motion, sample};
-use gaitway::state::{Command, ViewerState, apply, maps_in_force};
+use gaitway::state::{Command, History, ViewerState, apply, maps_in_force};
 use gaitway::ui::{self, Output, Shown, UiAction, UiState};
 
 pub struct Bench {
     pub library: Library,
     pub state: ViewerState,
+    pub history: History,
     pub frame: Frame,
     pub panels: UiState,
     pub commands: Vec<Command>,
@@ -52,6 +53,7 @@ fn bench_of(size: [f32; 2], library: Library) -> Harness<'static, Bench> {
     let mut bench = Bench {
         library,
         state,
+        history: History::default(),
         frame: Frame::default(),
         panels: UiState::default(),
         commands: Vec::new(),
@@ -72,6 +74,7 @@ fn bench_of(size: [f32; 2], library: Library) -> Harness<'static, Bench> {
                 ui.set_clip_rect(whole);
                 let ui = &mut ui;
                 evaluate(&bench.library, &bench.state, bench.panels.aspect, &mut bench.frame);
+                (bench.panels.can_undo, bench.panels.can_redo) = (bench.history.can_undo(), bench.history.can_redo());
                 let mut output = Output::default();
                 let shown = Shown { library: &bench.library, state: &bench.state, frame: &bench.frame };
                 bench.picture = ui::panels(ui, shown, &mut bench.panels, &mut output);
@@ -79,11 +82,23 @@ fn bench_of(size: [f32; 2], library: Library) -> Harness<'static, Bench> {
                 ui::overlays(ui, bench.picture, shown, &mut bench.panels, &mut output);
                 for command in output.commands {
                     bench.commands.push(command.clone());
-                    apply(&mut bench.state, &bench.library, command);
+                    bench.history.apply(&mut bench.state, &bench.library, command);
+                    settle(bench);
+                    ui.ctx().request_repaint();
+                }
+                for action in &output.actions {
+                    match action {
+                        UiAction::Undo => bench.history.undo(&mut bench.state),
+                        UiAction::Redo => bench.history.redo(&mut bench.state),
+                        _ => continue,
+                    };
                     settle(bench);
                     ui.ctx().request_repaint();
                 }
                 bench.actions.extend(output.actions);
+                if ui.input(|input| !input.pointer.any_down() && input.keys_down.is_empty()) {
+                    bench.history.end_gesture();
+                }
             },
             bench,
         );

@@ -2,11 +2,13 @@
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use gaitway::retarget::{ClipRef, Feet, JointMap, RestChoice, RootOptions, RootPart, SourceRef, Unmapped};
-use gaitway::state::{ClipChoice, Command, map_in_force};
+use gaitway::retarget::{
+    ClipRef, Feet, JointMap, Keep, MutedProperty, RestChoice, RootOptions, RootPart, SourceRef, Unmapped,
+};
+use gaitway::state::{ClipChoice, Command, MapEdit, map_in_force, muted_properties};
 use gaitway::ui::{PathPrompt, PathPurpose, Saved, UiAction};
 
-use crate::bench::{Bench, NARROW, WIDE, motion_bench, press, press_key, sample_bench};
+use crate::bench::{Bench, NARROW, WIDE, drag, motion_bench, press, press_key, sample_bench};
 
 fn map(harness: &Harness<'_, Bench>, motion: usize) -> JointMap {
     let bench = harness.state();
@@ -27,6 +29,8 @@ fn reach(harness: &mut Harness<'_, Bench>, label: &str) -> Vec<Command> {
 
 /// Presses the line of the table that begins so.
 fn press_row(harness: &mut Harness<'_, Bench>, start: &str) {
+    harness.get_by_label_contains(start).scroll_to_me();
+    harness.run();
     harness.get_by_label_contains(start).click();
     harness.run();
 }
@@ -145,7 +149,7 @@ fn joints_without_a_source_can_play_a_clip() {
     press(&mut harness, "Joints");
     press_row(&mut harness, "Head follows");
     press(&mut harness, "Nothing");
-    let row = "Head follows none (head · deliberately none · first key of Wave)";
+    let row = "Head follows none (none: head · deliberately none · first key of Wave)";
     assert!(harness.query_by_label(row).is_some());
 }
 
@@ -153,9 +157,9 @@ fn joints_without_a_source_can_play_a_clip() {
 fn files_are_asked_of_the_host() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
     press(&mut harness, "Motion");
+    press(&mut harness, "Files");
     press(&mut harness, "Save map");
     press(&mut harness, "Load map");
-    press(&mut harness, "Options");
     press(&mut harness, "Walk (2)");
     press(&mut harness, "Save GLB");
     reach(&mut harness, "Show its own skeleton");
@@ -188,6 +192,7 @@ fn one_of_several_motions_is_chosen() {
     press(&mut harness, "Motion file");
     let commands = press(&mut harness, "second.bvh");
     assert_eq!(commands, [Command::SetClip(ClipChoice::Named("6".to_owned()))]);
+    press(&mut harness, "Files");
     press(&mut harness, "Save map");
     assert_eq!(harness.state().actions, [UiAction::Save(Saved::Map { motion: 1 })]);
 }
@@ -209,6 +214,322 @@ fn what_does_not_fit_can_be_looked_at_or_mapped_by_hand() {
     }
 }
 
+fn edit(edit: MapEdit) -> Command {
+    Command::EditMap { motion: 0, edit }
+}
+
+/// Chooses from a list that opens under a button; the entry may stand elsewhere too.
+fn choose(harness: &mut Harness<'_, Bench>, list: &str, entry: &str) -> Vec<Command> {
+    reach(harness, list);
+    harness.get_all_by_label(entry).last().expect("in the list").scroll_to_me();
+    harness.run();
+    harness.state_mut().commands.clear();
+    harness.get_all_by_label(entry).last().expect("in the list").click();
+    harness.run();
+    std::mem::take(&mut harness.state_mut().commands)
+}
+
+#[test]
+fn the_table_stands_by_parts_of_the_body_or_as_a_tree() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, "Motion");
+    let top = |harness: &Harness<'_, Bench>, label: &str| harness.get_by_label_contains(label).rect().top();
+    let left_arm = harness.get_by_label_contains("Left arm, ").rect();
+    assert!(top(&harness, "LeftHand follows") > left_arm.top());
+    assert!(top(&harness, "LeftUpperLeg follows") > top(&harness, "RightHand follows"), "arms before legs");
+    let before = top(&harness, "Right arm, ");
+    harness.get_by_label_contains("Left arm, ").click();
+    harness.run();
+    assert!(harness.query_by_label_contains("LeftHand follows").is_none());
+    assert!(top(&harness, "Right arm, ") < before);
+    press(&mut harness, "Order: Tree");
+    assert!(harness.query_by_label_contains("Left arm, ").is_none());
+    let order = ["Hips follows", "Spine follows", "LeftHand follows"].map(|label| top(&harness, label));
+    assert!(order.is_sorted(), "{order:?}");
+}
+
+#[test]
+fn the_table_is_filtered_by_how_it_stands() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, "Motion");
+    choose(&mut harness, "Which joints are shown", "To look at (0)");
+    assert!(harness.query_by_label("There is nothing that needs a look.").is_some());
+    choose(&mut harness, "Which joints are shown", "All joints (24)");
+    // A left arm that follows a right one, and two that follow the same.
+    let (left, right) = (number(&harness, "LeftHand"), number(&harness, "RightHand"));
+    press_row(&mut harness, "LeftHand follows");
+    press(&mut harness, &format!("{right}  RightHand"));
+    choose(&mut harness, "Which joints are shown", "Conflicts (2)");
+    assert!(harness.query_by_label_contains("LeftHand follows").is_some());
+    let twice = format!(
+        "RightHand follows {right}  RightHand (conflict: right hand · same name · 100 % · shared with LeftHand)"
+    );
+    assert!(harness.query_by_label(&twice).is_some());
+    assert!(harness.query_by_label_contains("Neck follows").is_none());
+    choose(&mut harness, "Which joints are shown", "To look at (2)");
+    assert!(harness.query_by_label_contains("LeftHand follows").is_some());
+    choose(&mut harness, "Which joints are shown", "Muted (0)");
+    assert!(harness.query_by_label("There are no such joints.").is_some());
+    assert_ne!(left, right);
+}
+
+#[test]
+fn whole_maps_are_swapped_cleared_and_taken_back() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, "Motion");
+    let before = harness.state().state.clone();
+    let [left, right] = ["LeftHand", "RightHand"].map(|name| number(&harness, name));
+    assert_eq!(press(&mut harness, "Swap sides"), [edit(MapEdit::SwapSides)]);
+    let swapped = format!("LeftHand follows {right}  RightHand (sure");
+    assert!(harness.query_by_label_contains(&swapped).is_some(), "on purpose: no conflict");
+    press(&mut harness, "Undo (Ctrl+Z)");
+    assert!(harness.query_by_label_contains(&format!("LeftHand follows {left}  LeftHand (")).is_some());
+    press(&mut harness, "Redo (Ctrl+Y)");
+    assert!(harness.query_by_label_contains(&swapped).is_some());
+    assert_eq!(press(&mut harness, "Clear all"), [edit(MapEdit::Clear)]);
+    assert!(harness.query_by_label("No joint follows the motion yet.").is_some());
+    assert!(harness.query_by_label_contains("Hips follows none (none: hips · follows nothing").is_some());
+    assert_eq!(press(&mut harness, "Match anew"), [Command::SetMap { motion: 0, map: None }]);
+    for _ in 0..3 {
+        harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
+        harness.run();
+    }
+    assert_eq!(harness.state().state, before);
+}
+
+/// A button that was reached with the tab key keeps the keyboard; edits made with it can be undone all the same.
+#[test]
+fn undo_works_while_a_button_has_the_keyboard() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, "Motion");
+    harness.get_by_label("Swap sides").focus();
+    harness.run();
+    assert_eq!(press_key(&mut harness, egui::Key::Enter), [edit(MapEdit::SwapSides)]);
+    let undo = |harness: &mut Harness<'_, Bench>| {
+        harness.state_mut().actions.clear();
+        harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
+        harness.run();
+        harness.state().actions.clone()
+    };
+    assert_eq!(undo(&mut harness), [UiAction::Undo]);
+    // Where text is typed it is the text that is undone.
+    harness.get_by_label("Search joints of the model").focus();
+    harness.run();
+    assert_eq!(undo(&mut harness), []);
+}
+
+#[test]
+fn a_joint_chosen_anywhere_opens_in_the_table() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, "Motion");
+    let [neck, toes] = ["Neck", "RightToes"].map(|name| number(&harness, name));
+    assert_eq!(press(&mut harness, "Edit Neck"), [Command::SelectJoint(Some(neck))]);
+    assert!(harness.query_by_label("Source of Neck").is_some());
+    assert_eq!(press(&mut harness, "Edit Neck"), [Command::SelectJoint(None)]);
+    assert!(harness.query_by_label("Source of Neck").is_none());
+    // As a click in the picture does; the table scrolls to it.
+    harness.state_mut().state.joint = Some(toes);
+    harness.run();
+    let field = harness.get_by_label("Source of RightToes").rect();
+    assert!(field.bottom() < WIDE[1] - 80.0, "{field:?}");
+}
+
+#[test]
+fn a_source_is_typed_in_the_table() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, "Motion");
+    let [neck, head, chest] = ["Neck", "Head", "Chest"].map(|name| number(&harness, name));
+    press(&mut harness, "Edit Neck");
+    let mut enter = |text: &str| {
+        harness.get_by_label("Source of Neck").focus();
+        harness.run();
+        harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+        harness.key_press(egui::Key::Delete);
+        harness.run();
+        harness.get_by_label("Source of Neck").type_text(text);
+        harness.run();
+        press_key(&mut harness, egui::Key::Enter)
+    };
+    let set = |source| vec![Command::SetSource { motion: 0, target: neck, source }];
+    assert_eq!(enter(&head.to_string()), set(Some(head)));
+    assert_eq!(enter("chest"), set(Some(chest)));
+    assert_eq!(enter("Head"), set(Some(head)));
+    assert_eq!(enter(""), set(None));
+    assert_eq!(enter("9999"), []);
+    assert_eq!(enter("tail"), []);
+    assert!(harness.query_by_label("No joint of the motion is called “tail”.").is_some());
+    assert_eq!(map(&harness, 0).joints[&format!("#{neck}")].source, None);
+}
+
+#[test]
+fn a_joint_is_turned_further_and_back() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, "Motion");
+    let neck = number(&harness, "Neck");
+    press(&mut harness, "Edit Neck");
+    let from = harness.get_by_label("Turn further about Y").rect().center();
+    let commands = drag(&mut harness, from, from + egui::vec2(40.0, 0.0), egui::PointerButton::Primary);
+    assert!(!commands.is_empty());
+    let turned = map(&harness, 0).joints[&format!("#{neck}")].correction;
+    let (axis, angle) = turned.to_axis_angle();
+    assert!(axis.abs_diff_eq(glam::Vec3::Y, 1e-4) && angle > 0.05, "{axis} {angle}");
+    assert!(harness.query_by_label_contains("turned further)").is_some());
+    let reset = press(&mut harness, "Reset");
+    assert_eq!(reset, [edit(MapEdit::Correction { target: neck, correction: glam::Quat::IDENTITY })]);
+    // The drag was one step, the reset another.
+    press(&mut harness, "Undo (Ctrl+Z)");
+    assert_eq!(map(&harness, 0).joints[&format!("#{neck}")].correction, turned);
+    press(&mut harness, "Undo (Ctrl+Z)");
+    assert_eq!(map(&harness, 0).joints[&format!("#{neck}")].correction, glam::Quat::IDENTITY);
+    assert!(!harness.state().history.can_undo());
+}
+
+#[test]
+fn channels_of_a_source_are_left_out() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, "Motion");
+    let neck = number(&harness, "Neck");
+    press(&mut harness, "Edit Neck");
+    let mute = |property, muted| [edit(MapEdit::Mute { source: neck, property, muted })];
+    assert_eq!(reach(&mut harness, "Leave out rotation"), mute(MutedProperty::Rotation, true));
+    assert!(harness.query_by_label_contains("Neck follows").is_some());
+    assert!(harness.query_by_label_contains("rotation left out)").is_some());
+    assert_eq!(muted_properties(&map(&harness, 0), neck), [false, true, false]);
+    assert_eq!(reach(&mut harness, "Leave out rotation"), mute(MutedProperty::Rotation, false));
+    reach(&mut harness, "Leave out scale");
+    press(&mut harness, "Options");
+    assert_eq!(reach(&mut harness, "Take everything in again"), [edit(MapEdit::UnmuteAll)]);
+}
+
+#[test]
+fn one_joint_without_a_source_has_a_policy_of_its_own() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, "Motion");
+    let neck = number(&harness, "Neck");
+    press(&mut harness, "Edit Neck");
+    let clear = Command::SetSource { motion: 0, target: neck, source: None };
+    assert_eq!(reach(&mut harness, "Clear"), [clear]);
+    let frozen = Unmapped::Clip { clip: ClipRef::Index(2), frozen: true };
+    let commands = choose(&mut harness, "What it does instead", "First key of Wave");
+    assert_eq!(commands, [edit(MapEdit::Unmapped { target: neck, unmapped: Some(frozen) })]);
+    assert!(harness.query_by_label_contains("deliberately none · first key of Wave)").is_some());
+    let commands = choose(&mut harness, "What it does instead", "As all (rest)");
+    assert_eq!(commands, [edit(MapEdit::Unmapped { target: neck, unmapped: None })]);
+}
+
+#[test]
+fn translations_scales_and_the_crossfade_are_options() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, "Motion");
+    press(&mut harness, "Options");
+    assert_eq!(reach(&mut harness, "Translations of joints: Drop"), [edit(MapEdit::Translations(Keep::Drop))]);
+    assert_eq!(reach(&mut harness, "Scales of joints: Keep"), [edit(MapEdit::Scales(Keep::Keep))]);
+    let field = harness.get_by_label("Crossfade value");
+    field.scroll_to_me();
+    harness.run();
+    let from = harness.get_by_label("Crossfade value").rect().center();
+    drag(&mut harness, from, from + egui::vec2(50.0, 0.0), egui::PointerButton::Primary);
+    let now = map(&harness, 0);
+    assert_eq!((now.translations, now.scales), (Keep::Drop, Keep::Keep));
+    assert!(now.crossfade_secs > 0.1, "{}", now.crossfade_secs);
+}
+
+/// Where a joint of the model is in the picture.
+fn place(harness: &Harness<'_, Bench>, name: &str) -> egui::Pos2 {
+    let bench = harness.state();
+    let joint = bench.library.active().expect("a model").asset.skeleton.find(name).expect("a joint");
+    let view = &bench.frame.view;
+    let world = bench.frame.characters[0].world_from_joint[joint.get()].translation;
+    let at = (view.projection_from_view * view.view_from_world).project_point3(world.into());
+    let rect = bench.picture;
+    rect.min + egui::vec2(0.5 + 0.5 * at.x, 0.5 - 0.5 * at.y) * rect.size()
+}
+
+fn click(harness: &mut Harness<'_, Bench>, at: egui::Pos2) -> Vec<Command> {
+    drag(harness, at, at, egui::PointerButton::Primary)
+}
+
+/// The skeleton is not drawn, and need not be: dots show what can be clicked.
+#[test]
+fn the_joint_is_chosen_by_clicking_it() {
+    for size in [WIDE, NARROW] {
+        let mut harness = motion_bench(size, &["dance.bvh"]);
+        let [hand, head] = ["LeftHand", "Head"].map(|name| number(&harness, name));
+        if size == NARROW {
+            press(&mut harness, "Inspector");
+        }
+        press(&mut harness, "Motion");
+        press(&mut harness, "Choose by clicking");
+        assert!(harness.query_by_label("Click a joint of the model").is_some());
+        let at = place(&harness, "LeftHand");
+        assert_eq!(click(&mut harness, at), [Command::SelectJoint(Some(hand))]);
+        assert!(harness.query_by_label("What does LeftHand follow?").is_some());
+        let commands = press(&mut harness, &format!("{head}  Head"));
+        assert_eq!(commands, [Command::SetSource { motion: 0, target: hand, source: Some(head) }]);
+        assert!(harness.query_by_label("Source of LeftHand").is_some(), "the table is back on {size:?}");
+        // And by escape, or the button, to nothing.
+        for stop in [true, false] {
+            harness.get_by_label("Choose by clicking").scroll_to_me();
+            harness.run();
+            press(&mut harness, "Choose by clicking");
+            if stop {
+                press(&mut harness, "Stop clicking");
+            } else {
+                press_key(&mut harness, egui::Key::Escape);
+                if size == NARROW {
+                    press(&mut harness, "Inspector");
+                }
+            }
+            assert!(harness.query_by_label("Click a joint of the model").is_none());
+        }
+        assert_eq!(harness.state().state.joint, Some(hand));
+    }
+}
+
+/// All of them are inside, and none lies over another.
+fn fits(harness: &Harness<'_, Bench>, screen: egui::Rect, labels: &[&str]) {
+    let rects: Vec<egui::Rect> = labels.iter().map(|label| harness.get_by_label(label).rect()).collect();
+    for (at, (rect, label)) in rects.iter().zip(labels).enumerate() {
+        assert!(screen.expand(0.5).contains_rect(*rect), "{label} at {rect:?} on {screen:?}");
+        for (other, name) in rects[..at].iter().zip(labels) {
+            assert!(!rect.shrink(0.5).intersects(*other), "{label} at {rect:?} over {name} at {other:?}");
+        }
+    }
+}
+
+#[test]
+fn the_chosen_joint_fits_everywhere() {
+    for size in [NARROW, [360.0, 640.0], WIDE, [1920.0, 1080.0]] {
+        let mut harness = motion_bench(size, &["dance.bvh"]);
+        if size[0] < 700.0 {
+            press(&mut harness, "Inspector");
+        }
+        press(&mut harness, "Motion");
+        let arm = number(&harness, "LeftUpperArm");
+        harness.state_mut().state.joint = Some(arm);
+        harness.run();
+        let labels = [
+            "Source of LeftUpperArm",
+            "List…",
+            "Clear",
+            "Turn further about X",
+            "Turn further about Y",
+            "Turn further about Z",
+            "Leave out rotation",
+            "Leave out translation",
+            "Leave out scale",
+        ];
+        for label in labels {
+            harness.get_by_label(label).scroll_to_me();
+            harness.run();
+            let rect = harness.get_by_label(label).rect();
+            let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
+            assert!(screen.contains_rect(rect), "{label} at {rect:?} on {size:?}");
+        }
+        fits(&harness, egui::Rect::EVERYTHING, &labels);
+    }
+}
+
 #[test]
 fn everything_fits_on_a_narrow_screen() {
     for size in [NARROW, [360.0, 640.0]] {
@@ -216,17 +537,28 @@ fn everything_fits_on_a_narrow_screen() {
         press(&mut harness, "Inspector");
         press(&mut harness, "Motion");
         let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
-        for label in ["Match anew", "Save map", "Load map", "Joints", "Options", "Motion file"] {
-            let rect = harness.get_by_label(label).rect();
-            assert!(screen.contains_rect(rect), "{label} at {rect:?} on {size:?}");
-        }
+        let head = [
+            "Motion file",
+            "Joints",
+            "Options",
+            "Files",
+            "Choose by clicking",
+            "Undo (Ctrl+Z)",
+            "Redo (Ctrl+Y)",
+            "Match anew",
+            "Swap sides",
+            "Clear all",
+            "Order: Body",
+            "Which joints are shown",
+        ];
+        fits(&harness, screen, &head);
+        press(&mut harness, "Files");
+        fits(&harness, screen, &["Save map", "Load map"]);
+        press(&mut harness, "Joints");
         harness.get_by_label_contains("RightHand follows").scroll_to_me();
         harness.run();
         harness.get_by_label_contains("RightHand follows").click();
         harness.run();
-        for label in ["Nothing", "Cancel", "Name or number of a joint of the motion"] {
-            let rect = harness.get_by_label(label).rect();
-            assert!(screen.contains_rect(rect), "{label} at {rect:?} on {size:?}");
-        }
+        fits(&harness, screen, &["Nothing", "Cancel", "Name or number of a joint of the motion"]);
     }
 }

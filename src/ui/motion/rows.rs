@@ -273,7 +273,7 @@ impl Whole {
         let asset = &pairing.model.asset;
         let more = others.count();
         let and = if more == 0 { String::new() } else { format!(" and {more} more") };
-        Some(format!("{}{and} follows the same", scene_tree::title(asset, *first)))
+        Some(format!("shared with {}{and}", scene_tree::title(asset, *first)))
     }
 
     fn row(
