@@ -14,6 +14,7 @@ mod framing;
 mod generator_animations;
 mod history;
 mod link;
+mod link_properties;
 mod map_edits;
 mod motion;
 mod real_models;

@@ -1,0 +1,270 @@
+//! What holds for every link: old ones keep their meaning, any state comes back from its link, and any text has a link that
+//! stands for what was understood of it.
+
+use std::collections::BTreeMap;
+
+use gaitway::anim::{LoopMode, TimeRange};
+use gaitway::mesh::SkinningMode;
+use gaitway::retarget::{ClipRef, Feet, JointMap, MapEntry, RootOptions, RootPart, SourceRef, Unmapped};
+use gaitway::state::{
+    Background, CameraChoice, ClipChoice, Fade, LinkError, MotionMap, NumberedMap, OrbitCamera, Show, UpAxis,
+    ViewerState, from_link, from_object, to_link, to_object,
+};
+use glam::{Quat, Vec3};
+use serde_json::Value;
+
+/// A simple generator: the same values every time.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u32 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) as u32
+    }
+
+    fn below(&mut self, count: usize) -> usize {
+        self.next() as usize % count
+    }
+
+    fn often(&mut self) -> bool {
+        self.below(2) == 0
+    }
+
+    /// Any finite number, the common ones more often.
+    fn number(&mut self) -> f32 {
+        match self.below(4) {
+            0 => self.below(9) as f32 * 0.25 - 1.0,
+            1 => self.next() as f32 / 7.0,
+            _ => Some(f32::from_bits(self.next() << 1)).filter(|number| number.is_finite()).unwrap_or(1e-30),
+        }
+    }
+
+    fn one<T: Clone>(&mut self, values: &[T]) -> T {
+        values[self.below(values.len())].clone()
+    }
+
+    /// Names with everything in them that a link has to escape.
+    fn text(&mut self) -> String {
+        const LETTERS: [&str; 24] = [
+            "a", "B", "7", " ", "&", "=", "#", "%", "%20", "+", ",", ":", "/", "?", "\"", "'", "<", "ü", "歩", "🦊",
+            ".", "-", "{", "\t",
+        ];
+        (0..1 + self.below(12)).map(|_| self.one(&LETTERS)).collect()
+    }
+
+    fn texts(&mut self) -> Vec<String> {
+        (0..self.below(4)).map(|_| self.text()).collect()
+    }
+
+    fn clip(&mut self) -> ClipRef {
+        // Names that could be taken for numbers, too.
+        if self.often() {
+            ClipRef::Index(self.below(300))
+        } else {
+            ClipRef::Name(self.one(&["0", "12", "Idle", "\"", "a:b"]).into())
+        }
+    }
+
+    fn unmapped(&mut self) -> Unmapped {
+        if self.often() { Unmapped::Rest } else { Unmapped::Clip { clip: self.clip(), frozen: self.often() } }
+    }
+
+    fn root(&mut self) -> RootOptions {
+        let parts = [RootPart::Keep, RootPart::InPlace, RootPart::Freeze];
+        let (horizontal, vertical, yaw) = (self.one(&parts), self.one(&parts), self.one(&parts));
+        RootOptions { horizontal, vertical, yaw, extract: self.often() }
+    }
+
+    fn map(&mut self) -> MotionMap {
+        let joints = (0..self.below(70)).map(|_| {
+            let source = self.often().then(|| SourceRef::Number(self.below(300)));
+            let correction = if self.often() { Quat::from_rotation_y(self.below(7) as f32) } else { Quat::IDENTITY };
+            let unmapped = (self.below(5) == 0).then(|| self.unmapped());
+            (format!("#{}", self.below(400)), MapEntry { source, correction, unmapped })
+        });
+        let joints: BTreeMap<String, MapEntry> = joints.collect();
+        let root = if self.often() { self.root() } else { RootOptions::default() };
+        let map = JointMap { joints, root, feet: self.one(&[Feet::Off, Feet::Plant]), ..JointMap::default() };
+        MotionMap::Numbers(NumberedMap { checksum: self.next(), map })
+    }
+
+    fn camera(&mut self) -> CameraChoice {
+        match self.below(3) {
+            0 => CameraChoice::Auto,
+            1 => CameraChoice::File(self.below(9)),
+            _ => CameraChoice::Orbit(OrbitCamera {
+                yaw_radians: self.below(629) as f32 / 100.0,
+                pitch_radians: self.below(314) as f32 / 100.0 - 1.5,
+                distance: 0.01 + self.below(100_000) as f32 / 37.0,
+                target: Vec3::new(self.number(), self.number(), self.number()),
+            }),
+        }
+    }
+
+    fn state(&mut self) -> ViewerState {
+        let mut state = ViewerState::default();
+        for field in 0..28 {
+            if self.often() {
+                self.set(&mut state, field);
+            }
+        }
+        state
+    }
+
+    fn set(&mut self, state: &mut ViewerState, field: usize) {
+        match field {
+            0 => state.model = self.texts(),
+            1 => state.motion = self.texts(),
+            2 => state.map = (0..self.below(3)).map(|_| self.map()).collect(),
+            3 => state.unmapped = Some(self.unmapped()),
+            4 => state.root = Some(self.root()),
+            5 => state.feet = Some(self.one(&[Feet::Off, Feet::Plant])),
+            6 => state.scene = Some(self.below(9)),
+            7 => state.clip = if self.often() { ClipChoice::RestPose } else { ClipChoice::Named(self.text()) },
+            8 => state.time_secs = f64::from(self.number()) / 3.0,
+            9 => {
+                let clip = if self.often() { ClipChoice::RestPose } else { ClipChoice::Named(self.text()) };
+                let (time_secs, elapsed_secs) = (f64::from(self.number()), f64::from(self.number()));
+                state.fade = Some(Fade { clip, time_secs, elapsed_secs });
+            }
+            10 => state.playing = self.often(),
+            11 => state.speed = f64::from(self.number()),
+            12 => state.loop_mode = self.one(&[LoopMode::Once, LoopMode::Loop, LoopMode::PingPong]),
+            13 => {
+                let (a, b) = (f64::from(self.number()), f64::from(self.number()));
+                state.range = Some(TimeRange { start_secs: a.min(b), end_secs: a.max(b) });
+            }
+            14 => state.skinning = self.one(&[SkinningMode::Linear, SkinningMode::Rigid, SkinningMode::DualQuaternion]),
+            15 => state.morph = (0..self.below(5)).map(|_| (self.below(60), self.number())).collect(),
+            16 => {
+                let (mesh, grid, shadow) = (self.often(), self.often(), self.often());
+                let (split, source) = (self.often(), self.often());
+                state.show = Show { mesh, grid, shadow, split, source, weights: self.often(), ..state.show };
+            }
+            17 => state.joint = Some(self.below(300)),
+            18 => state.camera = self.camera(),
+            19 => state.fov_degrees = self.number(),
+            20 => state.follow = self.often(),
+            21 => state.up = self.one(&[UpAxis::X, UpAxis::Z, UpAxis::MinusX, UpAxis::MinusY, UpAxis::MinusZ]),
+            22 => state.exposure = self.number(),
+            23 => state.environment_degrees = self.number(),
+            24 => {
+                let [_, red, green, blue] = self.next().to_be_bytes();
+                state.background = self.one(&[Background::Transparent, Background::Color([red, green, blue])]);
+            }
+            25 => {
+                let turns = |random: &mut Self| [random.number(), random.number(), random.number()];
+                state.pose = (0..self.below(5)).map(|_| (self.below(300), turns(self))).collect();
+            }
+            26 => state.turntable = self.number(),
+            _ => state.embed = self.often(),
+        }
+    }
+}
+
+fn is_bad(error: &LinkError) -> bool {
+    matches!(error, LinkError::BadValue { .. })
+}
+
+#[test]
+fn any_state_comes_back_from_its_link() {
+    let mut random = Random(1);
+    for _ in 0..2000 {
+        let state = random.state();
+        let link = to_link(&state);
+        let (back, errors) = from_link(&link);
+        assert_eq!(errors, [], "{link}");
+        assert_eq!(back, state, "{link}");
+        assert_eq!(to_link(&back), link);
+        let object = to_object(&state);
+        let (back, errors) = from_object(&random.state(), &object);
+        assert_eq!(errors, [], "{object}");
+        assert_eq!(back, state, "an object says all of it, whatever was there: {object}");
+    }
+}
+
+/// What cannot be read is reported once; the link of the rest means the rest.
+#[test]
+fn any_text_settles_into_a_link() {
+    let mut random = Random(2);
+    let words = [
+        "v",
+        "model",
+        "map",
+        "t",
+        "play",
+        "camera",
+        "clip",
+        "show",
+        "morph",
+        "range",
+        "fade",
+        "root",
+        "zoo",
+        "=",
+        "=",
+        "=",
+        "&",
+        "&",
+        "&",
+        "1",
+        "0",
+        "-3.5",
+        "1e400",
+        "NaN",
+        "%",
+        "%ff",
+        "%26",
+        "gltf:",
+        "1.ffffffff.0-5",
+        "{}",
+        ",",
+        ":",
+        "",
+        "auto",
+        "skeleton",
+        "#",
+        "é",
+    ];
+    for _ in 0..5000 {
+        let text: String = (0..random.below(30)).map(|_| random.one(&words)).collect();
+        let (state, _) = from_link(&text);
+        let link = to_link(&state);
+        let (again, errors) = from_link(&link);
+        assert!(!errors.iter().any(is_bad), "{text} → {link}: {errors:?}");
+        assert_eq!(again, state, "{text} → {link}");
+        assert_eq!(to_link(&again), link, "{text}");
+    }
+}
+
+#[test]
+fn old_links_keep_working() {
+    let fixtures: Value = serde_json::from_str(include_str!("links.json")).expect("JSON");
+    let now = to_object(&ViewerState::default());
+    for (key, value) in fixtures["defaults"].as_object().expect("an object") {
+        assert_eq!(&now[key], value, "v=1 fixes the default of {key}");
+    }
+    for fixture in fixtures["links"].as_array().expect("a list") {
+        let link = fixture["link"].as_str().expect("a text");
+        let (state, errors) = from_link(link);
+        assert!(!errors.iter().any(is_bad), "{link}: {errors:?}");
+        let mut expected = now.clone();
+        for (key, value) in fixture["state"].as_object().expect("an object") {
+            expected[key] = value.clone();
+        }
+        assert_eq!(to_object(&state), expected, "{link}");
+        assert_eq!(from_link(&to_link(&state)).0, state, "{link}");
+    }
+}
+
+/// Beside the addresses, of a character with as many joints as fingers make of it.
+#[test]
+fn a_map_of_sixty_joints_is_short() {
+    let entry =
+        |number| MapEntry { source: Some(SourceRef::Number(number)), correction: Quat::IDENTITY, unmapped: None };
+    let joints = (0..60).map(|joint| (format!("#{joint}"), entry(3 * joint + 100))).collect();
+    let map = JointMap { joints, ..JointMap::default() };
+    let map = vec![MotionMap::Numbers(NumberedMap { checksum: u32::MAX, map })];
+    let link = to_link(&ViewerState { map, ..ViewerState::default() });
+    assert!(link.len() < 2000, "{} characters", link.len());
+}
