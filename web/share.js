@@ -61,4 +61,3 @@ async function copy(id, done, failed) {
 
 byId("share-copy").addEventListener("click", () => copy("share-link", "Link copied.", "The browser does not let a page copy; the link is selected: copy it with the keyboard."));
 byId("share-copy-frame").addEventListener("click", () => copy("share-frame", "HTML copied.", "The browser does not let a page copy; the text is selected: copy it with the keyboard."));
-byId("share").addEventListener("close", () => document.querySelector("#stage canvas")?.focus());

@@ -278,11 +278,16 @@ function changed(link) {
 
 /** Tells a screen reader, the title and the address bar. */
 function summarise() {
+/** The trouble that the app shows, as it was said last. */
+let told = null;
+
   if (app === null) return;
-  const { model, clip, playing } = JSON.parse(app.summary());
+  const { model, clip, playing, problem } = JSON.parse(app.summary());
   say(`${model}: ${clip ?? "rest pose"}, ${clip !== null && playing ? "playing" : "paused"}`);
   document.title = model === "" ? "Gaitway" : `${model.split("/").pop()} – Gaitway`;
   record();
+  if (problem !== null && problem !== told) sayProblem(problem);
+  told = problem;
 }
 
 // ---- Links: the address bar, back and forward ----
@@ -386,11 +391,11 @@ async function follow(link, { items = [], motionItems = [], link: heldLink = lin
   following += 1;
   byId("missing").close();
   [visit.files, visit.typed] = [filesOf(heldLink).join("\n"), null];
-  const lacking = (problems) => {
+  const lacking = (problems, stays) => {
     if (number !== follows || problems.length === 0) return;
     // What is shown now lacks something that the address still has.
     keepTyped();
-    showMissing(problems, link);
+    showMissing(problems, link, stays);
   };
   try {
     if (items.length > 0 && items !== kept.items) await bring(items, undefined, heldOwn.model);
@@ -420,13 +425,14 @@ function loaded(answer) {
   return news;
 }
 
-/** What of a link could not be had, and the way to try again. */
-function showMissing(problems, link) {
+/** What of a link could not be had, and the way to try again. `stays`: nothing of it is shown. */
+function showMissing(problems, link, stays = false) {
   if (problems.length === 0) return;
   sayProblem(problems.join(" "));
   list("missing-parts", problems);
   byId("missing-again").onclick = () => {
     byId("missing").close();
+  byId("missing-rest").textContent = stays ? "What was shown stays." : "What could be loaded is shown.";
     if (kept.items.length + kept.motionItems.length === 0) {
       follow(link, {}, true);
     } else {

@@ -111,6 +111,11 @@ impl App {
     fn handle(&mut self, message: Message) {
         match message {
             Message::OpenProgress(opening) => self.panels.progress = Some(progress(&opening)),
+    /// What is wrong, as the person sees it.
+    pub fn problem(&self) -> Option<&str> {
+        self.panels.error.as_deref()
+    }
+
             Message::Opened { contents, state, reply } => {
                 self.panels.progress = None;
                 let shown = self.show(*contents, state.map(|state| *state));

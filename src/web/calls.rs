@@ -97,7 +97,7 @@ pub async fn screenshot() -> Result<Uint8Array, JsError> {
     settled(promise).await.map(JsValue::unchecked_into).map_err(error)
 }
 
-/// What the live region says: `{model, clip, playing}`; no clip is the rest pose.
+/// What the live regions say: `{model, clip, playing, problem}`; no clip is the rest pose.
 #[wasm_bindgen]
 pub fn summary() -> Result<String, JsError> {
     let page = page().map_err(error)?;
@@ -105,7 +105,8 @@ pub fn summary() -> Result<String, JsError> {
         let state = app.state();
         let model = app.library().active();
         let clip = model.and_then(|model| model.clip_titles().get(active_clip(model, state)?));
-        json!({ "model": state.model.join(", "), "clip": clip, "playing": state.playing }).to_string()
+        json!({ "model": state.model.join(", "), "clip": clip, "playing": state.playing, "problem": app.problem() })
+            .to_string()
     };
     with_app(&page, summary).map_err(error)
 }
