@@ -276,18 +276,18 @@ function changed(link) {
   setTimeout(() => dispatchEvent(new CustomEvent("gaitway:change")));
 }
 
-/** Tells a screen reader, the title and the address bar. */
-function summarise() {
 /** The trouble that the app shows, as it was said last. */
 let told = null;
 
+/** Tells a screen reader, the title and the address bar. */
+function summarise() {
   if (app === null) return;
   const { model, clip, playing, problem } = JSON.parse(app.summary());
   say(`${model}: ${clip ?? "rest pose"}, ${clip !== null && playing ? "playing" : "paused"}`);
-  document.title = model === "" ? "Gaitway" : `${model.split("/").pop()} – Gaitway`;
-  record();
   if (problem !== null && problem !== told) sayProblem(problem);
   told = problem;
+  document.title = model === "" ? "Gaitway" : `${model.split("/").pop()} – Gaitway`;
+  record();
 }
 
 // ---- Links: the address bar, back and forward ----
@@ -409,7 +409,7 @@ async function follow(link, { items = [], motionItems = [], link: heldLink = lin
     own.map &&= heldOwn?.map === true;
     lacking(problems);
   } catch (error) {
-    lacking([error.message]);
+    lacking([error.message], true);
   } finally {
     following -= 1;
     clearTimeout(soon);
@@ -430,9 +430,9 @@ function showMissing(problems, link, stays = false) {
   if (problems.length === 0) return;
   sayProblem(problems.join(" "));
   list("missing-parts", problems);
+  byId("missing-rest").textContent = stays ? "What was shown stays." : "What could be loaded is shown.";
   byId("missing-again").onclick = () => {
     byId("missing").close();
-  byId("missing-rest").textContent = stays ? "What was shown stays." : "What could be loaded is shown.";
     if (kept.items.length + kept.motionItems.length === 0) {
       follow(link, {}, true);
     } else {

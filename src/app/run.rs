@@ -108,14 +108,14 @@ impl App {
         &self.library
     }
 
-    fn handle(&mut self, message: Message) {
-        match message {
-            Message::OpenProgress(opening) => self.panels.progress = Some(progress(&opening)),
     /// What is wrong, as the person sees it.
     pub fn problem(&self) -> Option<&str> {
         self.panels.error.as_deref()
     }
 
+    fn handle(&mut self, message: Message) {
+        match message {
+            Message::OpenProgress(opening) => self.panels.progress = Some(progress(&opening)),
             Message::Opened { contents, state, reply } => {
                 self.panels.progress = None;
                 let shown = self.show(*contents, state.map(|state| *state));
