@@ -234,6 +234,8 @@ const isTrap = (error) => typeof WebAssembly === "object" && error instanceof We
 const hooks = (current) => ({
   choose: (role) => openDialog(role),
   save: (name, bytes) => save(name, bytes),
+  startRecording,
+  stopRecording,
   motionIsModel,
   motionsRemoved,
   share: (link) => share(link),
@@ -583,6 +585,37 @@ async function openByHand(items, options) {
     sayProblem(error.message);
   }
   focusCanvas();
+}
+
+let recorder = null;
+
+/** Records what the canvas shows; false where the browser cannot. */
+function startRecording() {
+  const canvas = byId("stage").querySelector("canvas");
+  const types = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm"];
+  const mimeType = typeof MediaRecorder === "undefined" ? undefined : types.find((type) => MediaRecorder.isTypeSupported(type));
+  if (mimeType === undefined || canvas?.captureStream === undefined) return false;
+  try {
+    recorder = new MediaRecorder(canvas.captureStream(), { mimeType, videoBitsPerSecond: 12_000_000 });
+    recorder.start();
+  } catch {
+    recorder = null;
+  }
+  return recorder !== null;
+}
+
+/** Ends the recording; without a name it is thrown away. */
+function stopRecording(name) {
+  const ended = recorder;
+  recorder = null;
+  if (ended === null) return;
+  const parts = [];
+  ended.ondataavailable = (event) => parts.push(event.data);
+  ended.onstop = () => {
+    ended.stream.getTracks().forEach((track) => track.stop());
+    if (name != null) save(name, new Blob(parts));
+  };
+  ended.stop();
 }
 
 /** Hands a file over as a download. */

@@ -27,6 +27,19 @@ pub trait Host {
         Ok(())
     }
 
+    /// Begins to record what is on the canvas.
+    ///
+    /// # Errors
+    /// What the person sees where that is not possible.
+    fn start_recording(&self) -> Result<(), String> {
+        Err("videos are recorded in the browser; open this view there, or save pictures".to_owned())
+    }
+
+    /// Ends the recording and gives the person the file; without a name it is thrown away.
+    fn stop_recording(&self, name: Option<&str>) {
+        let _ = name;
+    }
+
     /// The files that were borrowed from are shown as the model from now on.
     fn motion_is_model(&self) {}
 

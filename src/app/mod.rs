@@ -8,6 +8,7 @@ mod native;
 mod open;
 mod png;
 mod run;
+mod record;
 mod save;
 mod scene_texture;
 

@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::open::Refused;
+use super::record::Recording;
 use super::scene_texture::SceneTexture;
 use super::{Host, Inbox, Message, Opening, Reply, ScriptCall, device, encode_png};
 use crate::files::{Contents, Role, set_largest_image};
@@ -49,6 +50,7 @@ pub struct App {
     cpu_secs: f32,
     /// Times the panels were shown: stands still while nothing changes.
     frames: u64,
+    pub(super) recording: Option<Recording>,
 }
 
 impl App {
@@ -94,6 +96,7 @@ impl App {
             frame_secs: 0.0,
             cpu_secs: 0.0,
             frames: 0,
+            recording: None,
         };
         app.show(contents, state)?;
         inbox_ready(inbox);
@@ -139,6 +142,9 @@ impl App {
                 self.panels.error = Some(error);
             }
             Message::OpenGivenUp => self.panels.progress = None,
+            Message::Save(name, bytes) => {
+                self.host.save_file(&name, &bytes);
+            }
             Message::Commands(commands) => commands.into_iter().for_each(|command| self.apply(command)),
             Message::Script(call) => self.script(call),
         }
@@ -234,6 +240,19 @@ impl App {
                     Err(error) => self.tell(vec![error]),
                 }
             }
+            #[cfg(target_arch = "wasm32")]
+            UiAction::Save(ui::Saved::Picture { size, transparent }) => {
+                let (picture, name, inbox) =
+                    (self.draw_for_file(size, transparent), self.picture_name(), self.inbox.clone());
+                wasm_bindgen_futures::spawn_local(async move {
+                    inbox.send(match picture.await {
+                        Ok(bytes) => Message::Save(name, bytes),
+                        Err(error) => Message::OpenFailed(error),
+                    });
+                });
+            }
+            UiAction::Record => self.record(),
+            UiAction::StopRecording => self.stop_recording(false),
             UiAction::Save(what) => match self.file_to_save(what) {
                 Ok(file) if self.host.save_file(&file.name, &file.bytes) => {
                     if let Some(remark) = file.remark {
@@ -368,6 +387,7 @@ impl eframe::App for App {
             self.history.end_gesture();
         }
         self.advance(&context);
+        self.go_on_recording(&context);
         if rect.is_positive() {
             self.draw(rect, context.pixels_per_point());
             slot.fill(|rect| self.scene.paint(rect));

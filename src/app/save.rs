@@ -1,9 +1,12 @@
-//! Files that the person gets: the joint map in force, the model with a borrowed clip.
+//! Files that the person gets: the joint map in force, the model with a borrowed clip, the clip alone, a picture.
 
-use super::App;
+use super::{App, encode_png};
+use crate::anim::Clip;
 use crate::formats::{write_model, write_motion};
+use crate::frame::{Frame, evaluate};
+use crate::render::read_pixels;
 use crate::retarget::{bake_layers, baking};
-use crate::state::{map_in_force, named};
+use crate::state::{Background, ViewerState, active_clip, map_in_force, named};
 use crate::ui::{Saved, short_name};
 
 /// What to write, and how to call it.
@@ -15,11 +18,66 @@ pub(super) struct FileToSave {
 }
 
 impl App {
-    pub(super) fn file_to_save(&self, what: Saved) -> Result<FileToSave, String> {
+    pub(super) fn file_to_save(&mut self, what: Saved) -> Result<FileToSave, String> {
         match what {
             Saved::Map { motion } => self.map_file(motion),
             Saved::Model { clip } => self.model_file(clip),
+            Saved::Clip { clip } => self.clip_file(clip),
+            Saved::Picture { size, transparent } => {
+                let picture = self.draw_for_file(size, transparent);
+                Ok(FileToSave { name: self.picture_name(), bytes: pollster::block_on(picture)?, remark: None })
+            }
         }
+    }
+
+    /// As the model, and when the clip plays it.
+    fn file_stem(&self) -> String {
+        let model = self.library.active();
+        let clip = model.and_then(|model| model.clip_titles().get(active_clip(model, &self.state)?));
+        let parts = [model.map(|model| stem(&model.source)), clip.cloned()];
+        let name = parts.into_iter().flatten().collect::<Vec<_>>().join("-");
+        name.chars()
+            .map(|letter| if letter.is_alphanumeric() || "-_. ".contains(letter) { letter } else { '-' })
+            .collect()
+    }
+
+    pub(super) fn picture_name(&self) -> String {
+        format!("{}.png", self.file_stem())
+    }
+
+    pub(super) fn video_name(&self) -> String {
+        format!("{}.webm", self.file_stem())
+    }
+
+    /// Draws the present view at another size, and reads it back as a PNG. The picture on the screen is drawn anew after.
+    pub(super) fn draw_for_file(
+        &mut self,
+        [width, height]: [u32; 2],
+        transparent: bool,
+    ) -> impl Future<Output = Result<Vec<u8>, String>> + use<> {
+        let largest = self.scene.largest_size();
+        let size = [width.clamp(1, largest), height.clamp(1, largest)];
+        let background = if transparent { Background::Transparent } else { self.state.background };
+        let state = ViewerState { background, ..self.state.clone() };
+        let mut frame = Frame::default();
+        evaluate(&self.library, &state, size[0] as f32 / size[1] as f32, &mut frame);
+        self.scene.draw(&frame, size);
+        self.dirty = true;
+        let (device, queue, texture) = self.scene.last_picture();
+        async move {
+            let pixels = read_pixels(&device, &queue, &texture).await;
+            let png = encode_png(texture.width(), texture.height(), &pixels);
+            png.ok_or_else(|| "the picture could not be read back from the graphics device".to_owned())
+        }
+    }
+
+    /// One clip with the skeleton it moves.
+    fn clip_file(&self, clip: usize) -> Result<FileToSave, String> {
+        let model = self.library.active().ok_or("there is no model")?;
+        let made = self.baked_clip(clip)?;
+        let clip = made.clip.as_ref().or_else(|| model.clip(clip)).ok_or("there is no such clip")?;
+        let bytes = write_motion(&model.asset, &[clip]).map_err(|error| error.to_string())?;
+        Ok(FileToSave { name: format!("{}.glb", self.file_stem()), bytes, remark: made.remark })
     }
 
     /// With names instead of numbers, for people to read.
@@ -33,14 +91,23 @@ impl App {
         Ok(FileToSave { name, bytes: json.into_bytes(), remark: None })
     }
 
+    fn baked_clip(&self, clip: usize) -> Result<BakedClip, String> {
+        let model = self.library.active().ok_or("there is no model")?;
+        let Some(borrowed) = model.borrowed(clip).filter(|borrowed| !borrowed.layers.is_empty()) else {
+            return Ok(BakedClip { clip: None, remark: None });
+        };
+        let baking = baking(&borrowed.clip, &borrowed.layers, None);
+        let clip = bake_layers(&model.asset, &borrowed.clip, &borrowed.layers, &baking);
+        let seam = "The model's own clip does not come out even with the borrowed one: the loop shows a seam.";
+        Ok(BakedClip { clip: Some(clip), remark: (!baking.seamless).then(|| seam.to_owned()) })
+    }
+
     /// The model's own file with the clip behind its clips; skeleton and clip alone where there is no file.
     fn model_file(&self, clip: usize) -> Result<FileToSave, String> {
         let model = self.library.active().ok_or("there is no model")?;
         let borrowed = model.borrowed(clip).ok_or("this clip is one of the model's own")?;
-        let baking = baking(&borrowed.clip, &borrowed.layers, None);
-        let layered = !borrowed.layers.is_empty();
-        let baked = layered.then(|| bake_layers(&model.asset, &borrowed.clip, &borrowed.layers, &baking));
-        let clips = [baked.as_ref().unwrap_or(&borrowed.clip)];
+        let baked = self.baked_clip(clip)?;
+        let clips = [baked.clip.as_ref().unwrap_or(&borrowed.clip)];
         let mut remark = None;
         let bytes = match &self.model_files {
             Some((files, name)) if !name.to_lowercase().ends_with(".bvh") => {
@@ -52,15 +119,17 @@ impl App {
                 write_motion(&model.asset, &clips)
             }
         };
-        if layered && !baking.seamless {
-            remark = Some(
-                "The model's own clip does not come out even with the borrowed one: the loop shows a seam.".to_owned(),
-            );
-        }
+        let remark = baked.remark.or(remark);
         let motion = self.library.motions().get(borrowed.motion).map_or("motion", |motion| &motion.source);
         let name = format!("{}-{}.glb", stem(&model.source), stem(motion));
         Ok(FileToSave { name, bytes: bytes.map_err(|error| error.to_string())?, remark })
     }
+}
+
+/// A clip with what plays below it, where anything does.
+struct BakedClip {
+    clip: Option<Clip>,
+    remark: Option<String>,
 }
 
 /// A file's name without its ending.

@@ -30,7 +30,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
         Tab::Display => scrolled(ui, "display", |ui| display::show(ui, shown, out)),
         Tab::File => scrolled(ui, "file", |ui| report::show(ui, shown)),
         Tab::Motion => motion::show(ui, shown, local, out),
-        Tab::View => scrolled(ui, "view", |ui| view_options::show(ui, shown, local.aspect, out)),
+        Tab::View => scrolled(ui, "view", |ui| view_options::show(ui, shown, local, out)),
     }
 }
 

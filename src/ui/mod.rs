@@ -100,6 +100,9 @@ pub struct UiState {
     pub toast: Option<Toast>,
     /// The chosen joint can be turned by hand.
     pub turning: bool,
+    /// A video is being recorded: nothing but the picture is on the canvas. The share of it that is done.
+    pub recording: Option<f32>,
+    picture: view_options::PictureSettings,
     grab: Option<gizmo::Grab>,
     /// The help was open in the last pass already.
     help_shown: bool,
@@ -126,6 +129,8 @@ impl Default for UiState {
             help_open: false,
             error: None,
             turning: false,
+            recording: None,
+            picture: view_options::PictureSettings::default(),
             grab: None,
             motion_refused: false,
             progress: None,
@@ -181,6 +186,10 @@ pub enum Saved {
     Map { motion: usize },
     /// The model with one of its borrowed clips.
     Model { clip: usize },
+    /// The skeleton with one of the clips, without meshes.
+    Clip { clip: usize },
+    /// What is on the screen, at a size of its own in pixels.
+    Picture { size: [u32; 2], transparent: bool },
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -215,6 +224,9 @@ pub enum UiAction {
     /// What is offered for motions that were refused.
     ShowRefusedAlone,
     MapRefusedByHand,
+    /// Record one round of the clip, or end that before its time.
+    Record,
+    StopRecording,
     /// Put a link to this view on the clipboard.
     CopyLink,
     Undo,
@@ -232,6 +244,9 @@ pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Outp
     let side = egui::Frame::new().inner_margin(egui::Margin { left: 14, right: 14, top: 14, bottom: 8 });
     let bottom = egui::Frame::new().inner_margin(egui::Margin { left: 12, right: 12, top: 2, bottom: 6 });
     local.scrubbing = false;
+    if local.recording.is_some() {
+        return ui.available_rect_before_wrap();
+    }
     egui::Panel::bottom("transport")
         .frame(bottom)
         .resizable(false)

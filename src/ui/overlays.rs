@@ -220,6 +220,8 @@ fn path_prompt(context: &Context, local: &mut UiState, out: &mut Output) {
         PathPurpose::OpenMotion => ("Borrow motion", "Path of a .bvh, .glb, .vrma or joint map .json", "Open"),
         PathPurpose::Save(Saved::Map { .. }) => ("Save the joint map", "Path of the file to write", "Save"),
         PathPurpose::Save(Saved::Model { .. }) => ("Save the model", "Path of the .glb to write", "Save"),
+        PathPurpose::Save(Saved::Clip { .. }) => ("Save the clip", "Path of the .glb to write", "Save"),
+        PathPurpose::Save(Saved::Picture { .. }) => ("Save the picture", "Path of the .png to write", "Save"),
     };
     let mut done = false;
     let modal = modal("path prompt", context).show(context, |ui| {

@@ -38,6 +38,12 @@ pub fn picture(ui: &mut Ui, rect: Rect, shown: Shown<'_>, local: &mut UiState, o
         local.aspect = rect.width() / rect.height().max(1.0);
         let response = ui.interact(rect, ui.scope_id().with("picture"), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Image, true, "Picture"));
+        if local.recording.is_some() {
+            if ui.input(|input| input.key_pressed(egui::Key::Escape)) || response.clicked() {
+                out.actions.push(UiAction::StopRecording);
+            }
+            return PictureSlot { painter, index, rect };
+        }
         if !gizmo::show(ui, &painter, &response, &shown, local, out) {
             camera(ui, &response, &shown, out);
         }

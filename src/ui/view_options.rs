@@ -3,10 +3,28 @@
 use egui::{RichText, Ui};
 
 use super::controls::{self, SliderSettings};
-use super::{Output, Shown, style};
+use super::{Output, Saved, Shown, UiAction, UiState, style};
 use crate::state::{Background, CameraChoice, Command, OrbitCamera, UpAxis, frame_all, resolve_camera};
 
-pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, aspect: f32, out: &mut Output) {
+/// Of the picture that is saved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PictureSettings {
+    /// Pixels.
+    size: [u32; 2],
+    transparent: bool,
+}
+
+impl Default for PictureSettings {
+    fn default() -> Self {
+        Self { size: [1920, 1080], transparent: false }
+    }
+}
+
+/// Every device that this runs on can draw as large.
+const LARGEST_PICTURE: u32 = 4096;
+
+pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
+    let aspect = local.aspect;
     camera(ui, shown, aspect, out);
     light(ui, shown, out);
     controls::section(ui, "UP AXIS OF THE FILE");
@@ -24,6 +42,39 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, aspect: f32, out: &mut Output
     ui.add_space(2.0);
     controls::hint(ui, "glTF says Y. Choose another for a model that lies on its back.");
     scenes(ui, shown, out);
+    picture(ui, shown, &mut local.picture, out);
+}
+
+/// What can be taken out of the page besides files.
+fn picture(ui: &mut Ui, shown: &Shown<'_>, settings: &mut PictureSettings, out: &mut Output) {
+    controls::section(ui, "PICTURE AND VIDEO");
+    let sizes = [([1280, 720], "720p"), ([1920, 1080], "1080p"), ([3840, 2160], "4K"), ([1080, 1080], "Square")];
+    if let Some(size) = controls::segmented(ui, Some(settings.size), &sizes) {
+        settings.size = size;
+    }
+    ui.horizontal(|ui| {
+        for (edge, name) in [(0, "Width in pixels"), (1, "Height in pixels")] {
+            let value = &mut settings.size[edge];
+            let field = egui::DragValue::new(value).range(16..=LARGEST_PICTURE).suffix(" px");
+            ui.add_sized([90.0, 26.0], field).accessible_name(name);
+        }
+    });
+    if controls::switch(ui, "Transparent background", settings.transparent) {
+        settings.transparent = !settings.transparent;
+    }
+    let wide = |ui: &mut Ui, enabled: bool, text: &str| {
+        let button = egui::Button::new(text).min_size(egui::vec2(ui.available_width(), 32.0));
+        ui.add_enabled(enabled, button)
+    };
+    if wide(ui, true, "Save picture (PNG)").clicked() {
+        let PictureSettings { size, transparent } = *settings;
+        out.actions.push(UiAction::Save(Saved::Picture { size, transparent }));
+    }
+    let moves = shown.clip().is_some_and(|clip| clip.duration_secs() > 0.0);
+    let record = wide(ui, moves, "Record one loop (WebM)");
+    if record.on_hover_text("Plays the clip once, as large as the window, without the panels. Esc ends it.").clicked() {
+        out.actions.push(UiAction::Record);
+    }
 }
 
 fn camera(ui: &mut Ui, shown: &Shown<'_>, aspect: f32, out: &mut Output) {

@@ -192,6 +192,15 @@ impl Host for PageHost {
         true
     }
 
+    fn start_recording(&self) -> Result<(), String> {
+        let lacking = "this browser cannot record a canvas as WebM; Chrome, Edge and Firefox can, or save pictures";
+        if self.shell.start_recording() { Ok(()) } else { Err(lacking.to_owned()) }
+    }
+
+    fn stop_recording(&self, name: Option<&str>) {
+        self.shell.stop_recording(name);
+    }
+
     fn motion_is_model(&self) {
         self.shell.motion_is_model();
     }

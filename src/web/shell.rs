@@ -18,6 +18,14 @@ extern "C" {
     #[wasm_bindgen(method)]
     pub fn save(this: &Shell, name: &str, bytes: &[u8]);
 
+    /// Begins to record the canvas; false where the browser cannot.
+    #[wasm_bindgen(method, js_name = startRecording)]
+    pub fn start_recording(this: &Shell) -> bool;
+
+    /// Ends the recording and gives the person the video under this name; without one it is thrown away.
+    #[wasm_bindgen(method, js_name = stopRecording)]
+    pub fn stop_recording(this: &Shell, name: Option<&str>);
+
     /// The files that were borrowed from are shown as the model from now on.
     #[wasm_bindgen(method, js_name = motionIsModel)]
     pub fn motion_is_model(this: &Shell);

@@ -114,6 +114,11 @@ pub(super) fn files(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, out: 
     {
         out.actions.push(UiAction::Save(Saved::Model { clip }));
     }
+    if wide(ui, clip.is_some(), "Save the clip alone")
+        && let Some(clip) = clip
+    {
+        out.actions.push(UiAction::Save(Saved::Clip { clip }));
+    }
     controls::section(ui, "MOTION");
     if wide(ui, true, "Show its own skeleton") {
         out.actions.push(UiAction::ShowMotionAlone(pairing.index));
