@@ -48,7 +48,7 @@ fn settle(bench: &mut Bench) {
     bench.library.borrow_each(maps_in_force(&bench.library, &bench.state));
 }
 
-fn bench_of(size: [f32; 2], library: Library) -> Harness<'static, Bench> {
+pub fn bench_of(size: [f32; 2], library: Library) -> Harness<'static, Bench> {
     let state = ViewerState { playing: false, ..ViewerState::default() };
     let mut bench = Bench {
         library,

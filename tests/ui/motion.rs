@@ -2,13 +2,16 @@
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use gaitway::anim::{Joint, Skeleton};
+use gaitway::asset::Asset;
+use gaitway::library::{Library, Model, Motion};
 use gaitway::retarget::{
     ClipRef, Feet, JointMap, Keep, MutedProperty, RestChoice, RootOptions, RootPart, SourceRef, Unmapped,
 };
 use gaitway::state::{ClipChoice, Command, MapEdit, map_in_force, muted_properties};
 use gaitway::ui::{PathPrompt, PathPurpose, Saved, UiAction};
 
-use crate::bench::{Bench, NARROW, WIDE, drag, motion_bench, press, press_key, sample_bench};
+use crate::bench::{Bench, NARROW, WIDE, bench_of, drag, motion_bench, press, press_key, sample_bench};
 
 fn map(harness: &Harness<'_, Bench>, motion: usize) -> JointMap {
     let bench = harness.state();
@@ -434,12 +437,12 @@ fn translations_scales_and_the_crossfade_are_options() {
     assert!(now.crossfade_secs > 0.1, "{}", now.crossfade_secs);
 }
 
-/// Where a joint of the model is in the picture.
-fn place(harness: &Harness<'_, Bench>, name: &str) -> egui::Pos2 {
+/// Where a joint of the walker is in the picture: of the model, or of the motion beside it.
+fn place(harness: &Harness<'_, Bench>, character: usize, name: &str) -> egui::Pos2 {
     let bench = harness.state();
     let joint = bench.library.active().expect("a model").asset.skeleton.find(name).expect("a joint");
     let view = &bench.frame.view;
-    let world = bench.frame.characters[0].world_from_joint[joint.get()].translation;
+    let world = bench.frame.characters[character].world_from_joint[joint.get()].translation;
     let at = (view.projection_from_view * view.view_from_world).project_point3(world.into());
     let rect = bench.picture;
     rect.min + egui::vec2(0.5 + 0.5 * at.x, 0.5 - 0.5 * at.y) * rect.size()
@@ -461,7 +464,7 @@ fn the_joint_is_chosen_by_clicking_it() {
         press(&mut harness, "Motion");
         press(&mut harness, "Choose by clicking");
         assert!(harness.query_by_label("Click a joint of the model").is_some());
-        let at = place(&harness, "LeftHand");
+        let at = place(&harness, 0, "LeftHand");
         assert_eq!(click(&mut harness, at), [Command::SelectJoint(Some(hand))]);
         assert!(harness.query_by_label("What does LeftHand follow?").is_some());
         let commands = press(&mut harness, &format!("{head}  Head"));
@@ -484,6 +487,61 @@ fn the_joint_is_chosen_by_clicking_it() {
         }
         assert_eq!(harness.state().state.joint, Some(hand));
     }
+}
+
+/// Where the motion's skeleton stands on the stage, its joint is clicked too.
+#[test]
+fn both_joints_are_clicked_where_both_are_shown() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, "Walk (2)");
+    press(&mut harness, "Motion");
+    harness.state_mut().state.show.source = true;
+    harness.run();
+    let [hand, head, foot] = ["LeftHand", "Head", "RightFoot"].map(|name| number(&harness, name));
+    press(&mut harness, "Choose by clicking");
+    let at = place(&harness, 0, "LeftHand");
+    assert_eq!(click(&mut harness, at), [Command::SelectJoint(Some(hand))]);
+    assert!(harness.query_by_label("Click the joint of the motion that LeftHand is to follow").is_some());
+    let at = place(&harness, 1, "Head");
+    let source = |source| [Command::SetSource { motion: 0, target: hand, source: Some(source) }];
+    assert_eq!(click(&mut harness, at), source(head));
+    assert_eq!(map(&harness, 0).joints[&format!("#{hand}")].source, Some(SourceRef::Number(head)));
+    // From the table the model's joint is known already.
+    reach(&mut harness, "Click its source");
+    let at = place(&harness, 1, "RightFoot");
+    assert_eq!(click(&mut harness, at), source(foot));
+    reach(&mut harness, "Click its source");
+    press(&mut harness, "Choose from the list");
+    assert_eq!(reach(&mut harness, &format!("{head}  Head")), source(head));
+}
+
+#[test]
+fn three_hundred_joints_have_their_lines() {
+    let joint = |index: usize| Joint {
+        name: format!("Tentacle{index}"),
+        parent: index.checked_sub(1),
+        rest: gaitway::anim::Transform::from_translation(glam::Vec3::Y * 0.01),
+        ..Joint::default()
+    };
+    let skeleton = Skeleton::new((0..300).map(joint).collect()).expect("a chain");
+    let asset = Asset { format: "test", skeleton, ..Asset::default() };
+    let mut library = Library::default();
+    library.set(Model::new("squid.glb".to_owned(), asset, Vec::new()));
+    let asset = library.active().expect("just set").asset.clone();
+    library.set_motions(vec![Motion::new("swim.bvh".to_owned(), asset)]);
+    let mut harness = bench_of(WIDE, library);
+    press(&mut harness, "Motion");
+    assert!(harness.query_by_label("300 joints follow the motion's 300.").is_some());
+    assert!(harness.query_by_label("Order: Body").is_none(), "it has no body");
+    press_row(&mut harness, "Tentacle250 follows");
+    assert_eq!(press(&mut harness, "Nothing"), [Command::SetSource { motion: 0, target: 250, source: None }]);
+    choose(&mut harness, "Which joints are shown", "Follow nothing (1)");
+    assert!(harness.query_by_label_contains("Tentacle250 follows none (none: deliberately none)").is_some());
+    assert!(harness.query_by_label_contains("Tentacle249 follows").is_none());
+    press(&mut harness, "Clear all");
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
+    harness.run();
+    assert_eq!(map(&harness, 0).joints.len(), 300);
 }
 
 /// All of them are inside, and none lies over another.

@@ -11,7 +11,7 @@ use super::{MotionTab, Pairing, options};
 use crate::anim::JointIndex;
 use crate::retarget::{JointMap, MutedProperty, Unmapped};
 use crate::state::{Command, MapEdit, muted_properties};
-use crate::ui::{Output, Shown, controls, style};
+use crate::ui::{Output, Shown, style};
 
 /// A source that is being typed.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,9 +40,15 @@ pub(super) fn show(
     out: &mut Output,
 ) {
     let edit = |edit| Command::EditMap { motion: pairing.index, edit };
-    controls::card(ui, |ui| {
+    let palette = style::palette(ui);
+    // On the panel's own ground, or fields and buttons could not be told from it.
+    let card = egui::Frame::new()
+        .stroke(egui::Stroke::new(1.0, palette.line))
+        .corner_radius(8)
+        .inner_margin(egui::Margin::same(9));
+    card.show(ui, |ui| {
+        ui.set_width(ui.available_width());
         ui.spacing_mut().item_spacing = egui::vec2(6.0, 6.0);
-        let palette = style::palette(ui);
         let color = if row.look { palette.warning } else { palette.weak_text };
         let text = format!("{}: {}", row.state.word(), row.why);
         ui.add(egui::Label::new(RichText::new(text).small().color(color)).wrap());

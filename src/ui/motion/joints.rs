@@ -202,9 +202,11 @@ enum Pressed {
 fn show_row(ui: &mut Ui, row: &Row, prefix: &str, chosen: bool, indent: f32, scroll: bool) -> Option<Pressed> {
     let (rect, whole) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT), Sense::hover());
     if chosen && scroll {
-        whole.scroll_to_me(Some(egui::Align::Center));
+        // To the top: there is more under it.
+        whole.scroll_to_me(Some(egui::Align::TOP));
     }
-    let middle = rect.center().x;
+    // Names that stand further in keep their room.
+    let middle = rect.center().x + 0.5 * indent;
     let id = ui.scope_id().with(("map row", row.number));
     let target = ui.interact(rect.with_max_x(middle), id.with("target"), Sense::click());
     let source = ui.interact(rect.with_min_x(middle), id.with("source"), Sense::click());

@@ -185,6 +185,8 @@ fn edits(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, local: &mut UiState
     });
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
+        // Three words side by side in the narrowest panel.
+        ui.spacing_mut().button_padding.x = 4.0;
         let width = (ui.available_width() - 12.0) / 3.0;
         let motion = pairing.index;
         let any = map.joints.values().any(|entry| entry.source.is_some());
