@@ -71,6 +71,14 @@ fn the_table_says_who_follows_whom_and_why() {
     harness.run();
     assert!(harness.query_by_label_contains("LeftToes follows").is_some());
     assert!(harness.query_by_label_contains("Hips follows").is_none());
+    // By what it is, too.
+    press(&mut harness, "Clear the search");
+    harness.get_by_label("Search joints of the model").click();
+    harness.run();
+    harness.get_by_label("Search joints of the model").type_text("left lower");
+    harness.run();
+    assert!(harness.query_by_label_contains("LeftLowerArm follows").is_some());
+    assert!(harness.query_by_label_contains("RightLowerArm follows").is_none());
 }
 
 #[test]

@@ -199,6 +199,8 @@ fn turn_fields(ui: &mut Ui, turn: &mut Turn) -> bool {
                 .speed(0.5)
                 .range(-180.0..=180.0)
                 .max_decimals(1)
+                // Typing an angle is one step, not one for each digit.
+                .update_while_editing(false)
                 .prefix(format!("{axis} "))
                 .suffix("°");
             let field = ui.add_sized([width, 26.0], field);

@@ -82,13 +82,14 @@ pub(super) fn show(
             wanted.is_empty()
                 || row.target.to_lowercase().contains(&wanted)
                 || row.source_text.to_lowercase().contains(&wanted)
+                || row.what.contains(&wanted)
         })
         .collect();
     if rows.is_empty() {
         let nothing = match wanted.is_empty() {
             true if tab.table.filter == Filter::Look => "There is nothing that needs a look.".to_owned(),
             true => "There are no such joints.".to_owned(),
-            false => format!("No such joint's name contains “{}”.", tab.table.search),
+            false => format!("No such joint is called “{}”.", tab.table.search),
         };
         controls::hint(ui, nothing);
         return;

@@ -18,6 +18,8 @@ pub(super) struct Row {
     /// The joint's number in its file.
     pub number: usize,
     pub target: String,
+    /// Which part of a body it is; empty: none.
+    pub what: String,
     pub source: Option<JointIndex>,
     /// The source's number and name, or “none”.
     pub source_text: String,
@@ -290,7 +292,8 @@ impl Whole {
         let source = given.flatten();
         let as_proposed = proposed.filter(|pair| Some(pair.source) == source);
         let slot = slot.or_else(|| proposed.and_then(|pair| pair.slot));
-        let mut why: Vec<String> = slot.map(slot_text).into_iter().collect();
+        let what = slot.map(slot_text).unwrap_or_default();
+        let mut why: Vec<String> = slot.map(|_| what.clone()).into_iter().collect();
         why.push(match (source, given, as_proposed) {
             (_, _, Some(pair)) => format!("{} · {:.0} %", pair.reason, 100.0 * pair.confidence),
             (Some(_), _, None) => "chosen by hand".to_owned(),
@@ -332,6 +335,7 @@ impl Whole {
             joint,
             number,
             target: scene_tree::title(&pairing.model.asset, joint),
+            what,
             source,
             source_text: source.map_or_else(|| "none".to_owned(), |source| joint_text(&pairing.motion.asset, source)),
             state,
