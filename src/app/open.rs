@@ -156,6 +156,12 @@ impl App {
         self.history.clear();
         self.tell(problems);
         self.choose_borrowed(Some((0, 0)));
+        // The new clip may go elsewhere than the one that the camera was turned to.
+        self.apply(Command::FrameAll);
+        let names: Vec<String> = sources.iter().map(|source| short_name(source)).collect();
+        let clips = self.library.active().map_or(0, |model| model.clip_count() - model.asset.clips.len());
+        let clips = if clips == 1 { "A clip is".to_owned() } else { format!("{clips} clips are") };
+        self.toast(format!("{clips} borrowed from {}.", names.join(", ")));
         Ok(())
     }
 

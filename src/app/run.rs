@@ -144,6 +144,7 @@ impl App {
             Message::OpenGivenUp => self.panels.progress = None,
             Message::Save(name, bytes) => {
                 self.host.save_file(&name, &bytes);
+                self.toast(format!("Saved {name}."));
             }
             Message::Commands(commands) => commands.into_iter().for_each(|command| self.apply(command)),
             Message::Script(call) => self.script(call),
@@ -220,7 +221,12 @@ impl App {
                 | Command::SetRoot(_)
                 | Command::SetFeet(_)
         );
+        let refits = matches!(command, Command::SetUp(_));
         self.history.apply(&mut self.state, &self.library, command);
+        if refits && self.state.camera != CameraChoice::Auto {
+            let orbit = frame_all(&self.library, &self.state, aspect);
+            self.history.apply(&mut self.state, &self.library, Command::SetCamera(CameraChoice::Orbit(orbit)));
+        }
         if is_about_motion {
             let problems = self.refresh_motion();
             self.tell(problems);
@@ -255,9 +261,7 @@ impl App {
             UiAction::StopRecording => self.stop_recording(false),
             UiAction::Save(what) => match self.file_to_save(what) {
                 Ok(file) if self.host.save_file(&file.name, &file.bytes) => {
-                    if let Some(remark) = file.remark {
-                        self.toast(remark);
-                    }
+                    self.toast(file.remark.unwrap_or_else(|| format!("Saved {}.", file.name)));
                 }
                 Ok(file) => {
                     self.panels.path_prompt = Some(PathPrompt { purpose: PathPurpose::Save(what), path: file.name });
@@ -391,6 +395,8 @@ impl eframe::App for App {
         if rect.is_positive() {
             self.draw(rect, context.pixels_per_point());
             slot.fill(|rect| self.scene.paint(rect));
+            let shown = Shown { library: &self.library, state: &self.state, frame: &self.frame };
+            ui::labels(ui, rect, shown, &self.panels);
         }
         self.answer();
         if acted {

@@ -47,6 +47,7 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
         background: state.background,
         mesh: state.show.mesh,
         wireframe: state.show.wireframe,
+        skeleton: state.show.skeleton,
         shadow: state.show.shadow,
         grid: None,
         ground_height: 0.0,

@@ -33,7 +33,7 @@ pub struct Frame {
     pub lights: Vec<FrameLight>,
     /// Overlay lines (skeleton without shapes, bounds, axes), drawn with a width in pixels.
     pub lines: Vec<Line>,
-    /// Bones and joints of the skeleton overlay.
+    /// Bones and joints of the skeletons, also where they are not drawn: a click finds them.
     pub bones: Vec<Bone>,
     /// World-space box of all that can be seen over the clip: fits the shadow and the grid.
     pub bounds: Bounds,
@@ -56,6 +56,7 @@ pub struct Look {
     pub background: Background,
     pub mesh: bool,
     pub wireframe: bool,
+    pub skeleton: bool,
     pub shadow: bool,
     pub grid: Option<Grid>,
     /// Height of the plane that shadows fall on, where the character stands.
@@ -152,6 +153,7 @@ impl Default for Look {
             background: Background::Studio,
             mesh: true,
             wireframe: false,
+            skeleton: false,
             shadow: true,
             grid: None,
             ground_height: 0.0,

@@ -7,11 +7,11 @@ use crate::anim::JointIndex;
 use crate::library::Model;
 use crate::state::{SourceOnStage, ViewerState};
 
-const BONE: Vec4 = Vec4::new(0.62, 0.72, 0.86, 1.0);
+const BONE: Vec4 = Vec4::new(0.2, 0.46, 0.95, 1.0);
 /// Joints that follow nothing.
 const NO_ERROR: Vec4 = Vec4::new(0.3, 0.3, 0.32, 1.0);
 const MOST_ERROR_DEGREES: f32 = 15.0;
-const SOURCE_BONE: Vec4 = Vec4::new(0.86, 0.62, 0.28, 1.0);
+const SOURCE_BONE: Vec4 = Vec4::new(0.5, 0.16, 0.72, 1.0);
 const CHOSEN: Vec4 = Vec4::new(1.0, 0.42, 0.05, 1.0);
 const BOX: Vec4 = Vec4::new(0.95, 0.75, 0.2, 0.9);
 const AXES: [(Vec3, Vec4); 3] = [
@@ -38,17 +38,15 @@ pub(super) fn write_ground(model: &Model, state: &ViewerState, frame: &mut Frame
 
 /// Expects the joints and bounds. Without a mesh to look at the skeleton is drawn by itself.
 pub(super) fn write_overlays(model: &Model, state: &ViewerState, source: Option<&SourceOnStage>, frame: &mut Frame) {
-    let Frame { characters, scratch, lines, bones, .. } = frame;
+    let Frame { characters, scratch, lines, bones, look, .. } = frame;
     let Some(character) = characters.first() else { return };
     let world_from_joint = &character.world_from_joint;
     let size = model.rest_bounds().diagonal().max(1e-6);
     let chosen = state.joint.and_then(|joint| model.asset.skeleton.joint_of_source(joint));
     // Beside its source the model shows its bones too, or there would be nothing to compare.
-    let skeleton = state.show.skeleton || character.draws.is_empty() || source.is_some();
-    if skeleton {
-        let look = BoneLook { plain: BONE, chosen, of_source: false, size };
-        write_bones(model, world_from_joint, &scratch.shown.joints, look, bones);
-    }
+    look.skeleton |= character.draws.is_empty() || source.is_some();
+    let bone_look = BoneLook { plain: BONE, chosen, of_source: false, size };
+    write_bones(model, world_from_joint, &scratch.shown.joints, bone_look, bones);
     if let (Some(source), Some(on_stage)) = (source.filter(|_| state.show.error), characters.last()) {
         for bone in bones.iter_mut() {
             let joint = model.asset.skeleton.joint_of_source(bone.joint as usize);

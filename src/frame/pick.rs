@@ -13,7 +13,7 @@ pub enum PickedJoint {
 }
 
 /// The joint (as the file numbers it) of the bone nearest to a point of the picture, x and y from −1 (left, bottom) to 1.
-/// `tolerance` is the furthest a bone may be away, in the same units up and down. Only drawn bones are found.
+/// `tolerance` is the furthest a bone may be away, in the same units up and down. Bones count whether they are drawn or not.
 pub fn pick_joint(frame: &Frame, point: Vec2, tolerance: f32) -> Option<PickedJoint> {
     let projection = frame.view.projection_from_view;
     let projection_from_world = projection * frame.view.view_from_world;

@@ -16,7 +16,7 @@ pub use rig::{Rig, RigBone};
 
 use std::sync::OnceLock;
 
-use crate::retarget::{JointMap, MapError, Proposal, propose};
+use crate::retarget::{Figures, JointMap, MapError, Proposal, propose};
 
 fn borrow_motion(
     model: &Model,
@@ -120,6 +120,13 @@ impl Library {
         }
         self.borrowed_with = Some(maps);
         true
+    }
+
+    /// The figures of a clip that the shown model has borrowed; none for its own.
+    pub fn figures(&self, clip: usize) -> Option<&Figures> {
+        let model = self.active()?;
+        let borrowed = model.borrowed(clip)?;
+        borrowed.figures(model.body(), self.motions.get(borrowed.motion)?)
     }
 
     /// Why motions could not be borrowed, as of the last [`Library::borrow`].

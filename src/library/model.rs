@@ -170,16 +170,12 @@ impl Model {
 
     /// Frames per second that the keys of a clip were set at, as far as their times tell; 30 when they do not.
     pub fn frames_per_sec(&self, clip: usize) -> f64 {
-        const COMMON: [f64; 8] = [30.0, 24.0, 25.0, 60.0, 50.0, 48.0, 120.0, 100.0];
-        const MOST_KEYS: usize = 4096;
-        let Some(clip) = self.clip(clip) else { return COMMON[0] };
-        let on_frames = |rate: f64| {
-            clip.timelines().iter().flatten().take(MOST_KEYS).all(|&time| {
-                let frame = f64::from(time) * rate;
-                (frame - frame.round()).abs() < 0.02
-            })
-        };
-        COMMON.into_iter().find(|&rate| on_frames(rate)).unwrap_or(COMMON[0])
+        // What was made over may have keys between the frames of its source.
+        match (self.borrowed(clip), self.clip(clip)) {
+            (Some(borrowed), _) => borrowed.frames_per_sec,
+            (None, Some(clip)) => frames_per_sec(clip),
+            (None, None) => DEFAULT_FRAMES_PER_SEC,
+        }
     }
 
     fn sweep(&self, key: SweptKey) -> Bounds {
@@ -218,6 +214,21 @@ impl Model {
         }
         bounds
     }
+}
+
+const DEFAULT_FRAMES_PER_SEC: f64 = 30.0;
+
+/// Frames per second that the keys of a clip were set at, as far as their times tell.
+pub(super) fn frames_per_sec(clip: &Clip) -> f64 {
+    const COMMON: [f64; 8] = [DEFAULT_FRAMES_PER_SEC, 24.0, 25.0, 60.0, 50.0, 48.0, 120.0, 100.0];
+    const MOST_KEYS: usize = 4096;
+    let on_frames = |rate: f64| {
+        clip.timelines().iter().flatten().take(MOST_KEYS).all(|&time| {
+            let frame = f64::from(time) * rate;
+            (frame - frame.round()).abs() < 0.02
+        })
+    };
+    COMMON.into_iter().find(|&rate| on_frames(rate)).unwrap_or(DEFAULT_FRAMES_PER_SEC)
 }
 
 /// Rest pose and box helpers need poses often enough to name it here.

@@ -4,11 +4,12 @@ use std::sync::{Arc, OnceLock};
 
 use glam::Affine3A;
 
+use super::model::frames_per_sec;
 use super::{Model, ModelId};
 use crate::anim::{Clip, JointIndex};
 use crate::asset::{Asset, Humanoid};
 use crate::retarget::{
-    Body, JointMap, LayerClip, MapError, Proposal, ResolvedMap, RetargetError, Retargeting, StagePair, layer_clips,
+    Body, Figures, JointMap, LayerClip, MapError, Proposal, ResolvedMap, RetargetError, Retargeting, StagePair, layer_clips,
     propose, recognize,
 };
 
@@ -55,11 +56,26 @@ pub struct BorrowedClip {
     pub motion: usize,
     pub source_clip: usize,
     pub root: Option<JointIndex>,
+    /// That the source's keys were set at.
+    pub frames_per_sec: f64,
     /// Where the source stands in this model's space.
     pub model_from_source: Affine3A,
     pub pairs: Vec<StagePair>,
+    map: Arc<ResolvedMap>,
+    figures: OnceLock<Option<Figures>>,
     /// How long a change to or from this clip takes.
     pub crossfade_secs: f64,
+}
+
+impl BorrowedClip {
+    /// How well the clip does what its source does; measured when somebody first asks.
+    pub(super) fn figures(&self, model: Body<'_>, motion: &Motion) -> Option<&Figures> {
+        let measure = || {
+            let pair = Retargeting::new(model, motion.body(), self.source_clip, &self.map).ok()?;
+            Some(pair.figures(&pair.bake().ok()?))
+        };
+        self.figures.get_or_init(measure).as_ref()
+    }
 }
 
 /// Why a motion cannot be borrowed.
@@ -91,6 +107,7 @@ pub(super) fn borrow(
     root_of: impl Fn(&Clip) -> Option<JointIndex>,
 ) -> Result<Vec<BorrowedClip>, BorrowError> {
     let layers = layer_clips(model.asset, map);
+    let shared = Arc::new(map.clone());
     let clips = 0..motion.asset.clips.len().max(1);
     let borrow = |source_clip| {
         let error = |problem| BorrowError::Retarget { motion: motion.source.clone(), problem };
@@ -103,8 +120,11 @@ pub(super) fn borrow(
             motion: index,
             source_clip,
             root,
+            frames_per_sec: motion.asset.clips.get(source_clip).map_or(30.0, frames_per_sec),
             model_from_source: pair.model_from_source(),
             pairs: pair.stage_pairs(),
+            map: shared.clone(),
+            figures: OnceLock::new(),
             crossfade_secs: map.crossfade_secs,
         })
     };

@@ -188,7 +188,8 @@ impl Renderer {
             self.frame_group = self.frame_buffer.bind_group(device, &self.layouts, &self.palette);
             self.shadow_group = self.shadow_buffer.bind_group(device, &self.layouts, &self.palette);
         }
-        self.overlay.upload(device, queue, &frame.lines, &frame.bones);
+        let bones = if frame.look.skeleton { &frame.bones[..] } else { &[] };
+        self.overlay.upload(device, queue, &frame.lines, bones);
         self.stats = RenderStats::default();
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("picture") });
         if shadow {

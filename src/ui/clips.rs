@@ -59,7 +59,8 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
             ui.add_space(4.0);
             controls::hint(
                 ui,
-                "This file has no animation. Drop a motion to borrow one: .bvh, .vrma or another model's clips.",
+                "This file has no animation. Drop a motion to borrow one (.bvh, .vrma, a .glb without meshes), or take \
+                 another model's clips with “Motion…”.",
             );
         }
     });

@@ -64,8 +64,14 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
             flip(&mut show);
             out.commands.push(Command::SetShow(show));
         }
-        if label.starts_with("Influence") && on && state.joint.is_none() {
-            controls::hint(ui, "Choose a joint in the picture or in the Scene tab to see what it pulls.");
+        if label.starts_with("Influence") && on {
+            let hint = match state.joint {
+                None => "Choose a joint in the picture or in the Scene tab to see what it pulls.",
+                Some(_) => {
+                    "Grey where it does not pull at all, then from blue through green and yellow to red, where it pulls alone."
+                }
+            };
+            controls::hint(ui, hint);
         }
     }
     source(ui, shown, out);
@@ -129,7 +135,9 @@ fn morphs(ui: &mut Ui, shown: &Shown<'_>, model: &Model, out: &mut Output) {
         if !titled {
             titled = true;
             controls::section(ui, "MORPH TARGETS");
-            if !shown.state.morph.is_empty() && ui.button("Let the clip decide").clicked() {
+            // Always there: it must not push a slider away from under the pointer.
+            let by_hand = !shown.state.morph.is_empty();
+            if ui.add_enabled(by_hand, egui::Button::new("Let the clip decide")).clicked() {
                 out.commands.push(Command::ClearMorphs);
             }
         }

@@ -23,7 +23,7 @@ use std::collections::HashSet;
 use egui::{Rect, Ui};
 
 use crate::anim::Clip;
-use crate::frame::Frame;
+use crate::frame::{Frame, PickedJoint};
 use crate::library::{Library, ModelId};
 use crate::state::{Command, ViewerState, active_clip, clip_secs};
 
@@ -31,7 +31,7 @@ pub use clips::short_name;
 pub use inspector::Tab;
 pub use keys::{KEY_TABLE, KeyHelp};
 pub use overlays::overlays;
-pub use picture::{PictureSlot, picture};
+pub use picture::{PictureSlot, labels, picture};
 pub use style::install;
 
 /// What the panels show. `frame` is what is on the screen: one behind while a command is under way.
@@ -91,6 +91,7 @@ pub struct UiState {
     pub scrubbing: bool,
     /// The joint under the pointer, as the file numbers it.
     pub hovered_joint: Option<usize>,
+    hovered: Option<PickedJoint>,
     /// Width over height of the picture, as last shown.
     pub aspect: f32,
     /// Whether there is an edit to take back, or one to do again.
@@ -137,6 +138,7 @@ impl Default for UiState {
             path_prompt: None,
             scrubbing: false,
             hovered_joint: None,
+            hovered: None,
             aspect: 1.6,
             can_undo: false,
             can_redo: false,

@@ -57,6 +57,11 @@ fn sheet(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) 
         ui.painter().rect_filled(grip, 2.0, palette.pressed);
         // All of the sheet takes the pointer, so that nothing under it moves.
         ui.allocate_rect(rect, egui::Sense::click_and_drag());
+        let handle = Rect::from_min_size(rect.min, vec2(rect.width() - 48.0, 24.0));
+        let handle = ui.interact(handle, ui.scope_id().with("handle"), egui::Sense::drag());
+        if handle.total_drag_delta().is_some_and(|dragged| dragged.y > 48.0) {
+            local.sheet = None;
+        }
         let inner = Rect::from_min_max(rect.min + vec2(14.0, 16.0), rect.max - vec2(14.0, 4.0));
         let mut content = ui.new_child(egui::UiBuilder::new().max_rect(inner));
         content.set_clip_rect(inner.expand(4.0).intersect(content.clip_rect()));
@@ -185,7 +190,7 @@ fn help(context: &Context, local: &mut UiState) {
             ("Right drag, shift drag", "Move the picture"),
             ("Wheel, pinch", "Nearer, farther"),
             ("Two fingers", "Move the picture"),
-            ("Click a joint", "Choose it"),
+            ("Click a joint", "Choose it; in the tab Motion, mend what it follows"),
             ("Double click", "Fit everything into the picture"),
         ];
         let lines = KEY_TABLE.iter().map(|line| (line.keys, line.does)).chain(pointer);

@@ -48,7 +48,6 @@ pub fn picture(ui: &mut Ui, rect: Rect, shown: Shown<'_>, local: &mut UiState, o
             camera(ui, &response, &shown, out);
         }
         joints(ui, &painter, &response, &shown, local, out);
-        compared(ui, &painter, rect, &shown);
         keys::listen(ui.ctx(), &shown, local, out);
         if !shown.state.embed {
             buttons(ui, rect, local, out);
@@ -128,25 +127,40 @@ fn joints(ui: &Ui, painter: &Painter, response: &Response, shown: &Shown<'_>, lo
             PickedJoint::Source(_) => None,
         }),
     };
-    local.hovered_joint = hovered.and_then(of_model);
+    // Names come and go under the pointer only where there is something to point at.
+    local.hovered = hovered.filter(|_| shown.frame.look.skeleton);
+    local.hovered_joint = local.hovered.and_then(of_model);
     if response.clicked() {
         if local.sheet.take().is_some() {
             return;
         }
         let clicked = response.interact_pointer_pos().and_then(at).and_then(of_model);
-        // Without bones to click on, a joint chosen in the tree stays chosen.
-        if clicked != shown.state.joint && !shown.frame.bones.is_empty() {
+        if clicked != shown.state.joint {
             out.commands.push(Command::SelectJoint(clicked));
         }
     }
-    let pane = pane_at(shown, response.rect, response.hover_pos());
-    let chosen = shown.state.joint.map(PickedJoint::Model);
-    let both = |picked: Option<PickedJoint>| [picked, picked.and_then(|picked| partner(shown, picked))];
-    for picked in both(chosen).into_iter().flatten() {
-        label(ui, painter, pane, shown, picked, true);
+}
+
+/// Names of the chosen joint and of the one under the pointer, and of what is compared: painted when the frame that they
+/// belong to has been evaluated, or they would trail behind.
+pub fn labels(ui: &Ui, rect: Rect, shown: Shown<'_>, local: &UiState) {
+    if !rect.is_positive() || local.recording.is_some() {
+        return;
     }
-    for picked in both(hovered).into_iter().flatten().filter(|&picked| !both(chosen).contains(&Some(picked))) {
-        label(ui, painter, pane, shown, picked, false);
+    let painter = ui.painter_at(rect);
+    compared(ui, &painter, rect, &shown);
+    if local.motion.is_clicking() {
+        return;
+    }
+    let pointer = ui.input(|input| input.pointer.hover_pos()).filter(|at| rect.contains(*at));
+    let pane = pane_at(&shown, rect, pointer);
+    let both = |picked: Option<PickedJoint>| [picked, picked.and_then(|picked| partner(&shown, picked))];
+    let chosen = both(shown.state.joint.map(PickedJoint::Model));
+    for picked in chosen.into_iter().flatten() {
+        label(ui, &painter, pane, &shown, picked, true);
+    }
+    for picked in both(local.hovered).into_iter().flatten().filter(|&picked| !chosen.contains(&Some(picked))) {
+        label(ui, &painter, pane, &shown, picked, false);
     }
 }
 

@@ -244,6 +244,12 @@ fn joint_card(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, 
     sampler.sample(model, shown.state);
     let local = sampler.pose.locals.get(joint.get()).copied().unwrap_or_default();
     let parent = asset.skeleton.parent(joint).map_or("no parent".to_owned(), |parent| title(asset, parent));
+    let (heads, _) = ui.allocate_exact_size(vec2(ui.available_width(), 12.0), Sense::hover());
+    for (axis, name) in ["X", "Y", "Z"].into_iter().enumerate() {
+        let right = heads.left() + 60.0 + (heads.width() - 60.0) / 3.0 * (axis + 1) as f32;
+        let (at, font) = (pos2(right, heads.center().y), egui::FontId::proportional(11.0));
+        ui.painter().text(at, egui::Align2::RIGHT_CENTER, name, font, style::palette(ui).weak_text);
+    }
     transform(ui, &format!("Local, in {parent}"), &local);
     let character = shown.frame.characters.first();
     if let Some(world) = character.and_then(|character| character.world_from_joint.get(joint.get())) {

@@ -101,9 +101,15 @@ fn loop_cycle(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
 }
 
 fn range_buttons(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
-    if shown.state.range.is_some() && icon_button(ui, Icon::Close, "Play the whole clip", false).clicked() {
-        out.commands.push(Command::SetRange(None));
-    }
+    // Its place is kept, so that the others stay under the pointer.
+    ui.scope(|ui| {
+        if shown.state.range.is_none() {
+            ui.set_invisible();
+        }
+        if icon_button(ui, Icon::Close, "Play the whole clip", false).clicked() {
+            out.commands.push(Command::SetRange(None));
+        }
+    });
     if icon_button(ui, Icon::MarkOut, "Set the out point here (O)", false).clicked() {
         out.commands.extend(range_here(shown, false));
     }

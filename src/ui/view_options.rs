@@ -80,10 +80,10 @@ fn picture(ui: &mut Ui, shown: &Shown<'_>, settings: &mut PictureSettings, out: 
 fn camera(ui: &mut Ui, shown: &Shown<'_>, aspect: f32, out: &mut Output) {
     let state = shown.state;
     controls::section(ui, "CAMERA");
-    let sides = [(0.0, 0.0, "Front"), (90.0, 0.0, "Side"), (0.0, 89.9, "Top")];
+    let sides = [(0.0, 0.0, "Front"), (180.0, 0.0, "Back"), (90.0, 0.0, "Side"), (0.0, 89.9, "Top")];
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
-        let width = (ui.available_width() - 3.0 * 6.0) / 4.0;
+        let width = (ui.available_width() - 4.0 * 6.0) / 5.0;
         for (yaw_degrees, pitch_degrees, label) in sides {
             if ui.add_sized([width, 30.0], egui::Button::new(label)).clicked() {
                 out.commands.push(look_from(shown, aspect, yaw_degrees, pitch_degrees));

@@ -265,6 +265,7 @@ fn bones_are_seen_through_the_mesh() {
         joint: 0,
         of_source: false,
     }];
+    scene.frame.look.skeleton = true;
     let [r, _, b, _] = scene.draw(&gpu).at(0.0, -0.15);
     assert!(b > 100 && r < 100, "{r} {b}");
 }

@@ -2,6 +2,7 @@
 
 mod clicking;
 mod detail;
+mod figures;
 mod joints;
 mod options;
 mod picker;
@@ -40,10 +41,16 @@ enum Part {
     #[default]
     Joints,
     Options,
+    Figures,
     Files,
 }
 
 impl MotionTab {
+    /// A joint is being chosen in the picture.
+    pub fn is_clicking(&self) -> bool {
+        self.clicking.is_some()
+    }
+
     /// The list of sources lies over everything and has the keyboard.
     pub fn is_picking(&self) -> bool {
         self.picking.is_some()
@@ -131,7 +138,7 @@ fn scrolled(ui: &mut Ui, part: Part, contents: impl FnOnce(&mut Ui)) {
 fn head(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, map: &JointMap, local: &mut UiState, out: &mut Output) {
     header(ui, shown, pairing, map, out);
     ui.add_space(4.0);
-    let parts = [(Part::Joints, "Joints"), (Part::Options, "Options"), (Part::Files, "Files")];
+    let parts = [(Part::Joints, "Joints"), (Part::Options, "Options"), (Part::Figures, "Fit"), (Part::Files, "Files")];
     if let Some(part) = controls::segmented(ui, Some(local.motion.part), &parts) {
         local.motion.part = part;
     }
@@ -148,6 +155,7 @@ fn body(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, map: &JointMap, t
     match tab.part {
         Part::Joints => joints::show(ui, shown, pairing, map, tab, out),
         Part::Options => options::show(ui, pairing, map, out),
+        Part::Figures => figures::show(ui, shown, pairing),
         Part::Files => options::files(ui, shown, pairing, out),
     }
 }
@@ -169,7 +177,7 @@ fn edits(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, local: &mut UiState
             ("Choose by clicking", "Click a joint of the model in the picture, then choose what it follows")
         };
         if button(ui, width, true, text, hover) {
-            local.motion.clicking = (!clicking).then(|| clicking::Clicking::Target { motion: pairing.index });
+            local.motion.clicking = (!clicking).then_some(clicking::Clicking::Target { motion: pairing.index });
             // On a narrow screen the sheet makes room for the picture.
             local.sheet = None;
         }
