@@ -23,6 +23,10 @@ impl App {
             Saved::Map { motion } => self.map_file(motion),
             Saved::Model { clip } => self.model_file(clip),
             Saved::Clip { clip } => self.clip_file(clip),
+            // On the page nothing may wait: the loop saves a picture by itself.
+            #[cfg(target_arch = "wasm32")]
+            Saved::Picture { .. } => Err("a picture cannot be waited for here".to_owned()),
+            #[cfg(not(target_arch = "wasm32"))]
             Saved::Picture { size, transparent } => {
                 let picture = self.draw_for_file(size, transparent);
                 Ok(FileToSave { name: self.picture_name(), bytes: pollster::block_on(picture)?, remark: None })
