@@ -27,6 +27,10 @@ impl App {
             #[cfg(target_arch = "wasm32")]
             Saved::Picture { .. } => Err("a picture cannot be waited for here".to_owned()),
             #[cfg(not(target_arch = "wasm32"))]
+            // On the page reading back takes turns of its event loop: [`App::act`] waits for it.
+            #[cfg(target_arch = "wasm32")]
+            Saved::Picture { .. } => Err("a picture is saved once it has been read back".to_owned()),
+            #[cfg(not(target_arch = "wasm32"))]
             Saved::Picture { size, transparent } => {
                 let picture = self.draw_for_file(size, transparent);
                 Ok(FileToSave { name: self.picture_name(), bytes: pollster::block_on(picture)?, remark: None })
