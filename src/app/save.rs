@@ -23,10 +23,6 @@ impl App {
             Saved::Map { motion } => self.map_file(motion),
             Saved::Model { clip } => self.model_file(clip),
             Saved::Clip { clip } => self.clip_file(clip),
-            // On the page nothing may wait: the loop saves a picture by itself.
-            #[cfg(target_arch = "wasm32")]
-            Saved::Picture { .. } => Err("a picture cannot be waited for here".to_owned()),
-            #[cfg(not(target_arch = "wasm32"))]
             // On the page reading back takes turns of its event loop: [`App::act`] waits for it.
             #[cfg(target_arch = "wasm32")]
             Saved::Picture { .. } => Err("a picture is saved once it has been read back".to_owned()),
