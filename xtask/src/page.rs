@@ -1,5 +1,5 @@
-//! The page: trunk compiles and binds, wasm-opt makes it smaller, and the length of the program is written down so that
-//! the page can show how far its loading has got.
+//! The page: trunk compiles and binds, wasm-opt and terser make it smaller, and the length of the program is written down
+//! so that the page can show how far its loading has got.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -33,12 +33,22 @@ pub fn build(features: &[&str]) -> anyhow::Result<()> {
     run("trunk", &arguments)?;
     let wasm = file_ending("_bg.wasm")?;
     optimise(&wasm)?;
+    shorten_scripts()?;
     write_length(&wasm)
 }
 
 fn optimise(wasm: &Path) -> anyhow::Result<()> {
     let file = wasm.to_str().context("the repository's path is not UTF-8")?;
     run("node", &[&["node_modules/binaryen/bin/wasm-opt", "-Oz"], &WASM_FEATURES[..], &[file, "-o", file]].concat())
+}
+
+/// Trunk's own way of doing this gives up on what it cannot parse.
+fn shorten_scripts() -> anyhow::Result<()> {
+    for script in files()?.iter().filter_map(|path| path.to_str()).filter(|path| path.ends_with(".js")) {
+        let terser = ["node_modules/terser/bin/terser", "--module", "--compress", "--mangle", "--output", script];
+        run("node", &[&terser[..], &["--", script]].concat())?;
+    }
+    Ok(())
 }
 
 /// The host may send the program compressed, and then the length it gives is not the one that arrives.
@@ -52,8 +62,12 @@ fn write_length(wasm: &Path) -> anyhow::Result<()> {
 }
 
 fn file_ending(ending: &str) -> anyhow::Result<PathBuf> {
-    let files = fs::read_dir(dist()).context("dist/")?;
-    let mut paths = files.filter_map(|entry| Some(entry.ok()?.path()));
+    let mut paths = files()?.into_iter();
     let found = paths.find(|path| path.to_str().is_some_and(|path| path.ends_with(ending)));
     found.with_context(|| format!("trunk left no *{ending} in dist/"))
+}
+
+fn files() -> anyhow::Result<Vec<PathBuf>> {
+    let entries = fs::read_dir(dist()).context("dist/")?;
+    Ok(entries.filter_map(|entry| Some(entry.ok()?.path())).collect())
 }
