@@ -16,7 +16,7 @@ pub use rig::{Rig, RigBone};
 
 use std::sync::OnceLock;
 
-use crate::retarget::{Figures, JointMap, MapError, Proposal, propose};
+use crate::retarget::{Figures, FootTrack, JointMap, MapError, Proposal, propose};
 
 fn borrow_motion(
     model: &Model,
@@ -124,9 +124,18 @@ impl Library {
 
     /// The figures of a clip that the shown model has borrowed; none for its own.
     pub fn figures(&self, clip: usize) -> Option<&Figures> {
+        Some(&self.measured(clip)?.0)
+    }
+
+    /// What the feet of the shown model do in a clip that it has borrowed.
+    pub fn foot_tracks(&self, clip: usize) -> &[FootTrack] {
+        self.measured(clip).map_or(&[], |(_, tracks)| tracks)
+    }
+
+    fn measured(&self, clip: usize) -> Option<&(Figures, Vec<FootTrack>)> {
         let model = self.active()?;
         let borrowed = model.borrowed(clip)?;
-        borrowed.figures(model.body(), self.motions.get(borrowed.motion)?)
+        borrowed.measured(model.body(), self.motions.get(borrowed.motion)?)
     }
 
     /// Why motions could not be borrowed, as of the last [`Library::borrow`].

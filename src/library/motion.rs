@@ -9,8 +9,8 @@ use super::{Model, ModelId};
 use crate::anim::{Clip, JointIndex};
 use crate::asset::{Asset, Humanoid};
 use crate::retarget::{
-    Body, Figures, JointMap, LayerClip, MapError, Proposal, ResolvedMap, RetargetError, Retargeting, StagePair, layer_clips,
-    propose, recognize,
+    Body, Figures, FootTrack, JointMap, LayerClip, MapError, Proposal, ResolvedMap, RetargetError, Retargeting,
+    StagePair, layer_clips, propose, recognize,
 };
 
 /// A loaded file whose clips others may borrow.
@@ -62,19 +62,20 @@ pub struct BorrowedClip {
     pub model_from_source: Affine3A,
     pub pairs: Vec<StagePair>,
     map: Arc<ResolvedMap>,
-    figures: OnceLock<Option<Figures>>,
+    measured: OnceLock<Option<(Figures, Vec<FootTrack>)>>,
     /// How long a change to or from this clip takes.
     pub crossfade_secs: f64,
 }
 
 impl BorrowedClip {
     /// How well the clip does what its source does; measured when somebody first asks.
-    pub(super) fn figures(&self, model: Body<'_>, motion: &Motion) -> Option<&Figures> {
+    pub(super) fn measured(&self, model: Body<'_>, motion: &Motion) -> Option<&(Figures, Vec<FootTrack>)> {
         let measure = || {
             let pair = Retargeting::new(model, motion.body(), self.source_clip, &self.map).ok()?;
-            Some(pair.figures(&pair.bake().ok()?))
+            let made = pair.bake().ok()?;
+            Some(pair.measure(&made.clip, made.unplanted.as_ref()))
         };
-        self.figures.get_or_init(measure).as_ref()
+        self.measured.get_or_init(measure).as_ref()
     }
 }
 
@@ -124,7 +125,7 @@ pub(super) fn borrow(
             model_from_source: pair.model_from_source(),
             pairs: pair.stage_pairs(),
             map: shared.clone(),
-            figures: OnceLock::new(),
+            measured: OnceLock::new(),
             crossfade_secs: map.crossfade_secs,
         })
     };

@@ -33,6 +33,18 @@ pub struct Figures {
     pub coverage: Option<f64>,
 }
 
+/// One foot over the whole clip, at the times that are measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FootTrack {
+    /// The model's toes, or ankle.
+    pub joint: JointIndex,
+    pub times: Vec<f32>,
+    /// The source's foot stands.
+    pub touching: Vec<bool>,
+    /// How fast the model's foot goes over the ground, from the time before to this one.
+    pub metres_per_sec: Vec<f32>,
+}
+
 /// A mean and a maximum in the making.
 #[derive(Debug, Default)]
 struct Spread {
@@ -132,6 +144,11 @@ impl Retargeting<'_> {
 
     /// Measures any clip over the model; orientations on `unplanted`, the same without planting, if there is one.
     pub fn figures_of(&self, finished: &Clip, unplanted: Option<&Clip>) -> Figures {
+        self.measure(finished, unplanted).0
+    }
+
+    /// As [`Self::figures_of`], with what the feet do in between.
+    pub fn measure(&self, finished: &Clip, unplanted: Option<&Clip>) -> (Figures, Vec<FootTrack>) {
         let times = self.measured_times();
         let (laws, _) = self.turned_laws();
         let removed = self.root().map(|root| root.removed(&laws, &times)).unwrap_or_default();
@@ -193,12 +210,15 @@ impl Retargeting<'_> {
         }
 
         let (mut ours, mut theirs) = (Slide::default(), Slide::default());
-        for (source, target) in source_feet.iter().zip(&target_feet) {
+        let mut tracks = Vec::with_capacity(feet.len());
+        for (at, (source, target)) in source_feet.iter().zip(&target_feet).enumerate() {
             let touching = contacts(&times, source, self.source_height());
             ours.add(&times, target, &touching, 1.0);
             theirs.add(&times, source, &touching, scale);
+            let metres_per_sec = ground_speeds(&times, target);
+            tracks.push(FootTrack { joint: feet[at].target, times: times.clone(), touching, metres_per_sec });
         }
-        Figures {
+        let figures = Figures {
             orientation_error_degrees_mean: orientation.mean(),
             orientation_error_degrees_max: orientation.max(),
             limb_direction_error_degrees_mean: direction.mean(),
@@ -207,7 +227,8 @@ impl Retargeting<'_> {
             foot_slide_source_metres_per_sec: theirs.speed(),
             ground_penetration_metres_max: deepest,
             coverage: self.coverage(),
-        }
+        };
+        (figures, tracks)
     }
 
     /// Where a target joint would be had nothing been taken from the clip's travel.
@@ -233,6 +254,16 @@ impl Retargeting<'_> {
         let mapped = both.iter().filter(|&&joint| self.map.source_of(joint).is_some()).count();
         (!both.is_empty()).then(|| mapped as f64 / both.len() as f64)
     }
+}
+
+fn ground_speeds(times: &[f32], positions: &[DVec3]) -> Vec<f32> {
+    let speed = |at: usize| {
+        let before = at.saturating_sub(1);
+        let secs = f64::from(times[at] - times[before]);
+        let way = ((positions[at] - positions[before]) * DVec3::new(1.0, 0.0, 1.0)).length();
+        if secs > 0.0 { (way / secs) as f32 } else { 0.0 }
+    };
+    (0..times.len()).map(speed).collect()
 }
 
 /// Horizontal way and time of feet in contact.

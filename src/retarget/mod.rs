@@ -23,7 +23,7 @@ mod track;
 mod vocabulary;
 
 pub use bake::{Body, RetargetError, Retargeted, Retargeting};
-pub use figures::Figures;
+pub use figures::{Figures, FootTrack};
 pub use layers::{Baking, LayerClip, bake_layers, baking, layer_clips};
 pub use map::{
     ClipRef, Feet, JointMap, Keep, MapEntry, MutedChannel, MutedProperty, RestChoice, RestChoices, RootOptions,

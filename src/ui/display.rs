@@ -108,6 +108,10 @@ fn source(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
         controls::hint(ui, "This clip is the model's own: choose a borrowed one to see where it comes from.");
         return;
     }
+    controls::hint(
+        ui,
+        "Below the timeline: tinted while the source's foot stands; the higher the bar, the faster the model's slides.",
+    );
     if controls::switch(ui, "Colour bones by error", show.error) {
         out.commands.push(Command::SetShow(Show { error: !show.error, ..show }));
     }

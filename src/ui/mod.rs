@@ -4,6 +4,7 @@
 mod clips;
 mod controls;
 mod display;
+mod feet;
 mod gizmo;
 mod icons;
 mod inspector;

@@ -4,7 +4,7 @@ use egui::{Align, Layout, RichText, Ui};
 
 use super::icons::{Icon, icon_button, play_button};
 use super::scrub::{self, Scrub, Scrubbed};
-use super::{Output, Shown, UiState, controls, style};
+use super::{Output, Shown, UiState, controls, feet, style};
 use crate::anim::{LoopMode, TimeRange};
 use crate::library::ModelId;
 use crate::state::Command;
@@ -22,6 +22,9 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, narrow: 
         Some(Scrubbed::Seek(secs)) => out.commands.push(Command::Seek(secs)),
         Some(Scrubbed::Range(range)) => out.commands.push(Command::SetRange(Some(range))),
         None => {}
+    }
+    if shown.state.show.source && !shown.state.embed {
+        feet::show(ui, shown);
     }
     ui.horizontal(|ui| {
         ui.set_height(44.0);

@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 
 use super::Pairing;
 use crate::retarget::{ClipRef, Feet, JointMap, Keep, RestChoice, RestChoices, RootOptions, RootPart, Unmapped};
-use crate::state::{Command, MapEdit, active_clip};
+use crate::state::{Command, MapEdit, Show, active_clip};
 use crate::ui::{Output, Saved, Shown, UiAction, controls, style};
 
 const PARTS: [(RootPart, &str); 3] =
@@ -120,7 +120,11 @@ pub(super) fn files(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, out: 
         out.actions.push(UiAction::Save(Saved::Clip { clip }));
     }
     controls::section(ui, "MOTION");
-    if wide(ui, true, "Show its own skeleton") {
+    let show = shown.state.show;
+    if wide(ui, true, if show.source { "Hide it" } else { "Show it beside the model" }) {
+        out.commands.push(Command::SetShow(Show { source: !show.source, over: false, ..show }));
+    }
+    if wide(ui, true, "Open it instead of the model") {
         out.actions.push(UiAction::ShowMotionAlone(pairing.index));
     }
     if wide(ui, true, "Remove motion") {
