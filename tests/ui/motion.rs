@@ -173,7 +173,7 @@ fn files_are_asked_of_the_host() {
     press(&mut harness, "Load map");
     press(&mut harness, "Walk (2)");
     press(&mut harness, "Save GLB");
-    reach(&mut harness, "Show its own skeleton");
+    reach(&mut harness, "Open it instead of the model");
     reach(&mut harness, "Remove motion");
     let expected = [
         UiAction::Save(Saved::Map { motion: 0 }),

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use egui::{Align2, FontId, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 
 use super::picker::Picking;
-use super::rows::{BodyPart, Filter, Row, State, rows};
+use super::rows::{BodyPart, Filter, Row, State};
 use super::{MotionTab, Pairing, detail};
 use crate::retarget::JointMap;
 use crate::state::Command;
@@ -35,8 +35,7 @@ pub(super) fn has_body(pairing: &Pairing<'_>) -> bool {
 }
 
 /// The choices above the table.
-pub(super) fn choices(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, table: &mut TableView) {
-    let rows = rows(pairing, map);
+pub(super) fn choices(ui: &mut Ui, pairing: &Pairing<'_>, rows: &[Row], table: &mut TableView) {
     let count = |filter: Filter| rows.iter().filter(|row| filter.lets_through(row)).count();
     let name = |filter: Filter| Filter::ALL.iter().find(|(other, _)| *other == filter).map_or("", |(_, name)| name);
     let text = |filter: Filter| format!("{} ({})", name(filter), count(filter));
@@ -52,7 +51,7 @@ pub(super) fn choices(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, table:
                 }
             });
         }
-        let combo = egui::ComboBox::from_id_salt("joint filter").width(ui.available_width()).truncate();
+        let combo = egui::ComboBox::from_id_salt("joint filter").width(ui.available_width()).height(320.0).truncate();
         let response = combo.selected_text(text(table.filter)).show_ui(ui, |ui| {
             for (filter, _) in Filter::ALL {
                 if ui.selectable_label(filter == table.filter, text(filter)).clicked() {
@@ -69,14 +68,15 @@ pub(super) fn show(
     shown: &Shown<'_>,
     pairing: &Pairing<'_>,
     map: &JointMap,
+    rows: &[Row],
     tab: &mut MotionTab,
     out: &mut Output,
 ) {
     let prefix = common_prefix(pairing);
     let chosen = shown.state.joint;
     let wanted = tab.table.search.to_lowercase();
-    let rows: Vec<Row> = rows(pairing, map)
-        .into_iter()
+    let rows: Vec<&Row> = rows
+        .iter()
         .filter(|row| tab.table.filter.lets_through(row) || Some(row.number) == chosen)
         .filter(|row| {
             wanted.is_empty()
@@ -120,7 +120,7 @@ pub(super) fn show(
         return;
     }
     for part in BodyPart::ALL {
-        let rows: Vec<&Row> = rows.iter().filter(|row| row.part == part).collect();
+        let rows: Vec<&Row> = rows.iter().copied().filter(|row| row.part == part).collect();
         if rows.is_empty() {
             continue;
         }
@@ -237,8 +237,8 @@ fn show_row(ui: &mut Ui, row: &Row, prefix: &str, chosen: bool, indent: f32, scr
         let color = if row.look { palette.warning } else { palette.weak_text };
         controls::elided_small(ui, below, &row.why, color);
     }
-    let target = target.on_hover_text(format!("{follows}. Click for more."));
-    let source = source.on_hover_text(format!("{follows}. Click to choose another."));
+    let target = target.on_hover_ui(|ui| drop(ui.label(format!("{follows}. Click for more."))));
+    let source = source.on_hover_ui(|ui| drop(ui.label(format!("{follows}. Click to choose another."))));
     if target.clicked() { Some(Pressed::Target) } else { source.clicked().then_some(Pressed::Source) }
 }
 

@@ -10,6 +10,7 @@ mod rows;
 
 use egui::{RichText, ScrollArea, Ui};
 
+use self::rows::Row;
 use super::icons::{Icon, icon_button_sized};
 use super::{Output, Shown, UiAction, UiState, clips, controls, scene_tree, short_name, style};
 use crate::anim::JointIndex;
@@ -114,13 +115,14 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
     let map = map_in_force(shown.library, shown.state, pairing.index).unwrap_or_default();
     local.motion.motion = pairing.index;
     let part = local.motion.part;
+    let rows = if part == Part::Joints { rows::rows(&pairing, &map) } else { Vec::new() };
     if ui.available_height() >= ROOMY_HEIGHT {
-        head(ui, shown, &pairing, &map, local, out);
-        scrolled(ui, part, |ui| body(ui, shown, &pairing, &map, &mut local.motion, out));
+        head(ui, shown, &pairing, &map, &rows, local, out);
+        scrolled(ui, part, |ui| body(ui, shown, &pairing, &map, &rows, &mut local.motion, out));
     } else {
         scrolled(ui, part, |ui| {
-            head(ui, shown, &pairing, &map, local, out);
-            body(ui, shown, &pairing, &map, &mut local.motion, out);
+            head(ui, shown, &pairing, &map, &rows, local, out);
+            body(ui, shown, &pairing, &map, &rows, &mut local.motion, out);
         });
     }
 }
@@ -135,7 +137,15 @@ fn scrolled(ui: &mut Ui, part: Part, contents: impl FnOnce(&mut Ui)) {
     });
 }
 
-fn head(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, map: &JointMap, local: &mut UiState, out: &mut Output) {
+fn head(
+    ui: &mut Ui,
+    shown: &Shown<'_>,
+    pairing: &Pairing<'_>,
+    map: &JointMap,
+    rows: &[Row],
+    local: &mut UiState,
+    out: &mut Output,
+) {
     header(ui, shown, pairing, map, out);
     ui.add_space(4.0);
     let parts = [(Part::Joints, "Joints"), (Part::Options, "Options"), (Part::Figures, "Fit"), (Part::Files, "Files")];
@@ -146,14 +156,22 @@ fn head(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, map: &JointMap, l
     if local.motion.part == Part::Joints {
         edits(ui, pairing, map, local, out);
         clips::search_field(ui, &mut local.motion.table.search, "Search joints of the model");
-        joints::choices(ui, pairing, map, &mut local.motion.table);
+        joints::choices(ui, pairing, rows, &mut local.motion.table);
         ui.add_space(2.0);
     }
 }
 
-fn body(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, map: &JointMap, tab: &mut MotionTab, out: &mut Output) {
+fn body(
+    ui: &mut Ui,
+    shown: &Shown<'_>,
+    pairing: &Pairing<'_>,
+    map: &JointMap,
+    rows: &[Row],
+    tab: &mut MotionTab,
+    out: &mut Output,
+) {
     match tab.part {
-        Part::Joints => joints::show(ui, shown, pairing, map, tab, out),
+        Part::Joints => joints::show(ui, shown, pairing, map, rows, tab, out),
         Part::Options => options::show(ui, pairing, map, out),
         Part::Figures => figures::show(ui, shown, pairing),
         Part::Files => options::files(ui, shown, pairing, out),

@@ -304,9 +304,11 @@ impl Whole {
         match source {
             None => {
                 state = State::None;
-                // The motion has such a part and nobody said that it is not wanted.
-                let has_part = slot.is_some_and(|slot| self.source_slots.values().any(|&other| other == slot));
-                look = given.is_none() && has_part;
+                // The motion has such a part, nothing else follows it, and nobody said that it is not wanted.
+                let is_free = |(source, other): (&JointIndex, &Slot)| {
+                    Some(*other) == slot && !self.followers.contains_key(source)
+                };
+                look = given.is_none() && self.source_slots.iter().any(is_free);
                 let own = map.joints.get(&format!("#{number}")).and_then(|entry| entry.unmapped.as_ref());
                 match pairing.own_clip(own.unwrap_or(&map.unmapped)) {
                     Some((clip, true)) => why.push(format!("first key of {}", pairing.clip_title(clip))),
