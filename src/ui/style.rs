@@ -74,10 +74,14 @@ pub fn install(context: &egui::Context) {
     }
 }
 
+/// See assets/font/README.md.
+const UBUNTU_LIGHT: &[u8] = include_bytes!("../../assets/font/Ubuntu-Light-derivative-Gaitway.ttf");
+
 /// One font for all text: its digits have one width, so that columns of numbers need no other. And egui's few icons.
 fn fonts() -> FontDefinitions {
     let mut fonts = FontDefinitions::empty();
-    let data = [("Ubuntu-Light", epaint_default_fonts::UBUNTU_LIGHT), ("egui-icons", epaint_default_fonts::EGUI_ICONS)];
+    let data: [(&str, &'static [u8]); 2] =
+        [("Ubuntu-Light", UBUNTU_LIGHT), ("egui-icons", epaint_default_fonts::EGUI_ICONS)];
     for (name, bytes) in data {
         fonts.font_data.insert(name.to_owned(), Arc::new(FontData::from_static(bytes)));
         for family in [FontFamily::Proportional, FontFamily::Monospace] {
