@@ -1,9 +1,12 @@
 //! Edits of the joint map: what each does, that each can be taken back, and that the link holds all of it.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
+use gaitway::anim::{Joint, Skeleton, Transform};
+use gaitway::asset::Asset;
 use gaitway::frame::pose_document;
-use gaitway::library::{Library, Motion};
+use gaitway::library::{Library, Model, Motion};
 use gaitway::retarget::{
     ClipRef, Feet, JointMap, Keep, MapEntry, MutedChannel, MutedProperty, RestChoice, RestChoices, RootOptions,
     RootPart, SourceRef, Unmapped,
@@ -12,7 +15,7 @@ use gaitway::state::{
     ClipChoice, Command, History, MapEdit, MotionMap, NumberedMap, ViewerState, apply, from_link, map_in_force,
     maps_in_force, muted_properties, settled_maps, to_link,
 };
-use glam::Quat;
+use glam::{Quat, Vec3};
 
 use crate::data::walker;
 
@@ -94,6 +97,51 @@ fn sides_are_swapped_and_swapped_back() {
         assert_eq!(source(&now, number(&library, target)), expected, "{target}");
     }
     assert_eq!(edited(&library, &swapped, MapEdit::SwapSides), state);
+}
+
+/// One joint after another under the first.
+fn beast(names: &[&str]) -> Arc<Asset> {
+    let joint = |(index, name): (usize, &&str)| Joint {
+        name: (*name).to_owned(),
+        parent: (index > 0).then_some(0),
+        rest: Transform::from_translation(Vec3::new(index as f32, 1.0, 0.0)),
+        ..Joint::default()
+    };
+    let skeleton = Skeleton::new(names.iter().enumerate().map(joint).collect()).expect("one root");
+    Arc::new(Asset { format: "test", skeleton, ..Asset::default() })
+}
+
+/// Which source each target follows, both by their numbers in the file, after the sides were swapped.
+fn check_swapped(model: &[&str], motion: &[&str], pairs: &[(usize, usize)], expected: &[(usize, usize)]) {
+    let mut library = Library::default();
+    library.set(Model::new("beast.glb".to_owned(), beast(model), Vec::new()));
+    library.set_motions(vec![Motion::new("run.bvh".to_owned(), beast(motion))]);
+    let mut state = ViewerState::default();
+    apply(&mut state, &library, Command::EditMap { motion: 0, edit: MapEdit::Clear });
+    for &(target, source) in pairs {
+        apply(&mut state, &library, Command::SetSource { motion: 0, target, source: Some(source) });
+    }
+    let swapped = edited(&library, &state, MapEdit::SwapSides);
+    let map = map(&library, &swapped);
+    let now: Vec<(usize, usize)> = (0..model.len())
+        .filter_map(|target| match source(&map, target)? {
+            SourceRef::Number(source) => Some((target, source)),
+            SourceRef::Name(_) => None,
+        })
+        .collect();
+    assert_eq!(now, expected, "{model:?} {motion:?}");
+}
+
+/// What is no human body has sides all the same, where names differ in nothing else.
+#[test]
+fn sides_of_beasts_are_told_by_their_names() {
+    let wings = ["trunk", "wing_l", "wing_r", "tail"];
+    check_swapped(&wings, &wings, &[(0, 0), (1, 1), (2, 2), (3, 3)], &[(0, 0), (1, 2), (2, 1), (3, 3)]);
+    // The motion's names say no side: the model's joints trade what they follow.
+    let numbered = ["a", "b", "c", "d"];
+    check_swapped(&wings, &numbered, &[(0, 0), (1, 1), (2, 3)], &[(0, 0), (1, 3), (2, 1)]);
+    check_swapped(&wings, &numbered, &[(0, 0), (1, 1)], &[(0, 0), (2, 1)]);
+    check_swapped(&numbered, &numbered, &[(0, 0), (1, 2)], &[(0, 0), (1, 2)]);
 }
 
 #[test]
