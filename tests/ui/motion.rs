@@ -338,6 +338,10 @@ fn a_joint_chosen_anywhere_opens_in_the_table() {
     assert!(harness.query_by_label("Source of Neck").is_some());
     assert_eq!(press(&mut harness, "Edit Neck"), [Command::SelectJoint(None)]);
     assert!(harness.query_by_label("Source of Neck").is_none());
+    // Far down, what opens is not left below the edge.
+    reach(&mut harness, "Edit LeftHand");
+    let inside = harness.get_by_label("Leave out scale").rect();
+    assert!(inside.bottom() < WIDE[1] - 100.0, "{inside:?}");
     // As a click in the picture does; the table scrolls to it.
     harness.state_mut().state.joint = Some(toes);
     harness.run();

@@ -27,6 +27,8 @@ pub(super) struct TableView {
     folded: HashSet<BodyPart>,
     /// The joint that was last scrolled to.
     scrolled_to: Option<usize>,
+    /// A joint was just chosen here: what opens under its line comes into sight, without more moving than that takes.
+    reveal: bool,
 }
 
 /// Whether the table can be ordered by parts of the body.
@@ -106,13 +108,17 @@ pub(super) fn show(
                 let joint = (!is_chosen).then_some(row.number);
                 // Already in sight: it was just pressed.
                 tab.table.scrolled_to = joint;
+                tab.table.reveal = joint.is_some();
                 out.commands.push(Command::SelectJoint(joint));
             }
             Some(Pressed::Source) => tab.picking = Some(Picking::new(pairing.index, row.number)),
             None => {}
         }
         if is_chosen {
-            detail::show(ui, shown, pairing, map, row, tab, out);
+            let opened = ui.scope(|ui| detail::show(ui, shown, pairing, map, row, tab, out)).response;
+            if std::mem::take(&mut tab.table.reveal) {
+                opened.scroll_to_me(None);
+            }
         }
     };
     if !by_body {
