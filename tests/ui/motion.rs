@@ -374,6 +374,14 @@ fn a_source_is_typed_in_the_table() {
     assert_eq!(enter("tail"), []);
     assert!(harness.query_by_label("No joint of the motion is called “tail”.").is_some());
     assert_eq!(map(&harness, 0).joints[&format!("#{neck}")].source, None);
+    // Escape takes back what was typed and leaves the joint chosen.
+    harness.get_by_label("Source of Neck").focus();
+    harness.run();
+    harness.get_by_label("Source of Neck").type_text("5");
+    harness.run();
+    assert_eq!(press_key(&mut harness, egui::Key::Escape), []);
+    assert_eq!(harness.get_by_label("Source of Neck").value().unwrap_or_default(), "");
+    assert_eq!(harness.state().state.joint, Some(neck));
 }
 
 #[test]

@@ -109,7 +109,7 @@ fn source_field(ui: &mut Ui, pairing: &Pairing<'_>, row: &Row, tab: &mut MotionT
     let filter = EventFilter { escape: true, ..EventFilter::default() };
     if field.has_focus() {
         ui.memory_mut(|memory| memory.set_focus_lock_filter(field.id, filter));
-        if ui.input(|input| input.key_pressed(Key::Escape)) {
+        if ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, Key::Escape)) {
             typed = None;
             field.surrender_focus();
             ui.ctx().request_repaint();
