@@ -59,7 +59,7 @@ pub(super) fn show(
         local.grab = pressed.and_then(|at| handle.under(shown, at));
     }
     if let Some(grab) = local.grab
-        && response.dragged()
+        && response.drag_delta() != Vec2::ZERO
     {
         let (turn, grab) = handle.turned(shown, grab, response.drag_delta());
         local.grab = Some(grab);

@@ -117,6 +117,8 @@ pub struct UiState {
     folded_of: Option<ModelId>,
     /// The joint the tree was last scrolled to.
     scrolled_to: Option<usize>,
+    /// The joint that it is scrolled to in the next pass.
+    scroll_next: Option<usize>,
 }
 
 impl Default for UiState {
@@ -151,6 +153,7 @@ impl Default for UiState {
             folded: HashSet::new(),
             folded_of: None,
             scrolled_to: None,
+            scroll_next: None,
         }
     }
 }

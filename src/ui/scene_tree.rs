@@ -12,6 +12,8 @@ use crate::library::Model;
 use crate::state::{Command, PoseSampler, degrees_by_hand};
 
 const ROW_HEIGHT: f32 = 26.0;
+/// Of the panel: with less, a joint that is turned by hand has it alone.
+const ROOMY_HEIGHT: f32 = 860.0;
 
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     let Some(model) = shown.library.active() else { return };
@@ -22,6 +24,14 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
         local.scrolled_to = None;
     }
     let chosen = shown.state.joint.and_then(|joint| model.asset.skeleton.joint_of_source(joint));
+    if let Some(joint) = chosen.filter(|_| local.turning && ui.available_height() < ROOMY_HEIGHT) {
+        // The sliders leave no room for the tree; another joint is chosen in the picture.
+        ScrollArea::vertical().id_salt("joint").auto_shrink([false, false]).show(ui, |ui| {
+            ui.add_space(4.0);
+            controls::card(ui, |ui| joint_card(ui, shown, model, joint, local, out));
+        });
+        return;
+    }
     if let Some(joint) = chosen {
         ui.add_space(4.0);
         controls::card(ui, |ui| joint_card(ui, shown, model, joint, local, out));
@@ -95,12 +105,18 @@ fn tree(ui: &mut Ui, shown: &Shown<'_>, model: &Model, local: &mut UiState, out:
         return;
     }
     let mut area = ScrollArea::vertical().id_salt("tree").auto_shrink([false, false]);
-    if local.scrolled_to != shown.state.joint {
+    if local.scrolled_to != shown.state.joint && local.scroll_next != shown.state.joint {
+        // The card of the joint has just taken its room; egui would spring back from where the tree could be before.
+        local.scroll_next = shown.state.joint;
+        ui.ctx().request_repaint();
+    } else if local.scrolled_to != shown.state.joint {
         local.scrolled_to = shown.state.joint;
         let at = rows.iter().position(|row| Some(asset.skeleton.source_index(row.joint)) == shown.state.joint);
         if let Some(at) = at {
             // A few rows above it stay in sight, to show where it hangs.
-            area = area.vertical_scroll_offset((at as f32 - 4.0).max(0.0) * ROW_HEIGHT);
+            let most = rows.len() as f32 * ROW_HEIGHT - ui.available_height();
+            let wanted = (at as f32 - 4.0) * ROW_HEIGHT;
+            area = area.vertical_scroll_offset(wanted.min(most).max(0.0));
         }
     }
     let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
@@ -117,7 +133,7 @@ fn tree(ui: &mut Ui, shown: &Shown<'_>, model: &Model, local: &mut UiState, out:
                 local.folded.contains(&source),
             ) {
                 Some(Pressed::Row) => {
-                    local.scrolled_to = Some(source);
+                    (local.scrolled_to, local.scroll_next) = (Some(source), Some(source));
                     out.commands.push(Command::SelectJoint((!chosen).then_some(source)));
                 }
                 Some(Pressed::Fold) => {

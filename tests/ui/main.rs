@@ -1,6 +1,7 @@
 //! The panels without a GPU: what is shown for a model, and which commands come of pressing things, found by label.
 
 mod bench;
+mod by_hand;
 mod clips;
 mod inspector;
 mod keys;

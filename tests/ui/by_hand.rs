@@ -1,0 +1,157 @@
+//! Turning joints by hand, comparing, and what can be taken out of the page.
+
+use egui::{PointerButton, Pos2, pos2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use gaitway::state::{ClipChoice, Command, Show};
+use gaitway::ui::{Saved, UiAction};
+
+use crate::bench::{Bench, NARROW, WIDE, drag, motion_bench, press, press_key, sample_bench};
+
+/// The left shin of the walker, as the file numbers it.
+const SHIN: usize = 15;
+
+fn turning(size: [f32; 2]) -> Harness<'static, Bench> {
+    let mut harness = sample_bench(size);
+    harness.state_mut().state.joint = Some(SHIN);
+    harness.state_mut().state.clip = ClipChoice::RestPose;
+    harness.state_mut().panels.turning = true;
+    harness.run();
+    harness
+}
+
+fn place_of_joint(bench: &Bench) -> Pos2 {
+    let asset = &bench.library.active().expect("a model").asset;
+    let joint = asset.skeleton.joint_of_source(SHIN).expect("a joint");
+    let world = bench.frame.characters[0].world_from_joint[joint.get()].translation;
+    let view = &bench.frame.view;
+    let at = view.projection_from_view * view.view_from_world * world.extend(1.0);
+    let (x, y) = (0.5 + 0.5 * at.x / at.w, 0.5 - 0.5 * at.y / at.w);
+    bench.picture.min + vec2(x * bench.picture.width(), y * bench.picture.height())
+}
+
+fn angles(commands: &[Command]) -> [f32; 3] {
+    let Some(Command::SetPose { joint: SHIN, degrees: Some(degrees) }) = commands.last() else {
+        panic!("{commands:?}")
+    };
+    *degrees
+}
+
+#[test]
+fn sliders_turn_the_chosen_joint_and_it_can_be_given_back() {
+    let mut harness = sample_bench(WIDE);
+    harness.state_mut().state.joint = Some(SHIN);
+    harness.run();
+    assert!(harness.query_by_label("Turn X").is_none());
+    assert!(harness.query_by_label_contains("Reset").is_none());
+    press(&mut harness, "Turn by hand");
+    harness.get_by_label("Turn X").set_value_accesskit(40.0);
+    harness.run();
+    assert!((harness.state().state.pose[&SHIN][0] - 40.0).abs() < 0.1);
+    assert_eq!(press(&mut harness, "Reset joint"), [Command::SetPose { joint: SHIN, degrees: None }]);
+    harness.get_by_label("Turn Z").set_value_accesskit(-20.0);
+    harness.run();
+    assert_eq!(press(&mut harness, "Reset all 1"), [Command::ClearPose]);
+    assert!(harness.state().state.pose.is_empty());
+}
+
+#[test]
+fn the_disc_turns_freely_and_the_camera_stays() {
+    for size in [WIDE, NARROW] {
+        let mut harness = turning(size);
+        let middle = place_of_joint(harness.state());
+        let commands = drag(&mut harness, middle, middle + vec2(30.0, 12.0), PointerButton::Primary);
+        assert!(commands.iter().all(|command| matches!(command, Command::SetPose { .. })), "{commands:?}");
+        assert!(angles(&commands).iter().any(|angle| angle.abs() > 5.0));
+    }
+}
+
+#[test]
+fn a_drag_beside_the_rings_turns_the_camera() {
+    let mut harness = turning(WIDE);
+    let corner = harness.state().picture.left_bottom() + vec2(30.0, -30.0);
+    let commands = drag(&mut harness, corner, corner + vec2(60.0, -10.0), PointerButton::Primary);
+    assert!(!commands.is_empty() && commands.iter().all(|command| matches!(command, Command::Orbit { .. })));
+}
+
+#[test]
+fn a_ring_turns_about_its_own_axis_alone() {
+    let mut harness = turning(WIDE);
+    let middle = place_of_joint(harness.state());
+    // Somewhere on a circle around the joint lies each ring; of a shin in the front view the one about X is seen from its
+    // edge, the one about Z openly.
+    let mut turned = Vec::new();
+    for step in 0..24 {
+        let mut harness = turning(WIDE);
+        let way = egui::Vec2::angled(step as f32 * std::f32::consts::TAU / 24.0);
+        let from = middle + 71.0 * way;
+        let commands = drag(&mut harness, from, from + 25.0 * way.rot90(), PointerButton::Primary);
+        if let Some(Command::SetPose { degrees: Some(degrees), .. }) = commands.last() {
+            turned.push(*degrees);
+        }
+    }
+    let alone = |degrees: &&[f32; 3]| degrees.iter().filter(|angle| angle.abs() > 2.0).count() == 1;
+    assert!(turned.iter().filter(alone).count() >= 6, "{turned:?}");
+    harness.run();
+}
+
+#[test]
+fn modes_are_compared_by_a_switch() {
+    let mut harness = sample_bench(WIDE);
+    press(&mut harness, "Display");
+    let split = Show { split: true, ..Show::default() };
+    assert_eq!(press(&mut harness, "Compare all three"), [Command::SetShow(split)]);
+    assert_eq!(harness.state().frame.panes, [3, 1]);
+    // A joint is found in any pane.
+    harness.state_mut().state.show.skeleton = true;
+    harness.run();
+    let (picture, place) = (harness.state().picture, place_of_joint(harness.state()));
+    let part = (place - picture.min) / picture.size();
+    let in_last = pos2(picture.left() + (2.0 + part.x) / 3.0 * picture.width(), place.y);
+    let commands = drag(&mut harness, in_last, in_last, PointerButton::Primary);
+    assert_eq!(commands, [Command::SelectJoint(Some(SHIN))]);
+}
+
+#[test]
+fn pictures_and_videos_are_asked_for() {
+    let mut harness = sample_bench(WIDE);
+    press(&mut harness, "View");
+    for label in ["Square", "Transparent background", "Save picture (PNG)", "Record one loop (WebM)"] {
+        harness.get_by_label(label).scroll_to_me();
+        harness.run();
+        press(&mut harness, label);
+    }
+    let picture = Saved::Picture { size: [1080, 1080], transparent: true };
+    assert_eq!(harness.state().actions, [UiAction::Save(picture), UiAction::Record]);
+}
+
+#[test]
+fn a_recording_shows_the_picture_alone_and_escape_ends_it() {
+    let mut harness = sample_bench(WIDE);
+    harness.state_mut().panels.recording = Some(0.5);
+    harness.run();
+    assert_eq!(harness.state().picture.size(), vec2(WIDE[0], WIDE[1]));
+    assert!(harness.query_by_label("Open…").is_none());
+    press_key(&mut harness, egui::Key::Escape);
+    assert_eq!(harness.state().actions, [UiAction::StopRecording]);
+}
+
+#[test]
+fn the_motion_tab_tells_the_fit_and_puts_the_source_on_the_stage() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, "Motion");
+    press(&mut harness, "Fit");
+    assert!(harness.query_by_label_contains("Choose a borrowed clip").is_some());
+    press(&mut harness, "Walk (2)");
+    assert!(harness.query_all_by_label_contains("Mean: 0.0").count() == 2, "a copy fits");
+    assert!(harness.query_by_label("Mapped: 100 %").is_some());
+    press(&mut harness, "Files");
+    harness.get_by_label("Show it beside the model").scroll_to_me();
+    harness.run();
+    assert_eq!(
+        press(&mut harness, "Show it beside the model"),
+        [Command::SetShow(Show { source: true, ..Show::default() })]
+    );
+    assert_eq!(harness.state().frame.characters.len(), 2);
+    assert_eq!(harness.query_all_by_label_contains("on the ground").count(), 2, "a lane for each foot");
+}
