@@ -7,8 +7,8 @@ mod inbox;
 mod native;
 mod open;
 mod png;
-mod run;
 mod record;
+mod run;
 mod save;
 mod scene_texture;
 
