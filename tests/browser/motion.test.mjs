@@ -185,7 +185,9 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
         const download = page.waitForEvent("download");
         await page.mouse.click(1237, 29);
         await page.waitForTimeout(500);
-        await page.mouse.click(1200, 93);
+        await page.mouse.click(1232, 93);
+        await page.waitForTimeout(500);
+        await page.mouse.click(1125, 344);
         const file = await download;
         assert.equal(file.suggestedFilename(), "Xbot-cosc422_Dance.glb");
         const base64 = fs.readFileSync(await file.path()).toString("base64");
@@ -203,10 +205,12 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
         await page.setViewportSize({ width: 1280, height: 800 });
         await page.waitForTimeout(500);
         const download = page.waitForEvent("download");
-        // The tab, then the button: the canvas has no elements to ask for.
+        // The tab, its part, then the button: the canvas has no elements to ask for.
         await page.mouse.click(1237, 29);
         await page.waitForTimeout(500);
-        await page.mouse.click(1200, 125);
+        await page.mouse.click(1232, 93);
+        await page.waitForTimeout(500);
+        await page.mouse.click(1125, 200);
         const file = await download;
         assert.equal(file.suggestedFilename(), "Xbot-cosc422_Dance.json");
         const saved = JSON.parse(fs.readFileSync(await file.path(), "utf8"));
