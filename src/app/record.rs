@@ -4,8 +4,10 @@ use super::App;
 use crate::state::{Command, active_clip, play_range};
 
 pub(super) struct Recording {
-    /// egui's time at which the first frame was shown; none until the panels are gone.
+    /// egui's time at which it began; none while the panels are still on the canvas.
     start_secs: Option<f64>,
+    /// Frames without panels that have been laid out.
+    bare_frames: u32,
     length_secs: f64,
     /// Put back afterwards.
     was_playing: bool,
@@ -13,48 +15,62 @@ pub(super) struct Recording {
 }
 
 impl App {
-    /// Begins with the next frame.
+    /// Clears the canvas for it; the recording begins when nothing but the picture is there.
     pub(super) fn record(&mut self) {
         let Some(model) = self.library.active() else { return };
         let Some(clip) = active_clip(model, &self.state) else { return };
         let range = play_range(model, clip, &self.state);
-        if let Err(error) = self.host.start_recording() {
-            self.tell(vec![error]);
-            return;
-        }
         self.recording = Some(Recording {
             start_secs: None,
+            bare_frames: 0,
             length_secs: range.length_secs() / self.state.speed,
             was_playing: self.state.playing,
             time_secs: self.state.time_secs,
         });
         self.panels.recording = Some(0.0);
+        self.apply(Command::SetPlaying(false));
         self.apply(Command::Seek(range.start_secs));
-        self.apply(Command::SetPlaying(true));
     }
 
     pub(super) fn go_on_recording(&mut self, context: &egui::Context) {
         let Some(recording) = &mut self.recording else { return };
+        context.request_repaint();
         let now_secs = context.input(|input| input.time);
-        let start_secs = *recording.start_secs.get_or_insert(now_secs);
+        let Some(start_secs) = recording.start_secs else {
+            // The first of these is the frame in which the button was pressed.
+            recording.bare_frames += 1;
+            if recording.bare_frames > 2 {
+                recording.start_secs = Some(now_secs);
+                match self.host.start_recording() {
+                    Ok(()) => self.apply(Command::SetPlaying(true)),
+                    Err(error) => {
+                        self.end_recording();
+                        self.tell(vec![error]);
+                    }
+                }
+            }
+            return;
+        };
         let share = (now_secs - start_secs) / recording.length_secs.max(1e-3);
         self.panels.recording = Some(share.clamp(0.0, 1.0) as f32);
         if share >= 1.0 {
             self.stop_recording(true);
         }
-        context.request_repaint();
     }
 
     /// `whole`: the round is over; else what there is of it is thrown away.
     pub(super) fn stop_recording(&mut self, whole: bool) {
-        let Some(recording) = self.recording.take() else { return };
-        self.panels.recording = None;
         let name = self.video_name();
         self.host.stop_recording(whole.then_some(name.as_str()));
+        self.end_recording();
+        self.toast(if whole { format!("Saved {name}.") } else { "The recording was ended.".to_owned() });
+    }
+
+    /// The panels come back, and what was playing before.
+    fn end_recording(&mut self) {
+        let Some(recording) = self.recording.take() else { return };
+        self.panels.recording = None;
         self.apply(Command::Seek(recording.time_secs));
         self.apply(Command::SetPlaying(recording.was_playing));
-        if !whole {
-            self.toast("The recording was ended.".to_owned());
-        }
     }
 }

@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock};
 
+use glam::Vec3;
+
 use super::ImageData;
 use super::extent::Extent;
 use super::motion::BorrowedClip;
@@ -27,7 +29,7 @@ pub struct Model {
     /// Clips of other files, made over for this one; they follow the asset's own.
     borrowed: Vec<BorrowedClip>,
     clip_titles: Vec<String>,
-    slots: OnceLock<Humanoid>,
+    recognized: OnceLock<(Humanoid, Option<Vec3>)>,
     rig: Rig,
     extent: Extent,
     swept: Mutex<BTreeMap<SweptKey, Bounds>>,
@@ -58,7 +60,7 @@ impl Model {
             images,
             borrowed: Vec::new(),
             clip_titles,
-            slots: OnceLock::new(),
+            recognized: OnceLock::new(),
             rig,
             extent,
             swept: Mutex::default(),
@@ -108,7 +110,19 @@ impl Model {
 
     /// Which joint is which part of a body; worked out once.
     pub fn body(&self) -> Body<'_> {
-        Body { asset: &self.asset, slots: self.slots.get_or_init(|| recognize(&self.asset).humanoid()) }
+        Body { asset: &self.asset, slots: &self.recognized().0 }
+    }
+
+    /// Where a body's toes and face point at rest, in the file's own axes; none for what is no body.
+    pub fn forward(&self) -> Option<Vec3> {
+        self.recognized().1
+    }
+
+    fn recognized(&self) -> &(Humanoid, Option<Vec3>) {
+        self.recognized.get_or_init(|| {
+            let found = recognize(&self.asset);
+            (found.humanoid(), found.facing.forward)
+        })
     }
 
     /// Names to show a person: one per clip, never empty, never twice the same.

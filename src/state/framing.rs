@@ -1,6 +1,8 @@
 //! Where the camera goes by itself: the whole clip in the picture, from the front, a little from the side and above.
 
-use glam::{Affine3A, Mat3A, Vec3, Vec3A};
+use std::f32::consts::{FRAC_PI_2, PI};
+
+use glam::{Affine3A, Mat3A, Vec2, Vec3, Vec3A};
 
 use super::playhead::{PoseSampler, active_clip, world_from_model};
 use super::stage::source_on_stage;
@@ -60,12 +62,28 @@ pub fn resolve_camera(library: &Library, state: &ViewerState, aspect: f32) -> Or
     };
     match state.camera {
         CameraChoice::Orbit(orbit) => orbit,
-        CameraChoice::Auto => auto(AUTO_YAW_RADIANS, AUTO_PITCH_RADIANS),
+        CameraChoice::Auto => auto(front_yaw_radians(library, state) + AUTO_YAW_RADIANS, AUTO_PITCH_RADIANS),
         CameraChoice::File(index) => library
             .active()
             .and_then(|model| file_orbit(library, model, state, index))
             .unwrap_or_else(|| auto(AUTO_YAW_RADIANS, AUTO_PITCH_RADIANS)),
     }
+}
+
+/// From where the model is seen from the front. glTF 2.0 §3.4 has it face +Z; a body that plainly faces another way at rest is
+/// looked at from there, in quarter turns.
+pub fn front_yaw_radians(library: &Library, state: &ViewerState) -> f32 {
+    let forward = library.active().and_then(Model::forward);
+    let Some(forward) = forward.map(|forward| world_from_model(state.up).transform_vector3(forward)) else {
+        return 0.0;
+    };
+    let level = Vec2::new(forward.x, forward.z);
+    if level.length() < 0.7 * forward.length() {
+        return 0.0;
+    }
+    let quarters = (level.x.atan2(level.y) / FRAC_PI_2).round();
+    // Half a turn is the same either way, and −0 is 0.
+    if quarters == -2.0 { PI } else { quarters * FRAC_PI_2 + 0.0 }
 }
 
 /// Everything in the picture, seen from where the camera is now.

@@ -10,6 +10,9 @@ use super::{
 
 /// Call last; `picture` is the rectangle the picture has.
 pub fn overlays(ui: &mut Ui, picture: Rect, shown: Shown<'_>, local: &mut UiState, out: &mut Output) {
+    if local.recording.is_some() {
+        return;
+    }
     if is_narrow(ui) && !shown.state.embed {
         sheet(ui, &shown, local, out);
     } else {
@@ -190,6 +193,7 @@ fn help(context: &Context, local: &mut UiState) {
             ("Right drag, shift drag", "Move the picture"),
             ("Wheel, pinch", "Nearer, farther"),
             ("Two fingers", "Move the picture"),
+            ("Drag a ring", "Turn the chosen joint, with “Turn by hand” in the tab Scene"),
             ("Click a joint", "Choose it; in the tab Motion, mend what it follows"),
             ("Double click", "Fit everything into the picture"),
         ];

@@ -4,7 +4,9 @@ use egui::{RichText, Ui};
 
 use super::controls::{self, SliderSettings};
 use super::{Output, Saved, Shown, UiAction, UiState, style};
-use crate::state::{Background, CameraChoice, Command, OrbitCamera, UpAxis, frame_all, resolve_camera};
+use crate::state::{
+    Background, CameraChoice, Command, OrbitCamera, UpAxis, frame_all, front_yaw_radians, resolve_camera,
+};
 
 /// Of the picture that is saved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -131,7 +133,7 @@ fn camera(ui: &mut Ui, shown: &Shown<'_>, aspect: f32, out: &mut Output) {
 fn look_from(shown: &Shown<'_>, aspect: f32, yaw_degrees: f32, pitch_degrees: f32) -> Command {
     let mut state = shown.state.clone();
     state.camera = CameraChoice::Orbit(OrbitCamera {
-        yaw_radians: yaw_degrees.to_radians(),
+        yaw_radians: front_yaw_radians(shown.library, shown.state) + yaw_degrees.to_radians(),
         pitch_radians: pitch_degrees.to_radians(),
         ..resolve_camera(shown.library, shown.state, aspect)
     });

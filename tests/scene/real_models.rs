@@ -3,7 +3,7 @@
 use gaitway::asset::Asset;
 use gaitway::frame::{Frame, evaluate, pose_document};
 use gaitway::library::{Library, inspect};
-use gaitway::state::{ClipChoice, ViewerState, active_clip};
+use gaitway::state::{ClipChoice, ViewerState, active_clip, front_yaw_radians};
 
 use crate::data::open;
 
@@ -124,4 +124,21 @@ fn following_keeps_a_runner_in_the_picture() {
     let in_place = model.clip_bounds(None, Some(0), true).size();
     let whole = model.clip_bounds(None, Some(0), false).size();
     assert!(in_place.max_element() < 0.9 * whole.max_element(), "{in_place} {whole}");
+}
+
+/// By their own pages' pictures, and by VRM 0's rule that avatars face −Z.
+#[test]
+fn bodies_are_looked_at_from_the_front() {
+    let fronts = [
+        ("threejs/Soldier.glb", 180.0),
+        ("vrm/vrm0_cryptovoxels.vrm", 180.0),
+        ("khronos/CesiumMan/glTF-Binary/CesiumMan.glb", 90.0),
+        ("threejs/Xbot.glb", 0.0),
+        ("kaykit/Knight.glb", 0.0),
+        ("khronos/Fox/glTF-Binary/Fox.glb", 0.0),
+    ];
+    for (path, degrees) in fronts {
+        let Some(library) = open(path) else { continue };
+        assert_eq!(front_yaw_radians(&library, &ViewerState::default()).to_degrees(), degrees, "{path}");
+    }
 }
