@@ -3,32 +3,36 @@
 // `{gaitway: 1, event}`. It never gets to know anything of files that a person dropped or chose here.
 
 const READS = ["state", "pose", "stats", "screenshot"];
-const SETS = ["ready", "open", "apply"];
 const WITHHELD = "withheld: the person at this page has opened files of their own; what they show stays here";
 
 /** Set by shell.js before it takes the first file. */
 let shell = null;
 addEventListener("gaitway:shell", ({ detail }) => (shell = detail), { once: true });
 
+const CALLS = {
+  ready: async () => void (await window.gaitway.ready),
+  open: (...given) => shell.open(...given),
+  apply: (...given) => window.gaitway.apply(...given),
+  ...Object.fromEntries(READS.map((call) => [call, () => window.gaitway[call]()])),
+};
+
 async function answer(call, given) {
-  if (call === "ready") return void (await window.gaitway.ready);
-  if (READS.includes(call)) {
-    if (shell.isPrivate()) throw new Error(WITHHELD);
-    const result = await window.gaitway[call]();
-    // A file may have been dropped meanwhile.
-    if (shell.isPrivate()) throw new Error(WITHHELD);
-    return result;
-  }
-  if (!SETS.includes(call)) throw new Error(`${call}: there is no such call; there are: ${[...SETS, ...READS].join(", ")}`);
-  const wasPrivate = shell.isPrivate();
+  if (!Object.hasOwn(CALLS, call)) throw new Error(`${call}: there is no such call; there are: ${Object.keys(CALLS).join(", ")}`);
+  const [wasPrivate, seen] = [shell.isPrivate(), shell.ownSeen()];
+  if (wasPrivate && READS.includes(call)) throw new Error(WITHHELD);
+  // A file may have been dropped meanwhile, and gone again.
+  const isPrivate = () => wasPrivate || shell.isPrivate() || shell.ownSeen() !== seen;
+  let result;
   try {
-    const result = await (call === "open" ? shell.open(...given) : window.gaitway.apply(...given));
-    // The document that opening gives lists borrowed clips too.
-    return wasPrivate || shell.isPrivate() ? undefined : result;
+    result = await CALLS[call](...given);
   } catch (error) {
     // Messages name joints and files.
-    throw wasPrivate || shell.isPrivate() ? new Error(WITHHELD) : error;
+    throw isPrivate() ? new Error(WITHHELD) : error;
   }
+  if (!isPrivate()) return result;
+  if (READS.includes(call)) throw new Error(WITHHELD);
+  // The document that opening gives lists borrowed clips too.
+  return undefined;
 }
 
 function tell(event) {

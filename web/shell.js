@@ -11,7 +11,7 @@ const NAMES = { webgpu: "WebGPU", webgl2: "WebGL2" };
 /** What is shown now, so that it can be shown again: the items that were opened last and those that are borrowed from (none: those of the link), and the link. */
 const kept = { items: [], motionItems: [], link: location.hash.slice(1) };
 /** Which parts of what is shown are a person's own files: see `isPrivate`. */
-const own = { model: false, motion: false, map: false };
+const own = { model: false, motion: false, map: Object.values(history.state?.own ?? {}).some(Boolean) };
 /** What was opened and not taken, of which the app may still make something: `{items, isOwn}`. */
 let refused = null;
 /** Compiled once for all instances. */
@@ -95,6 +95,7 @@ function stopped(message) {
 }
 
 function end(instance) {
+  stopRecording(null);
   if (app === instance) app = null;
   try {
     instance?.destroy();
@@ -344,11 +345,11 @@ function record() {
   visit.typed = null;
   const address = `#${publicLink(kept.link)}`;
   if (files === visit.files) {
-    history.replaceState({ gaitway: visit.number }, "", address);
+    history.replaceState({ gaitway: visit.number, own: { ...own } }, "", address);
   } else {
     lastVisit += 1;
     [visit.number, visit.files] = [lastVisit, files];
-    history.pushState({ gaitway: visit.number }, "", address);
+    history.pushState({ gaitway: visit.number, own: { ...own } }, "", address);
   }
   remember();
 }
@@ -380,7 +381,7 @@ addEventListener("popstate", ({ state }) => {
   const link = location.hash.slice(1);
   // What has not started yet begins with this one.
   if (app === null) kept.link = link;
-  else follow(link, visited.get(visit.number));
+  else follow(link, { own: state?.own, ...visited.get(visit.number) });
 });
 
 let follows = 0;
@@ -408,7 +409,8 @@ async function follow(link, { items = [], motionItems = [], link: heldLink = lin
     if (!again && !isOther && heldLink === kept.link) return;
     const all = again || (isOther && items.length + motionItems.length === 0);
     const { problems } = loaded(await unlessStopped(current, current.follow_link(heldLink, all)));
-    own.map &&= heldOwn?.map === true;
+    // What the address says of a person's own files (their clips, maps, poses) is as much theirs.
+    own.map = Object.values(heldOwn ?? {}).some(Boolean);
     lacking(problems);
   } catch (error) {
     lacking([error.message], true);
@@ -510,12 +512,15 @@ async function openAll(items, { as, isOwn = true } = {}) {
 
 /** Files of a person's own that are on their way to the screen. */
 let ownOnTheWay = 0;
+/** How often there were any: it tells what has come and gone meanwhile. */
+let ownSeen = 0;
 
 /** Reads and shows items, and holds on to them. */
 async function bring(items, as, isOwn) {
   const isLocal = !items.every((item) => typeof item === "string");
   const isOwnNow = isLocal && isOwn;
   ownOnTheWay += isOwnNow ? 1 : 0;
+  ownSeen += isOwnNow ? 1 : 0;
   try {
     const current = app;
     const answer = await unlessStopped(current, (async () => current.open(await read(items), as))());
@@ -524,9 +529,8 @@ async function bring(items, as, isOwn) {
     const held = isLocal ? items : [];
     if (shown === "model") {
       [kept.items, own.model] = [held, isOwnNow];
-      // Motions may come along in the same set; those that are there stay.
-      const isSet = held.length > 1 || /\.zip$/i.test(held[0]?.name ?? "");
-      own.motion ||= (isOwnNow && isSet) || refused?.isOwn === true;
+      // Motions may come along in the same set or archive; those that are there stay.
+      own.motion ||= isOwnNow || refused?.isOwn === true;
     }
     if (shown === "motion") [kept.motionItems, own.motion, own.map] = [held, isOwnNow, false];
     // A set of motions may have a map in it.
@@ -821,4 +825,4 @@ launch(forced()).then(
 );
 
 // For embed.js.
-dispatchEvent(new CustomEvent("gaitway:shell", { detail: { isPrivate, open: (items, { as } = {}) => openAll(items, { as, isOwn: false }) } }));
+dispatchEvent(new CustomEvent("gaitway:shell", { detail: { isPrivate, ownSeen: () => ownSeen, open: (items, { as } = {}) => openAll(items, { as, isOwn: false }) } }));

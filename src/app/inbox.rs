@@ -23,6 +23,8 @@ pub enum Message {
     /// As `OpenFailed`, but whoever asked for it says what was wrong.
     OpenGivenUp,
     Commands(Vec<Command>),
+    /// Something that was asked for cannot be had; the message is shown.
+    Failed(String),
     /// A file that took its time is there, under this name.
     Save(String, Vec<u8>),
     Script(ScriptCall),

@@ -91,6 +91,7 @@ impl App {
                     time_secs: 0.0,
                     range: None,
                     morph: Default::default(),
+                    pose: Default::default(),
                     joint: None,
                     camera: Default::default(),
                     up: Default::default(),

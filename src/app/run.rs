@@ -10,7 +10,7 @@ use super::{Host, Inbox, Message, Opening, Reply, ScriptCall, device, encode_png
 use crate::files::{Contents, Role, set_largest_image};
 use crate::formats::FileSet;
 use crate::frame::{Frame, evaluate, pose_document};
-use crate::library::{Library, inspect};
+use crate::library::{Library, ModelId, inspect};
 use crate::render::read_pixels;
 use crate::state::{
     CameraChoice, Command, History, ViewerState, frame_all, from_object, resolve_camera, source_on_stage, to_link,
@@ -51,6 +51,8 @@ pub struct App {
     /// Times the panels were shown: stands still while nothing changes.
     frames: u64,
     pub(super) recording: Option<Recording>,
+    /// What was brought to the device: the model, and the source beside it.
+    staged: Option<(ModelId, Option<ModelId>)>,
 }
 
 impl App {
@@ -97,6 +99,7 @@ impl App {
             cpu_secs: 0.0,
             frames: 0,
             recording: None,
+            staged: None,
         };
         app.show(contents, state)?;
         inbox_ready(inbox);
@@ -142,6 +145,7 @@ impl App {
                 self.panels.error = Some(error);
             }
             Message::OpenGivenUp => self.panels.progress = None,
+            Message::Failed(error) => self.tell(vec![error]),
             Message::Save(name, bytes) => {
                 self.host.save_file(&name, &bytes);
                 self.toast(format!("Saved {name}."));
@@ -253,7 +257,7 @@ impl App {
                 wasm_bindgen_futures::spawn_local(async move {
                     inbox.send(match picture.await {
                         Ok(bytes) => Message::Save(name, bytes),
-                        Err(error) => Message::OpenFailed(error),
+                        Err(error) => Message::Failed(error),
                     });
                 });
             }
@@ -327,9 +331,12 @@ impl App {
         };
         let size = [pixels(rect.left(), rect.right()), pixels(rect.top(), rect.bottom())];
         if self.dirty || self.drawn_size != Some(size) {
-            if let (Some(model), Some(source)) = (self.library.active(), source_on_stage(&self.library, &self.state)) {
+            let source = source_on_stage(&self.library, &self.state).map(|source| source.model);
+            let key = self.library.active().map(|model| (model.id, source.map(|source| source.id)));
+            if let Some(model) = self.library.active().filter(|_| self.staged != key) {
                 // A source too large for the device is shown by its bones alone.
-                let _ = self.scene.upload(model, Some(source.model));
+                let _ = self.scene.upload(model, source);
+                self.staged = key;
             }
             evaluate(&self.library, &self.state, size[0] as f32 / size[1] as f32, &mut self.frame);
             self.scene.draw(&self.frame, size);

@@ -65,9 +65,8 @@ impl App {
         let state = ViewerState { background, ..self.state.clone() };
         let mut frame = Frame::default();
         evaluate(&self.library, &state, size[0] as f32 / size[1] as f32, &mut frame);
-        self.scene.draw(&frame, size);
+        let (device, queue, texture) = self.scene.draw_apart(&frame, size);
         self.dirty = true;
-        let (device, queue, texture) = self.scene.last_picture();
         async move {
             let pixels = read_pixels(&device, &queue, &texture).await;
             let png = encode_png(texture.width(), texture.height(), &pixels);

@@ -45,6 +45,15 @@ impl SceneTexture {
         }
     }
 
+    /// Draws a picture that is not for the screen, into a texture that nothing else will be drawn into.
+    pub fn draw_apart(&mut self, frame: &Frame, size: [u32; 2]) -> (wgpu::Device, wgpu::Queue, wgpu::Texture) {
+        self.renderer.draw(&self.gpu.device, &self.gpu.queue, frame, size);
+        let picture = self.last_picture();
+        self.renderer.give_output_away(&self.gpu.device);
+        self.shown = None;
+        picture
+    }
+
     /// What paints the last picture into a rectangle of its size.
     pub fn paint(&self, rect: egui::Rect) -> egui::PaintCallback {
         Callback::new_paint_callback(rect, Paint)

@@ -200,6 +200,11 @@ impl Renderer {
         &self.targets.output_view
     }
 
+    /// The next picture gets a texture of its own; the last one's stays with whoever holds it.
+    pub fn give_output_away(&mut self, device: &wgpu::Device) {
+        self.targets = Targets::new(device, [1, 1], self.options.samples);
+    }
+
     /// The texture of the last picture.
     pub fn output(&self) -> &wgpu::Texture {
         &self.targets.output
@@ -266,8 +271,8 @@ impl Renderer {
         pass.set_bind_group(0, &self.frame_group, &[]);
         pass.set_bind_group(1, &self.light_group, &[]);
         for pane in 0..panes.count() {
-            let [x, y] = panes.corner(pane);
-            pass.set_viewport(x, y, panes.size[0], panes.size[1], 0.0, 1.0);
+            let [x, y, width, height] = panes.rect(pane);
+            pass.set_viewport(x, y, width, height, 0.0, 1.0);
             let stats = self.draw_pane(&mut pass, background, ground, pane);
             self.stats.draw_calls += stats.draw_calls;
             self.stats.triangles += stats.triangles;
@@ -344,8 +349,12 @@ impl Panes {
         self.columns * self.rows
     }
 
-    fn corner(&self, pane: u32) -> [f32; 2] {
-        [(pane % self.columns) as f32 * self.size[0], (pane / self.columns) as f32 * self.size[1]]
+    /// Left, top, width and height in whole pixels: OpenGL knows no others.
+    fn rect(&self, pane: u32) -> [f32; 4] {
+        let edges = |at: u32, size: f32| [at, at + 1].map(|edge| (edge as f32 * size).round());
+        let [left, right] = edges(pane % self.columns, self.size[0]);
+        let [top, bottom] = edges(pane / self.columns, self.size[1]);
+        [left, top, right - left, bottom - top]
     }
 }
 

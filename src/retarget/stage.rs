@@ -17,7 +17,7 @@ pub struct StagePair {
 
 impl StagePair {
     /// The angle between the turns of the two away from their rests, radians. Both worlds are seen in the model's space, or
-    /// both turned alike; scales do not matter. None where a matrix is singular.
+    /// both turned alike; scales do not matter. None where a matrix is singular or mirrored.
     pub fn error_radians(&self, world_from_target: &Affine3A, world_from_source: &Affine3A) -> Option<f32> {
         let target = rotation(world_from_target)? * self.target_rest.conjugate();
         let source = rotation(world_from_source)? * self.source_rest.conjugate();
@@ -30,7 +30,8 @@ fn rotation(world: &Affine3A) -> Option<Quat> {
     let axis = |axis: Vec3A| axis.try_normalize();
     let matrix =
         Mat3A::from_cols(axis(world.matrix3.x_axis)?, axis(world.matrix3.y_axis)?, axis(world.matrix3.z_axis)?);
-    Some(Quat::from_mat3a(&matrix).normalize())
+    // A mirrored joint has no rotation that says how it is turned.
+    (matrix.determinant() > 0.0).then(|| Quat::from_mat3a(&matrix).normalize())
 }
 
 impl Retargeting<'_> {

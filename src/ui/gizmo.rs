@@ -82,7 +82,9 @@ fn handle(response: &Response, shown: &Shown<'_>) -> Option<Handle> {
     let matrix = character.world_from_joint.get(index.get())?;
     let axes = [matrix.matrix3.x_axis, matrix.matrix3.y_axis, matrix.matrix3.z_axis];
     let [x, y, z] = [axes[0].try_normalize()?, axes[1].try_normalize()?, axes[2].try_normalize()?];
-    let world = Quat::from_mat3a(&Mat3A::from_cols(x, y, z)).normalize();
+    let axes = Mat3A::from_cols(x, y, z);
+    // The rings of a mirrored joint would turn it the wrong way round: it has its sliders.
+    let world = (axes.determinant() > 0.0).then(|| Quat::from_mat3a(&axes).normalize())?;
     let rest = model.asset.skeleton.rest().locals.get(index.get())?.rotation;
     let local = match shown.state.pose.get(&joint) {
         Some(&degrees) => rotation_by_hand(rest, degrees),

@@ -170,7 +170,7 @@ impl Turn {
     /// What was typed as long as it is what the map says.
     fn of(map: &JointMap, target: usize, typed: Option<Self>) -> Self {
         let rotation = map.joints.get(&format!("#{target}")).map_or(Quat::IDENTITY, |entry| entry.correction);
-        let same = |turn: &Self| turn.target == target && turn.rotation.dot(rotation).abs() > 1.0 - 1e-6;
+        let same = |turn: &Self| turn.target == target && turn.rotation.abs_diff_eq(rotation, 1e-6);
         typed.filter(same).unwrap_or_else(|| {
             let (x, y, z) = rotation.to_euler(EulerRot::XYZ);
             // Whole tenths of a degree stay whole; minus nothing is nothing.
