@@ -529,8 +529,9 @@ async function bring(items, as, isOwn) {
     const held = isLocal ? items : [];
     if (shown === "model") {
       [kept.items, own.model] = [held, isOwnNow];
-      // Motions may come along in the same set or archive; those that are there stay.
-      own.motion ||= isOwnNow || refused?.isOwn === true;
+      // Motions may come along in the same set, or in an archive whatever its name; those that are there stay.
+      const mayBring = held.length > 1 || !/\.(glb|gltf|vrm)$/i.test(held[0]?.name ?? "") || document.borrowed_clips?.length > 0;
+      own.motion ||= (isOwnNow && mayBring) || refused?.isOwn === true;
     }
     if (shown === "motion") [kept.motionItems, own.motion, own.map] = [held, isOwnNow, false];
     // A set of motions may have a map in it.
