@@ -587,6 +587,8 @@ async function openByHand(items, options) {
   try {
     await open(items, options);
   } catch (error) {
+    // The app takes note of it in its next frame; said sooner, what was wrong until then would be said after it.
+    await frames(2);
     sayProblem(error.message);
   }
   focusCanvas();

@@ -141,3 +141,15 @@ export function coloursOf({ rgba }) {
   for (let at = 0; at < rgba.length; at += 4) colours.add(rgba.readUInt32LE(at));
   return colours.size;
 }
+
+/** Waits until nothing has been drawn for a while: what was resized, pressed or scrolled is in its place. */
+export async function untilStill(page) {
+  const frames = () => page.evaluate(() => window.gaitway.stats().frames);
+  let [before, still] = [await frames(), 0];
+  while (still < 4) {
+    await page.waitForTimeout(200);
+    const now = await frames();
+    still = now === before ? still + 1 : 0;
+    before = now;
+  }
+}

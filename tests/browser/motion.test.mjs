@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import fs from "node:fs";
 import { after, before, describe, test } from "node:test";
 import { skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, apply, drop, meanDifference, open, picture, pose, startSite, state, until, whenReady } from "./browser.mjs";
+import { BACK_ENDS, apply, drop, meanDifference, open, picture, pose, startSite, state, until, untilStill, whenReady } from "./browser.mjs";
 
 const XBOT = "threejs/Xbot.glb";
 const XBOT_CLIPS = 7;
@@ -181,12 +181,12 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
         await apply(page, { t: 1.5, play: 0 });
         const shown = await pose(page);
         await page.setViewportSize({ width: 1280, height: 800 });
-        await page.waitForTimeout(500);
+        await untilStill(page);
         const download = page.waitForEvent("download");
         await page.mouse.click(1237, 29);
-        await page.waitForTimeout(500);
+        await untilStill(page);
         await page.mouse.click(1232, 93);
-        await page.waitForTimeout(500);
+        await untilStill(page);
         await page.mouse.click(1125, 344);
         const file = await download;
         assert.equal(file.suggestedFilename(), "Xbot-cosc422_Dance.glb");
@@ -202,14 +202,15 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
 
       onPage("the map in force is handed over as a file", model, async (page) => {
         await open(page, site.data(DANCE));
+        await apply(page, { play: 0 });
         await page.setViewportSize({ width: 1280, height: 800 });
-        await page.waitForTimeout(500);
+        await untilStill(page);
         const download = page.waitForEvent("download");
         // The tab, its part, then the button: the canvas has no elements to ask for.
         await page.mouse.click(1237, 29);
-        await page.waitForTimeout(500);
+        await untilStill(page);
         await page.mouse.click(1232, 93);
-        await page.waitForTimeout(500);
+        await untilStill(page);
         await page.mouse.click(1125, 200);
         const file = await download;
         assert.equal(file.suggestedFilename(), "Xbot-cosc422_Dance.json");

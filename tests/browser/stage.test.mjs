@@ -4,24 +4,12 @@ import assert from "node:assert/strict";
 import fs from "node:fs";
 import { after, before, describe, test } from "node:test";
 import { skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, apply, pose, startSite, state } from "./browser.mjs";
+import { BACK_ENDS, apply, pose, startSite, state, untilStill } from "./browser.mjs";
 
 const SOLDIER = "threejs/Soldier.glb";
 const XBOT = "threejs/Xbot.glb";
 /** Soldier's left forearm, as the file numbers its nodes. */
 const FOREARM = "mixamorig:LeftForeArm";
-
-/** Waits until nothing has been drawn for a while: what was resized, pressed or scrolled is in its place. */
-async function untilStill(page) {
-  const frames = () => page.evaluate(() => window.gaitway.stats().frames);
-  let [before, still] = [await frames(), 0];
-  while (still < 4) {
-    await page.waitForTimeout(200);
-    const now = await frames();
-    still = now === before ? still + 1 : 0;
-    before = now;
-  }
-}
 
 for (const renderer of BACK_ENDS)
   describe(`stage on ${renderer}`, { skip: skipWithoutData }, () => {
