@@ -36,6 +36,11 @@ impl Transform {
         Self { translation: matrix.w_axis.truncate(), rotation, scale }
     }
 
+    /// Whether the scale has no zero and mirrors nothing: only then does the rotation say all of how a joint is turned.
+    pub fn is_upright(&self) -> bool {
+        self.scale.min_element() > 0.0
+    }
+
     pub fn to_affine(&self) -> Affine3A {
         Affine3A::from_scale_rotation_translation(self.scale, self.rotation, self.translation)
     }

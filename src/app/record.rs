@@ -27,7 +27,7 @@ impl App {
             was_playing: self.state.playing,
             time_secs: self.state.time_secs,
         });
-        self.panels.recording = Some(0.0);
+        self.panels.recording = true;
         self.apply(Command::SetPlaying(false));
         self.apply(Command::Seek(range.start_secs));
     }
@@ -51,9 +51,7 @@ impl App {
             }
             return;
         };
-        let share = (now_secs - start_secs) / recording.length_secs.max(1e-3);
-        self.panels.recording = Some(share.clamp(0.0, 1.0) as f32);
-        if share >= 1.0 {
+        if now_secs - start_secs >= recording.length_secs {
             self.stop_recording(true);
         }
     }
@@ -69,7 +67,7 @@ impl App {
     /// The panels come back, and what was playing before.
     fn end_recording(&mut self) {
         let Some(recording) = self.recording.take() else { return };
-        self.panels.recording = None;
+        self.panels.recording = false;
         self.apply(Command::Seek(recording.time_secs));
         self.apply(Command::SetPlaying(recording.was_playing));
     }

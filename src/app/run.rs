@@ -227,9 +227,8 @@ impl App {
         );
         let refits = matches!(command, Command::SetUp(_));
         self.history.apply(&mut self.state, &self.library, command);
-        if refits && self.state.camera != CameraChoice::Auto {
-            let orbit = frame_all(&self.library, &self.state, aspect);
-            self.history.apply(&mut self.state, &self.library, Command::SetCamera(CameraChoice::Orbit(orbit)));
+        if refits {
+            self.apply(Command::FrameAll);
         }
         if is_about_motion {
             let problems = self.refresh_motion();

@@ -230,7 +230,7 @@ impl Model {
     }
 }
 
-const DEFAULT_FRAMES_PER_SEC: f64 = 30.0;
+pub(super) const DEFAULT_FRAMES_PER_SEC: f64 = 30.0;
 
 /// Frames per second that the keys of a clip were set at, as far as their times tell.
 pub(super) fn frames_per_sec(clip: &Clip) -> f64 {

@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use glam::Affine3A;
 
-use super::model::frames_per_sec;
+use super::model::{DEFAULT_FRAMES_PER_SEC, frames_per_sec};
 use super::{Model, ModelId};
 use crate::anim::{Clip, JointIndex};
 use crate::asset::{Asset, Humanoid};
@@ -121,7 +121,7 @@ pub(super) fn borrow(
             motion: index,
             source_clip,
             root,
-            frames_per_sec: motion.asset.clips.get(source_clip).map_or(30.0, frames_per_sec),
+            frames_per_sec: motion.asset.clips.get(source_clip).map_or(DEFAULT_FRAMES_PER_SEC, frames_per_sec),
             model_from_source: pair.model_from_source(),
             pairs: pair.stage_pairs(),
             map: shared.clone(),

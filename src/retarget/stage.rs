@@ -1,9 +1,9 @@
 //! The source beside its target: where it stands in the model's space, and how far each pair is apart.
 
-use glam::{Affine3A, DAffine3, Mat3A, Quat, Vec3A};
+use glam::{Affine3A, DAffine3, Quat};
 
 use super::bake::Retargeting;
-use crate::anim::JointIndex;
+use crate::anim::{JointIndex, Transform};
 
 /// A joint that follows another. `target_rest` and `source_rest` are rotations of the aligned rests in the model's space:
 /// both joints turn away from theirs alike.
@@ -19,19 +19,14 @@ impl StagePair {
     /// The angle between the turns of the two away from their rests, radians. Both worlds are seen in the model's space, or
     /// both turned alike; scales do not matter. None where a matrix is singular or mirrored.
     pub fn error_radians(&self, world_from_target: &Affine3A, world_from_source: &Affine3A) -> Option<f32> {
+        let rotation = |world: &Affine3A| {
+            Some(Transform::from_matrix(&(*world).into())).filter(Transform::is_upright).map(|world| world.rotation)
+        };
         let target = rotation(world_from_target)? * self.target_rest.conjugate();
         let source = rotation(world_from_source)? * self.source_rest.conjugate();
         let turn = target.conjugate() * source;
         Some(2.0 * turn.xyz().length().atan2(turn.w.abs()))
     }
-}
-
-fn rotation(world: &Affine3A) -> Option<Quat> {
-    let axis = |axis: Vec3A| axis.try_normalize();
-    let matrix =
-        Mat3A::from_cols(axis(world.matrix3.x_axis)?, axis(world.matrix3.y_axis)?, axis(world.matrix3.z_axis)?);
-    // A mirrored joint has no rotation that says how it is turned.
-    (matrix.determinant() > 0.0).then(|| Quat::from_mat3a(&matrix).normalize())
 }
 
 impl Retargeting<'_> {

@@ -52,21 +52,21 @@ pub fn pane_aspect(state: &ViewerState, aspect: f32) -> f32 {
     aspect * rows as f32 / columns as f32
 }
 
-/// The orbit camera that shows what the state asks for in a picture of this aspect ratio (width over height). A camera of the file
-/// becomes the orbit camera nearest to it: same place and direction, no roll.
+/// The orbit camera that shows what the state asks for in a picture of this aspect ratio (width over height). A camera of the
+/// file becomes the orbit camera nearest to it: same place and direction, no roll.
 pub fn resolve_camera(library: &Library, state: &ViewerState, aspect: f32) -> OrbitCamera {
     let aspect = pane_aspect(state, aspect);
-    let auto = |yaw, pitch| match library.active() {
-        Some(_) => fit(resolved_bounds(library, state), yaw, pitch, state.fov_degrees, aspect),
-        None => OrbitCamera { yaw_radians: yaw, pitch_radians: pitch, distance: 3.0, target: Vec3::ZERO },
+    let auto = || {
+        let (yaw_radians, pitch_radians) = (front_yaw_radians(library, state) + AUTO_YAW_RADIANS, AUTO_PITCH_RADIANS);
+        match library.active() {
+            Some(_) => fit(resolved_bounds(library, state), yaw_radians, pitch_radians, state.fov_degrees, aspect),
+            None => OrbitCamera { yaw_radians, pitch_radians, distance: 3.0, target: Vec3::ZERO },
+        }
     };
     match state.camera {
         CameraChoice::Orbit(orbit) => orbit,
-        CameraChoice::Auto => auto(front_yaw_radians(library, state) + AUTO_YAW_RADIANS, AUTO_PITCH_RADIANS),
-        CameraChoice::File(index) => library
-            .active()
-            .and_then(|model| file_orbit(library, model, state, index))
-            .unwrap_or_else(|| auto(AUTO_YAW_RADIANS, AUTO_PITCH_RADIANS)),
+        CameraChoice::Auto => auto(),
+        CameraChoice::File(index) => file_orbit(library, state, index).unwrap_or_else(auto),
     }
 }
 
@@ -125,7 +125,8 @@ pub fn world_from_file_camera(world_from_joint: &Affine3A) -> Option<Affine3A> {
     world_from_joint.translation.is_finite().then_some(Affine3A { matrix3, translation: world_from_joint.translation })
 }
 
-fn file_orbit(library: &Library, model: &Model, state: &ViewerState, index: usize) -> Option<OrbitCamera> {
+fn file_orbit(library: &Library, state: &ViewerState, index: usize) -> Option<OrbitCamera> {
+    let model = library.active()?;
     let camera = model.asset.cameras.get(index)?;
     let (mut sampler, mut world_from_joint) = (PoseSampler::default(), Vec::new());
     sampler.sample(model, state);

@@ -1,10 +1,11 @@
 //! Rings around the chosen joint in the picture: a ring turns it about one of its own axes, the disc between them freely.
 
 use egui::{Color32, Painter, Pos2, Rect, Response, Shape, Stroke, Ui, Vec2};
-use glam::{Mat3A, Quat, Vec3};
+use glam::{Quat, Vec3};
 
 use super::picture::{pane_at, to_screen};
 use super::{Output, Shown, UiState, style};
+use crate::anim::Transform;
 use crate::state::{Command, PoseSampler, degrees_by_hand, rotation_by_hand};
 
 const RADIUS_POINTS: f32 = 72.0;
@@ -46,7 +47,8 @@ pub(super) fn show(
     local: &mut UiState,
     out: &mut Output,
 ) -> bool {
-    let Some(handle) = handle(response, shown).filter(|_| local.turning && !shown.state.embed) else {
+    let wanted = local.turning && !shown.state.embed;
+    let Some(handle) = wanted.then(|| handle(response, shown)).flatten() else {
         local.grab = None;
         return false;
     };
@@ -80,11 +82,8 @@ fn handle(response: &Response, shown: &Shown<'_>) -> Option<Handle> {
     let index = model.asset.skeleton.joint_of_source(joint)?;
     let character = shown.frame.characters.first()?;
     let matrix = character.world_from_joint.get(index.get())?;
-    let axes = [matrix.matrix3.x_axis, matrix.matrix3.y_axis, matrix.matrix3.z_axis];
-    let [x, y, z] = [axes[0].try_normalize()?, axes[1].try_normalize()?, axes[2].try_normalize()?];
-    let axes = Mat3A::from_cols(x, y, z);
     // The rings of a mirrored joint would turn it the wrong way round: it has its sliders.
-    let world = (axes.determinant() > 0.0).then(|| Quat::from_mat3a(&axes).normalize())?;
+    let world = Some(Transform::from_matrix(&(*matrix).into())).filter(Transform::is_upright)?.rotation;
     let rest = model.asset.skeleton.rest().locals.get(index.get())?.rotation;
     let local = match shown.state.pose.get(&joint) {
         Some(&degrees) => rotation_by_hand(rest, degrees),

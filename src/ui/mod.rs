@@ -102,8 +102,8 @@ pub struct UiState {
     pub toast: Option<Toast>,
     /// The chosen joint can be turned by hand.
     pub turning: bool,
-    /// A video is being recorded: nothing but the picture is on the canvas. The share of it that is done.
-    pub recording: Option<f32>,
+    /// A video is being recorded: nothing but the picture is on the canvas.
+    pub recording: bool,
     picture: view_options::PictureSettings,
     grab: Option<gizmo::Grab>,
     /// The help was open in the last pass already.
@@ -133,7 +133,7 @@ impl Default for UiState {
             help_open: false,
             error: None,
             turning: false,
-            recording: None,
+            recording: false,
             picture: view_options::PictureSettings::default(),
             grab: None,
             motion_refused: false,
@@ -250,7 +250,7 @@ pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Outp
     let side = egui::Frame::new().inner_margin(egui::Margin { left: 14, right: 14, top: 14, bottom: 8 });
     let bottom = egui::Frame::new().inner_margin(egui::Margin { left: 12, right: 12, top: 2, bottom: 6 });
     local.scrubbing = false;
-    if local.recording.is_some() {
+    if local.recording {
         return ui.available_rect_before_wrap();
     }
     egui::Panel::bottom("transport")

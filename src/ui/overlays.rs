@@ -10,7 +10,7 @@ use super::{
 
 /// Call last; `picture` is the rectangle the picture has.
 pub fn overlays(ui: &mut Ui, picture: Rect, shown: Shown<'_>, local: &mut UiState, out: &mut Output) {
-    if local.recording.is_some() {
+    if local.recording {
         return;
     }
     if is_narrow(ui) && !shown.state.embed {

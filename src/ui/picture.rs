@@ -38,7 +38,7 @@ pub fn picture(ui: &mut Ui, rect: Rect, shown: Shown<'_>, local: &mut UiState, o
         local.aspect = rect.width() / rect.height().max(1.0);
         let response = ui.interact(rect, ui.scope_id().with("picture"), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Image, true, "Picture"));
-        if local.recording.is_some() {
+        if local.recording {
             if ui.input(|input| input.key_pressed(egui::Key::Escape)) || response.clicked() {
                 out.actions.push(UiAction::StopRecording);
             }
@@ -144,7 +144,7 @@ fn joints(ui: &Ui, painter: &Painter, response: &Response, shown: &Shown<'_>, lo
 /// Names of the chosen joint and of the one under the pointer, and of what is compared: painted when the frame that they
 /// belong to has been evaluated, or they would trail behind.
 pub fn labels(ui: &Ui, rect: Rect, shown: Shown<'_>, local: &UiState) {
-    if !rect.is_positive() || local.recording.is_some() {
+    if !rect.is_positive() || local.recording {
         return;
     }
     let painter = ui.painter_at(rect);

@@ -180,15 +180,7 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
         await open(page, site.data(DANCE));
         await apply(page, { t: 1.5, play: 0 });
         const shown = await pose(page);
-        await page.setViewportSize({ width: 1280, height: 800 });
-        await untilStill(page);
-        const download = page.waitForEvent("download");
-        await page.mouse.click(1237, 29);
-        await untilStill(page);
-        await page.mouse.click(1232, 93);
-        await untilStill(page);
-        await page.mouse.click(1125, 344);
-        const file = await download;
+        const file = await handedOver(page, 344);
         assert.equal(file.suggestedFilename(), "Xbot-cosc422_Dance.glb");
         const base64 = fs.readFileSync(await file.path()).toString("base64");
         const document = await page.evaluate(async (base64) => {
@@ -203,16 +195,7 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
       onPage("the map in force is handed over as a file", model, async (page) => {
         await open(page, site.data(DANCE));
         await apply(page, { play: 0 });
-        await page.setViewportSize({ width: 1280, height: 800 });
-        await untilStill(page);
-        const download = page.waitForEvent("download");
-        // The tab, its part, then the button: the canvas has no elements to ask for.
-        await page.mouse.click(1237, 29);
-        await untilStill(page);
-        await page.mouse.click(1232, 93);
-        await untilStill(page);
-        await page.mouse.click(1125, 200);
-        const file = await download;
+        const file = await handedOver(page, 200);
         assert.equal(file.suggestedFilename(), "Xbot-cosc422_Dance.json");
         const saved = JSON.parse(fs.readFileSync(await file.path(), "utf8"));
         assert.equal(saved.gaitway_map, 1);
@@ -220,6 +203,19 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
       });
     });
 });
+
+/** The file that the button at this height gives: the Motion tab, its Files, then the button. The canvas has no elements to ask for. */
+async function handedOver(page, y) {
+  await page.setViewportSize({ width: 1280, height: 800 });
+  await untilStill(page);
+  const download = page.waitForEvent("download");
+  for (const [x, at] of [[1237, 29], [1232, 93]]) {
+    await page.mouse.click(x, at);
+    await untilStill(page);
+  }
+  await page.mouse.click(1125, y);
+  return await download;
+}
 
 /** The longest way between two poses' vertices, in metres. */
 function furthest(a, b) {

@@ -8,7 +8,7 @@ use gaitway::frame::{Frame, PickedJoint, evaluate, pick_joint, pose_document};
 use gaitway::library::{Library, Motion};
 use gaitway::mesh::SkinningMode;
 use gaitway::state::{ClipChoice, Show, ViewerState, choice_of_clip, resolved_bounds, source_on_stage};
-use glam::{Vec2, Vec3, Vec4Swizzles};
+use glam::{Vec2, Vec3};
 
 use crate::data::walker;
 
@@ -141,7 +141,7 @@ fn the_chosen_joint_and_its_partner_are_lit_and_both_can_be_clicked() {
     let projection_from_world = frame.view.projection_from_view * frame.view.view_from_world;
     let on_picture = |place: Vec3| {
         let middle = projection_from_world * place.extend(1.0);
-        Vec2::new(middle.x, middle.y) / middle.xyzw().w
+        Vec2::new(middle.x, middle.y) / middle.w
     };
     for bone in lit {
         let picked = pick_joint(&frame, on_picture(bone.head.midpoint(bone.tail)), 0.02);

@@ -128,7 +128,7 @@ fn pictures_and_videos_are_asked_for() {
 #[test]
 fn a_recording_shows_the_picture_alone_and_escape_ends_it() {
     let mut harness = sample_bench(WIDE);
-    harness.state_mut().panels.recording = Some(0.5);
+    harness.state_mut().panels.recording = true;
     harness.run();
     assert_eq!(harness.state().picture.size(), vec2(WIDE[0], WIDE[1]));
     assert!(harness.query_by_label("Open…").is_none());
