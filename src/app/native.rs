@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use super::{App, Host, Inbox, Message, Opening, native_options};
-use crate::files::{Contents, OpenError, Opened, Role, open_paths, read_paths};
+use crate::files::{Contents, OpenError, Role, read_paths};
 use crate::library::sample;
 use crate::state::ViewerState;
 
@@ -26,10 +26,9 @@ pub enum WindowError {
 pub fn run_native(files: Vec<PathBuf>) -> Result<(), WindowError> {
     let sample = || sample::load(sample::NAMES[0]).ok_or(WindowError::NoSample);
     let contents = if files.is_empty() {
-        Contents { model: Some(sample()?), ..Contents::default() }
+        Contents { models: vec![sample()?.into()], ..Contents::default() }
     } else {
-        let Opened { model, model_files, motions, motion_sources, map, .. } = open_paths(&files)?;
-        Contents { model: Some(model), model_files, motions: Some(motions), motion_sources, map, problems: Vec::new() }
+        read_paths(&files, Role::Model)?
     };
     let create: eframe::AppCreator<'_> = Box::new(move |cc| {
         let app = App::new(cc, Box::new(Window::new(cc.egui_ctx.clone())), contents, None, |_| {})?;

@@ -9,10 +9,10 @@ use wasm_bindgen_futures::JsFuture;
 
 use super::image_limit::{fitted, made_smaller};
 use super::sort::{Origins, sort_noticing_images};
-use super::{Contents, Role, SortError, raw_address, read_map};
+use super::{Contents, ModelFiles, OpenedModel, Role, SortError, raw_address, read_map};
 use crate::asset::{Asset, Image, Warning};
 use crate::formats::{FileSet, missing_files};
-use crate::library::{ImageData, Model, Motion, sample};
+use crate::library::{ImageData, Model, sample};
 use crate::state::{MotionMap, ViewerState};
 
 /// What is to be opened: one part of a set.
@@ -89,6 +89,7 @@ pub async fn open_items(
                 if let Some(name) = url.strip_prefix("sample:") {
                     let missing = || OpenError::NoSuchSample { name: name.to_owned() };
                     samples.push(sample::load(name).ok_or_else(missing)?);
+                    origins.known.push((url.clone(), url));
                     continue;
                 }
                 let base = absolute(&url, None).ok_or_else(|| OpenError::NotAnAddress { url: url.clone() })?;
@@ -96,7 +97,6 @@ pub async fn open_items(
                 let name = if set.get(&name).is_some() { url.clone() } else { name };
                 let bytes = fetch(&base, &name, &mut bytes_left, progress).await?;
                 origins.known.push((name.clone(), url));
-                origins.are_addresses = true;
                 set.insert(name, bytes);
                 bases.push(base);
             }
@@ -107,7 +107,7 @@ pub async fn open_items(
     let role = if samples.is_empty() || role == Role::Motion { role } else { Role::Any };
     // The browser decodes on other threads while the rest is read here.
     let mut decoding: Vec<(String, Vec<Decoding>)> = Vec::new();
-    let sorted = if set.is_empty() && !samples.is_empty() {
+    let mut sorted = if set.is_empty() && !samples.is_empty() {
         Default::default()
     } else {
         sort_noticing_images(&set, role, &mut |name, images| {
@@ -116,38 +116,15 @@ pub async fn open_items(
             }
         })?
     };
-    let mut models: Vec<Model> = Vec::new();
-    let mut model_files = None;
-    if let Some((name, mut asset)) = sorted.model {
-        model_files = Some((set.clone(), name.clone()));
-        let started = decoding.into_iter().find(|(of, _)| *of == name).map(|(_, started)| started);
+    let mut models = Vec::new();
+    for (name, mut asset) in std::mem::take(&mut sorted.models) {
+        let started = decoding.iter_mut().find(|(of, _)| *of == name).map(|(_, started)| std::mem::take(started));
         let started = started.unwrap_or_else(|| start_decoding(&asset.images));
         let images = decoded(&mut asset, started).await;
-        models.push(Model::new(origins.of(&name).to_owned(), asset, images));
+        let model = Model::new(origins.of(&name).to_owned(), asset, images);
+        models.push(OpenedModel { model, files: Some(ModelFiles { set: set.clone(), name }) });
     }
-    let model_source = models.first().or(samples.first()).filter(|_| role != Role::Motion);
-    let (mut motions, mut motion_sources) =
-        origins.motions(sorted.motions, model_source.map(|model| model.source.as_str()));
-    for sample in samples {
-        if role == Role::Motion {
-            motion_sources.push(sample.source.clone());
-            motions.push(Motion::new(sample.source, sample.asset));
-        } else {
-            models.push(sample);
-        }
-    }
-    if models.len() > 1 {
-        let found = models.iter().map(|model| model.source.clone()).collect();
-        return Err(SortError::SeveralModels { found }.into());
-    }
-    Ok(Contents {
-        model: models.pop(),
-        model_files,
-        motions: (!motions.is_empty()).then_some(motions),
-        motion_sources,
-        map: sorted.map,
-        problems: Vec::new(),
-    })
+    Ok(origins.contents(sorted, models, samples, role))
 }
 
 /// Opens all that a view lists; its model only if asked for. A motion or a map that cannot be had is a problem in the
@@ -181,7 +158,6 @@ pub async fn open_view(
         }
     }
     contents.motions = Some(motions);
-    contents.motion_sources = state.motion.clone();
     let mut maps = Vec::new();
     for map in state.map.drain(..) {
         match map {

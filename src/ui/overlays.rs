@@ -136,7 +136,22 @@ fn notices(ui: &mut Ui, picture: Rect, local: &mut UiState, out: &mut Output) {
             });
         }
         if let Some(toast) = &local.toast {
-            notice(ui, palette.line, |ui| ui.label(&toast.text));
+            let pressed = notice(ui, palette.line, |ui| {
+                if !toast.undoable {
+                    ui.label(&toast.text);
+                    return false;
+                }
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    let undo = ui.button("Undo").on_hover_text("Back to what was there before (Ctrl+Z)").clicked();
+                    ui.add(egui::Label::new(&toast.text).truncate());
+                    undo
+                })
+                .inner
+            });
+            if pressed {
+                out.actions.push(UiAction::Undo);
+                local.toast = None;
+            }
         }
     });
 }
@@ -159,7 +174,7 @@ fn refused_offers(ui: &mut Ui, local: &mut UiState, out: &mut Output) {
     });
 }
 
-fn notice<R>(ui: &mut Ui, line: Color32, contents: impl FnOnce(&mut Ui) -> R) {
+fn notice<R>(ui: &mut Ui, line: Color32, contents: impl FnOnce(&mut Ui) -> R) -> R {
     let palette = style::palette(ui);
     egui::Frame::new()
         .fill(palette.panel)
@@ -167,7 +182,8 @@ fn notice<R>(ui: &mut Ui, line: Color32, contents: impl FnOnce(&mut Ui) -> R) {
         .corner_radius(10)
         .shadow(ui.visuals().popup_shadow)
         .inner_margin(egui::Margin::symmetric(16, 12))
-        .show(ui, contents);
+        .show(ui, contents)
+        .inner
 }
 
 pub(super) fn modal(name: &str, context: &Context) -> egui::Modal {

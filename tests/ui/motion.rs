@@ -180,7 +180,7 @@ fn files_are_asked_of_the_host() {
         UiAction::ChooseMotion,
         UiAction::Save(Saved::Model { clip: 3 }),
         UiAction::ShowMotionAlone(0),
-        UiAction::RemoveMotions,
+        UiAction::RemoveMotion(0),
     ];
     assert_eq!(harness.state().actions, expected);
 }
