@@ -791,6 +791,7 @@ for (const type of ["dragenter", "dragover", "dragleave", "drop"])
       } else {
         showDrop(false);
         byId("open").close();
+        byId("bring").close();
         dropped(event.dataTransfer).then((items) => openByHand(items), (error) => sayProblem(error.message));
       }
     },

@@ -141,10 +141,13 @@ fn notices(ui: &mut Ui, picture: Rect, local: &mut UiState, out: &mut Output) {
                     ui.label(&toast.text);
                     return false;
                 }
-                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    let undo = ui.button("Undo").on_hover_text("Back to what was there before (Ctrl+Z)").clicked();
-                    ui.add(egui::Label::new(&toast.text).truncate());
-                    undo
+                let button = 70.0;
+                ui.horizontal(|ui| {
+                    ui.scope(|ui| {
+                        ui.set_max_width(width - 32.0 - button);
+                        ui.add(egui::Label::new(&toast.text).wrap());
+                    });
+                    ui.button("Undo").on_hover_text("Back to what was there before (Ctrl+Z)").clicked()
                 })
                 .inner
             });
