@@ -3,7 +3,7 @@
 
 use std::cell::Cell;
 
-use js_sys::{Array, Reflect, Uint8Array};
+use js_sys::{Array, Promise, Reflect, Uint8Array};
 use wasm_bindgen::{JsCast, JsValue};
 use wasm_bindgen_futures::JsFuture;
 
@@ -42,6 +42,10 @@ pub enum OpenError {
     Refused { url: String },
     #[error("{url}: the site cannot be reached; check the address and the connection")]
     Unreachable { url: String },
+    #[error(
+        "{url}: nothing has come from the site for {secs} seconds; try again later, or download the file and drop it here"
+    )]
+    Silent { url: String, secs: u32 },
     #[error("{url}: a page that came over https may not read http addresses; try the same address with https")]
     Insecure { url: String },
     #[error("{url}: the connection broke off after {received} bytes")]
@@ -62,6 +66,8 @@ fn hint(status: u16) -> &'static str {
 
 const MOST_BYTES: u64 = 1 << 30;
 const MOST_IMAGE_BYTES: u64 = 1 << 30;
+/// A site that sends nothing for so long has given up.
+const MOST_SILENT_SECS: u32 = 20;
 const MOST_PIXELS_ACROSS: u32 = 16_384;
 /// Files that name further files, one round each.
 const MOST_ROUNDS: usize = 4;
@@ -263,7 +269,8 @@ async fn fetch(
     progress(name, 0, 0);
     let unreachable = || OpenError::Unreachable { url: url.to_owned() };
     let window = web_sys::window().ok_or_else(unreachable)?;
-    let response = match JsFuture::from(window.fetch_with_str(url)).await {
+    let silent = || OpenError::Silent { url: url.to_owned(), secs: MOST_SILENT_SECS };
+    let response = match unless_silent(&window, window.fetch_with_str(url)).await.ok_or_else(silent)? {
         Ok(response) => response,
         Err(_) => return Err(why_not_fetched(&window, url).await),
     };
@@ -286,7 +293,12 @@ async fn fetch(
     let reader: web_sys::ReadableStreamDefaultReader = body.get_reader().unchecked_into();
     loop {
         let broke_off = |received: usize| OpenError::BrokeOff { url: url.to_owned(), received: received as u64 };
-        let chunk = JsFuture::from(reader.read()).await.map_err(|_| broke_off(bytes.len()))?;
+        let Some(chunk) = unless_silent(&window, reader.read()).await else {
+            // The connection is not needed any more; that it ends is nobody's concern.
+            let _ = reader.cancel();
+            return Err(silent());
+        };
+        let chunk = chunk.map_err(|_| broke_off(bytes.len()))?;
         if Reflect::get(&chunk, &"done".into()).is_ok_and(|done| done.is_truthy()) {
             break;
         }
@@ -300,6 +312,19 @@ async fn fetch(
         progress(name, received, if received > total { 0 } else { total });
     }
     Ok(bytes)
+}
+
+/// What a promise of some object comes to; none when it takes too long.
+async fn unless_silent(window: &web_sys::Window, promise: Promise) -> Option<Result<JsValue, JsValue>> {
+    let mut timer = None;
+    let limit = Promise::new(&mut |resolve, _| {
+        let millis = 1000 * MOST_SILENT_SECS as i32;
+        timer = window.set_timeout_with_callback_and_timeout_and_arguments_0(&resolve, millis).ok();
+    });
+    let answer = JsFuture::from(Promise::race(&Array::of2(&promise, &limit))).await;
+    timer.inspect(|&timer| window.clear_timeout_with_handle(timer));
+    let is_late = answer.as_ref().is_ok_and(JsValue::is_undefined);
+    (!is_late).then_some(answer)
 }
 
 /// Browsers say no more than that it failed. A request whose answer nobody may read still tells whether there is one.
