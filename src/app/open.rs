@@ -317,9 +317,15 @@ impl App {
         if let Some(problem) = problem.filter(|_| fitting.is_empty()) {
             return Err(problem);
         }
+        let names: Vec<String> = fitting
+            .iter()
+            .filter_map(|(motion, _)| Some(short_name(&self.library.motions().get(*motion)?.source)))
+            .collect();
         for (motion, map) in fitting {
             self.apply(Command::EditMap { motion, edit: MapEdit::Load(Box::new(map)) });
         }
+        self.history.end_gesture();
+        self.toast_undoable(format!("The joint map is used for {}.", names.join(", ")));
         Ok(())
     }
 
