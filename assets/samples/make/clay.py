@@ -523,6 +523,128 @@ def _outward(mesh, shape):
     return mesh
 
 
+def cast(shape, start, direction, reach, steps=64):
+    """Where rays (N, 3 starts; N, 3 unit directions) first meet the shape within `reach`; rays that miss end there."""
+    start, direction = np.asarray(start, dtype=np.float64), np.asarray(direction, dtype=np.float64)
+    low = np.zeros(len(start))
+    high = np.full(len(start), float(reach))
+    open_ = np.ones(len(start), dtype=bool)
+    for t in np.linspace(0.0, reach, steps)[1:]:
+        hit = open_ & (shape(start + direction * t) < 0.0)
+        high[hit] = t
+        open_ &= ~hit
+        low[open_] = t
+    low = np.minimum(low, high)
+    for _ in range(18):
+        middle = 0.5 * (low + high)
+        hit = shape(start + direction * middle[:, None]) < 0.0
+        high = np.where(hit, middle, high)
+        low = np.where(hit, low, middle)
+    return start + direction * high[:, None]
+
+
+def ring(shape, origin, axis, side, profile, segments, half=False, closed=False, reach=0.3):
+    """A band round a limb, in clean loops: cuffs, belts, collars, the rims of boots.
+
+    `axis` the limb's direction, `side` the direction where the loop begins; `profile` a list of (along, offset): metres
+    along the axis from `origin`, and metres out from the shape's surface there, from one edge to the other. `half`: only
+    the half turn from `side` over axis x side, both ends on the mirror plane (then `side` must lie in it).
+    `closed`: the profile is a loop.
+    """
+    origin, axis, side = _vec(origin), _vec(axis), _vec(side)
+    axis = axis / np.linalg.norm(axis)
+    side = side - axis * (side @ axis)
+    side = side / np.linalg.norm(side)
+    other = np.cross(axis, side)
+    around = np.linspace(0, np.pi, segments // 2 + 1) if half else np.arange(segments) * 2 * np.pi / segments
+    out = np.cos(around)[:, None] * side + np.sin(around)[:, None] * other
+    rows = []
+    for along, offset in profile:
+        center = origin + axis * along
+        hit = cast(shape, center + out * reach, -out, reach)
+        rows.append(hit + out * offset)
+    vertices = np.concatenate(rows)
+    n = len(around)
+    faces = []
+    columns = n - 1 if half else n
+    for r in range(len(profile) - (0 if closed else 1)):
+        for c in range(columns):
+            a, b = r * n + c, r * n + (c + 1) % n
+            d, e = (r + 1) % len(profile) * n + c, (r + 1) % len(profile) * n + (c + 1) % n
+            faces.append([a, b, e, d])
+    mesh = Mesh(vertices, faces)
+    mesh.plane = np.zeros(len(vertices), dtype=bool)
+    if half:
+        mesh.plane[0::n] = mesh.plane[n - 1 :: n] = True
+        mesh.vertices[mesh.plane, 0] = 0.0
+    mesh.whole = False
+    return _away(mesh, origin, axis)
+
+
+def _away(mesh, origin, axis):
+    """Turns all faces over if they look towards the axis."""
+    tris, _ = mesh.triangles()
+    v = mesh.vertices
+    face = np.cross(v[tris[:, 1]] - v[tris[:, 0]], v[tris[:, 2]] - v[tris[:, 0]])
+    out = v[tris].mean(axis=1) - origin
+    out -= (out @ axis)[:, None] * axis
+    if np.sum(np.einsum("ij,ij->i", face, out)) < 0:
+        mesh.faces = [f[::-1] for f in mesh.faces]
+    return mesh
+
+
+def patch(shape, center, facing, up, radii, profile, size=8, power=2.5, reach=0.15):
+    """A plate that lies on a body, in clean loops: pads, pockets, pouches, badges.
+
+    It is seen from `facing` (a direction), `up` across it; `radii` (across, up) of its outline, a superellipse of
+    exponent `power`; `profile`: (0..1 from middle to border, metres above the surface) keys, the last normally below 0.
+    `size` x `size` quads.
+    """
+    center, facing, up = _vec(center), _vec(facing), _vec(up)
+    facing = facing / np.linalg.norm(facing)
+    up = up - facing * (up @ facing)
+    up = up / np.linalg.norm(up)
+    across = np.cross(up, facing)
+    grid = np.linspace(-1, 1, size + 1)
+    u, v = [c.reshape(-1) for c in np.meshgrid(grid, grid)]
+    s = np.maximum(np.abs(u), np.abs(v))
+    # Square loops become loops of the outline's own kind.
+    angle = np.arctan2(v, u)
+    norm = (np.abs(np.cos(angle)) ** power + np.abs(np.sin(angle)) ** power) ** (1.0 / power)
+    x, y = s * np.cos(angle) / norm, s * np.sin(angle) / norm
+    start = center + facing * (reach * 0.5) + np.outer(x * radii[0], across) + np.outer(y * radii[1], up)
+    hit = cast(shape, start, np.broadcast_to(-facing, start.shape), reach)
+    keys = np.array(profile, dtype=np.float64)
+    offset = np.interp(s, keys[:, 0], keys[:, 1])
+    vertices = hit + gradient(shape, hit, 4e-3) * offset[:, None]
+    n = size + 1
+    faces = [[j * n + i, j * n + i + 1, (j + 1) * n + i + 1, (j + 1) * n + i] for j in range(size) for i in range(size)]
+    mesh = Mesh(vertices, faces)
+    mesh.plane = np.zeros(len(vertices), dtype=bool)
+    mesh.whole = False
+    tris, _ = mesh.triangles()
+    w = mesh.vertices
+    face = np.cross(w[tris[:, 1]] - w[tris[:, 0]], w[tris[:, 2]] - w[tris[:, 0]])
+    if np.sum(face @ facing) < 0:
+        mesh.faces = [f[::-1] for f in mesh.faces]
+    return mesh
+
+
+def without_hidden(mesh, covers):
+    """The mesh without the faces that lie wholly inside one of `covers` [(shape, depth in metres)]."""
+    hidden = np.zeros(len(mesh.faces), dtype=bool)
+    for shape, depth in covers:
+        inside = shape(mesh.vertices) < -depth
+        hidden |= np.array([all(inside[i] for i in f) for f in mesh.faces])
+    faces = [f for f, h in zip(mesh.faces, hidden) if not h]
+    used = np.unique([i for f in faces for i in f])
+    number = np.full(len(mesh.vertices), -1)
+    number[used] = np.arange(len(used))
+    out = Mesh(mesh.vertices[used], [[int(number[i]) for i in f] for f in faces], mesh.part[~hidden])
+    out.plane, out.whole = mesh.plane[used], mesh.whole
+    return out
+
+
 def joined(meshes):
     """One mesh of several; `part` numbers where each face came from."""
     vertices, faces, part, plane, base = [], [], [], [], 0

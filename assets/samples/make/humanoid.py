@@ -93,10 +93,14 @@ def gates(s, prefix="mixamorig:", fingers=True):
     g.gate(n("Spine"), up, 0.10)
     g.gate(n("Spine1"), up, 0.11)
     g.gate(n("Spine2"), up, 0.12)
-    g.gate(n("Neck"), up, 0.07, shift=0.01)
+    middle = lambda p: 1.0 - rig.smooth_step((np.abs(p[:, 0]) - 0.09) / 0.06)
+    g.gate(n("Neck"), up, 0.07, shift=0.01, near=middle)
     g.gate(n("Head"), up, 0.05)
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
-        high = lambda p: rig.smooth_step((p[:, 1] - 1.285) / 0.10)
+        # Below the armpit the trunk keeps its weight; further out everything is arm.
+        high = lambda p, sign=sign: np.maximum(
+            rig.smooth_step((p[:, 1] - 1.285) / 0.10), rig.smooth_step((sign * p[:, 0] - 0.155) / 0.075)
+        )
         g.gate(n(side + "Shoulder"), (sign, 0.1, 0), 0.12, shift=0.055, near=high)
         g.gate(n(side + "Arm"), (sign, 0.30, 0), 0.105, shift=0.004)
         g.gate(n(side + "ForeArm"), (sign, 0, 0), 0.10)

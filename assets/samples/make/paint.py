@@ -9,7 +9,7 @@ import numpy as np
 import clay
 
 
-def unwrap(mesh, margin=0.003, angle=66.0):
+def unwrap(mesh, margin=0.003, angle=78.0):
     """One atlas by Blender's smart projection: per face a list of corner UVs, v up."""
     import bpy
 

@@ -10,6 +10,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import clay
 import humanoid
+from paint import edge, groove, noise, srgb
 from clay import box, capsule, common, cut, ellipsoid, forward, grown, halfspace, sideways, union, upright
 
 OUT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "pilot.glb")
@@ -50,9 +51,8 @@ def arm():
             (0.42, 1.411, -0.022, 0.047, 0.048),
             (0.46, 1.411, -0.023, 0.046, 0.047),
             (0.53, 1.411, -0.021, 0.049, 0.050),
-            (0.61, 1.411, -0.018, 0.043, 0.045),
-            (0.69, 1.411, -0.017, 0.034, 0.038),
-            (0.73, 1.411, -0.017, 0.030, 0.036),
+            (0.60, 1.411, -0.018, 0.044, 0.046),
+            (0.655, 1.411, -0.017, 0.034, 0.036),
         ],
         rounding=0.02,
     )
@@ -111,25 +111,23 @@ def glove():
         capsule(t[0], t[1], 0.0175, 0.0145), capsule(t[1], t[2], 0.0145, 0.0128), capsule(t[2], t[3], 0.0128, 0.0105), k=0.003
     )
     hand = union(hand, thumb, k=0.010)
-    cuff = sideways(
-        [
-            (0.598, 1.411, -0.018, 0.0555, 0.0575),
-            (0.625, 1.411, -0.018, 0.0530, 0.0550),
-            (0.665, 1.411, -0.017, 0.0445, 0.0475),
-            (0.70, 1.411, -0.017, 0.0355, 0.0405),
-        ],
-        rounding=0.006,
-    )
-    rim = sideways(
-        [(0.592, 1.411, -0.018, 0.0595, 0.0615), (0.607, 1.411, -0.018, 0.0590, 0.0610)], rounding=0.006
-    )
-    return union(union(hand, cuff, k=0.012), rim, k=0.004)
+    wrist = sideways([(0.645, 1.411, -0.017, 0.0385, 0.0405), (0.70, 1.411, -0.017, 0.0315, 0.0365)], rounding=0.006)
+    return union(hand, wrist, k=0.012)
+
+
+def cuff():
+    """The gauntlet: a flared tube with a rolled rim, its inside running back to the sleeve."""
+    cone = sideways([(0.56, 1.411, -0.018, 0.0585, 0.0605), (0.625, 1.411, -0.018, 0.0525, 0.0545), (0.66, 1.411, -0.017, 0.0440, 0.0470),
+                     (0.71, 1.411, -0.017, 0.0345, 0.0395)], rounding=0.004)
+    profile = [(0.614, -0.014), (0.597, -0.007), (0.592, 0.000), (0.595, 0.0045), (0.604, 0.0050), (0.609, 0.0015), (0.630, 0.0),
+               (0.650, 0.0), (0.668, 0.0), (0.684, 0.0008), (0.693, 0.0005), (0.697, -0.004)]
+    return clay.ring(cone, (0, 1.411, -0.0175), (1, 0, 0), (0, 1, 0), profile, 24)
 
 
 def boot():
     shaft = upright(
         [
-            (0.345, 0.107, -0.010, 0.0685, 0.0765),
+            (0.325, 0.107, -0.011, 0.0665, 0.0745),
             (0.28, 0.108, -0.016, 0.0610, 0.0680),
             (0.20, 0.108, -0.020, 0.0530, 0.0580),
             (0.13, 0.108, -0.022, 0.0490, 0.0560),
@@ -155,10 +153,15 @@ def boot():
     )
     waist = ellipsoid((0.06, 0.0, 0.028), (0.022, 0.024, 0.045))
     sole = cut(sole, waist, k=0.01)
-    rim = upright([(0.332, 0.107, -0.010, 0.0725, 0.0805), (0.352, 0.107, -0.009, 0.0735, 0.0815)], rounding=0.008)
     strap = common(grown(union(shaft, foot, k=0.03), 0.0055), box((0.11, 0.125, 0.0), (0.2, 0.013, 0.2), 0.004,
                    rotation=np.array([[1, 0, 0], [0, 0.94, -0.34], [0, 0.34, 0.94]])), k=0.004)
-    return union(union(union(shaft, foot, k=0.03), rim, strap, k=0.004), sole, k=0.006)
+    return union(union(union(shaft, foot, k=0.03), strap, k=0.004), sole, k=0.006)
+
+
+def boot_rim():
+    shaft = upright([(0.20, 0.108, -0.020, 0.0530, 0.0580), (0.28, 0.108, -0.016, 0.0610, 0.0680), (0.37, 0.107, -0.008, 0.0720, 0.0800)])
+    profile = [(0.300, 0.000), (0.308, 0.0035), (0.322, 0.0050), (0.338, 0.0045), (0.345, 0.0015), (0.346, -0.005), (0.338, -0.012), (0.318, -0.018)]
+    return clay.ring(shaft, (0.1075, 0, -0.012), (0, 1, 0), (0, 0, 1), profile, 24)
 
 
 def vest():
@@ -167,22 +170,41 @@ def vest():
     neck = ellipsoid((0, 1.49, 0.03), (0.088, 0.115, 0.12))
     hole = capsule((0.225, 1.385, -0.018), (0.40, 1.33, -0.018), 0.098, flatten=((0, 0, 1), 1.25))
     trim = cut(cut(common(body, low, k=0.012), hole, k=0.012), neck, k=0.010)
+    trim = common(trim, halfspace((0.172, 1.42, 0), (1, 0.30, 0)), k=0.012)
     core = grown(union(TORSO, ARM, k=0.075), -0.012)
     trim = cut(trim, core, k=0.004)
     plate = common(grown(TORSO, 0.026), box((0.0, 1.265, 0.12), (0.118, 0.085, 0.09), 0.03), k=0.012)
     return union(trim, plate, k=0.008)
 
 
+BELT_Y = 1.022
+
+
 def belt():
-    band = common(grown(TORSO, 0.016), box((0, 1.03, 0), (0.3, 0.024, 0.3), 0.006), k=0.006)
-    band = cut(band, grown(TORSO, -0.012), k=0.004)
-    buckle = box((0, 1.03, 0.115), (0.034, 0.026, 0.014), 0.008)
-    turn = 0.72
-    r = np.array([[np.cos(turn), 0, np.sin(turn)], [0, 1, 0], [-np.sin(turn), 0, np.cos(turn)]])
-    pouch = box((0.118, 1.012, 0.086), (0.036, 0.042, 0.024), 0.011, rotation=r)
-    flap = box((0.1195, 1.036, 0.0875), (0.039, 0.017, 0.027), 0.009, rotation=r)
-    side = box((0.168, 1.008, -0.02), (0.022, 0.046, 0.042), 0.012)
-    return union(band, buckle, pouch, flap, side, k=0.004)
+    profile = [(-0.024, -0.006), (-0.024, 0.006), (-0.020, 0.0105), (0.0, 0.0115), (0.020, 0.0105), (0.024, 0.006), (0.024, -0.006)]
+    return clay.ring(TORSO, (0, BELT_Y, -0.004), (0, 1, 0), (0, 0, 1), profile, 40, half=True)
+
+
+def _turned(degrees):
+    a = np.radians(degrees)
+    return np.array([[np.cos(a), 0, np.sin(a)], [0, 1, 0], [-np.sin(a), 0, np.cos(a)]])
+
+
+def buckle():
+    return box((0, BELT_Y, 0.108), (0.034, 0.027, 0.013), 0.009)
+
+
+def pouch():
+    r = _turned(50)
+    bag = box((0.113, BELT_Y - 0.020, 0.086), (0.036, 0.040, 0.026), 0.012, rotation=r)
+    flap = box((0.115, BELT_Y + 0.004, 0.088), (0.039, 0.017, 0.029), 0.010, rotation=r)
+    return union(bag, flap, k=0.003)
+
+
+def side_pouch():
+    bag = box((0.166, BELT_Y - 0.018, -0.022), (0.024, 0.048, 0.040), 0.013)
+    flap = box((0.168, BELT_Y + 0.012, -0.022), (0.027, 0.018, 0.043), 0.011)
+    return union(bag, flap, k=0.003)
 
 
 HEAD = (0.0, 1.640, 0.004)
@@ -232,11 +254,10 @@ def visor():
 
 
 def collar():
-    ring = upright(
-        [(1.452, 0, -0.016, 0.100, 0.090), (1.475, 0, -0.014, 0.104, 0.094), (1.505, 0, -0.010, 0.096, 0.088)], rounding=0.012
-    )
-    hole = capsule((0, 1.55, -0.008), (0, 1.62, -0.008), 0.066)
-    return cut(ring, hole, k=0.01)
+    """The neck ring the helmet sits on."""
+    neck = upright([(1.42, 0, -0.016, 0.092, 0.082), (1.46, 0, -0.015, 0.092, 0.083), (1.54, 0, -0.010, 0.086, 0.080)])
+    profile = [(1.440, -0.006), (1.446, 0.010), (1.458, 0.016), (1.476, 0.017), (1.490, 0.012), (1.497, 0.002), (1.496, -0.012)]
+    return clay.ring(neck, (0, 0, -0.014), (0, 1, 0), (0, 0, 1), profile, 28, half=True)
 
 
 def pack():
@@ -252,40 +273,278 @@ LIMB = union(TORSO, ARM, k=0.075)
 
 
 def shoulder_pad():
-    cap = common(grown(LIMB, 0.027), ellipsoid((0.218, 1.475, -0.018), (0.074, 0.082, 0.088)), k=0.010)
-    return cut(cap, grown(LIMB, -0.008), k=0.006)
+    profile = [(0, 0.027), (0.45, 0.026), (0.72, 0.0235), (0.86, 0.019), (0.94, 0.010), (1, -0.004)]
+    return clay.patch(LIMB, (0.212, 1.47, -0.018), (0.30, 1, 0), (0, 0, 1), (0.066, 0.070), profile, 12, power=3.0, reach=0.3)
 
 
 def knee_pad():
-    cap = common(grown(LEG, 0.017), ellipsoid((0.105, 0.520, 0.085), (0.056, 0.084, 0.062)), k=0.010)
-    ridge = common(grown(LEG, 0.025), ellipsoid((0.105, 0.520, 0.085), (0.030, 0.060, 0.040)), k=0.008)
-    return cut(union(cap, ridge, k=0.006), grown(LEG, -0.010), k=0.006)
+    profile = [(0, 0.026), (0.32, 0.025), (0.42, 0.018), (0.75, 0.0165), (0.88, 0.012), (1, -0.004)]
+    return clay.patch(LEG, (0.105, 0.518, 0.08), (0.06, 0.02, 1), (0, 1, 0), (0.050, 0.076), profile, 12, power=2.6, reach=0.2)
 
 
-# name, clay (left half), box, quads (whole), grid step, the joint that carries it whole (None: by the gates)
+class Part:
+    """A piece: its clay, or a ready mesh of the left half, and the joint that carries it whole (None: by the gates)."""
+
+    def __init__(self, name, shape, carrier=None, box=None, quads=0, step=0.004, mesh=None, solid=True, half=True):
+        self.name, self.shape, self.carrier = name, shape, carrier
+        self.box, self.quads, self.step, self.mesh, self.half = box, quads, step, mesh, half
+        # Whether its clay hides what lies inside it.
+        self.solid = solid and shape is not None
+
+
 PARTS = [
-    ("suit", SUIT, (0, 0.06, -0.2), (0.74, 1.56, 0.2), 3000, 0.008, None),
-    ("glove", glove(), (0.57, 1.33, -0.13), (0.93, 1.49, 0.12), 1700, 0.0024, None),
-    ("boot", boot(), (0.02, -0.03, -0.14), (0.22, 0.39, 0.25), 900, 0.004, None),
-    ("vest", clay.mirrored(vest()), (0, 1.05, -0.2), (0.36, 1.57, 0.2), 1000, 0.004, None),
-    ("belt", belt(), (0, 0.93, -0.18), (0.24, 1.1, 0.2), 760, 0.003, None),
-    ("helmet", clay.mirrored(helmet()), (0, 1.45, -0.2), (0.2, 1.83, 0.22), 1300, 0.004, "Head"),
-    ("visor", clay.mirrored(visor()), (0, 1.5, -0.1), (0.2, 1.78, 0.22), 240, 0.003, "Head"),
-    ("collar", clay.mirrored(collar()), (0, 1.42, -0.14), (0.16, 1.55, 0.14), 220, 0.004, None),
-    ("pack", clay.mirrored(pack()), (0, 1.08, -0.28), (0.2, 1.48, -0.08), 560, 0.005, "Spine2"),
-    ("shoulder", shoulder_pad(), (0.08, 1.3, -0.14), (0.34, 1.54, 0.1), 260, 0.004, None),
-    ("knee", knee_pad(), (0.02, 0.4, 0.0), (0.2, 0.62, 0.14), 220, 0.004, None),
+    Part("suit", SUIT, None, [(0, 0.06, -0.2), (0.74, 1.56, 0.2)], 2900, 0.008),
+    Part("glove", glove(), None, [(0.60, 1.33, -0.13), (0.93, 1.49, 0.12)], 1350, 0.0024),
+    Part("cuff", None, mesh=cuff),
+    Part("boot", boot(), None, [(0.02, -0.03, -0.14), (0.22, 0.39, 0.25)], 900),
+    Part("boot rim", None, mesh=boot_rim),
+    Part("vest", clay.mirrored(vest()), None, [(0, 1.05, -0.2), (0.30, 1.57, 0.2)], 1300),
+    Part("belt", None, mesh=belt),
+    Part("buckle", buckle(), "Hips", [(-0.05, 0.98, 0.08), (0.05, 1.07, 0.14)], 90, 0.003, half=False),
+    Part("pouch", pouch(), "Hips", [(0.05, 0.93, 0.03), (0.18, 1.08, 0.15)], 220, 0.003, solid=False),
+    Part("side pouch", side_pouch(), "Hips", [(0.11, 0.93, -0.09), (0.22, 1.08, 0.04)], 220, 0.003, solid=False),
+    Part("helmet", clay.mirrored(helmet()), "Head", [(0, 1.45, -0.2), (0.2, 1.83, 0.22)], 1500),
+    Part("visor", clay.mirrored(visor()), "Head", [(0, 1.5, -0.1), (0.2, 1.78, 0.22)], 240, 0.003, solid=False),
+    Part("collar", None, mesh=collar),
+    Part("pack", clay.mirrored(pack()), "Spine2", [(0, 1.08, -0.28), (0.2, 1.48, -0.08)], 620, 0.005),
+    Part("shoulder", None, mesh=shoulder_pad),
+    Part("knee", None, mesh=knee_pad),
 ]
 
 
 def sculpt():
+    """The left halves of all parts (or whole ones), without what the parts over them hide."""
     meshes = []
-    for name, shape, low, high, quads, step, _ in PARTS:
+    for part in PARTS:
         start = time.time()
-        mesh = clay.mesh_of(shape, low, high, quads, step)
-        print(f"{name}: {len(mesh.faces)} quads on the left, {time.time() - start:.1f} s", flush=True)
+        if part.mesh:
+            mesh = part.mesh()
+        else:
+            mesh = clay.mesh_of(part.shape, *part.box, part.quads, part.step, part.half)
+        full = len(mesh.faces)
+        if part.shape is not None:
+            covers = [(p.shape, 0.022 if p.carrier == "Head" else 0.006) for p in PARTS if p.solid and p is not part]
+            mesh = clay.without_hidden(mesh, covers)
+        print(f"{part.name}: {len(mesh.faces)} quads of {full}, {time.time() - start:.1f} s", flush=True)
         meshes.append(mesh)
     return meshes
+
+
+# ---------------------------------------------------------------- colours and relief
+
+NAMES = [p.name for p in PARTS]
+ORANGE, DEEP, CHARCOAL, INK = srgb("#d9581c"), srgb("#b8430f"), srgb("#3a3f47"), srgb("#23262b")
+BONE, TEAL, SILVER, TAN = srgb("#e9e3d6"), srgb("#1f9a98"), srgb("#c9ccd0"), srgb("#6b5a48")
+
+
+def mixed(base, color, amount):
+    return base + (color - base) * np.asarray(amount)[:, None]
+
+
+def band(x, a, b):
+    """Distance to the strip a..b, negative inside."""
+    return np.maximum(a - x, x - b)
+
+
+def suit_regions(p):
+    """Signed distances (metres, negative inside) of the suit's panels and lines."""
+    x, y, z = np.abs(p[:, 0]), p[:, 1], p[:, 2]
+    trunk = y > 0.86
+    on_arm = x > 0.215
+    around_arm = np.arctan2(z + 0.020, -(y - 1.411))  # 0: underside
+    around_leg = np.arctan2(x - 0.104, z - 0.005)  # 0: front, + outside
+    sleeve = np.where(on_arm, np.abs(around_arm) * 0.048 - 0.030, 1.0)
+    flank = np.where(
+        (~on_arm) & trunk & (y < 1.42), np.abs(np.arctan2(x / 0.155, z / 0.10 + 0.12) - 1.62) * 0.125 - 0.034 - 0.10 * np.clip(y - 1.2, 0, 0.1), 1.0
+    )
+    inner = np.where(y < 0.93, np.abs(np.abs(around_leg) - np.pi * 0.5) * 0.07, 1.0)
+    inner = np.where((y < 0.93) & (around_leg < 0), inner - 0.034, 1.0)
+    pocket = np.maximum(band(y, 0.665, 0.790), band(around_leg * 0.085, 0.028, 0.118))
+    flap = np.maximum(band(y, 0.762, 0.794), band(around_leg * 0.085, 0.025, 0.121))
+    pocket, flap = np.where(y < 0.88, pocket, 1.0), np.where(y < 0.88, flap, 1.0)
+    bands = np.minimum(
+        np.where(on_arm, np.minimum(band(x, 0.352, 0.378), band(x, 0.386, 0.391)), 1.0),
+        np.where(y < 0.86, np.minimum(band(y, 0.600, 0.628), band(y, 0.589, 0.593)), 1.0),
+    )
+    return sleeve, flank, inner, pocket, flap, bands
+
+
+def folds(p):
+    """Creases of cloth where it bends, metres."""
+    x, y, z = np.abs(p[:, 0]), p[:, 1], p[:, 2]
+    q = np.column_stack([x, y, z])
+    warp = noise(q, 0.07, 1) * 0.016 + noise(q, 0.03, 2) * 0.004
+    near = lambda d, w: np.exp(-((d / w) ** 2))
+    arm = np.where(x > 0.22, near(x - 0.455, 0.055) * (0.5 + 0.5 * np.tanh((z + 0.03) / 0.03)) + 0.6 * near(x - 0.57, 0.03) + 0.35 * near(x - 0.27, 0.05), 0)
+    leg = np.where(y < 0.92, 0.9 * near(y - 0.50, 0.05) * (0.35 + 0.65 * (z < 0.01)) + 1.0 * near(y - 0.385, 0.035) + 0.7 * near(y - 0.86, 0.05), 0)
+    waist = np.where(x < 0.2, 0.8 * near(y - 1.075, 0.035) + 0.4 * near(y - 0.965, 0.04), 0)
+    wave_x = np.sin((x + warp) * 2 * np.pi / 0.030 + 9 * z)
+    wave_y = np.sin((y + warp) * 2 * np.pi / 0.031 + 7 * x)
+    round_ = lambda w: 0.5 * w + 0.5 * np.abs(w) * w
+    return 0.0018 * (arm * round_(wave_x) + (leg + waist) * round_(wave_y)) + 0.0012 * noise(q, 0.09, 5) + 0.0005 * noise(q, 0.035, 7)
+
+
+def height(part, p):
+    name = NAMES[part]
+    x, y, z = np.abs(p[:, 0]), p[:, 1], p[:, 2]
+    q = np.column_stack([x, y, z])
+    if name == "suit":
+        sleeve, flank, inner, pocket, flap, bands = suit_regions(p)
+        h = folds(p)
+        for d in (sleeve, flank, inner):
+            h = h + groove(d, 0.004, 0.0012) - groove(d - 0.006, 0.004, 0.0006)
+        h = h + 0.0022 * edge(pocket, 0.004) + 0.0016 * edge(flap, 0.003) + 0.0008 * edge(bands, 0.002)
+        h = h + groove(pocket + 0.007, 0.0022, 0.0006) + groove(flap + 0.006, 0.0022, 0.0006)
+        return h + groove(np.where((y > 0.87) & (z > 0) & (x < 0.05), x, 1.0), 0.005, 0.0016)
+    if name == "vest":
+        plate = np.maximum(band(y, 1.185, 1.345), x - 0.112)
+        ribs = np.where((z < -0.02) | (plate > 0.004), np.cos(y * 2 * np.pi / 0.034), 0.0)
+        h = 0.0012 * np.clip(ribs * 2.5, -1, 1) * edge(0.012 - plate, 0.01) * (y > 1.125) * (y < 1.38)
+        for d in (np.abs(x - 0.040), np.abs(y - 1.265) + np.where(x > 0.108, 1.0, 0)):
+            h = h + np.where(plate < -0.004, groove(d, 0.004, 0.0016), 0)
+        return h + 0.0003 * noise(q, 0.006, 3)
+    if name == "glove":
+        knuckles = np.where(x > 0.79, groove(x - 0.832, 0.004, 0.0008) + groove(x - 0.860, 0.004, 0.0007), 0)
+        pad = np.maximum(np.maximum(band(x, 0.728, 0.788), np.abs(z + 0.018) - 0.036), 1.405 - y)
+        return knuckles + 0.0018 * edge(pad, 0.004) + 0.0002 * noise(q, 0.004, 4)
+    if name == "cuff":
+        return 0.0010 * np.cos(x * 2 * np.pi / 0.0125) * edge(x - 0.676, 0.008) * edge(0.616 - x, 0.008)
+    if name == "boot":
+        sole = band(y, 0.006, 0.026)
+        tread = np.where(sole < 0.003, 0.0012 * np.clip(3 * np.cos(np.arctan2(x - 0.112, z - 0.05) * 26), -1, 1), 0)
+        front = np.where((z > -0.02) & (y > 0.14), np.abs(x - 0.108), 1.0)
+        return (
+            tread + groove(y - 0.0315, 0.004, 0.0015) + groove(front - 0.020, 0.004, 0.0012)
+            + np.where(front < 0.02, 0.0012 * np.cos(y * 2 * np.pi / 0.022), 0)
+            + np.where(y < 0.10, groove(z - 0.125 + 0.4 * (x - 0.113) ** 2 / 0.05, 0.004, 0.0012), 0) + 0.0002 * noise(q, 0.005, 4)
+        )
+    if name == "helmet":
+        seam = groove(np.where(window(p, 0.016) > 0.006, z + 0.052 - 0.35 * (y - 1.6), 1.0), 0.0035, 0.0016)
+        jaw = groove(np.where(z > -0.045, y - 1.588 + 0.05 * z, 1.0), 0.003, 0.0013) * (x > 0.055)
+        vents = np.where((x < 0.034) & (z > 0.13), 0.0022 * np.clip(2 * np.cos(x * 2 * np.pi / 0.0135), -1, 1), 0)
+        frame = groove(window(p, 0.016) - 0.001, 0.003, 0.0012)
+        return seam + jaw + vents * edge(np.abs(y - 1.56) - 0.018, 0.003) + frame
+    if name == "pack":
+        lines = groove(np.where(z < -0.21, y - 1.235, 1.0), 0.004, 0.0018) + groove(np.where(x < 0.056, y - 1.36, 1.0), 0.004, 0.0015)
+        grille = np.where((x < 0.036) & (z < -0.236), 0.002 * np.clip(2 * np.cos(y * 2 * np.pi / 0.016), -1, 1) * edge(band(y, 1.255, 1.345), 0.004), 0)
+        return lines + grille + groove(z + 0.158, 0.004, 0.0015)
+    if name in ("shoulder", "knee"):
+        return 0.0002 * noise(q, 0.01, 2)
+    if name == "buckle":
+        return groove(np.maximum(x - 0.024, np.abs(y - BELT_Y) - 0.016), 0.004, 0.0016)
+    if name in ("belt", "pouch", "side pouch"):
+        return 0.0002 * noise(q, 0.004, 3)
+    return np.zeros(len(p))
+
+
+def paint(part, p, n, opened):
+    name = NAMES[part]
+    x, y, z = np.abs(p[:, 0]), p[:, 1], p[:, 2]
+    q = np.column_stack([x, y, z])
+    ones = np.ones(len(p))
+    grime = np.clip(0.5 + 0.5 * noise(q, 0.06, 11) + 0.35 * noise(q, 0.02, 12), 0, 1)
+    metal = 0.0 * ones
+    if name == "suit":
+        sleeve, flank, inner, pocket, flap, bands = suit_regions(p)
+        c = np.tile(ORANGE, (len(p), 1))
+        dark = np.maximum.reduce([edge(sleeve), edge(flank), edge(inner)])
+        c = mixed(c, DEEP, 0.55 * np.maximum(edge(pocket), edge(flap)))
+        c = mixed(c, CHARCOAL, dark)
+        c = mixed(c, SILVER, edge(bands))
+        for d in (pocket + 0.007, flap + 0.006):
+            stitch = edge(np.abs(d) - 0.0008, 0.001) * (np.cos((x + y + z) * 2 * np.pi / 0.007) > -0.2)
+            c = mixed(c, BONE, 0.35 * stitch)
+        c = c * (0.94 + 0.10 * grime)[:, None]
+        c = c * (1.0 + 26.0 * np.clip(folds(p), -0.003, 0.003))[:, None]
+        c = mixed(c, INK, 0.35 * np.clip((0.50 - y) / 0.2, 0, 1) * grime)
+        rough = 0.82 - 0.30 * edge(bands)
+        c = mixed(c, ORANGE * 0.45, 0.5 * (1 - opened))
+        return c, rough, metal
+    if name == "vest":
+        plate = np.maximum(band(y, 1.185, 1.345), x - 0.112)
+        c = np.tile(INK * 1.25, (len(p), 1))
+        c = mixed(c, CHARCOAL * 1.2, edge(plate))
+        trim = np.maximum(band(y, 1.107, 1.119), -1.0)
+        c = mixed(c, TEAL, edge(trim))
+        lamp = np.hypot(x - 0.076, y - 1.305) - 0.012
+        c = mixed(c, TEAL * 1.15, edge(lamp) * (z > 0))
+        tab = np.maximum(np.abs(x - 0.076) - 0.020, np.abs(y - 1.225) - 0.007)
+        c = mixed(c, ORANGE, edge(tab) * (z > 0))
+        return c * (0.9 + 0.2 * grime)[:, None], 0.62 + 0.15 * grime - 0.3 * edge(lamp), metal
+    if name in ("glove", "cuff"):
+        c = np.tile(INK * 1.15, (len(p), 1))
+        pad = np.maximum(np.maximum(band(x, 0.728, 0.788), np.abs(z + 0.018) - 0.036), 1.405 - y)
+        c = mixed(c, CHARCOAL * 1.3, edge(pad))
+        c = mixed(c, ORANGE, edge(band(x, 0.588, 0.6115)))
+        c = mixed(c, TEAL, edge(band(x, 0.684, 0.692)))
+        c = mixed(c, CHARCOAL, 0.6 * edge(0.868 - x, 0.01))
+        return c * (0.88 + 0.22 * grime)[:, None], 0.68 + 0.1 * grime, metal
+    if name == "boot":
+        c = np.tile(CHARCOAL * 0.95, (len(p), 1))
+        c = mixed(c, INK * 0.8, edge(y - 0.031))
+        c = mixed(c, INK, edge(np.where((z > -0.02) & (y > 0.14), np.abs(x - 0.108), 1.0) - 0.020))
+        c = mixed(c, INK, edge(0.128 - z, 0.002) * (y < 0.1) * (y > 0.031))
+        dust = np.clip((0.09 - y) / 0.09, 0, 1) * grime
+        c = mixed(c, TAN * 1.3, 0.32 * dust)
+        return c, 0.55 + 0.3 * dust, metal
+    if name == "boot rim":
+        c = np.tile(ORANGE, (len(p), 1))
+        c = mixed(c, INK, edge(y - 0.306))
+        return c * (0.85 + 0.2 * grime)[:, None], 0.65 * ones, metal
+    if name == "helmet":
+        c = np.tile(BONE, (len(p), 1))
+        frame = edge(window(p, 0.0155))
+        stripe = edge(x - 0.021) * (y > 1.70)
+        c = mixed(c, ORANGE, stripe)
+        c = mixed(c, ORANGE, edge(band(z, -0.082, -0.060)) * (y < 1.70) * (y > 1.575) * (x > 0.05) * 0.0)
+        swoosh = band(y - 1.60 + 0.12 * (z + 0.02), -0.012, 0.010)
+        c = mixed(c, TEAL, edge(np.where(z < -0.055, swoosh, 1.0)))
+        c = mixed(c, INK, edge(np.hypot(y - 1.632, z + 0.028) - 0.0285) * (x > 0.12))
+        c = mixed(c, ORANGE, edge(np.abs(np.hypot(y - 1.632, z + 0.028) - 0.036) - 0.003) * (x > 0.12))
+        c = mixed(c, INK * 1.1, frame)
+        c = mixed(c, CHARCOAL, edge(np.maximum(x - 0.044, np.abs(y - 1.56) - 0.03)) * (z > 0.125))
+        c = mixed(c, INK, edge(y - 1.508, 0.003))
+        chips = np.clip((noise(q, 0.012, 21) + 0.6 * noise(q, 0.005, 22) - 0.95) * 6, 0, 1) * (y < 1.62)
+        c = mixed(c, CHARCOAL * 1.6, 0.6 * chips)
+        c = c * (0.96 + 0.06 * grime)[:, None]
+        return mixed(c, BONE * 0.5, 0.35 * (1 - opened)), 0.36 + 0.16 * grime + 0.2 * frame, metal
+    if name == "visor":
+        c = srgb("#0f1c26") + (srgb("#2b4a55") - srgb("#0f1c26")) * np.clip((y - 1.60) / 0.10, 0, 1)[:, None]
+        return c, 0.07 * ones, 0.75 * ones
+    if name in ("belt", "pouch", "side pouch"):
+        c = np.tile(TAN, (len(p), 1))
+        if name == "belt":
+            stitch = edge(np.abs(np.abs(y - BELT_Y) - 0.017) - 0.0008, 0.001) * (np.cos((x + z) * 2 * np.pi / 0.007) > -0.2)
+            c = mixed(c, BONE, 0.4 * stitch)
+        else:
+            stud = edge(np.hypot((x + z) - (0.215 if name == "pouch" else 5.0), y - BELT_Y + 0.002) - 0.006)
+            c = mixed(c, SILVER * 0.7, stud)
+        c = c * (0.80 + 0.25 * grime)[:, None]
+        return mixed(c, TAN * 0.4, 0.5 * (1 - opened)), 0.72 * ones, metal
+    if name == "buckle":
+        inner = np.maximum(x - 0.024, np.abs(y - BELT_Y) - 0.016)
+        c = np.tile(SILVER * 0.85, (len(p), 1))
+        c = mixed(c, INK, edge(np.abs(inner) - 0.0012))
+        return c, 0.35 + 0.2 * grime, 0.9 * ones
+    if name == "pack":
+        c = np.tile(CHARCOAL * 1.35, (len(p), 1))
+        tank = edge(np.where(z < -0.19, np.abs(x - 0.092) - 0.0415, 1.0)) * (y < 1.42) * (y > 1.14)
+        c = mixed(c, BONE, tank)
+        c = mixed(c, ORANGE, tank * edge(band(y, 1.345, 1.366)))
+        c = mixed(c, INK, edge(x - 0.050) * (z < -0.225))
+        c = mixed(c, TEAL, edge(np.maximum(x - 0.03, np.abs(y - 1.378) - 0.006)) * (z < -0.235))
+        return c * (0.9 + 0.15 * grime)[:, None], 0.45 + 0.2 * grime, metal
+    if name in ("shoulder", "knee"):
+        c = np.tile(BONE, (len(p), 1))
+        if name == "shoulder":
+            c = mixed(c, ORANGE, edge(band(x, 0.252, 0.266)))
+        else:
+            c = mixed(c, CHARCOAL, edge(np.hypot((x - 0.105) / 0.030, (y - 0.52) / 0.058) * 0.03 - 0.030) * 0.85)
+        chips = np.clip((noise(q, 0.014, 31) + 0.6 * noise(q, 0.005, 32) - 0.8) * 6, 0, 1)
+        c = mixed(c, CHARCOAL * 1.5, 0.55 * chips)
+        return c * (0.93 + 0.1 * grime)[:, None], 0.42 + 0.2 * grime, metal
+    c = np.tile(CHARCOAL, (len(p), 1))
+    return c * (0.9 + 0.15 * grime)[:, None], 0.6 * ones, metal
 
 
 # ---------------------------------------------------------------- the file
@@ -295,6 +554,7 @@ def main():
     import gait
     import glb
     import moves
+    import paint as paint_
     import rig
 
     s = humanoid.skeleton()
@@ -305,22 +565,33 @@ def main():
     joints = [j for j, n in enumerate(s.names) if not (n.endswith("_End") or n.endswith("4"))]
     left = clay.joined(meshes)
     alone = [i for i, m in enumerate(meshes) if m.whole]
-    body = clay.mirror(left, alone=alone)
+    left_uv = paint_.unwrap(left)
+    scene = lambda p: np.minimum.reduce([clay.mirrored(part.shape)(p) for part in PARTS if part.shape])
+    base, bump, orm = paint_.bake(left, left_uv, [p.shape for p in PARTS], paint, height, 1024, scene)
+    body, uv = clay.mirror(left, left_uv, alone)
     w = g.weights(body.vertices, "mixamorig:Hips")
     w = rig.smoothed(w, body.faces, 2)
-    for i, (name, *_, carrier) in enumerate(PARTS):
-        if carrier:
+    for i, part in enumerate(PARTS):
+        if part.carrier:
             mine = np.unique([v for f, p in zip(body.faces, body.part) if p == i for v in f])
             w[mine] = 0
-            w[mine, s["mixamorig:" + carrier]] = 1
+            w[mine, s["mixamorig:" + part.carrier]] = 1
     values, slots = rig.strongest(w, joints)
-    colors = [(.85,.33,.12),(.17,.18,.2),(.2,.2,.22),(.25,.27,.3),(.3,.28,.25),(.9,.87,.8),(.05,.1,.15),(.3,.3,.3),(.4,.42,.45),(.85,.82,.78),(.85,.82,.78)]
-    color = np.zeros((len(body.vertices), 3))
-    for f, p in zip(body.faces, body.part):
-        color[f] = np.array(colors[p]) ** 2.2
-    tris, _ = body.triangles()
-    material = out.add("materials", {"name": "pilot", "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.7}})
-    primitive = out.primitive(body.vertices, body.normals(), tris, material, color=color, joints=slots, weights=values)
+    vertex, coords, tris, _ = paint_.corners_of(body, uv)
+    coords = np.column_stack([coords[:, 0], 1 - coords[:, 1]])
+    material = out.add("materials", {
+        "name": "pilot",
+        "pbrMetallicRoughness": {
+            "baseColorTexture": {"index": out.image(base, quality=84, name="pilot colour")},
+            "metallicRoughnessTexture": {"index": (relief := out.image(orm, quality=82, name="pilot surface"))},
+        },
+        "normalTexture": {"index": out.image(bump, quality=84, name="pilot relief")},
+        "occlusionTexture": {"index": relief},
+    })
+    primitive = out.primitive(
+        body.vertices[vertex], body.normals()[vertex], tris, material, coords, joints=slots[vertex], weights=values[vertex]
+    )
+    print(len(vertex), "vertices,", len(tris), "triangles")
     mesh = out.add("meshes", {"name": "pilot", "primitives": [primitive]})
     skin = out.skin(s, nodes, joints, "pilot")
     node = out.add("nodes", {"name": "pilot", "mesh": mesh, "skin": skin})
