@@ -266,10 +266,8 @@ def _thin(track, mix, distance, limit):
             keep.add(where)
             todo += [(a, where), (where, b)]
     kept = sorted(keep)
-    if len(kept) == 2 and distance(track[kept[0]], track[kept[1]]) < 1e-9:
-        # A track that stands still keeps one key at each end, so that clips last as long on every joint.
-        return kept
-    return kept
+    # What stands still needs one key.
+    return kept[:1] if len(kept) == 2 and distance(track[kept[0]], track[kept[1]]) < 1e-6 else kept
 
 
 def cycle(pose, frames):

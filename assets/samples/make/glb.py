@@ -22,6 +22,7 @@ class Glb:
     def __init__(self, generator="Gaitway sample scripts", copyright="CC0 1.0, the Gaitway authors"):
         self.json = {"asset": {"version": "2.0", "generator": generator, "copyright": copyright}, "scene": 0}
         self.bin = bytearray()
+        self.known = {}
 
     def add(self, key, value):
         self.json.setdefault(key, []).append(value)
@@ -55,6 +56,13 @@ class Glb:
             accessor["min"] = [float(v) for v in rows.min(axis=0)]
             accessor["max"] = [float(v) for v in rows.max(axis=0)]
         return self.add("accessors", accessor)
+
+    def _shared(self, array, kind, component, **more):
+        """An accessor that equal data share: still joints and clips of one length would else repeat themselves."""
+        key = (kind, component, np.ascontiguousarray(array, dtype="<i2" if component == I16 else "<f4").tobytes())
+        if key not in self.known:
+            self.known[key] = self.accessor(array, kind, component, **more)
+        return self.known[key]
 
     def image(self, pixels, kind="jpeg", quality=85, name=None):
         """`pixels` (H, W, 3 or 4) u8. Returns the texture's number."""
@@ -138,19 +146,17 @@ class Glb:
 
     def clip(self, name, nodes, channels):
         """`channels`: [(joint, "rotation" | "translation" | "scale" | "weights", times, values)], all LINEAR."""
-        samplers, entries, clocks = [], [], {}
+        samplers, entries = [], []
         for joint, path, times, values in channels:
-            key = np.asarray(times, dtype="<f4").tobytes()
-            if key not in clocks:
-                clocks[key] = self.accessor(np.asarray(times), "SCALAR", FLOAT, bounds=True)
+            clock = self._shared(np.asarray(times), "SCALAR", FLOAT, bounds=True)
             kind = {"rotation": "VEC4", "weights": "SCALAR"}.get(path, "VEC3")
             values = np.asarray(values, dtype=np.float64)
             if path == "rotation":
                 # Sixteen bits are exact to 0.004 degrees and half the size.
-                output = self.accessor(np.round(values * 32767), kind, I16, normalized=True)
+                output = self._shared(np.round(values * 32767), kind, I16, normalized=True)
             else:
-                output = self.accessor(values.reshape(-1) if path == "weights" else values, kind, FLOAT)
-            samplers.append({"input": clocks[key], "output": output, "interpolation": "LINEAR"})
+                output = self._shared(values.reshape(-1) if path == "weights" else values, kind, FLOAT)
+            samplers.append({"input": clock, "output": output})
             entries.append({"sampler": len(samplers) - 1, "target": {"node": nodes[joint], "path": path}})
         return self.add("animations", {"name": name, "samplers": samplers, "channels": entries})
 

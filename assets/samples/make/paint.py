@@ -9,16 +9,31 @@ import numpy as np
 import clay
 
 
-def unwrap(mesh, margin=0.003, angle=78.0):
-    """One atlas by Blender's smart projection: per face a list of corner UVs, v up."""
+def unwrap(mesh, splits=None, margin=0.004):
+    """One atlas: per face a list of corner UVs, v up.
+
+    Every part is cut into charts where its faces turn away: `splits[part]` is the direction (a vector) that parts front
+    from back, or None for the six sides of a box. Few charts mean few doubled vertices.
+    """
     import bpy
 
+    charts = _charts(mesh, splits or {})
     thing = clay._blender_mesh("unwrap", mesh.vertices, mesh.faces)
+    data = thing.data
+    sides = {}
+    for number, f in enumerate(mesh.faces):
+        for a, b in zip(f, f[1:] + f[:1]):
+            sides.setdefault((min(a, b), max(a, b)), []).append(number)
+    for e in data.edges:
+        near = sides[tuple(sorted(e.vertices))]
+        e.use_seam = bool(len(near) == 2 and charts[near[0]] != charts[near[1]])
+    data.uv_layers.new(name="UV")
     bpy.ops.object.mode_set(mode="EDIT")
     bpy.ops.mesh.select_all(action="SELECT")
-    bpy.ops.uv.smart_project(
-        angle_limit=np.radians(angle), island_margin=margin, area_weight=0.0, correct_aspect=True, scale_to_bounds=False
-    )
+    bpy.ops.uv.unwrap(method="ANGLE_BASED", fill_holes=False, margin=margin)
+    bpy.ops.uv.select_all(action="SELECT")
+    bpy.ops.uv.average_islands_scale()
+    bpy.ops.uv.pack_islands(rotate=True, margin=margin)
     bpy.ops.object.mode_set(mode="OBJECT")
     layer = thing.data.uv_layers.active.data
     uv = [[tuple(layer[i].uv) for i in p.loop_indices] for p in thing.data.polygons]
@@ -26,6 +41,62 @@ def unwrap(mesh, margin=0.003, angle=78.0):
     flat = np.array([c for f in uv for c in f])
     low, span = flat.min(axis=0), (flat.max(axis=0) - flat.min(axis=0)).max()
     return [[tuple(((np.array(c) - low) / span) * 0.996 + 0.002) for c in f] for f in uv]
+
+
+def _charts(mesh, splits):
+    """A chart number per face: by the side it faces, islands too small to matter given to their neighbours."""
+    v = mesh.vertices
+    normal = np.array([np.cross(v[f[1]] - v[f[0]], v[f[2]] - v[f[0]]) + (np.cross(v[f[2]] - v[f[0]], v[f[-1]] - v[f[0]]) if len(f) > 3 else 0) for f in mesh.faces])
+    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
+    neighbours = [[] for _ in mesh.faces]
+    sides = {}
+    for number, f in enumerate(mesh.faces):
+        for a, b in zip(f, f[1:] + f[:1]):
+            sides.setdefault((min(a, b), max(a, b)), []).append(number)
+    for near in sides.values():
+        if len(near) == 2:
+            neighbours[near[0]].append(near[1])
+            neighbours[near[1]].append(near[0])
+    # Normals are smoothed first: a chart's border should run straight, not follow every bump.
+    for _ in range(6):
+        mean = np.array([normal[n].sum(axis=0) if n else np.zeros(3) for n in neighbours])
+        normal = normal + mean
+        normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
+    side = np.zeros(len(mesh.faces), dtype=int)
+    for part in np.unique(mesh.part):
+        mine = mesh.part == part
+        split = splits.get(part)
+        if split is not None:
+            side[mine] = (normal[mine] @ np.asarray(split, dtype=np.float64) > 0).astype(int)
+        else:
+            axis = np.abs(normal[mine]).argmax(axis=1)
+            side[mine] = axis * 2 + (np.take_along_axis(normal[mine], axis[:, None], 1)[:, 0] > 0)
+    for _ in range(4):
+        chart = _islands(side, neighbours)
+        sizes = np.bincount(chart)
+        for face in np.nonzero(sizes[chart] < 14)[0]:
+            other = [side[n] for n in neighbours[face] if chart[n] != chart[face]]
+            if other:
+                side[face] = max(set(other), key=other.count)
+    return _islands(side, neighbours)
+
+
+def _islands(side, neighbours):
+    chart = np.full(len(side), -1)
+    count = 0
+    for start in range(len(side)):
+        if chart[start] >= 0:
+            continue
+        todo = [start]
+        chart[start] = count
+        while todo:
+            at = todo.pop()
+            for n in neighbours[at]:
+                if chart[n] < 0 and side[n] == side[at]:
+                    chart[n] = count
+                    todo.append(n)
+        count += 1
+    return chart
 
 
 def corners_of(mesh, uv):
@@ -113,6 +184,23 @@ def _rasterise(mesh, uv, size):
     return out
 
 
+def _overlap(mesh, uv):
+    """The share of chart area that is lost because charts lie over each other."""
+    size = 512
+    area = 0.0
+    for f in uv:
+        c = np.array(f)
+        x, y = c[:, 0], c[:, 1]
+        area += 0.5 * abs(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
+    from PIL import Image, ImageDraw
+
+    picture = Image.new("1", (size * 2, size * 2))
+    draw = ImageDraw.Draw(picture)
+    for f in uv:
+        draw.polygon([(c[0] * size * 2, c[1] * size * 2) for c in f], fill=1)
+    return max(0.0, 1.0 - np.asarray(picture).mean() / max(area, 1e-9))
+
+
 def _spread(picture, filled, rounds=6):
     """Fills the gaps between charts from their edges, so that filtering never mixes in the background."""
     for _ in range(rounds):
@@ -148,6 +236,7 @@ def bake(mesh, uv, shapes, paint, height=None, size=1024, scene=None):
     clay, for occlusion.
     """
     fine = _rasterise(mesh, uv, size)
+    print(f"atlas: {len(fine.place) / size**2:.0%} used, {_overlap(mesh, uv):.1%} of the charts overlap", flush=True)
     rough = _rasterise(mesh, uv, size // 2)
     half = size // 2
 

@@ -121,7 +121,7 @@ def cuff():
                      (0.71, 1.411, -0.017, 0.0345, 0.0395)], rounding=0.004)
     profile = [(0.614, -0.014), (0.597, -0.007), (0.592, 0.000), (0.595, 0.0045), (0.604, 0.0050), (0.609, 0.0015), (0.630, 0.0),
                (0.650, 0.0), (0.668, 0.0), (0.684, 0.0008), (0.693, 0.0005), (0.697, -0.004)]
-    return clay.ring(cone, (0, 1.411, -0.0175), (1, 0, 0), (0, 1, 0), profile, 24)
+    return clay.ring(cone, (0, 1.411, -0.0175), (1, 0, 0), (0, 1, 0), profile, 20)
 
 
 def boot():
@@ -161,7 +161,7 @@ def boot():
 def boot_rim():
     shaft = upright([(0.20, 0.108, -0.020, 0.0530, 0.0580), (0.28, 0.108, -0.016, 0.0610, 0.0680), (0.37, 0.107, -0.008, 0.0720, 0.0800)])
     profile = [(0.300, 0.000), (0.308, 0.0035), (0.322, 0.0050), (0.338, 0.0045), (0.345, 0.0015), (0.346, -0.005), (0.338, -0.012), (0.318, -0.018)]
-    return clay.ring(shaft, (0.1075, 0, -0.012), (0, 1, 0), (0, 0, 1), profile, 24)
+    return clay.ring(shaft, (0.1075, 0, -0.012), (0, 1, 0), (0, 0, 1), profile, 20)
 
 
 def vest():
@@ -274,12 +274,12 @@ LIMB = union(TORSO, ARM, k=0.075)
 
 def shoulder_pad():
     profile = [(0, 0.027), (0.45, 0.026), (0.72, 0.0235), (0.86, 0.019), (0.94, 0.010), (1, -0.004)]
-    return clay.patch(LIMB, (0.212, 1.47, -0.018), (0.30, 1, 0), (0, 0, 1), (0.066, 0.070), profile, 12, power=3.0, reach=0.3)
+    return clay.patch(LIMB, (0.212, 1.47, -0.018), (0.30, 1, 0), (0, 0, 1), (0.052, 0.060), profile, 10, power=2.6, reach=0.3)
 
 
 def knee_pad():
     profile = [(0, 0.026), (0.32, 0.025), (0.42, 0.018), (0.75, 0.0165), (0.88, 0.012), (1, -0.004)]
-    return clay.patch(LEG, (0.105, 0.518, 0.08), (0.06, 0.02, 1), (0, 1, 0), (0.050, 0.076), profile, 12, power=2.6, reach=0.2)
+    return clay.patch(LEG, (0.105, 0.518, 0.08), (0.06, 0.02, 1), (0, 1, 0), (0.050, 0.076), profile, 10, power=2.6, reach=0.2)
 
 
 class Part:
@@ -294,19 +294,19 @@ class Part:
 
 PARTS = [
     Part("suit", SUIT, None, [(0, 0.06, -0.2), (0.74, 1.56, 0.2)], 2900, 0.008),
-    Part("glove", glove(), None, [(0.60, 1.33, -0.13), (0.93, 1.49, 0.12)], 1350, 0.0024),
+    Part("glove", glove(), None, [(0.60, 1.33, -0.13), (0.93, 1.49, 0.12)], 1120, 0.0024),
     Part("cuff", None, mesh=cuff),
-    Part("boot", boot(), None, [(0.02, -0.03, -0.14), (0.22, 0.39, 0.25)], 900),
+    Part("boot", boot(), None, [(0.02, -0.03, -0.14), (0.22, 0.39, 0.25)], 760),
     Part("boot rim", None, mesh=boot_rim),
     Part("vest", clay.mirrored(vest()), None, [(0, 1.05, -0.2), (0.30, 1.57, 0.2)], 1300),
     Part("belt", None, mesh=belt),
     Part("buckle", buckle(), "Hips", [(-0.05, 0.98, 0.08), (0.05, 1.07, 0.14)], 90, 0.003, half=False),
     Part("pouch", pouch(), "Hips", [(0.05, 0.93, 0.03), (0.18, 1.08, 0.15)], 220, 0.003, solid=False),
     Part("side pouch", side_pouch(), "Hips", [(0.11, 0.93, -0.09), (0.22, 1.08, 0.04)], 220, 0.003, solid=False),
-    Part("helmet", clay.mirrored(helmet()), "Head", [(0, 1.45, -0.2), (0.2, 1.83, 0.22)], 1500),
-    Part("visor", clay.mirrored(visor()), "Head", [(0, 1.5, -0.1), (0.2, 1.78, 0.22)], 240, 0.003, solid=False),
+    Part("helmet", clay.mirrored(helmet()), "Head", [(0, 1.45, -0.2), (0.2, 1.83, 0.22)], 1200),
+    Part("visor", clay.mirrored(visor()), "Head", [(0, 1.5, -0.1), (0.2, 1.78, 0.22)], 150, 0.003, solid=False),
     Part("collar", None, mesh=collar),
-    Part("pack", clay.mirrored(pack()), "Spine2", [(0, 1.08, -0.28), (0.2, 1.48, -0.08)], 620, 0.005),
+    Part("pack", clay.mirrored(pack()), "Spine2", [(0, 1.08, -0.28), (0.2, 1.48, -0.08)], 500, 0.005),
     Part("shoulder", None, mesh=shoulder_pad),
     Part("knee", None, mesh=knee_pad),
 ]
@@ -332,6 +332,8 @@ def sculpt():
 
 # ---------------------------------------------------------------- colours and relief
 
+# Where the charts of the atlas part: front and back, top and bottom, inside and outside.
+SPLITS = {"suit": (0, 0, 1), "glove": (0, 1, 0), "boot": (1, 0, 0), "vest": (0, 0, 1), "shoulder": (0, 1, 0), "knee": (0, 0, 1), "visor": (0, 0, 1)}
 NAMES = [p.name for p in PARTS]
 ORANGE, DEEP, CHARCOAL, INK = srgb("#d9581c"), srgb("#b8430f"), srgb("#3a3f47"), srgb("#23262b")
 BONE, TEAL, SILVER, TAN = srgb("#e9e3d6"), srgb("#1f9a98"), srgb("#c9ccd0"), srgb("#6b5a48")
@@ -565,7 +567,7 @@ def main():
     joints = [j for j, n in enumerate(s.names) if not (n.endswith("_End") or n.endswith("4"))]
     left = clay.joined(meshes)
     alone = [i for i, m in enumerate(meshes) if m.whole]
-    left_uv = paint_.unwrap(left)
+    left_uv = paint_.unwrap(left, {NAMES.index(n): v for n, v in SPLITS.items()})
     scene = lambda p: np.minimum.reduce([clay.mirrored(part.shape)(p) for part in PARTS if part.shape])
     base, bump, orm = paint_.bake(left, left_uv, [p.shape for p in PARTS], paint, height, 1024, scene)
     body, uv = clay.mirror(left, left_uv, alone)
