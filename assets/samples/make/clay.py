@@ -662,7 +662,8 @@ def joined(meshes):
 def mirror(mesh, uv=None, alone=()):
     """The whole of a left half. Vertices on the mirror plane are shared; both sides use the same UVs (per face corner).
 
-    Faces of the parts numbered in `alone` are whole already and stay as they are.
+    Faces of the parts numbered in `alone` are whole already and stay as they are. `other` of the result: the vertex on the
+    other side of each of the first vertices.
     """
     count = len(mesh.vertices)
     doubled = [i for i, part in enumerate(mesh.part) if part not in alone]
@@ -676,4 +677,5 @@ def mirror(mesh, uv=None, alone=()):
     flipped = mesh.vertices[used] * [-1, 1, 1]
     whole = Mesh(np.concatenate([mesh.vertices, flipped]), faces, np.concatenate([mesh.part, mesh.part[doubled]]))
     whole.plane = np.concatenate([mesh.plane, np.zeros(len(flipped), dtype=bool)])
+    whole.other = other
     return whole if uv is None else (whole, uv + [uv[f][::-1] for f in doubled])
