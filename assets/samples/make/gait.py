@@ -223,7 +223,7 @@ class Tread:
 # ---------------------------------------------------------------- clips
 
 
-def channels(skeleton, poses, rate, tolerance=0.12, loose=0.3, tight=(), move_tolerance=0.0003, scale_moves=None):
+def channels(skeleton, poses, rate, tolerance=0.06, loose=0.3, tight=(), move_tolerance=0.0003, scale_moves=None):
     """File channels of a list of poses [(turns, moves)] at `rate` a second: as few LINEAR keys as keep within a
     tolerance (degrees; `tight` joints within `tolerance`, others within `loose`)."""
     times = np.arange(len(poses)) / rate

@@ -164,16 +164,18 @@ def jump(figure, frames=54):
     ankle, heel, ball = feet(figure)
     tip = 52.0
     stretched = ball - rotate(qx(tip), ball)
-    top = 0.028
+    # Neither take-off nor landing is on quite straight legs: near the stretch knees move too fast for 30 keys a second.
+    top, bottom = 0.012, -0.035
+    spring = (bottom - top) / flight + 9.81 * flight / 2
 
     def height(f):
         if leave <= f <= land:
             t = (f - leave) / RATE
-            return top + 0.5 * 9.81 * t * (flight - t)
+            return top + spring * t - 0.5 * 9.81 * t * t
         return None
 
     keys = [(0, -0.014), (4, -0.10), (8.5, -0.33), (11, -0.26), (leave, top)]
-    after = [(land, top), (32, -0.16), (35.5, -0.30), (41, -0.16), (48, -0.03), (frames, -0.014)]
+    after = [(land, bottom), (32, -0.17), (35.5, -0.30), (41, -0.16), (48, -0.03), (frames, -0.014)]
 
     def pose(p):
         f = p * frames
@@ -183,7 +185,7 @@ def jump(figure, frames=54):
         if 11 <= f < leave:
             # Leaves the ground with the speed of the flight.
             s = (f - 11) / (leave - 11)
-            v = 9.81 * flight / 2 * (leave - 11) / RATE
+            v = spring * (leave - 11) / RATE
             y = -0.26 + (top + 0.26) * (s * s * (3 - 2 * s)) + v * (s**3 - s**2) + 2.4 / RATE * (leave - 11) * (s**3 - 2 * s * s + s)
         lean = float(curve([(0, 0), (8.5, 34), (leave, 4), (20, -2), (27, 8), (land, 10), (35.5, 36), (46, 8), (frames, 0)], f))
         hips = figure.names["hips"]
@@ -208,7 +210,7 @@ def jump(figure, frames=54):
             elif f < land:
                 s = (f - leave) / (land - leave)
                 # In the air the feet hang from the hips: they trail, tuck a little, then reach for the ground.
-                rise = y - top
+                rise = spring * (f - leave) / RATE - 0.5 * 9.81 * ((f - leave) / RATE) ** 2 - (bottom - top) * s
                 tuck = float(curve([(0, 0), (0.3, 0.03), (0.6, 0.10), (1, 0.0)], s))
                 pitch = float(curve([(0, -tip), (0.35, -46), (0.75, -14), (1, -12)], s))
                 start = base + rotate(qy(sign * 9), ball * [sign, 1, 1]) - rotate(mul(qy(sign * 9), qx(tip)), ball * [sign, 1, 1])
