@@ -69,7 +69,7 @@ def walk(figure, speed=1.32, frames=32):
     return cycle(pose, frames), RATE, tread
 
 
-def run(figure, speed=3.5, frames=21):
+def run(figure, speed=3.5, frames=20):
     ankle, heel, ball = feet(figure)
     length = speed * frames / RATE
     tread = Tread(
