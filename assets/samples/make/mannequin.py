@@ -58,7 +58,7 @@ class Piece:
         self.along /= np.linalg.norm(self.along)
 
 
-def ball(center, radius, joint, both=True, counts=(5, 5, 5)):
+def ball(center, radius, joint, both=True, counts=(4, 4, 4)):
     return Piece(sphere(center, radius), center, (radius,) * 3, counts, joint, dark=True, both=both)
 
 
@@ -74,8 +74,8 @@ def pieces():
          (1.035, 0, 0.0, 0.085, 0.060)],
         rounding=0.03, power=2.3,
     )
-    out.append(Piece(pelvis, (0, 0.945, -0.004), (0.145, 0.085, 0.095), (8, 6, 6), "Hips", both=False))
-    out.append(Piece(ellipsoid((0, 1.072, 0.0), (0.088, 0.066, 0.070)), (0, 1.072, 0), (0.088, 0.066, 0.070), (6, 5, 5), "Spine", dark=True, both=False))
+    out.append(Piece(pelvis, (0, 0.945, -0.004), (0.145, 0.085, 0.095), (7, 5, 6), "Hips", both=False))
+    out.append(Piece(ellipsoid((0, 1.072, 0.0), (0.088, 0.066, 0.070)), (0, 1.072, 0), (0.088, 0.066, 0.070), (5, 4, 4), "Spine", dark=True, both=False))
     chest = upright(
         [(1.095, 0, 0.002, 0.070, 0.055), (1.13, 0, 0.002, 0.108, 0.082), (1.20, 0, 0.002, 0.138, 0.102), (1.29, 0, -0.002, 0.158, 0.112),
          (1.37, 0, -0.010, 0.150, 0.104), (1.42, 0, -0.015, 0.110, 0.078), (1.447, 0, -0.018, 0.060, 0.050)],
@@ -83,68 +83,68 @@ def pieces():
     )
     pecs = ellipsoid((0.068, 1.315, 0.062), (0.082, 0.066, 0.048))
     chest = union(chest, clay.mirrored(pecs), k=0.06)
-    out.append(Piece(chest, (0, 1.28, 0.0), (0.155, 0.175, 0.108), (8, 9, 7), "Spine2", both=False))
+    out.append(Piece(chest, (0, 1.28, 0.0), (0.155, 0.175, 0.108), (7, 8, 6), "Spine2", both=False))
     out.append(ball((0, 1.463, -0.016), 0.042, "Neck", both=False))
-    out.append(Piece(capsule((0, 1.475, -0.015), (0, 1.535, -0.006), 0.039, 0.037), (0, 1.505, -0.010), (0.039, 0.07, 0.039), (4, 4, 4), "Neck", both=False))
+    out.append(Piece(capsule((0, 1.475, -0.015), (0, 1.535, -0.006), 0.039, 0.037), (0, 1.505, -0.010), (0.039, 0.07, 0.039), (4, 3, 4), "Neck", both=False))
     skull = union(
         ellipsoid((0, 1.672, -0.006), (0.078, 0.102, 0.096)),
         upright([(1.545, 0, 0.022, 0.030, 0.034), (1.575, 0, 0.018, 0.050, 0.058), (1.63, 0, 0.010, 0.066, 0.080), (1.68, 0, 0.004, 0.070, 0.086)], rounding=0.022, power=2.2),
         k=0.05,
     )
     skull = cut(skull, halfspace((0, 1.64, 0.088), (0, -0.10, -1)), k=0.030)
-    out.append(Piece(skull, (0, 1.655, 0.004), (0.078, 0.118, 0.094), (7, 8, 8), "Head", both=False))
+    out.append(Piece(skull, (0, 1.655, 0.004), (0.078, 0.118, 0.094), (6, 7, 7), "Head", both=False))
 
     # The arm, along +X.
     shoulder, elbow, wrist = at("LeftArm"), at("LeftForeArm"), at("LeftHand")
     x = (1, 0, 0)
     collar = ellipsoid((0.128, 1.412, -0.016), (0.058, 0.042, 0.046))
-    out.append(Piece(collar, (0.128, 1.412, -0.016), (0.042, 0.058, 0.046), (5, 5, 5), "LeftShoulder", along=x))
-    out.append(ball(shoulder + [0.006, 0, 0], 0.054, "LeftArm", counts=(6, 6, 6)))
+    out.append(Piece(collar, (0.128, 1.412, -0.016), (0.042, 0.058, 0.046), (4, 4, 4), "LeftShoulder", along=x))
+    out.append(ball(shoulder + [0.006, 0, 0], 0.054, "LeftArm", counts=(5, 5, 5)))
     upper = sideways(
         [(0.222, 1.410, -0.018, 0.030, 0.030), (0.245, 1.411, -0.018, 0.046, 0.046), (0.29, 1.412, -0.018, 0.0515, 0.0505),
          (0.36, 1.411, -0.019, 0.045, 0.044), (0.41, 1.410, -0.020, 0.037, 0.037), (0.434, 1.410, -0.021, 0.026, 0.026)],
         rounding=0.02,
     )
-    out.append(Piece(upper, (0.328, 1.411, -0.019), (0.048, 0.108, 0.048), (5, 9, 5), "LeftArm", along=x))
+    out.append(Piece(upper, (0.328, 1.411, -0.019), (0.048, 0.108, 0.048), (4, 7, 4), "LeftArm", along=x))
     out.append(ball(elbow, 0.0375, "LeftForeArm"))
     fore = sideways(
         [(0.478, 1.410, -0.022, 0.027, 0.027), (0.500, 1.411, -0.022, 0.038, 0.039), (0.545, 1.411, -0.021, 0.043, 0.043),
          (0.61, 1.411, -0.019, 0.036, 0.037), (0.66, 1.410, -0.018, 0.0285, 0.030), (0.682, 1.410, -0.018, 0.020, 0.021)],
         rounding=0.015,
     )
-    out.append(Piece(fore, (0.58, 1.411, -0.020), (0.040, 0.104, 0.040), (5, 9, 5), "LeftForeArm", along=x))
-    out.append(ball(wrist + [-0.002, 0, 0], 0.0265, "LeftHand", counts=(4, 4, 4)))
+    out.append(Piece(fore, (0.58, 1.411, -0.020), (0.040, 0.104, 0.040), (4, 7, 4), "LeftForeArm", along=x))
+    out.append(ball(wrist + [-0.002, 0, 0], 0.0265, "LeftHand", counts=(3, 3, 3)))
     palm = sideways(
         [(0.722, 1.409, -0.018, 0.015, 0.018), (0.738, 1.409, -0.018, 0.0205, 0.031), (0.775, 1.409, -0.018, 0.0205, 0.042), (0.806, 1.408, -0.018, 0.0165, 0.043),
          (0.822, 1.407, -0.018, 0.010, 0.036)],
         rounding=0.010, power=2.5,
     )
-    out.append(Piece(palm, (0.772, 1.409, -0.018), (0.020, 0.052, 0.042), (4, 6, 5), "LeftHand", along=x))
+    out.append(Piece(palm, (0.772, 1.409, -0.018), (0.020, 0.052, 0.042), (3, 5, 5), "LeftHand", along=x))
     mitt = sideways(
         [(0.824, 1.406, -0.018, 0.009, 0.034), (0.836, 1.406, -0.018, 0.0145, 0.040), (0.865, 1.405, -0.018, 0.0135, 0.038), (0.895, 1.402, -0.018, 0.0110, 0.031),
          (0.912, 1.400, -0.018, 0.007, 0.022)],
         rounding=0.007, power=2.5,
     )
-    out.append(Piece(mitt, (0.866, 1.404, -0.018), (0.0135, 0.047, 0.038), (4, 5, 5), "LeftHand", along=x))
+    out.append(Piece(mitt, (0.866, 1.404, -0.018), (0.0135, 0.047, 0.038), (3, 4, 5), "LeftHand", along=x))
     thumb = capsule((0.752, 1.402, 0.024), (0.795, 1.394, 0.046), 0.0150, 0.0110)
     out.append(Piece(thumb, (0.7735, 1.398, 0.035), (0.014, 0.037, 0.014), (3, 5, 3), "LeftHand", along=(0.85, -0.15, 0.45)))
 
     # The leg.
     hip, knee, ankle, toe = at("LeftUpLeg"), at("LeftLeg"), at("LeftFoot"), at("LeftToeBase")
-    out.append(ball(hip + [0.004, -0.006, 0], 0.069, "LeftUpLeg", counts=(6, 6, 6)))
+    out.append(ball(hip + [0.004, -0.006, 0], 0.069, "LeftUpLeg", counts=(5, 5, 5)))
     thigh = upright(
         [(0.895, 0.098, 0.0, 0.040, 0.045), (0.865, 0.099, 0.000, 0.068, 0.076), (0.80, 0.101, 0.002, 0.078, 0.087), (0.70, 0.102, 0.006, 0.068, 0.076),
          (0.60, 0.103, 0.009, 0.053, 0.058), (0.550, 0.104, 0.010, 0.043, 0.047), (0.527, 0.104, 0.010, 0.030, 0.033)],
         rounding=0.03,
     )
-    out.append(Piece(thigh, (0.101, 0.712, 0.004), (0.073, 0.185, 0.080), (6, 12, 6), "LeftUpLeg"))
+    out.append(Piece(thigh, (0.101, 0.712, 0.004), (0.073, 0.185, 0.080), (5, 9, 5), "LeftUpLeg"))
     out.append(ball(knee, 0.049, "LeftLeg"))
     shin = upright(
         [(0.487, 0.105, 0.008, 0.032, 0.034), (0.465, 0.105, 0.006, 0.044, 0.047), (0.41, 0.106, -0.002, 0.051, 0.056), (0.34, 0.107, -0.010, 0.052, 0.058),
          (0.25, 0.107, -0.016, 0.041, 0.045), (0.17, 0.108, -0.020, 0.031, 0.034), (0.137, 0.108, -0.022, 0.022, 0.024)],
         rounding=0.025,
     )
-    out.append(Piece(shin, (0.1065, 0.312, -0.008), (0.050, 0.178, 0.054), (5, 12, 5), "LeftLeg"))
+    out.append(Piece(shin, (0.1065, 0.312, -0.008), (0.050, 0.178, 0.054), (5, 8, 5), "LeftLeg"))
     out.append(ball(ankle + [0, 0.004, 0], 0.036, "LeftFoot"))
     foot = forward(
         [(-0.082, 0.109, 0.036, 0.024, 0.026), (-0.055, 0.109, 0.042, 0.036, 0.040), (-0.005, 0.110, 0.047, 0.039, 0.046), (0.045, 0.111, 0.036, 0.041, 0.035),
@@ -154,14 +154,14 @@ def pieces():
     flat = halfspace((0, 0.001, 0), (0, -1, 0))
     foot = clay.common(foot, flat, k=0.008)
     z = (0, 0, 1)
-    out.append(Piece(foot, (0.110, 0.036, 0.008), (0.040, 0.086, 0.036), (5, 8, 5), "LeftFoot", along=z))
+    out.append(Piece(foot, (0.110, 0.036, 0.008), (0.040, 0.086, 0.036), (5, 7, 4), "LeftFoot", along=z))
     toes = forward(
         [(0.098, 0.114, 0.024, 0.036, 0.020), (0.110, 0.114, 0.025, 0.044, 0.024), (0.145, 0.115, 0.023, 0.043, 0.022), (0.180, 0.115, 0.020, 0.033, 0.018),
          (0.196, 0.115, 0.018, 0.020, 0.012)],
         rounding=0.012, power=2.5,
     )
     toes = clay.common(toes, flat, k=0.006)
-    out.append(Piece(toes, (0.115, 0.022, 0.146), (0.043, 0.049, 0.022), (6, 5, 4), "LeftToeBase", along=z))
+    out.append(Piece(toes, (0.115, 0.022, 0.146), (0.043, 0.049, 0.022), (5, 4, 3), "LeftToeBase", along=z))
     return out
 
 
@@ -206,7 +206,7 @@ def main():
     uv = paint.unwrap(left, {i: (0, 0, 1) if abs(p.along[2]) < 0.9 else (1, 0, 0) for i, p in enumerate(parts)})
     scene = lambda p: np.minimum.reduce([clay.mirrored(piece.shape)(p) for piece in parts])
     color = lambda part, p, n, opened: wood(parts[part], 40 + part, p, opened)
-    base, _, orm = paint.bake(left, uv, [p.shape for p in parts], color, None, 1024, scene)
+    base, _, orm = paint.bake(left, uv, [p.shape for p in parts], color, None, 768, scene)
     shown = paint.surface(left, uv, alone)
     joints = list(range(1, len(s.names)))
     joints = [j for j in joints if not s.names[j].endswith("_End")]
@@ -225,7 +225,7 @@ def main():
     material = out.add("materials", {
         "name": "wood",
         "pbrMetallicRoughness": {
-            "baseColorTexture": {"index": out.image(base, quality=78, name="wood colour")},
+            "baseColorTexture": {"index": out.image(base, quality=74, name="wood colour")},
             "metallicRoughnessTexture": {"index": (relief := out.image(orm, quality=70, name="wood surface"))},
         },
         "occlusionTexture": {"index": relief},
