@@ -143,6 +143,10 @@ struct Reader {
 impl Reader {
     /// The name in the set, unless the path is a folder.
     fn add(&mut self, path: &Path) -> Result<Option<String>, OpenError> {
+        // A model of several files may be named by what their names share.
+        let of_stem = path.file_name().map(|stem| path.with_file_name(lossy(stem) + ".obj"));
+        let of_stem = of_stem.filter(|of_stem| !path.exists() && of_stem.is_file());
+        let path = of_stem.as_deref().unwrap_or(path);
         let folder = if path.is_dir() { path } else { path.parent().unwrap_or(Path::new("")) };
         if !self.folders.iter().any(|other| other == folder) {
             self.folders.push(folder.to_owned());

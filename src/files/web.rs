@@ -208,7 +208,7 @@ async fn fetch_map(url: &str, progress: &dyn Fn(&str, u64, u64)) -> Result<crate
 
 /// How the set is called in links and panels: after its model, else after its first part.
 fn source_of(items: &[Item]) -> Option<String> {
-    const MODELS: [&str; 6] = [".glb", ".gltf", ".vrm", ".vrma", ".bvh", ".zip"];
+    const MODELS: [&str; 7] = [".glb", ".gltf", ".vrm", ".vrma", ".bvh", ".obj", ".zip"];
     let names = || {
         items.iter().map(|item| match item {
             Item::Url(name) | Item::File(name, _) => name,

@@ -6,7 +6,7 @@ use egui::{RichText, Ui};
 
 use super::{Shown, controls, style};
 use crate::asset::{Asset, Warning};
-use crate::mesh::Geometry;
+use crate::mesh::{Geometry, Mesh};
 
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
     let Some(model) = shown.library.active() else { return };
@@ -23,7 +23,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
             ("Joints", grouped(model.rig().joint_count(asset))),
             ("Meshes", grouped(asset.meshes.len())),
             ("Primitives", grouped(primitives().count())),
-            ("Vertices", grouped(primitives().map(|geometry| geometry.file_vertices).sum())),
+            ("Vertices", grouped(asset.meshes.iter().map(Mesh::file_vertex_count).sum())),
             ("Triangles", grouped(primitives().map(Geometry::triangles).sum())),
             ("Materials", grouped(asset.materials.len())),
             ("Images", grouped(asset.images.len())),
