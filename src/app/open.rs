@@ -92,6 +92,8 @@ impl App {
                     range: None,
                     morph: Default::default(),
                     pose: Default::default(),
+                    names: Default::default(),
+                    vertex: None,
                     joint: None,
                     camera: Default::default(),
                     up: Default::default(),

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::{Frame, evaluate};
 use crate::anim::Clip;
 use crate::library::{Library, Model, warning_documents};
-use crate::mesh::{DeformedVertices, Mesh, deform};
+use crate::mesh::{DeformedVertices, Geometry, Mesh, deform, smooth_normals};
 use crate::state::{Show, ViewerState, active_clip, clip_secs};
 
 /// What `gaitway pose --json` prints. World-space positions and normals of every mesh of the shown scene.
@@ -50,8 +50,11 @@ fn meshes(model: &Model, state: &ViewerState, frame: &Frame) -> Vec<Value> {
         let weights = &character.morph_weights[draw.morph_weights.start as usize..draw.morph_weights.end as usize];
         let node = asset.skeleton.source_index(asset.instances[draw.instance].joint);
         let mesh = &asset.meshes[draw.mesh];
-        let mut whole = Whole::new(mesh);
+        let mut whole = Whole::new(mesh, state.show.smooth);
         for (primitive, geometry) in mesh.primitives.iter().enumerate() {
+            let smooth = state.show.smooth && geometry.normals.is_empty();
+            let smoothed = smooth.then(|| Geometry { normals: smooth_normals(geometry), ..geometry.clone() });
+            let geometry = smoothed.as_ref().unwrap_or(geometry);
             deform(geometry, weights, palette, state.skinning, &mut deformed);
             if !mesh.file_vertices.is_empty() {
                 whole.add(mesh, primitive, &deformed);
@@ -86,9 +89,9 @@ struct Whole {
 }
 
 impl Whole {
-    fn new(mesh: &Mesh) -> Self {
+    fn new(mesh: &Mesh, smooth: bool) -> Self {
         let count = mesh.file_vertices.len();
-        let has_normals = mesh.primitives.iter().all(|geometry| !geometry.normals.is_empty());
+        let has_normals = smooth || mesh.primitives.iter().all(|geometry| !geometry.normals.is_empty());
         Self {
             positions: vec![glam::Vec3::ZERO; count],
             normals: vec![glam::Vec3::ZERO; if has_normals { count } else { 0 }],

@@ -195,7 +195,7 @@ fn every_form_of_a_face_means_the_same() {
         assert_eq!(asset.warnings.len(), 0, "{face}");
         let slashes = face.matches('/').count();
         assert_eq!(geometry.normals.is_empty(), slashes < 6, "{face}");
-        if geometry.normals.first().is_some() {
+        if !geometry.normals.is_empty() {
             assert_eq!(geometry.normals[0], Vec3::Z, "unit length: {face}");
         }
         if face.contains("/1/") || slashes == 3 {

@@ -8,16 +8,18 @@ mod options;
 mod picker;
 mod rows;
 
+use std::borrow::Cow;
+
 use egui::{RichText, ScrollArea, Ui};
 
 use self::rows::Row;
 use super::icons::{Icon, icon_button_sized};
-use super::{Output, Shown, UiAction, UiState, clips, controls, scene_tree, short_name, style};
+use super::{Output, Shown, UiAction, UiState, clips, controls, short_name, style};
 use crate::anim::JointIndex;
 use crate::asset::Asset;
-use crate::library::{Library, Model, Motion};
+use crate::library::{Model, Motion};
 use crate::retarget::{ClipRef, Contradiction, JointMap, Proposal, SourceRef, Unmapped};
-use crate::state::{Command, MapEdit, active_clip, choice_of_clip, map_in_force};
+use crate::state::{Command, MapEdit, ViewerState, active_clip, choice_of_clip, map_in_force, title};
 
 pub(super) use clicking::{banner, show as clicking, stop as stop_clicking};
 pub(super) use picker::show as picker;
@@ -65,6 +67,8 @@ struct Pairing<'a> {
     motion: &'a Motion,
     index: usize,
     proposal: Option<&'a Proposal>,
+    /// What is set: the model's joints may have names given by hand.
+    state: &'a ViewerState,
 }
 
 impl<'a> Pairing<'a> {
@@ -73,12 +77,13 @@ impl<'a> Pairing<'a> {
         let model = shown.library.active()?;
         let playing = active_clip(model, shown.state).and_then(|clip| model.borrowed(clip));
         let index = playing.map_or(before, |borrowed| borrowed.motion);
-        Self::of(shown.library, index).or_else(|| Self::of(shown.library, 0))
+        Self::of(shown, index).or_else(|| Self::of(shown, 0))
     }
 
-    fn of(library: &'a Library, index: usize) -> Option<Self> {
+    fn of(shown: &Shown<'a>, index: usize) -> Option<Self> {
+        let library = shown.library;
         let (model, motion) = (library.active()?, library.motions().get(index)?);
-        Some(Self { model, motion, index, proposal: library.proposal(index) })
+        Some(Self { model, motion, index, proposal: library.proposal(index), state: shown.state })
     }
 
     /// Which of the model's clips joints without a source play, and whether it stands still; none: they rest.
@@ -90,6 +95,11 @@ impl<'a> Pairing<'a> {
             ClipRef::Name(name) => clips.iter().position(|clip| clip.name() == name).unwrap_or(usize::MAX),
         };
         Some((index, *frozen))
+    }
+
+    /// What a joint of the model is called.
+    fn target_title(&self, joint: JointIndex) -> Cow<'a, str> {
+        title(Some(self.state), &self.model.asset, joint)
     }
 
     fn clip_title(&self, clip: usize) -> &'a str {
@@ -295,5 +305,5 @@ fn remarks(pairing: &Pairing<'_>) -> Vec<String> {
 
 /// A joint as lists show it: its number in the file and its name.
 fn joint_text(asset: &Asset, joint: JointIndex) -> String {
-    format!("{}  {}", asset.skeleton.source_index(joint), scene_tree::title(asset, joint))
+    format!("{}  {}", asset.skeleton.source_index(joint), title(None, asset, joint))
 }
