@@ -242,6 +242,8 @@ async fn fetch_beside(
             for base in bases {
                 let Some(url) = absolute(&escaped(&name), Some(base)) else { continue };
                 match fetch(&url, &name, bytes_left, progress).await {
+                    // Some hosts answer with a page where there is no such file.
+                    Ok(bytes) if is_page(&bytes) => {}
                     Ok(bytes) => {
                         set.insert(name.clone(), bytes);
                         break;
@@ -254,6 +256,12 @@ async fn fetch_beside(
         }
     }
     Ok(())
+}
+
+fn is_page(bytes: &[u8]) -> bool {
+    let text = bytes.trim_ascii_start();
+    let begins = |with: &[u8]| text.get(..with.len()).is_some_and(|start| start.eq_ignore_ascii_case(with));
+    begins(b"<!doctype html") || begins(b"<html")
 }
 
 /// A relative path with everything escaped that means something in a URL.

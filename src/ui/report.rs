@@ -79,6 +79,9 @@ fn save(ui: &mut Ui, asset: &Asset, out: &mut Output) {
     if asset.format != "obj" {
         return;
     }
+    if asset.skins.is_empty() {
+        controls::hint(ui, "A static model: there were no .skel and .attach with the .obj.");
+    }
     controls::section(ui, "SAVE AS GLB");
     for (label, posed) in [("At rest", false), ("As it stands", true)] {
         let button = egui::Button::new(label).min_size(egui::vec2(ui.available_width(), 32.0));
