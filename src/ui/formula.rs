@@ -21,6 +21,8 @@ pub(super) struct Probe {
     /// The one that was found last, where none is kept.
     hovered: Option<VertexChoice>,
     looked_at: Option<egui::Pos2>,
+    /// There was one.
+    is_hit: bool,
     formula: VertexFormula,
     scratch: DeformedVertices,
 }
@@ -35,7 +37,7 @@ impl Probe {
     }
 }
 
-/// What the pointer does to the picture while vertices are looked for: true when a click was about one.
+/// What the pointer does to the picture while vertices are looked for: true when it is on the mesh.
 pub(super) fn point_at_vertex(response: &Response, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) -> bool {
     if !local.probe.is_on(shown) || shown.state.embed {
         return false;
@@ -45,18 +47,21 @@ pub(super) fn point_at_vertex(response: &Response, shown: &Shown<'_>, local: &mu
     let Some(at) = at.filter(|_| !response.dragged()) else { return false };
     // A vertex that is kept stays; one under a pointer at rest as well, however the model moves.
     if !clicked && (shown.state.vertex.is_some() || local.probe.looked_at == Some(at)) {
-        return false;
+        return local.probe.is_hit && shown.state.vertex.is_none();
     }
     local.probe.looked_at = Some(at);
     let found = vertex_at(shown, response.rect, at, &mut local.probe.scratch);
-    if clicked {
-        if found != shown.state.vertex {
-            out.commands.push(Command::SelectVertex(found));
-        }
+    local.probe.is_hit = found.is_some();
+    if clicked && found != shown.state.vertex {
+        out.commands.push(Command::SelectVertex(found));
     } else if found.is_some() {
         local.probe.hovered = found;
     }
-    clicked && found.is_some()
+    // The joints behind it are not named meanwhile.
+    if found.is_some() {
+        (local.hovered, local.hovered_joint) = (None, None);
+    }
+    found.is_some()
 }
 
 fn vertex_at(shown: &Shown<'_>, rect: Rect, at: egui::Pos2, scratch: &mut DeformedVertices) -> Option<VertexChoice> {
@@ -104,9 +109,10 @@ pub(super) fn matrices(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: Joi
         return;
     };
     controls::hint(ui, "A joint moves the mesh by T · inv(B).");
-    matrix(ui, "inv(B)", "bind pose, from the world to the joint", &found.joint_from_bind);
-    matrix(ui, "T", "now, from the joint to the world", &found.world_from_joint);
-    matrix(ui, "T · inv(B)", "from where it was bound to where it is", &found.world_from_bind());
+    ui.spacing_mut().item_spacing.y = 1.0;
+    matrix(ui, "inv(B)", "at bind: world to joint", &found.joint_from_bind);
+    matrix(ui, "T", "now: joint to world", &found.world_from_joint);
+    matrix(ui, "T · inv(B)", "bound place to present one", &found.world_from_bind());
 }
 
 fn matrix(ui: &mut Ui, name: &str, what: &str, matrix: &Affine3A) {
@@ -158,7 +164,9 @@ pub(super) fn vertex(ui: &mut Ui, shown: &Shown<'_>, model: &Model, local: &mut 
         _ => None,
     };
     match found {
-        Some(choice) => table(ui, shown, model, choice, &formula, out),
+        Some(choice) => {
+            ui.scope(|ui| table(ui, shown, model, choice, &formula, out));
+        }
         None => controls::hint(ui, "Point at the mesh to see which joints move a vertex. A click keeps it."),
     }
     local.probe.formula = formula;
@@ -184,6 +192,7 @@ fn table(
         }
     });
     controls::hint(ui, "p' = Σ w · T · inv(B) · p, one line for each joint j with a weight w:");
+    ui.spacing_mut().item_spacing.y = 1.0;
     // All numbers of the card with the same decimals, so that they can be added up.
     let largest = formula.parts.iter().map(|part| part.alone.abs().max_element()).fold(0.0, f32::max);
     let digits = decimals(largest.max(formula.bound.abs().max_element()));
@@ -191,7 +200,8 @@ fn table(
     for part in &formula.parts {
         let name = title(Some(shown.state), &model.asset, part.joint);
         let number = model.asset.skeleton.source_index(part.joint);
-        let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 20.0), Sense::click());
+        ui.add_space(3.0);
+        let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 21.0), Sense::click());
         let chosen = shown.state.joint == Some(number);
         let label = format!("{name}, weight {:.4}", part.weight);
         let role = egui::accesskit::Role::Button;

@@ -265,18 +265,9 @@ fn joint_card(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, 
     let mut sampler = PoseSampler::default();
     sampler.sample(model, shown.state);
     let local = sampler.pose.locals.get(joint.get()).copied().unwrap_or_default();
-    let parent =
-        asset.skeleton.parent(joint).map_or("no parent".into(), |parent| title(Some(shown.state), asset, parent));
-    let (heads, _) = ui.allocate_exact_size(vec2(ui.available_width(), 12.0), Sense::hover());
-    for (axis, name) in ["X", "Y", "Z"].into_iter().enumerate() {
-        let right = heads.left() + 60.0 + (heads.width() - 60.0) / 3.0 * (axis + 1) as f32;
-        let (at, font) = (pos2(right, heads.center().y), egui::FontId::proportional(11.0));
-        ui.painter().text(at, egui::Align2::RIGHT_CENTER, name, font, style::palette(ui).weak_text);
-    }
-    transform(ui, &format!("Local, in {parent}"), &local);
-    let character = shown.frame.characters.first();
-    if let Some(world) = character.and_then(|character| character.world_from_joint.get(joint.get())) {
-        transform(ui, "World", &decomposed(world));
+    // The matrices say the same in another way.
+    if !panel.matrices {
+        parts(ui, shown, asset, joint, &local);
     }
     ui.add_space(2.0);
     if controls::switch(ui, "Turn by hand", panel.turning) {
@@ -289,7 +280,7 @@ fn joint_card(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, 
         panel.matrices = !panel.matrices;
     }
     if panel.matrices {
-        formula::matrices(ui, shown, model, joint);
+        ui.scope(|ui| formula::matrices(ui, shown, model, joint));
     }
     if !shown.state.pose.is_empty() {
         let count = shown.state.pose.len();
@@ -303,6 +294,23 @@ fn joint_card(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, 
                 out.commands.push(Command::ClearPose);
             }
         });
+    }
+}
+
+/// Translation, rotation and scale: below the parent, and in the world.
+fn parts(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, local: &Transform) {
+    let parent =
+        asset.skeleton.parent(joint).map_or("no parent".into(), |parent| title(Some(shown.state), asset, parent));
+    let (heads, _) = ui.allocate_exact_size(vec2(ui.available_width(), 12.0), Sense::hover());
+    for (axis, name) in ["X", "Y", "Z"].into_iter().enumerate() {
+        let right = heads.left() + 60.0 + (heads.width() - 60.0) / 3.0 * (axis + 1) as f32;
+        let (at, font) = (pos2(right, heads.center().y), egui::FontId::proportional(11.0));
+        ui.painter().text(at, egui::Align2::RIGHT_CENTER, name, font, style::palette(ui).weak_text);
+    }
+    transform(ui, &format!("Local, in {parent}"), local);
+    let character = shown.frame.characters.first();
+    if let Some(world) = character.and_then(|character| character.world_from_joint.get(joint.get())) {
+        transform(ui, "World", &decomposed(world));
     }
 }
 

@@ -240,11 +240,8 @@ fn joints_can_be_renamed() {
 #[test]
 fn smooth_normals_are_the_mean_by_angle() {
     // A cube of triangles: however its sides are cut, a corner's normal points along its diagonal.
-    let corners = [-1.0, 1.0];
-    let positions: Vec<Vec3> = corners
-        .iter()
-        .flat_map(|&x| corners.iter().flat_map(move |&y| corners.iter().map(move |&z| Vec3::new(x, y, z))))
-        .collect();
+    let side = |corner: usize, bit: usize| if corner & bit == 0 { -1.0 } else { 1.0 };
+    let positions: Vec<Vec3> = (0..8).map(|at| Vec3::new(side(at, 4), side(at, 2), side(at, 1))).collect();
     let quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
     let indices: Vec<u32> = quads.iter().flat_map(|[a, b, c, d]| [a, b, c, a, c, d].map(|&index| index)).collect();
     let cube = Geometry { positions: positions.clone(), indices: indices.clone(), ..Geometry::default() };
@@ -283,4 +280,41 @@ fn several_parts_are_one_mesh_in_the_order_of_the_file() {
     let model = library.active().expect("a model");
     assert_eq!(gaitway::library::inspect(model, &[])["vertices"], 5);
     assert_eq!(gaitway::library::inspect(model, &[])["primitives"], 2);
+}
+
+/// The joints have no names, so the map is written by hand.
+#[test]
+fn a_motion_can_be_lent_to_them() {
+    let Some(folder) = folder() else { return };
+    let (model, motion) = (folder.join("mit6837/Model1.obj"), folder.join("cosc422/original/Dwarf/avatar_walk.bvh"));
+    let scratch = |name: &str| std::env::temp_dir().join(format!("gaitway-lent-{}-{name}", std::process::id()));
+    let (map, out) = (scratch("map.json"), scratch("out.glb"));
+    let joints = r##"{ "gaitway_map": 1, "joints": { "joint 5": { "source": 18 }, "joint 6": { "source": 19 },
+        "#9": { "source": 15 }, "#10": { "source": 16 } } }"##;
+    std::fs::write(&map, joints).expect("a scratch file");
+    let text = |path: &PathBuf| path.to_str().expect("a plain path").to_owned();
+    let arguments = [
+        "retarget",
+        "--model",
+        &text(&model),
+        "--motion",
+        &text(&motion),
+        "--map",
+        &text(&map),
+        "--out",
+        &text(&out),
+        "--json",
+    ];
+    let report: Value = serde_json::from_slice(&run(&arguments)).expect("JSON");
+    let opened = open_paths(std::slice::from_ref(&out)).expect("it was written").model;
+    std::fs::remove_file(&map).expect("it was written");
+    std::fs::remove_file(&out).expect("it was written");
+    assert_eq!(report["mapped"].as_array().map(Vec::len), Some(4));
+    assert_eq!((opened.asset.clips.len(), opened.rig().skin_joints()), (1, 18));
+    let moved: Vec<usize> = opened.asset.clips[0]
+        .channels()
+        .iter()
+        .map(|channel| opened.asset.skeleton.source_index(channel.joint))
+        .collect();
+    assert!([5, 6, 9, 10].iter().all(|joint| moved.contains(joint)), "{moved:?}");
 }
