@@ -24,7 +24,7 @@ pub enum WindowError {
 /// # Errors
 /// When the first files cannot be read, or no window or graphics device is to be had.
 pub fn run_native(files: Vec<PathBuf>) -> Result<(), WindowError> {
-    let sample = || sample::load(sample::NAMES[0]).ok_or(WindowError::NoSample);
+    let sample = || sample::load(sample::WALKER).ok_or(WindowError::NoSample);
     let contents = if files.is_empty() {
         Contents { model: Some(sample()?), ..Contents::default() }
     } else {

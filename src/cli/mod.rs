@@ -54,7 +54,7 @@ enum Action {
 
 #[derive(Debug, Args)]
 struct Files {
-    /// A model with its parts: files, folders, or `sample:walker`.
+    /// A model with its parts: files, folders, or `sample:NAME`.
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
 }

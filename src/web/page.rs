@@ -83,7 +83,7 @@ async fn first_contents(
     let items = super::calls::items_of(items)?;
     let motion_items = super::calls::items_of(motion_items)?;
     if state.model.is_empty() {
-        state.model.push(format!("sample:{}", sample::NAMES[0]));
+        state.model.push(format!("sample:{}", sample::WALKER));
     }
     let progress = |name: &str, received: u64, total: u64| shell.progress(name, received as f64, total as f64);
     let listed = std::mem::take(&mut state.motion);
@@ -121,7 +121,7 @@ async fn first_contents(
                     Err(error) => problems.push(error.to_string()),
                 }
             }
-            let model = model.or_else(|| sample::load(sample::NAMES[0])).ok_or_else(|| problems.join("\n"))?;
+            let model = model.or_else(|| sample::load(sample::WALKER)).ok_or_else(|| problems.join("\n"))?;
             let state = about_no_model(state, model.source.clone());
             Ok((Contents { model: Some(model), motions: Some(Vec::new()), ..Contents::default() }, state, problems))
         }
