@@ -8,8 +8,12 @@ const moduleUrl = new URL(meta.content, document.baseURI).href;
 const wasmUrl = new URL(meta.dataset.wasm, document.baseURI).href;
 const NAMES = { webgpu: "WebGPU", webgl2: "WebGL2" };
 
+/** The scene of the first screen; none in a build without samples. */
+const FIRST_LINK = document.querySelector("#gallery-scenes a")?.hash.slice(1) ?? "";
+const linkOfAddress = () => location.hash.slice(1) || FIRST_LINK;
+
 /** What is shown now, so that it can be shown again: the items that were opened last and those that are borrowed from (none: those of the link), and the link. */
-const kept = { items: [], motionItems: [], link: location.hash.slice(1) };
+const kept = { items: [], motionItems: [], link: linkOfAddress() };
 /** Which parts of what is shown are a person's own files: see `isPrivate`. */
 const own = { model: false, motion: false, map: Object.values(history.state?.own ?? {}).some(Boolean) };
 /** What was opened and not taken, of which the app may still make something: `{items, isOwn}`. */
@@ -163,10 +167,20 @@ async function compile() {
   return await WebAssembly.compileStreaming(new Response(counted, { headers }));
 }
 
+/** While it loads, the picture of the scene that is asked for. */
+function showStill() {
+  const models = (link) => pairsOf(link).filter(([key]) => key === "model").map(([, value]) => value).join();
+  const card = [...document.querySelectorAll("#gallery-scenes a")].find(({ hash }) => models(hash.slice(1)) === models(kept.link));
+  const still = byId("loading-still");
+  still.hidden = card === undefined || kept.items.length > 0;
+  if (!still.hidden) still.src = card.querySelector("img").src;
+}
+
 /** Starts a fresh instance with what is kept. `renderer` null: whichever works. */
 async function start(renderer) {
   stopReason = null;
   show("loading");
+  showStill();
   showProgress("Loading Gaitway", 0, 0);
   const missing = [...lacksWasm(), ...lacksGraphics()];
   if (missing.length > 0) {
@@ -289,6 +303,7 @@ function summarise() {
   say(`${model}: ${clip ?? "rest pose"}, ${clip !== null && playing ? "playing" : "paused"}`);
   if (problem !== null && problem !== told) sayProblem(problem);
   told = problem;
+  dispatchEvent(new CustomEvent("gaitway:shown", { detail: { link: kept.link, isLocal: kept.items.length > 0 } }));
   document.title = model === "" ? "Gaitway" : `${model.split("/").pop()} – Gaitway`;
   record();
 }
@@ -378,7 +393,7 @@ addEventListener("popstate", ({ state }) => {
     visit.number = state.gaitway;
     lastVisit = Math.max(lastVisit, visit.number);
   }
-  const link = location.hash.slice(1);
+  const link = linkOfAddress();
   // What has not started yet begins with this one.
   if (app === null) kept.link = link;
   else follow(link, { own: state?.own, ...visited.get(visit.number) });
@@ -664,7 +679,10 @@ function openFromDialog(items) {
 
 byId("open-files").addEventListener("change", ({ target }) => target.files.length > 0 && openFromDialog([...target.files]));
 byId("open-folder").addEventListener("change", ({ target }) => target.files.length > 0 && openFromDialog(insideFolder([...target.files])));
-byId("open-sample").addEventListener("click", () => openFromDialog(["sample:walker"]));
+byId("open-sample").addEventListener("click", () => {
+  byId("open").close();
+  dispatchEvent(new CustomEvent("gaitway:samples"));
+});
 byId("open-cancel").addEventListener("click", () => byId("open").close());
 byId("open").addEventListener("close", focusCanvas);
 byId("open-form").addEventListener("submit", (event) => {
@@ -783,6 +801,8 @@ function ask(name) {
 }
 
 window.gaitway = {
+  /** The files of each sample: addresses beside the page, by the name after `sample:`. */
+  samples: JSON.parse(document.querySelector('meta[name="gaitway-samples"]')?.content ?? "{}"),
   /** Resolves when the first picture is on the screen; a new promise after each restart. */
   get ready() {
     return started.then(() => undefined);
@@ -827,5 +847,5 @@ launch(forced()).then(
   () => {},
 );
 
-// For embed.js.
-dispatchEvent(new CustomEvent("gaitway:shell", { detail: { isPrivate, ownSeen: () => ownSeen, open: (items, { as } = {}) => openAll(items, { as, isOwn: false }) } }));
+// For embed.js and offline.js.
+dispatchEvent(new CustomEvent("gaitway:shell", { detail: { openByHand, isPrivate, ownSeen: () => ownSeen, open: (items, { as } = {}) => openAll(items, { as, isOwn: false }) } }));

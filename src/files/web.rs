@@ -165,7 +165,7 @@ fn files_of_sample(name: &str) -> Result<Vec<(String, String)>, OpenError> {
         .unwrap_or_else(|_| js_sys::Object::new().into());
     let addresses: Option<Array> = Reflect::get(&table, &name.into()).ok().and_then(|list| list.dyn_into().ok());
     let Some(addresses) = addresses else {
-        let files = js_sys::Object::keys(table.unchecked_ref());
+        let files = Reflect::own_keys(&table).unwrap_or_default();
         let known = files.iter().filter_map(|name| name.as_string()).chain([sample::WALKER.to_owned()]);
         let known = known.map(|name| format!("sample:{name}")).collect::<Vec<_>>().join(", ");
         return Err(OpenError::NoSuchSample { name: name.to_owned(), known });
