@@ -5,8 +5,9 @@ const byId = (id) => document.getElementById(id);
 const gallery = byId("gallery");
 const cards = [...gallery.querySelectorAll("a.card")];
 
+const pairsOf = (link) => link.split("&");
 /** What a link shows, whatever the view of it is. */
-const filesOf = (link) => link.split("&").filter((pair) => /^(model|motion)=/.test(pair)).sort().join("&");
+const filesOf = (link) => pairsOf(link).filter((pair) => /^(model|motion)=/.test(pair)).sort().join("&");
 
 function show(shown) {
   if (gallery.hidden !== shown) return;
@@ -17,10 +18,13 @@ function show(shown) {
 
 const toCanvas = () => byId("stage").querySelector("canvas")?.focus({ preventScroll: true });
 
-/** Marks the card of what is shown; none when it is something else. */
+/** Marks the card of what is shown, of several with the same files the nearest; none when it is something else. */
 function mark(link) {
-  const shown = decodeURIComponent(filesOf(link));
-  for (const card of cards) card.setAttribute("aria-current", decodeURIComponent(filesOf(card.hash.slice(1))) === shown);
+  const pairs = pairsOf(link);
+  const alike = ({ hash }) => pairsOf(hash.slice(1)).filter((pair) => pairs.includes(pair)).length;
+  const same = cards.filter(({ hash }) => filesOf(hash.slice(1)) === filesOf(link));
+  const shown = same.sort((a, b) => alike(b) - alike(a))[0];
+  for (const card of cards) card.setAttribute("aria-current", card === shown);
 }
 
 show(location.hash.length < 2 && parent === window && cards.length > 0);

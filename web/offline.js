@@ -19,13 +19,9 @@ addEventListener(
 );
 
 async function keep() {
-  let registration;
-  try {
-    registration = await navigator.serviceWorker.register("sw.js", { scope: "./" });
-  } catch {
-    // Not over https, switched off, or not there: the page works without.
-    return;
-  }
+  // Not over https, switched off, or not there: the page works without.
+  const registration = await navigator.serviceWorker.register("sw.js", { scope: "./" }).catch(() => undefined);
+  if (registration === undefined) return;
   // At the first visit there is nothing older than what is kept.
   const offerWhenReady = (worker) => worker?.state === "installed" && navigator.serviceWorker.controller !== null && offer(worker);
   offerWhenReady(registration.waiting);

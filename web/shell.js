@@ -167,20 +167,11 @@ async function compile() {
   return await WebAssembly.compileStreaming(new Response(counted, { headers }));
 }
 
-/** While it loads, the picture of the scene that is asked for. */
-function showStill() {
-  const models = (link) => pairsOf(link).filter(([key]) => key === "model").map(([, value]) => value).join();
-  const card = [...document.querySelectorAll("#gallery-scenes a")].find(({ hash }) => models(hash.slice(1)) === models(kept.link));
-  const still = byId("loading-still");
-  still.hidden = card === undefined || kept.items.length > 0;
-  if (!still.hidden) still.src = card.querySelector("img").src;
-}
-
 /** Starts a fresh instance with what is kept. `renderer` null: whichever works. */
 async function start(renderer) {
   stopReason = null;
   show("loading");
-  showStill();
+  dispatchEvent(new CustomEvent("gaitway:loading", { detail: { link: kept.link, isLocal: kept.items.length > 0 } }));
   showProgress("Loading Gaitway", 0, 0);
   const missing = [...lacksWasm(), ...lacksGraphics()];
   if (missing.length > 0) {
@@ -228,6 +219,8 @@ async function start(renderer) {
     canvas.addEventListener("webglcontextlost", () => stopped("The browser took the graphics context away."));
     await frames(2);
     if (stopReason !== null) throw new Error(stopReason);
+    // What is typed goes through a field that nobody sees.
+    byId("stage").querySelector("input")?.setAttribute("aria-label", "Typed into the picture");
     show(null);
     summarise();
     showMissing(missing, link);

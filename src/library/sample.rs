@@ -15,6 +15,10 @@ use crate::mesh::{Geometry, Material, Mesh, Skin, SkinError};
 /// The name after `sample:` of the one that is made in code.
 pub const WALKER: &str = "walker";
 
+/// What the window shows when nothing was asked for; the page begins with the first scene of its gallery.
+#[cfg(not(target_arch = "wasm32"))]
+pub const FIRST: &str = "sample:pilot";
+
 #[cfg(not(target_arch = "wasm32"))]
 include!(concat!(env!("OUT_DIR"), "/samples.rs"));
 

@@ -19,6 +19,12 @@ const TYPES = {
   ".wasm": "application/wasm",
 };
 
+/** What the build puts beside a file for hosts that send it compressed. */
+const COPIES = [
+  { encoding: "br", ending: ".br" },
+  { encoding: "gzip", ending: ".gz" },
+];
+
 /**
  * Serves `mounts` (`{prefix: folder}`, prefixes with a slash at both ends) on a free port of 127.0.0.1.
  * Gives `{origin, close}`.
@@ -35,8 +41,10 @@ export async function serve(mounts, headers = {}) {
       return;
     }
     const type = TYPES[path.extname(file)] ?? "application/octet-stream";
-    response.writeHead(200, { "content-type": type, "content-length": fs.statSync(file).size, ...headers });
-    fs.createReadStream(file).pipe(response);
+    const copy = COPIES.find(({ encoding, ending }) => (request.headers["accept-encoding"] ?? "").includes(encoding) && fs.existsSync(file + ending));
+    const [sent, compressed] = copy === undefined ? [file, {}] : [file + copy.ending, { "content-encoding": copy.encoding }];
+    response.writeHead(200, { "content-type": type, "content-length": fs.statSync(sent).size, ...compressed, ...headers });
+    fs.createReadStream(sent).pipe(response);
   });
   await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
   return {

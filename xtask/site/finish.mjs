@@ -10,7 +10,9 @@ import { drawPictures } from "./pictures.mjs";
 import { readSamples, readScenes } from "./samples.mjs";
 
 const [dist, url] = process.argv.slice(2);
-const STILL = "640x400";
+const STILL = "640x480";
+/** Behind what is transparent in a picture. */
+const STUDIO = "#a3a6ab";
 const PREVIEW = { width: 1200, height: 630 };
 
 const hashOf = (...parts) => parts.reduce((hash, part) => hash.update(part), crypto.createHash("sha256")).digest("hex").slice(0, 16);
@@ -29,11 +31,15 @@ function replaced(text, from, to) {
   return text.replace(from, () => to);
 }
 
+/** A style sheet without comments and the blanks between its parts. */
+const shortened = (css) => css.replace(/\/\*.*?\*\//gs, "").replace(/\s+/g, " ").replace(/ ?([{};,]) ?/g, "$1").replaceAll(";}", "}").trim();
+
 /** Trunk's names are from before the files were made smaller. */
 function renamed(html) {
   for (const file of fs.readdirSync(dist).filter((file) => /\.(js|wasm|css|svg)$/.test(file))) {
     const [, name, rest] = file.match(/^(.*)-[0-9a-f]+((?:_bg)?\.\w+)$/);
-    const bytes = fs.readFileSync(path.join(dist, file));
+    const content = fs.readFileSync(path.join(dist, file));
+    const bytes = rest === ".css" ? shortened(content.toString()) : content;
     fs.rmSync(path.join(dist, file));
     html = html.replaceAll(file, put("", name, rest, bytes));
   }
@@ -50,10 +56,14 @@ const wanted = scenes.map(({ link }) => ({ link, size: STILL }));
 // What a shared link to the page itself shows, for as long as there are no samples: the walker.
 const first = scenes[0]?.link ?? "model=sample:walker&clip=Walk&t=0.5";
 const drawn = drawPictures([...wanted, { link: first, size: `${PREVIEW.width}x${PREVIEW.height}` }], samples);
+/** Each scene for the screen while it loads, and as small as on its card. */
 const stills = [];
-for (const [index, { name }] of scenes.entries()) stills.push(put("pictures", name, ".webp", await sharp(drawn[index]).flatten({ background: "#a3a6ab" }).webp({ quality: 82, effort: 6 }).toBuffer()));
+for (const [index, { name }] of scenes.entries()) {
+  const webp = async (width) => put("pictures", `${name}-${width}`, ".webp", await sharp(drawn[index]).flatten({ background: STUDIO }).resize(width).webp({ quality: 82, effort: 6 }).toBuffer());
+  stills.push({ large: await webp(640), small: await webp(320) });
+}
 // Not every site that shows previews reads WebP.
-const preview = put("pictures", "preview", ".jpg", await sharp(drawn.at(-1)).flatten({ background: "#a3a6ab" }).jpeg({ quality: 85, mozjpeg: true }).toBuffer());
+const preview = put("pictures", "preview", ".jpg", await sharp(drawn.at(-1)).flatten({ background: STUDIO }).jpeg({ quality: 85, mozjpeg: true }).toBuffer());
 
 const icon = fs.readFileSync("web/icon.svg");
 const whole = icon.toString().replace(' rx="7"', "");
@@ -72,7 +82,7 @@ fs.writeFileSync(path.join(dist, "manifest.webmanifest"), JSON.stringify({ ...ma
 const cards = scenes.map(
   ({ title, text, link }, index) => `<li>
           <a class="card" href="#${escaped(link)}">
-            <img src="${stills[index]}" width="640" height="400" alt="" loading="lazy" decoding="async">
+            <img src="${stills[index].small}" srcset="${stills[index].small} 320w, ${stills[index].large} 640w" sizes="12rem" width="320" height="240" alt="" loading="lazy" decoding="async">
             <b>${escaped(title)}</b>
             <small>${escaped(text)}</small>
           </a>
@@ -92,6 +102,10 @@ const head = [
 const index = path.join(dist, "index.html");
 let html = renamed(fs.readFileSync(index, "utf8"));
 html = replaced(html, "<!-- scenes -->", cards.join("\n        "));
+const models = (link) => link.split("&").filter((pair) => pair.startsWith("model=")).join("&");
+// Of several scenes of one model the first, which is the plainest.
+const pictures = Object.fromEntries(scenes.map(({ link }, index) => [models(link), stills[index].large]).reverse());
+html = replaced(html, 'id="loading-still"', `id="loading-still" src="${stills[0]?.large ?? ""}" data-pictures="${escaped(JSON.stringify(pictures))}"`);
 html = replaced(html, "<title>", `${head.join("\n    ")}\n    <title>`);
 
 const files = fs
