@@ -524,7 +524,7 @@ def _outward(mesh, shape):
 
 
 def cast(shape, start, direction, reach, steps=64):
-    """Where rays (N, 3 starts; N, 3 unit directions) first meet the shape within `reach`; rays that miss end there."""
+    """Where rays (N, 3 starts; N, 3 directions) first meet the shape within `reach` directions; rays that miss end there."""
     start, direction = np.asarray(start, dtype=np.float64), np.asarray(direction, dtype=np.float64)
     low = np.zeros(len(start))
     high = np.full(len(start), float(reach))
@@ -630,6 +630,40 @@ def patch(shape, center, facing, up, radii, profile, size=8, power=2.5, reach=0.
     return mesh
 
 
+def globe(shape, center, radii, counts, rotation=None):
+    """A closed part in clean loops: a box of `counts` quads along its three axes, blown onto a shape that can be seen
+    whole from `center`. `radii` are about the shape's own, along the same axes; `rotation` (3x3) turns them."""
+    center, radii = _vec(center), _vec(radii)
+    turn = np.eye(3) if rotation is None else np.asarray(rotation)
+    index, vertices, faces = {}, [], []
+    ease = lambda i, n: np.tan((2.0 * i / n - 1.0) * np.pi / 4)
+
+    def corner(i, j, k):
+        if (i, j, k) not in index:
+            index[i, j, k] = len(vertices)
+            vertices.append([ease(i, counts[0]), ease(j, counts[1]), ease(k, counts[2])])
+        return index[i, j, k]
+
+    for axis in range(3):
+        u, v = (axis + 1) % 3, (axis + 2) % 3
+        for end in (0, counts[axis]):
+            for a in range(counts[u]):
+                for b in range(counts[v]):
+                    face = []
+                    for da, db in ((0, 0), (1, 0), (1, 1), (0, 1)):
+                        at = [0, 0, 0]
+                        at[axis], at[u], at[v] = end, a + da, b + db
+                        face.append(corner(*at))
+                    faces.append(face if end else face[::-1])
+    out = np.array(vertices)
+    out /= np.linalg.norm(out, axis=1, keepdims=True)
+    out = (out * radii * 1.7) @ turn.T
+    mesh = Mesh(cast(shape, center + out, -out, 1.0, 80), faces)
+    mesh.plane = np.zeros(len(mesh.vertices), dtype=bool)
+    mesh.whole = False
+    return _outward(mesh, shape)
+
+
 def without_hidden(mesh, covers):
     """The mesh without the faces that lie wholly inside one of `covers` [(shape, depth in metres)]."""
     hidden = np.zeros(len(mesh.faces), dtype=bool)
@@ -662,7 +696,8 @@ def joined(meshes):
 def mirror(mesh, uv=None, alone=()):
     """The whole of a left half. Vertices on the mirror plane are shared; both sides use the same UVs (per face corner).
 
-    Faces of the parts numbered in `alone` are whole already and stay as they are.
+    Faces of the parts numbered in `alone` are whole already and stay as they are. `other` of the result: the vertex on the
+    other side of each of the first vertices.
     """
     count = len(mesh.vertices)
     doubled = [i for i, part in enumerate(mesh.part) if part not in alone]
@@ -676,4 +711,5 @@ def mirror(mesh, uv=None, alone=()):
     flipped = mesh.vertices[used] * [-1, 1, 1]
     whole = Mesh(np.concatenate([mesh.vertices, flipped]), faces, np.concatenate([mesh.part, mesh.part[doubled]]))
     whole.plane = np.concatenate([mesh.plane, np.zeros(len(flipped), dtype=bool)])
+    whole.other = other
     return whole if uv is None else (whole, uv + [uv[f][::-1] for f in doubled])

@@ -179,21 +179,22 @@ class Tread:
     `heel`, `ball`: where heel and toe joint are relative to the ankle with the foot flat; `pitch`, `toe`: periodic keys
     (phase, degrees); `flat`, `rise`, `off`: phases when the foot is flat, the heel leaves, the toes leave; `length`: how
     far the ground passes in a stride; `start`: the ankle's z when it would stand flat at phase 0; `air`: keys (part of
-    the swing 0..1, (lift, advance)) that shape the way through the air.
+    the swing 0..1, (rise, advance)) that shape the way through the air; `toe_air`: the same for the toes' bend; `lift`:
+    metres that everything is raised, against the sag between keys.
     """
 
-    def __init__(self, rest_ankle, heel, ball, pitch, flat, rise, off, length, start, air, width=0.0, toe_air=()):
+    def __init__(self, rest_ankle, heel, ball, pitch, flat, rise, off, length, start, air, width=0.0, toe_air=(), lift=0.0):
         self.ankle, self.heel, self.ball = rest_ankle, np.asarray(heel), np.asarray(ball)
         self.pitch_keys, self.flat, self.rise, self.off = pitch, flat, rise, off
         self.length, self.start, self.air, self.width = length, start, air, width
-        self.toe_air = toe_air
+        self.toe_air, self.lift = toe_air, lift
 
     def pitch(self, p):
         return float(curve(self.pitch_keys, p % 1.0, 1.0))
 
     def _grounded(self, p):
         pitch = self.pitch(p)
-        base = np.array([self.ankle[0] - self.width, self.ankle[1], self.start - self.length * p])
+        base = np.array([self.ankle[0] - self.width, self.ankle[1] + self.lift, self.start - self.length * p])
         pivot = self.heel if p < self.flat else self.ball
         if self.flat <= p <= self.rise:
             return base, 0.0, 0.0
@@ -222,7 +223,7 @@ class Tread:
 # ---------------------------------------------------------------- clips
 
 
-def channels(skeleton, poses, rate, tolerance=0.12, loose=0.3, tight=(), move_tolerance=0.0003, scale_moves=None):
+def channels(skeleton, poses, rate, tolerance=0.06, loose=0.3, tight=(), move_tolerance=0.0003, scale_moves=None):
     """File channels of a list of poses [(turns, moves)] at `rate` a second: as few LINEAR keys as keep within a
     tolerance (degrees; `tight` joints within `tolerance`, others within `loose`)."""
     times = np.arange(len(poses)) / rate

@@ -10,7 +10,7 @@ import struct
 
 import numpy as np
 
-FLOAT, U8, U16, U32, I16 = 5126, 5121, 5123, 5125, 5122
+FLOAT, U8, U16, U32, I16, I8 = 5126, 5121, 5123, 5125, 5122, 5120
 
 
 def tidy(values, digits=6):
@@ -39,7 +39,7 @@ class Glb:
 
     def accessor(self, array, kind, component, target=None, normalized=False, bounds=False, pad_to=None):
         """An array (N,) or (N, width). Rows are padded to `pad_to` components' bytes where alignment asks for it."""
-        dtype = {FLOAT: "<f4", U8: "u1", U16: "<u2", U32: "<u4", I16: "<i2"}[component]
+        dtype = {FLOAT: "<f4", U8: "u1", U16: "<u2", U32: "<u4", I16: "<i2", I8: "i1"}[component]
         array = np.ascontiguousarray(array, dtype=dtype)
         stored = array
         if pad_to:
@@ -81,12 +81,21 @@ class Glb:
             entry["name"] = name
         return self.add("textures", {"source": self.add("images", entry), "sampler": 0})
 
-    def primitive(self, positions, normals, indices, material, uv=None, color=None, joints=None, weights=None, targets=()):
-        """`weights` (N, 4) floats; `targets`: [(position deltas, normal deltas or None)]."""
-        attributes = {
-            "POSITION": self.accessor(positions, "VEC3", FLOAT, 34962, bounds=True),
-            "NORMAL": self.accessor(normals, "VEC3", FLOAT, 34962),
-        }
+    def primitive(self, positions, normals, indices, material, uv=None, color=None, joints=None, weights=None, targets=(),
+                  tangent=None):
+        """`weights` (N, 4) floats; `targets`: [(position deltas, normal deltas or None)].
+
+        With `tangent` (N, 4), normals and tangents are stored small (KHR_mesh_quantization).
+        """
+        attributes = {"POSITION": self.accessor(positions, "VEC3", FLOAT, 34962, bounds=True)}
+        if tangent is None:
+            attributes["NORMAL"] = self.accessor(normals, "VEC3", FLOAT, 34962)
+        else:
+            for key in ("extensionsUsed", "extensionsRequired"):
+                if "KHR_mesh_quantization" not in self.json.get(key, []):
+                    self.add(key, "KHR_mesh_quantization")
+            attributes["NORMAL"] = self.accessor(np.round(normals * 32767), "VEC3", I16, 34962, normalized=True, pad_to=4)
+            attributes["TANGENT"] = self.accessor(np.round(tangent * 127), "VEC4", I8, 34962, normalized=True)
         if uv is not None:
             attributes["TEXCOORD_0"] = self.accessor(
                 np.round(np.clip(uv, 0, 1) * 65535), "VEC2", U16, 34962, normalized=True

@@ -42,9 +42,9 @@ def walk(figure, speed=1.32, frames=32):
     length = speed * frames / RATE
     tread = Tread(
         ankle, heel, ball, flat=0.09, rise=0.34, off=0.61, length=length, start=0.245 * length + 0.02,
-        pitch=[(0.0, 19), (0.09, 0), (0.34, 0), (0.46, -17), (0.61, -60), (0.70, -48), (0.82, -4), (0.93, 19)],
-        air=[(0, (0, 0)), (0.18, (0.028, 0.085)), (0.5, (-0.008, 0.50)), (0.8, (0.020, 0.93)), (0.93, (0.012, 1.012)), (1, (0, 1))],
-        width=0.018, toe_air=[(0, 0), (0.5, 8), (1, 0)],
+        pitch=[(0.0, 19), (0.09, 0), (0.34, 0), (0.46, -17), (0.61, -60), (0.69, -46), (0.80, -6), (0.93, 19)],
+        air=[(0, (0, 0)), (0.07, (0.018, 0.022)), (0.16, (0.034, 0.080)), (0.34, (0.052, 0.28)), (0.52, (0.038, 0.53)), (0.8, (0.026, 0.93)), (0.93, (0.012, 1.012)), (1, (0, 1))],
+        width=0.018, toe_air=[(0, 0), (0.4, 14), (1, 0)],
     )
 
     def pose(p):
@@ -69,14 +69,14 @@ def walk(figure, speed=1.32, frames=32):
     return cycle(pose, frames), RATE, tread
 
 
-def run(figure, speed=3.5, frames=21):
+def run(figure, speed=3.5, frames=20):
     ankle, heel, ball = feet(figure)
     length = speed * frames / RATE
     tread = Tread(
         ankle, heel, ball, flat=0.04, rise=0.145, off=0.35, length=length, start=0.235,
         pitch=[(0.0, 7), (0.04, 0), (0.145, 0), (0.24, -22), (0.35, -66), (0.47, -96), (0.62, -62), (0.80, 2), (0.93, 10)],
         air=[(0, (0, 0)), (0.20, (0.20, 0.07)), (0.42, (0.30, 0.42)), (0.66, (0.20, 0.90)), (0.84, (0.10, 1.075)), (1, (0, 1))],
-        width=0.055, toe_air=[(0, 0), (0.5, 6), (1, 0)],
+        width=0.055, toe_air=[(0, 0), (0.5, 6), (1, 0)], lift=0.0015,
     )
 
     def pose(p):
@@ -125,7 +125,7 @@ def idle(figure, frames=120):
         breath, sway = swing(2 * p, 0.5), swing(p, 0.25)
         look = float(curve([(0.0, 0), (0.10, 0), (0.22, 17), (0.36, 17), (0.50, -2), (0.62, -15), (0.78, -15), (0.92, 0)], p, 1.0))
         hips = figure.names["hips"]
-        moves[hips] = (0.020 * sway, -0.014 - 0.004 * abs(sway) ** 2, 0.004 * breath)
+        moves[hips] = (0.020 * sway, -0.008 - 0.004 * abs(sway) ** 2, 0.004 * breath)
         turns[hips] = mul(qy(2.5 * sway), qz(1.6 * sway))
         figure.spine(turns, pitch=1.0 - 1.6 * breath, yaw=-2 * sway + 0.15 * look, roll=-2.6 * sway)
         figure.head(turns, pitch=1.0 + 0.8 * breath, yaw=0.85 * look, roll=0.06 * look + 0.8 * sway)
@@ -144,12 +144,12 @@ def wave(figure, frames=72):
         beat, breath = swing(3 * p, 0.0), swing(p, 0.5)
         late = swing(3 * p, 0.12)
         hips = figure.names["hips"]
-        moves[hips] = (0.022 + 0.004 * beat, -0.014, 0.0)
+        moves[hips] = (0.022 + 0.004 * beat, -0.009, 0.0)
         turns[hips] = mul(qy(-4), qz(2.0 + 0.5 * beat))
         figure.spine(turns, pitch=-2.0 - breath, yaw=2, roll=0.5 - 1.6 * beat)
         figure.head(turns, pitch=1.0, yaw=-3 + 2 * late, roll=4.5 + 2.2 * late)
         _easy_arms(figure, turns, breath, sides=("left",))
-        figure.arm(turns, "right", lower=-12 + 3 * beat, out=24, twist=-78, elbow=78 - 24 * beat, hand_twist=62 + 26 * late, wrist=-14 * late, shrug=9)
+        figure.arm(turns, "right", lower=-12 + 3 * beat, out=24, twist=-78, elbow=78 - 24 * beat, hand_twist=-6 + 34 * late, wrist=-14 * late, shrug=9)
         figure.curl(turns, "right", (2, 2, 4, 6), thumb=2, spread=9)
         _stand(figure, turns, moves, spread=0.035)
         return turns, moves
@@ -164,16 +164,18 @@ def jump(figure, frames=54):
     ankle, heel, ball = feet(figure)
     tip = 52.0
     stretched = ball - rotate(qx(tip), ball)
-    top = 0.052
+    # Neither take-off nor landing is on quite straight legs: near the stretch knees move too fast for 30 keys a second.
+    top, bottom = 0.012, -0.035
+    spring = (bottom - top) / flight + 9.81 * flight / 2
 
     def height(f):
         if leave <= f <= land:
             t = (f - leave) / RATE
-            return top + 0.5 * 9.81 * t * (flight - t)
+            return top + spring * t - 0.5 * 9.81 * t * t
         return None
 
     keys = [(0, -0.014), (4, -0.10), (8.5, -0.33), (11, -0.26), (leave, top)]
-    after = [(land, top), (32, -0.16), (35.5, -0.30), (41, -0.16), (48, -0.03), (frames, -0.014)]
+    after = [(land, bottom), (32, -0.17), (35.5, -0.30), (41, -0.16), (48, -0.03), (frames, -0.014)]
 
     def pose(p):
         f = p * frames
@@ -183,7 +185,7 @@ def jump(figure, frames=54):
         if 11 <= f < leave:
             # Leaves the ground with the speed of the flight.
             s = (f - 11) / (leave - 11)
-            v = 9.81 * flight / 2 * (leave - 11) / RATE
+            v = spring * (leave - 11) / RATE
             y = -0.26 + (top + 0.26) * (s * s * (3 - 2 * s)) + v * (s**3 - s**2) + 2.4 / RATE * (leave - 11) * (s**3 - 2 * s * s + s)
         lean = float(curve([(0, 0), (8.5, 34), (leave, 4), (20, -2), (27, 8), (land, 10), (35.5, 36), (46, 8), (frames, 0)], f))
         hips = figure.names["hips"]
@@ -201,14 +203,14 @@ def jump(figure, frames=54):
         for side, sign in (("left", 1), ("right", -1)):
             base = np.array([sign * (ankle[0] + 0.030), ankle[1], ankle[2]])
             if f <= leave:
-                pitch = -tip * float(smooth_step((f - 10.2) / (leave - 10.2)))
+                pitch = -tip * float(smooth_step((f - 8.5) / (leave + 0.6 - 8.5)))
                 pivot = rotate(qy(sign * 9), ball * [sign, 1, 1])
                 place = base + pivot - rotate(mul(qy(sign * 9), qx(-pitch)), ball * [sign, 1, 1])
                 figure.leg(turns, moves, side, place, pitch, -pitch, yaw=sign * 9)
             elif f < land:
                 s = (f - leave) / (land - leave)
                 # In the air the feet hang from the hips: they trail, tuck a little, then reach for the ground.
-                rise = y - top
+                rise = spring * (f - leave) / RATE - 0.5 * 9.81 * ((f - leave) / RATE) ** 2 - (bottom - top) * s
                 tuck = float(curve([(0, 0), (0.3, 0.03), (0.6, 0.10), (1, 0.0)], s))
                 pitch = float(curve([(0, -tip), (0.35, -46), (0.75, -14), (1, -12)], s))
                 start = base + rotate(qy(sign * 9), ball * [sign, 1, 1]) - rotate(mul(qy(sign * 9), qx(tip)), ball * [sign, 1, 1])
@@ -217,7 +219,7 @@ def jump(figure, frames=54):
                 toe = float(curve([(0, tip), (0.3, 0), (0.8, 0), (1, 12)], s))
                 figure.leg(turns, moves, side, place, pitch, toe, yaw=sign * 9)
             else:
-                pitch = -12 * (1 - float(smooth_step((f - land) / 1.6)))
+                pitch = -12 * max(0.0, 1 - (f - land) / 3.0)
                 pivot = rotate(qy(sign * 9), ball * [sign, 1, 1])
                 place = base + pivot - rotate(mul(qy(sign * 9), qx(-pitch)), ball * [sign, 1, 1])
                 figure.leg(turns, moves, side, place, pitch, -pitch, yaw=sign * 9)

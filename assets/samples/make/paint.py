@@ -140,6 +140,40 @@ def _tangents(mesh, uv):
     return vertex, coords, tris, source, tangent, sign
 
 
+class Surface:
+    """A mesh as a file wants it: per corner `vertex` (its number in the whole mesh), `place`, `normal`, `uv` (v down),
+    `tangent` (with sign); `triangles` over the corners."""
+
+
+def surface(left, uv, alone=()):
+    """The whole Surface of a left half and its UVs; both sides share the atlas, the right one mirrored."""
+    whole = clay.mirror(left, alone=alone)
+    vertex, coords, tris, source, tangent, sign = _tangents(left, uv)
+    total = np.zeros((len(vertex), 3))
+    hand = np.zeros(len(vertex))
+    for corner in range(3):
+        np.add.at(total, tris[:, corner], tangent[:, corner])
+        hand[tris[:, corner]] = sign[:, corner]
+    total /= np.maximum(np.linalg.norm(total, axis=1, keepdims=True), 1e-9)
+    normals = whole.normals()
+    twin = ~np.isin(left.part[source], list(alone))
+    used = np.unique(tris[twin])
+    number = np.full(len(vertex), -1)
+    number[used] = len(vertex) + np.arange(len(used))
+    out = Surface()
+    out.vertex = np.concatenate([vertex, whole.other[vertex[used]]])
+    out.place, out.normal = whole.vertices[out.vertex], normals[out.vertex]
+    out.uv = np.concatenate([coords, coords[used]])
+    out.uv = np.column_stack([out.uv[:, 0], 1 - out.uv[:, 1]])
+    tangents = np.concatenate([total, total[used] * [-1, 1, 1]])
+    tangents -= out.normal * np.einsum("ij,ij->i", tangents, out.normal)[:, None]
+    tangents /= np.maximum(np.linalg.norm(tangents, axis=1, keepdims=True), 1e-9)
+    out.tangent = np.column_stack([tangents, np.concatenate([hand, -hand[used]])])
+    out.triangles = np.concatenate([tris, number[tris[twin]][:, ::-1]])
+    out.mesh = whole
+    return out
+
+
 class Texels:
     """What lies under each texel of the atlas: `at` rows, place, normal, tangent, bitangent, part."""
 

@@ -570,7 +570,8 @@ def main():
     left_uv = paint_.unwrap(left, {NAMES.index(n): v for n, v in SPLITS.items()})
     scene = lambda p: np.minimum.reduce([clay.mirrored(part.shape)(p) for part in PARTS if part.shape])
     base, bump, orm = paint_.bake(left, left_uv, [p.shape for p in PARTS], paint, height, 1024, scene)
-    body, uv = clay.mirror(left, left_uv, alone)
+    shown = paint_.surface(left, left_uv, alone)
+    body = shown.mesh
     w = g.weights(body.vertices, "mixamorig:Hips")
     w = rig.smoothed(w, body.faces, 2)
     for i, part in enumerate(PARTS):
@@ -579,21 +580,20 @@ def main():
             w[mine] = 0
             w[mine, s["mixamorig:" + part.carrier]] = 1
     values, slots = rig.strongest(w, joints)
-    vertex, coords, tris, _ = paint_.corners_of(body, uv)
-    coords = np.column_stack([coords[:, 0], 1 - coords[:, 1]])
     material = out.add("materials", {
         "name": "pilot",
         "pbrMetallicRoughness": {
-            "baseColorTexture": {"index": out.image(base, quality=84, name="pilot colour")},
-            "metallicRoughnessTexture": {"index": (relief := out.image(orm, quality=82, name="pilot surface"))},
+            "baseColorTexture": {"index": out.image(base, quality=76, name="pilot colour")},
+            "metallicRoughnessTexture": {"index": (relief := out.image(orm, quality=72, name="pilot surface"))},
         },
-        "normalTexture": {"index": out.image(bump, quality=84, name="pilot relief")},
+        "normalTexture": {"index": out.image(bump, quality=76, name="pilot relief")},
         "occlusionTexture": {"index": relief},
     })
     primitive = out.primitive(
-        body.vertices[vertex], body.normals()[vertex], tris, material, coords, joints=slots[vertex], weights=values[vertex]
+        shown.place, shown.normal, shown.triangles, material, shown.uv, joints=slots[shown.vertex],
+        weights=values[shown.vertex], tangent=shown.tangent,
     )
-    print(len(vertex), "vertices,", len(tris), "triangles")
+    print(len(shown.place), "vertices,", len(shown.triangles), "triangles")
     mesh = out.add("meshes", {"name": "pilot", "primitives": [primitive]})
     skin = out.skin(s, nodes, joints, "pilot")
     node = out.add("nodes", {"name": "pilot", "mesh": mesh, "skin": skin})
