@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use super::{App, Host, Inbox, Message, Opening, native_options};
-use crate::files::{Contents, OpenError, Opened, Role, open_paths, read_paths};
+use crate::files::{Contents, OpenError, Role, read_paths};
 use crate::library::sample;
 use crate::state::ViewerState;
 
@@ -23,9 +23,7 @@ pub enum WindowError {
 /// When the first files cannot be read, or no window or graphics device is to be had.
 pub fn run_native(files: Vec<PathBuf>) -> Result<(), WindowError> {
     let files = if files.is_empty() { vec![sample::FIRST.into()] } else { files };
-    let Opened { model, model_files, motions, motion_sources, map, .. } = open_paths(&files)?;
-    let contents =
-        Contents { model: Some(model), model_files, motions: Some(motions), motion_sources, map, problems: Vec::new() };
+    let contents = read_paths(&files, Role::Model)?;
     let create: eframe::AppCreator<'_> = Box::new(move |cc| {
         let app = App::new(cc, Box::new(Window::new(cc.egui_ctx.clone())), contents, None, |_| {})?;
         Ok(Box::new(app))

@@ -2,6 +2,7 @@
 
 use super::{App, encode_png};
 use crate::anim::Clip;
+use crate::files::ModelFiles;
 use crate::formats::{write_model, write_motion};
 use crate::frame::{Frame, evaluate};
 use crate::render::read_pixels;
@@ -112,9 +113,10 @@ impl App {
         let baked = self.baked_clip(clip)?;
         let clips = [baked.clip.as_ref().unwrap_or(&borrowed.clip)];
         let mut remark = None;
-        let bytes = match &self.model_files {
-            Some((files, name)) if !name.to_lowercase().ends_with(".bvh") => {
-                write_model(files, name, &model.asset.skeleton, &clips)
+        let files = self.shelf.get(&model.id).and_then(|shelved| shelved.files.as_ref());
+        let bytes = match files {
+            Some(ModelFiles { set, name }) if !name.to_lowercase().ends_with(".bvh") => {
+                write_model(set, name, &model.asset.skeleton, &clips)
             }
             _ => {
                 remark =

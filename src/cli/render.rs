@@ -40,7 +40,7 @@ pub(super) fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
 /// Reads the motions and maps that a link names, as far as they are files here; the command line's own win.
 fn borrow_as_linked(arguments: &RenderArguments, library: &mut Library, state: &mut ViewerState) {
     if arguments.borrowing.motion.is_none() && !state.motion.is_empty() {
-        let read = |source: &String| match open_motion(Path::new(source)) {
+        let read = |source: &String| match open_motion(Path::new(source.strip_prefix("file:").unwrap_or(source))) {
             Ok(motion) => Some(motion),
             Err(error) => {
                 eprintln!("warning: {error:#}; name the motion's file with --motion");

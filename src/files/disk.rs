@@ -3,7 +3,7 @@
 use std::path::{Component, Path, PathBuf};
 
 use super::sort::Origins;
-use super::{Contents, Role, SortError, decode_images, sort};
+use super::{Contents, ModelFiles, OpenedModel, Role, SortError, decode_images, sort};
 use crate::formats::{FileSet, missing_files};
 use crate::library::{Model, Motion, sample};
 use crate::retarget::JointMap;
@@ -12,11 +12,7 @@ use crate::retarget::JointMap;
 #[derive(Debug)]
 pub struct Opened {
     pub model: Model,
-    /// What the model was read from, and which of it is the model; none for a sample.
-    pub model_files: Option<(FileSet, String)>,
     pub motions: Vec<Motion>,
-    /// What a view has to list besides its model to get the motions again.
-    pub motion_sources: Vec<String>,
     pub map: Option<JointMap>,
     pub files: Vec<String>,
 }
@@ -65,49 +61,30 @@ pub fn read_paths(paths: &[PathBuf], role: Role) -> Result<Contents, OpenError> 
 
 fn open_set(set: &FileSet, samples: Vec<Model>, origins: &Origins, role: Role) -> Result<Opened, OpenError> {
     let has_sample = !samples.is_empty();
-    let contents = contents(set, samples, origins, role)?;
-    let model = contents.model.ok_or_else(|| SortError::NoModel { found: set.names().map(str::to_owned).collect() })?;
+    let Contents { mut models, motions, map, .. } = contents(set, samples, origins, role)?;
+    if models.len() > 1 {
+        let found = models.into_iter().map(|opened| opened.model.source).collect();
+        return Err(SortError::SeveralModels { found }.into());
+    }
+    let no_model = || SortError::NoModel { found: set.names().map(str::to_owned).collect() };
+    let model = models.pop().ok_or_else(no_model)?.model;
     let mut files: Vec<String> = set.names().map(str::to_owned).collect();
     if has_sample {
         files.insert(0, model.source.clone());
     }
-    let Contents { model_files, motions, motion_sources, map, .. } = contents;
-    Ok(Opened { model, model_files, motions: motions.unwrap_or_default(), motion_sources, map, files })
+    Ok(Opened { model, motions: motions.unwrap_or_default(), map, files })
 }
 
 fn contents(set: &FileSet, samples: Vec<Model>, origins: &Origins, role: Role) -> Result<Contents, OpenError> {
     // Files beside a sample that is the model are what it borrows from, whatever they hold.
     let role = if samples.is_empty() || role == Role::Motion { role } else { Role::Any };
-    let sorted = if set.is_empty() && !samples.is_empty() { Default::default() } else { sort(set, role)? };
-    let model_files = sorted.model.as_ref().map(|(name, _)| (set.clone(), name.clone()));
-    let model = sorted.model.map(|(name, mut asset)| {
+    let mut sorted = if set.is_empty() && !samples.is_empty() { Default::default() } else { sort(set, role)? };
+    let models = std::mem::take(&mut sorted.models).into_iter().map(|(name, mut asset)| {
         let images = decode_images(&mut asset);
-        Model::new(origins.of(&name).to_owned(), asset, images)
+        let model = Model::new(origins.of(&name).to_owned(), asset, images);
+        OpenedModel { model, files: Some(ModelFiles { set: set.clone(), name }) }
     });
-    let (mut motions, mut motion_sources) =
-        origins.motions(sorted.motions, model.as_ref().or(samples.first()).map(|model| model.source.as_str()));
-    let mut models: Vec<Model> = Vec::new();
-    for sample in samples {
-        if role == Role::Motion {
-            motion_sources.push(sample.source.clone());
-            motions.push(Motion::new(sample.source, sample.asset));
-        } else {
-            models.push(sample);
-        }
-    }
-    models.extend(model);
-    if models.len() > 1 {
-        let found = models.iter().map(|model| model.source.clone()).collect();
-        return Err(SortError::SeveralModels { found }.into());
-    }
-    Ok(Contents {
-        model: models.pop(),
-        model_files,
-        motions: (!motions.is_empty()).then_some(motions),
-        motion_sources,
-        map: sorted.map,
-        problems: Vec::new(),
-    })
+    Ok(origins.contents(sorted, models.collect(), samples, role))
 }
 
 /// All files that the paths stand for, with what they name beside themselves; and the samples among the paths.
@@ -124,7 +101,8 @@ fn read(paths: &[PathBuf]) -> Result<(FileSet, Vec<Model>, Origins), OpenError> 
                 origins.known.push((file.to_owned(), source.clone()));
             }
             if origins.known.len() == before {
-                samples.push(sample::load(name).ok_or(OpenError::NoSuchSample { name: source })?);
+                samples.push(sample::load(name).ok_or_else(|| OpenError::NoSuchSample { name: source.clone() })?);
+                origins.known.push((source.clone(), source));
             }
         } else if let Some(name) = reader.add(path)? {
             origins.known.push((name.clone(), name));

@@ -291,13 +291,13 @@ impl Renderer {
             stats.draw_calls += more.draw_calls;
             stats.triangles += more.triangles;
         };
+        let draw = self.draws.bind_group();
+        add(draw_items(pass, self.draws.solid(), pane, draw, &self.models, &self.pipelines));
         if background == Background::Studio {
             pass.set_pipeline(&self.pipelines.background);
             pass.draw(0..3, 0..1);
             add(RenderStats { draw_calls: 1, triangles: 0 });
         }
-        let draw = self.draws.bind_group();
-        add(draw_items(pass, self.draws.solid(), pane, draw, &self.models, &self.pipelines));
         if ground.is_some_and(|ground| ground.grid) {
             pass.set_pipeline(&self.pipelines.grid);
             pass.draw(0..18, 0..1);

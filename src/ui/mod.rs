@@ -203,6 +203,13 @@ pub struct Toast {
     pub text: String,
     /// egui's time at which it goes.
     pub until_secs: f64,
+    /// What it says can be undone: it has a button for that.
+    pub undoable: bool,
+}
+
+impl Toast {
+    /// Longer than others, for the hand to get there.
+    pub const UNDOABLE_SECS: f64 = 3.5;
 }
 
 /// What pressing things asks for.
@@ -223,8 +230,12 @@ pub enum UiAction {
     UsePath(PathPurpose, String),
     /// Give the person a file.
     Save(Saved),
-    /// Borrow nothing any more.
-    RemoveMotions,
+    /// Show another of the models that are there.
+    ShowModel(ModelId),
+    /// Let go of a model that is not shown.
+    CloseModel(ModelId),
+    /// Borrow no more from a motion.
+    RemoveMotion(usize),
     /// Show the skeleton of a motion by itself instead of the model.
     ShowMotionAlone(usize),
     /// What is offered for motions that were refused.

@@ -175,7 +175,7 @@ async fn show(page: &Rc<Page>, what: What) -> Result<Shown, String> {
     match opened {
         Ok((mut contents, state)) => {
             let what = match &contents {
-                Contents { model: Some(_), .. } => "model",
+                Contents { models, .. } if !models.is_empty() => "model",
                 Contents { motions: Some(_), .. } => "motion",
                 _ => "map",
             };

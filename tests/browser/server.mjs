@@ -46,6 +46,15 @@ export async function serve(mounts, headers = {}) {
     response.writeHead(200, { "content-type": type, "content-length": fs.statSync(sent).size, ...compressed, ...headers });
     fs.createReadStream(sent).pipe(response);
   });
+  return await listening(server);
+}
+
+/** A server that takes every question and answers none: `{origin, close}`. */
+export async function neverAnswers() {
+  return await listening(http.createServer(() => {}));
+}
+
+async function listening(server) {
   await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
   return {
     origin: `http://127.0.0.1:${server.address().port}`,

@@ -6,6 +6,7 @@ mod clips;
 mod inspector;
 mod keys;
 mod layout;
+mod models;
 mod motion;
 mod picture;
 mod transport;

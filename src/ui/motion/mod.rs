@@ -8,6 +8,9 @@ mod options;
 mod picker;
 mod rows;
 
+use std::rc::Rc;
+use std::sync::Arc;
+
 use egui::{RichText, ScrollArea, Ui};
 
 use self::rows::Row;
@@ -15,7 +18,7 @@ use super::icons::{Icon, icon_button_sized};
 use super::{Output, Shown, UiAction, UiState, clips, controls, scene_tree, short_name, style};
 use crate::anim::JointIndex;
 use crate::asset::Asset;
-use crate::library::{Library, Model, Motion};
+use crate::library::{Library, Model, ModelId, Motion};
 use crate::retarget::{ClipRef, Contradiction, JointMap, Proposal, SourceRef, Unmapped};
 use crate::state::{Command, MapEdit, active_clip, choice_of_clip, map_in_force};
 
@@ -35,6 +38,16 @@ pub(super) struct MotionTab {
     clicking: Option<clicking::Clicking>,
     typed: Option<detail::Typed>,
     turn: Option<detail::Turn>,
+    rows: Option<KeptRows>,
+}
+
+/// The table's rows, and what they were worked out from.
+#[derive(Debug)]
+struct KeptRows {
+    model: ModelId,
+    motion: Arc<Asset>,
+    map: JointMap,
+    rows: Rc<[Row]>,
 }
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
@@ -55,6 +68,20 @@ impl MotionTab {
     /// The list of sources lies over everything and has the keyboard.
     pub fn is_picking(&self) -> bool {
         self.picking.is_some()
+    }
+
+    /// The table's rows, worked out anew when one of the files or the map is another.
+    fn rows(&mut self, pairing: &Pairing<'_>, map: &JointMap) -> Rc<[Row]> {
+        let (model, motion) = (pairing.model.id, &pairing.motion.asset);
+        let kept = self.rows.take();
+        let kept = kept.filter(|kept| kept.model == model && Arc::ptr_eq(&kept.motion, motion) && kept.map == *map);
+        let kept = kept.unwrap_or_else(|| {
+            let rows = rows::rows(pairing, map).into();
+            KeptRows { model, motion: motion.clone(), map: map.clone(), rows }
+        });
+        let rows = kept.rows.clone();
+        self.rows = Some(kept);
+        rows
     }
 }
 
@@ -115,7 +142,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
     let map = map_in_force(shown.library, shown.state, pairing.index).unwrap_or_default();
     local.motion.motion = pairing.index;
     let part = local.motion.part;
-    let rows = if part == Part::Joints { rows::rows(&pairing, &map) } else { Vec::new() };
+    let rows = if part == Part::Joints { local.motion.rows(&pairing, &map) } else { Rc::default() };
     if ui.available_height() >= ROOMY_HEIGHT {
         head(ui, shown, &pairing, &map, &rows, local, out);
         scrolled(ui, part, |ui| body(ui, shown, &pairing, &map, &rows, &mut local.motion, out));

@@ -13,6 +13,7 @@ use crate::ui::scene_tree;
 /// Below this a proposal is a guess.
 const UNSURE: f32 = 0.6;
 
+#[derive(Debug)]
 pub(super) struct Row {
     pub joint: JointIndex,
     /// The joint's number in its file.
