@@ -722,8 +722,8 @@ const focusCanvas = () => byId("stage").querySelector("canvas")?.focus({ prevent
 let openAs;
 
 const DIALOG = {
-  any: { title: "Open a model", what: ".glb, .gltf with its files, .vrm or a .zip of them; motions for it (.bvh, .vrma) can come along. Files stay in this browser.", example: "https://example.org/character.glb" },
-  motion: { title: "Borrow motion", what: ".bvh, .vrma, .glb or .gltf: the clips of any skeleton, or a joint map (.json). Files stay in this browser.", example: "https://example.org/walk.bvh" },
+  any: { title: "Open a model", what: ".glb, .gltf with its files, .vrm or a .zip of them; motions for it (.bvh, .vrma) can come along. Files stay in this browser.", example: "https://example.org/character.glb", sample: "Samples" },
+  motion: { title: "Borrow motion", what: ".bvh, .vrma, .glb or .gltf: the clips of any skeleton, or a joint map (.json). Files stay in this browser.", example: "https://example.org/walk.bvh", sample: "A sample walk" },
 };
 
 function openDialog(role = "any") {
@@ -731,10 +731,11 @@ function openDialog(role = "any") {
   if (panel !== null || dialog.open) return;
   openAs = role === "motion" ? role : undefined;
   byId("open-form").reset();
-  const { title, what, example } = DIALOG[role];
+  const { title, what, example, sample } = DIALOG[role];
   byId("open-title").textContent = title;
   byId("open-what").textContent = what;
   byId("open-url").placeholder = example;
+  byId("open-sample").textContent = sample;
   dialog.showModal();
 }
 
@@ -746,6 +747,7 @@ function openFromDialog(items) {
 byId("open-files").addEventListener("change", ({ target }) => target.files.length > 0 && openFromDialog([...target.files]));
 byId("open-folder").addEventListener("change", ({ target }) => target.files.length > 0 && openFromDialog(insideFolder([...target.files])));
 byId("open-sample").addEventListener("click", () => {
+  if (openAs === "motion") return openFromDialog(["sample:walker"]);
   byId("open").close();
   dispatchEvent(new CustomEvent("gaitway:samples"));
 });
