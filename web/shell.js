@@ -495,6 +495,7 @@ function showAwaited() {
   if (awaited === null || panel !== null || byId("bring").open) return;
   list("bring-files", awaited.wanted.map(({ key, name }) => `${name} (${key === "model" ? "the model" : "motion"})`));
   byId("bring").showModal();
+  byId("bring-choose").focus();
 }
 
 /** A set has come: shows the link that is waited for when it was the last one. */

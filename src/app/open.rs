@@ -3,7 +3,7 @@
 
 use super::App;
 use crate::files::{Contents, ModelFiles, OpenedModel};
-use crate::library::{BorrowError, Library, Model, ModelId, Motion};
+use crate::library::{BorrowError, Library, Loaded, Model, ModelId, Motion};
 use crate::retarget::{JointMap, MapError, propose};
 use crate::state::{
     ClipChoice, Command, MapEdit, MotionMap, NumberedMap, ViewerState, active_clip, choice_of_clip, maps_in_force,
@@ -72,8 +72,7 @@ impl App {
             if let Some(before) = &before {
                 self.library.restore(before.1.clone());
             }
-            self.library.remove(id);
-            self.shelf.remove(&id);
+            self.close_model(id);
             self.refresh_motion();
             return Err(error.to_string());
         }
@@ -141,12 +140,12 @@ impl App {
     }
 
     /// What a step back leads to; none before there is anything.
-    fn before_opening(&self) -> Option<(ViewerState, crate::library::Loaded)> {
+    fn before_opening(&self) -> Option<(ViewerState, Loaded)> {
         self.library.active().map(|_| (self.state.clone(), self.library.loaded()))
     }
 
     /// Makes a step of what was done since, and keeps the view of the model that was shown.
-    fn remember(&mut self, before: Option<(ViewerState, crate::library::Loaded)>) {
+    fn remember(&mut self, before: Option<(ViewerState, Loaded)>) {
         let Some((state, loaded)) = before else { return };
         if loaded.model != self.library.loaded().model
             && let Some(shelved) = self.shelf.get_mut(&loaded.model)
@@ -231,6 +230,11 @@ impl App {
             let problems = self.refresh_motion();
             self.tell(problems);
             return Ok(());
+        }
+        let together = self.library.motions().len() + motions.len();
+        if together > Library::MOST_MOTIONS {
+            let most = Library::MOST_MOTIONS;
+            return Err(format!("{together} motions together; at most {most} are borrowed from, remove some first"));
         }
         self.state.map.extend(map.map(MotionMap::Names));
         let problems = self.borrow_also(motions.clone());

@@ -77,8 +77,6 @@ pub enum SortError {
     TooManyMotions { found: usize, most: usize },
 }
 
-/// Every clip of every motion is made over for the model, which takes time and memory.
-const MOST_MOTIONS: usize = 64;
 /// As many names are told of what is too many.
 const MOST_NAMES: usize = 8;
 
@@ -102,8 +100,8 @@ pub(super) fn sort_noticing_images(
         sorted.models.push((String::new(), asset));
         return Ok(sorted);
     }
-    if names.len() > MOST_MOTIONS {
-        return Err(SortError::TooManyMotions { found: names.len(), most: MOST_MOTIONS });
+    if names.len() > Library::MOST_MOTIONS {
+        return Err(SortError::TooManyMotions { found: names.len(), most: Library::MOST_MOTIONS });
     }
     for name in names {
         let on_images = &mut |images: &[Image]| on_images(&name, images);

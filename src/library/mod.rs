@@ -59,6 +59,8 @@ pub struct Library {
 impl Library {
     /// As many models are held: each keeps its meshes and images.
     pub const MOST_MODELS: usize = 8;
+    /// Every clip of every motion is made over for the model, which takes time and memory.
+    pub const MOST_MOTIONS: usize = 64;
 
     /// Replaces everything by one model.
     pub fn set(&mut self, model: Model) -> ModelId {
