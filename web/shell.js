@@ -8,8 +8,12 @@ const moduleUrl = new URL(meta.content, document.baseURI).href;
 const wasmUrl = new URL(meta.dataset.wasm, document.baseURI).href;
 const NAMES = { webgpu: "WebGPU", webgl2: "WebGL2" };
 
+/** The scene of the first screen; none in a build without samples. */
+const FIRST_LINK = document.querySelector("#gallery-scenes a")?.hash.slice(1) ?? "";
+const linkOfAddress = () => location.hash.slice(1) || FIRST_LINK;
+
 /** What is shown now, so that it can be shown again. */
-const kept = { link: location.hash.slice(1) };
+const kept = { link: linkOfAddress() };
 /** Sets of files that were opened and can be shown again, the newest last; a link names them by their files. */
 const held = [];
 const MOST_HELD = 32;
@@ -168,6 +172,7 @@ async function compile() {
 async function start(renderer) {
   stopReason = null;
   show("loading");
+  dispatchEvent(new CustomEvent("gaitway:loading", { detail: { link: kept.link, isLocal: valuesOf(kept.link, "model", "motion").some(isHeld) } }));
   showProgress("Loading Gaitway", 0, 0);
   const missing = [...lacksWasm(), ...lacksGraphics()];
   if (missing.length > 0) {
@@ -216,6 +221,8 @@ async function start(renderer) {
     canvas.addEventListener("webglcontextlost", () => stopped("The browser took the graphics context away."));
     await frames(2);
     if (stopReason !== null) throw new Error(stopReason);
+    // What is typed goes through a field that nobody sees.
+    byId("stage").querySelector("input")?.setAttribute("aria-label", "Typed into the picture");
     show(null);
     summarise();
     showMissing(missing, link);
@@ -292,6 +299,7 @@ function summarise() {
   say(`${model}: ${clip ?? "rest pose"}, ${clip !== null && playing ? "playing" : "paused"}`);
   if (problem !== null && problem !== told) sayProblem(problem);
   told = problem;
+  dispatchEvent(new CustomEvent("gaitway:shown", { detail: { link: kept.link, isLocal: valuesOf(kept.link, "model", "motion").some(isHeld) } }));
   document.title = model === "" ? "Gaitway" : `${model.split("/").pop()} – Gaitway`;
   record();
 }
@@ -398,7 +406,7 @@ addEventListener("popstate", ({ state }) => {
     visit.number = state.gaitway;
     lastVisit = Math.max(lastVisit, visit.number);
   }
-  const link = location.hash.slice(1);
+  const link = linkOfAddress();
   // What has not started yet begins with this one.
   if (app === null) kept.link = link;
   else follow(link, { wasOwn: state?.own, ...visited.get(visit.number) });
@@ -715,8 +723,8 @@ const focusCanvas = () => byId("stage").querySelector("canvas")?.focus({ prevent
 let openAs;
 
 const DIALOG = {
-  any: { title: "Open a model", what: ".glb, .gltf with its files, .vrm, .obj (with .skel and .attach) or a .zip of them; motions for it (.bvh, .vrma) can come along. Files stay in this browser.", example: "https://example.org/character.glb" },
-  motion: { title: "Borrow motion", what: ".bvh, .vrma, .glb or .gltf: the clips of any skeleton, or a joint map (.json). Files stay in this browser.", example: "https://example.org/walk.bvh" },
+  any: { title: "Open a model", what: ".glb, .gltf with its files, .vrm, .obj (with .skel and .attach) or a .zip of them; motions for it (.bvh, .vrma) can come along. Files stay in this browser.", example: "https://example.org/character.glb", sample: "Samples" },
+  motion: { title: "Borrow motion", what: ".bvh, .vrma, .glb or .gltf: the clips of any skeleton, or a joint map (.json). Files stay in this browser.", example: "https://example.org/walk.bvh", sample: "A sample walk" },
 };
 
 function openDialog(role = "any") {
@@ -724,10 +732,11 @@ function openDialog(role = "any") {
   if (panel !== null || dialog.open) return;
   openAs = role === "motion" ? role : undefined;
   byId("open-form").reset();
-  const { title, what, example } = DIALOG[role];
+  const { title, what, example, sample } = DIALOG[role];
   byId("open-title").textContent = title;
   byId("open-what").textContent = what;
   byId("open-url").placeholder = example;
+  byId("open-sample").textContent = sample;
   dialog.showModal();
 }
 
@@ -738,7 +747,11 @@ function openFromDialog(items) {
 
 byId("open-files").addEventListener("change", ({ target }) => target.files.length > 0 && openFromDialog([...target.files]));
 byId("open-folder").addEventListener("change", ({ target }) => target.files.length > 0 && openFromDialog(insideFolder([...target.files])));
-byId("open-sample").addEventListener("click", () => openFromDialog(["sample:walker"]));
+byId("open-sample").addEventListener("click", () => {
+  if (openAs === "motion") return openFromDialog(["sample:walker"]);
+  byId("open").close();
+  dispatchEvent(new CustomEvent("gaitway:samples"));
+});
 byId("open-cancel").addEventListener("click", () => byId("open").close());
 byId("open").addEventListener("close", focusCanvas);
 byId("bring").addEventListener("close", () => byId("bring").returnValue === "choose" && openDialog());
@@ -859,6 +872,8 @@ function ask(name) {
 }
 
 window.gaitway = {
+  /** The files of each sample: addresses beside the page, by the name after `sample:`. */
+  samples: JSON.parse(document.querySelector('meta[name="gaitway-samples"]')?.content ?? "{}"),
   /** Resolves when the first picture is on the screen; a new promise after each restart. */
   get ready() {
     return started.then(() => undefined);
@@ -903,5 +918,5 @@ launch(forced()).then(
   () => {},
 );
 
-// For embed.js.
-dispatchEvent(new CustomEvent("gaitway:shell", { detail: { isPrivate, ownSeen: () => ownSeen, open: (items, { as } = {}) => openAll(items, { as, isOwn: false }) } }));
+// For embed.js and offline.js.
+dispatchEvent(new CustomEvent("gaitway:shell", { detail: { openByHand, isPrivate, ownSeen: () => ownSeen, open: (items, { as } = {}) => openAll(items, { as, isOwn: false }) } }));

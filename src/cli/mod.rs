@@ -30,7 +30,7 @@ use borrow::Borrowing;
 struct Arguments {
     #[command(subcommand)]
     action: Option<Action>,
-    /// Opens the window with these files: a model with its parts (none: the built-in sample).
+    /// Opens the window with these files: a model with its parts (none: a sample).
     #[arg(value_name = "FILE")]
     files: Vec<PathBuf>,
 }
@@ -54,7 +54,7 @@ enum Action {
 
 #[derive(Debug, Args)]
 struct Files {
-    /// A model with its parts: files, folders, or `sample:walker`.
+    /// A model with its parts: files, folders, or `sample:NAME`.
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
 }

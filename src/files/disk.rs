@@ -28,7 +28,7 @@ pub enum OpenError {
     TooLarge { path: PathBuf, found: u64, most: u64 },
     #[error("{}: more than {most} files in the folder; name the model's own files instead", path.display())]
     TooManyFiles { path: PathBuf, most: usize },
-    #[error("{name}: there is no such sample; there are: {}", sample::NAMES.map(|name| format!("sample:{name}")).join(", "))]
+    #[error("{name}: there is no such sample; there are: sample:{}", sample::names().join(", sample:"))]
     NoSuchSample { name: String },
     #[error(transparent)]
     Files(#[from] SortError),
@@ -39,7 +39,7 @@ const MOST_FILES: usize = 4096;
 const MOST_FOLDERS_DEEP: usize = 16;
 
 /// Reads one model from files and folders, together with the files that it names beside itself, motions and a joint map.
-/// `sample:NAME` is a built-in character. A motion alone is shown as a model.
+/// `sample:NAME` is one of the characters that come along. A motion alone is shown as a model.
 pub fn open_paths(paths: &[PathBuf]) -> Result<Opened, OpenError> {
     let (set, samples, origins) = read(paths)?;
     open_set(&set, samples, &origins, Role::Model)
@@ -96,9 +96,16 @@ fn read(paths: &[PathBuf]) -> Result<(FileSet, Vec<Model>, Origins), OpenError> 
     let mut origins = Origins::default();
     for path in paths {
         if let Some(name) = path.to_str().and_then(|path| path.strip_prefix("sample:")) {
-            let missing = || OpenError::NoSuchSample { name: format!("sample:{name}") };
-            samples.push(sample::load(name).ok_or_else(missing)?);
-            origins.known.push((format!("sample:{name}"), format!("sample:{name}")));
+            let source = format!("sample:{name}");
+            let before = origins.known.len();
+            for (file, bytes) in sample::files(name) {
+                reader.set.insert(file.to_owned(), bytes.to_vec());
+                origins.known.push((file.to_owned(), source.clone()));
+            }
+            if origins.known.len() == before {
+                samples.push(sample::load(name).ok_or_else(|| OpenError::NoSuchSample { name: source.clone() })?);
+                origins.known.push((source.clone(), source));
+            }
         } else if let Some(name) = reader.add(path)? {
             origins.known.push((name.clone(), name));
         }

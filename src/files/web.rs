@@ -29,8 +29,8 @@ pub enum Item {
 pub enum OpenError {
     #[error("there is nothing to open: expected files or addresses")]
     Nothing,
-    #[error("sample:{name}: there is no such sample; there are: {}", sample::NAMES.map(|name| format!("sample:{name}")).join(", "))]
-    NoSuchSample { name: String },
+    #[error("sample:{name}: there is no such sample; there are: {known}")]
+    NoSuchSample { name: String, known: String },
     #[error("{url}: this is not an address; expected one such as https://example.org/character.glb")]
     NotAnAddress { url: String },
     #[error("{url}: the server answered {status}{}", hint(*status))]
@@ -93,9 +93,16 @@ pub async fn open_items(
             }
             Item::Url(url) => {
                 if let Some(name) = url.strip_prefix("sample:") {
-                    let missing = || OpenError::NoSuchSample { name: name.to_owned() };
-                    samples.push(sample::load(name).ok_or_else(missing)?);
-                    origins.known.push((url.clone(), url));
+                    if let Some(sample) = sample::load(name) {
+                        samples.push(sample);
+                        origins.known.push((url.clone(), url));
+                        continue;
+                    }
+                    for (file, address) in files_of_sample(name)? {
+                        let bytes = fetch(&address, &file, &mut bytes_left, progress).await?;
+                        origins.known.push((file.clone(), url.clone()));
+                        set.insert(file, bytes);
+                    }
                     continue;
                 }
                 let base = absolute(&url, None).ok_or_else(|| OpenError::NotAnAddress { url: url.clone() })?;
@@ -131,6 +138,26 @@ pub async fn open_items(
         models.push(OpenedModel { model, files: Some(ModelFiles { set: set.clone(), name }) });
     }
     Ok(origins.contents(sorted, models, samples, role))
+}
+
+/// The files of a sample with their addresses: the shell's `gaitway.samples` lists those that lie beside the page.
+fn files_of_sample(name: &str) -> Result<Vec<(String, String)>, OpenError> {
+    let table = Reflect::get(&js_sys::global(), &"gaitway".into())
+        .and_then(|gaitway| Reflect::get(&gaitway, &"samples".into()))
+        .unwrap_or_else(|_| js_sys::Object::new().into());
+    let addresses: Option<Array> = Reflect::get(&table, &name.into()).ok().and_then(|list| list.dyn_into().ok());
+    let Some(addresses) = addresses else {
+        let files = Reflect::own_keys(&table).unwrap_or_default();
+        let known = files.iter().filter_map(|name| name.as_string()).chain([sample::WALKER.to_owned()]);
+        let known = known.map(|name| format!("sample:{name}")).collect::<Vec<_>>().join(", ");
+        return Err(OpenError::NoSuchSample { name: name.to_owned(), known });
+    };
+    let file = |address: String| {
+        let ending = address.rsplit('.').next().unwrap_or_default();
+        // The address has a hash in it; files that belong together are found by their common name.
+        Some((format!("{name}.{ending}"), absolute(&address, None)?))
+    };
+    Ok(addresses.iter().filter_map(|address| address.as_string().and_then(file)).collect())
 }
 
 /// Opens all that a view lists; its model only if asked for. A motion or a map that cannot be had is a problem in the

@@ -83,7 +83,7 @@ async fn first_contents(
     let items = super::calls::items_of(items)?;
     let motion_items = super::calls::items_of(motion_items)?;
     if state.model.is_empty() {
-        state.model.push(format!("sample:{}", sample::NAMES[0]));
+        state.model.push(format!("sample:{}", sample::WALKER));
     }
     let progress = |name: &str, received: u64, total: u64| shell.progress(name, received as f64, total as f64);
     let listed = std::mem::take(&mut state.motion);
@@ -123,7 +123,7 @@ async fn first_contents(
             }
             models.truncate(1);
             if models.is_empty() {
-                models.extend(sample::load(sample::NAMES[0]).map(OpenedModel::from));
+                models.extend(sample::load(sample::WALKER).map(OpenedModel::from));
             }
             let model = models.first().ok_or_else(|| problems.join("\n"))?;
             let state = about_no_model(state, model.model.source.clone());
