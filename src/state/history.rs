@@ -162,6 +162,7 @@ fn same_edits(a: &ViewerState, b: &ViewerState) -> bool {
     a.skinning == b.skinning
         && a.morph == b.morph
         && a.pose == b.pose
+        && a.names == b.names
         && a.show == b.show
         && a.up == b.up
         && a.exposure == b.exposure

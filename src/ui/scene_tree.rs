@@ -31,11 +31,19 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
             // Room for the floating scroll bar.
             ui.set_max_width(ui.available_width() - 6.0);
             ui.add_space(4.0);
+            // Above the joint, which comes and goes by presses on the vertex's lines.
+            let vertex_first = local.probe.is_on(shown);
+            if vertex_first {
+                controls::card(ui, |ui| formula::vertex(ui, shown, model, local, out));
+                ui.add_space(6.0);
+            }
             if let Some(joint) = chosen {
                 controls::card(ui, |ui| joint_card(ui, shown, model, joint, local, out));
                 ui.add_space(6.0);
             }
-            controls::card(ui, |ui| formula::vertex(ui, shown, model, local, out));
+            if !vertex_first {
+                controls::card(ui, |ui| formula::vertex(ui, shown, model, local, out));
+            }
             ui.add_space(12.0);
         });
         return;

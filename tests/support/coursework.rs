@@ -46,6 +46,7 @@ impl Exercise {
 }
 
 /// Any angles for all joints, the same on every run: exact, and rounded as the real thing has them.
+#[allow(dead_code)] // Not every test program turns joints at random.
 pub fn pose(joints: usize, seed: u64) -> (Vec<DQuat>, Vec<Quat>) {
     let mut random = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15);
     let mut part = || {

@@ -9,13 +9,15 @@ use gaitway::ui::{Saved, Tab, UiAction};
 
 use crate::bench::{Bench, NARROW, WIDE, bench, press, sample_bench};
 
-/// A strip along X, the first half bound to joint 0, the end to joint 1, the middle to both.
+/// A strip along X: its beginning follows joint 1, its end joint 2, the middle both.
 fn strip(size: [f32; 2]) -> Harness<'static, Bench> {
     let mut files = FileSet::default();
     let obj = "v 0 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 2 0 0\nv 2 1 0\nf 1 3 4 2\nf 3 5 6 4\n";
-    for (name, text) in
-        [("strip.obj", obj), ("strip.skel", "0 0 0 -1\n1 0 0 0\n"), ("strip.attach", "0\n0\n0.25\n0.5\n1\n1\n")]
-    {
+    for (name, text) in [
+        ("strip.obj", obj),
+        ("strip.skel", "0 0 0 -1\n0 0 0 0\n1 0 0 1\n"),
+        ("strip.attach", "1 0\n1 0\n0.75 0.25\n0.5 0.5\n0 1\n0 1\n"),
+    ] {
         files.insert(name, text.as_bytes().to_vec());
     }
     let asset = load(&files).expect("a small exercise");
@@ -29,20 +31,20 @@ fn has(harness: &Harness<'_, Bench>, label: &str) -> bool {
 #[test]
 fn the_sliders_say_their_order_and_bend_the_model() {
     let mut harness = strip(WIDE);
-    press(&mut harness, "joint 1");
+    press(&mut harness, "joint 2");
     press(&mut harness, "Turn by hand");
     assert!(harness.query_by_label_contains("about its X, then its Y, then its Z").is_some());
     harness.get_by_label("Turn Z").set_value_accesskit(90.0);
     harness.run();
-    let world = harness.state().frame.characters[0].world_from_joint[1];
+    let world = harness.state().frame.characters[0].world_from_joint[2];
     assert!(world.transform_point3(glam::Vec3::X).distance(glam::Vec3::new(1.0, 1.0, 0.0)) < 1e-5);
 }
 
 #[test]
 fn the_three_matrices_of_the_chosen_joint_are_shown() {
     let mut harness = strip(WIDE);
-    press(&mut harness, "joint 1");
-    harness.state_mut().state.pose.insert(1, [0.0, 0.0, 90.0]);
+    press(&mut harness, "joint 2");
+    harness.state_mut().state.pose.insert(2, [0.0, 0.0, 90.0]);
     assert_eq!(harness.query_all_by_label("Scale 1.000 1.000 1.000").count(), 2, "local and in the world");
     press(&mut harness, "Matrices");
     let zero = "0.0000";
@@ -70,15 +72,15 @@ fn a_vertex_shows_shares_that_add_up() {
         }
         press(&mut harness, "Vertex under the pointer");
         assert!(harness.query_by_label_contains("Point at the mesh").is_some());
-        // Turned by a quarter about Z, joint 1 alone would put (1, 1) to (0, 0).
-        harness.state_mut().state.pose.insert(1, [0.0, 0.0, 90.0]);
+        // Turned by a quarter about Z, joint 2 alone would put (1, 1) to (0, 0).
+        harness.state_mut().state.pose.insert(2, [0.0, 0.0, 90.0]);
         harness.state_mut().state.vertex = Some(VertexChoice { instance: 0, primitive: 0, vertex: 3 });
         harness.run();
         for label in [
             "Vertex 3",
             "p, where it is bound: 1.0000 1.0000 0.0000",
-            "joint 0, weight 0.5000",
             "joint 1, weight 0.5000",
+            "joint 2, weight 0.5000",
             "share, w times that: 0.5000 0.5000 0.0000",
             "share, w times that: 0.0000 0.0000 0.0000",
             "p', the sum of the shares: 0.5000 0.5000 0.0000",
@@ -89,7 +91,7 @@ fn a_vertex_shows_shares_that_add_up() {
         harness.state_mut().state.skinning = gaitway::mesh::SkinningMode::Rigid;
         harness.run();
         assert!(harness.query_by_label_contains("drawn, with the skinning").is_some());
-        assert_eq!(press(&mut harness, "joint 1, weight 0.5000"), [Command::SelectJoint(Some(1))]);
+        assert_eq!(press(&mut harness, "joint 2, weight 0.5000"), [Command::SelectJoint(Some(2))]);
         assert_eq!(press(&mut harness, "Let go"), [Command::SelectVertex(None)]);
     }
 }
@@ -115,7 +117,7 @@ fn a_click_keeps_the_vertex_and_a_click_beside_lets_it_go() {
 #[test]
 fn a_joint_is_renamed_in_its_card() {
     let mut harness = strip(WIDE);
-    press(&mut harness, "joint 1");
+    press(&mut harness, "joint 2");
     press(&mut harness, "Rename");
     let field = harness.get_by_label("Name of the joint");
     field.focus();
@@ -124,16 +126,16 @@ fn a_joint_is_renamed_in_its_card() {
     harness.state_mut().commands.clear();
     harness.key_press(egui::Key::Enter);
     harness.run();
-    let name = "joint 1 of the tip".to_owned();
-    assert_eq!(harness.state().commands, [Command::RenameJoint { joint: 1, name: name.clone() }]);
+    let name = "joint 2 of the tip".to_owned();
+    assert_eq!(harness.state().commands, [Command::RenameJoint { joint: 2, name: name.clone() }]);
     assert!(harness.query_all_by_label(&name).count() >= 2, "in the card and in the tree");
-    assert!(!has(&harness, "joint 1"));
+    assert!(!has(&harness, "joint 2"));
     press(&mut harness, "Rename");
     harness.get_by_label("Name of the joint").type_text("!");
     harness.run();
     harness.key_press(egui::Key::Escape);
     harness.run();
-    assert_eq!(harness.state().state.names[&1], name);
+    assert_eq!(harness.state().state.names[&2], name);
 }
 
 #[test]
