@@ -73,8 +73,8 @@ def run(figure, speed=3.2, frames=20):
     ankle, heel, ball = feet(figure)
     length = speed * frames / RATE
     tread = Tread(
-        ankle, heel, ball, flat=0.04, rise=0.145, off=0.33, length=length, start=0.215,
-        pitch=[(0.0, 7), (0.04, 0), (0.145, 0), (0.24, -24), (0.33, -58), (0.46, -94), (0.62, -62), (0.80, 2), (0.93, 10)],
+        ankle, heel, ball, flat=0.045, rise=0.10, off=0.33, length=length, start=0.215,
+        pitch=[(0.0, 6), (0.045, 0), (0.10, 0), (0.22, -22), (0.33, -54), (0.46, -94), (0.62, -62), (0.80, 2), (0.93, 10)],
         air=[(0, (0, 0)), (0.20, (0.20, 0.07)), (0.42, (0.30, 0.42)), (0.66, (0.20, 0.88)), (0.84, (0.105, 1.045)), (1, (0, 1))],
         width=0.055, toe_air=[(0, 0), (0.5, 6), (1, 0)], lift=0.0015,
     )
@@ -84,7 +84,7 @@ def run(figure, speed=3.2, frames=20):
         hips = figure.names["hips"]
         yaw, roll = -8.0 * swing(p, 0.04), 3.5 * swing(p, 0.13)
         # Lowest in mid-stance (0.16), highest in mid-flight.
-        moves[hips] = (0.012 * swing(p, 0.17), -0.058 - 0.026 * swing(2 * p, 0.33), 0.008 * swing(2 * p, 0.2))
+        moves[hips] = (0.012 * swing(p, 0.17), -0.056 - 0.026 * swing(2 * p, 0.33), 0.008 * swing(2 * p, 0.2))
         turns[hips] = mul(qy(yaw), qx(8), qz(roll))
         figure.spine(turns, pitch=7 + 2.0 * swing(2 * p, 0.36), yaw=-yaw + 11.0 * swing(p, 0.05), roll=-1.3 * roll)
         figure.head(turns, pitch=-11 - 2.0 * swing(2 * p, 0.40), yaw=-10.0 * swing(p, 0.06), roll=0.3 * roll)
