@@ -723,7 +723,7 @@ const focusCanvas = () => byId("stage").querySelector("canvas")?.focus({ prevent
 let openAs;
 
 const DIALOG = {
-  any: { title: "Open a model", what: ".glb, .gltf with its files, .vrm or a .zip of them; motions for it (.bvh, .vrma) can come along. Files stay in this browser.", example: "https://example.org/character.glb", sample: "Samples" },
+  any: { title: "Open a model", what: ".glb, .gltf with its files, .vrm, .obj (with .skel and .attach) or a .zip of them; motions for it (.bvh, .vrma) can come along. Files stay in this browser.", example: "https://example.org/character.glb", sample: "Samples" },
   motion: { title: "Borrow motion", what: ".bvh, .vrma, .glb or .gltf: the clips of any skeleton, or a joint map (.json). Files stay in this browser.", example: "https://example.org/walk.bvh", sample: "A sample walk" },
 };
 

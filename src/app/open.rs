@@ -511,6 +511,8 @@ fn about_model(about: ViewerState, before: ViewerState) -> ViewerState {
         range: about.range,
         morph: about.morph,
         pose: about.pose,
+        names: about.names,
+        vertex: about.vertex,
         joint: about.joint,
         camera: about.camera,
         up: about.up,

@@ -12,6 +12,8 @@ use crate::retarget::JointMap;
 #[derive(Debug)]
 pub struct Opened {
     pub model: Model,
+    /// What the model was read from; none for a sample.
+    pub model_files: Option<ModelFiles>,
     pub motions: Vec<Motion>,
     pub map: Option<JointMap>,
     pub files: Vec<String>,
@@ -67,12 +69,12 @@ fn open_set(set: &FileSet, samples: Vec<Model>, origins: &Origins, role: Role) -
         return Err(SortError::SeveralModels { found }.into());
     }
     let no_model = || SortError::NoModel { found: set.names().map(str::to_owned).collect() };
-    let model = models.pop().ok_or_else(no_model)?.model;
+    let OpenedModel { model, files: model_files } = models.pop().ok_or_else(no_model)?;
     let mut files: Vec<String> = set.names().map(str::to_owned).collect();
     if has_sample {
         files.insert(0, model.source.clone());
     }
-    Ok(Opened { model, motions: motions.unwrap_or_default(), map, files })
+    Ok(Opened { model, model_files, motions: motions.unwrap_or_default(), map, files })
 }
 
 fn contents(set: &FileSet, samples: Vec<Model>, origins: &Origins, role: Role) -> Result<Contents, OpenError> {
@@ -128,6 +130,10 @@ struct Reader {
 impl Reader {
     /// The name in the set, unless the path is a folder.
     fn add(&mut self, path: &Path) -> Result<Option<String>, OpenError> {
+        // A model of several files may be named by what their names share.
+        let of_stem = path.file_name().map(|stem| path.with_file_name(lossy(stem) + ".obj"));
+        let of_stem = of_stem.filter(|of_stem| !path.exists() && of_stem.is_file());
+        let path = of_stem.as_deref().unwrap_or(path);
         let folder = if path.is_dir() { path } else { path.parent().unwrap_or(Path::new("")) };
         if !self.folders.iter().any(|other| other == folder) {
             self.folders.push(folder.to_owned());

@@ -217,7 +217,7 @@ async fn fetch_map(url: &str, progress: &dyn Fn(&str, u64, u64)) -> Result<crate
 
 /// How the set is called in links and panels: after its model, else after its first part.
 fn source_of(items: &[Item]) -> Option<String> {
-    const MODELS: [&str; 6] = [".glb", ".gltf", ".vrm", ".vrma", ".bvh", ".zip"];
+    const MODELS: [&str; 7] = [".glb", ".gltf", ".vrm", ".vrma", ".bvh", ".obj", ".zip"];
     let names = || {
         items.iter().map(|item| match item {
             Item::Url(name) | Item::File(name, _) => name,
@@ -251,6 +251,8 @@ async fn fetch_beside(
             for base in bases {
                 let Some(url) = absolute(&escaped(&name), Some(base)) else { continue };
                 match fetch(&url, &name, bytes_left, progress).await {
+                    // Some hosts answer with a page where there is no such file.
+                    Ok(bytes) if is_page(&bytes) => {}
                     Ok(bytes) => {
                         set.insert(name.clone(), bytes);
                         break;
@@ -263,6 +265,12 @@ async fn fetch_beside(
         }
     }
     Ok(())
+}
+
+fn is_page(bytes: &[u8]) -> bool {
+    let text = bytes.trim_ascii_start();
+    let begins = |with: &[u8]| text.get(..with.len()).is_some_and(|start| start.eq_ignore_ascii_case(with));
+    begins(b"<!doctype html") || begins(b"<html")
 }
 
 /// A relative path with everything escaped that means something in a URL.

@@ -113,8 +113,13 @@ fn build() -> Result<Asset, SampleError> {
     let skeleton = skeleton()?;
     let skin = skin(&skeleton)?;
     let meshes = vec![
-        Mesh { name: "Body".to_owned(), primitives: shape::body(), target_names: Vec::new() },
-        Mesh { name: "Eyes".to_owned(), primitives: vec![shape::eyes()], target_names: vec!["Blink".to_owned()] },
+        Mesh { name: "Body".to_owned(), primitives: shape::body(), ..Mesh::default() },
+        Mesh {
+            name: "Eyes".to_owned(),
+            primitives: vec![shape::eyes()],
+            target_names: vec!["Blink".to_owned()],
+            ..Mesh::default()
+        },
     ];
     meshes
         .iter()

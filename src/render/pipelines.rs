@@ -114,6 +114,10 @@ impl Features {
         self.0 & other.0 != 0
     }
 
+    pub fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
+    }
+
     pub fn only(self, other: Self) -> Self {
         Self(self.0 & other.0)
     }

@@ -189,7 +189,7 @@ impl Renderer {
             self.shadow_group = self.shadow_buffer.bind_group(device, &self.layouts, &self.palette);
         }
         let bones = if frame.look.skeleton { &frame.bones[..] } else { &[] };
-        self.overlay.upload(device, queue, &frame.lines, bones);
+        self.overlay.upload(device, queue, &frame.lines, bones, frame.look.boxes);
         self.stats = RenderStats::default();
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("picture") });
         if shadow {

@@ -127,6 +127,7 @@ fn is_edit(command: &Command) -> bool {
             | Command::ClearMorphs
             | Command::SetPose { .. }
             | Command::ClearPose
+            | Command::RenameJoint { .. }
             | Command::SetShow(_)
             | Command::SetUp(_)
             | Command::SetExposure(_)
@@ -145,6 +146,7 @@ fn take_edits(state: &mut ViewerState, from: &ViewerState) {
     state.skinning = from.skinning;
     state.morph.clone_from(&from.morph);
     state.pose.clone_from(&from.pose);
+    state.names.clone_from(&from.names);
     state.show = from.show;
     state.up = from.up;
     state.exposure = from.exposure;
@@ -160,6 +162,7 @@ fn same_edits(a: &ViewerState, b: &ViewerState) -> bool {
     a.skinning == b.skinning
         && a.morph == b.morph
         && a.pose == b.pose
+        && a.names == b.names
         && a.show == b.show
         && a.up == b.up
         && a.exposure == b.exposure

@@ -5,6 +5,7 @@ mod clips;
 mod controls;
 mod display;
 mod feet;
+mod formula;
 mod gizmo;
 mod icons;
 mod inspector;
@@ -102,6 +103,11 @@ pub struct UiState {
     pub toast: Option<Toast>,
     /// The chosen joint can be turned by hand.
     pub turning: bool,
+    /// The chosen joint's matrices are shown.
+    matrices: bool,
+    probe: formula::Probe,
+    /// A joint that is being renamed, as the file numbers it, and what has been typed so far.
+    renaming: Option<(usize, String)>,
     /// A video is being recorded: nothing but the picture is on the canvas.
     pub recording: bool,
     picture: view_options::PictureSettings,
@@ -133,6 +139,9 @@ impl Default for UiState {
             help_open: false,
             error: None,
             turning: false,
+            matrices: false,
+            probe: formula::Probe::default(),
+            renaming: None,
             recording: false,
             picture: view_options::PictureSettings::default(),
             grab: None,
@@ -194,6 +203,8 @@ pub enum Saved {
     Model { clip: usize },
     /// The skeleton with one of the clips, without meshes.
     Clip { clip: usize },
+    /// The whole model as a .glb: as it stands, or at rest.
+    Whole { posed: bool },
     /// What is on the screen, at a size of its own in pixels.
     Picture { size: [u32; 2], transparent: bool },
 }

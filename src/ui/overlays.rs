@@ -244,10 +244,12 @@ fn help(context: &Context, local: &mut UiState) {
 fn path_prompt(context: &Context, local: &mut UiState, out: &mut Output) {
     let Some(PathPrompt { purpose, path }) = &mut local.path_prompt else { return };
     let (title, hint, button) = match purpose {
-        PathPurpose::Open => ("Open a file", "Path of a .glb, .gltf, .bvh, .zip or folder", "Open"),
+        PathPurpose::Open => ("Open a file", "Path of a .glb, .gltf, .bvh, .obj, .zip or folder", "Open"),
         PathPurpose::OpenMotion => ("Borrow motion", "Path of a .bvh, .glb, .vrma or joint map .json", "Open"),
         PathPurpose::Save(Saved::Map { .. }) => ("Save the joint map", "Path of the file to write", "Save"),
-        PathPurpose::Save(Saved::Model { .. }) => ("Save the model", "Path of the .glb to write", "Save"),
+        PathPurpose::Save(Saved::Model { .. } | Saved::Whole { .. }) => {
+            ("Save the model", "Path of the .glb to write", "Save")
+        }
         PathPurpose::Save(Saved::Clip { .. }) => ("Save the clip", "Path of the .glb to write", "Save"),
         PathPurpose::Save(Saved::Picture { .. }) => ("Save the picture", "Path of the .png to write", "Save"),
     };

@@ -3,6 +3,7 @@
 mod bench;
 mod by_hand;
 mod clips;
+mod exercise;
 mod inspector;
 mod keys;
 mod layout;

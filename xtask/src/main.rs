@@ -1,4 +1,4 @@
-//! Work on the repository: `cargo xtask serve`, `build`, `test`, `setup`. Each sets up what it needs first.
+//! Work on the repository: `cargo xtask serve`, `build`, `pictures`, `test`, `setup`. Each sets up what it needs first.
 
 mod page;
 mod process;
@@ -15,6 +15,7 @@ const USAGE: &str = "\
 cargo xtask serve [--port N]   builds the page and serves it on 127.0.0.1 (port 8080)
 cargo xtask build [--url URL]  builds the page into dist/, for any host; URL is where it will be, for previews of links
 cargo xtask build --bench      the same with what benches/web measures
+cargo xtask pictures           draws the pictures in README and docs anew
 cargo xtask test               runs every check and test, cheap ones first
 cargo xtask setup              installs what the others need and is missing";
 
@@ -37,6 +38,7 @@ fn run() -> anyhow::Result<()> {
         ["build"] => build_page(&[], None),
         ["build", "--url", url] => build_page(&[], Some(&site_url(url)?)),
         ["build", "--bench"] => build_page(&["bench"], None),
+        ["pictures"] => setup::page().and_then(|()| process::run("node", &["xtask/site/docs.mjs"])),
         ["test"] => test::run(),
         ["setup"] => setup::page().and_then(|()| setup::tests()),
         ["help" | "--help" | "-h"] => {
