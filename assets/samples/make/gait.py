@@ -66,6 +66,8 @@ class Figure:
     def __init__(self, skeleton, names):
         self.skeleton = skeleton
         self.names = names
+        # The farthest that any limb was asked to reach, over its length: above 1 it could not.
+        self.worst_reach = 0.0
 
     def place(self, role):
         return self.skeleton.world[self.skeleton[self.names[role]]]
@@ -106,6 +108,7 @@ class Figure:
         reach = target - root
         far = np.linalg.norm(reach)
         far_ok = np.clip(far, abs(l1 - l2) * 1.02, (l1 + l2) * 0.9995)
+        self.worst_reach = max(self.worst_reach, far / (l1 + l2))
         along = reach / far
         target = root + along * far_ok
         axis = np.cross(pole, along)
@@ -180,14 +183,17 @@ class Tread:
     (phase, degrees); `flat`, `rise`, `off`: phases when the foot is flat, the heel leaves, the toes leave; `length`: how
     far the ground passes in a stride; `start`: the ankle's z when it would stand flat at phase 0; `air`: keys (part of
     the swing 0..1, (rise, advance)) that shape the way through the air; `toe_air`: the same for the toes' bend; `lift`:
-    metres that everything is raised, against the sag between keys.
+    metres that everything is raised, against the sag between keys; `ease_out`, `ease_in`: the parts of the swing in which
+    the speed of the ground is lost and found again.
     """
 
-    def __init__(self, rest_ankle, heel, ball, pitch, flat, rise, off, length, start, air, width=0.0, toe_air=(), lift=0.0):
+    def __init__(self, rest_ankle, heel, ball, pitch, flat, rise, off, length, start, air, width=0.0, toe_air=(), lift=0.0,
+                 ease_out=0.35, ease_in=0.25):
         self.ankle, self.heel, self.ball = rest_ankle, np.asarray(heel), np.asarray(ball)
         self.pitch_keys, self.flat, self.rise, self.off = pitch, flat, rise, off
         self.length, self.start, self.air, self.width = length, start, air, width
         self.toe_air, self.lift = toe_air, lift
+        self.ease_out, self.ease_in = ease_out, ease_in
 
     def pitch(self, p):
         return float(curve(self.pitch_keys, p % 1.0, 1.0))
@@ -207,13 +213,26 @@ class Tread:
         p = p % 1.0
         if p <= self.off:
             return self._grounded(p)
-        leave, p0, toe0 = self._grounded(self.off)
+        leave, _, toe0 = self._grounded(self.off)
         land, _, _ = self._grounded(0.0)
-        s = (p - self.off) / (1.0 - self.off)
-        lift, advance = curve(self.air, s)
-        # Leaves and lands with the ground's own speed, which is what keeps the path smooth.
-        place = leave + (land - leave) * advance
-        place[1] = leave[1] + (land[1] - leave[1]) * smooth_step(s) + lift
+        span = 1.0 - self.off
+        s = (p - self.off) / span
+
+        def way(s):
+            lift, advance = curve(self.air, s)
+            place = leave + (land - leave) * advance
+            place[1] = leave[1] + (land[1] - leave[1]) * smooth_step(s) + lift
+            return place
+
+        # Leaves and lands with the speed it has on the ground, so that no joint jerks at those moments.
+        h = 1e-3
+        before = (leave - self._grounded(self.off - h)[0]) / h * span - (way(h) - way(0.0)) / h
+        after = (self._grounded(h)[0] - land) / h * span - (way(1.0) - way(1.0 - h)) / h
+        place = way(s)
+        if s < self.ease_out:
+            place = place + before * s * (1.0 - s / self.ease_out) ** 2
+        if s > 1.0 - self.ease_in:
+            place = place + after * (s - 1.0) * (1.0 - (1.0 - s) / self.ease_in) ** 2
         toe = toe0 * float(1.0 - smooth_step(s / 0.35)) + float(curve(self.toe_air, s)) if self.toe_air else toe0 * float(
             1.0 - smooth_step(s / 0.35)
         )

@@ -21,7 +21,7 @@ from paint import noise, srgb
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 PREFIX = "mixamorig:"
-SPEED = 3.5
+SPEED = 3.2
 
 
 def skeleton():

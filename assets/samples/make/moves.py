@@ -41,8 +41,8 @@ def walk(figure, speed=1.32, frames=32):
     ankle, heel, ball = feet(figure)
     length = speed * frames / RATE
     tread = Tread(
-        ankle, heel, ball, flat=0.09, rise=0.34, off=0.61, length=length, start=0.245 * length + 0.02,
-        pitch=[(0.0, 19), (0.09, 0), (0.34, 0), (0.46, -17), (0.61, -60), (0.69, -46), (0.80, -6), (0.93, 19)],
+        ankle, heel, ball, flat=0.09, rise=0.34, off=0.61, length=length, start=0.245 * length - 0.024,
+        pitch=[(0.0, 19), (0.09, 0), (0.34, 0), (0.46, -15), (0.61, -58), (0.69, -46), (0.80, -6), (0.93, 19)],
         air=[(0, (0, 0)), (0.07, (0.018, 0.022)), (0.16, (0.034, 0.080)), (0.34, (0.052, 0.28)), (0.52, (0.038, 0.53)), (0.8, (0.026, 0.93)), (0.93, (0.012, 1.012)), (1, (0, 1))],
         width=0.018, toe_air=[(0, 0), (0.4, 14), (1, 0)],
     )
@@ -51,7 +51,7 @@ def walk(figure, speed=1.32, frames=32):
         turns, moves = {}, {}
         hips = figure.names["hips"]
         yaw, roll = -5.0 * swing(p, 0.02), 3.2 * swing(p, 0.17)
-        moves[hips] = (0.020 * swing(p, 0.30), -0.032 + 0.017 * swing(2 * p, 0.62), 0.006 * swing(2 * p, 0.2))
+        moves[hips] = (0.020 * swing(p, 0.30), -0.034 + 0.017 * swing(2 * p, 0.56), 0.006 * swing(2 * p, 0.2))
         turns[hips] = mul(qy(yaw), qx(2.5), qz(roll))
         figure.spine(turns, pitch=1.5 + 1.0 * swing(2 * p, 0.1), yaw=-yaw + 6.0 * swing(p, 0.04), roll=-1.35 * roll)
         figure.head(turns, pitch=-3.0 - 1.0 * swing(2 * p, 0.2), yaw=-5.0 * swing(p, 0.06), roll=0.35 * roll)
@@ -69,13 +69,13 @@ def walk(figure, speed=1.32, frames=32):
     return cycle(pose, frames), RATE, tread
 
 
-def run(figure, speed=3.5, frames=20):
+def run(figure, speed=3.2, frames=20):
     ankle, heel, ball = feet(figure)
     length = speed * frames / RATE
     tread = Tread(
-        ankle, heel, ball, flat=0.04, rise=0.145, off=0.35, length=length, start=0.235,
-        pitch=[(0.0, 7), (0.04, 0), (0.145, 0), (0.24, -22), (0.35, -66), (0.47, -96), (0.62, -62), (0.80, 2), (0.93, 10)],
-        air=[(0, (0, 0)), (0.20, (0.20, 0.07)), (0.42, (0.30, 0.42)), (0.66, (0.20, 0.90)), (0.84, (0.10, 1.075)), (1, (0, 1))],
+        ankle, heel, ball, flat=0.045, rise=0.10, off=0.33, length=length, start=0.215,
+        pitch=[(0.0, 6), (0.045, 0), (0.10, 0), (0.22, -22), (0.33, -54), (0.46, -94), (0.62, -62), (0.80, 2), (0.93, 10)],
+        air=[(0, (0, 0)), (0.20, (0.20, 0.07)), (0.42, (0.30, 0.42)), (0.66, (0.20, 0.88)), (0.84, (0.105, 1.045)), (1, (0, 1))],
         width=0.055, toe_air=[(0, 0), (0.5, 6), (1, 0)], lift=0.0015,
     )
 
@@ -84,7 +84,7 @@ def run(figure, speed=3.5, frames=20):
         hips = figure.names["hips"]
         yaw, roll = -8.0 * swing(p, 0.04), 3.5 * swing(p, 0.13)
         # Lowest in mid-stance (0.16), highest in mid-flight.
-        moves[hips] = (0.012 * swing(p, 0.17), -0.058 - 0.036 * swing(2 * p, 0.33), 0.008 * swing(2 * p, 0.2))
+        moves[hips] = (0.012 * swing(p, 0.17), -0.056 - 0.026 * swing(2 * p, 0.33), 0.008 * swing(2 * p, 0.2))
         turns[hips] = mul(qy(yaw), qx(8), qz(roll))
         figure.spine(turns, pitch=7 + 2.0 * swing(2 * p, 0.36), yaw=-yaw + 11.0 * swing(p, 0.05), roll=-1.3 * roll)
         figure.head(turns, pitch=-11 - 2.0 * swing(2 * p, 0.40), yaw=-10.0 * swing(p, 0.06), roll=0.3 * roll)
@@ -193,7 +193,7 @@ def jump(figure, frames=54):
         turns[hips] = qx(0.62 * lean)
         figure.spine(turns, pitch=0.55 * lean)
         figure.head(turns, pitch=-0.62 * lean + float(curve([(0, 0), (leave, -8), (22, -4), (land, 8), (40, 0), (frames, 0)], f)))
-        arms = float(curve([(0, 2), (3, 0), (8.5, -58), (leave, 118), (18, 128), (25, 74), (land, 36), (35.5, -16), (43, 6), (frames, 2)], f))
+        arms = float(curve([(0, 2), (3, -4), (7.5, -54), (10.5, -22), (leave, 84), (18, 126), (25, 74), (land, 36), (35.5, -16), (43, 6), (frames, 2)], f))
         spread = float(curve([(0, 75), (8.5, 70), (leave, 66), (20, 44), (27, 40), (land, 48), (36, 66), (frames, 75)], f))
         bend = float(curve([(0, 22), (8.5, 30), (leave, 22), (20, 28), (land, 34), (36, 48), (frames, 22)], f))
         for side in ("left", "right"):
@@ -201,7 +201,8 @@ def jump(figure, frames=54):
             a = float(curve([(0, 24), (8.5, 46), (leave, 10), (24, 14), (36, 40), (frames, 24)], f))
             figure.curl(turns, side, (a - 4, a, a + 3, a + 7), thumb=14)
         for side, sign in (("left", 1), ("right", -1)):
-            base = np.array([sign * (ankle[0] + 0.030), ankle[1], ankle[2]])
+            # A millimetre and a half up, against the sag between keys.
+            base = np.array([sign * (ankle[0] + 0.030), ankle[1] + 0.0015, ankle[2]])
             if f <= leave:
                 pitch = -tip * float(smooth_step((f - 8.5) / (leave + 0.6 - 8.5)))
                 pivot = rotate(qy(sign * 9), ball * [sign, 1, 1])

@@ -177,6 +177,13 @@ def vest():
     return union(trim, plate, k=0.008)
 
 
+def hem():
+    """The vest's lower border."""
+    outside = grown(union(TORSO, ARM, k=0.075), 0.015)
+    profile = [(-0.013, -0.020), (-0.013, -0.004), (-0.010, 0.0035), (0.0, 0.0052), (0.012, 0.0048), (0.020, 0.0035), (0.023, -0.006)]
+    return clay.ring(outside, (0, 1.110, 0.003), (0, 1, 0), (0, 0, 1), profile, 40, half=True)
+
+
 BELT_Y = 1.022
 
 
@@ -249,8 +256,9 @@ def helmet():
 
 
 def visor():
-    glass = common(grown(HELMET_OUTER, 0.001), lambda p: window(p, -0.0015), k=0.008)
-    return cut(glass, grown(HELMET_OUTER, -0.022), k=0.004)
+    # Its border lies inside the helmet's wall, so what is seen of it is the frame's clean edge.
+    glass = common(grown(HELMET_OUTER, -0.0035), lambda p: window(p, 0.012), k=0.004)
+    return cut(glass, grown(HELMET_OUTER, -0.026), k=0.004)
 
 
 def collar():
@@ -293,17 +301,18 @@ class Part:
 
 
 PARTS = [
-    Part("suit", SUIT, None, [(0, 0.06, -0.2), (0.74, 1.56, 0.2)], 2900, 0.008),
-    Part("glove", glove(), None, [(0.60, 1.33, -0.13), (0.93, 1.49, 0.12)], 1120, 0.0024),
+    Part("suit", SUIT, None, [(0, 0.06, -0.2), (0.74, 1.56, 0.2)], 2600, 0.008),
+    Part("glove", glove(), None, [(0.60, 1.33, -0.13), (0.93, 1.49, 0.12)], 1040, 0.0024),
     Part("cuff", None, mesh=cuff),
     Part("boot", boot(), None, [(0.02, -0.03, -0.14), (0.22, 0.39, 0.25)], 760),
     Part("boot rim", None, mesh=boot_rim),
-    Part("vest", clay.mirrored(vest()), None, [(0, 1.05, -0.2), (0.30, 1.57, 0.2)], 1300),
+    Part("vest", clay.mirrored(vest()), None, [(0, 1.05, -0.2), (0.30, 1.57, 0.2)], 1150),
+    Part("hem", None, mesh=hem),
     Part("belt", None, mesh=belt),
     Part("buckle", buckle(), "Hips", [(-0.05, 0.98, 0.08), (0.05, 1.07, 0.14)], 90, 0.003, half=False),
     Part("pouch", pouch(), "Hips", [(0.05, 0.93, 0.03), (0.18, 1.08, 0.15)], 220, 0.003, solid=False),
     Part("side pouch", side_pouch(), "Hips", [(0.11, 0.93, -0.09), (0.22, 1.08, 0.04)], 220, 0.003, solid=False),
-    Part("helmet", clay.mirrored(helmet()), "Head", [(0, 1.45, -0.2), (0.2, 1.83, 0.22)], 1200),
+    Part("helmet", clay.mirrored(helmet()), "Head", [(0, 1.45, -0.2), (0.2, 1.83, 0.22)], 1100),
     Part("visor", clay.mirrored(visor()), "Head", [(0, 1.5, -0.1), (0.2, 1.78, 0.22)], 150, 0.003, solid=False),
     Part("collar", None, mesh=collar),
     Part("pack", clay.mirrored(pack()), "Spine2", [(0, 1.08, -0.28), (0.2, 1.48, -0.08)], 500, 0.005),
@@ -466,8 +475,6 @@ def paint(part, p, n, opened):
         plate = np.maximum(band(y, 1.185, 1.345), x - 0.112)
         c = np.tile(INK * 1.25, (len(p), 1))
         c = mixed(c, CHARCOAL * 1.2, edge(plate))
-        trim = np.maximum(band(y, 1.107, 1.119), -1.0)
-        c = mixed(c, TEAL, edge(trim))
         lamp = np.hypot(x - 0.076, y - 1.305) - 0.012
         c = mixed(c, TEAL * 1.15, edge(lamp) * (z > 0))
         tab = np.maximum(np.abs(x - 0.076) - 0.020, np.abs(y - 1.225) - 0.007)
@@ -545,7 +552,7 @@ def paint(part, p, n, opened):
         chips = np.clip((noise(q, 0.014, 31) + 0.6 * noise(q, 0.005, 32) - 0.8) * 6, 0, 1)
         c = mixed(c, CHARCOAL * 1.5, 0.55 * chips)
         return c * (0.93 + 0.1 * grime)[:, None], 0.42 + 0.2 * grime, metal
-    c = np.tile(CHARCOAL, (len(p), 1))
+    c = np.tile(TEAL * 0.9 if name == "hem" else CHARCOAL, (len(p), 1))
     return c * (0.9 + 0.15 * grime)[:, None], 0.6 * ones, metal
 
 
@@ -569,7 +576,7 @@ def main():
     alone = [i for i, m in enumerate(meshes) if m.whole]
     left_uv = paint_.unwrap(left, {NAMES.index(n): v for n, v in SPLITS.items()})
     scene = lambda p: np.minimum.reduce([clay.mirrored(part.shape)(p) for part in PARTS if part.shape])
-    base, bump, orm = paint_.bake(left, left_uv, [p.shape for p in PARTS], paint, height, 1024, scene)
+    base, bump, orm = paint_.bake(left, left_uv, [p.shape for p in PARTS], paint, height, 896, scene)
     shown = paint_.surface(left, left_uv, alone)
     body = shown.mesh
     w = g.weights(body.vertices, "mixamorig:Hips")
@@ -583,10 +590,10 @@ def main():
     material = out.add("materials", {
         "name": "pilot",
         "pbrMetallicRoughness": {
-            "baseColorTexture": {"index": out.image(base, quality=76, name="pilot colour")},
-            "metallicRoughnessTexture": {"index": (relief := out.image(orm, quality=72, name="pilot surface"))},
+            "baseColorTexture": {"index": out.image(base, quality=73, name="pilot colour")},
+            "metallicRoughnessTexture": {"index": (relief := out.image(orm, quality=68, name="pilot surface"))},
         },
-        "normalTexture": {"index": out.image(bump, quality=76, name="pilot relief")},
+        "normalTexture": {"index": out.image(bump, quality=73, name="pilot relief")},
         "occlusionTexture": {"index": relief},
     })
     primitive = out.primitive(

@@ -49,24 +49,20 @@ def head():
     bare = clay.mirrored(skull())
     shape = skull()
     # Ears: long leaves, hollow in front.
-    ear = capsule((0.165, 1.370, -0.020), (0.395, 1.490, -0.085), 0.066, 0.015, flatten=((-0.25, 0.0, 1.0), 0.42))
-    hollow = capsule((0.215, 1.398, 0.008), (0.345, 1.464, -0.040), 0.036, 0.008, flatten=((-0.25, 0.0, 1.0), 0.55))
+    ear = capsule((0.165, 1.370, -0.020), (0.385, 1.485, -0.082), 0.068, 0.024, flatten=((-0.25, 0.0, 1.0), 0.50))
+    hollow = capsule((0.215, 1.398, 0.016), (0.325, 1.454, -0.024), 0.034, 0.012, flatten=((-0.25, 0.0, 1.0), 0.55))
     shape = union(shape, cut(ear, hollow, k=0.018), k=0.035)
-    # Large eyes in their sockets, each with an iris and lids; brows that wonder.
+    # Large eyes in their sockets under heavy lids; brows that wonder.
     eye = np.array([0.080, 1.386, 0.122])
-    look = np.array([0.10, 0.02, 1.0]) / np.linalg.norm([0.10, 0.02, 1.0])
     shape = cut(shape, ellipsoid(eye + [0.002, 0.002, 0.050], (0.072, 0.066, 0.046)), k=0.030)
     globe = sphere(eye, 0.060)
-    iris = common(sphere(eye, 0.0635), halfspace(eye + look * 0.0515, -look), k=0.002)
-    globe = cut(union(globe, iris, k=0.001), capsule(eye + look * 0.070, eye + look * 0.058, 0.0135), k=0.004)
     shape = union(shape, globe, k=0.003)
-    upper = common(sphere(eye, 0.0675), halfspace(eye + [0, 0.020, 0.030], (0.05, -1.0, 0.55)), k=0.006)
-    lower = common(sphere(eye, 0.0665), halfspace(eye + [0, -0.037, 0.0], (0.05, 1.0, 0.25)), k=0.006)
-    shape = union(shape, upper, lower, k=0.007)
+    upper = common(sphere(eye, 0.0690), halfspace(eye + [0, 0.016, 0.030], (0.05, -1.0, 0.55)), k=0.008)
+    shape = union(shape, upper, k=0.010)
     brow = union(
-        capsule((0.030, 1.478, 0.160), (0.080, 1.492, 0.142), 0.014, 0.019), capsule((0.080, 1.492, 0.142), (0.146, 1.462, 0.098), 0.019, 0.009), k=0.01
+        capsule((0.034, 1.480, 0.158), (0.082, 1.494, 0.140), 0.018, 0.023), capsule((0.082, 1.494, 0.140), (0.148, 1.466, 0.096), 0.023, 0.014), k=0.01
     )
-    shape = union(shape, brow, k=0.014)
+    shape = union(shape, brow, k=0.018)
     shape = union(shape, ellipsoid((0, 1.330, 0.196), (0.043, 0.040, 0.056)), k=0.022)
     shape = union(shape, ellipsoid((0.033, 1.321, 0.178), (0.023, 0.021, 0.026)), k=0.014)
     # The mouth is a line drawn into the surface, with a corner that turns up, and a lower lip.
@@ -74,7 +70,7 @@ def head():
     starts = np.array([(x, y, 0.4) for x, y in line])
     points = clay.cast(bare, starts, np.broadcast_to([0, 0, -0.4], starts.shape), 1.0)
     for a, b in zip(points, points[1:]):
-        shape = cut(shape, capsule(a, b, 0.0125), k=0.010)
+        shape = cut(shape, capsule(a, b, 0.0165), k=0.010)
     lip = points[0] + [0, -0.024, -0.006]
     shape = union(shape, capsule(lip * [0, 1, 1], lip + [0.030, 0.003, -0.004], 0.014, 0.009), k=0.018)
     # A tuft.
@@ -83,6 +79,26 @@ def head():
     )
     tuft = union(tuft, capsule((0.045, 1.545, -0.05), (0.085, 1.625, -0.10), 0.042, 0.018), k=0.03)
     return union(shape, tuft, k=0.03)
+
+
+def leg():
+    limb = upright(
+        [(0.64, 0.095, -0.005, 0.085, 0.105), (0.56, 0.108, -0.002, 0.100, 0.108), (0.46, 0.117, 0.004, 0.090, 0.096), (0.325, 0.124, 0.012, 0.071, 0.076),
+         (0.22, 0.128, -0.012, 0.072, 0.082), (0.12, 0.130, -0.020, 0.056, 0.060), (0.05, 0.130, -0.015, 0.054, 0.062)],
+        rounding=0.03,
+    )
+    foot = forward(
+        [(-0.105, 0.130, 0.052, 0.040, 0.044), (-0.06, 0.131, 0.060, 0.058, 0.060), (0.02, 0.135, 0.062, 0.066, 0.062), (0.10, 0.142, 0.046, 0.078, 0.046),
+         (0.16, 0.146, 0.038, 0.080, 0.038)],
+        rounding=0.025, power=2.3,
+    )
+    for x, z, r in ((0.088, 0.175, 0.041), (0.146, 0.190, 0.038), (0.200, 0.168, 0.034)):
+        foot = union(foot, ellipsoid((x, r * 0.98, z), (r, r, r * 1.15)), k=0.018)
+    foot = common(foot, halfspace((0, 0.0, 0), (0, -1, 0)), k=0.012)
+    return union(limb, foot, k=0.03)
+
+
+LEG = leg()
 
 
 def body():
@@ -99,20 +115,7 @@ def body():
         hand = union(hand, capsule((0.705, 1.031, z0), (0.725 + length, 1.024, z1), r, r * 0.88), k=0.016)
     hand = union(hand, capsule((0.660, 1.026, 0.034), (0.728, 1.014, 0.098), 0.027, 0.0235), k=0.022)
     arm = union(arm, hand, k=0.03)
-    leg = upright(
-        [(0.64, 0.095, -0.005, 0.085, 0.105), (0.56, 0.108, -0.002, 0.100, 0.108), (0.46, 0.117, 0.004, 0.090, 0.096), (0.325, 0.124, 0.012, 0.071, 0.076),
-         (0.22, 0.128, -0.012, 0.072, 0.082), (0.12, 0.130, -0.020, 0.056, 0.060), (0.05, 0.130, -0.015, 0.054, 0.062)],
-        rounding=0.03,
-    )
-    foot = forward(
-        [(-0.105, 0.130, 0.052, 0.040, 0.044), (-0.06, 0.131, 0.060, 0.058, 0.060), (0.02, 0.135, 0.062, 0.066, 0.062), (0.10, 0.142, 0.046, 0.078, 0.046),
-         (0.16, 0.146, 0.038, 0.080, 0.038)],
-        rounding=0.025, power=2.3,
-    )
-    for x, z, r in ((0.088, 0.175, 0.041), (0.146, 0.190, 0.038), (0.200, 0.168, 0.034)):
-        foot = union(foot, ellipsoid((x, r * 0.98, z), (r, r, r * 1.15)), k=0.018)
-    foot = common(foot, halfspace((0, 0.0, 0), (0, -1, 0)), k=0.012)
-    leg = union(leg, foot, k=0.03)
+    leg = LEG
     # Short trousers: a thicker skin; its ends lie under the belt and the hems.
     skin = union(union(trunk, leg, k=0.045), arm, k=0.08)
     cloth = grown(union(trunk, leg, k=0.045), 0.010)
@@ -130,25 +133,25 @@ def bands():
 
     out = [clay.ring(IMP, (0, 0.652, 0.0), (0, 1, 0.10), (0, 0, 1), roll(0.022, 0.017), 40)]
     for sign in (1, -1):
-        out.append(clay.ring(IMP, (sign * 0.121, 0.425, 0.007), (sign * -0.10, 1, 0), (0, 0, 1), roll(0.019, 0.018), 26))
+        trouser = lambda p, sign=sign: LEG(p * [sign, 1, 1]) - 0.010
+        out.append(clay.ring(trouser, (sign * 0.121, 0.425, 0.007), (sign * -0.10, 1, 0), (0, 0, 1), roll(0.019, 0.012), 26))
         out.append(clay.ring(IMP, (sign * 0.592, 1.034, -0.011), (1, 0, 0), (0, 0, 1), roll(0.014, 0.012), 18))
     return out
 
 
 IMP = clay.mirrored(union(body(), head(), k=0.012))
-NECK, WRIST, FINER = 1.185, 0.625, 1.75
+NECK, WRIST, FINER_HEAD, FINER_HAND = 1.185, 0.625, 2.3, 1.6
 
 
 def shrunk(p):
-    """Places of a body whose head and hands are FINER times as large -> places on the imp.
+    """Places of a body whose head and hands are FINER_… times as large -> places on the imp.
 
     Quads are laid on that body, so face and fingers get more of them.
     """
     x, y, z = np.abs(p[:, 0]), p[:, 1], p[:, 2]
-    small = 1 - 1 / FINER
-    f = 1 - small * rig.smooth_step((y - NECK) / 0.20)
+    f = 1 - (1 - 1 / FINER_HEAD) * rig.smooth_step((y - NECK) / 0.32)
     u = x - WRIST
-    g = 1 - small * rig.smooth_step(u / 0.10) * (1 - rig.smooth_step((y - NECK) / 0.04))
+    g = 1 - (1 - 1 / FINER_HAND) * rig.smooth_step(u / 0.10) * (1 - rig.smooth_step((y - NECK) / 0.04))
     out = np.column_stack([x * f, np.where(y > NECK, NECK + (y - NECK) * f, y), z * f])
     hand = (u > 0) & (y < NECK + 0.04)
     out[hand, 0] = WRIST + u[hand] * g[hand]
@@ -190,7 +193,7 @@ def main():
     for joint in JOINTS:
         s.add(*joint)
     # Made whole: this body shows its middle line, where halves would be sewn.
-    mesh = clay.mesh_of(lambda p: IMP(shrunk(p)), (-1.06, -0.03, -0.42), (1.06, 2.20, 0.50), 5400, 0.010, half=False, relax=5)
+    mesh = clay.mesh_of(lambda p: IMP(shrunk(p)), (-1.06, -0.03, -0.50), (1.06, 2.48, 0.62), 5900, 0.012, half=False, relax=5)
     mesh.vertices = clay.project(IMP, shrunk(mesh.vertices), 3)
     mesh = clay.joined([mesh, *bands()])
     w = gates(s).weights(mesh.vertices, "root")
