@@ -25,16 +25,18 @@ async function keep() {
   // At the first visit there is nothing older than what is kept.
   const offerWhenReady = (worker) => worker?.state === "installed" && navigator.serviceWorker.controller !== null && offer(worker);
   offerWhenReady(registration.waiting);
-  registration.addEventListener("updatefound", () => {
-    const { installing } = registration;
-    installing.addEventListener("statechange", () => offerWhenReady(installing));
-  });
+  const watch = (worker) => worker?.addEventListener("statechange", () => offerWhenReady(worker));
+  // The browser may have begun to look for one by itself.
+  watch(registration.installing);
+  registration.addEventListener("updatefound", () => watch(registration.installing));
 }
 
 function offer(worker) {
   byId("update").hidden = false;
   byId("update-later").onclick = () => (byId("update").hidden = true);
   byId("update-use").onclick = () => {
+    // Another page has put it in force already.
+    if (worker.state !== "installed") return location.reload();
     navigator.serviceWorker.addEventListener("controllerchange", () => location.reload(), { once: true });
     worker.postMessage("use");
   };

@@ -17,8 +17,10 @@ const kept = { link: linkOfAddress() };
 /** Sets of files that were opened and can be shown again, the newest last; a link names them by their files. */
 const held = [];
 const MOST_HELD = 32;
-/** What is a person's own: see `isPrivate`. `names` of files, `maps` as a link has them; the rest says whether there is any. */
-const own = { names: new Set(), maps: new Set(), map: false, refused: false, view: history.state?.own === true };
+/** The files among them that are a person's own. */
+const ownFiles = new WeakSet();
+/** What is a person's own besides what the app shows: files that were refused, and the address of a view of such files. */
+const own = { refused: false, view: history.state?.own === true };
 /** Compiled once for all instances. */
 let compiled = null;
 /** Bindings of the running instance; null while none runs. */
@@ -190,7 +192,9 @@ async function start(renderer) {
     cannotRun([`The program could not be loaded: ${error.message}`], ["Check the connection and reload the page.", TRY_BROWSER]);
     throw error;
   }
+  kept.link = awaited?.link ?? kept.link;
   awaitFiles(kept.link);
+  asked = null;
   const [entries, motionEntries] = await Promise.all(
     [heldItems(kept.link), heldMotions(kept.link)].map((items) =>
       read(items).catch((error) => {
@@ -209,7 +213,8 @@ async function start(renderer) {
     const link = withoutAwaited(kept.link);
     let missing;
     try {
-      const run = bindings.run(canvas, attempt ?? undefined, link, entries, motionEntries, hooks(() => app === bindings || app === null));
+      const isOwn = [...heldItems(link), ...heldMotions(link)].some((item) => ownFiles.has(item));
+      const run = bindings.run(canvas, attempt ?? undefined, link, entries, motionEntries, isOwn, hooks(() => app === bindings || app === null));
       missing = JSON.parse(await Promise.race([run, new Promise((_, reject) => (giveUp = reject))]));
     } catch (error) {
       if (panel === "stopped") throw error;
@@ -225,8 +230,9 @@ async function start(renderer) {
     byId("stage").querySelector("input")?.setAttribute("aria-label", "Typed into the picture");
     show(null);
     summarise();
-    showMissing(missing, link);
+    showMissing(missing, awaited?.link ?? link);
     showAwaited();
+    if (asked !== null) follow(asked);
     return;
   }
   const other = renderer === null ? null : renderer === "webgpu" ? "webgl2" : "webgpu";
@@ -280,9 +286,6 @@ let soon = null;
 function changed(link) {
   kept.link = link;
   if (visit.files === null) keepTyped();
-  const maps = valuesOf(link, "map");
-  if (maps.length === 0) own.map = false;
-  else if (own.map && parent !== window) maps.forEach((map) => own.maps.add(map));
   clearTimeout(soon);
   soon = setTimeout(summarise, 250);
   // After the frame, so that whoever hears it may ask for the state.
@@ -397,7 +400,7 @@ function remember() {
 addEventListener("popstate", ({ state }) => {
   clearTimeout(soon);
   // The entry's link is behind what was set in the last moment.
-  if (visited.has(visit.number)) visited.get(visit.number).link = kept.link;
+  if (following === 0 && visited.has(visit.number)) visited.get(visit.number).link = kept.link;
   if (state?.gaitway === undefined) {
     lastVisit += 1;
     visit.number = lastVisit;
@@ -408,11 +411,13 @@ addEventListener("popstate", ({ state }) => {
   }
   const link = linkOfAddress();
   // What has not started yet begins with this one.
-  if (app === null) kept.link = link;
+  if (app === null) asked = kept.link = link;
   else follow(link, { wasOwn: state?.own, ...visited.get(visit.number) });
 });
 
 let follows = 0;
+/** What was asked for while an instance starts, which began with something else. */
+let asked = null;
 
 const areSame = (items, others) => items.length === others.length && items.every((item, index) => item === others[index]);
 
@@ -423,6 +428,7 @@ async function follow(link, { items = [], motionItems = [], link: heldLink = lin
   const number = follows;
   following += 1;
   byId("missing").close();
+  own.view ||= wasOwn;
   awaitFiles(heldLink);
   const shownLink = withoutAwaited(heldLink);
   [visit.files, visit.typed] = [filesOf(shownLink).join("\n"), null];
@@ -434,7 +440,7 @@ async function follow(link, { items = [], motionItems = [], link: heldLink = lin
   };
   try {
     const before = { items: heldItems(kept.link), motionItems: heldMotions(kept.link) };
-    const isOwn = (items) => items.some((item) => own.names.has(nameOf(item)));
+    const isOwn = (items) => items.some((item) => ownFiles.has(item));
     if (items.length > 0 && !areSame(items, before.items)) await bring(items, undefined, isOwn(items));
     if (motionItems.length > 0 && !areSame(motionItems, before.motionItems)) await bring(motionItems, "motion", isOwn(motionItems));
     if (number !== follows) return;
@@ -443,8 +449,6 @@ async function follow(link, { items = [], motionItems = [], link: heldLink = lin
     if (again || isOther || shownLink !== kept.link) {
       const all = again || (isOther && items.length + motionItems.length === 0);
       const { problems } = loaded(await unlessStopped(current, current.follow_link(shownLink, all)));
-      // What the address says of a person's own files (their clips, maps, poses) is as much theirs.
-      own.view = wasOwn;
       lacking(problems);
     }
     if (number === follows) showAwaited();
@@ -457,15 +461,13 @@ async function follow(link, { items = [], motionItems = [], link: heldLink = lin
   }
 }
 
-/** Takes note of what was read from a link's addresses, which takes the place of files of the same names. */
+/** Takes note of what was read from addresses, which takes the place of files of the same names. */
 function loaded(answer) {
   const news = JSON.parse(answer);
-  const read = valuesOf(kept.link, ...news.loaded);
-  for (const name of read) {
+  for (const name of news.loaded) {
     for (let at = held.length - 1; at >= 0; at--) if (held[at].some((item) => nameOf(item) === name)) held.splice(at, 1);
   }
-  if (news.loaded.includes("motion")) own.refused = false;
-  if (news.loaded.includes("model")) own.view = false;
+  if (news.loaded.length > 0) own.refused = false;
   return news;
 }
 
@@ -478,6 +480,7 @@ const wantedBy = (link) => pairsOf(link).filter(([key, value]) => (key === "mode
 
 /** Waits for the files that a link names, if it names any. */
 function awaitFiles(link) {
+  byId("bring").close();
   const wanted = wantedBy(link).map(([key, value]) => ({ key, name: value.slice(BRING.length) }));
   awaited = wanted.length > 0 ? { link, wanted, sets: [] } : null;
 }
@@ -493,14 +496,15 @@ function withoutAwaited(link) {
 
 function showAwaited() {
   if (awaited === null || panel !== null || byId("bring").open) return;
+  byId("bring").returnValue = "";
   list("bring-files", awaited.wanted.map(({ key, name }) => `${name} (${key === "model" ? "the model" : "motion"})`));
   byId("bring").showModal();
   byId("bring-choose").focus();
 }
 
-/** A set has come: shows the link that is waited for when it was the last one. */
-async function fulfil(items) {
-  if (awaited === null) return;
+/** A set has come: shows the link that is waited for when it was the last one, and says so. `taken`: the app shows the set. */
+async function fulfil(items, taken) {
+  if (awaited === null) return false;
   awaited.sets.push(items);
   const { link, wanted, sets } = awaited;
   const lastPart = (path) => path.split("/").pop();
@@ -510,8 +514,8 @@ async function fulfil(items) {
   });
   if (!found.every(({ set }) => set !== undefined)) {
     // Something else was opened: that is what the person wants to see.
-    if (!found.some(({ set }) => set === items)) awaited = null;
-    return;
+    if (taken && !found.some(({ set }) => set === items)) awaited = null;
+    return false;
   }
   let whole = link;
   for (const { key, name, as } of found) {
@@ -520,6 +524,7 @@ async function fulfil(items) {
   }
   awaited = null;
   await follow(whole, { link: whole, items: heldItems(whole), motionItems: heldMotions(whole) });
+  return true;
 }
 
 /** What of a link could not be had, and the way to try again. `stays`: nothing of it is shown. */
@@ -597,11 +602,17 @@ async function open(items, { as } = {}) {
 async function openAll(items, { as, isOwn = true } = {}) {
   const wanted = normalised(items);
   await running();
-  const { shown, document } = await bring(wanted, as, isOwn);
-  tellOpened(shown, document);
-  await fulfil(wanted);
-  summarise();
-  return document;
+  try {
+    const { shown, document } = await bring(wanted, as, isOwn);
+    tellOpened(shown, document);
+    await fulfil(wanted, true);
+    summarise();
+    return document;
+  } catch (error) {
+    // A motion may have come before its model.
+    await fulfil(wanted, false);
+    throw error;
+  }
 }
 
 /** Files of a person's own that are on their way to the screen. */
@@ -616,21 +627,18 @@ async function bring(items, as, isOwn) {
   const isOwnNow = isLocal && isOwn;
   ownOnTheWay += isOwnNow ? 1 : 0;
   ownSeen += isOwnNow ? 1 : 0;
-  if (isOwnNow) items.forEach((item) => own.names.add(nameOf(item)));
+  if (isOwnNow) items.filter((item) => typeof item !== "string").forEach((item) => ownFiles.add(item));
   if (isLocal) hold(items);
   try {
     const current = app;
-    const answer = await unlessStopped(current, (async () => current.open(await read(items), as))());
+    const answer = await unlessStopped(current, (async () => current.open(await read(items), as, isOwnNow))());
     const { shown, document } = JSON.parse(answer);
-    // A joint map may have come alone, in a set or in an archive.
-    if (isOwnNow && (shown !== "model" || items.length > 1 || !/\.(glb|gltf|vrm)$/i.test(nameOf(items[0])))) own.map = true;
-    if (shown === "model" && !isOwnNow) own.view = false;
     own.refused = false;
     return { shown, document };
   } catch (error) {
     if (isLocal) {
       // It may be shown yet, if the person says so, but not instead of what is there under the same name.
-      held.splice(held.indexOf(items), 1);
+      letGo(items);
       held.unshift(items);
     }
     own.refused ||= isOwnNow;
@@ -640,21 +648,29 @@ async function bring(items, as, isOwn) {
   }
 }
 
-function hold(items) {
+function letGo(items) {
   const at = held.indexOf(items);
   if (at >= 0) held.splice(at, 1);
+}
+
+function hold(items) {
+  letGo(items);
   held.push(items);
   if (held.length > MOST_HELD) held.shift();
 }
 
+/** What the app said last, which counts while it is not there. */
+let wasPrivate = false;
+
 /** Whether a page around this one must not get to know what is shown: dropped and chosen files are for the person's eyes. */
-const isPrivate = () =>
-  own.map ||
-  own.refused ||
-  own.view ||
-  ownOnTheWay > 0 ||
-  valuesOf(kept.link, "model", "motion").some((name) => own.names.has(name)) ||
-  valuesOf(kept.link, "map").some((map) => own.maps.has(map));
+function isPrivate() {
+  try {
+    wasPrivate = app?.is_private() ?? wasPrivate;
+  } catch {
+    wasPrivate = true;
+  }
+  return wasPrivate || own.refused || own.view || ownOnTheWay > 0;
+}
 
 function tellOpened(shown, { files, clips, borrowed_clips: borrowed, joints, triangles }) {
   const count = (number, one, many) => `${number} ${number === 1 ? one : many}`;
@@ -753,7 +769,7 @@ byId("open-sample").addEventListener("click", () => {
   dispatchEvent(new CustomEvent("gaitway:samples"));
 });
 byId("open-cancel").addEventListener("click", () => byId("open").close());
-byId("open").addEventListener("close", focusCanvas);
+byId("open").addEventListener("close", () => (document.activeElement ?? document.body) === document.body && focusCanvas());
 byId("bring").addEventListener("close", () => byId("bring").returnValue === "choose" && openDialog());
 byId("open-form").addEventListener("submit", (event) => {
   event.preventDefault();

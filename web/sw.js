@@ -15,9 +15,10 @@ addEventListener("install", (event) => event.waitUntil(fill()));
 async function fill() {
   const cache = await caches.open(CACHE);
   const page = await fetch("./", { cache: "reload" });
-  const text = await page.clone().text();
+  const text = await page.text();
   if (!page.ok || !text.includes(VERSION)) throw new Error("the page is of another version than this service worker; a later visit tries again");
-  await cache.put("./", page);
+  // Without the mark of a redirection, which no browser takes for an answer to a navigation.
+  await cache.put("./", new Response(text, { headers: page.headers }));
   await Promise.all(FILES.map(async (file) => cache.put(file, await fetched(file))));
 }
 

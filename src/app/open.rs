@@ -1,6 +1,8 @@
 //! What becomes of opened files: a model is shown and the others wait beside it, motions are borrowed from, a joint map is
 //! put in force. What does not work leaves everything as it was; what works can be undone.
 
+use std::sync::Arc;
+
 use super::App;
 use crate::files::{Contents, ModelFiles, OpenedModel};
 use crate::library::{BorrowError, Library, Loaded, Model, ModelId, Motion};
@@ -27,15 +29,27 @@ pub(super) struct Shelved {
 
 /// A borrowed clip, whichever model it is made over for.
 struct BorrowedChoice {
-    motion: String,
+    origin: String,
+    source: String,
     source_clip: usize,
     time_secs: f64,
+}
+
+impl BorrowedChoice {
+    fn first_of(motion: &Motion) -> Self {
+        Self { origin: motion.origin.clone(), source: motion.source.clone(), source_clip: 0, time_secs: 0.0 }
+    }
+
+    fn is_of(&self, motion: &Motion) -> bool {
+        self.origin == motion.origin && self.source == motion.source
+    }
 }
 
 impl App {
     /// Shows what was opened. With a state, that is taken over too (a link) and nothing is chosen anew.
     pub(super) fn show(&mut self, contents: Contents, state: Option<ViewerState>) -> Result<(), String> {
-        let Contents { models, motions, map, problems } = contents;
+        let Contents { models, motions, map, has_own_map, problems } = contents;
+        self.has_own_map |= has_own_map;
         self.refused = None;
         self.panels.error = None;
         self.panels.motion_refused = false;
@@ -50,31 +64,29 @@ impl App {
         shown
     }
 
-    /// Shows the first of some models and holds the others. The present one is held too, and stays on the screen when the
-    /// new one does not fit on the device. Without a state, what is about the old model (clip, time, camera, …) starts anew
-    /// and the rest is kept; without motions, those that are there are tried on the new model.
+    /// Shows the first of some models, or the one that the state names, and holds the others. The present one is held too, and
+    /// stays on the screen when the new one does not fit on the device. Without a state, what is about the old model (clip,
+    /// time, camera, …) starts anew and the rest is kept; without motions, those that are there are tried on the new model.
     fn show_models(
         &mut self,
-        models: Vec<OpenedModel>,
+        mut models: Vec<OpenedModel>,
         motions: Option<Vec<Motion>>,
         map: Option<JointMap>,
         state: Option<ViewerState>,
     ) -> Result<(), String> {
+        let named = state.as_ref().and_then(|state| state.model.first());
+        let at = models.iter().position(|opened| Some(&opened.model.origin) == named).unwrap_or(0);
+        models.swap(0, at);
         let mut models = models.into_iter();
         let Some(first) = models.next() else { return Ok(()) };
-        let name = short_name(&first.model.source);
+        let (name, origin) = (short_name(&first.model.source), first.model.origin.clone());
         let before = self.before_opening();
         let choice = self.borrowed_choice();
-        let source = first.model.source.clone();
         let known = self.library.models().len();
         let id = self.hold(first);
-        if let Some(Err(error)) = self.library.active().map(|model| self.scene.upload(model, None)) {
-            if let Some(before) = &before {
-                self.library.restore(before.1.clone());
-            }
+        if let Err(error) = self.upload(&before) {
             self.close_model(id);
-            self.refresh_motion();
-            return Err(error.to_string());
+            return Err(error);
         }
         let others: Vec<String> = models
             .map(|other| {
@@ -84,32 +96,21 @@ impl App {
             })
             .collect();
         self.library.show(id);
-        self.let_go();
         let is_link = state.is_some();
         let was_loaded = before.is_some();
         self.remember(before);
+        let gone = self.let_go();
         let keeps_motions = motions.is_none() && !is_link;
         if !keeps_motions {
             self.library.set_motions(motions.unwrap_or_default());
         }
-        let sources = || Contents::motion_sources(self.library.motions(), Some(&source));
+        let motion = Contents::motion_sources(self.library.motions(), Some(&origin));
         self.state = state.unwrap_or_else(|| {
             let old = std::mem::take(&mut self.state);
             let kept = if keeps_motions { old.clone() } else { ViewerState::default() };
-            let motion = sources();
             let ViewerState { map, unmapped, root, feet, .. } = kept;
-            about_model(
-                ViewerState {
-                    model: vec![source.clone()],
-                    motion,
-                    map,
-                    unmapped,
-                    root,
-                    feet,
-                    ..ViewerState::default()
-                },
-                old,
-            )
+            let model = vec![origin];
+            about_model(ViewerState { model, motion, map, unmapped, root, feet, ..ViewerState::default() }, old)
         });
         let has_map = map.is_some();
         self.state.map.extend(map.map(MotionMap::Names));
@@ -122,21 +123,34 @@ impl App {
                 self.tell(problems);
             }
             if !is_link && let Some(motion) = self.library.motions().first() {
-                let motion = motion.source.clone();
-                self.choose_borrowed(Some(BorrowedChoice { motion, source_clip: 0, time_secs: 0.0 }));
+                self.choose_borrowed(Some(BorrowedChoice::first_of(motion)));
             }
         }
         if was_loaded && !is_link {
-            let is_new = self.library.models().len() > known;
+            let is_new = self.library.models().len() + gone.len() > known;
+            let opened = if is_new { "Opened" } else { "Opened again:" };
             let others = match &others[..] {
                 [] => String::new(),
                 [other] => format!(" {other} is in the list of models."),
                 others => format!(" {} others are in the list of models.", others.len()),
             };
-            let opened = if is_new { "Opened" } else { "Opened again:" };
-            self.toast_undoable(format!("{opened} {name}.{others}"));
+            let gone = match &gone[..] {
+                [] => String::new(),
+                gone => format!(" {} made room.", gone.join(", ")),
+            };
+            self.toast_undoable(format!("{opened} {name}.{others}{gone}"));
         }
         Ok(())
+    }
+
+    /// Brings the shown model to the device; where that does not work, what was there before is shown again.
+    fn upload(&mut self, before: &Option<(ViewerState, Loaded)>) -> Result<(), String> {
+        let Some(Err(error)) = self.library.active().map(|model| self.scene.upload(model, None)) else { return Ok(()) };
+        if let Some((_, loaded)) = before {
+            self.library.restore(loaded.clone());
+            self.refresh_motion();
+        }
+        Err(error.to_string())
     }
 
     /// What a step back leads to; none before there is anything.
@@ -158,10 +172,14 @@ impl App {
     /// Puts a model into the library and shows it; the same file again is the model that is there already.
     fn hold(&mut self, opened: OpenedModel) -> ModelId {
         let OpenedModel { model, files } = opened;
-        let known = self.library.models().iter().find(|known| {
-            known.source == model.source && self.shelf.get(&known.id).is_some_and(|shelved| shelved.files == files)
-        });
-        if let Some(id) = known.map(|known| known.id) {
+        let is_same = |known: &&Model| {
+            let same_files = self.shelf.get(&known.id).is_some_and(|shelved| shelved.files == files);
+            // What was read from no file is told apart by what it is; a sample is always the same.
+            let same_asset =
+                files.is_some() || model.source.starts_with("sample:") || Arc::ptr_eq(&known.asset, &model.asset);
+            known.source == model.source && known.is_own == model.is_own && same_files && same_asset
+        };
+        if let Some(id) = self.library.models().iter().find(is_same).map(|known| known.id) {
             self.library.show(id);
             return id;
         }
@@ -170,35 +188,52 @@ impl App {
         id
     }
 
-    /// Forgets what is kept of models that have gone.
-    fn let_go(&mut self) {
+    /// Lets go of models for which there is no room, and of what is kept of those that have gone; gives back their names.
+    fn let_go(&mut self) -> Vec<String> {
+        let gone = self.library.trim();
         let library: &Library = &self.library;
         self.shelf.retain(|id, _| library.get(*id).is_some());
         self.history.forget_gone(library);
+        gone.iter().map(|model| short_name(&model.source)).collect()
+    }
+
+    /// Whether a view's model is there, shown or not.
+    pub fn holds(&self, state: &ViewerState) -> bool {
+        state.model == self.state.model || self.held(state).is_some()
+    }
+
+    fn held(&self, state: &ViewerState) -> Option<ModelId> {
+        let [name] = &state.model[..] else { return None };
+        let known = self.library.models().iter().rev().find(|model| model.origin == *name)?;
+        Some(known.id)
     }
 
     /// Shows another of the models that are there, as it was left. Motions that came since are tried on it, and the borrowed
     /// clip that plays goes on.
     pub(super) fn turn_to(&mut self, id: ModelId) {
-        let Some(before) = self.before_opening().filter(|before| before.1.model != id) else { return };
+        let before = self.before_opening();
+        let Some((_, loaded)) = before.as_ref().filter(|(_, loaded)| loaded.model != id) else { return };
         let choice = self.borrowed_choice();
-        let present = before.1.motions.clone();
+        let present = loaded.motions.clone();
         if !self.library.show(id) {
             return;
         }
-        self.remember(Some(before));
-        let left = self.shelf.get(&id).and_then(|shelved| shelved.left.clone());
-        let source = self.library.active().map(|model| model.source.clone()).unwrap_or_default();
-        let (left, mut motions) =
-            left.unwrap_or_else(|| (ViewerState { model: vec![source.clone()], ..ViewerState::default() }, Vec::new()));
-        for motion in present {
-            if !motions.iter().any(|known| known.source == motion.source) {
-                motions.push(motion);
-            }
+        if let Err(error) = self.upload(&before) {
+            self.tell(vec![error]);
+            return;
         }
-        let sources = Contents::motion_sources(&motions, Some(&source));
+        self.remember(before);
+        let left = self.shelf.get(&id).and_then(|shelved| shelved.left.clone());
+        let origin = self.library.active().map(|model| model.origin.clone()).unwrap_or_default();
+        let (left, mut motions) =
+            left.unwrap_or_else(|| (ViewerState { model: vec![origin.clone()], ..ViewerState::default() }, Vec::new()));
+        // What has been read since wins.
+        motions.retain(|known| !present.iter().any(|motion| motion.origin == known.origin));
+        motions.extend(present);
+        motions.truncate(Library::MOST_MOTIONS);
+        let motion = Contents::motion_sources(&motions, Some(&origin));
         let old = std::mem::take(&mut self.state);
-        self.state = about_model(ViewerState { motion: sources, ..left }, old);
+        self.state = about_model(ViewerState { motion, ..left }, old);
         self.library.set_motions(motions);
         self.refresh_motion();
         self.put_unfit_away();
@@ -223,6 +258,11 @@ impl App {
     ) -> Result<(), String> {
         let before = self.before_opening();
         if let Some(state) = state {
+            if state.model != self.state.model {
+                let held = self.held(&state).ok_or("something else was opened meanwhile")?;
+                self.library.show(held);
+                self.upload(&before)?;
+            }
             self.remember(before);
             self.state = state;
             self.state.map.extend(map.map(MotionMap::Names));
@@ -231,19 +271,15 @@ impl App {
             self.tell(problems);
             return Ok(());
         }
-        let together = self.library.motions().len() + motions.len();
-        if together > Library::MOST_MOTIONS {
-            let most = Library::MOST_MOTIONS;
-            return Err(format!("{together} motions together; at most {most} are borrowed from, remove some first"));
-        }
         self.state.map.extend(map.map(MotionMap::Names));
-        let problems = self.borrow_also(motions.clone());
+        let problems = self.borrow_also(motions.clone())?;
         let first = self.library.motions().len() - motions.len();
-        let works = self.library.active().is_some_and(|model| {
-            (model.asset.clips.len()..model.clip_count())
-                .any(|clip| model.borrowed(clip).is_some_and(|borrowed| borrowed.motion >= first))
-        });
-        if !works && !motions.is_empty() {
+        let borrowed = |app: &Self| {
+            let Some(model) = app.library.active() else { return 0 };
+            let is_new = |&clip: &usize| model.borrowed(clip).is_some_and(|borrowed| borrowed.motion >= first);
+            (model.asset.clips.len()..model.clip_count()).filter(is_new).count()
+        };
+        if borrowed(self) == 0 && !motions.is_empty() {
             if let Some((state, loaded)) = before {
                 self.library.restore(loaded);
                 self.state = state;
@@ -255,35 +291,31 @@ impl App {
         }
         self.remember(before);
         self.tell(problems);
-        if let Some(motion) = motions.first() {
-            self.choose_borrowed(Some(BorrowedChoice {
-                motion: motion.source.clone(),
-                source_clip: 0,
-                time_secs: 0.0,
-            }));
-        }
+        self.choose_borrowed(motions.first().map(BorrowedChoice::first_of));
         // The new clip may go elsewhere than the one that the camera was turned to.
         self.apply(Command::FrameAll);
         let names: Vec<String> = motions.iter().map(|motion| short_name(&motion.source)).collect();
-        let clips = self.library.active().map_or(0, |model| {
-            (model.asset.clips.len()..model.clip_count())
-                .filter(|&clip| model.borrowed(clip).is_some_and(|borrowed| borrowed.motion >= first))
-                .count()
-        });
-        let clips = if clips == 1 { "A clip is".to_owned() } else { format!("{clips} clips are") };
+        let clips = match borrowed(self) {
+            1 => "A clip is".to_owned(),
+            clips => format!("{clips} clips are"),
+        };
         self.toast_undoable(format!("{clips} borrowed from {}.", names.join(", ")));
         Ok(())
     }
 
     /// Puts motions behind those that are there; what came from the same places gives way. Gives back what does not work.
-    fn borrow_also(&mut self, motions: Vec<Motion>) -> Vec<String> {
+    fn borrow_also(&mut self, motions: Vec<Motion>) -> Result<Vec<String>, String> {
         let is_new = |known: &Motion| motions.iter().any(|motion| motion.origin == known.origin);
         let mut all: Vec<Motion> = self.library.motions().iter().filter(|known| !is_new(known)).cloned().collect();
         all.extend(motions);
-        let model = self.library.active().map(|model| model.source.clone());
+        let (together, most) = (all.len(), Library::MOST_MOTIONS);
+        if together > most {
+            return Err(format!("{together} motions together; at most {most} are borrowed from, remove some first"));
+        }
+        let model = self.library.active().map(|model| model.origin.clone());
         self.state.motion = Contents::motion_sources(&all, model.as_deref());
         self.library.set_motions(all);
-        self.refresh_motion()
+        Ok(self.refresh_motion())
     }
 
     /// The page offers what else can be done, where other places say how to write a map.
@@ -325,11 +357,18 @@ impl App {
             .iter()
             .filter_map(|(motion, _)| Some(short_name(&self.library.motions().get(*motion)?.source)))
             .collect();
+        self.history.end_gesture();
+        let steps = self.history.steps();
         for (motion, map) in fitting {
             self.apply(Command::EditMap { motion, edit: MapEdit::Load(Box::new(map)) });
         }
         self.history.end_gesture();
-        self.toast_undoable(format!("The joint map is used for {}.", names.join(", ")));
+        let text = format!("The joint map is used for {}.", names.join(", "));
+        if self.history.steps() == steps {
+            self.toast(text)
+        } else {
+            self.toast_undoable(text)
+        }
         Ok(())
     }
 
@@ -363,8 +402,8 @@ impl App {
     fn borrowed_choice(&self) -> Option<BorrowedChoice> {
         let model = self.library.active()?;
         let borrowed = model.borrowed(active_clip(model, &self.state)?)?;
-        let motion = self.library.motions().get(borrowed.motion)?.source.clone();
-        Some(BorrowedChoice { motion, source_clip: borrowed.source_clip, time_secs: self.state.time_secs })
+        let choice = BorrowedChoice::first_of(self.library.motions().get(borrowed.motion)?);
+        Some(BorrowedChoice { source_clip: borrowed.source_clip, time_secs: self.state.time_secs, ..choice })
     }
 
     /// Plays this clip, else the first borrowed one; nothing for none.
@@ -374,8 +413,7 @@ impl App {
         let is_it = |&clip: &usize| {
             model.borrowed(clip).is_some_and(|borrowed| {
                 let motion = self.library.motions().get(borrowed.motion);
-                borrowed.source_clip == choice.source_clip
-                    && motion.is_some_and(|motion| motion.source == choice.motion)
+                borrowed.source_clip == choice.source_clip && motion.is_some_and(|motion| choice.is_of(motion))
             })
         };
         let found = (own..model.clip_count()).find(is_it);
@@ -407,7 +445,7 @@ impl App {
 
     /// Lets go of all motions but these.
     fn borrow_only(&mut self, motions: Vec<Motion>) {
-        let model = self.library.active().map(|model| model.source.clone());
+        let model = self.library.active().map(|model| model.origin.clone());
         self.state.motion = Contents::motion_sources(&motions, model.as_deref());
         if motions.is_empty() {
             self.state.map.clear();
@@ -425,6 +463,21 @@ impl App {
             toast.undoable = true;
             toast.until_secs += Toast::UNDOABLE_SECS;
         }
+        self.toasted_steps = self.history.steps();
+    }
+
+    /// The button of a toast takes back what the toast says, and goes when that is not the last step any more.
+    pub(super) fn watch_toast(&mut self) {
+        if let Some(toast) = &mut self.panels.toast {
+            toast.undoable &= self.history.steps() == self.toasted_steps;
+        }
+    }
+
+    /// Whether anything that is shown or borrowed from is a person's own.
+    pub fn is_private(&self) -> bool {
+        self.has_own_map
+            || self.library.active().is_some_and(|model| model.is_own)
+            || self.library.motions().iter().any(|motion| motion.is_own)
     }
 
     pub(super) fn toast(&mut self, text: String) {
@@ -453,12 +506,11 @@ impl App {
 
     /// Shows a motion's own skeleton instead of the model; nothing is borrowed then.
     pub(super) fn show_motion_alone(&mut self, motion: &Motion) {
-        let model = Model::new(motion.source.clone(), motion.asset.clone(), vec![None; motion.asset.images.len()]);
-        match self.show_models(vec![model.into()], Some(Vec::new()), None, None) {
-            Ok(()) => {
-                self.state.model = vec![motion.origin.clone()];
-            }
-            Err(error) => self.panels.error = Some(error),
+        let images = vec![None; motion.asset.images.len()];
+        let mut model = Model::new(motion.source.clone(), motion.asset.clone(), images);
+        (model.origin, model.is_own) = (motion.origin.clone(), motion.is_own);
+        if let Err(error) = self.show_models(vec![model.into()], Some(Vec::new()), None, None) {
+            self.panels.error = Some(error);
         }
         self.dirty = true;
         self.changed = true;
@@ -485,9 +537,13 @@ impl App {
                 self.state.map.push(map);
             }
         }
-        let problems = self.borrow_also(motions);
-        self.remember(before);
-        self.tell(problems);
+        match self.borrow_also(motions) {
+            Ok(problems) => {
+                self.remember(before);
+                self.tell(problems);
+            }
+            Err(error) => self.tell(vec![error]),
+        }
         self.panels.tab = Tab::Motion;
         self.panels.inspector_open = true;
         self.dirty = true;

@@ -10,7 +10,7 @@ use super::scene_texture::SceneTexture;
 use super::{Host, Inbox, Message, Opening, Reply, ScriptCall, device, encode_png};
 use crate::files::{Contents, Role, set_largest_image};
 use crate::frame::{Frame, evaluate, pose_document};
-use crate::library::{Library, ModelId, inspect};
+use crate::library::{Library, ModelId, Motion, inspect};
 use crate::render::read_pixels;
 use crate::state::{
     CameraChoice, Command, History, ViewerState, frame_all, from_object, resolve_camera, source_on_stage, to_link,
@@ -35,6 +35,12 @@ pub struct App {
     pub(super) refused: Option<Refused>,
     /// What is kept of each model of the library besides.
     pub(super) shelf: BTreeMap<ModelId, Shelved>,
+    /// A joint map of a person's own was opened.
+    pub(super) has_own_map: bool,
+    /// How many steps led back when the toast was shown.
+    pub(super) toasted_steps: usize,
+    /// The motions of the last frame.
+    motions_before: Vec<ModelId>,
     /// What does not work about the borrowed clips and has been told.
     pub(super) borrow_errors: Vec<String>,
     inbox: Inbox,
@@ -87,6 +93,9 @@ impl App {
             changed: false,
             refused: None,
             shelf: BTreeMap::new(),
+            has_own_map: false,
+            toasted_steps: 0,
+            motions_before: Vec::new(),
             borrow_errors: Vec::new(),
             inbox: inbox.clone(),
             context: cc.egui_ctx.clone(),
@@ -160,7 +169,9 @@ impl App {
             ScriptCall::State(reply) => reply(Ok(to_object(&self.state))),
             ScriptCall::Apply(partial, reply) => {
                 let (state, errors) = from_object(&self.state, &partial);
-                if errors.is_empty() {
+                if errors.is_empty() && !self.has_files_of(&state) {
+                    reply(Err("something else was opened meanwhile".to_owned()));
+                } else if errors.is_empty() {
                     let before = self.state.clone();
                     self.history.apply(&mut self.state, &self.library, Command::Replace(Box::new(state)));
                     let problems = self.refresh_motion();
@@ -198,7 +209,16 @@ impl App {
         })
     }
 
+    /// Whether a view is one of the files that are shown: a view must never name others than these.
+    fn has_files_of(&self, state: &ViewerState) -> bool {
+        state.model == self.state.model && state.motion == self.state.motion
+    }
+
     pub(super) fn apply(&mut self, command: Command) {
+        if matches!(&command, Command::Replace(state) if !self.has_files_of(state)) {
+            // Something else was opened since it was asked for.
+            return;
+        }
         let aspect = self.panels.aspect;
         let turns = self.state.turntable != 0.0 && matches!(self.state.camera, CameraChoice::Auto);
         let relative = matches!(command, Command::Orbit { .. } | Command::Pan { .. } | Command::Zoom(_))
@@ -301,6 +321,15 @@ impl App {
         }
     }
 
+    /// What has been begun about a motion is about none when there are others.
+    fn watch_motions(&mut self) {
+        let now = || self.library.motions().iter().map(Motion::id);
+        if !now().eq(self.motions_before.iter().copied()) {
+            self.motions_before = now().collect();
+            self.panels.other_motions();
+        }
+    }
+
     fn choose(&mut self, role: Role, purpose: PathPurpose) {
         if !self.host.choose_files(role, &self.inbox) {
             self.panels.path_prompt = Some(PathPrompt { purpose, path: String::new() });
@@ -386,6 +415,8 @@ impl eframe::App for App {
             self.host.open_dropped(dropped, &self.inbox);
         }
         (self.panels.can_undo, self.panels.can_redo) = (self.history.can_undo(), self.history.can_redo());
+        self.watch_toast();
+        self.watch_motions();
         let mut output = std::mem::take(&mut self.output);
         let shown = Shown { library: &self.library, state: &self.state, frame: &self.frame };
         let rect = ui::panels(ui, shown, &mut self.panels, &mut output);

@@ -83,8 +83,7 @@ fn contents(set: &FileSet, samples: Vec<Model>, origins: &Origins, role: Role) -
     let mut sorted = if set.is_empty() && !samples.is_empty() { Default::default() } else { sort(set, role)? };
     let models = std::mem::take(&mut sorted.models).into_iter().map(|(name, mut asset)| {
         let images = decode_images(&mut asset);
-        let model = Model::new(origins.of(&name).to_owned(), asset, images);
-        OpenedModel { model, files: Some(ModelFiles { set: set.clone(), name }) }
+        OpenedModel::of(set, origins, name, asset, images)
     });
     Ok(origins.contents(sorted, models.collect(), samples, role))
 }

@@ -2,7 +2,7 @@
 
 use crate::asset::{Asset, Image};
 use crate::formats::{FileSet, LoadError, LoadOptions, load, load_noticing_images, main_files};
-use crate::library::{Library, Model, Motion};
+use crate::library::{ImageData, Library, Model, Motion};
 use crate::retarget::{JointMap, MapError};
 
 /// What the files were chosen for.
@@ -33,6 +33,7 @@ pub struct Contents {
     /// None: those that are there stay.
     pub motions: Option<Vec<Motion>>,
     pub map: Option<JointMap>,
+    pub has_own_map: bool,
     /// What could not be had, though the rest could.
     pub problems: Vec<String>,
 }
@@ -50,6 +51,22 @@ pub struct OpenedModel {
 pub struct ModelFiles {
     pub set: FileSet,
     pub name: String,
+}
+
+impl OpenedModel {
+    /// A model of a set, as its file `name`.
+    pub(super) fn of(
+        set: &FileSet,
+        origins: &Origins,
+        name: String,
+        asset: Asset,
+        images: Vec<Option<ImageData>>,
+    ) -> Self {
+        let (origin, source) = origins.origin_and_source(&name);
+        let mut model = Model::new(source, asset, images);
+        model.origin = origin;
+        Self { model, files: Some(ModelFiles { set: set.clone(), name }) }
+    }
 }
 
 impl From<Model> for OpenedModel {
@@ -165,12 +182,12 @@ pub(super) struct Origins {
 }
 
 impl Origins {
-    pub fn of(&self, name: &str) -> &str {
-        self.known.iter().find(|(known, _)| known == name).map_or(&self.other, |(_, origin)| origin)
-    }
-
-    fn is_known(&self, name: &str) -> bool {
-        self.known.iter().any(|(known, _)| known == name)
+    /// Where a file came from, and what it is called: as that, or by its own name where it came out of something.
+    fn origin_and_source(&self, name: &str) -> (String, String) {
+        match self.known.iter().find(|(known, _)| known == name) {
+            Some((_, origin)) => (origin.clone(), origin.clone()),
+            None => (self.other.clone(), name.to_owned()),
+        }
     }
 
     /// Everything of a sorted set, ready for the library, in the order in which it was asked for. `models` are those of the
@@ -178,11 +195,10 @@ impl Origins {
     pub fn contents(&self, sorted: Sorted, mut models: Vec<OpenedModel>, samples: Vec<Model>, role: Role) -> Contents {
         let (borrowed_from, shown) = if role == Role::Motion { (samples, Vec::new()) } else { (Vec::new(), samples) };
         models.extend(shown.into_iter().map(OpenedModel::from));
-        let place = |model: &OpenedModel| self.known.iter().position(|(_, origin)| *origin == model.model.source);
+        let place = |model: &OpenedModel| self.known.iter().position(|(_, origin)| *origin == model.model.origin);
         models.sort_by_key(|model| place(model).unwrap_or(usize::MAX));
         let of_set = |(name, asset): (String, Asset)| {
-            let origin = self.of(&name).to_owned();
-            let source = if self.is_known(&name) { origin.clone() } else { name };
+            let (origin, source) = self.origin_and_source(&name);
             let mut motion = Motion::new(source, asset.into());
             motion.origin = origin;
             motion
@@ -190,11 +206,19 @@ impl Origins {
         let of_sample = |sample: Model| Motion::new(sample.source, sample.asset);
         let motions = sorted.motions.into_iter().map(of_set).chain(borrowed_from.into_iter().map(of_sample));
         let motions: Vec<Motion> = motions.collect();
-        Contents { motions: (!motions.is_empty()).then_some(motions), models, map: sorted.map, problems: Vec::new() }
+        Contents { motions: (!motions.is_empty()).then_some(motions), models, map: sorted.map, ..Contents::default() }
     }
 }
 
 impl Contents {
+    /// Says that all of it is a person's own.
+    pub fn owned(mut self) -> Self {
+        self.models.iter_mut().for_each(|opened| opened.model.is_own = true);
+        self.motions.iter_mut().flatten().for_each(|motion| motion.is_own = true);
+        self.has_own_map = self.map.is_some();
+        self
+    }
+
     /// What a view has to list to get motions again: where they came from, but for what comes along with its model.
     pub fn motion_sources(motions: &[Motion], model: Option<&str>) -> Vec<String> {
         let mut sources: Vec<String> = Vec::new();

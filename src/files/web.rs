@@ -9,10 +9,10 @@ use wasm_bindgen_futures::JsFuture;
 
 use super::image_limit::{fitted, made_smaller};
 use super::sort::{Origins, sort_noticing_images};
-use super::{Contents, ModelFiles, OpenedModel, Role, SortError, raw_address, read_map};
+use super::{Contents, OpenedModel, Role, SortError, raw_address, read_map};
 use crate::asset::{Asset, Image, Warning};
 use crate::formats::{FileSet, missing_files};
-use crate::library::{ImageData, Model, sample};
+use crate::library::{ImageData, Model, Motion, sample};
 use crate::state::{MotionMap, ViewerState};
 
 /// What is to be opened: one part of a set.
@@ -134,8 +134,7 @@ pub async fn open_items(
         let started = decoding.iter_mut().find(|(of, _)| *of == name).map(|(_, started)| std::mem::take(started));
         let started = started.unwrap_or_else(|| start_decoding(&asset.images));
         let images = decoded(&mut asset, started).await;
-        let model = Model::new(origins.of(&name).to_owned(), asset, images);
-        models.push(OpenedModel { model, files: Some(ModelFiles { set: set.clone(), name }) });
+        models.push(OpenedModel::of(&set, &origins, name, asset, images));
     }
     Ok(origins.contents(sorted, models, samples, role))
 }
@@ -160,16 +159,18 @@ fn files_of_sample(name: &str) -> Result<Vec<(String, String)>, OpenError> {
     Ok(addresses.iter().filter_map(|address| address.as_string().and_then(file)).collect())
 }
 
-/// Opens all that a view lists; its model only if asked for. A motion or a map that cannot be had is a problem in the
+/// Opens all that a view lists, but for motions that are `held`; its model only if asked for. A motion or a map that cannot be had is a problem in the
 /// answer. Addresses of maps in the view are replaced by what they hold. `progress` is told which part of how many it is.
 pub async fn open_view(
     state: &mut ViewerState,
     with_model: bool,
+    held: &[Motion],
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<Contents, OpenError> {
     let mut contents = Contents::default();
     let files = state.map.iter().filter(|map| matches!(map, MotionMap::File(_))).count();
-    let parts = usize::from(with_model) + state.motion.len() + files;
+    let is_held = |source: &String| held.iter().any(|motion| motion.origin == *source);
+    let parts = usize::from(with_model) + state.motion.iter().filter(|source| !is_held(source)).count() + files;
     let part = Cell::new(usize::from(with_model));
     let progress = &|name: &str, received: u64, total: u64| match parts {
         0 | 1 => progress(name, received, total),
@@ -180,9 +181,16 @@ pub async fn open_view(
         contents = open_items(items, Role::Model, progress).await?;
     }
     let mut motions = contents.motions.take().unwrap_or_default();
-    for motion in &state.motion {
+    // What came with the model out of one archive is not listed.
+    let is_of_model = |motion: &&Motion| state.model.contains(&motion.origin) && !state.motion.contains(&motion.origin);
+    motions.extend(held.iter().filter(is_of_model).cloned());
+    for source in &state.motion {
+        if is_held(source) {
+            motions.extend(held.iter().filter(|motion| motion.origin == *source).cloned());
+            continue;
+        }
         part.set(part.get() + 1);
-        match open_items(vec![Item::Url(motion.clone())], Role::Motion, progress).await {
+        match open_items(vec![Item::Url(source.clone())], Role::Motion, progress).await {
             Ok(found) => {
                 motions.extend(found.motions.unwrap_or_default());
                 contents.map = contents.map.or(found.map);

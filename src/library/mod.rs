@@ -68,18 +68,24 @@ impl Library {
         self.add(model)
     }
 
-    /// Takes in one more model and shows it. With more than [`Library::MOST_MODELS`] the oldest goes.
+    /// Takes in one more model and shows it.
     pub fn add(&mut self, mut model: Model) -> ModelId {
         self.next_id += 1;
         model.id = ModelId(self.next_id);
-        if self.models.len() >= Self::MOST_MODELS
-            && let Some(oldest) = self.models.iter().position(|model| model.id != self.shown)
-        {
-            self.models.remove(oldest);
-        }
         self.models.push(model);
         self.show(ModelId(self.next_id));
         ModelId(self.next_id)
+    }
+
+    /// Lets go of the oldest models until there are no more than [`Library::MOST_MODELS`]; gives them back.
+    pub fn trim(&mut self) -> Vec<Model> {
+        let mut gone = Vec::new();
+        while self.models.len() > Self::MOST_MODELS
+            && let Some(oldest) = self.models.iter().position(|model| model.id != self.shown)
+        {
+            gone.push(self.models.remove(oldest));
+        }
+        gone
     }
 
     /// Shows one of the models; false when it is not there.

@@ -23,6 +23,10 @@ pub struct Model {
     pub id: ModelId,
     /// File name, URL or `sample:NAME`, as the link writes it.
     pub source: String,
+    /// What a view lists to get it again: the source, or the archive or folder that it came out of.
+    pub origin: String,
+    /// It is a person's own file: a page around this one gets to know nothing of it.
+    pub is_own: bool,
     pub asset: Arc<Asset>,
     /// One per image of the asset; none where it could not be decoded (a warning says why).
     pub images: Vec<Option<ImageData>>,
@@ -55,6 +59,8 @@ impl Model {
         let extent = Extent::new(&asset, &rig);
         Self {
             id: ModelId::default(),
+            origin: source.clone(),
+            is_own: false,
             source,
             asset,
             images,

@@ -20,6 +20,8 @@ pub struct Motion {
     pub source: String,
     /// What a view lists to get it again: the source, or the archive or folder that it came out of.
     pub origin: String,
+    /// As [`Model::is_own`].
+    pub is_own: bool,
     pub asset: Arc<Asset>,
     pub slots: Humanoid,
     /// Given by the library.
@@ -30,7 +32,15 @@ pub struct Motion {
 impl Motion {
     pub fn new(source: String, asset: Arc<Asset>) -> Self {
         let slots = recognize(&asset).humanoid();
-        Self { origin: source.clone(), source, asset, slots, stage_id: ModelId::default(), stage: Arc::default() }
+        Self {
+            origin: source.clone(),
+            is_own: false,
+            source,
+            asset,
+            slots,
+            stage_id: ModelId::default(),
+            stage: Arc::default(),
+        }
     }
 
     /// The file as something to look at, without its images; made when somebody first asks.
@@ -41,6 +51,11 @@ impl Motion {
             model.id = self.stage_id;
             model
         })
+    }
+
+    /// Tells it from every other motion that the library has had.
+    pub fn id(&self) -> ModelId {
+        self.stage_id
     }
 
     pub fn body(&self) -> Body<'_> {

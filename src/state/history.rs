@@ -74,6 +74,11 @@ impl History {
         }
     }
 
+    /// How many steps lead back.
+    pub fn steps(&self) -> usize {
+        self.past.len()
+    }
+
     pub fn can_undo(&self) -> bool {
         !self.past.is_empty()
     }

@@ -127,6 +127,16 @@ pub struct UiState {
     scroll_next: Option<usize>,
 }
 
+impl UiState {
+    /// Ends what was begun about one of the motions: there are others now.
+    pub fn other_motions(&mut self) {
+        self.motion.other_motions();
+        if matches!(self.path_prompt, Some(PathPrompt { purpose: PathPurpose::Save(_), .. })) {
+            self.path_prompt = None;
+        }
+    }
+}
+
 impl Default for UiState {
     fn default() -> Self {
         Self {

@@ -10,7 +10,7 @@ use super::page::{Page, page, state_of_link};
 use crate::app::{App, Message, Opening, Reply, ScriptCall};
 use crate::files::{Contents, Item, OpenError, Role, open_items, open_view};
 use crate::frame::pose_document;
-use crate::library::sample;
+use crate::library::{Motion, sample};
 use crate::state::{Command, MotionMap, ViewerState, active_clip, from_object, to_object};
 
 /// Opens one set: an array of addresses and of `[name, Uint8Array]`. A model takes the place of what is shown; motions and
@@ -18,17 +18,16 @@ use crate::state::{Command, MotionMap, ViewerState, active_clip, from_object, to
 /// `{shown, document}` once it is on the screen: which of `model`, `motion` and `map` it was, and the inspect document.
 /// What is shown stays when that fails.
 #[wasm_bindgen]
-pub async fn open(items: Array, role: Option<String>) -> Result<String, JsError> {
+pub async fn open(items: Array, role: Option<String>, is_own: bool) -> Result<String, JsError> {
     let page = page().map_err(error)?;
     let items = items_of(&items).map_err(error)?;
     let role = if role.as_deref() == Some("motion") { Role::Motion } else { Role::Any };
-    let shown = show(&page, What::Items(items, role)).await.map_err(error)?;
+    let shown = show(&page, What::Items { items, role, is_own }).await.map_err(error)?;
     Ok(json!({ "shown": shown.what, "document": shown.document }).to_string())
 }
 
 /// Takes over another part after `#`, with its files when they are others than those shown, or when all is to be read
-/// `again`. Resolves to `{loaded, problems}`: whether the `model` and the `motion` come from the link's addresses now, and
-/// what of the link could not be had.
+/// `again`. Resolves to `{loaded, problems}`: the addresses that were read, and what of the link could not be had.
 #[wasm_bindgen]
 pub async fn follow_link(link: String, again: bool) -> Result<String, JsError> {
     let page = page().map_err(error)?;
@@ -55,6 +54,13 @@ pub async fn apply(partial: String) -> Result<String, JsError> {
         state.model.push(format!("sample:{}", sample::WALKER));
     }
     take_over(&page, state, false, false).await.map_err(error)
+}
+
+/// Whether anything that is shown or borrowed from is a person's own.
+#[wasm_bindgen]
+pub fn is_private() -> Result<bool, JsError> {
+    let page = page().map_err(error)?;
+    with_app(&page, |app| app.is_private()).map_err(error)
 }
 
 /// The picture of a QR code: a line of `0` and `1` for each row. None for a text too long to be read off a screen.
@@ -125,22 +131,25 @@ async fn take_over(page: &Rc<Page>, state: ViewerState, again: bool, is_link: bo
         page.inbox.send(Message::Commands(vec![Command::Replace(Box::new(state))]));
         return Ok(news(&[], &[]));
     }
-    let with_model = again || state.model != before.model;
-    let loaded: &[&str] = if with_model { &["model", "motion"] } else { &["motion"] };
-    let shown = show(page, What::View { state: Box::new(state), with_model, is_link }).await?;
-    Ok(news(loaded, &shown.problems))
+    let with_model = again || !with_app(page, |app| app.holds(&state))?;
+    let held = if again { Vec::new() } else { with_app(page, |app| app.library().motions().to_vec())? };
+    let models = state.model.iter().filter(|_| with_model);
+    let motions = state.motion.iter().filter(|source| !held.iter().any(|motion| motion.origin == **source));
+    let loaded: Vec<String> = models.chain(motions).cloned().collect();
+    let shown = show(page, What::View { state: Box::new(state), with_model, held, is_link }).await?;
+    Ok(news(&loaded, &shown.problems))
 }
 
-fn news(loaded: &[&str], problems: &[String]) -> String {
+fn news(loaded: &[String], problems: &[String]) -> String {
     json!({ "loaded": loaded, "problems": problems }).to_string()
 }
 
 /// What is to be opened.
 enum What {
     /// The present state is kept as far as it fits.
-    Items(Vec<Item>, Role),
+    Items { items: Vec<Item>, role: Role, is_own: bool },
     /// A whole view, with its model or with the one that is shown; of a link, the shell says what is missing.
-    View { state: Box<ViewerState>, with_model: bool, is_link: bool },
+    View { state: Box<ViewerState>, with_model: bool, held: Vec<Motion>, is_link: bool },
 }
 
 struct Shown {
@@ -164,9 +173,12 @@ async fn show(page: &Rc<Page>, what: What) -> Result<Shown, String> {
     };
     let shell_tells = matches!(what, What::View { is_link: true, .. });
     let opened: Result<(Contents, Option<Box<ViewerState>>), OpenError> = match what {
-        What::Items(items, role) => open_items(items, role, &progress).await.map(|contents| (contents, None)),
-        What::View { mut state, with_model, .. } => {
-            open_view(&mut state, with_model, &progress).await.map(|contents| (contents, Some(state)))
+        What::Items { items, role, is_own } => {
+            let contents = open_items(items, role, &progress).await;
+            contents.map(|contents| (if is_own { contents.owned() } else { contents }, None))
+        }
+        What::View { mut state, with_model, held, .. } => {
+            open_view(&mut state, with_model, &held, &progress).await.map(|contents| (contents, Some(state)))
         }
     };
     if page.loads.get() != load {

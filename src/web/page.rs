@@ -36,8 +36,8 @@ pub fn start() {
     set_fatal_hook(shell::stopped);
 }
 
-/// Shows what the link says, or `items` (see [`super::calls::open`]) in the link's view, borrowing from `motion_items` or
-/// what the link lists; resolves when the first picture is on its way, to a JSON list of what could not be had. `renderer`
+/// Shows what the link says, or `items` (see [`super::calls::open`]) in the link's view, borrowing from `motion_items` and
+/// what else the link lists; `is_own`: these are a person's own files. Resolves when the first picture is on its way, to a JSON list of what could not be had. `renderer`
 /// is `webgpu`, `webgl2` or nothing. Rejects when no device is to be had; call again with a new canvas then.
 #[wasm_bindgen]
 pub async fn run(
@@ -46,10 +46,11 @@ pub async fn run(
     link: String,
     items: Array,
     motion_items: Array,
+    is_own: bool,
     shell: Shell,
 ) -> Result<String, JsError> {
     shell::keep(shell.clone());
-    let first = first_contents(&link, &items, &motion_items, &shell).await;
+    let first = first_contents(&link, &items, &motion_items, is_own, &shell).await;
     let (contents, state, problems) = first.map_err(|error| JsError::new(&error))?;
     let backend = match renderer.as_deref() {
         Some("webgpu") => Some(Backend::WebGpu),
@@ -77,6 +78,7 @@ async fn first_contents(
     link: &str,
     items: &Array,
     motion_items: &Array,
+    is_own: bool,
     shell: &Shell,
 ) -> Result<(Contents, ViewerState, Vec<String>), String> {
     let mut state = state_of_link(link, shell);
@@ -86,27 +88,25 @@ async fn first_contents(
         state.model.push(format!("sample:{}", sample::WALKER));
     }
     let progress = |name: &str, received: u64, total: u64| shell.progress(name, received as f64, total as f64);
-    let listed = std::mem::take(&mut state.motion);
-    if motion_items.is_empty() {
-        state.motion.clone_from(&listed);
-    }
     let opened = async {
-        let mut contents = open_view(&mut state, items.is_empty(), &progress).await?;
+        let (mut models, mut held, mut problem) = (Vec::new(), Vec::new(), None);
         if !items.is_empty() {
-            let own = open_items(items, Role::Model, &progress).await?;
-            let motions = own.motions.into_iter().chain(contents.motions).flatten().collect();
-            contents = Contents { models: own.models, motions: Some(motions), ..contents };
+            let found = open_items(items, Role::Model, &progress).await?;
+            models = found.models;
+            held.extend(found.motions.into_iter().flatten());
         }
         if !motion_items.is_empty() {
             match open_items(motion_items, Role::Motion, &progress).await {
-                Ok(found) => contents.motions.get_or_insert_default().extend(found.motions.into_iter().flatten()),
-                Err(error) => contents.problems.push(error.to_string()),
+                Ok(found) => held.extend(found.motions.into_iter().flatten()),
+                Err(error) => problem = Some(error.to_string()),
             }
         }
-        Ok(contents)
+        let mut contents = open_view(&mut state, models.is_empty(), &held, &progress).await?;
+        contents.models.extend(models);
+        contents.problems.extend(problem);
+        Ok(if is_own { contents.owned() } else { contents })
     };
     let opened: Result<Contents, OpenError> = opened.await;
-    state.motion.clone_from(&listed);
     match opened {
         Ok(mut contents) => {
             let problems = std::mem::take(&mut contents.problems);
@@ -115,8 +115,8 @@ async fn first_contents(
         Err(error) => {
             let mut problems = vec![error.to_string()];
             let mut models = Vec::new();
-            for motion in listed {
-                match open_items(vec![Item::Url(motion)], Role::Model, &progress).await {
+            for motion in &state.motion {
+                match open_items(vec![Item::Url(motion.clone())], Role::Model, &progress).await {
                     Ok(found) => models.extend(found.models),
                     Err(error) => problems.push(error.to_string()),
                 }

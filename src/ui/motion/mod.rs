@@ -73,6 +73,11 @@ impl MotionTab {
         self.picking.is_some()
     }
 
+    /// Ends what was begun about one of the motions.
+    pub fn other_motions(&mut self) {
+        (self.picking, self.clicking, self.typed, self.turn) = (None, None, None, None);
+    }
+
     /// The table's rows, worked out anew when one of the files, the map or a name given by hand is another.
     fn rows(&mut self, pairing: &Pairing<'_>, map: &JointMap) -> Rc<[Row]> {
         let (model, motion, names) = (pairing.model.id, &pairing.motion.asset, &pairing.state.names);
