@@ -263,7 +263,7 @@ fn decimals(number: f32) -> usize {
 }
 
 /// Never minus nothing.
-fn fixed(number: f32, digits: usize) -> String {
+pub(super) fn fixed(number: f32, digits: usize) -> String {
     let text = format!("{number:.digits$}");
     match text.strip_prefix('-') {
         Some(rest) if rest.bytes().all(|byte| matches!(byte, b'0' | b'.')) => rest.to_owned(),

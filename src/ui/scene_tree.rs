@@ -380,7 +380,7 @@ fn transform(ui: &mut Ui, title: &str, value: &Transform) {
         let font = egui::FontId::monospace(12.0);
         let width = (rect.width() - 60.0) / 3.0;
         let texts = numbers.to_array().map(|number| match unit {
-            "°" => format!("{:.1}°", number + 0.0),
+            "°" => formula::fixed(number, 1) + "°",
             _ => short(number),
         });
         for (column, text) in texts.iter().enumerate() {

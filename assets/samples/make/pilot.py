@@ -590,10 +590,10 @@ def main():
     material = out.add("materials", {
         "name": "pilot",
         "pbrMetallicRoughness": {
-            "baseColorTexture": {"index": out.image(base, quality=73, name="pilot colour")},
-            "metallicRoughnessTexture": {"index": (relief := out.image(orm, quality=68, name="pilot surface"))},
+            "baseColorTexture": {"index": out.image(base, quality=69, name="pilot colour")},
+            "metallicRoughnessTexture": {"index": (relief := out.image(orm, quality=62, name="pilot surface"))},
         },
-        "normalTexture": {"index": out.image(bump, quality=73, name="pilot relief")},
+        "normalTexture": {"index": out.image(bump, quality=69, name="pilot relief")},
         "occlusionTexture": {"index": relief},
     })
     primitive = out.primitive(

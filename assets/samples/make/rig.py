@@ -249,6 +249,17 @@ def smoothed(weights, faces, rounds=2, amount=0.5):
     return weights
 
 
+def lent(points, mesh_points, mesh_weights, count=4):
+    """Weights for points (belts, straps) from the nearest vertices of the body they lie on: so they move with it."""
+    out = np.zeros((len(points), mesh_weights.shape[1]))
+    for i, p in enumerate(points):
+        d = np.linalg.norm(mesh_points - p, axis=1)
+        near = np.argpartition(d, count)[:count]
+        k = 1.0 / np.maximum(d[near], 1e-5) ** 2
+        out[i] = (mesh_weights[near] * k[:, None]).sum(axis=0) / k.sum()
+    return out
+
+
 def strongest(weights, joints, count=4):
     """The `count` largest of each row: (weights (N, count), slots (N, count)) for the joint list `joints`."""
     columns = weights[:, joints]

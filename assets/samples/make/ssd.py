@@ -195,11 +195,13 @@ def main():
     # Made whole: this body shows its middle line, where halves would be sewn.
     mesh = clay.mesh_of(lambda p: IMP(shrunk(p)), (-1.06, -0.03, -0.50), (1.06, 2.48, 0.62), 5900, 0.012, half=False, relax=5)
     mesh.vertices = clay.project(IMP, shrunk(mesh.vertices), 3)
-    mesh = clay.joined([mesh, *bands()])
     w = gates(s).weights(mesh.vertices, "root")
     # Diffused over the surface, a part of it far: that is what makes the weights dense.
     near = rig.smoothed(w, mesh.faces, 40)
     w = 0.86 * near + 0.14 * rig.smoothed(near, mesh.faces, 500)
+    rolls = clay.joined(bands())
+    w = np.concatenate([w, rig.lent(rolls.vertices, mesh.vertices, w, 8)])
+    mesh = clay.joined([mesh, rolls])
     w[:, 0] = 0.0
     # Beyond the twelve strongest nothing; then thousandths that sum to exactly 1.
     order = np.argsort(-w, axis=1)
