@@ -8,7 +8,8 @@ const ENDINGS: [&str; 5] = ["glb", "bvh", "obj", "skel", "attach"];
 
 fn main() -> io::Result<()> {
     const FOLDER: &str = "assets/samples";
-    println!("cargo::rerun-if-changed={FOLDER}");
+    // It lists every sample, so a new one changes it. The whole folder has more in it that is no part of any program.
+    println!("cargo::rerun-if-changed={FOLDER}/README.md");
     let folder = Path::new(&env::var("CARGO_MANIFEST_DIR").map_err(io::Error::other)?).join(FOLDER);
     let mut names: Vec<String> =
         fs::read_dir(&folder)?.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect();
@@ -17,6 +18,7 @@ fn main() -> io::Result<()> {
     for file in names {
         let Some((name, ending)) = file.split_once('.') else { continue };
         if ENDINGS.contains(&ending) {
+            println!("cargo::rerun-if-changed={FOLDER}/{file}");
             let path = folder.join(&file);
             writeln!(text, "({name:?}, {file:?}, include_bytes!({path:?})),").map_err(io::Error::other)?;
         }

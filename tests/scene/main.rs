@@ -21,6 +21,7 @@ mod link_properties;
 mod map_edits;
 mod motion;
 mod real_models;
+mod samples;
 mod scale;
 mod sets;
 mod stage;

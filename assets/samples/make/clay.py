@@ -507,10 +507,14 @@ def mesh_of(shape, low, high, quads, step=0.008, half=True, relax=3, seed=0):
             return mesh_of(shape, low, high, quads, step, False, relax, seed)
     vertices = project(shape, vertices, 6, plane)
     vertices = _relax(vertices, faces, shape, plane, relax)
+    if touches:
+        plane |= vertices[:, 0] < 2e-4
+        vertices[plane, 0] = 0.0
     mesh = Mesh(vertices, faces)
     mesh.plane = plane
     mesh.whole = not half
-    return _outward(mesh, shape)
+    # A face that lies in the mirror plane would only meet its own image.
+    return _outward(_only(mesh, np.array([not all(plane[i] for i in f) for f in faces])), shape)
 
 
 def _outward(mesh, shape):
@@ -670,11 +674,16 @@ def without_hidden(mesh, covers):
     for shape, depth in covers:
         inside = shape(mesh.vertices) < -depth
         hidden |= np.array([all(inside[i] for i in f) for f in mesh.faces])
-    faces = [f for f, h in zip(mesh.faces, hidden) if not h]
+    return _only(mesh, ~hidden)
+
+
+def _only(mesh, keep):
+    """The mesh of the faces in the mask `keep`, without vertices that nothing uses."""
+    faces = [f for f, k in zip(mesh.faces, keep) if k]
     used = np.unique([i for f in faces for i in f])
     number = np.full(len(mesh.vertices), -1)
     number[used] = np.arange(len(used))
-    out = Mesh(mesh.vertices[used], [[int(number[i]) for i in f] for f in faces], mesh.part[~hidden])
+    out = Mesh(mesh.vertices[used], [[int(number[i]) for i in f] for f in faces], mesh.part[keep])
     out.plane, out.whole = mesh.plane[used], mesh.whole
     return out
 

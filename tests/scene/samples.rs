@@ -1,0 +1,77 @@
+//! The samples that come along, and the scenes of the gallery made of them.
+
+use gaitway::files::{Role, open_paths, read_paths};
+use gaitway::library::sample;
+use gaitway::state::{ClipChoice, Command, ViewerState, active_clip, apply, from_link, resolve_camera};
+use serde_json::Value;
+
+use crate::data::library_of;
+
+fn scenes() -> Vec<Value> {
+    let text = include_str!("../../assets/samples/gallery.json");
+    serde_json::from_str(text).expect("a list of scenes")
+}
+
+/// Opens everything that a scene lists, as the page does, and gives its view.
+fn check(scene: &Value) {
+    let link = scene["link"].as_str().expect("a link");
+    let (wanted, errors) = from_link(link);
+    assert!(errors.is_empty(), "{link}: {errors:?}");
+    let paths = wanted.model.iter().map(Into::into).collect::<Vec<_>>();
+    let opened = open_paths(&paths).unwrap_or_else(|error| panic!("{link}: {error}"));
+    assert_eq!(opened.model.source, wanted.model[0], "{link}");
+    assert!(opened.model.asset.warnings.iter().next().is_none(), "{link}: {:?}", opened.model.asset.warnings);
+    let mut library = library_of(opened.model);
+    let motions = wanted.motion.iter().flat_map(|motion| {
+        let contents = read_paths(&[motion.into()], Role::Motion).unwrap_or_else(|error| panic!("{link}: {error}"));
+        contents.motions.unwrap_or_default()
+    });
+    library.set_motions(motions.collect());
+    library.borrow(None);
+    assert!(library.borrow_errors().is_empty(), "{link}: {:?}", library.borrow_errors());
+    let named_clip = match &wanted.clip {
+        ClipChoice::Named(name) => Some(name.clone()),
+        _ => None,
+    };
+    let mut state = ViewerState::default();
+    apply(&mut state, &library, Command::Replace(Box::new(wanted)));
+    let model = library.active().expect("a model");
+    let clip = active_clip(model, &state).and_then(|clip| model.clip(clip));
+    assert!(named_clip.is_none_or(|name| clip.is_some_and(|clip| clip.name() == name)), "{link}: no such clip");
+    let moves = clip.is_some_and(|clip| clip.duration_secs() > 0.0) || state.turntable != 0.0;
+    assert!(moves, "{link}: nothing moves");
+    let camera = resolve_camera(&library, &state, 1.5);
+    assert!(camera.distance.is_finite() && camera.distance > 0.0, "{link}: {camera:?}");
+}
+
+/// Scenes whose samples are not there are left out of the gallery; the first, which is the first screen, has to be there.
+#[test]
+fn every_scene_opens() {
+    let known = sample::names();
+    let there = |scene: &&Value| {
+        let link = scene["link"].as_str().unwrap_or_default();
+        let sources = link.split(['=', '&']).filter_map(|part| part.strip_prefix("sample:"));
+        sources.into_iter().all(|name| known.contains(&name))
+    };
+    let scenes = scenes();
+    assert!(scenes.first().is_some_and(|first| there(&first)), "the first scene's samples should be there");
+    scenes.iter().filter(there).for_each(check);
+}
+
+#[test]
+fn what_the_window_begins_with_is_there() {
+    open_paths(&[sample::FIRST.into()]).expect("the first sample");
+}
+
+#[test]
+fn every_sample_opens() {
+    for name in sample::names() {
+        let source = format!("sample:{name}");
+        let contents =
+            read_paths(&[source.clone().into()], Role::Any).unwrap_or_else(|error| panic!("{source}: {error}"));
+        let motions = contents.motions.iter().flatten().map(|motion| motion.source.clone());
+        let found: Vec<String> =
+            contents.models.iter().map(|opened| opened.model.source.clone()).chain(motions).collect();
+        assert_eq!(found, [source]);
+    }
+}
