@@ -670,11 +670,16 @@ def without_hidden(mesh, covers):
     for shape, depth in covers:
         inside = shape(mesh.vertices) < -depth
         hidden |= np.array([all(inside[i] for i in f) for f in mesh.faces])
-    faces = [f for f, h in zip(mesh.faces, hidden) if not h]
+    return _only(mesh, ~hidden)
+
+
+def _only(mesh, keep):
+    """The mesh of the faces in the mask `keep`, without vertices that nothing uses."""
+    faces = [f for f, k in zip(mesh.faces, keep) if k]
     used = np.unique([i for f in faces for i in f])
     number = np.full(len(mesh.vertices), -1)
     number[used] = np.arange(len(used))
-    out = Mesh(mesh.vertices[used], [[int(number[i]) for i in f] for f in faces], mesh.part[~hidden])
+    out = Mesh(mesh.vertices[used], [[int(number[i]) for i in f] for f in faces], mesh.part[keep])
     out.plane, out.whole = mesh.plane[used], mesh.whole
     return out
 

@@ -332,7 +332,7 @@ def sculpt():
             mesh = clay.mesh_of(part.shape, *part.box, part.quads, part.step, part.half)
         full = len(mesh.faces)
         if part.shape is not None:
-            covers = [(p.shape, 0.022 if p.carrier == "Head" else 0.006) for p in PARTS if p.solid and p is not part]
+            covers = [(p.shape, 0.022 if p.carrier == "Head" else 0.0105) for p in PARTS if p.solid and p is not part]
             mesh = clay.without_hidden(mesh, covers)
         print(f"{part.name}: {len(mesh.faces)} quads of {full}, {time.time() - start:.1f} s", flush=True)
         meshes.append(mesh)
@@ -580,7 +580,6 @@ def main():
     shown = paint_.surface(left, left_uv, alone)
     body = shown.mesh
     w = g.weights(body.vertices, "mixamorig:Hips")
-    w = rig.smoothed(w, body.faces, 2)
     for i, part in enumerate(PARTS):
         if part.carrier:
             mine = np.unique([v for f, p in zip(body.faces, body.part) if p == i for v in f])
