@@ -802,7 +802,7 @@ def main(size=int(os.environ.get("ATLAS", "640"))):
     mesh = out.add("meshes", {"name": "dwarf", "primitives": [primitive]})
     skin = out.skin(s, nodes, joints, "dwarf")
     node = out.add("nodes", {"name": "dwarf", "mesh": mesh, "skin": skin})
-    out.clip("crouch and look", nodes, gait.channels(s, crouch_and_look(s), RATE, tight=[n for n in s.names if n[1:] in ("hip", "knee", "ankle")]))
+    out.clip("crouch and look", nodes, gait.channels(s, crouch_and_look(s), RATE, tight=[n for n in s.names if n[1:] in ("hip", "knee", "ankle") or n == "middle"], tolerance=0.04, move_tolerance=0.0001))
     print(out.write(OUT, [nodes[0], node]), "bytes")
 
 
