@@ -39,7 +39,6 @@ PLACES = [
     ("chest", "spine2", (0, 0.405, 0.120)),
     ("neck", "chest", (0, 0.445, 0.225)),
     ("head", "neck", (0, 0.575, 0.305)),
-    ("jaw", "head", (0, 0.590, 0.350)),
     ("ear.L", "head", (0.048, 0.690, 0.315)),
     ("eartip.L", "ear.L", (0.078, 0.765, 0.312)),
     ("scapula.L", "chest", (0.050, 0.445, 0.150)),
@@ -429,6 +428,12 @@ def weights_of(s, body):
         mine = np.unique([k for f, p in zip(body.faces, body.part) if p == i for k in f])
         p = v[mine]
         if part.name == "body":
+            # A paw's sole is one piece, so that what stands does not creep.
+            for side, sign in ((".L", 1), (".R", -1)):
+                for joint, fore in (("forepaw", 1), ("hindpaw", -1)):
+                    sole = smooth_step((0.042 - p[:, 1]) / 0.018) * (sign * p[:, 0] > 0) * (fore * p[:, 2] > 0)
+                    w[mine] *= (1 - sole)[:, None]
+                    w[mine, s[joint + side]] += sole
             # The neck passes into the head under the scarf.
             t = (p - AT["head"]) @ np.array([0, 0.86, 0.51])
             up = smooth_step(t / 0.10 + 0.45) * (p[:, 2] > 0.2)
@@ -516,7 +521,7 @@ class Step:
     `start`: where the toes' tip lands (z); `lean` keys over (0..1 of the stance, 1..2 of the swing) in degrees.
     """
 
-    def __init__(self, x, start, length, duty, lift, lean, curl, roll=24.0):
+    def __init__(self, x, start, length, duty, lift, lean, curl, roll=12.0):
         self.x, self.start, self.length, self.duty, self.lift = x, start, length, duty, lift
         self.lean, self.curl, self.roll = lean, curl, roll
 
@@ -608,8 +613,8 @@ def run(figure, speed=3.6, frames=26):
     fore = dict(lean=[(0, -14), (0.4, 0), (0.75, 22), (1.0, 50), (1.22, 100), (1.50, 92), (1.80, 4)], curl=[(0.20, 88), (0.5, 92), (0.84, 0)])
     reach = length * duty
     steps = {
-        "hind": Step(0.052, -0.195 + TIP[2] + 0.60 * reach, length, duty, 0.105, roll=34, **hind),
-        "fore": Step(0.046, 0.200 + TIP[2] + 0.46 * reach, length, duty, 0.105, roll=34, **fore),
+        "hind": Step(0.052, -0.195 + TIP[2] + 0.60 * reach, length, duty, 0.105, roll=20, **hind),
+        "fore": Step(0.046, 0.200 + TIP[2] + 0.46 * reach, length, duty, 0.105, roll=20, **fore),
     }
     # Rotary gallop: left hind, right hind, right fore, left fore.
     begin = {("hind", "L"): 0.0, ("hind", "R"): 0.10, ("fore", "R"): 0.47, ("fore", "L"): 0.57}
@@ -681,7 +686,7 @@ def main(size=int(os.environ.get("ATLAS", "640"))):
     meshes = sculpt()
     out = glb.Glb()
     nodes = out.nodes_of(s)
-    joints = [j for j, n in enumerate(s.names) if n not in ("root", "jaw")]
+    joints = [j for j, n in enumerate(s.names) if n != "root"]
     left = clay.joined(meshes)
     alone = [i for i, m in enumerate(meshes) if m.whole]
     left_uv = paint_.unwrap(left, {NAMES.index(n): v for n, v in SPLITS.items()})

@@ -57,6 +57,24 @@ class Glb:
             accessor["max"] = [float(v) for v in rows.max(axis=0)]
         return self.add("accessors", accessor)
 
+    def sparse(self, array, tolerance=2e-6, bounds=False):
+        """A float VEC3 accessor of mostly zeros: only the rows that differ are stored."""
+        array = np.asarray(array, dtype="<f4")
+        rows = np.nonzero(np.abs(array).max(axis=1) > tolerance)[0]
+        accessor = {"componentType": FLOAT, "count": len(array), "type": "VEC3"}
+        if len(rows):
+            small = len(array) <= 65535
+            accessor["sparse"] = {
+                "count": len(rows),
+                "indices": {"bufferView": self.view(rows.astype("<u2" if small else "<u4").tobytes()), "componentType": U16 if small else U32},
+                "values": {"bufferView": self.view(array[rows].tobytes())},
+            }
+        if bounds:
+            kept = np.zeros_like(array)
+            kept[rows] = array[rows]
+            accessor["min"], accessor["max"] = ([float(v) for v in f(axis=0)] for f in (kept.min, kept.max))
+        return self.add("accessors", accessor)
+
     def _shared(self, array, kind, component, **more):
         """An accessor that equal data share: still joints and clips of one length would else repeat themselves."""
         key = (kind, component, np.ascontiguousarray(array, dtype="<i2" if component == I16 else "<f4").tobytes())
@@ -116,9 +134,9 @@ class Glb:
             "material": material,
         }
         for moved, turned in targets:
-            target = {"POSITION": self.accessor(moved, "VEC3", FLOAT, 34962, bounds=True)}
+            target = {"POSITION": self.sparse(moved, bounds=True)}
             if turned is not None:
-                target["NORMAL"] = self.accessor(turned, "VEC3", FLOAT, 34962)
+                target["NORMAL"] = self.sparse(turned, tolerance=2e-3)
             primitive.setdefault("targets", []).append(target)
         return primitive
 
@@ -193,6 +211,8 @@ class Glb:
         """
         views, accessors = self.json.get("bufferViews", []), self.json.get("accessors", [])
         images = {i["bufferView"] for i in self.json.get("images", [])}
+        sparse = [a["sparse"][k] for a in accessors if "sparse" in a for k in ("indices", "values")]
+        images |= {part["bufferView"] for part in sparse}
         plain = [i for i, v in enumerate(views) if "target" not in v and i not in images]
         if not plain:
             return
@@ -225,7 +245,11 @@ class Glb:
                 where[i] = (len(new), len(self.bin) - start)
                 self.bin += old[v["byteOffset"] : v["byteOffset"] + v["byteLength"]]
             new.append({"buffer": 0, "byteOffset": start, "byteLength": len(self.bin) - start})
+        for part in sparse:
+            part["bufferView"] = number[part["bufferView"]]
         for a in accessors:
+            if "bufferView" not in a:
+                continue
             i = a["bufferView"]
             if i in where:
                 a["bufferView"], offset = where[i]
