@@ -350,7 +350,7 @@ PARTS = [
     Part("lower teeth", None, "face"),
     Part("tongue", clay.mirrored(TONGUE), "face", [(0, -0.11, 0.02), (0.04, -0.07, 0.11)], 80, 0.0022),
     Part("brow", brow(), "face", [(0.006, 0.04, 0.06), (0.11, 0.09, 0.14)], 110, 0.0022),
-    Part("ear", ear(), "head", [(0.07, -0.08, -0.12), (0.29, 0.11, 0.04)], 300, 0.0034),
+    Part("ear", ear(), "head", [(0.07, -0.08, -0.12), (0.29, 0.11, 0.04)], 260, 0.0034),
     Part("hair", None, "head"),
     Part("shirt", clay.mirrored(shirt()), "bust", half=False),
     Part("collar", None, "bust"),
@@ -621,7 +621,7 @@ def eyeball():
     rings = [0, 12.5, 15, 22, 29, 34, 36.5, 40, 55, 72, 92, 120, 150, 180]
     colors = {0: INK, 12.5: INK, 15: srgb("#a8741a"), 22: srgb("#e0a829"), 29: srgb("#d9971f"), 34: srgb("#8a5410"), 36.5: srgb("#4d2f10"), 40: srgb("#f2eee2")}
     linear = lambda c: np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
-    around = 22
+    around = 18
     places, shades, tris = [], [], []
     for r in rings:
         a = np.arange(around) * 2 * np.pi / around
@@ -731,7 +731,7 @@ def main(size=int(os.environ.get("ATLAS", "512"))):
     material = out.add("materials", {
         "name": "goblin",
         "pbrMetallicRoughness": {
-            "baseColorTexture": {"index": out.image(base, quality=68, name="goblin colour")},
+            "baseColorTexture": {"index": out.image(base, quality=65, name="goblin colour")},
             "metallicRoughnessTexture": {"index": (open_ := out.image(orm, quality=60, name="goblin surface"))},
         },
         "occlusionTexture": {"index": open_},
