@@ -24,6 +24,7 @@ import rig
 from clay import box, capsule, common, cut, ellipsoid, forward, grown, halfspace, union
 from paint import edge, groove, noise, srgb
 from rig import conj, mul, qx, qy, qz, rotate, slerp, smooth_step
+from sculpting import bent, meshed, mixed, pointed, unit_normals
 
 OUT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "creature.glb")
 
@@ -111,18 +112,6 @@ def place_weights(s, p):
 
 
 # ---------------------------------------------------------------- clay (left half)
-
-
-def chain(points, radii, k=0.01, flatten=None):
-    """A soft string of capsules."""
-    return union(*[capsule(a, b, ra, rb, flatten) for a, b, ra, rb in zip(points, points[1:], radii, radii[1:])], k=k)
-
-
-def bent(points, radii, k=0.01, count=6, flatten=None):
-    """A chain along a smooth curve through `points`."""
-    at = clay._smooth_table(np.linspace(0, 1, len(points)), np.column_stack([points, radii]))
-    rows = at(np.linspace(0, 1, count))
-    return chain(list(rows[:, :3]), list(rows[:, 3]), k, flatten)
 
 
 TRUNK = forward(
@@ -280,30 +269,11 @@ POINTS = {
 KEEP = {"body": [(0.069, 0.012, 0.24), (0.071, 0.012, -0.145), (0, 0.470, -0.74)], "head": [(0.100, 0.83, 0.306)]}
 
 
-def meshed(part):
-    """The part's quads; another grid is tried where the remesher refuses one or loses a limb."""
-    for factor in (1.0, 0.93, 1.06, 0.87, 1.12, 0.82):
-        try:
-            mesh = clay.mesh_of(part.shape, *part.box, part.quads, part.step * factor, part.half)
-        except RuntimeError:
-            continue
-        if all(np.linalg.norm(mesh.vertices - place, axis=1).min() < 0.035 for place in KEEP.get(part.name, ())):
-            return mesh
-    raise RuntimeError(f"no grid suits {part.name}")
-
-
-def pointed(mesh, places):
-    for place in places:
-        d = np.linalg.norm(mesh.vertices - place, axis=1) + (1.0 if place[0] == 0 else 0.0) * ~mesh.plane
-        mesh.vertices[d.argmin()] = place
-    return mesh
-
-
 def sculpt():
     meshes = []
     for part in PARTS:
         start = time.time()
-        mesh = pointed(meshed(part), POINTS.get(part.name, ()))
+        mesh = pointed(meshed(part, KEEP.get(part.name, ())), POINTS.get(part.name, ()))
         full = len(mesh.faces)
         hiders = {"body": ["head", "scarf"], "head": ["body"], "eye": ["head"], "lids": ["head"], "nose": ["head"], "scarf": ["body"]}[part.name]
         depth = {"eye": 0.004, "nose": 0.003, "lids": 0.004}.get(part.name, 0.014)
@@ -317,10 +287,6 @@ def sculpt():
 
 ORANGE, DEEP, CREAM, SOCK = srgb("#dd6f22"), srgb("#a8430f"), srgb("#f6ead6"), srgb("#3b241b")
 TEAL, AQUA, INK, AMBER = srgb("#127c80"), srgb("#2ba79f"), srgb("#17110f"), srgb("#d98e1f")
-
-
-def mixed(base, color, amount):
-    return base + (color - base) * np.asarray(amount)[:, None]
 
 
 def fur(p, seed=0):
@@ -693,9 +659,7 @@ def main(size=int(os.environ.get("ATLAS", "640"))):
     scene = lambda p: np.minimum.reduce([clay.mirrored(part.shape)(p) if part.half else part.shape(p) for part in PARTS])
     base, bump, orm = paint_.bake(left, left_uv, [p.shape for p in PARTS], paint, height, size, scene)
     shown = paint_.surface(left, left_uv, alone)
-    # Where the mirror plane folds a face onto its twin, the two normals cancel; any unit vector does there.
-    lost = np.linalg.norm(shown.normal, axis=1) < 0.5
-    shown.normal[lost], shown.tangent[lost, :3] = (0, 0, 1), (1, 0, 0)
+    unit_normals(shown)
     values, slots = rig.strongest(weights_of(s, shown.mesh), joints)
     material = out.add("materials", {
         "name": "fox",

@@ -16,6 +16,7 @@ import clay
 import rig
 from clay import box, capsule, common, cut, ellipsoid, forward, grown, halfspace, loft, union, upright
 from paint import edge, groove, noise, srgb
+from sculpting import bent, chain, meshed, mixed, unit_normals
 
 OUT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "dwarf.glb")
 
@@ -91,20 +92,6 @@ def place_weights(s, points):
 
 
 # ---------------------------------------------------------------- the body under everything (left half)
-
-
-def chain(points, radii, k=0.01, flatten=None):
-    """A soft string of capsules: locks of hair, horns, fingers."""
-    return union(
-        *[capsule(a, b, ra, rb, flatten) for a, b, ra, rb in zip(points, points[1:], radii, radii[1:])], k=k
-    )
-
-
-def bent(points, radii, k=0.01, count=6, flatten=None):
-    """A chain along a smooth curve through `points`."""
-    at = clay._smooth_table(np.linspace(0, 1, len(points)), np.column_stack([points, radii]))
-    rows = at(np.linspace(0, 1, count))
-    return chain(list(rows[:, :3]), list(rows[:, 3]), k, flatten)
 
 
 def placed(shape, rotation, origin):
@@ -408,7 +395,7 @@ def sculpt():
         if part.mesh:
             mesh = part.mesh()
         else:
-            mesh = clay.mesh_of(part.shape, *part.box, part.quads, part.step, part.half)
+            mesh = meshed(part)
         full = len(mesh.faces)
         if part.shape is not None:
             # What moves against a part must not hide it.
@@ -426,10 +413,6 @@ def sculpt():
 BLUE, NAVY, SAND, SKIN = srgb("#2f5f83"), srgb("#213f59"), srgb("#c9a46a"), srgb("#d59a72")
 LEATHER, DARK, FUR, RUST = srgb("#6d4428"), srgb("#3a281c"), srgb("#b59a78"), srgb("#a8481c")
 STEEL, BRASS, IVORY, INK = srgb("#a9b0b8"), srgb("#d9a441"), srgb("#e6dabd"), srgb("#1d1a19")
-
-
-def mixed(base, color, amount):
-    return base + (color - base) * np.asarray(amount)[:, None]
 
 
 def band(x, a, b):
@@ -781,9 +764,7 @@ def main(size=int(os.environ.get("ATLAS", "640"))):
     scene = lambda p: np.minimum.reduce([clay.mirrored(part.shape)(p) for part in PARTS if part.shape])
     base, bump, orm = paint_.bake(left, left_uv, [p.shape for p in PARTS], paint, height, size, scene)
     shown = paint_.surface(left, left_uv, alone)
-    # Where the mirror plane folds a face onto its twin, the two normals cancel; any unit vector does there.
-    lost = np.linalg.norm(shown.normal, axis=1) < 0.5
-    shown.normal[lost], shown.tangent[lost, :3] = (0, 0, 1), (1, 0, 0)
+    unit_normals(shown)
     values, slots = rig.strongest(weights_of(s, shown.mesh), joints)
     material = out.add("materials", {
         "name": "dwarf",

@@ -18,6 +18,11 @@ def tidy(values, digits=6):
     return [round(float(v), digits) + 0.0 for v in values]
 
 
+def short(values):
+    """JSON numbers with the fewest digits that read back as the same values (32-bit floats or integers)."""
+    return [float(str(v)) for v in values]
+
+
 class Glb:
     def __init__(self, generator="Gaitway sample scripts", copyright="CC0 1.0, the Gaitway authors"):
         self.json = {"asset": {"version": "2.0", "generator": generator, "copyright": copyright}, "scene": 0}
@@ -53,8 +58,25 @@ class Glb:
             accessor["normalized"] = True
         if bounds:
             rows = array.reshape(len(array), -1)
-            accessor["min"] = [float(v) for v in rows.min(axis=0)]
-            accessor["max"] = [float(v) for v in rows.max(axis=0)]
+            accessor["min"], accessor["max"] = short(rows.min(axis=0)), short(rows.max(axis=0))
+        return self.add("accessors", accessor)
+
+    def sparse(self, array, tolerance=2e-6, bounds=False):
+        """A float VEC3 accessor of mostly zeros: only the rows that differ are stored."""
+        array = np.asarray(array, dtype="<f4")
+        rows = np.nonzero(np.abs(array).max(axis=1) > tolerance)[0]
+        accessor = {"componentType": FLOAT, "count": len(array), "type": "VEC3"}
+        if len(rows):
+            small = len(array) <= 65535
+            accessor["sparse"] = {
+                "count": len(rows),
+                "indices": {"bufferView": self.view(rows.astype("<u2" if small else "<u4").tobytes()), "componentType": U16 if small else U32},
+                "values": {"bufferView": self.view(array[rows].tobytes())},
+            }
+        if bounds:
+            kept = np.zeros_like(array)
+            kept[rows] = array[rows]
+            accessor["min"], accessor["max"] = short(kept.min(axis=0)), short(kept.max(axis=0))
         return self.add("accessors", accessor)
 
     def sparse(self, array, tolerance=2e-6, bounds=False):
@@ -100,20 +122,23 @@ class Glb:
         return self.add("textures", {"source": self.add("images", entry), "sampler": 0})
 
     def primitive(self, positions, normals, indices, material, uv=None, color=None, joints=None, weights=None, targets=(),
-                  tangent=None):
+                  tangent=None, small=False):
         """`weights` (N, 4) floats; `targets`: [(position deltas, normal deltas or None)].
 
-        With `tangent` (N, 4), normals and tangents are stored small (KHR_mesh_quantization).
+        With `tangent` (N, 4), normals and tangents are stored small (KHR_mesh_quantization); `small` alone: normals in bytes.
         """
         attributes = {"POSITION": self.accessor(positions, "VEC3", FLOAT, 34962, bounds=True)}
-        if tangent is None:
+        if tangent is None and not small:
             attributes["NORMAL"] = self.accessor(normals, "VEC3", FLOAT, 34962)
         else:
             for key in ("extensionsUsed", "extensionsRequired"):
                 if "KHR_mesh_quantization" not in self.json.get(key, []):
                     self.add(key, "KHR_mesh_quantization")
-            attributes["NORMAL"] = self.accessor(np.round(normals * 32767), "VEC3", I16, 34962, normalized=True, pad_to=4)
-            attributes["TANGENT"] = self.accessor(np.round(tangent * 127), "VEC4", I8, 34962, normalized=True)
+            if tangent is None:
+                attributes["NORMAL"] = self.accessor(np.round(normals * 127), "VEC3", I8, 34962, normalized=True, pad_to=4)
+            else:
+                attributes["NORMAL"] = self.accessor(np.round(normals * 32767), "VEC3", I16, 34962, normalized=True, pad_to=4)
+                attributes["TANGENT"] = self.accessor(np.round(tangent * 127), "VEC4", I8, 34962, normalized=True)
         if uv is not None:
             attributes["TEXCOORD_0"] = self.accessor(
                 np.round(np.clip(uv, 0, 1) * 65535), "VEC2", U16, 34962, normalized=True
