@@ -336,9 +336,23 @@ def helmet():
 
 
 def visor():
-    # Its border lies inside the helmet's wall, so what is seen of it is the frame's clean edge.
-    glass = common(grown(HELMET_OUTER, -0.0035), lambda p: window(p, 0.012), k=0.004)
-    return cut(glass, grown(HELMET_OUTER, -0.026), k=0.004)
+    """A sheet of glass just under the helmet's outer surface; its border lies inside the wall, so the frame's edge is what is seen."""
+    glass = grown(HELMET_OUTER, -0.0035)
+    around, heights = np.linspace(0.0, 1.29, 11), np.linspace(1.578, 1.728, 10)
+    a, y = [c.reshape(-1) for c in np.meshgrid(around, heights)]
+    out = np.column_stack([np.sin(a), 0 * a, np.cos(a)])
+    center = np.column_stack([0 * a, y, 0 * a - 0.03])
+    n = len(around)
+    faces = [
+        [r * n + c, r * n + c + 1, (r + 1) * n + c + 1, (r + 1) * n + c]
+        for r in range(len(heights) - 1)
+        for c in range(n - 1)
+    ]
+    mesh = clay.Mesh(clay.cast(glass, center + out * 0.25, -out * 0.25, 1.0), faces)
+    mesh.plane = a == 0.0
+    mesh.vertices[mesh.plane, 0] = 0.0
+    mesh.whole = False
+    return mesh
 
 
 def collar():
@@ -405,7 +419,7 @@ PARTS = [
     Part("pouch", pouch(), "Hips", [(0.05, 0.93, 0.03), (0.18, 1.08, 0.15)], 220, 0.003, solid=False),
     Part("side pouch", side_pouch(), "Hips", [(0.11, 0.93, -0.09), (0.22, 1.08, 0.04)], 220, 0.003, solid=False),
     Part("helmet", clay.mirrored(helmet()), "Head", [(0, 1.45, -0.2), (0.2, 1.83, 0.22)], 1100),
-    Part("visor", clay.mirrored(visor()), "Head", [(0, 1.5, -0.1), (0.2, 1.78, 0.22)], 150, 0.003, solid=False),
+    Part("visor", None, "Head", mesh=visor),
     Part("collar", None, mesh=collar),
     Part("pack", clay.mirrored(pack()), "Spine2", [(0, 1.08, -0.28), (0.2, 1.48, -0.08)], 500, 0.005),
     Part("shoulder", None, mesh=shoulder_pad),
