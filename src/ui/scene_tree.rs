@@ -354,7 +354,9 @@ fn by_hand(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, rot
     for (axis, name) in ["Turn X", "Turn Y", "Turn Z"].into_iter().enumerate() {
         let settings =
             SliderSettings { range: (-180.0, 180.0), default: 0.0, decimals: 1, suffix: "°", logarithmic: false };
-        if let Some(angle) = controls::slider(ui, name, f64::from(now[axis]), settings) {
+        // Never minus nothing.
+        let now_there = f64::from(now[axis]) + 0.0;
+        if let Some(angle) = controls::slider(ui, name, now_there, settings) {
             let mut degrees = now;
             degrees[axis] = angle as f32;
             out.commands.push(Command::SetPose { joint: number, degrees: Some(degrees) });
