@@ -350,13 +350,13 @@ fn by_hand(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, rot
     let number = asset.skeleton.source_index(joint);
     let rest = asset.skeleton.rest().locals.get(joint.get()).map_or(Quat::IDENTITY, |local| local.rotation);
     let now = shown.state.pose.get(&number).copied().unwrap_or_else(|| degrees_by_hand(rest, rotation));
+    // Never minus nothing.
+    let now = now.map(|angle| angle + 0.0);
     controls::hint(ui, "From its rest: about its X, then its Y, then its Z. Or drag the rings in the picture.");
     for (axis, name) in ["Turn X", "Turn Y", "Turn Z"].into_iter().enumerate() {
         let settings =
             SliderSettings { range: (-180.0, 180.0), default: 0.0, decimals: 1, suffix: "°", logarithmic: false };
-        // Never minus nothing.
-        let now_there = f64::from(now[axis]) + 0.0;
-        if let Some(angle) = controls::slider(ui, name, now_there, settings) {
+        if let Some(angle) = controls::slider(ui, name, f64::from(now[axis]), settings) {
             let mut degrees = now;
             degrees[axis] = angle as f32;
             out.commands.push(Command::SetPose { joint: number, degrees: Some(degrees) });
