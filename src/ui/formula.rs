@@ -87,7 +87,9 @@ pub(super) fn mark(ui: &Ui, painter: &Painter, pane: Rect, shown: &Shown<'_>, lo
     let galley = painter.layout_no_wrap(text, FontId::proportional(13.0), palette.text);
     let half = galley.size().x / 2.0 + 8.0;
     let x = at.x.clamp(pane.left() + half, (pane.right() - half).max(pane.left() + half));
-    let box_ = Rect::from_center_size(pos2(x, at.y + 22.0), galley.size() + vec2(16.0, 6.0));
+    // Below the vertex, where there is room for it.
+    let below = if at.y + 34.0 < pane.bottom() - 12.0 { 22.0 } else { -22.0 };
+    let box_ = Rect::from_center_size(pos2(x, at.y + below), galley.size() + vec2(16.0, 6.0));
     painter.rect_filled(box_, 6.0, palette.panel.gamma_multiply(0.92));
     painter.galley(box_.center() - galley.size() / 2.0, galley, palette.text);
     Some(())

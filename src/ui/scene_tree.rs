@@ -350,6 +350,8 @@ fn by_hand(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, rot
     let number = asset.skeleton.source_index(joint);
     let rest = asset.skeleton.rest().locals.get(joint.get()).map_or(Quat::IDENTITY, |local| local.rotation);
     let now = shown.state.pose.get(&number).copied().unwrap_or_else(|| degrees_by_hand(rest, rotation));
+    // Never minus nothing.
+    let now = now.map(|angle| angle + 0.0);
     controls::hint(ui, "From its rest: about its X, then its Y, then its Z. Or drag the rings in the picture.");
     for (axis, name) in ["Turn X", "Turn Y", "Turn Z"].into_iter().enumerate() {
         let settings =
