@@ -196,7 +196,7 @@ def head():
     shape = union(union(skull, muzzle, k=0.05), brow, k=0.02)
     shape = union(shape, cheeks, k=0.020)
     shape = cut(shape, ellipsoid(EYE + [0.006, 0.001, 0.018], (0.024, 0.019, 0.019)), k=0.014)
-    mouth = capsule((0, 0.583, 0.485), (0.034, 0.583, 0.405), 0.0032, 0.002)
+    mouth = union(capsule((0, 0.583, 0.485), (0.024, 0.584, 0.425), 0.0032, 0.0028), capsule((0.024, 0.584, 0.425), (0.041, 0.594, 0.392), 0.0028, 0.002), k=0.002)
     shape = cut(shape, mouth, k=0.006)
     ear = bent([(0.048, 0.660, 0.318), (0.066, 0.722, 0.314), (0.090, 0.795, 0.309), (0.104, 0.842, 0.305)], [0.050, 0.043, 0.0195, 0.0045], k=0.008, flatten=((0.25, 0, 1.0), 0.5))
     hollow = bent([(0.052, 0.694, 0.338), (0.068, 0.732, 0.334), (0.090, 0.796, 0.322)], [0.033, 0.029, 0.006], k=0.008, flatten=((0.25, 0, 1.0), 0.62))
@@ -242,13 +242,14 @@ def scarf():
 class Part:
     """A piece: its clay and the joint that carries it whole, or None: by nearness to bones."""
 
-    def __init__(self, name, shape, carrier, box, quads, step, half=True):
-        self.name, self.shape, self.carrier, self.box, self.quads, self.step, self.half = name, shape, carrier, box, quads, step, half
+    def __init__(self, name, shape, carrier, box, quads, step, half=True, relax=3):
+        self.name, self.shape, self.carrier, self.box, self.quads, self.step = name, shape, carrier, box, quads, step
+        self.half, self.relax = half, relax
 
 
 PARTS = [
-    Part("body", BODY, None, [(0, -0.02, -0.80), (0.18, 0.68, 0.38)], 3200, 0.0045),
-    Part("head", clay.mirrored(head()), "head", [(0, 0.50, 0.22), (0.17, 0.87, 0.52)], 1750, 0.0034),
+    Part("body", BODY, None, [(0, -0.02, -0.80), (0.18, 0.68, 0.38)], 3456, 0.0045, relax=16),
+    Part("head", clay.mirrored(head()), "head", [(0, 0.50, 0.22), (0.17, 0.87, 0.52)], 1750, 0.00296),
     Part("eye", clay.sphere(EYE, 0.0205), "head", [(0.02, 0.60, 0.34), (0.09, 0.67, 0.42)], 160, 0.0022),
     Part("lids", lids(), "head", [(0.02, 0.60, 0.34), (0.09, 0.67, 0.42)], 200, 0.0014),
     Part("nose", nose(), "head", [(-0.03, 0.57, 0.46), (0.03, 0.64, 0.52)], 110, 0.0018, half=False),
@@ -273,7 +274,7 @@ def sculpt():
     meshes = []
     for part in PARTS:
         start = time.time()
-        mesh = pointed(meshed(part, KEEP.get(part.name, ())), POINTS.get(part.name, ()))
+        mesh = pointed(meshed(part, KEEP.get(part.name, ()), good=10), POINTS.get(part.name, ()))
         full = len(mesh.faces)
         hiders = {"body": ["head", "scarf"], "head": ["body"], "eye": ["head"], "lids": ["head"], "nose": ["head"], "scarf": ["body"]}[part.name]
         depth = {"eye": 0.004, "nose": 0.003, "lids": 0.004}.get(part.name, 0.014)
@@ -358,7 +359,7 @@ def paint(part, p, n, opened):
             c = mixed(c, SOCK, edge(rim, 0.004))
             tear = np.linalg.norm((q - [0.036, 0.620, 0.396]) * [1.2, 0.8, 0.8], axis=1) - 0.009
             c = mixed(c, SOCK, 0.8 * edge(tear, 0.006))
-            c = mixed(c, INK, edge(np.maximum(np.abs(y - 0.583) - 0.0022, 0.404 - z), 0.002) * (z < 0.487))
+            c = mixed(c, INK, edge(np.maximum(np.abs(y - 0.583 - 0.32 * np.maximum(0.426 - z, 0.0)) - 0.0022, 0.391 - z), 0.002) * (z < 0.487))
         c = c * (1.0 + 0.16 * f)[:, None]
         return shade(np.clip(c, 0, 1)), 0.88 * ones, metal
     if name == "eye":
@@ -369,7 +370,7 @@ def paint(part, p, n, opened):
         c = mixed(c, AMBER, edge(away - 62, 4))
         c = mixed(c, srgb("#7a430c"), edge(np.abs(away - 60) - 4, 4))
         c = mixed(c, INK * 0.4, edge(away - 36, 3))
-        glint = np.linalg.norm(q - EYE - np.array([0.0035, 0.0085, 0.0180]), axis=1) - 0.0042
+        glint = np.linalg.norm(q - EYE - np.array([0.0040, 0.0080, 0.0180]), axis=1) - 0.0050
         c = mixed(c, np.ones(3), edge(glint, 0.001))
         return c + 0 * d, 0.12 * ones, metal
     if name == "lids":
@@ -575,11 +576,11 @@ def walk(figure, speed=0.80, frames=42):
 def run(figure, speed=3.6, frames=26):
     length = speed * frames / RATE
     duty = 0.215
-    hind = dict(lean=[(0, -4), (0.4, 6), (0.75, 26), (1.0, 52), (1.20, 66), (1.45, 40), (1.75, -12)], curl=[(0.18, 52), (0.45, 44), (0.80, -6)])
+    hind = dict(lean=[(0, -4), (0.4, 6), (0.75, 26), (1.0, 52), (1.16, 58), (1.40, 22), (1.72, -14)], curl=[(0.18, 50), (0.45, 32), (0.80, -6)])
     fore = dict(lean=[(0, -14), (0.4, 0), (0.75, 22), (1.0, 50), (1.22, 100), (1.50, 92), (1.80, 4)], curl=[(0.20, 88), (0.5, 92), (0.84, 0)])
     reach = length * duty
     steps = {
-        "hind": Step(0.052, -0.195 + TIP[2] + 0.60 * reach, length, duty, 0.105, roll=20, **hind),
+        "hind": Step(0.052, -0.195 + TIP[2] + 0.60 * reach, length, duty, 0.066, roll=20, **hind),
         "fore": Step(0.046, 0.200 + TIP[2] + 0.46 * reach, length, duty, 0.105, roll=20, **fore),
     }
     # Rotary gallop: left hind, right hind, right fore, left fore.
@@ -590,7 +591,7 @@ def run(figure, speed=3.6, frames=26):
         gather = swing(p, 0.93)
         flex = 4.0 + 12.0 * gather
         pitch = 4.5 * swing(p, 0.80)
-        moves["hips"] = (0, -0.036 + 0.020 * swing(p, 0.70) + 0.010 * swing(2 * p, 0.42), 0.030 * swing(p, 0.93) + 0.01)
+        moves["hips"] = (0, -0.030 + 0.018 * swing(p, 0.70) + 0.010 * swing(2 * p, 0.42), 0.030 * swing(p, 0.93) + 0.01)
         turns["hips"] = mul(qx(pitch - 1.15 * flex), qz(1.5 * swing(p, 0.0)))
         for i, k in enumerate((0.42, 0.34, 0.24)):
             turns[figure.names["spine"][i]] = mul(qx(2.0 * k * flex), qy(2.0 * k * swing(p, 0.3)))
@@ -656,7 +657,7 @@ def main(size=int(os.environ.get("ATLAS", "640"))):
     left = clay.joined(meshes)
     alone = [i for i, m in enumerate(meshes) if m.whole]
     left_uv = paint_.unwrap(left, {NAMES.index(n): v for n, v in SPLITS.items()})
-    scene = lambda p: np.minimum.reduce([clay.mirrored(part.shape)(p) if part.half else part.shape(p) for part in PARTS])
+    scene = lambda p: np.minimum.reduce([clay.mirrored(part.shape)(p) if part.half else part.shape(p) for part in PARTS]) + 0.002
     base, bump, orm = paint_.bake(left, left_uv, [p.shape for p in PARTS], paint, height, size, scene)
     shown = paint_.surface(left, left_uv, alone)
     unit_normals(shown)
@@ -684,7 +685,7 @@ def main(size=int(os.environ.get("ATLAS", "640"))):
         # Keys are straight lines between moments: fast paws need them close together.
         fine = {"idle": 1, "walk": 2, "run": 4}[name]
         poses = gait.cycle(pose, frames * fine)
-        out.clip(name, nodes, gait.channels(s, poses, RATE * fine, tight=legs, tolerance=0.018, loose=0.25, move_tolerance=0.0001))
+        out.clip(name, nodes, gait.channels(s, poses, RATE * fine, tight=legs, tolerance=0.010, loose=0.25, move_tolerance=0.0001))
     print(out.write(OUT, [nodes[0], node]), "bytes")
 
 

@@ -351,9 +351,9 @@ class Part:
     """A piece: its clay, or a ready mesh of the left half; `carrier`: the joint that carries it whole (or "beard", or
     None: by the gates)."""
 
-    def __init__(self, name, shape, carrier=None, box=None, quads=0, step=0.004, mesh=None, solid=True, half=True):
+    def __init__(self, name, shape, carrier=None, box=None, quads=0, step=0.004, mesh=None, solid=True, half=True, relax=3):
         self.name, self.shape, self.carrier = name, shape, carrier
-        self.box, self.quads, self.step, self.mesh, self.half = box, quads, step, mesh, half
+        self.box, self.quads, self.step, self.mesh, self.half, self.relax = box, quads, step, mesh, half, relax
         # Whether its clay hides what lies inside it.
         self.solid = solid and shape is not None
 
@@ -761,7 +761,7 @@ def main(size=int(os.environ.get("ATLAS", "640"))):
     left = clay.joined(meshes)
     alone = [i for i, m in enumerate(meshes) if m.whole]
     left_uv = paint_.unwrap(left, {NAMES.index(n): v for n, v in SPLITS.items()})
-    scene = lambda p: np.minimum.reduce([clay.mirrored(part.shape)(p) for part in PARTS if part.shape])
+    scene = lambda p: np.minimum.reduce([clay.mirrored(part.shape)(p) for part in PARTS if part.shape]) + 0.002
     base, bump, orm = paint_.bake(left, left_uv, [p.shape for p in PARTS], paint, height, size, scene)
     shown = paint_.surface(left, left_uv, alone)
     unit_normals(shown)

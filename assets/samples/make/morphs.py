@@ -339,8 +339,9 @@ TONGUE = union(ellipsoid((0, -0.0925, 0.072), (0.024, 0.0075, 0.026)), ellipsoid
 
 
 class Part:
-    def __init__(self, name, shape, group, box=None, quads=0, step=0.004, half=True):
-        self.name, self.shape, self.group, self.box, self.quads, self.step, self.half = name, shape, group, box, quads, step, half
+    def __init__(self, name, shape, group, box=None, quads=0, step=0.004, half=True, relax=3):
+        self.name, self.shape, self.group, self.box, self.quads, self.step = name, shape, group, box, quads, step
+        self.half, self.relax = half, relax
 
 
 # Groups: "face" has the targets, "head" moves with the head, "bust" stands still.
