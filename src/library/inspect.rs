@@ -26,6 +26,7 @@ pub fn inspect(model: &Model, files: &[String]) -> Value {
         "joints": model.rig().joint_count(asset),
         "meshes": asset.meshes.len(),
         "primitives": primitives().count(),
+        "parts": asset.meshes.iter().flat_map(|mesh| &mesh.part_names).collect::<Vec<_>>(),
         "vertices": asset.meshes.iter().map(Mesh::file_vertex_count).sum::<usize>(),
         "triangles": primitives().map(Geometry::triangles).sum::<usize>(),
         "morph_targets": asset.meshes.iter().map(target_count).sum::<usize>(),

@@ -8,6 +8,9 @@ use super::{Output, Saved, Shown, UiAction, controls, style};
 use crate::asset::{Asset, Warning};
 use crate::mesh::{Geometry, Mesh};
 
+/// More are not listed.
+const MOST_PARTS: usize = 100;
+
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let Some(model) = shown.library.active() else { return };
     let asset: &Asset = &model.asset;
@@ -40,6 +43,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
         }
     });
 
+    parts(ui, asset);
     save(ui, asset, out);
 
     controls::section(ui, "EXTENSIONS");
@@ -72,6 +76,22 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
             }
         });
     }
+}
+
+/// What the file calls the pieces of its meshes, where it has names for them.
+fn parts(ui: &mut Ui, asset: &Asset) {
+    let mut pieces =
+        asset.meshes.iter().flat_map(|mesh| mesh.part_names.iter().zip(&mesh.primitives)).take(MOST_PARTS).peekable();
+    if pieces.peek().is_none() {
+        return;
+    }
+    controls::section(ui, "PARTS");
+    controls::card(ui, |ui| {
+        for (name, geometry) in pieces {
+            let name = if name.is_empty() { "without a name" } else { name };
+            fact(ui, name, &format!("{} triangles", grouped(geometry.triangles())));
+        }
+    });
 }
 
 /// Models of other formats can be had as GLB; a glTF file is one already.

@@ -68,6 +68,7 @@ fn inspect_is_the_document_that_scripts_rely_on() {
         "joints",
         "meshes",
         "primitives",
+        "parts",
         "vertices",
         "triangles",
         "morph_targets",

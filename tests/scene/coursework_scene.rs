@@ -280,6 +280,7 @@ fn several_parts_are_one_mesh_in_the_order_of_the_file() {
     let model = library.active().expect("a model");
     assert_eq!(gaitway::library::inspect(model, &[])["vertices"], 5);
     assert_eq!(gaitway::library::inspect(model, &[])["primitives"], 2);
+    assert_eq!(gaitway::library::inspect(model, &[])["parts"], serde_json::json!(["a", "b"]));
 }
 
 /// The joints have no names, so the map is written by hand.
