@@ -45,7 +45,10 @@ pub fn build(features: &[&str], url: Option<&str>) -> anyhow::Result<()> {
 
 fn optimise(wasm: &Path) -> anyhow::Result<()> {
     let file = wasm.to_str().context("the repository's path is not UTF-8")?;
-    run("node", &[&["node_modules/binaryen/bin/wasm-opt", "--gufa", "-Oz"], &WASM_FEATURES[..], &[file, "-o", file]].concat())
+    run(
+        "node",
+        &[&["node_modules/binaryen/bin/wasm-opt", "--gufa", "-Oz"], &WASM_FEATURES[..], &[file, "-o", file]].concat(),
+    )
 }
 
 /// Trunk's own way of doing this gives up on what it cannot parse.
