@@ -234,18 +234,28 @@ def cuff():
     return distance
 
 
-PAULDRON_AT = np.array([0.262, 0.906, -0.022])
-PAULDRON_OUT = np.array([0.64, 0.768, 0.0])
+PAULDRON_AT = np.array([0.268, 0.905, -0.022])
+PAULDRON_OUT = np.array([0.70, 0.714, 0.0])
 
 
 def pauldron():
-    """A steel dome with a brass rim over each shoulder."""
-    ball = ellipsoid(PAULDRON_AT, (0.116, 0.112, 0.124))
-    dome = common(ball, halfspace(PAULDRON_AT + PAULDRON_OUT * 0.012, -PAULDRON_OUT), k=0.006)
-    band = common(grown(ball, 0.009), lambda p: np.abs((p - PAULDRON_AT) @ PAULDRON_OUT - 0.026) - 0.0145, k=0.008)
-    boss = ellipsoid(PAULDRON_AT + PAULDRON_OUT * 0.112, (0.024, 0.024, 0.024))
-    whole = union(union(dome, band, k=0.004), boss, k=0.006)
-    return cut(whole, grown(ball, -0.014), k=0.004)
+    """A steel dome with a brass rim over each shoulder: a turned piece, in loops round its axis."""
+    # (radius, height along the axis), from the inside over the rim to the boss.
+    profile = [
+        (0.098, 0.046), (0.104, 0.018), (0.112, 0.008), (0.122, 0.011), (0.126, 0.024), (0.121, 0.038), (0.1095, 0.043), (0.100, 0.060),
+        (0.083, 0.081), (0.058, 0.099), (0.029, 0.109), (0.026, 0.116), (0.022, 0.126), (0.012, 0.132), (0.0008, 0.134),
+    ]
+    across = np.array([PAULDRON_OUT[1], -PAULDRON_OUT[0], 0.0])
+    angles = np.arange(17) * 2 * np.pi / 17
+    places = [
+        PAULDRON_AT + PAULDRON_OUT * t + 1.05 * r * (np.cos(a) * across + 1.07 * np.sin(a) * np.array([0, 0, 1.0])) for r, t in profile for a in angles
+    ]
+    n = len(angles)
+    faces = [[i * n + k, (i + 1) * n + k, (i + 1) * n + (k + 1) % n, i * n + (k + 1) % n] for i in range(len(profile) - 1) for k in range(n)]
+    mesh = clay.Mesh(places, faces)
+    mesh.plane = np.zeros(len(places), dtype=bool)
+    mesh.whole = False
+    return clay._away(mesh, PAULDRON_AT, np.array([0, 0, 1.0]))
 
 
 # ---------------------------------------------------------------- the head
@@ -367,7 +377,7 @@ PARTS = [
     Part("hand", hand(), "hand", [(0.40, 0.38, -0.08), (0.64, 0.66, 0.16)], 440, 0.004),
     Part("boot", boot(), None, [(0.03, -0.03, -0.18), (0.29, 0.28, 0.29)], 440, 0.006),
     Part("cuff", cuff(), None, [(0.01, 0.19, -0.14), (0.28, 0.31, 0.15)], 250, 0.006, solid=False),
-    Part("pauldron", pauldron(), "pauldron", [(0.12, 0.82, -0.18), (0.42, 1.07, 0.13)], 380, 0.004, solid=False),
+    Part("pauldron", None, "pauldron", mesh=pauldron),
     Part("face", clay.mirrored(face()), "head", [(0, 0.88, -0.16), (0.18, 1.30, 0.22)], 600, 0.005),
     Part("eye", eyeball(), "head", [(0.02, 1.09, 0.07), (0.09, 1.17, 0.15)], 110, 0.0025, solid=False),
     Part("lids", lids(), "head", [(0.02, 1.09, 0.07), (0.09, 1.17, 0.15)], 170, 0.0016, solid=False),
@@ -395,7 +405,7 @@ def sculpt():
         if part.mesh:
             mesh = part.mesh()
         else:
-            mesh = meshed(part)
+            mesh = meshed(part, good=40)
         full = len(mesh.faces)
         if part.shape is not None:
             # What moves against a part must not hide it.
@@ -504,7 +514,7 @@ def height(part, p):
     if name == "pauldron":
         t = (q - PAULDRON_AT) @ PAULDRON_OUT
         a = q - PAULDRON_AT - np.outer(t, PAULDRON_OUT)
-        around = np.arctan2(a[:, 2], a @ [0.768, -0.64, 0.0])
+        around = np.arctan2(a[:, 2], a @ [0.714, -0.70, 0.0])
         to = (around / (np.pi / 7) % 1.0 - 0.5) * (np.pi / 7) * 0.115
         rivet = 0.0028 * np.clip(1.0 - (np.hypot(to, t - 0.026) / 0.0065) ** 2, 0, 1)
         return 0.0006 * noise(q, 0.03, 3) + rivet * (t < 0.045) + groove(t - 0.043, 0.004, 0.0012)

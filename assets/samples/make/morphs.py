@@ -351,7 +351,7 @@ PARTS = [
     Part("lower teeth", None, "face"),
     Part("tongue", clay.mirrored(TONGUE), "face", [(0, -0.11, 0.02), (0.04, -0.07, 0.11)], 80, 0.0022),
     Part("brow", brow(), "face", [(0.006, 0.04, 0.06), (0.11, 0.09, 0.14)], 110, 0.0022),
-    Part("ear", ear(), "head", [(0.07, -0.08, -0.12), (0.29, 0.11, 0.04)], 260, 0.0034),
+    Part("ear", ear(), "head", [(0.07, -0.08, -0.12), (0.29, 0.11, 0.04)], 340, 0.0034),
     Part("hair", None, "head"),
     Part("shirt", clay.mirrored(shirt()), "bust", half=False),
     Part("collar", None, "bust"),
@@ -381,10 +381,9 @@ def sculpt():
             mesh.vertices[mesh.plane, 0] = 0.0
             mesh.whole = False
         elif part.name == "shirt":
-            # Seen whole from its middle; what the hood hides is left out.
-            mesh = clay.globe(part.shape, (0, -0.222, -0.022), (0.20, 0.075, 0.10), (12, 6, 6))
+            # Seen whole from its middle.
+            mesh = clay.globe(part.shape, (0, -0.222, -0.022), (0.20, 0.075, 0.10), (10, 5, 5))
             mesh.whole = True
-            mesh = clay.without_hidden(mesh, [(ellipsoid((0, -0.13, -0.022), (0.090, 0.055, 0.088)), 0.0)])
         elif part.name in READY:
             mesh = READY[part.name]()
         elif "teeth" in part.name:
@@ -622,7 +621,7 @@ def eyeball():
     rings = [0, 12.5, 15, 22, 29, 34, 36.5, 40, 55, 72, 92, 120, 150, 180]
     colors = {0: INK, 12.5: INK, 15: srgb("#a8741a"), 22: srgb("#e0a829"), 29: srgb("#d9971f"), 34: srgb("#8a5410"), 36.5: srgb("#4d2f10"), 40: srgb("#f2eee2")}
     linear = lambda c: np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
-    around = 18
+    around = 16
     places, shades, tris = [], [], []
     for r in rings:
         a = np.arange(around) * 2 * np.pi / around
