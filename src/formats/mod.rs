@@ -8,6 +8,7 @@ mod gltf;
 mod lines;
 mod obj;
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 pub use error::LoadError;
@@ -18,24 +19,22 @@ use crate::anim::{Clip, Skeleton};
 use crate::asset::{Asset, Image};
 use file_set::bare_name;
 
+/// Of .obj, .skel and .attach together. With more, which nobody can have open at once, nothing is looked for beside them: each
+/// takes a walk through the set.
+const MOST_OBJ_FILES: usize = 256;
+
 /// Relative URIs (percent-decoded) that the models and motions in this set refer to and that are not in the set, not even
 /// by their bare names; for an .obj also the .skel and .attach of the same stem, which need not exist. Empty when the set is complete or cannot be read at all ([`load`] will say why).
 pub fn missing_files(files: &FileSet) -> Vec<String> {
     let Ok(files) = files.unpacked() else { return Vec::new() };
-    let mut missing: Vec<String> = Vec::new();
+    let (mut missing, mut known) = (Vec::new(), BTreeSet::new());
+    let mut add = |uris: Vec<String>| missing.extend(uris.into_iter().filter(|uri| known.insert(uri.clone())));
     for (name, bytes) in files.iter().filter(|(name, bytes)| is_gltf(name, bytes) && !is_bvh(name, bytes)) {
-        for uri in gltf::missing_files(&files, name, bytes) {
-            if !missing.contains(&uri) {
-                missing.push(uri);
-            }
-        }
+        add(gltf::missing_files(&files, name, bytes));
     }
-    for (name, bytes) in files.iter().filter(|(name, bytes)| is_obj(name, bytes) || obj::is_companion(name)) {
-        for uri in obj::missing_files(&files, name, bytes) {
-            if !missing.contains(&uri) {
-                missing.push(uri);
-            }
-        }
+    let of_obj = || files.iter().filter(|(name, bytes)| is_obj(name, bytes) || obj::is_companion(name));
+    if of_obj().count() <= MOST_OBJ_FILES {
+        of_obj().for_each(|(name, bytes)| add(obj::missing_files(&files, name, bytes)));
     }
     missing
 }

@@ -333,6 +333,45 @@ fn vertices_may_have_colours_and_the_rest_is_told_of() {
     assert!(alone("v 0 0 0 1 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n").meshes[0].primitives[0].colors.is_empty());
 }
 
+/// Each part has a name of its own, so a long one must not be kept for all of them.
+#[test]
+fn long_names_are_cut() {
+    let long = "ä".repeat(1 << 19);
+    let mut obj = format!("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\no {long}\nusemtl {long}\n");
+    obj.extend((0..4096).map(|part| format!("g {part}\nf 1 2 3\n")));
+    let asset = load(&set(&[("m.obj", &obj), ("m.mtl", &format!("newmtl {long}\nKd 1 0 0\n"))])).unwrap();
+    let names = &asset.meshes[0].part_names;
+    assert_eq!((names.len(), names[4095].len()), (4096, 256 + 256 + 10));
+    assert!(names.iter().all(|name| name.starts_with(&"ä".repeat(128))));
+    assert_eq!(
+        (asset.materials.len(), asset.materials[0].base_color.x),
+        (1, 1.0),
+        "found by the same part of its name"
+    );
+    let codes: Vec<&str> = asset.warnings.iter().map(Warning::code).collect();
+    assert_eq!(codes, ["obj-name", "obj-name"]);
+}
+
+#[test]
+fn what_many_names_ask_for_is_bounded() {
+    let mut obj: String = (0..50_000).map(|library| format!("mtllib {library}.mtl\n")).collect();
+    obj.push_str(SQUARE);
+    let asset = alone(&obj);
+    let count = |code: &str| asset.warnings.iter().filter(|warning| warning.code() == code).count();
+    assert_eq!((count("materials-missing"), count("obj-libraries") > 0), (64, true));
+    let missing = missing_files(&set(&[("m.obj", &obj)]));
+    assert_eq!((missing.len(), missing[2].as_str()), (2 + 64, "0.mtl"));
+    let pictures: String = (0..50_000).map(|name| format!("newmtl {name}\nmap_Kd {name}.png\n")).collect();
+    let missing = missing_files(&set(&[("m.obj", "mtllib m.mtl\n"), ("m.mtl", &pictures)]));
+    assert_eq!(missing.len(), 2 + 512);
+    // More models than can be open at once: what is beside them is not looked for.
+    let mut many = FileSet::default();
+    for model in 0..5000 {
+        many.insert(format!("{model}.obj"), SQUARE.as_bytes().to_vec());
+    }
+    assert_eq!(missing_files(&many), [""; 0]);
+}
+
 fn real(name: &str) -> Option<(Asset, Exercise, FileSet)> {
     let folder = data_folder()?.join("mit6837");
     let mut files = FileSet::default();
