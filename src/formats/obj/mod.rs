@@ -131,8 +131,8 @@ pub(super) fn load(
     };
     let mut built = mesh::build(&obj, stem);
     if skin.is_some() {
-        for (geometry, file_vertex) in built.mesh.primitives.iter_mut().zip(&built.file_vertex) {
-            geometry.influences = mesh::copied(&influences, file_vertex);
+        for geometry in &mut built.mesh.primitives {
+            geometry.influences = mesh::copied(&influences, &geometry.file_vertex);
         }
     }
     let mut asset = Asset { format: "obj", skeleton, ..Asset::default() };
