@@ -51,9 +51,10 @@ fn meshes(model: &Model, state: &ViewerState, frame: &Frame) -> Vec<Value> {
         let node = asset.skeleton.source_index(asset.instances[draw.instance].joint);
         let mesh = &asset.meshes[draw.mesh];
         let mut whole = Whole::new(mesh, state.show.smooth);
+        let mut smooth = if state.show.smooth { smooth_normals(&mesh.primitives) } else { Vec::new() };
         for (primitive, geometry) in mesh.primitives.iter().enumerate() {
-            let smooth = state.show.smooth && geometry.normals.is_empty();
-            let smoothed = smooth.then(|| Geometry { normals: smooth_normals(geometry), ..geometry.clone() });
+            let normals = smooth.get_mut(primitive).map(std::mem::take).filter(|normals| !normals.is_empty());
+            let smoothed = normals.map(|normals| Geometry { normals, ..geometry.clone() });
             let geometry = smoothed.as_ref().unwrap_or(geometry);
             deform(geometry, weights, palette, state.skinning, &mut deformed);
             if mesh.file_vertices > 0 {
