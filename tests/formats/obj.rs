@@ -450,6 +450,28 @@ fn a_written_exercise_model_means_the_same_to_another_reader() {
     }
 }
 
+#[test]
+fn a_webp_picture_is_written_with_its_extension() {
+    // One pixel.
+    let webp = b"RIFF\x1a\0\0\0WEBPVP8L\x0d\0\0\0\x2f\0\0\0\x10\x07\x10\x11\x11\x88\x88\xfe\x07\0";
+    let obj = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nusemtl skin\nf 1/1 2/1 3/1\n";
+    let mut files = set(&[("m.obj", obj), ("m.mtl", "newmtl skin\nmap_Kd skin.webp\n")]);
+    files.insert("skin.webp", webp.to_vec());
+    let written = convert(&files, &LoadOptions::default()).unwrap();
+    let (json, _) = chunks(&written);
+    assert_eq!(json["images"][0]["mimeType"], "image/webp");
+    assert_eq!(json["textures"], serde_json::json!([{ "extensions": { "EXT_texture_webp": { "source": 0 } } }]));
+    for key in ["extensionsUsed", "extensionsRequired"] {
+        assert_eq!(json[key], serde_json::json!(["EXT_texture_webp"]), "{key}");
+    }
+    files = FileSet::default();
+    files.insert("written.glb", written);
+    let asset = load(&files).unwrap();
+    assert_eq!((asset.warnings.len(), asset.textures[0].image, asset.images[0].width), (0, Some(0), 1));
+    let other = set(&[("m.obj", SQUARE)]);
+    assert!(chunks(&convert(&other, &LoadOptions::default()).unwrap()).0["extensionsUsed"].is_null());
+}
+
 fn chunks(glb: &[u8]) -> (serde_json::Value, &[u8]) {
     let length = |at: usize| u32::from_le_bytes(glb[at..at + 4].try_into().unwrap()) as usize;
     let json = &glb[20..20 + length(12)];
