@@ -112,9 +112,10 @@ fn write_obj(
     gltf::write_asset(&asset, skeleton, clips)
 }
 
-/// The skeleton of an asset with `clips` (which are for it) and nothing else, as a GLB. Joints keep their numbers.
-pub fn write_motion(asset: &Asset, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
-    gltf::write_motion(asset, clips)
+/// The skeleton of an asset with `clips` (which are for it) and nothing else, as a GLB. Joints keep their numbers and are called
+/// and stand as `skeleton` says, which is the asset's own but for that.
+pub fn write_motion(asset: &Asset, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
+    gltf::write_motion(asset, skeleton, clips)
 }
 
 /// The one model or motion of a set as a GLB: a glTF with all that is in it, a .bvh as its skeleton and its clip, an .obj at
@@ -124,7 +125,7 @@ pub fn convert(files: &FileSet, options: &LoadOptions) -> Result<Vec<u8>, WriteE
     let (name, bytes) = find_model(&files)?;
     let asset = read(&files, name, bytes, options, &mut |_| ())?;
     if is_bvh(name, bytes) {
-        return gltf::write_motion(&asset, &asset.clips.iter().collect::<Vec<_>>());
+        return gltf::write_motion(&asset, &asset.skeleton, &asset.clips.iter().collect::<Vec<_>>());
     }
     if is_obj(name, bytes) {
         return gltf::write_asset(&asset, &asset.skeleton, &[]);
