@@ -84,7 +84,7 @@ fn a_link_brings_its_motion_and_its_map() {
     };
     let model = file("m.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
     file("m.skel", "0 0 0 -1\n0 1 0 0\n");
-    file("m.attach", "0\n1\n1\n");
+    file("m.attach", "1\n1\n1\n");
     let map = file("m.json", r#"{ "gaitway_map": 1, "joints": { "joint 1": { "source": "LeftUpLeg" } } }"#);
     let out = folder.join("out.glb");
     let out = out.to_str().expect("a plain path");
