@@ -18,9 +18,7 @@ libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     for mesh in &asset.meshes {
         for geometry in &mesh.primitives {
             geometry.validate(skin_joints).expect("what is read is consistent");
-        }
-        for &[piece, vertex] in &mesh.file_vertices {
-            assert!((vertex as usize) < mesh.primitives[piece as usize].positions.len());
+            assert!(geometry.file_vertex.iter().all(|&vertex| (vertex as usize) < mesh.file_vertex_count()));
         }
     }
     let written = convert(&files, &LoadOptions::default()).expect("what is read can be written");

@@ -440,7 +440,7 @@ impl eframe::App for App {
             self.draw(rect, context.pixels_per_point());
             slot.fill(|rect| self.scene.paint(rect));
             let shown = Shown { library: &self.library, state: &self.state, frame: &self.frame };
-            ui::labels(ui, rect, shown, &self.panels);
+            ui::labels(ui, rect, shown, &mut self.panels);
         }
         self.answer();
         if acted {

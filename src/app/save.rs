@@ -82,7 +82,8 @@ impl App {
         let model = self.library.active().ok_or("there is no model")?;
         let made = self.baked_clip(clip)?;
         let clip = made.clip.as_ref().or_else(|| model.clip(clip)).ok_or("there is no such clip")?;
-        let bytes = write_motion(&model.asset, &[clip]).map_err(|error| error.to_string())?;
+        let bytes = write_motion(&model.asset, &written_skeleton(model, &self.state, false), &[clip])
+            .map_err(|error| error.to_string())?;
         Ok(FileToSave { name: format!("{}.glb", self.file_stem()), bytes, remark: made.remark })
     }
 
@@ -128,14 +129,15 @@ impl App {
         let baked = self.baked_clip(clip)?;
         let clips = [baked.clip.as_ref().unwrap_or(&borrowed.clip)];
         let mut remark = None;
+        let skeleton = written_skeleton(model, &self.state, false);
         let bytes = match self.model_files(model) {
             Some(ModelFiles { set, name }) if !name.to_lowercase().ends_with(".bvh") => {
-                write_model(set, name, &written_skeleton(model, &self.state, false), &clips)
+                write_model(set, name, &skeleton, &clips)
             }
             _ => {
                 remark =
                     Some("Skeleton and clip alone: this model has no file that a clip could be added to.".to_owned());
-                write_motion(&model.asset, &clips)
+                write_motion(&model.asset, &skeleton, &clips)
             }
         };
         let remark = baked.remark.or(remark);

@@ -5,13 +5,15 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use clap::Args;
 
+use super::state_of_view;
 use crate::anim::{JointIndex, Skeleton};
 use crate::files::{Opened, Role, read_map, read_paths};
 use crate::library::{Library, Motion};
 use crate::retarget::JointMap;
+use crate::state::{Command, MotionMap, ViewerState, apply, maps_in_force, settled_maps};
 
 /// A motion to borrow, and by which map.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(super) struct Borrowing {
     /// A file whose motion the model borrows: .glb, .gltf, .vrma, .bvh.
     #[arg(long, value_name = "FILE")]
@@ -61,6 +63,43 @@ pub(super) fn load_library(opened: Opened, borrowing: &Borrowing) -> anyhow::Res
         bail!("{error}");
     }
     Ok(library)
+}
+
+/// What a link says, with the motions and maps that it names read as far as they are files here; the command line's own win.
+/// What is not used of it is said.
+pub(super) fn state_of_link(library: &mut Library, link: &str, borrowing: &Borrowing) -> ViewerState {
+    let mut state = state_of_view(library, link);
+    if borrowing.motion.is_none() && !state.motion.is_empty() {
+        let read = |source: &String| match open_motion(Path::new(source.strip_prefix("file:").unwrap_or(source))) {
+            Ok(motion) => Some(motion),
+            Err(error) => {
+                eprintln!("warning: {error:#}; the link's motion is left out: it has to be a file here");
+                None
+            }
+        };
+        let motions = state.motion.iter().filter_map(read).collect();
+        library.set_motions(motions);
+    }
+    if borrowing.map.is_some() {
+        return state;
+    }
+    for map in &mut state.map {
+        if let MotionMap::File(file) = map {
+            match open_map(Path::new(file.as_str())) {
+                Ok(read) => *map = MotionMap::Names(read),
+                Err(error) => eprintln!("warning: {error:#}; the link's map is left out: it has to be a file here"),
+            }
+        }
+    }
+    for problem in settled_maps(library, &state).1 {
+        eprintln!("warning: {problem}");
+    }
+    apply(&mut state, library, Command::SettleMaps);
+    library.borrow_each(maps_in_force(library, &state));
+    for error in library.borrow_errors() {
+        eprintln!("warning: {error}");
+    }
+    state
 }
 
 /// A joint's name, or `#NODE` where it has none or shares it.

@@ -2,7 +2,8 @@
 
 use anyhow::{Context, bail};
 
-use super::{ConvertArguments, open, state_of_view};
+use super::borrow::{Borrowing, state_of_link};
+use super::{ConvertArguments, open};
 use crate::files::{ModelFiles, read_set};
 use crate::formats::{LoadOptions, convert, write_model};
 use crate::library::Library;
@@ -29,7 +30,7 @@ fn posed(arguments: &ConvertArguments, link: &str) -> anyhow::Result<Vec<u8>> {
     };
     let mut library = Library::default();
     library.set(opened.model);
-    let state = state_of_view(&library, link);
+    let state = state_of_link(&mut library, link, &Borrowing::default());
     let skeleton = library.active().map(|model| written_skeleton(model, &state, true)).unwrap_or_default();
     Ok(write_model(&set, &name, &skeleton, &[])?)
 }

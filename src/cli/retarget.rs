@@ -42,7 +42,7 @@ pub(super) fn run(arguments: &RetargetArguments) -> anyhow::Result<()> {
     let clip = with_layers(&model.asset, &resolved, &made, arguments.loops.map(usize::from), &mut warnings);
 
     let bytes = if arguments.clip_only {
-        write_motion(&model.asset, &[&clip])?
+        write_motion(&model.asset, &model.asset.skeleton, &[&clip])?
     } else {
         let set = read_set(files)?;
         if set.is_empty() {

@@ -8,6 +8,7 @@ mod gltf;
 mod lines;
 mod obj;
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 pub use error::LoadError;
@@ -18,24 +19,22 @@ use crate::anim::{Clip, Skeleton};
 use crate::asset::{Asset, Image};
 use file_set::bare_name;
 
+/// Of .obj, .skel and .attach together. With more, which nobody can have open at once, nothing is looked for beside them: each
+/// takes a walk through the set.
+const MOST_OBJ_FILES: usize = 256;
+
 /// Relative URIs (percent-decoded) that the models and motions in this set refer to and that are not in the set, not even
 /// by their bare names; for an .obj also the .skel and .attach of the same stem, which need not exist. Empty when the set is complete or cannot be read at all ([`load`] will say why).
 pub fn missing_files(files: &FileSet) -> Vec<String> {
     let Ok(files) = files.unpacked() else { return Vec::new() };
-    let mut missing: Vec<String> = Vec::new();
+    let (mut missing, mut known) = (Vec::new(), BTreeSet::new());
+    let mut add = |uris: Vec<String>| missing.extend(uris.into_iter().filter(|uri| known.insert(uri.clone())));
     for (name, bytes) in files.iter().filter(|(name, bytes)| is_gltf(name, bytes) && !is_bvh(name, bytes)) {
-        for uri in gltf::missing_files(&files, name, bytes) {
-            if !missing.contains(&uri) {
-                missing.push(uri);
-            }
-        }
+        add(gltf::missing_files(&files, name, bytes));
     }
-    for (name, bytes) in files.iter().filter(|(name, bytes)| is_obj(name, bytes) || obj::is_companion(name)) {
-        for uri in obj::missing_files(&files, name, bytes) {
-            if !missing.contains(&uri) {
-                missing.push(uri);
-            }
-        }
+    let of_obj = || files.iter().filter(|(name, bytes)| is_obj(name, bytes) || obj::is_companion(name));
+    if of_obj().count() <= MOST_OBJ_FILES {
+        of_obj().for_each(|(name, bytes)| add(obj::missing_files(&files, name, bytes)));
     }
     missing
 }
@@ -113,9 +112,10 @@ fn write_obj(
     gltf::write_asset(&asset, skeleton, clips)
 }
 
-/// The skeleton of an asset with `clips` (which are for it) and nothing else, as a GLB. Joints keep their numbers.
-pub fn write_motion(asset: &Asset, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
-    gltf::write_motion(asset, clips)
+/// The skeleton of an asset with `clips` (which are for it) and nothing else, as a GLB. Joints keep their numbers and are called
+/// and stand as `skeleton` says, which is the asset's own but for that.
+pub fn write_motion(asset: &Asset, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
+    gltf::write_motion(asset, skeleton, clips)
 }
 
 /// The one model or motion of a set as a GLB: a glTF with all that is in it, a .bvh as its skeleton and its clip, an .obj at
@@ -125,7 +125,7 @@ pub fn convert(files: &FileSet, options: &LoadOptions) -> Result<Vec<u8>, WriteE
     let (name, bytes) = find_model(&files)?;
     let asset = read(&files, name, bytes, options, &mut |_| ())?;
     if is_bvh(name, bytes) {
-        return gltf::write_motion(&asset, &asset.clips.iter().collect::<Vec<_>>());
+        return gltf::write_motion(&asset, &asset.skeleton, &asset.clips.iter().collect::<Vec<_>>());
     }
     if is_obj(name, bytes) {
         return gltf::write_asset(&asset, &asset.skeleton, &[]);

@@ -51,13 +51,14 @@ fn meshes(model: &Model, state: &ViewerState, frame: &Frame) -> Vec<Value> {
         let node = asset.skeleton.source_index(asset.instances[draw.instance].joint);
         let mesh = &asset.meshes[draw.mesh];
         let mut whole = Whole::new(mesh, state.show.smooth);
+        let mut smooth = if state.show.smooth { smooth_normals(&mesh.primitives) } else { Vec::new() };
         for (primitive, geometry) in mesh.primitives.iter().enumerate() {
-            let smooth = state.show.smooth && geometry.normals.is_empty();
-            let smoothed = smooth.then(|| Geometry { normals: smooth_normals(geometry), ..geometry.clone() });
+            let normals = smooth.get_mut(primitive).map(std::mem::take).filter(|normals| !normals.is_empty());
+            let smoothed = normals.map(|normals| Geometry { normals, ..geometry.clone() });
             let geometry = smoothed.as_ref().unwrap_or(geometry);
             deform(geometry, weights, palette, state.skinning, &mut deformed);
-            if !mesh.file_vertices.is_empty() {
-                whole.add(mesh, primitive, &deformed);
+            if mesh.file_vertices > 0 {
+                whole.add(&geometry.file_vertex, &deformed);
                 continue;
             }
             documents.push(json!({
@@ -68,7 +69,7 @@ fn meshes(model: &Model, state: &ViewerState, frame: &Frame) -> Vec<Value> {
                 "normals": flat(&deformed.normals, geometry.file_vertices),
             }));
         }
-        if !mesh.file_vertices.is_empty() {
+        if mesh.file_vertices > 0 {
             documents.push(json!({
                 "node": node,
                 "mesh": draw.mesh,
@@ -90,7 +91,7 @@ struct Whole {
 
 impl Whole {
     fn new(mesh: &Mesh, smooth: bool) -> Self {
-        let count = mesh.file_vertices.len();
+        let count = mesh.file_vertices;
         let has_normals = smooth || mesh.primitives.iter().all(|geometry| !geometry.normals.is_empty());
         Self {
             positions: vec![glam::Vec3::ZERO; count],
@@ -98,13 +99,14 @@ impl Whole {
         }
     }
 
-    fn add(&mut self, mesh: &Mesh, primitive: usize, deformed: &DeformedVertices) {
-        for (at, &[piece, vertex]) in mesh.file_vertices.iter().enumerate() {
-            if piece as usize == primitive {
-                self.positions[at] = deformed.positions[vertex as usize];
-                if let Some(normal) = self.normals.get_mut(at) {
-                    *normal = deformed.normals[vertex as usize];
-                }
+    /// Of several copies of a vertex, which are all at one place, the first one's normal counts.
+    fn add(&mut self, file_vertex: &[u32], deformed: &DeformedVertices) {
+        for (&at, &position) in file_vertex.iter().zip(&deformed.positions) {
+            self.positions[at as usize] = position;
+        }
+        for (&at, &normal) in file_vertex.iter().zip(&deformed.normals) {
+            if let Some(first) = self.normals.get_mut(at as usize).filter(|first| **first == glam::Vec3::ZERO) {
+                *first = normal;
             }
         }
     }

@@ -33,15 +33,15 @@ pub struct Mesh {
     pub target_names: Vec<String>,
     /// What the file calls its pieces, one name for each; empty when it has no names for them.
     pub part_names: Vec<String>,
-    /// Where each vertex of the file is, as piece and vertex there, if the file has one list for the whole mesh and the mesh
-    /// several pieces; else empty.
-    pub file_vertices: Vec<[u32; 2]>,
+    /// How many vertices the file has, if it has one list for all pieces and the mesh several of them; else 0: each piece
+    /// has a list of its own.
+    pub file_vertices: usize,
 }
 
 impl Mesh {
     /// How many vertices the file has for it.
     pub fn file_vertex_count(&self) -> usize {
-        match self.file_vertices.len() {
+        match self.file_vertices {
             0 => self.primitives.iter().map(|geometry| geometry.file_vertices).sum(),
             count => count,
         }
@@ -66,9 +66,11 @@ pub struct Geometry {
     pub influences: Influences,
     pub morph_targets: Vec<MorphTarget>,
     pub material: Option<usize>,
-    /// How many vertices the file has. Vertices past it are copies made where MikkTSpace asks for two tangents at one
-    /// vertex; they come last, so the first `file_vertices` are the file's own in the file's order.
+    /// How many vertices the file has. Vertices past it are copies made where one has two tangents, texture coordinates or
+    /// normals; they come last, so the first `file_vertices` are the file's own in the file's order.
     pub file_vertices: usize,
+    /// Which vertex of the file each is a copy of; empty: there are no copies, the numbers are the file's.
+    pub file_vertex: Vec<u32>,
 }
 
 /// Differences from the base attributes at weight 1; normals and tangents may be empty.
@@ -127,6 +129,7 @@ impl Geometry {
         check("texture coordinates 0", self.uvs[0].len(), true)?;
         check("texture coordinates 1", self.uvs[1].len(), true)?;
         check("colours", self.colors.len(), true)?;
+        check("vertices of the file", self.file_vertex.len(), true)?;
         for target in &self.morph_targets {
             check("morph target positions", target.positions.len(), true)?;
             check("morph target normals", target.normals.len(), true)?;
@@ -148,6 +151,11 @@ impl Geometry {
             return Err(GeometryError::JointOutOfRange { vertex, joint, joints });
         }
         Ok(())
+    }
+
+    /// The number that the file has for a vertex.
+    pub fn number_in_file(&self, vertex: usize) -> usize {
+        self.file_vertex.get(vertex).map_or(vertex, |&number| number as usize)
     }
 
     pub fn triangles(&self) -> usize {

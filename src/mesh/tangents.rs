@@ -55,6 +55,9 @@ pub fn add_tangents(geometry: &mut Geometry, uv_set: usize, most_copied_bytes: u
             }
         }
     }
+    if !copies.is_empty() && geometry.file_vertex.is_empty() {
+        geometry.file_vertex = (0..geometry.positions.len() as u32).collect();
+    }
     for &vertex in &copies {
         copy_vertex(geometry, vertex as usize);
     }
@@ -69,6 +72,7 @@ fn vertex_bytes(geometry: &Geometry) -> usize {
     2 * size_of::<Vec3>()
         + 2 * size_of::<Vec2>()
         + 2 * size_of::<Vec4>()
+        + size_of::<u32>()
         + geometry.influences.stride * influence
         + geometry.morph_targets.len() * target
 }
@@ -84,6 +88,7 @@ fn copy_vertex(geometry: &mut Geometry, vertex: usize) {
     again(&mut geometry.uvs[0], vertex);
     again(&mut geometry.uvs[1], vertex);
     again(&mut geometry.colors, vertex);
+    again(&mut geometry.file_vertex, vertex);
     let stride = geometry.influences.stride;
     geometry.influences.joints.extend_from_within(vertex * stride..(vertex + 1) * stride);
     geometry.influences.weights.extend_from_within(vertex * stride..(vertex + 1) * stride);

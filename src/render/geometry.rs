@@ -3,10 +3,11 @@
 use std::collections::HashSet;
 
 use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
 use wgpu::util::DeviceExt;
 
 use super::UploadError;
-use crate::mesh::{Geometry, Influences, Topology, smooth_normals};
+use crate::mesh::{Geometry, Influences, Topology};
 
 /// Texels in a row of a vertex texture; skinning.wgsl has the same number.
 pub const VERTEX_TEXTURE_WIDTH: u32 = 2048;
@@ -116,11 +117,13 @@ pub struct GpuGeometry {
 }
 
 impl GpuGeometry {
-    /// `mesh` and `primitive` are for messages. The geometry must be valid and have indices.
+    /// `smooth`: its normals of [`smooth_normals`](crate::mesh::smooth_normals), if it has none of its own. `mesh` and
+    /// `primitive` are for messages. The geometry must be valid and have indices.
     pub fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         geometry: &Geometry,
+        smooth: &[Vec3],
         mesh: usize,
         primitive: usize,
     ) -> Result<Self, UploadError> {
@@ -135,8 +138,7 @@ impl GpuGeometry {
         }
 
         // Drawn flat, unless the person wants what has no normals to be smooth.
-        let smooth = if geometry.normals.is_empty() { smooth_normals(geometry) } else { Vec::new() };
-        let normals = if smooth.is_empty() { &geometry.normals } else { &smooth };
+        let normals = if geometry.normals.is_empty() { smooth } else { &geometry.normals };
         let shape: Vec<ShapeVertex> = (0..count)
             .map(|vertex| ShapeVertex {
                 position: geometry.positions[vertex].to_array(),

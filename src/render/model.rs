@@ -12,7 +12,7 @@ use super::texture::{MipMaker, sampler, single_texel};
 use super::uniforms::{MaterialUniform, UvTransformUniform};
 use crate::asset::Asset;
 use crate::library::{Model, ModelId};
-use crate::mesh::{AlphaMode, Geometry, Material, Sampler, TextureRef, Topology};
+use crate::mesh::{AlphaMode, Geometry, Material, Sampler, TextureRef, Topology, smooth_normals};
 
 pub(super) struct GpuModel {
     pub id: ModelId,
@@ -74,12 +74,13 @@ impl ModelUploader {
         let mut meshes = Vec::with_capacity(asset.meshes.len());
         for (mesh_index, mesh) in asset.meshes.iter().enumerate() {
             let mut primitives = Vec::with_capacity(mesh.primitives.len());
-            for (primitive_index, geometry) in mesh.primitives.iter().enumerate() {
+            let smooth = smooth_normals(&mesh.primitives);
+            for (primitive_index, (geometry, smooth)) in mesh.primitives.iter().zip(&smooth).enumerate() {
                 let drawable = geometry.indices.len() >= geometry.topology.indices_per_element();
                 primitives.push(match drawable {
                     false => None,
                     true => {
-                        let gpu = GpuGeometry::new(device, queue, geometry, mesh_index, primitive_index)?;
+                        let gpu = GpuGeometry::new(device, queue, geometry, smooth, mesh_index, primitive_index)?;
                         Some(materials.primitive(layouts, geometry, gpu))
                     }
                 });

@@ -42,8 +42,8 @@ pub struct ViewerState {
     /// Joints turned by hand, by their numbers in the file: Euler angles in degrees, see [`super::rotation_by_hand`]. They
     /// win over the clip.
     pub pose: BTreeMap<usize, [f32; 3]>,
-    /// Names given to joints by hand, by their numbers in the file; never empty. They are shown and written instead of the
-    /// file's.
+    /// Names given to joints by hand, by their numbers in the file; never empty. They are shown instead of the
+    /// file's, and written but where a glTF file is written as it was.
     pub names: BTreeMap<usize, String>,
     pub show: Show,
     /// The chosen joint, by its number in the file: its transforms are shown, and its influence with `show.weights`.

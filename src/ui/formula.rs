@@ -73,11 +73,11 @@ fn vertex_at(shown: &Shown<'_>, rect: Rect, at: egui::Pos2, scratch: &mut Deform
 }
 
 /// A dot on the vertex and its number.
-pub(super) fn mark(ui: &Ui, painter: &Painter, pane: Rect, shown: &Shown<'_>, local: &UiState) -> Option<()> {
+pub(super) fn mark(ui: &Ui, painter: &Painter, pane: Rect, shown: &Shown<'_>, local: &mut UiState) -> Option<()> {
     let choice = local.probe.vertex(shown).filter(|_| local.probe.is_on(shown) && !shown.state.embed)?;
     let (model, character) = (shown.library.active()?, shown.frame.characters.first()?);
-    let mut formula = VertexFormula::default();
-    if !vertex_formula(model, character, choice, &mut formula) {
+    let formula = &mut local.probe.formula;
+    if !vertex_formula(model, character, choice, formula) {
         return None;
     }
     let at = to_screen(shown, pane, formula.drawn)?;
@@ -95,12 +95,10 @@ pub(super) fn mark(ui: &Ui, painter: &Painter, pane: Rect, shown: &Shown<'_>, lo
     Some(())
 }
 
-/// By the number in the file where the file has one list for the whole mesh.
 fn vertex_title(model: &Model, choice: VertexChoice) -> String {
     let mesh = model.asset.instances.get(choice.instance).and_then(|instance| model.asset.meshes.get(instance.mesh));
-    let piece = [choice.primitive as u32, choice.vertex as u32];
-    let in_file = mesh.and_then(|mesh| mesh.file_vertices.iter().position(|other| *other == piece));
-    format!("Vertex {}", in_file.unwrap_or(choice.vertex))
+    let piece = mesh.and_then(|mesh| mesh.primitives.get(choice.primitive));
+    format!("Vertex {}", piece.map_or(choice.vertex, |piece| piece.number_in_file(choice.vertex)))
 }
 
 /// The three matrices of a joint; nothing for one that no skin names.

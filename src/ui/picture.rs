@@ -145,7 +145,7 @@ fn joints(ui: &Ui, painter: &Painter, response: &Response, shown: &Shown<'_>, lo
 
 /// Names of the chosen joint and of the one under the pointer, and of what is compared: painted when the frame that they
 /// belong to has been evaluated, or they would trail behind.
-pub fn labels(ui: &Ui, rect: Rect, shown: Shown<'_>, local: &UiState) {
+pub fn labels(ui: &Ui, rect: Rect, shown: Shown<'_>, local: &mut UiState) {
     if !rect.is_positive() || local.recording {
         return;
     }

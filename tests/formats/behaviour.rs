@@ -242,6 +242,9 @@ fn copies_for_tangents_stay_within_their_bytes() {
         assert_eq!(square.tangents.len(), square.positions.len());
         assert!(used_bytes <= most_bytes && (used_bytes > 0) == (expected_copies > 0), "{used_bytes}");
         square.validate(None).unwrap();
+        for vertex in 0..square.positions.len() {
+            assert_eq!(square.positions[vertex], square.positions[square.number_in_file(vertex)]);
+        }
     };
     check(0, 0);
     check(100, 1);

@@ -121,7 +121,8 @@ fn check(name: &str, file: &[u8], random: &mut Random, failures: &mut Vec<String
                 assert!(asset.skeleton.rest().locals.iter().all(|local| local.is_finite()));
                 // What is read can be written, or there is a word about why not.
                 let clips: Vec<_> = asset.clips.iter().collect();
-                for written in [write_motion(&asset, &clips), convert(&files, &LoadOptions::default())] {
+                for written in [write_motion(&asset, &asset.skeleton, &clips), convert(&files, &LoadOptions::default())]
+                {
                     match written {
                         Ok(written) => drop(load(&one("written.glb", written)).expect("what is written can be read")),
                         Err(problem) => assert!(!problem.to_string().is_empty()),

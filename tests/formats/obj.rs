@@ -291,6 +291,8 @@ fn a_vertex_with_two_texture_coordinates_is_one_vertex_of_the_file() {
         geometry.influences.of_vertex(6).collect::<Vec<_>>(),
         geometry.influences.of_vertex(2).collect::<Vec<_>>()
     );
+    let numbers: Vec<usize> = (0..7).map(|vertex| geometry.number_in_file(vertex)).collect();
+    assert_eq!(numbers, [0, 1, 2, 3, 4, 0, 2]);
     geometry.validate(Some(2)).unwrap();
 }
 
@@ -307,13 +309,15 @@ fn groups_and_materials_are_parts_that_keep_the_order_of_the_file() {
     assert_eq!(mesh.part_names, ["Body / front / red", "Body / back / red", "Body / front"]);
     assert_eq!(mesh.primitives.iter().map(|part| part.triangles()).collect::<Vec<_>>(), [2, 1, 1]);
     assert_eq!(mesh.file_vertex_count(), 5);
-    let places: Vec<Vec3> = mesh
-        .file_vertices
-        .iter()
-        .map(|&[part, vertex]| mesh.primitives[part as usize].positions[vertex as usize])
-        .collect();
     let wanted = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y, Vec3::splat(5.0)];
-    assert_eq!(places, wanted);
+    let mut seen = [0; 5];
+    for part in &mesh.primitives {
+        for (vertex, at) in part.positions.iter().enumerate() {
+            assert_eq!(*at, wanted[part.number_in_file(vertex)]);
+            seen[part.number_in_file(vertex)] += 1;
+        }
+    }
+    assert_eq!(seen, [3, 2, 2, 3, 1], "a copy in each part that has it");
     let red = &asset.materials[mesh.primitives[0].material.unwrap()];
     assert_eq!((red.name.as_str(), red.base_color.to_array()), ("red", [1.0, 0.0, 0.0, 0.5]));
     assert_eq!(red.alpha_mode, AlphaMode::Blend);
@@ -331,6 +335,45 @@ fn vertices_may_have_colours_and_the_rest_is_told_of() {
     let codes: Vec<&str> = asset.warnings.iter().map(Warning::code).collect();
     assert_eq!(codes, ["obj-statement", "obj-statement"]);
     assert!(alone("v 0 0 0 1 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n").meshes[0].primitives[0].colors.is_empty());
+}
+
+/// Each part has a name of its own, so a long one must not be kept for all of them.
+#[test]
+fn long_names_are_cut() {
+    let long = "ä".repeat(1 << 19);
+    let mut obj = format!("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\no {long}\nusemtl {long}\n");
+    obj.extend((0..4096).map(|part| format!("g {part}\nf 1 2 3\n")));
+    let asset = load(&set(&[("m.obj", &obj), ("m.mtl", &format!("newmtl {long}\nKd 1 0 0\n"))])).unwrap();
+    let names = &asset.meshes[0].part_names;
+    assert_eq!((names.len(), names[4095].len()), (4096, 256 + 256 + 10));
+    assert!(names.iter().all(|name| name.starts_with(&"ä".repeat(128))));
+    assert_eq!(
+        (asset.materials.len(), asset.materials[0].base_color.x),
+        (1, 1.0),
+        "found by the same part of its name"
+    );
+    let codes: Vec<&str> = asset.warnings.iter().map(Warning::code).collect();
+    assert_eq!(codes, ["obj-name", "obj-name"]);
+}
+
+#[test]
+fn what_many_names_ask_for_is_bounded() {
+    let mut obj: String = (0..50_000).map(|library| format!("mtllib {library}.mtl\n")).collect();
+    obj.push_str(SQUARE);
+    let asset = alone(&obj);
+    let count = |code: &str| asset.warnings.iter().filter(|warning| warning.code() == code).count();
+    assert_eq!((count("materials-missing"), count("obj-libraries") > 0), (64, true));
+    let missing = missing_files(&set(&[("m.obj", &obj)]));
+    assert_eq!((missing.len(), missing[2].as_str()), (2 + 64, "0.mtl"));
+    let pictures: String = (0..50_000).map(|name| format!("newmtl {name}\nmap_Kd {name}.png\n")).collect();
+    let missing = missing_files(&set(&[("m.obj", "mtllib m.mtl\n"), ("m.mtl", &pictures)]));
+    assert_eq!(missing.len(), 2 + 512);
+    // More models than can be open at once: what is beside them is not looked for.
+    let mut many = FileSet::default();
+    for model in 0..5000 {
+        many.insert(format!("{model}.obj"), SQUARE.as_bytes().to_vec());
+    }
+    assert_eq!(missing_files(&many), [""; 0]);
 }
 
 fn real(name: &str) -> Option<(Asset, Exercise, FileSet)> {
@@ -405,6 +448,28 @@ fn a_written_exercise_model_means_the_same_to_another_reader() {
             (0, if name == "Model3" { 12 } else { 16 })
         );
     }
+}
+
+#[test]
+fn a_webp_picture_is_written_with_its_extension() {
+    // One pixel.
+    let webp = b"RIFF\x1a\0\0\0WEBPVP8L\x0d\0\0\0\x2f\0\0\0\x10\x07\x10\x11\x11\x88\x88\xfe\x07\0";
+    let obj = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nusemtl skin\nf 1/1 2/1 3/1\n";
+    let mut files = set(&[("m.obj", obj), ("m.mtl", "newmtl skin\nmap_Kd skin.webp\n")]);
+    files.insert("skin.webp", webp.to_vec());
+    let written = convert(&files, &LoadOptions::default()).unwrap();
+    let (json, _) = chunks(&written);
+    assert_eq!(json["images"][0]["mimeType"], "image/webp");
+    assert_eq!(json["textures"], serde_json::json!([{ "extensions": { "EXT_texture_webp": { "source": 0 } } }]));
+    for key in ["extensionsUsed", "extensionsRequired"] {
+        assert_eq!(json[key], serde_json::json!(["EXT_texture_webp"]), "{key}");
+    }
+    files = FileSet::default();
+    files.insert("written.glb", written);
+    let asset = load(&files).unwrap();
+    assert_eq!((asset.warnings.len(), asset.textures[0].image, asset.images[0].width), (0, Some(0), 1));
+    let other = set(&[("m.obj", SQUARE)]);
+    assert!(chunks(&convert(&other, &LoadOptions::default()).unwrap()).0["extensionsUsed"].is_null());
 }
 
 fn chunks(glb: &[u8]) -> (serde_json::Value, &[u8]) {

@@ -225,11 +225,13 @@ fn only_what_counts_is_written_and_only_what_readers_accept() {
     let turns = vec![Quat::from_xyzw(0.0, 0.0, 0.0, 2.0), Quat::from_xyzw(0.0, 0.0, 0.0, 0.0)];
     builder.channel(JointIndex(0), Interpolation::Step, &[0.0, 1.0], Keys::Rotation(turns)).expect("a good channel");
     let clip = builder.build();
-    let written = write_motion(&asset, &[&clip]).expect("writable");
+    let written = write_motion(&asset, &asset.skeleton, &[&clip]).expect("writable");
     assert_eq!(json_of(&written)["animations"][0].get("name"), None);
     let again = loaded(written);
     let keys: Vec<Keys> = again.clips[0].channels().iter().map(|channel| channel.keys.clone()).collect();
     assert_eq!(keys, [Keys::Translation(vec![Vec3::X * 2.0]), Keys::Rotation(vec![Quat::IDENTITY; 2])]);
+    let named = asset.skeleton.with_names([(0, "Hips")].into_iter());
+    assert_eq!(json_of(&write_motion(&asset, &named, &[&clip]).expect("writable"))["nodes"][0]["name"], "Hips");
 }
 
 #[test]
@@ -242,7 +244,7 @@ fn what_cannot_be_written_is_an_error() {
     let mut builder = ClipBuilder::new("bad", &asset.skeleton);
     let keys = Keys::Scale(vec![Vec3::NAN]);
     builder.channel(JointIndex(0), Interpolation::Linear, &[0.0], keys).expect("values are not checked there");
-    let error = write_motion(&asset, &[&builder.build()]).unwrap_err();
+    let error = write_motion(&asset, &asset.skeleton, &[&builder.build()]).unwrap_err();
     assert!(matches!(error, WriteError::NotFinite { .. }), "{error}");
     let other = load(&one("walk.bvh", TWO_JOINTS.into())).expect("readable");
     let error = write_model(&files, "model.glb", &other.skeleton, &[]).unwrap_err();
@@ -265,7 +267,7 @@ fn a_skeleton_and_its_clip_alone() {
     build.json["scene"] = json!(1);
     let asset = build.load().expect("readable");
     let clip = clip_of_all_kinds(&asset);
-    let written = write_motion(&asset, &[&clip]).expect("writable");
+    let written = write_motion(&asset, &asset.skeleton, &[&clip]).expect("writable");
     let json = json_of(&written);
     assert_eq!(json["nodes"][0], json!({ "name": "child", "scale": [1.0, 1.0, 2.0] }));
     assert_eq!(json["nodes"][1], json!({ "name": "root", "rotation": [0.0, 1.0, 0.0, 0.0], "children": [0, 2] }));

@@ -73,7 +73,7 @@ fn on_gpu(
     mode: SkinningMode,
 ) -> [Vec<Vec3>; 2] {
     let Gpu { device, queue } = gpu;
-    let gpu_geometry = GpuGeometry::new(device, queue, geometry, 0, 0).unwrap();
+    let gpu_geometry = GpuGeometry::new(device, queue, geometry, &[], 0, 0).unwrap();
     // One entry before, so that the offset matters.
     let mut palette_texture = PaletteTexture::new(device);
     palette_texture.push_palette(&[PaletteEntry::default()]);

@@ -67,6 +67,43 @@ fn a_map_is_proposed_explained_and_used_again() {
 }
 
 #[test]
+fn a_link_brings_its_motion_and_its_map() {
+    let (folder, motion) = folder("linked");
+    let named = document(&["pose", "sample:walker", "--motion", &motion, "--time", "0.3", "--json"]);
+    let unposed = document(&["pose", "sample:walker", "--json"]);
+    let own = document(&["inspect", "sample:walker", "--json"])["clips"].as_array().map_or(0, Vec::len);
+    let link = format!("v=1&motion=file:{motion}&clip={own}&t=0.3");
+    let linked = document(&["pose", "sample:walker", "--view", &link, "--json"]);
+    assert_eq!(linked["nodes"], named["nodes"]);
+    assert_ne!(linked["nodes"], unposed["nodes"]);
+    // An exercise model, whose joints have no names, turns with its map.
+    let file = |name: &str, text: &str| {
+        let path = folder.join(name);
+        std::fs::write(&path, text).expect("a file");
+        path.to_str().expect("a plain path").to_owned()
+    };
+    let model = file("m.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
+    file("m.skel", "0 0 0 -1\n0 1 0 0\n");
+    file("m.attach", "1\n1\n1\n");
+    let map = file("m.json", r#"{ "gaitway_map": 1, "joints": { "joint 1": { "source": "LeftUpLeg" } } }"#);
+    let out = folder.join("out.glb");
+    let out = out.to_str().expect("a plain path");
+    let turned = |link: &str| {
+        let done = run(&["convert", &model, "--view", link, "--out", out]);
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        let told = String::from_utf8_lossy(&done.stderr).into_owned();
+        (document(&["pose", out, "--json"])["nodes"][1]["world"].clone(), told)
+    };
+    let (still, told) = turned("v=1");
+    assert_eq!(told, "");
+    let (moved, told) = turned(&format!("v=1&motion=file:{motion}&map={map}&clip=walk&t=0"));
+    assert_ne!(moved, still, "{told}");
+    let (left_out, told) = turned("v=1&motion=file:nowhere.bvh&map=nowhere.json&clip=walk");
+    assert_eq!(left_out, still);
+    assert!(told.contains("nowhere.bvh") && told.contains("nowhere.json"), "{told}");
+}
+
+#[test]
 fn retarget_reports_what_scripts_rely_on() {
     let (folder, motion) = folder("retarget");
     let out = folder.join("out.glb");

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use std::process::Command as Process;
+use std::slice::from_ref;
 
 use gaitway::files::{OpenError, open_paths};
 use gaitway::frame::{Frame, VertexFormula, evaluate, joint_matrices, pick_vertex, pose_document, vertex_formula};
@@ -245,16 +246,37 @@ fn smooth_normals_are_the_mean_by_angle() {
     let quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
     let indices: Vec<u32> = quads.iter().flat_map(|[a, b, c, d]| [a, b, c, a, c, d].map(|&index| index)).collect();
     let cube = Geometry { positions: positions.clone(), indices: indices.clone(), ..Geometry::default() };
-    for (normal, at) in smooth_normals(&cube).iter().zip(&positions) {
+    for (normal, at) in smooth_normals(from_ref(&cube))[0].iter().zip(&positions) {
         assert!(normal.distance(at.normalize()) < 1e-6, "{at}: {normal}");
     }
     // Every triangle with vertices of its own: the same.
     let split: Vec<Vec3> = indices.iter().map(|&index| positions[index as usize]).collect();
     let split = Geometry { indices: (0..36).collect(), positions: split, ..Geometry::default() };
-    for (normal, at) in smooth_normals(&split).iter().zip(&split.positions) {
+    for (normal, at) in smooth_normals(from_ref(&split))[0].iter().zip(&split.positions) {
         assert!(normal.distance(at.normalize()) < 1e-6, "{at}: {normal}");
     }
-    assert!(smooth_normals(&Geometry { topology: Topology::Lines, ..cube }).is_empty());
+    assert!(smooth_normals(&[Geometry { topology: Topology::Lines, ..cube }])[0].is_empty());
+}
+
+#[test]
+fn a_surface_is_smooth_from_part_to_part() {
+    let normals = |between: &str| -> Vec<f64> {
+        let mut files = gaitway::formats::FileSet::default();
+        // Two triangles at a right angle along the second axis.
+        let obj = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n{between}f 1 3 4\n");
+        files.insert("m.obj", obj.into_bytes());
+        let library = library_of(gaitway::files::open_bytes(&files, "m.obj".to_owned()).expect("it opens").model);
+        let state = ViewerState { show: Show { smooth: true, ..Show::default() }, ..ViewerState::default() };
+        let document = pose_document(&library, &state);
+        let normals = document["meshes"][0]["normals"].as_array().expect("normals");
+        normals.iter().filter_map(Value::as_f64).collect()
+    };
+    let half = f64::from(0.5_f32.sqrt());
+    let wanted = [half, 0.0, half, 0.0, 0.0, 1.0, half, 0.0, half, 1.0, 0.0, 0.0];
+    for between in ["", "g b\n", "usemtl other\n"] {
+        let off = normals(between).iter().zip(wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(off < 1e-6, "{between:?}: {:?}", normals(between));
+    }
 }
 
 #[test]

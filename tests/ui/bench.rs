@@ -79,7 +79,7 @@ pub fn bench_of(size: [f32; 2], library: Library) -> Harness<'static, Bench> {
                 let shown = Shown { library: &bench.library, state: &bench.state, frame: &bench.frame };
                 bench.picture = ui::panels(ui, shown, &mut bench.panels, &mut output);
                 ui::picture(ui, bench.picture, shown, &mut bench.panels, &mut output);
-                ui::labels(ui, bench.picture, shown, &bench.panels);
+                ui::labels(ui, bench.picture, shown, &mut bench.panels);
                 ui::overlays(ui, bench.picture, shown, &mut bench.panels, &mut output);
                 for command in output.commands {
                     bench.commands.push(command.clone());

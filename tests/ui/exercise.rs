@@ -96,6 +96,22 @@ fn a_vertex_shows_shares_that_add_up() {
     }
 }
 
+/// At a seam of the texture a vertex is drawn several times, in each part again.
+#[test]
+fn a_copy_has_the_number_of_its_vertex() {
+    for (between, piece, vertex) in [("", 0, 5), ("g other\n", 1, 1)] {
+        let mut files = FileSet::default();
+        let head = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 1\n";
+        files.insert("m.obj", format!("{head}f 1/1 2/1 3/1\n{between}f 1/2 3/2 4/2\n").into_bytes());
+        let asset = load(&files).expect("a small model");
+        let mut harness = bench(WIDE, Model::new("m.obj".to_owned(), asset, Vec::new()));
+        press(&mut harness, "Vertex under the pointer");
+        harness.state_mut().state.vertex = Some(VertexChoice { instance: 0, primitive: piece, vertex });
+        harness.run();
+        assert!(has(&harness, "Vertex 2"), "{between:?}");
+    }
+}
+
 #[test]
 fn a_click_keeps_the_vertex_and_a_click_beside_lets_it_go() {
     let mut harness = strip(WIDE);

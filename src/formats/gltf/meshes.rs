@@ -171,6 +171,7 @@ fn read_primitive(
         morph_targets,
         material: primitive.material,
         file_vertices: vertices,
+        file_vertex: Vec::new(),
     };
     let normal_texture = primitive.material.and_then(|material| materials[material].normal_texture);
     if let Some(texture) = normal_texture

@@ -9,12 +9,10 @@ use super::polygon::Cutter;
 use super::text::{Corner, NONE, ObjText};
 use crate::mesh::{Geometry, Influences, Mesh};
 
-/// A mesh, and for each of its pieces the part of the text it is; the vertex of the file that each of its vertices is a
-/// copy of.
+/// A mesh, and for each of its pieces the part of the text it is.
 pub struct Built {
     pub mesh: Mesh,
     pub parts: Vec<usize>,
-    pub file_vertex: Vec<Vec<u32>>,
 }
 
 #[derive(Default)]
@@ -26,8 +24,8 @@ struct PieceBuilder {
     corner_count: usize,
 }
 
-/// With one part, its first vertices are those of the file in the file's order. With several, [`Mesh::file_vertices`]
-/// says where each of the file's vertices is; those of no face are with the first part.
+/// With one part, its first vertices are those of the file in the file's order. With several, vertices of no face are with
+/// the first part. [`Geometry::file_vertex`] leads back.
 pub fn build(obj: &ObjText, name: &str) -> Built {
     let mut pieces: Vec<PieceBuilder> = Vec::new();
     pieces.resize_with(obj.parts.len().max(1), PieceBuilder::default);
@@ -43,7 +41,6 @@ pub fn build(obj: &ObjText, name: &str) -> Built {
         pieces[0].corners = (0..obj.positions.len() as u32).map(|vertex| [vertex, NONE, NONE]).collect();
     }
     let mut used = vec![false; obj.positions.len()];
-    let mut file_vertices = vec![[0, 0]; if one { 0 } else { obj.positions.len() }];
     let mut copies: HashMap<(u32, Corner), u32> = HashMap::new();
     let mut cutter = Cutter::default();
     let (mut points, mut vertices) = (Vec::new(), Vec::new());
@@ -65,9 +62,6 @@ pub fn build(obj: &ObjText, name: &str) -> Built {
                 }
                 let vertex = piece.corners.len() as u32;
                 piece.corners.push(kept);
-                if first_use {
-                    file_vertices[point] = [face.part, vertex];
-                }
                 vertex
             }));
         }
@@ -76,7 +70,6 @@ pub fn build(obj: &ObjText, name: &str) -> Built {
     }
     if !one {
         for (point, _) in used.iter().enumerate().filter(|(_, used)| !**used) {
-            file_vertices[point] = [0, pieces[0].corners.len() as u32];
             pieces[0].corners.push([point as u32, NONE, NONE]);
         }
     }
@@ -86,9 +79,9 @@ pub fn build(obj: &ObjText, name: &str) -> Built {
         parts => parts.iter().map(|&part| obj.parts[part].name()).collect(),
     };
     let primitives = parts.iter().map(|&part| geometry(obj, &pieces[part], one)).collect();
-    let file_vertex = parts.iter().map(|&part| pieces[part].corners.iter().map(|corner| corner[0]).collect()).collect();
+    let file_vertices = if one { 0 } else { obj.positions.len() };
     let mesh = Mesh { name: name.to_owned(), primitives, part_names, file_vertices, ..Mesh::default() };
-    Built { mesh, parts, file_vertex }
+    Built { mesh, parts }
 }
 
 fn geometry(obj: &ObjText, piece: &PieceBuilder, one: bool) -> Geometry {
@@ -106,6 +99,7 @@ fn geometry(obj: &ObjText, piece: &PieceBuilder, one: bool) -> Geometry {
         colors: if obj.colors.is_empty() { Vec::new() } else { corners.iter().map(color).collect() },
         indices: piece.indices.clone(),
         file_vertices: if one { obj.positions.len() } else { corners.len() },
+        file_vertex: corners.iter().map(|corner| corner[0]).collect(),
         ..Geometry::default()
     }
 }

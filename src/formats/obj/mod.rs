@@ -11,7 +11,7 @@ mod polygon;
 mod skel;
 mod text;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use glam::Affine3A;
@@ -25,6 +25,9 @@ use crate::formats::error::Problem;
 use crate::mesh::{Geometry, Influences, Mesh, Sampler, Skin, Texture, TextureRef, UvTransform};
 use mtl::MtlMaterial;
 use text::ObjText;
+
+/// Each is looked for among the files, or fetched.
+const MOST_PICTURES: usize = 512;
 
 pub(super) fn is_obj(name: &str) -> bool {
     ending(name) == "obj"
@@ -54,11 +57,8 @@ pub(super) fn missing_files(files: &FileSet, file: &str, bytes: &[u8]) -> Vec<St
             None => missing.push(library),
         }
     }
-    for picture in materials.into_values().filter_map(|material| material.picture) {
-        if files.resolve(file, &picture).is_none() && !missing.contains(&picture) {
-            missing.push(picture);
-        }
-    }
+    let pictures: BTreeSet<String> = materials.into_values().filter_map(|material| material.picture).collect();
+    missing.extend(pictures.into_iter().take(MOST_PICTURES).filter(|picture| files.resolve(file, picture).is_none()));
     missing
 }
 
@@ -131,8 +131,8 @@ pub(super) fn load(
     };
     let mut built = mesh::build(&obj, stem);
     if skin.is_some() {
-        for (geometry, file_vertex) in built.mesh.primitives.iter_mut().zip(&built.file_vertex) {
-            geometry.influences = mesh::copied(&influences, file_vertex);
+        for geometry in &mut built.mesh.primitives {
+            geometry.influences = mesh::copied(&influences, &geometry.file_vertex);
         }
     }
     let mut asset = Asset { format: "obj", skeleton, ..Asset::default() };

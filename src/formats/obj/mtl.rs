@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 
 use super::mesh::linear;
+use super::text::cut_name;
 use crate::asset::{Warning, Warnings};
 use crate::formats::lines::{Lines, number, quoted, text};
 use crate::mesh::{AlphaMode, Material};
@@ -38,7 +39,7 @@ pub fn read(file: &str, bytes: &[u8], found: &mut BTreeMap<String, MtlMaterial>,
         let (keyword, rest) = (&content[..keyword_end], content[keyword_end..].trim_ascii());
         if keyword == b"newmtl" {
             close(open.take(), found);
-            open = Some(Statements { name: text(rest).into_owned(), ..Statements::default() });
+            open = Some(Statements { name: cut_name(rest), ..Statements::default() });
             continue;
         }
         if let Some(open) = &mut open

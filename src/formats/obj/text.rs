@@ -23,6 +23,12 @@ use crate::formats::lines::{Lines, number, quoted, text};
 /// Groups and materials make parts, each with a draw of its own.
 const MOST_PARTS: usize = 4096;
 
+/// Bytes of a name that are kept, since each part has its own.
+const MOST_NAME_BYTES: usize = 256;
+
+/// Each is looked for among the files, or fetched.
+const MOST_LIBRARIES: usize = 64;
+
 /// No texture coordinate or no normal.
 pub const NONE: u32 = u32::MAX;
 
@@ -95,14 +101,32 @@ pub fn libraries(bytes: &[u8]) -> Vec<String> {
     let mut lines = Lines::new(bytes);
     while let Some((_, line)) = lines.next_full_line() {
         if let Some(names) = line.strip_prefix(b"mtllib") {
-            for library in library_names(&text(&continued(names, &mut lines))) {
-                if !found.contains(&library) {
-                    found.push(library);
-                }
+            if !add_libraries(&continued(names, &mut lines), &mut found) {
+                break;
             }
         }
     }
     found
+}
+
+/// Adds what a statement names, up to [`MOST_LIBRARIES`]; false if that is too few.
+fn add_libraries(names: &[u8], found: &mut Vec<String>) -> bool {
+    for library in library_names(&text(names)) {
+        if !found.contains(&library) {
+            if found.len() == MOST_LIBRARIES {
+                return false;
+            }
+            found.push(library);
+        }
+    }
+    true
+}
+
+/// A name, cut where it is longer than anyone reads.
+pub fn cut_name(name: &[u8]) -> String {
+    let mut cut = text(&name[..name.len().min(MOST_NAME_BYTES)]).into_owned();
+    cut.truncate(cut.floor_char_boundary(MOST_NAME_BYTES));
+    cut
 }
 
 /// The line with those that continue it.
@@ -151,7 +175,12 @@ impl Reader<'_> {
             }
             b"f" | b"fo" => self.face(line, rest),
             b"o" | b"g" | b"usemtl" => {
-                let name = text(statement[keyword.len()..].trim_ascii()).into_owned();
+                let name = statement[keyword.len()..].trim_ascii();
+                if name.len() > MOST_NAME_BYTES {
+                    let problem = format!("the name is cut after {MOST_NAME_BYTES} bytes");
+                    self.warnings.push(Warning::Other { code: "obj-name", place: place(line), problem });
+                }
+                let name = cut_name(name);
                 self.part_index = None;
                 match keyword {
                     b"o" => self.part = Part { object: name, group: String::new(), ..std::mem::take(&mut self.part) },
@@ -161,10 +190,9 @@ impl Reader<'_> {
                 Ok(())
             }
             b"mtllib" => {
-                for library in library_names(&text(statement[keyword.len()..].trim_ascii())) {
-                    if !self.obj.libraries.contains(&library) {
-                        self.obj.libraries.push(library);
-                    }
+                if !add_libraries(&statement[keyword.len()..], &mut self.obj.libraries) {
+                    let problem = format!("more than {MOST_LIBRARIES} material libraries; the first ones are read");
+                    self.warnings.push(Warning::Other { code: "obj-libraries", place: place(line), problem });
                 }
                 Ok(())
             }

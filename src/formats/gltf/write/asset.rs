@@ -8,10 +8,13 @@ use super::motion::nodes_and_scenes;
 use super::{WriteError, clip, glb};
 use crate::anim::{Clip, Skeleton};
 use crate::asset::Asset;
-use crate::mesh::{AlphaMode, Geometry, Material, Mesh, Skin, TextureRef, Topology};
+use crate::mesh::{AlphaMode, Geometry, Material, Mesh, Skin, Texture, TextureRef, Topology};
 
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+
+/// PNG and JPEG need no extension.
+const WEBP: &str = "image/webp";
 
 const UNSIGNED_SHORT: u32 = 5123;
 const UNSIGNED_INT: u32 = 5125;
@@ -27,7 +30,16 @@ pub fn asset(asset: &Asset, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<
     let skins: Vec<Value> = asset.skins.iter().map(|written| skin(written, skeleton, &mut data)).collect();
     hang_meshes(asset, skeleton, &mut root);
     let images: Vec<Value> = asset.images.iter().map(|image| data.image(image)).collect();
-    let textures: Vec<Value> = asset.textures.iter().map(|texture| json!({ "source": texture.image })).collect();
+    let is_webp = |texture: &Texture| texture.image.is_some_and(|image| asset.images[image].mime == WEBP);
+    let texture = |texture: &Texture| match is_webp(texture) {
+        true => json!({ "extensions": { "EXT_texture_webp": { "source": texture.image } } }),
+        false => json!({ "source": texture.image }),
+    };
+    if asset.textures.iter().any(is_webp) {
+        root["extensionsUsed"] = json!(["EXT_texture_webp"]);
+        root["extensionsRequired"] = json!(["EXT_texture_webp"]);
+    }
+    let textures: Vec<Value> = asset.textures.iter().map(texture).collect();
     let materials: Vec<Value> = asset.materials.iter().map(material).collect();
     let counts = clip::Counts { accessors: data.accessors.len(), buffer_views: data.views.len() };
     let Data { mut binary, mut views, mut accessors } = data;

@@ -6,12 +6,13 @@ use super::{WriteError, clip, glb};
 use crate::anim::{Clip, JointIndex, Skeleton};
 use crate::asset::Asset;
 
-/// A GLB with the asset's joints as nodes, numbered as in the file it came from, its scenes, and `clips` (of this skeleton).
+/// A GLB with `skeleton`'s joints (those of the asset, perhaps with other names) as nodes, numbered as in the file it came
+/// from, its scenes, and `clips` (of this skeleton).
 /// Meshes are left out, and with them channels of morph weights.
-pub fn motion(asset: &Asset, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
-    let mut root = nodes_and_scenes(asset, &asset.skeleton);
+pub fn motion(asset: &Asset, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
+    let mut root = nodes_and_scenes(asset, skeleton);
     let mut binary = Vec::new();
-    let added = clip::add(clips, &asset.skeleton, false, clip::Counts::default(), &mut binary)?;
+    let added = clip::add(clips, skeleton, false, clip::Counts::default(), &mut binary)?;
     if !added.animations.is_empty() {
         root["animations"] = json!(added.animations);
         root["accessors"] = json!(added.accessors);
