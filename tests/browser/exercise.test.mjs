@@ -36,10 +36,15 @@ for (const renderer of BACK_ENDS) {
       assert.deepEqual(rest.meshes.map(({ positions }) => positions.length), [3 * VERTICES]);
       // The switch “Turn by hand” of the chosen joint, then the knob of the first slider: egui's panels are pixels to a page.
       await apply(page, { joint: 5 });
+      // egui finds what is under the pointer by the frame before.
+      await page.mouse.move(753, 328);
+      await page.waitForTimeout(500);
       await page.mouse.click(753, 328);
-      await page.waitForTimeout(300);
+      await page.waitForTimeout(1000);
       await page.mouse.move(645, 426);
+      await page.waitForTimeout(500);
       await page.mouse.down();
+      await page.waitForTimeout(200);
       const cpu = [];
       const { frames } = await stats(page);
       let before = (await state(page)).pose;
