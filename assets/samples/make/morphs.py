@@ -80,6 +80,8 @@ def hair():
     meshes = []
     for points, radii in LOCKS:
         middle = points[-1][0] < 0.01
+        # The root lies well inside the head.
+        points = [np.array(points[0]) * 0.80, *points[1:]]
         at = clay._smooth_table(np.linspace(0, 1, 3), np.column_stack([points, radii]))
         t = np.linspace(0, 1, 6) ** 0.85
         rows = at(t)
