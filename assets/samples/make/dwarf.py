@@ -409,7 +409,8 @@ def sculpt():
         full = len(mesh.faces)
         if part.shape is not None:
             # What moves against a part must not hide it.
-            covers = [(p.shape, 0.006) for p in PARTS if p.solid and p is not part and p.carrier in (part.carrier, None)]
+            depth = 0.035 if part.carrier in ("beard", "hair") else 0.006
+            covers = [(p.shape, depth) for p in PARTS if p.solid and p is not part and p.carrier in (part.carrier, None)]
             if part.name == "face":
                 covers += [(p.shape, 0.030) for p in PARTS if p.name == "beard"]
             mesh = clay.without_hidden(mesh, covers)
@@ -779,7 +780,7 @@ def main(size=int(os.environ.get("ATLAS", "640"))):
     material = out.add("materials", {
         "name": "dwarf",
         "pbrMetallicRoughness": {
-            "baseColorTexture": {"index": out.image(base, quality=78, name="dwarf colour")},
+            "baseColorTexture": {"index": out.image(base, quality=74, name="dwarf colour")},
             "metallicRoughnessTexture": {"index": (relief := out.image(orm, quality=72, name="dwarf surface"))},
         },
         "normalTexture": {"index": out.image(bump, quality=74, name="dwarf relief")},
