@@ -496,8 +496,8 @@ def height(part, p):
         step = np.pi / 9
         to = (around - step / 2) - np.round((around - step / 2) / step) * step
         h = np.where(rim < 0.06, rivet(to * 0.165, rim - 0.026), 0.0)
-        across = (y - 1.20) - np.round((y - 1.20) / 0.05) * 0.05
-        h = h + np.where((x < 0.022) & (y > 1.21), rivet(x, 0.0 * across + (np.arctan2(y - 1.175, np.abs(z)) % 0.36 - 0.18) * 0.18), 0.0)
+        ridge = (np.arctan2(y - 1.175, np.abs(z)) % 0.36 - 0.18) * 0.18
+        h = h + np.where((x < 0.022) & (y > 1.21), rivet(x, ridge), 0.0)
         dents = 0.0007 * noise(q, 0.035, 4)
         return h + dents + groove(rim - 0.054, 0.004, 0.0012)
     if name == "horn":
@@ -565,7 +565,6 @@ def paint(part, p, n, opened):
     if name == "helmet":
         rim = (p - RIM_AT) @ RIM
         brass = np.maximum(edge(rim - 0.055), edge(np.where(y > 1.19, x - 0.0225, 1.0)))
-        away = (p * [np.sign(p[:, 0]) if False else 1, 1, 1])
         socket = np.column_stack([x, y, z]) - [0.105, 1.245, -0.01]
         s = socket @ axes((0.86, 0.50, 0), (0, 0, 1))
         brass = np.maximum(brass, edge(np.maximum(np.hypot(s[:, 1], s[:, 2]) - 0.050, 0.035 - s[:, 0])))
