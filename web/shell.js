@@ -8,12 +8,17 @@ const moduleUrl = new URL(meta.content, document.baseURI).href;
 const wasmUrl = new URL(meta.dataset.wasm, document.baseURI).href;
 const NAMES = { webgpu: "WebGPU", webgl2: "WebGL2" };
 
-/** What is shown now, so that it can be shown again: the items that were opened last and those that are borrowed from (none: those of the link), and the link. */
-const kept = { items: [], motionItems: [], link: location.hash.slice(1) };
-/** Which parts of what is shown are a person's own files: see `isPrivate`. */
-const own = { model: false, motion: false, map: Object.values(history.state?.own ?? {}).some(Boolean) };
-/** What was opened and not taken, of which the app may still make something: `{items, isOwn}`. */
-let refused = null;
+/** The scene of the first screen; none in a build without samples. */
+const FIRST_LINK = document.querySelector("#gallery-scenes a")?.hash.slice(1) ?? "";
+const linkOfAddress = () => location.hash.slice(1) || FIRST_LINK;
+
+/** What is shown now, so that it can be shown again. */
+const kept = { link: linkOfAddress() };
+/** Sets of files that were opened and can be shown again, the newest last; a link names them by their files. */
+const held = [];
+const MOST_HELD = 32;
+/** What is a person's own: see `isPrivate`. `names` of files, `maps` as a link has them; the rest says whether there is any. */
+const own = { names: new Set(), maps: new Set(), map: false, refused: false, view: history.state?.own === true };
 /** Compiled once for all instances. */
 let compiled = null;
 /** Bindings of the running instance; null while none runs. */
@@ -167,6 +172,7 @@ async function compile() {
 async function start(renderer) {
   stopReason = null;
   show("loading");
+  dispatchEvent(new CustomEvent("gaitway:loading", { detail: { link: kept.link, isLocal: valuesOf(kept.link, "model", "motion").some(isHeld) } }));
   showProgress("Loading Gaitway", 0, 0);
   const missing = [...lacksWasm(), ...lacksGraphics()];
   if (missing.length > 0) {
@@ -184,8 +190,9 @@ async function start(renderer) {
     cannotRun([`The program could not be loaded: ${error.message}`], ["Check the connection and reload the page.", TRY_BROWSER]);
     throw error;
   }
+  awaitFiles(kept.link);
   const [entries, motionEntries] = await Promise.all(
-    [kept.items, kept.motionItems].map((items) =>
+    [heldItems(kept.link), heldMotions(kept.link)].map((items) =>
       read(items).catch((error) => {
         sayProblem(error.message);
         return [];
@@ -199,7 +206,7 @@ async function start(renderer) {
     canvas.setAttribute("aria-label", "The model and its controls. Ctrl+O opens files.");
     byId("stage").replaceChildren(canvas);
     backend = attempt;
-    const link = kept.link;
+    const link = withoutAwaited(kept.link);
     let missing;
     try {
       const run = bindings.run(canvas, attempt ?? undefined, link, entries, motionEntries, hooks(() => app === bindings || app === null));
@@ -214,9 +221,12 @@ async function start(renderer) {
     canvas.addEventListener("webglcontextlost", () => stopped("The browser took the graphics context away."));
     await frames(2);
     if (stopReason !== null) throw new Error(stopReason);
+    // What is typed goes through a field that nobody sees.
+    byId("stage").querySelector("input")?.setAttribute("aria-label", "Typed into the picture");
     show(null);
     summarise();
     showMissing(missing, link);
+    showAwaited();
     return;
   }
   const other = renderer === null ? null : renderer === "webgpu" ? "webgl2" : "webgpu";
@@ -237,8 +247,6 @@ const hooks = (current) => ({
   save: (name, bytes) => save(name, bytes),
   startRecording,
   stopRecording,
-  motionIsModel,
-  motionsRemoved,
   share: (link) => share(link),
   progress: (name, received, total) => showProgress(name, received, total),
   changed: (link) => current() && changed(link),
@@ -272,7 +280,9 @@ let soon = null;
 function changed(link) {
   kept.link = link;
   if (visit.files === null) keepTyped();
-  adoptRefused(link);
+  const maps = valuesOf(link, "map");
+  if (maps.length === 0) own.map = false;
+  else if (own.map && parent !== window) maps.forEach((map) => own.maps.add(map));
   clearTimeout(soon);
   soon = setTimeout(summarise, 250);
   // After the frame, so that whoever hears it may ask for the state.
@@ -289,6 +299,7 @@ function summarise() {
   say(`${model}: ${clip ?? "rest pose"}, ${clip !== null && playing ? "playing" : "paused"}`);
   if (problem !== null && problem !== told) sayProblem(problem);
   told = problem;
+  dispatchEvent(new CustomEvent("gaitway:shown", { detail: { link: kept.link, isLocal: valuesOf(kept.link, "model", "motion").some(isHeld) } }));
   document.title = model === "" ? "Gaitway" : `${model.split("/").pop()} – Gaitway`;
   record();
 }
@@ -313,17 +324,31 @@ function filesOf(link) {
   return files.map(([key, value]) => `${key}=${value}`);
 }
 
-/** The parts of a link that lie on this computer alone: `[key, name]`. */
-function localParts(link) {
-  const addresses = [...kept.items, ...kept.motionItems].filter((item) => typeof item === "string");
-  const held = { model: kept.items, motion: kept.motionItems };
-  return pairsOf(link).filter(([key, value]) => held[key]?.length > 0 && !addresses.includes(value) && !value.startsWith("sample:"));
-}
+const valuesOf = (link, ...keys) => pairsOf(link).filter(([key]) => keys.includes(key)).map(([, value]) => value);
 
-/** A link without what lies on this computer alone, which would lead nowhere. */
+const nameOf = (item) => (typeof item === "string" ? item : item.name);
+
+/** The sets that files of a link are in, by their names. */
+const setsOf = (link, key) => [...new Set(valuesOf(link, key).map((name) => held.findLast((items) => items.some((item) => nameOf(item) === name))))].filter(Boolean);
+
+/** What a link's model is opened from, besides addresses. */
+const heldItems = (link) => setsOf(link, "model").flat();
+
+/** What its motions are opened from, where that is something else. */
+const heldMotions = (link) => setsOf(link, "motion").filter((set) => !setsOf(link, "model").includes(set)).flat();
+
+const isHeld = (name) => held.some((items) => items.some((item) => typeof item !== "string" && item.name === name));
+
+/** The parts of a link that lie on this computer alone: `[key, name, pair]`. */
+const localParts = (link) => pairsOf(link).filter(([key, value]) => (key === "model" || key === "motion") && isHeld(value));
+
+/** Before the name of a file in a link that somebody has to bring along. */
+const BRING = "file:";
+
+/** A link that says which files have to be brought along. */
 function publicLink(link) {
-  const local = localParts(link).map(([, , pair]) => pair);
-  return link.split("&").filter((pair) => !local.includes(pair)).join("&");
+  const local = new Map(localParts(link).map(([key, name, pair]) => [pair, `${key}=${BRING}${encodeURIComponent(name)}`]));
+  return link.split("&").map((pair) => local.get(pair) ?? pair).join("&");
 }
 
 /**
@@ -341,27 +366,30 @@ let following = 0;
 /** Other files are a new entry, everything else changes the present one. */
 function record() {
   const files = filesOf(kept.link).join("\n");
-  if (following > 0 || kept.link === visit.typed) return;
+  // The address keeps what is waited for until there is something else to see.
+  if (following > 0 || kept.link === visit.typed || (awaited !== null && files === visit.files)) return;
   visit.typed = null;
   const address = `#${publicLink(kept.link)}`;
   if (files === visit.files) {
-    history.replaceState({ gaitway: visit.number, own: { ...own } }, "", address);
+    history.replaceState({ gaitway: visit.number, own: isPrivate() }, "", address);
   } else {
     lastVisit += 1;
     [visit.number, visit.files] = [lastVisit, files];
-    history.pushState({ gaitway: visit.number, own: { ...own } }, "", address);
+    history.pushState({ gaitway: visit.number, own: isPrivate() }, "", address);
   }
   remember();
 }
 
+/** The address stays as it is until something is set. */
 function keepTyped() {
   [visit.files, visit.typed] = [filesOf(kept.link).join("\n"), kept.link];
 }
 
 function remember() {
   visited.delete(visit.number);
-  if (kept.items.length + kept.motionItems.length === 0) return;
-  visited.set(visit.number, { link: kept.link, items: kept.items, motionItems: kept.motionItems, own: { ...own } });
+  const [items, motionItems] = [heldItems(kept.link), heldMotions(kept.link)];
+  if (items.length + motionItems.length === 0) return;
+  visited.set(visit.number, { link: kept.link, items, motionItems });
   if (visited.size > MOST_VISITED) visited.delete(visited.keys().next().value);
 }
 
@@ -378,22 +406,26 @@ addEventListener("popstate", ({ state }) => {
     visit.number = state.gaitway;
     lastVisit = Math.max(lastVisit, visit.number);
   }
-  const link = location.hash.slice(1);
+  const link = linkOfAddress();
   // What has not started yet begins with this one.
   if (app === null) kept.link = link;
-  else follow(link, { own: state?.own, ...visited.get(visit.number) });
+  else follow(link, { wasOwn: state?.own, ...visited.get(visit.number) });
 });
 
 let follows = 0;
 
+const areSame = (items, others) => items.length === others.length && items.every((item, index) => item === others[index]);
+
 /** Shows what a link says, with the files that its entry of the history held. */
-async function follow(link, { items = [], motionItems = [], link: heldLink = link, own: heldOwn } = {}, again = false) {
+async function follow(link, { items = [], motionItems = [], link: heldLink = link, wasOwn = false } = {}, again = false) {
   const current = app;
   follows += 1;
   const number = follows;
   following += 1;
   byId("missing").close();
-  [visit.files, visit.typed] = [filesOf(heldLink).join("\n"), null];
+  awaitFiles(heldLink);
+  const shownLink = withoutAwaited(heldLink);
+  [visit.files, visit.typed] = [filesOf(shownLink).join("\n"), null];
   const lacking = (problems, stays) => {
     if (number !== follows || problems.length === 0) return;
     // What is shown now lacks something that the address still has.
@@ -401,17 +433,21 @@ async function follow(link, { items = [], motionItems = [], link: heldLink = lin
     showMissing(problems, link, stays);
   };
   try {
-    if (items.length > 0 && items !== kept.items) await bring(items, undefined, heldOwn.model);
-    if (motionItems.length > 0 && motionItems !== kept.motionItems) await bring(motionItems, "motion", heldOwn.motion);
+    const before = { items: heldItems(kept.link), motionItems: heldMotions(kept.link) };
+    const isOwn = (items) => items.some((item) => own.names.has(nameOf(item)));
+    if (items.length > 0 && !areSame(items, before.items)) await bring(items, undefined, isOwn(items));
+    if (motionItems.length > 0 && !areSame(motionItems, before.motionItems)) await bring(motionItems, "motion", isOwn(motionItems));
     if (number !== follows) return;
     // Files of the same name are others now.
-    const isOther = (items.length === 0 && kept.items.length > 0) || (motionItems.length === 0 && kept.motionItems.length > 0);
-    if (!again && !isOther && heldLink === kept.link) return;
-    const all = again || (isOther && items.length + motionItems.length === 0);
-    const { problems } = loaded(await unlessStopped(current, current.follow_link(heldLink, all)));
-    // What the address says of a person's own files (their clips, maps, poses) is as much theirs.
-    own.map = Object.values(heldOwn ?? {}).some(Boolean);
-    lacking(problems);
+    const isOther = (items.length === 0 && before.items.length > 0) || (motionItems.length === 0 && before.motionItems.length > 0);
+    if (again || isOther || shownLink !== kept.link) {
+      const all = again || (isOther && items.length + motionItems.length === 0);
+      const { problems } = loaded(await unlessStopped(current, current.follow_link(shownLink, all)));
+      // What the address says of a person's own files (their clips, maps, poses) is as much theirs.
+      own.view = wasOwn;
+      lacking(problems);
+    }
+    if (number === follows) showAwaited();
   } catch (error) {
     lacking([error.message], true);
   } finally {
@@ -421,12 +457,69 @@ async function follow(link, { items = [], motionItems = [], link: heldLink = lin
   }
 }
 
-/** Takes note of what was read from a link's addresses, which takes the place of files that are held on to. */
+/** Takes note of what was read from a link's addresses, which takes the place of files of the same names. */
 function loaded(answer) {
   const news = JSON.parse(answer);
-  if (news.loaded.includes("model")) [kept.items, own.model] = [[], false];
-  if (news.loaded.includes("motion")) [kept.motionItems, own.motion, refused] = [[], false, null];
+  const read = valuesOf(kept.link, ...news.loaded);
+  for (const name of read) {
+    for (let at = held.length - 1; at >= 0; at--) if (held[at].some((item) => nameOf(item) === name)) held.splice(at, 1);
+  }
+  if (news.loaded.includes("motion")) own.refused = false;
+  if (news.loaded.includes("model")) own.view = false;
   return news;
+}
+
+// ---- Links that name files which somebody has to bring ----
+
+/** The link that is waited for, the names of its files, and the sets that came meanwhile; null when nothing is. */
+let awaited = null;
+
+const wantedBy = (link) => pairsOf(link).filter(([key, value]) => (key === "model" || key === "motion") && value.startsWith(BRING));
+
+/** Waits for the files that a link names, if it names any. */
+function awaitFiles(link) {
+  const wanted = wantedBy(link).map(([key, value]) => ({ key, name: value.slice(BRING.length) }));
+  awaited = wanted.length > 0 ? { link, wanted, sets: [] } : null;
+}
+
+/** What of a link can be shown before its files are there. */
+function withoutAwaited(link) {
+  const missing = wantedBy(link).map(([key]) => key);
+  if (missing.length === 0) return link;
+  // What is about one model means nothing for another; clips and maps go with their motions.
+  const stays = ([key]) => (missing.includes("model") ? ["v", "embed", "background", "exposure", "environment"].includes(key) : key !== "clip" && key !== "map");
+  return pairsOf(link).filter(([key, value]) => stays([key]) && !value.startsWith(BRING)).map(([, , pair]) => pair).join("&");
+}
+
+function showAwaited() {
+  if (awaited === null || panel !== null || byId("bring").open) return;
+  list("bring-files", awaited.wanted.map(({ key, name }) => `${name} (${key === "model" ? "the model" : "motion"})`));
+  byId("bring").showModal();
+  byId("bring-choose").focus();
+}
+
+/** A set has come: shows the link that is waited for when it was the last one. */
+async function fulfil(items) {
+  if (awaited === null) return;
+  awaited.sets.push(items);
+  const { link, wanted, sets } = awaited;
+  const lastPart = (path) => path.split("/").pop();
+  const found = wanted.map(({ key, name }) => {
+    const set = sets.findLast((items) => items.some((item) => lastPart(nameOf(item)) === lastPart(name)));
+    return { key, name, set, as: set?.map(nameOf).find((path) => lastPart(path) === lastPart(name)) };
+  });
+  if (!found.every(({ set }) => set !== undefined)) {
+    // Something else was opened: that is what the person wants to see.
+    if (!found.some(({ set }) => set === items)) awaited = null;
+    return;
+  }
+  let whole = link;
+  for (const { key, name, as } of found) {
+    const pair = wantedBy(link).find(([other, value]) => other === key && value === BRING + name)[2];
+    whole = whole.split("&").map((other) => (other === pair ? `${key}=${encodeURIComponent(as)}` : other)).join("&");
+  }
+  awaited = null;
+  await follow(whole, { link: whole, items: heldItems(whole), motionItems: heldMotions(whole) });
 }
 
 /** What of a link could not be had, and the way to try again. `stays`: nothing of it is shown. */
@@ -437,7 +530,7 @@ function showMissing(problems, link, stays = false) {
   byId("missing-rest").textContent = stays ? "What was shown stays." : "What could be loaded is shown.";
   byId("missing-again").onclick = () => {
     byId("missing").close();
-    if (kept.items.length + kept.motionItems.length === 0) {
+    if (heldItems(kept.link).length + heldMotions(kept.link).length === 0) {
       follow(link, {}, true);
     } else {
       kept.link = link;
@@ -506,6 +599,7 @@ async function openAll(items, { as, isOwn = true } = {}) {
   await running();
   const { shown, document } = await bring(wanted, as, isOwn);
   tellOpened(shown, document);
+  await fulfil(wanted);
   summarise();
   return document;
 }
@@ -517,62 +611,50 @@ let ownSeen = 0;
 
 /** Reads and shows items, and holds on to them. */
 async function bring(items, as, isOwn) {
+  // A link says where addresses lead; other files have to be held on to.
   const isLocal = !items.every((item) => typeof item === "string");
   const isOwnNow = isLocal && isOwn;
   ownOnTheWay += isOwnNow ? 1 : 0;
   ownSeen += isOwnNow ? 1 : 0;
+  if (isOwnNow) items.forEach((item) => own.names.add(nameOf(item)));
+  if (isLocal) hold(items);
   try {
     const current = app;
     const answer = await unlessStopped(current, (async () => current.open(await read(items), as))());
     const { shown, document } = JSON.parse(answer);
-    // A link says where addresses lead; other files have to be held on to.
-    const held = isLocal ? items : [];
-    if (shown === "model") {
-      [kept.items, own.model] = [held, isOwnNow];
-      // Motions may come along in the same set, or in an archive whatever its name; those that are there stay.
-      const mayBring = held.length > 1 || !/\.(glb|gltf|vrm)$/i.test(held[0]?.name ?? "") || document.borrowed_clips?.length > 0;
-      own.motion ||= (isOwnNow && mayBring) || refused?.isOwn === true;
-    }
-    if (shown === "motion") [kept.motionItems, own.motion, own.map] = [held, isOwnNow, false];
-    // A set of motions may have a map in it.
-    if (shown !== "model") own.map ||= isOwnNow;
-    refused = null;
+    // A joint map may have come alone, in a set or in an archive.
+    if (isOwnNow && (shown !== "model" || items.length > 1 || !/\.(glb|gltf|vrm)$/i.test(nameOf(items[0])))) own.map = true;
+    if (shown === "model" && !isOwnNow) own.view = false;
+    own.refused = false;
     return { shown, document };
   } catch (error) {
-    if (isLocal) refused = { items, isOwn: isOwnNow || refused?.isOwn === true };
+    if (isLocal) {
+      // It may be shown yet, if the person says so, but not instead of what is there under the same name.
+      held.splice(held.indexOf(items), 1);
+      held.unshift(items);
+    }
+    own.refused ||= isOwnNow;
     throw error;
   } finally {
     ownOnTheWay -= isOwnNow ? 1 : 0;
   }
 }
 
+function hold(items) {
+  const at = held.indexOf(items);
+  if (at >= 0) held.splice(at, 1);
+  held.push(items);
+  if (held.length > MOST_HELD) held.shift();
+}
+
 /** Whether a page around this one must not get to know what is shown: dropped and chosen files are for the person's eyes. */
-const isPrivate = () => own.model || own.motion || own.map || refused?.isOwn === true || ownOnTheWay > 0;
-
-/** Files that were borrowed from a moment ago. */
-let removed = { items: [], isOwn: false };
-
-function motionsRemoved() {
-  removed = { items: kept.motionItems, isOwn: own.motion };
-  [kept.motionItems, own.motion, own.map] = [[], false, false];
-}
-
-function motionIsModel() {
-  const { items, isOwn } = kept.motionItems.length > 0 ? { items: kept.motionItems, isOwn: own.motion } : removed;
-  [kept.items, own.model] = [items, isOwn];
-  [kept.motionItems, own.motion] = [[], false];
-}
-
-/** What was refused may be shown or borrowed from after all, if the person says so. */
-function adoptRefused(link) {
-  if (refused === null) return;
-  const names = refused.items.map((item) => (typeof item === "string" ? item : item.name));
-  const has = (key) => pairsOf(link).some(([other, value]) => other === key && names.includes(value));
-  if (has("motion")) [kept.motionItems, own.motion] = [refused.items, refused.isOwn];
-  else if (has("model")) [kept.items, own.model] = [refused.items, refused.isOwn];
-  else return;
-  refused = null;
-}
+const isPrivate = () =>
+  own.map ||
+  own.refused ||
+  own.view ||
+  ownOnTheWay > 0 ||
+  valuesOf(kept.link, "model", "motion").some((name) => own.names.has(name)) ||
+  valuesOf(kept.link, "map").some((map) => own.maps.has(map));
 
 function tellOpened(shown, { files, clips, borrowed_clips: borrowed, joints, triangles }) {
   const count = (number, one, many) => `${number} ${number === 1 ? one : many}`;
@@ -641,8 +723,8 @@ const focusCanvas = () => byId("stage").querySelector("canvas")?.focus({ prevent
 let openAs;
 
 const DIALOG = {
-  any: { title: "Open a model", what: ".glb, .gltf with its files, .vrm or a .zip of them; motions for it (.bvh, .vrma) can come along. Files stay in this browser.", example: "https://example.org/character.glb" },
-  motion: { title: "Borrow motion", what: ".bvh, .vrma, .glb or .gltf: the clips of any skeleton, or a joint map (.json). Files stay in this browser.", example: "https://example.org/walk.bvh" },
+  any: { title: "Open a model", what: ".glb, .gltf with its files, .vrm, .obj (with .skel and .attach) or a .zip of them; motions for it (.bvh, .vrma) can come along. Files stay in this browser.", example: "https://example.org/character.glb", sample: "Samples" },
+  motion: { title: "Borrow motion", what: ".bvh, .vrma, .glb or .gltf: the clips of any skeleton, or a joint map (.json). Files stay in this browser.", example: "https://example.org/walk.bvh", sample: "A sample walk" },
 };
 
 function openDialog(role = "any") {
@@ -650,10 +732,11 @@ function openDialog(role = "any") {
   if (panel !== null || dialog.open) return;
   openAs = role === "motion" ? role : undefined;
   byId("open-form").reset();
-  const { title, what, example } = DIALOG[role];
+  const { title, what, example, sample } = DIALOG[role];
   byId("open-title").textContent = title;
   byId("open-what").textContent = what;
   byId("open-url").placeholder = example;
+  byId("open-sample").textContent = sample;
   dialog.showModal();
 }
 
@@ -664,9 +747,14 @@ function openFromDialog(items) {
 
 byId("open-files").addEventListener("change", ({ target }) => target.files.length > 0 && openFromDialog([...target.files]));
 byId("open-folder").addEventListener("change", ({ target }) => target.files.length > 0 && openFromDialog(insideFolder([...target.files])));
-byId("open-sample").addEventListener("click", () => openFromDialog(["sample:walker"]));
+byId("open-sample").addEventListener("click", () => {
+  if (openAs === "motion") return openFromDialog(["sample:walker"]);
+  byId("open").close();
+  dispatchEvent(new CustomEvent("gaitway:samples"));
+});
 byId("open-cancel").addEventListener("click", () => byId("open").close());
 byId("open").addEventListener("close", focusCanvas);
+byId("bring").addEventListener("close", () => byId("bring").returnValue === "choose" && openDialog());
 byId("open-form").addEventListener("submit", (event) => {
   event.preventDefault();
   const url = byId("open-url").value.trim();
@@ -717,6 +805,7 @@ for (const type of ["dragenter", "dragover", "dragleave", "drop"])
       } else {
         showDrop(false);
         byId("open").close();
+        byId("bring").close();
         dropped(event.dataTransfer).then((items) => openByHand(items), (error) => sayProblem(error.message));
       }
     },
@@ -783,6 +872,8 @@ function ask(name) {
 }
 
 window.gaitway = {
+  /** The files of each sample: addresses beside the page, by the name after `sample:`. */
+  samples: JSON.parse(document.querySelector('meta[name="gaitway-samples"]')?.content ?? "{}"),
   /** Resolves when the first picture is on the screen; a new promise after each restart. */
   get ready() {
     return started.then(() => undefined);
@@ -827,5 +918,5 @@ launch(forced()).then(
   () => {},
 );
 
-// For embed.js.
-dispatchEvent(new CustomEvent("gaitway:shell", { detail: { isPrivate, ownSeen: () => ownSeen, open: (items, { as } = {}) => openAll(items, { as, isOwn: false }) } }));
+// For embed.js and offline.js.
+dispatchEvent(new CustomEvent("gaitway:shell", { detail: { openByHand, isPrivate, ownSeen: () => ownSeen, open: (items, { as } = {}) => openAll(items, { as, isOwn: false }) } }));

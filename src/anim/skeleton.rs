@@ -135,6 +135,26 @@ impl Skeleton {
         self.source_of_joint[joint.get()] as usize
     }
 
+    /// The same with other names for some joints, given by their position in the list the skeleton was built from.
+    pub fn with_names<'a>(&self, names: impl Iterator<Item = (usize, &'a str)>) -> Self {
+        let mut skeleton = self.clone();
+        for (source, name) in names {
+            if let Some(slot) = self.joint_of_source(source).and_then(|joint| skeleton.names.get_mut(joint.get())) {
+                name.clone_into(slot);
+            }
+        }
+        skeleton
+    }
+
+    /// The same with another rest pose: one local transform per joint.
+    pub fn with_rest(&self, locals: &[Transform]) -> Self {
+        let mut skeleton = self.clone();
+        for (slot, local) in skeleton.rest.locals.iter_mut().zip(locals) {
+            *slot = *local;
+        }
+        skeleton
+    }
+
     pub fn joint_of_source(&self, source: usize) -> Option<JointIndex> {
         self.joint_of_source.get(source).copied()
     }

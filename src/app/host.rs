@@ -40,12 +40,6 @@ pub trait Host {
         let _ = name;
     }
 
-    /// The files that were borrowed from are shown as the model from now on.
-    fn motion_is_model(&self) {}
-
-    /// Nothing is borrowed any more.
-    fn motions_removed(&self) {}
-
     /// Opens files that were dropped on the canvas or the window, as one set.
     fn open_dropped(&self, files: Vec<egui::DroppedFileHandle>, inbox: &Inbox);
 

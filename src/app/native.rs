@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use super::{App, Host, Inbox, Message, Opening, native_options};
-use crate::files::{Contents, OpenError, Opened, Role, open_paths, read_paths};
+use crate::files::{Contents, OpenError, Role, read_paths};
 use crate::library::sample;
 use crate::state::ViewerState;
 
@@ -13,24 +13,17 @@ use crate::state::ViewerState;
 pub enum WindowError {
     #[error(transparent)]
     Open(#[from] OpenError),
-    #[error("the embedded sample is missing")]
-    NoSample,
     #[error("the window could not be opened: {0}")]
     Window(#[from] eframe::Error),
 }
 
-/// Opens the window and returns when it is closed. Several files are one set; without any the sample walks.
+/// Opens the window and returns when it is closed. Several files are one set; without any it is the first sample.
 ///
 /// # Errors
 /// When the first files cannot be read, or no window or graphics device is to be had.
 pub fn run_native(files: Vec<PathBuf>) -> Result<(), WindowError> {
-    let sample = || sample::load(sample::NAMES[0]).ok_or(WindowError::NoSample);
-    let contents = if files.is_empty() {
-        Contents { model: Some(sample()?), ..Contents::default() }
-    } else {
-        let Opened { model, model_files, motions, motion_sources, map, .. } = open_paths(&files)?;
-        Contents { model: Some(model), model_files, motions: Some(motions), motion_sources, map, problems: Vec::new() }
-    };
+    let files = if files.is_empty() { vec![sample::FIRST.into()] } else { files };
+    let contents = read_paths(&files, Role::Model)?;
     let create: eframe::AppCreator<'_> = Box::new(move |cc| {
         let app = App::new(cc, Box::new(Window::new(cc.egui_ctx.clone())), contents, None, |_| {})?;
         Ok(Box::new(app))

@@ -1,9 +1,9 @@
-//! What becomes of opened files: a model takes the place of the present one, motions are borrowed from, a joint map is
-//! put in force. What does not work leaves everything as it was.
+//! What becomes of opened files: a model is shown and the others wait beside it, motions are borrowed from, a joint map is
+//! put in force. What does not work leaves everything as it was; what works can be undone.
 
 use super::App;
-use crate::files::Contents;
-use crate::library::{BorrowError, Model, Motion};
+use crate::files::{Contents, ModelFiles, OpenedModel};
+use crate::library::{BorrowError, Library, Loaded, Model, ModelId, Motion};
 use crate::retarget::{JointMap, MapError, propose};
 use crate::state::{
     ClipChoice, Command, MapEdit, MotionMap, NumberedMap, ViewerState, active_clip, choice_of_clip, maps_in_force,
@@ -14,26 +14,35 @@ use crate::ui::{Tab, Toast, short_name};
 /// Motions that could not be borrowed from, kept so that the person can say what to do with them.
 pub(super) struct Refused {
     motions: Vec<Motion>,
-    sources: Vec<String>,
+}
+
+/// What is kept of a loaded model besides the model.
+#[derive(Default)]
+pub(super) struct Shelved {
+    /// What it was read from; none for a sample.
+    pub files: Option<ModelFiles>,
+    /// How it was shown when another was turned to, and what it borrowed then.
+    left: Option<(ViewerState, Vec<Motion>)>,
+}
+
+/// A borrowed clip, whichever model it is made over for.
+struct BorrowedChoice {
+    motion: String,
+    source_clip: usize,
+    time_secs: f64,
 }
 
 impl App {
     /// Shows what was opened. With a state, that is taken over too (a link) and nothing is chosen anew.
     pub(super) fn show(&mut self, contents: Contents, state: Option<ViewerState>) -> Result<(), String> {
-        let Contents { model, model_files, motions, motion_sources, map, problems } = contents;
+        let Contents { models, motions, map, problems } = contents;
         self.refused = None;
         self.panels.error = None;
         self.panels.motion_refused = false;
-        let shown = match (model, motions) {
-            (Some(model), motions) => {
-                let shown = self.show_model(model, motions, motion_sources, map, state);
-                if shown.is_ok() {
-                    self.model_files = model_files;
-                }
-                shown
-            }
-            (None, Some(motions)) => self.borrow_from(motions, motion_sources, map, state),
-            (None, None) => map.map_or(Ok(()), |map| self.use_map(&map)),
+        let shown = match motions {
+            motions if !models.is_empty() => self.show_models(models, motions, map, state),
+            Some(motions) => self.borrow_from(motions, map, state),
+            None => map.map_or(Ok(()), |map| self.use_map(&map)),
         };
         self.dirty = true;
         self.changed = true;
@@ -41,129 +50,240 @@ impl App {
         shown
     }
 
-    /// Puts a model in place of the present one, which stays when the new one does not fit on the device. Without a
-    /// state, what is about the old model (clip, time, camera, …) starts anew and the rest is kept; without motions, those
-    /// that are there are tried on the new model.
-    fn show_model(
+    /// Shows the first of some models and holds the others. The present one is held too, and stays on the screen when the
+    /// new one does not fit on the device. Without a state, what is about the old model (clip, time, camera, …) starts anew
+    /// and the rest is kept; without motions, those that are there are tried on the new model.
+    fn show_models(
         &mut self,
-        model: Model,
+        models: Vec<OpenedModel>,
         motions: Option<Vec<Motion>>,
-        motion_sources: Vec<String>,
         map: Option<JointMap>,
         state: Option<ViewerState>,
     ) -> Result<(), String> {
-        let source = model.source.clone();
-        let borrowed = self.borrowed_choice();
-        let before = self.library.take();
-        self.library.set(model);
-        let uploaded = match self.library.active() {
-            Some(model) => self.scene.upload(model, None).map_err(|error| error.to_string()),
-            None => Ok(()),
-        };
-        if let Err(error) = uploaded {
-            self.library.put_back(before);
+        let mut models = models.into_iter();
+        let Some(first) = models.next() else { return Ok(()) };
+        let name = short_name(&first.model.source);
+        let before = self.before_opening();
+        let choice = self.borrowed_choice();
+        let source = first.model.source.clone();
+        let known = self.library.models().len();
+        let id = self.hold(first);
+        if let Some(Err(error)) = self.library.active().map(|model| self.scene.upload(model, None)) {
+            if let Some(before) = &before {
+                self.library.restore(before.1.clone());
+            }
+            self.close_model(id);
             self.refresh_motion();
-            return Err(error);
+            return Err(error.to_string());
         }
-        self.history.clear();
-        let keeps_motions = motions.is_none() && state.is_none();
+        let others: Vec<String> = models
+            .map(|other| {
+                let name = short_name(&other.model.source);
+                self.hold(other);
+                name
+            })
+            .collect();
+        self.library.show(id);
+        self.let_go();
+        let is_link = state.is_some();
+        let was_loaded = before.is_some();
+        self.remember(before);
+        let keeps_motions = motions.is_none() && !is_link;
         if !keeps_motions {
             self.library.set_motions(motions.unwrap_or_default());
         }
-        let is_link = state.is_some();
-        if !keeps_motions && !is_link {
-            self.host.motions_removed();
-        }
-        self.state = match state {
-            Some(state) => state,
-            None => {
-                let old = std::mem::take(&mut self.state);
-                let kept = if keeps_motions { old.clone() } else { ViewerState::default() };
+        let sources = || Contents::motion_sources(self.library.motions(), Some(&source));
+        self.state = state.unwrap_or_else(|| {
+            let old = std::mem::take(&mut self.state);
+            let kept = if keeps_motions { old.clone() } else { ViewerState::default() };
+            let motion = sources();
+            let ViewerState { map, unmapped, root, feet, .. } = kept;
+            about_model(
                 ViewerState {
-                    model: vec![source],
-                    motion: if keeps_motions { kept.motion } else { motion_sources },
-                    map: kept.map,
-                    unmapped: kept.unmapped,
-                    root: kept.root,
-                    feet: kept.feet,
-                    scene: None,
-                    clip: ClipChoice::First,
-                    time_secs: 0.0,
-                    range: None,
-                    morph: Default::default(),
-                    pose: Default::default(),
-                    joint: None,
-                    camera: Default::default(),
-                    up: Default::default(),
-                    ..old
-                }
-            }
-        };
+                    model: vec![source.clone()],
+                    motion,
+                    map,
+                    unmapped,
+                    root,
+                    feet,
+                    ..ViewerState::default()
+                },
+                old,
+            )
+        });
         let has_map = map.is_some();
         self.state.map.extend(map.map(MotionMap::Names));
         let problems = self.refresh_motion();
         if keeps_motions {
             self.put_unfit_away();
-            self.choose_borrowed(borrowed);
-        } else if is_link {
-            self.tell(problems);
+            self.choose_borrowed(choice);
         } else {
-            if !self.library.motions().is_empty() || has_map {
+            if is_link || !self.library.motions().is_empty() || has_map {
                 self.tell(problems);
             }
-            self.choose_borrowed(Some((0, 0)));
+            if !is_link && let Some(motion) = self.library.motions().first() {
+                let motion = motion.source.clone();
+                self.choose_borrowed(Some(BorrowedChoice { motion, source_clip: 0, time_secs: 0.0 }));
+            }
+        }
+        if was_loaded && !is_link {
+            let is_new = self.library.models().len() > known;
+            let others = match &others[..] {
+                [] => String::new(),
+                [other] => format!(" {other} is in the list of models."),
+                others => format!(" {} others are in the list of models.", others.len()),
+            };
+            let opened = if is_new { "Opened" } else { "Opened again:" };
+            self.toast_undoable(format!("{opened} {name}.{others}"));
         }
         Ok(())
     }
 
-    /// Borrows from these files instead of those that are there. Without a state the view stays, and the first clip that
-    /// came is chosen; when none did, everything stays as it was.
+    /// What a step back leads to; none before there is anything.
+    fn before_opening(&self) -> Option<(ViewerState, Loaded)> {
+        self.library.active().map(|_| (self.state.clone(), self.library.loaded()))
+    }
+
+    /// Makes a step of what was done since, and keeps the view of the model that was shown.
+    fn remember(&mut self, before: Option<(ViewerState, Loaded)>) {
+        let Some((state, loaded)) = before else { return };
+        if loaded.model != self.library.loaded().model
+            && let Some(shelved) = self.shelf.get_mut(&loaded.model)
+        {
+            shelved.left = Some((state.clone(), loaded.motions.clone()));
+        }
+        self.history.opened(state, loaded);
+    }
+
+    /// Puts a model into the library and shows it; the same file again is the model that is there already.
+    fn hold(&mut self, opened: OpenedModel) -> ModelId {
+        let OpenedModel { model, files } = opened;
+        let known = self.library.models().iter().find(|known| {
+            known.source == model.source && self.shelf.get(&known.id).is_some_and(|shelved| shelved.files == files)
+        });
+        if let Some(id) = known.map(|known| known.id) {
+            self.library.show(id);
+            return id;
+        }
+        let id = self.library.add(model);
+        self.shelf.insert(id, Shelved { files, left: None });
+        id
+    }
+
+    /// Forgets what is kept of models that have gone.
+    fn let_go(&mut self) {
+        let library: &Library = &self.library;
+        self.shelf.retain(|id, _| library.get(*id).is_some());
+        self.history.forget_gone(library);
+    }
+
+    /// Shows another of the models that are there, as it was left. Motions that came since are tried on it, and the borrowed
+    /// clip that plays goes on.
+    pub(super) fn turn_to(&mut self, id: ModelId) {
+        let Some(before) = self.before_opening().filter(|before| before.1.model != id) else { return };
+        let choice = self.borrowed_choice();
+        let present = before.1.motions.clone();
+        if !self.library.show(id) {
+            return;
+        }
+        self.remember(Some(before));
+        let left = self.shelf.get(&id).and_then(|shelved| shelved.left.clone());
+        let source = self.library.active().map(|model| model.source.clone()).unwrap_or_default();
+        let (left, mut motions) =
+            left.unwrap_or_else(|| (ViewerState { model: vec![source.clone()], ..ViewerState::default() }, Vec::new()));
+        for motion in present {
+            if !motions.iter().any(|known| known.source == motion.source) {
+                motions.push(motion);
+            }
+        }
+        let sources = Contents::motion_sources(&motions, Some(&source));
+        let old = std::mem::take(&mut self.state);
+        self.state = about_model(ViewerState { motion: sources, ..left }, old);
+        self.library.set_motions(motions);
+        self.refresh_motion();
+        self.put_unfit_away();
+        self.choose_borrowed(choice);
+        self.dirty = true;
+        self.changed = true;
+    }
+
+    /// Lets go of a model that is not shown.
+    pub(super) fn close_model(&mut self, id: ModelId) {
+        self.library.remove(id);
+        self.let_go();
+    }
+
+    /// Borrows from these files too; one that is there already is read anew. Without a state the view stays, and the first
+    /// clip that came is chosen; when none did, everything stays as it was.
     fn borrow_from(
         &mut self,
         motions: Vec<Motion>,
-        sources: Vec<String>,
         map: Option<JointMap>,
         state: Option<ViewerState>,
     ) -> Result<(), String> {
+        let before = self.before_opening();
         if let Some(state) = state {
+            self.remember(before);
             self.state = state;
             self.state.map.extend(map.map(MotionMap::Names));
             self.library.set_motions(motions);
-            self.history.clear();
             let problems = self.refresh_motion();
             self.tell(problems);
             return Ok(());
         }
-        let before = (self.library.motions().to_vec(), self.state.clone());
-        self.state = ViewerState {
-            motion: sources.clone(),
-            map: map.map(MotionMap::Names).into_iter().collect(),
-            unmapped: None,
-            root: None,
-            feet: None,
-            ..before.1.clone()
-        };
-        self.library.set_motions(motions.clone());
-        let problems = self.refresh_motion();
-        let works = self.library.active().is_some_and(|model| model.clip_count() > model.asset.clips.len());
+        let together = self.library.motions().len() + motions.len();
+        if together > Library::MOST_MOTIONS {
+            let most = Library::MOST_MOTIONS;
+            return Err(format!("{together} motions together; at most {most} are borrowed from, remove some first"));
+        }
+        self.state.map.extend(map.map(MotionMap::Names));
+        let problems = self.borrow_also(motions.clone());
+        let first = self.library.motions().len() - motions.len();
+        let works = self.library.active().is_some_and(|model| {
+            (model.asset.clips.len()..model.clip_count())
+                .any(|clip| model.borrowed(clip).is_some_and(|borrowed| borrowed.motion >= first))
+        });
         if !works && !motions.is_empty() {
-            self.library.set_motions(before.0);
-            self.state = before.1;
+            if let Some((state, loaded)) = before {
+                self.library.restore(loaded);
+                self.state = state;
+            }
             self.refresh_motion();
-            self.refused = Some(Refused { motions, sources });
+            self.refused = Some(Refused { motions });
             self.panels.motion_refused = true;
             return Err(self.why_refused(problems));
         }
-        self.history.clear();
+        self.remember(before);
         self.tell(problems);
-        self.choose_borrowed(Some((0, 0)));
+        if let Some(motion) = motions.first() {
+            self.choose_borrowed(Some(BorrowedChoice {
+                motion: motion.source.clone(),
+                source_clip: 0,
+                time_secs: 0.0,
+            }));
+        }
         // The new clip may go elsewhere than the one that the camera was turned to.
         self.apply(Command::FrameAll);
-        let names: Vec<String> = sources.iter().map(|source| short_name(source)).collect();
-        let clips = self.library.active().map_or(0, |model| model.clip_count() - model.asset.clips.len());
+        let names: Vec<String> = motions.iter().map(|motion| short_name(&motion.source)).collect();
+        let clips = self.library.active().map_or(0, |model| {
+            (model.asset.clips.len()..model.clip_count())
+                .filter(|&clip| model.borrowed(clip).is_some_and(|borrowed| borrowed.motion >= first))
+                .count()
+        });
         let clips = if clips == 1 { "A clip is".to_owned() } else { format!("{clips} clips are") };
-        self.toast(format!("{clips} borrowed from {}.", names.join(", ")));
+        self.toast_undoable(format!("{clips} borrowed from {}.", names.join(", ")));
         Ok(())
+    }
+
+    /// Puts motions behind those that are there; what came from the same places gives way. Gives back what does not work.
+    fn borrow_also(&mut self, motions: Vec<Motion>) -> Vec<String> {
+        let is_new = |known: &Motion| motions.iter().any(|motion| motion.origin == known.origin);
+        let mut all: Vec<Motion> = self.library.motions().iter().filter(|known| !is_new(known)).cloned().collect();
+        all.extend(motions);
+        let model = self.library.active().map(|model| model.source.clone());
+        self.state.motion = Contents::motion_sources(&all, model.as_deref());
+        self.library.set_motions(all);
+        self.refresh_motion()
     }
 
     /// The page offers what else can be done, where other places say how to write a map.
@@ -201,9 +321,15 @@ impl App {
         if let Some(problem) = problem.filter(|_| fitting.is_empty()) {
             return Err(problem);
         }
+        let names: Vec<String> = fitting
+            .iter()
+            .filter_map(|(motion, _)| Some(short_name(&self.library.motions().get(*motion)?.source)))
+            .collect();
         for (motion, map) in fitting {
             self.apply(Command::EditMap { motion, edit: MapEdit::Load(Box::new(map)) });
         }
+        self.history.end_gesture();
+        self.toast_undoable(format!("The joint map is used for {}.", names.join(", ")));
         Ok(())
     }
 
@@ -234,48 +360,71 @@ impl App {
         }
     }
 
-    /// Which motion plays, and which of its clips.
-    fn borrowed_choice(&self) -> Option<(usize, usize)> {
+    fn borrowed_choice(&self) -> Option<BorrowedChoice> {
         let model = self.library.active()?;
         let borrowed = model.borrowed(active_clip(model, &self.state)?)?;
-        Some((borrowed.motion, borrowed.source_clip))
+        let motion = self.library.motions().get(borrowed.motion)?.source.clone();
+        Some(BorrowedChoice { motion, source_clip: borrowed.source_clip, time_secs: self.state.time_secs })
     }
 
-    /// Plays this clip of this motion, else the first borrowed one; nothing for none.
-    fn choose_borrowed(&mut self, choice: Option<(usize, usize)>) {
+    /// Plays this clip, else the first borrowed one; nothing for none.
+    fn choose_borrowed(&mut self, choice: Option<BorrowedChoice>) {
         let (Some(choice), Some(model)) = (choice, self.library.active()) else { return };
         let own = model.asset.clips.len();
         let is_it = |&clip: &usize| {
-            model.borrowed(clip).is_some_and(|borrowed| (borrowed.motion, borrowed.source_clip) == choice)
+            model.borrowed(clip).is_some_and(|borrowed| {
+                let motion = self.library.motions().get(borrowed.motion);
+                borrowed.source_clip == choice.source_clip
+                    && motion.is_some_and(|motion| motion.source == choice.motion)
+            })
         };
-        if let Some(clip) = (own..model.clip_count()).find(is_it).or((own < model.clip_count()).then_some(own)) {
-            let choice = choice_of_clip(model, clip);
-            self.apply(Command::SetClip(choice));
+        let found = (own..model.clip_count()).find(is_it);
+        if let Some(clip) = found.or((own < model.clip_count()).then_some(own)) {
+            let clip = choice_of_clip(model, clip);
+            self.apply(Command::SetClip(clip));
+            if found.is_some() {
+                self.apply(Command::Seek(choice.time_secs));
+            }
         }
     }
 
-    /// A model has been opened that motions do not fit: they go, quietly, since nobody asked for them.
+    /// A model is shown that motions do not fit: they go, quietly, since nobody asked for them.
     fn put_unfit_away(&mut self) {
         let Some(model) = self.library.active() else { return };
         let fits = |motion: usize| {
             (model.asset.clips.len()..model.clip_count())
                 .any(|clip| model.borrowed(clip).is_some_and(|borrowed| borrowed.motion == motion))
         };
-        let motions = self.library.motions().iter().enumerate();
+        let motions = self.library.motions().iter().cloned().enumerate();
         let (fit, unfit): (Vec<_>, Vec<_>) = motions.partition(|(index, _)| fits(*index));
-        let names: Vec<String> = unfit.iter().map(|(_, motion)| motion.source.clone()).collect();
-        let fit: Vec<Motion> = fit.into_iter().map(|(_, motion)| motion.clone()).collect();
-        if names.is_empty() {
+        if unfit.is_empty() {
             return;
         }
-        if fit.is_empty() {
-            self.state.motion.clear();
-            self.state.map.clear();
-            self.host.motions_removed();
-        }
-        self.library.set_motions(fit);
-        self.refresh_motion();
+        let names: Vec<String> = unfit.iter().map(|(_, motion)| short_name(&motion.source)).collect();
+        self.borrow_only(fit.into_iter().map(|(_, motion)| motion).collect());
         self.toast(format!("Nothing is borrowed from {} any more: it does not fit this model.", names.join(", ")));
+    }
+
+    /// Lets go of all motions but these.
+    fn borrow_only(&mut self, motions: Vec<Motion>) {
+        let model = self.library.active().map(|model| model.source.clone());
+        self.state.motion = Contents::motion_sources(&motions, model.as_deref());
+        if motions.is_empty() {
+            self.state.map.clear();
+            (self.state.unmapped, self.state.root, self.state.feet) = (None, None, None);
+        }
+        self.library.set_motions(motions);
+        self.refresh_motion();
+        (self.dirty, self.changed) = (true, true);
+    }
+
+    /// A toast with a way back.
+    fn toast_undoable(&mut self, text: String) {
+        self.toast(text);
+        if let Some(toast) = &mut self.panels.toast {
+            toast.undoable = true;
+            toast.until_secs += Toast::UNDOABLE_SECS;
+        }
     }
 
     pub(super) fn toast(&mut self, text: String) {
@@ -283,33 +432,31 @@ impl App {
         const SECS_PER_LETTER: f64 = 0.03;
         let secs = SECS + SECS_PER_LETTER * text.len() as f64;
         let until_secs = self.context.input(|input| input.time) + secs;
-        self.panels.toast = Some(Toast { text, until_secs });
+        self.panels.toast = Some(Toast { text, until_secs, undoable: false });
     }
 
-    pub(super) fn remove_motions(&mut self) {
-        let was_borrowed = self.borrowed_choice().is_some();
-        self.library.set_motions(Vec::new());
-        self.state.motion.clear();
-        self.state.map.clear();
-        (self.state.unmapped, self.state.root, self.state.feet) = (None, None, None);
-        self.refresh_motion();
-        self.history.clear();
-        if was_borrowed {
-            self.apply(Command::SetClip(ClipChoice::First));
+    /// Borrows no more from a motion, and from what came with it out of the same archive.
+    pub(super) fn remove_motion(&mut self, index: usize) {
+        let Some(motion) = self.library.motions().get(index) else { return };
+        let (origin, name) = (motion.origin.clone(), short_name(&motion.origin));
+        let others = self.library.motions().iter().filter(|motion| motion.origin != origin).cloned().collect();
+        let before = self.before_opening();
+        let choice = self.borrowed_choice();
+        self.borrow_only(others);
+        self.remember(before);
+        match choice {
+            Some(_) if self.library.motions().is_empty() => self.apply(Command::SetClip(ClipChoice::First)),
+            choice => self.choose_borrowed(choice),
         }
-        self.dirty = true;
-        self.changed = true;
-        self.host.motions_removed();
+        self.toast_undoable(format!("Nothing is borrowed from {name} any more."));
     }
 
     /// Shows a motion's own skeleton instead of the model; nothing is borrowed then.
-    pub(super) fn show_motion_alone(&mut self, motion: &Motion, sources: Vec<String>) {
+    pub(super) fn show_motion_alone(&mut self, motion: &Motion) {
         let model = Model::new(motion.source.clone(), motion.asset.clone(), vec![None; motion.asset.images.len()]);
-        match self.show_model(model, Some(Vec::new()), Vec::new(), None, None) {
+        match self.show_models(vec![model.into()], Some(Vec::new()), None, None) {
             Ok(()) => {
-                self.model_files = None;
-                self.state.model = sources;
-                self.host.motion_is_model();
+                self.state.model = vec![motion.origin.clone()];
             }
             Err(error) => self.panels.error = Some(error),
         }
@@ -318,34 +465,58 @@ impl App {
     }
 
     pub(super) fn show_refused_alone(&mut self) {
-        if let Some(Refused { motions, sources }) = self.refused.take()
+        if let Some(Refused { motions }) = self.refused.take()
             && let Some(motion) = motions.first()
         {
-            self.show_motion_alone(motion, sources);
+            self.show_motion_alone(motion);
         }
     }
 
     /// Takes refused motions in with empty maps, to be filled in by hand.
     pub(super) fn map_refused_by_hand(&mut self) {
-        let (Some(Refused { motions, sources }), Some(model)) = (self.refused.take(), self.library.active()) else {
+        let (Some(Refused { motions }), Some(model)) = (self.refused.take(), self.library.active()) else {
             return;
         };
-        let mut maps: Vec<MotionMap> = Vec::new();
+        let before = self.before_opening();
         for motion in &motions {
             let checksum = names_checksum(&model.asset, &motion.asset);
-            maps.push(MotionMap::Numbers(NumberedMap { checksum, map: JointMap::default() }));
+            let map = MotionMap::Numbers(NumberedMap { checksum, map: JointMap::default() });
+            if !self.state.map.contains(&map) {
+                self.state.map.push(map);
+            }
         }
-        maps.dedup();
-        (self.state.motion, self.state.map) = (sources, maps);
-        (self.state.unmapped, self.state.root, self.state.feet) = (None, None, None);
-        self.library.set_motions(motions);
-        let problems = self.refresh_motion();
+        let problems = self.borrow_also(motions);
+        self.remember(before);
         self.tell(problems);
-        self.history.clear();
         self.panels.tab = Tab::Motion;
         self.panels.inspector_open = true;
         self.dirty = true;
         self.changed = true;
+    }
+}
+
+/// What `about` says of a model, its motion and the way it is looked at, and of everything else what was set before.
+fn about_model(about: ViewerState, before: ViewerState) -> ViewerState {
+    ViewerState {
+        model: about.model,
+        motion: about.motion,
+        map: about.map,
+        unmapped: about.unmapped,
+        root: about.root,
+        feet: about.feet,
+        scene: about.scene,
+        clip: about.clip,
+        time_secs: about.time_secs,
+        fade: None,
+        range: about.range,
+        morph: about.morph,
+        pose: about.pose,
+        names: about.names,
+        vertex: about.vertex,
+        joint: about.joint,
+        camera: about.camera,
+        up: about.up,
+        ..before
     }
 }
 

@@ -1,14 +1,14 @@
 //! One turn of the loop: read the inbox, show the panels, apply what was pressed, advance time, draw what changed.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::open::Refused;
+use super::open::{Refused, Shelved};
 use super::record::Recording;
 use super::scene_texture::SceneTexture;
 use super::{Host, Inbox, Message, Opening, Reply, ScriptCall, device, encode_png};
 use crate::files::{Contents, Role, set_largest_image};
-use crate::formats::FileSet;
 use crate::frame::{Frame, evaluate, pose_document};
 use crate::library::{Library, ModelId, inspect};
 use crate::render::read_pixels;
@@ -33,8 +33,8 @@ pub struct App {
     /// Something was set since the host was last told.
     pub(super) changed: bool,
     pub(super) refused: Option<Refused>,
-    /// What the shown model was read from, and which of it is the model; none for a sample.
-    pub(super) model_files: Option<(FileSet, String)>,
+    /// What is kept of each model of the library besides.
+    pub(super) shelf: BTreeMap<ModelId, Shelved>,
     /// What does not work about the borrowed clips and has been told.
     pub(super) borrow_errors: Vec<String>,
     inbox: Inbox,
@@ -86,7 +86,7 @@ impl App {
             dirty: true,
             changed: false,
             refused: None,
-            model_files: None,
+            shelf: BTreeMap::new(),
             borrow_errors: Vec::new(),
             inbox: inbox.clone(),
             context: cc.egui_ctx.clone(),
@@ -271,10 +271,12 @@ impl App {
                 }
                 Err(error) => self.tell(vec![error]),
             },
-            UiAction::RemoveMotions => self.remove_motions(),
+            UiAction::ShowModel(id) => self.turn_to(id),
+            UiAction::CloseModel(id) => self.close_model(id),
+            UiAction::RemoveMotion(index) => self.remove_motion(index),
             UiAction::ShowMotionAlone(index) => {
                 if let Some(motion) = self.library.motions().get(index).cloned() {
-                    self.show_motion_alone(&motion, vec![motion.source.clone()]);
+                    self.show_motion_alone(&motion);
                 }
             }
             UiAction::ShowRefusedAlone => self.show_refused_alone(),
@@ -288,8 +290,8 @@ impl App {
             }
             UiAction::Undo | UiAction::Redo => {
                 let done = match action {
-                    UiAction::Undo => self.history.undo(&mut self.state),
-                    _ => self.history.redo(&mut self.state),
+                    UiAction::Undo => self.history.undo(&mut self.state, &mut self.library),
+                    _ => self.history.redo(&mut self.state, &mut self.library),
                 };
                 self.dirty |= done;
                 self.changed |= done;
@@ -390,6 +392,11 @@ impl eframe::App for App {
         let slot = ui::picture(ui, rect, shown, &mut self.panels, &mut output);
         ui::overlays(ui, rect, shown, &mut self.panels, &mut output);
         let acted = !output.commands.is_empty() || !output.actions.is_empty();
+        // On a slow machine one key goes up in the frame in which the next goes down.
+        let is_press = |event: &egui::Event| matches!(event, egui::Event::Key { pressed: true, repeat: false, .. });
+        if context.input(|input| input.events.iter().any(is_press)) {
+            self.history.end_gesture();
+        }
         output.commands.drain(..).for_each(|command| self.apply(command));
         output.actions.drain(..).for_each(|action| self.act(action));
         self.output = output;

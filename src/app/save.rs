@@ -2,11 +2,13 @@
 
 use super::{App, encode_png};
 use crate::anim::Clip;
+use crate::files::ModelFiles;
 use crate::formats::{write_model, write_motion};
 use crate::frame::{Frame, evaluate};
+use crate::library::Model;
 use crate::render::read_pixels;
 use crate::retarget::{bake_layers, baking};
-use crate::state::{Background, ViewerState, active_clip, map_in_force, named};
+use crate::state::{Background, ViewerState, active_clip, map_in_force, named, written_skeleton};
 use crate::ui::{Saved, short_name};
 
 /// What to write, and how to call it.
@@ -23,6 +25,7 @@ impl App {
             Saved::Map { motion } => self.map_file(motion),
             Saved::Model { clip } => self.model_file(clip),
             Saved::Clip { clip } => self.clip_file(clip),
+            Saved::Whole { posed } => self.whole_file(posed),
             // On the page reading back takes turns of its event loop: [`App::act`] waits for it.
             #[cfg(target_arch = "wasm32")]
             Saved::Picture { .. } => Err("a picture is saved once it has been read back".to_owned()),
@@ -94,6 +97,19 @@ impl App {
         Ok(FileToSave { name, bytes: json.into_bytes(), remark: None })
     }
 
+    fn model_files(&self, model: &Model) -> Option<&ModelFiles> {
+        self.shelf.get(&model.id)?.files.as_ref()
+    }
+
+    /// A model that is not a glTF as one.
+    fn whole_file(&self, posed: bool) -> Result<FileToSave, String> {
+        let model = self.library.active().ok_or("there is no model")?;
+        let ModelFiles { set, name } = self.model_files(model).ok_or("this model has no file")?;
+        let skeleton = written_skeleton(model, &self.state, posed);
+        let bytes = write_model(set, name, &skeleton, &[]).map_err(|error| error.to_string())?;
+        Ok(FileToSave { name: format!("{}.glb", stem(&model.source)), bytes, remark: None })
+    }
+
     fn baked_clip(&self, clip: usize) -> Result<BakedClip, String> {
         let model = self.library.active().ok_or("there is no model")?;
         let Some(borrowed) = model.borrowed(clip).filter(|borrowed| !borrowed.layers.is_empty()) else {
@@ -112,9 +128,9 @@ impl App {
         let baked = self.baked_clip(clip)?;
         let clips = [baked.clip.as_ref().unwrap_or(&borrowed.clip)];
         let mut remark = None;
-        let bytes = match &self.model_files {
-            Some((files, name)) if !name.to_lowercase().ends_with(".bvh") => {
-                write_model(files, name, &model.asset.skeleton, &clips)
+        let bytes = match self.model_files(model) {
+            Some(ModelFiles { set, name }) if !name.to_lowercase().ends_with(".bvh") => {
+                write_model(set, name, &written_skeleton(model, &self.state, false), &clips)
             }
             _ => {
                 remark =

@@ -21,7 +21,7 @@ use crate::files::{Opened, open_paths};
 use crate::library::{Library, Model};
 use crate::mesh::SkinningMode;
 use crate::retarget::{Feet, Keep, RestChoice, RootPart};
-use crate::state::{ClipChoice, Command, ViewerState, active_clip, apply, choice_of_clip};
+use crate::state::{ClipChoice, Command, ViewerState, active_clip, apply, choice_of_clip, from_link};
 use borrow::Borrowing;
 
 /// Drop in a glTF character, watch it move, and see why it bends as it does.
@@ -30,7 +30,7 @@ use borrow::Borrowing;
 struct Arguments {
     #[command(subcommand)]
     action: Option<Action>,
-    /// Opens the window with these files: a model with its parts (none: the built-in sample).
+    /// Opens the window with these files: a model with its parts (none: a sample).
     #[arg(value_name = "FILE")]
     files: Vec<PathBuf>,
 }
@@ -54,7 +54,7 @@ enum Action {
 
 #[derive(Debug, Args)]
 struct Files {
-    /// A model with its parts: files, folders, or `sample:walker`.
+    /// A model with its parts: files, folders, or `sample:NAME`.
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
 }
@@ -206,6 +206,10 @@ struct ConvertArguments {
     /// The unit of a .bvh (none: guessed by the size of its skeleton).
     #[arg(long, value_enum)]
     unit: Option<Unit>,
+    /// A link of the page, or its part after `#`: an .obj is written with the joints turned and named as there (none: at
+    /// rest).
+    #[arg(long, value_name = "LINK")]
+    view: Option<String>,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -237,6 +241,9 @@ struct PoseArguments {
     borrowing: Borrowing,
     #[command(flatten)]
     moment: Moment,
+    /// A link of the page, or its part after `#`: how the model is bent there. Other options win over it.
+    #[arg(long, value_name = "LINK")]
+    view: Option<String>,
     /// Prints one JSON document on standard output.
     #[arg(long)]
     json: bool,
@@ -314,6 +321,18 @@ fn open(files: &[PathBuf]) -> anyhow::Result<Opened> {
         eprintln!("warning: {warning}");
     }
     Ok(opened)
+}
+
+/// What a link, or its part after `#`, says about a model that is there already.
+fn state_of_view(library: &Library, link: &str) -> ViewerState {
+    let fragment = link.split_once('#').map_or(link, |(_, fragment)| fragment);
+    let (wanted, errors) = from_link(fragment);
+    for error in errors {
+        eprintln!("warning: {error}");
+    }
+    let mut state = ViewerState::default();
+    apply(&mut state, library, Command::Replace(Box::new(wanted)));
+    state
 }
 
 /// Puts the model at the wanted moment. What is not given stays as the state has it.

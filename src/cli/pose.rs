@@ -3,13 +3,16 @@
 use std::fmt::Write;
 
 use super::borrow::load_library;
-use super::{PoseArguments, open, print_bytes, print_json, set_moment};
+use super::{PoseArguments, open, print_bytes, print_json, set_moment, state_of_view};
 use crate::frame::pose_document;
 use crate::state::{ClipChoice, ViewerState};
 
 pub(super) fn run(arguments: &PoseArguments) -> anyhow::Result<()> {
     let library = load_library(open(&arguments.input.files)?, &arguments.borrowing)?;
-    let mut state = ViewerState { clip: ClipChoice::RestPose, ..ViewerState::default() };
+    let mut state = match &arguments.view {
+        Some(link) => state_of_view(&library, link),
+        None => ViewerState { clip: ClipChoice::RestPose, ..ViewerState::default() },
+    };
     set_moment(&library, &arguments.moment, arguments.borrowing.motion.is_some(), &mut state)?;
     let document = pose_document(&library, &state);
     if arguments.json {

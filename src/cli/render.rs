@@ -5,13 +5,13 @@ use std::path::Path;
 use anyhow::{Context, bail};
 
 use super::borrow::{load_library, open_map, open_motion};
-use super::{RenderArguments, open, set_moment};
+use super::{RenderArguments, open, set_moment, state_of_view};
 use crate::frame::{Frame, evaluate};
 use crate::library::Library;
 use crate::render::{Renderer, RendererOptions, headless_device, read_pixels};
 use crate::state::{
-    CameraChoice, ClipChoice, Command, MotionMap, OrbitCamera, ViewerState, apply, from_link, maps_in_force,
-    resolve_camera, settled_maps, source_on_stage,
+    CameraChoice, ClipChoice, Command, MotionMap, OrbitCamera, ViewerState, apply, maps_in_force, resolve_camera,
+    settled_maps, source_on_stage,
 };
 
 pub(super) fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
@@ -40,7 +40,7 @@ pub(super) fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
 /// Reads the motions and maps that a link names, as far as they are files here; the command line's own win.
 fn borrow_as_linked(arguments: &RenderArguments, library: &mut Library, state: &mut ViewerState) {
     if arguments.borrowing.motion.is_none() && !state.motion.is_empty() {
-        let read = |source: &String| match open_motion(Path::new(source)) {
+        let read = |source: &String| match open_motion(Path::new(source.strip_prefix("file:").unwrap_or(source))) {
             Ok(motion) => Some(motion),
             Err(error) => {
                 eprintln!("warning: {error:#}; name the motion's file with --motion");
@@ -75,12 +75,7 @@ fn borrow_as_linked(arguments: &RenderArguments, library: &mut Library, state: &
 fn view(arguments: &RenderArguments, library: &mut Library) -> anyhow::Result<ViewerState> {
     let mut state = ViewerState { clip: ClipChoice::RestPose, ..ViewerState::default() };
     if let Some(link) = &arguments.view {
-        let fragment = link.split_once('#').map_or(link.as_str(), |(_, fragment)| fragment);
-        let (wanted, errors) = from_link(fragment);
-        for error in errors {
-            eprintln!("warning: {error}");
-        }
-        apply(&mut state, library, Command::Replace(Box::new(wanted)));
+        state = state_of_view(library, link);
         borrow_as_linked(arguments, library, &mut state);
     }
     set_moment(library, &arguments.moment, arguments.borrowing.motion.is_some(), &mut state)?;

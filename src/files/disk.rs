@@ -3,7 +3,7 @@
 use std::path::{Component, Path, PathBuf};
 
 use super::sort::Origins;
-use super::{Contents, Role, SortError, decode_images, sort};
+use super::{Contents, ModelFiles, OpenedModel, Role, SortError, decode_images, sort};
 use crate::formats::{FileSet, missing_files};
 use crate::library::{Model, Motion, sample};
 use crate::retarget::JointMap;
@@ -12,11 +12,9 @@ use crate::retarget::JointMap;
 #[derive(Debug)]
 pub struct Opened {
     pub model: Model,
-    /// What the model was read from, and which of it is the model; none for a sample.
-    pub model_files: Option<(FileSet, String)>,
+    /// What the model was read from; none for a sample.
+    pub model_files: Option<ModelFiles>,
     pub motions: Vec<Motion>,
-    /// What a view has to list besides its model to get the motions again.
-    pub motion_sources: Vec<String>,
     pub map: Option<JointMap>,
     pub files: Vec<String>,
 }
@@ -30,7 +28,7 @@ pub enum OpenError {
     TooLarge { path: PathBuf, found: u64, most: u64 },
     #[error("{}: more than {most} files in the folder; name the model's own files instead", path.display())]
     TooManyFiles { path: PathBuf, most: usize },
-    #[error("{name}: there is no such sample; there are: {}", sample::NAMES.map(|name| format!("sample:{name}")).join(", "))]
+    #[error("{name}: there is no such sample; there are: sample:{}", sample::names().join(", sample:"))]
     NoSuchSample { name: String },
     #[error(transparent)]
     Files(#[from] SortError),
@@ -41,7 +39,7 @@ const MOST_FILES: usize = 4096;
 const MOST_FOLDERS_DEEP: usize = 16;
 
 /// Reads one model from files and folders, together with the files that it names beside itself, motions and a joint map.
-/// `sample:NAME` is a built-in character. A motion alone is shown as a model.
+/// `sample:NAME` is one of the characters that come along. A motion alone is shown as a model.
 pub fn open_paths(paths: &[PathBuf]) -> Result<Opened, OpenError> {
     let (set, samples, origins) = read(paths)?;
     open_set(&set, samples, &origins, Role::Model)
@@ -65,49 +63,30 @@ pub fn read_paths(paths: &[PathBuf], role: Role) -> Result<Contents, OpenError> 
 
 fn open_set(set: &FileSet, samples: Vec<Model>, origins: &Origins, role: Role) -> Result<Opened, OpenError> {
     let has_sample = !samples.is_empty();
-    let contents = contents(set, samples, origins, role)?;
-    let model = contents.model.ok_or_else(|| SortError::NoModel { found: set.names().map(str::to_owned).collect() })?;
+    let Contents { mut models, motions, map, .. } = contents(set, samples, origins, role)?;
+    if models.len() > 1 {
+        let found = models.into_iter().map(|opened| opened.model.source).collect();
+        return Err(SortError::SeveralModels { found }.into());
+    }
+    let no_model = || SortError::NoModel { found: set.names().map(str::to_owned).collect() };
+    let OpenedModel { model, files: model_files } = models.pop().ok_or_else(no_model)?;
     let mut files: Vec<String> = set.names().map(str::to_owned).collect();
     if has_sample {
         files.insert(0, model.source.clone());
     }
-    let Contents { model_files, motions, motion_sources, map, .. } = contents;
-    Ok(Opened { model, model_files, motions: motions.unwrap_or_default(), motion_sources, map, files })
+    Ok(Opened { model, model_files, motions: motions.unwrap_or_default(), map, files })
 }
 
 fn contents(set: &FileSet, samples: Vec<Model>, origins: &Origins, role: Role) -> Result<Contents, OpenError> {
     // Files beside a sample that is the model are what it borrows from, whatever they hold.
     let role = if samples.is_empty() || role == Role::Motion { role } else { Role::Any };
-    let sorted = if set.is_empty() && !samples.is_empty() { Default::default() } else { sort(set, role)? };
-    let model_files = sorted.model.as_ref().map(|(name, _)| (set.clone(), name.clone()));
-    let model = sorted.model.map(|(name, mut asset)| {
+    let mut sorted = if set.is_empty() && !samples.is_empty() { Default::default() } else { sort(set, role)? };
+    let models = std::mem::take(&mut sorted.models).into_iter().map(|(name, mut asset)| {
         let images = decode_images(&mut asset);
-        Model::new(origins.of(&name).to_owned(), asset, images)
+        let model = Model::new(origins.of(&name).to_owned(), asset, images);
+        OpenedModel { model, files: Some(ModelFiles { set: set.clone(), name }) }
     });
-    let (mut motions, mut motion_sources) =
-        origins.motions(sorted.motions, model.as_ref().or(samples.first()).map(|model| model.source.as_str()));
-    let mut models: Vec<Model> = Vec::new();
-    for sample in samples {
-        if role == Role::Motion {
-            motion_sources.push(sample.source.clone());
-            motions.push(Motion::new(sample.source, sample.asset));
-        } else {
-            models.push(sample);
-        }
-    }
-    models.extend(model);
-    if models.len() > 1 {
-        let found = models.iter().map(|model| model.source.clone()).collect();
-        return Err(SortError::SeveralModels { found }.into());
-    }
-    Ok(Contents {
-        model: models.pop(),
-        model_files,
-        motions: (!motions.is_empty()).then_some(motions),
-        motion_sources,
-        map: sorted.map,
-        problems: Vec::new(),
-    })
+    Ok(origins.contents(sorted, models.collect(), samples, role))
 }
 
 /// All files that the paths stand for, with what they name beside themselves; and the samples among the paths.
@@ -117,8 +96,16 @@ fn read(paths: &[PathBuf]) -> Result<(FileSet, Vec<Model>, Origins), OpenError> 
     let mut origins = Origins::default();
     for path in paths {
         if let Some(name) = path.to_str().and_then(|path| path.strip_prefix("sample:")) {
-            let missing = || OpenError::NoSuchSample { name: format!("sample:{name}") };
-            samples.push(sample::load(name).ok_or_else(missing)?);
+            let source = format!("sample:{name}");
+            let before = origins.known.len();
+            for (file, bytes) in sample::files(name) {
+                reader.set.insert(file.to_owned(), bytes.to_vec());
+                origins.known.push((file.to_owned(), source.clone()));
+            }
+            if origins.known.len() == before {
+                samples.push(sample::load(name).ok_or_else(|| OpenError::NoSuchSample { name: source.clone() })?);
+                origins.known.push((source.clone(), source));
+            }
         } else if let Some(name) = reader.add(path)? {
             origins.known.push((name.clone(), name));
         }
@@ -143,6 +130,10 @@ struct Reader {
 impl Reader {
     /// The name in the set, unless the path is a folder.
     fn add(&mut self, path: &Path) -> Result<Option<String>, OpenError> {
+        // A model of several files may be named by what their names share.
+        let of_stem = path.file_name().map(|stem| path.with_file_name(lossy(stem) + ".obj"));
+        let of_stem = of_stem.filter(|of_stem| !path.exists() && of_stem.is_file());
+        let path = of_stem.as_deref().unwrap_or(path);
         let folder = if path.is_dir() { path } else { path.parent().unwrap_or(Path::new("")) };
         if !self.folders.iter().any(|other| other == folder) {
             self.folders.push(folder.to_owned());

@@ -1,8 +1,8 @@
-//! What a set of files is: a model, motions to borrow, a joint map. The same on disk and on the page.
+//! What a set of files is: models, motions to borrow, a joint map. The same on disk and on the page.
 
 use crate::asset::{Asset, Image};
 use crate::formats::{FileSet, LoadError, LoadOptions, load, load_noticing_images, main_files};
-use crate::library::{Model, Motion};
+use crate::library::{Library, Model, Motion};
 use crate::retarget::{JointMap, MapError};
 
 /// What the files were chosen for.
@@ -20,7 +20,7 @@ pub enum Role {
 /// A set of files by what they are, each with its name in the set.
 #[derive(Debug, Default)]
 pub struct Sorted {
-    pub model: Option<(String, Asset)>,
+    pub models: Vec<(String, Asset)>,
     pub motions: Vec<(String, Asset)>,
     pub map: Option<JointMap>,
 }
@@ -28,16 +28,34 @@ pub struct Sorted {
 /// What was opened, ready for the library.
 #[derive(Debug, Default)]
 pub struct Contents {
-    pub model: Option<Model>,
-    /// What the model was read from, and which of it is the model: for writing it with another clip. None for samples.
-    pub model_files: Option<(FileSet, String)>,
+    /// The first is shown, the others are there to turn to.
+    pub models: Vec<OpenedModel>,
     /// None: those that are there stay.
     pub motions: Option<Vec<Motion>>,
-    /// What a view has to list besides its model to get the motions again.
-    pub motion_sources: Vec<String>,
     pub map: Option<JointMap>,
     /// What could not be had, though the rest could.
     pub problems: Vec<String>,
+}
+
+/// A model on its way into the library.
+#[derive(Debug)]
+pub struct OpenedModel {
+    pub model: Model,
+    /// What it was read from, and which of it is the model: for writing it with another clip. None for samples.
+    pub files: Option<ModelFiles>,
+}
+
+/// The set that a model was read from, and the name of its main file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModelFiles {
+    pub set: FileSet,
+    pub name: String,
+}
+
+impl From<Model> for OpenedModel {
+    fn from(model: Model) -> Self {
+        Self { model, files: None }
+    }
 }
 
 /// Why a set of files is of no use.
@@ -45,12 +63,10 @@ pub struct Contents {
 pub enum SortError {
     #[error(transparent)]
     Load(#[from] LoadError),
-    #[error(
-        "several models at once ({}); open one of them with its own files. To borrow the motion of another, choose it with \
-         “Motion…”",
-        found.join(", ")
-    )]
+    #[error("several models at once ({}); name one of them with its own files", found.join(", "))]
     SeveralModels { found: Vec<String> },
+    #[error("more than {most} models at once; choose some of them")]
+    TooManyModels { most: usize },
     #[error("several motions and no model ({}); open one of them, or a model together with them", found.join(", "))]
     NoModel { found: Vec<String> },
     #[error("{file}: {problem}")]
@@ -61,8 +77,6 @@ pub enum SortError {
     TooManyMotions { found: usize, most: usize },
 }
 
-/// Every clip of every motion is made over for the model, which takes time and memory.
-const MOST_MOTIONS: usize = 64;
 /// As many names are told of what is too many.
 const MOST_NAMES: usize = 8;
 
@@ -83,28 +97,30 @@ pub(super) fn sort_noticing_images(
     if names.is_empty() && (sorted.map.is_none() || role == Role::Model) {
         // Which says what is there instead.
         let asset = load(&files)?;
-        sorted.model = Some((String::new(), asset));
+        sorted.models.push((String::new(), asset));
         return Ok(sorted);
     }
-    if names.len() > MOST_MOTIONS {
-        return Err(SortError::TooManyMotions { found: names.len(), most: MOST_MOTIONS });
+    if names.len() > Library::MOST_MOTIONS {
+        return Err(SortError::TooManyMotions { found: names.len(), most: Library::MOST_MOTIONS });
     }
-    let mut models: Vec<(String, Asset)> = Vec::new();
     for name in names {
         let on_images = &mut |images: &[Image]| on_images(&name, images);
         let asset = load_noticing_images(&files, &name, &LoadOptions::default(), on_images)?;
         let has_mesh = !asset.instances.is_empty();
-        if has_mesh && role != Role::Motion { models.push((name, asset)) } else { sorted.motions.push((name, asset)) }
+        if has_mesh && role != Role::Motion {
+            sorted.models.push((name, asset))
+        } else {
+            sorted.motions.push((name, asset))
+        }
+        if sorted.models.len() > Library::MOST_MODELS {
+            return Err(SortError::TooManyModels { most: Library::MOST_MODELS });
+        }
     }
-    if models.len() > 1 {
-        return Err(SortError::SeveralModels { found: few_names(&models) });
-    }
-    sorted.model = models.pop();
-    if role == Role::Model && sorted.model.is_none() {
+    if role == Role::Model && sorted.models.is_empty() {
         if sorted.motions.len() > 1 {
             return Err(SortError::NoModel { found: few_names(&sorted.motions) });
         }
-        sorted.model = sorted.motions.pop();
+        sorted.models.extend(sorted.motions.pop());
     }
     Ok(sorted)
 }
@@ -146,8 +162,6 @@ pub(super) struct Origins {
     pub known: Vec<(String, String)>,
     /// For files that came out of a folder or an archive: its own.
     pub other: String,
-    /// Whether what is listed can be fetched again.
-    pub are_addresses: bool,
 }
 
 impl Origins {
@@ -159,17 +173,36 @@ impl Origins {
         self.known.iter().any(|(known, _)| known == name)
     }
 
-    /// The motions of a sorted set, and what a view has to list for them besides `model`.
-    pub fn motions(&self, motions: Vec<(String, Asset)>, model: Option<&str>) -> (Vec<Motion>, Vec<String>) {
-        let mut sources: Vec<String> = Vec::new();
-        let motions = motions.into_iter().map(|(name, asset)| {
+    /// Everything of a sorted set, ready for the library, in the order in which it was asked for. `models` are those of the
+    /// set with their images; samples are models, unless everything is to be borrowed from.
+    pub fn contents(&self, sorted: Sorted, mut models: Vec<OpenedModel>, samples: Vec<Model>, role: Role) -> Contents {
+        let (borrowed_from, shown) = if role == Role::Motion { (samples, Vec::new()) } else { (Vec::new(), samples) };
+        models.extend(shown.into_iter().map(OpenedModel::from));
+        let place = |model: &OpenedModel| self.known.iter().position(|(_, origin)| *origin == model.model.source);
+        models.sort_by_key(|model| place(model).unwrap_or(usize::MAX));
+        let of_set = |(name, asset): (String, Asset)| {
             let origin = self.of(&name).to_owned();
-            // What comes with the model's own set comes with it again.
-            if (model.is_none() || self.are_addresses && model != Some(&origin)) && !sources.contains(&origin) {
-                sources.push(origin.clone());
+            let source = if self.is_known(&name) { origin.clone() } else { name };
+            let mut motion = Motion::new(source, asset.into());
+            motion.origin = origin;
+            motion
+        };
+        let of_sample = |sample: Model| Motion::new(sample.source, sample.asset);
+        let motions = sorted.motions.into_iter().map(of_set).chain(borrowed_from.into_iter().map(of_sample));
+        let motions: Vec<Motion> = motions.collect();
+        Contents { motions: (!motions.is_empty()).then_some(motions), models, map: sorted.map, problems: Vec::new() }
+    }
+}
+
+impl Contents {
+    /// What a view has to list to get motions again: where they came from, but for what comes along with its model.
+    pub fn motion_sources(motions: &[Motion], model: Option<&str>) -> Vec<String> {
+        let mut sources: Vec<String> = Vec::new();
+        for motion in motions {
+            if model != Some(&motion.origin) && !sources.contains(&motion.origin) {
+                sources.push(motion.origin.clone());
             }
-            Motion::new(if self.is_known(&name) { origin } else { name }, asset.into())
-        });
-        (motions.collect(), sources)
+        }
+        sources
     }
 }

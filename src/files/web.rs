@@ -3,16 +3,16 @@
 
 use std::cell::Cell;
 
-use js_sys::{Array, Reflect, Uint8Array};
+use js_sys::{Array, Promise, Reflect, Uint8Array};
 use wasm_bindgen::{JsCast, JsValue};
 use wasm_bindgen_futures::JsFuture;
 
 use super::image_limit::{fitted, made_smaller};
 use super::sort::{Origins, sort_noticing_images};
-use super::{Contents, Role, SortError, raw_address, read_map};
+use super::{Contents, ModelFiles, OpenedModel, Role, SortError, raw_address, read_map};
 use crate::asset::{Asset, Image, Warning};
 use crate::formats::{FileSet, missing_files};
-use crate::library::{ImageData, Model, Motion, sample};
+use crate::library::{ImageData, Model, sample};
 use crate::state::{MotionMap, ViewerState};
 
 /// What is to be opened: one part of a set.
@@ -29,8 +29,8 @@ pub enum Item {
 pub enum OpenError {
     #[error("there is nothing to open: expected files or addresses")]
     Nothing,
-    #[error("sample:{name}: there is no such sample; there are: {}", sample::NAMES.map(|name| format!("sample:{name}")).join(", "))]
-    NoSuchSample { name: String },
+    #[error("sample:{name}: there is no such sample; there are: {known}")]
+    NoSuchSample { name: String, known: String },
     #[error("{url}: this is not an address; expected one such as https://example.org/character.glb")]
     NotAnAddress { url: String },
     #[error("{url}: the server answered {status}{}", hint(*status))]
@@ -42,6 +42,10 @@ pub enum OpenError {
     Refused { url: String },
     #[error("{url}: the site cannot be reached; check the address and the connection")]
     Unreachable { url: String },
+    #[error(
+        "{url}: nothing has come from the site for {secs} seconds; try again later, or download the file and drop it here"
+    )]
+    Silent { url: String, secs: u32 },
     #[error("{url}: a page that came over https may not read http addresses; try the same address with https")]
     Insecure { url: String },
     #[error("{url}: the connection broke off after {received} bytes")]
@@ -62,6 +66,8 @@ fn hint(status: u16) -> &'static str {
 
 const MOST_BYTES: u64 = 1 << 30;
 const MOST_IMAGE_BYTES: u64 = 1 << 30;
+/// A site that sends nothing for so long has given up.
+const MOST_SILENT_SECS: u32 = 20;
 const MOST_PIXELS_ACROSS: u32 = 16_384;
 /// Files that name further files, one round each.
 const MOST_ROUNDS: usize = 4;
@@ -87,8 +93,16 @@ pub async fn open_items(
             }
             Item::Url(url) => {
                 if let Some(name) = url.strip_prefix("sample:") {
-                    let missing = || OpenError::NoSuchSample { name: name.to_owned() };
-                    samples.push(sample::load(name).ok_or_else(missing)?);
+                    if let Some(sample) = sample::load(name) {
+                        samples.push(sample);
+                        origins.known.push((url.clone(), url));
+                        continue;
+                    }
+                    for (file, address) in files_of_sample(name)? {
+                        let bytes = fetch(&address, &file, &mut bytes_left, progress).await?;
+                        origins.known.push((file.clone(), url.clone()));
+                        set.insert(file, bytes);
+                    }
                     continue;
                 }
                 let base = absolute(&url, None).ok_or_else(|| OpenError::NotAnAddress { url: url.clone() })?;
@@ -96,7 +110,6 @@ pub async fn open_items(
                 let name = if set.get(&name).is_some() { url.clone() } else { name };
                 let bytes = fetch(&base, &name, &mut bytes_left, progress).await?;
                 origins.known.push((name.clone(), url));
-                origins.are_addresses = true;
                 set.insert(name, bytes);
                 bases.push(base);
             }
@@ -107,7 +120,7 @@ pub async fn open_items(
     let role = if samples.is_empty() || role == Role::Motion { role } else { Role::Any };
     // The browser decodes on other threads while the rest is read here.
     let mut decoding: Vec<(String, Vec<Decoding>)> = Vec::new();
-    let sorted = if set.is_empty() && !samples.is_empty() {
+    let mut sorted = if set.is_empty() && !samples.is_empty() {
         Default::default()
     } else {
         sort_noticing_images(&set, role, &mut |name, images| {
@@ -116,38 +129,35 @@ pub async fn open_items(
             }
         })?
     };
-    let mut models: Vec<Model> = Vec::new();
-    let mut model_files = None;
-    if let Some((name, mut asset)) = sorted.model {
-        model_files = Some((set.clone(), name.clone()));
-        let started = decoding.into_iter().find(|(of, _)| *of == name).map(|(_, started)| started);
+    let mut models = Vec::new();
+    for (name, mut asset) in std::mem::take(&mut sorted.models) {
+        let started = decoding.iter_mut().find(|(of, _)| *of == name).map(|(_, started)| std::mem::take(started));
         let started = started.unwrap_or_else(|| start_decoding(&asset.images));
         let images = decoded(&mut asset, started).await;
-        models.push(Model::new(origins.of(&name).to_owned(), asset, images));
+        let model = Model::new(origins.of(&name).to_owned(), asset, images);
+        models.push(OpenedModel { model, files: Some(ModelFiles { set: set.clone(), name }) });
     }
-    let model_source = models.first().or(samples.first()).filter(|_| role != Role::Motion);
-    let (mut motions, mut motion_sources) =
-        origins.motions(sorted.motions, model_source.map(|model| model.source.as_str()));
-    for sample in samples {
-        if role == Role::Motion {
-            motion_sources.push(sample.source.clone());
-            motions.push(Motion::new(sample.source, sample.asset));
-        } else {
-            models.push(sample);
-        }
-    }
-    if models.len() > 1 {
-        let found = models.iter().map(|model| model.source.clone()).collect();
-        return Err(SortError::SeveralModels { found }.into());
-    }
-    Ok(Contents {
-        model: models.pop(),
-        model_files,
-        motions: (!motions.is_empty()).then_some(motions),
-        motion_sources,
-        map: sorted.map,
-        problems: Vec::new(),
-    })
+    Ok(origins.contents(sorted, models, samples, role))
+}
+
+/// The files of a sample with their addresses: the shell's `gaitway.samples` lists those that lie beside the page.
+fn files_of_sample(name: &str) -> Result<Vec<(String, String)>, OpenError> {
+    let table = Reflect::get(&js_sys::global(), &"gaitway".into())
+        .and_then(|gaitway| Reflect::get(&gaitway, &"samples".into()))
+        .unwrap_or_else(|_| js_sys::Object::new().into());
+    let addresses: Option<Array> = Reflect::get(&table, &name.into()).ok().and_then(|list| list.dyn_into().ok());
+    let Some(addresses) = addresses else {
+        let files = Reflect::own_keys(&table).unwrap_or_default();
+        let known = files.iter().filter_map(|name| name.as_string()).chain([sample::WALKER.to_owned()]);
+        let known = known.map(|name| format!("sample:{name}")).collect::<Vec<_>>().join(", ");
+        return Err(OpenError::NoSuchSample { name: name.to_owned(), known });
+    };
+    let file = |address: String| {
+        let ending = address.rsplit('.').next().unwrap_or_default();
+        // The address has a hash in it; files that belong together are found by their common name.
+        Some((format!("{name}.{ending}"), absolute(&address, None)?))
+    };
+    Ok(addresses.iter().filter_map(|address| address.as_string().and_then(file)).collect())
 }
 
 /// Opens all that a view lists; its model only if asked for. A motion or a map that cannot be had is a problem in the
@@ -181,7 +191,6 @@ pub async fn open_view(
         }
     }
     contents.motions = Some(motions);
-    contents.motion_sources = state.motion.clone();
     let mut maps = Vec::new();
     for map in state.map.drain(..) {
         match map {
@@ -208,7 +217,7 @@ async fn fetch_map(url: &str, progress: &dyn Fn(&str, u64, u64)) -> Result<crate
 
 /// How the set is called in links and panels: after its model, else after its first part.
 fn source_of(items: &[Item]) -> Option<String> {
-    const MODELS: [&str; 6] = [".glb", ".gltf", ".vrm", ".vrma", ".bvh", ".zip"];
+    const MODELS: [&str; 7] = [".glb", ".gltf", ".vrm", ".vrma", ".bvh", ".obj", ".zip"];
     let names = || {
         items.iter().map(|item| match item {
             Item::Url(name) | Item::File(name, _) => name,
@@ -242,6 +251,8 @@ async fn fetch_beside(
             for base in bases {
                 let Some(url) = absolute(&escaped(&name), Some(base)) else { continue };
                 match fetch(&url, &name, bytes_left, progress).await {
+                    // Some hosts answer with a page where there is no such file.
+                    Ok(bytes) if is_page(&bytes) => {}
                     Ok(bytes) => {
                         set.insert(name.clone(), bytes);
                         break;
@@ -254,6 +265,12 @@ async fn fetch_beside(
         }
     }
     Ok(())
+}
+
+fn is_page(bytes: &[u8]) -> bool {
+    let text = bytes.trim_ascii_start();
+    let begins = |with: &[u8]| text.get(..with.len()).is_some_and(|start| start.eq_ignore_ascii_case(with));
+    begins(b"<!doctype html") || begins(b"<html")
 }
 
 /// A relative path with everything escaped that means something in a URL.
@@ -287,7 +304,8 @@ async fn fetch(
     progress(name, 0, 0);
     let unreachable = || OpenError::Unreachable { url: url.to_owned() };
     let window = web_sys::window().ok_or_else(unreachable)?;
-    let response = match JsFuture::from(window.fetch_with_str(url)).await {
+    let silent = || OpenError::Silent { url: url.to_owned(), secs: MOST_SILENT_SECS };
+    let response = match unless_silent(&window, window.fetch_with_str(url)).await.ok_or_else(silent)? {
         Ok(response) => response,
         Err(_) => return Err(why_not_fetched(&window, url).await),
     };
@@ -310,7 +328,12 @@ async fn fetch(
     let reader: web_sys::ReadableStreamDefaultReader = body.get_reader().unchecked_into();
     loop {
         let broke_off = |received: usize| OpenError::BrokeOff { url: url.to_owned(), received: received as u64 };
-        let chunk = JsFuture::from(reader.read()).await.map_err(|_| broke_off(bytes.len()))?;
+        let Some(chunk) = unless_silent(&window, reader.read()).await else {
+            // The connection is not needed any more; that it ends is nobody's concern.
+            let _ = reader.cancel();
+            return Err(silent());
+        };
+        let chunk = chunk.map_err(|_| broke_off(bytes.len()))?;
         if Reflect::get(&chunk, &"done".into()).is_ok_and(|done| done.is_truthy()) {
             break;
         }
@@ -324,6 +347,19 @@ async fn fetch(
         progress(name, received, if received > total { 0 } else { total });
     }
     Ok(bytes)
+}
+
+/// What a promise of some object comes to; none when it takes too long.
+async fn unless_silent(window: &web_sys::Window, promise: Promise) -> Option<Result<JsValue, JsValue>> {
+    let mut timer = None;
+    let limit = Promise::new(&mut |resolve, _| {
+        let millis = 1000 * MOST_SILENT_SECS as i32;
+        timer = window.set_timeout_with_callback_and_timeout_and_arguments_0(&resolve, millis).ok();
+    });
+    let answer = JsFuture::from(Promise::race(&Array::of2(&promise, &limit))).await;
+    timer.inspect(|&timer| window.clear_timeout_with_handle(timer));
+    let is_late = answer.as_ref().is_ok_and(JsValue::is_undefined);
+    (!is_late).then_some(answer)
 }
 
 /// Browsers say no more than that it failed. A request whose answer nobody may read still tells whether there is one.

@@ -4,7 +4,7 @@
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LoadError {
     #[error(
-        "no model among the files ({}); Gaitway reads .glb, .gltf with its files, .vrm, .vrma, .bvh, or a .zip of these",
+        "no model among the files ({}); Gaitway reads .glb, .gltf with its files, .vrm, .vrma, .bvh, .obj (with .skel and .attach), or a .zip of these",
         listed(found)
     )]
     NoModel { found: Vec<String> },

@@ -10,7 +10,7 @@ const MAX_ARCHIVE_ENTRIES: usize = 10_000;
 const MAX_ARCHIVE_BYTES: u64 = 1 << 30;
 
 /// Files by path, `/` between folders, in the order they were added.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct FileSet {
     files: Vec<(String, Arc<[u8]>)>,
 }

@@ -5,6 +5,8 @@ mod bvh;
 mod error;
 mod file_set;
 mod gltf;
+mod lines;
+mod obj;
 
 use std::sync::Arc;
 
@@ -17,12 +19,19 @@ use crate::asset::{Asset, Image};
 use file_set::bare_name;
 
 /// Relative URIs (percent-decoded) that the models and motions in this set refer to and that are not in the set, not even
-/// by their bare names. Empty when the set is complete or cannot be read at all ([`load`] will say why).
+/// by their bare names; for an .obj also the .skel and .attach of the same stem, which need not exist. Empty when the set is complete or cannot be read at all ([`load`] will say why).
 pub fn missing_files(files: &FileSet) -> Vec<String> {
     let Ok(files) = files.unpacked() else { return Vec::new() };
     let mut missing: Vec<String> = Vec::new();
     for (name, bytes) in files.iter().filter(|(name, bytes)| is_gltf(name, bytes) && !is_bvh(name, bytes)) {
         for uri in gltf::missing_files(&files, name, bytes) {
+            if !missing.contains(&uri) {
+                missing.push(uri);
+            }
+        }
+    }
+    for (name, bytes) in files.iter().filter(|(name, bytes)| is_obj(name, bytes) || obj::is_companion(name)) {
+        for uri in obj::missing_files(&files, name, bytes) {
             if !missing.contains(&uri) {
                 missing.push(uri);
             }
@@ -78,11 +87,30 @@ pub fn load_noticing_images(
 }
 
 /// The set's model `name` (one of its [`main_files`]) as a GLB that needs no other file, with `clips` behind its own; they
-/// are for `skeleton`, which was loaded from the same file. What the file had before is kept to the letter: the bytes of
-/// its first buffer are the beginning of the new one, and its JSON only grows.
+/// are for `skeleton`, which was loaded from the same file. Of a glTF, what the file had before is kept to the letter: the
+/// bytes of its first buffer are the beginning of the new one, and its JSON only grows. Of an .obj, joints are called and
+/// stand as `skeleton` says.
 pub fn write_model(files: &FileSet, name: &str, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
     let files = files.unpacked()?;
+    if let Some(bytes) = files.get(name).filter(|bytes| is_obj(name, bytes)) {
+        return write_obj(&files, name, bytes, skeleton, clips);
+    }
     gltf::write_model(&files, name, skeleton, clips)
+}
+
+fn write_obj(
+    files: &FileSet,
+    name: &str,
+    bytes: &[u8],
+    skeleton: &Skeleton,
+    clips: &[&Clip],
+) -> Result<Vec<u8>, WriteError> {
+    let asset = obj::load(files, name, bytes, &mut |_| ())?;
+    if asset.skeleton.parents() != skeleton.parents() {
+        let (nodes, joints) = (asset.skeleton.len(), skeleton.len());
+        return Err(WriteError::OtherSkeleton { file: name.to_owned(), nodes, joints });
+    }
+    gltf::write_asset(&asset, skeleton, clips)
 }
 
 /// The skeleton of an asset with `clips` (which are for it) and nothing else, as a GLB. Joints keep their numbers.
@@ -90,13 +118,17 @@ pub fn write_motion(asset: &Asset, clips: &[&Clip]) -> Result<Vec<u8>, WriteErro
     gltf::write_motion(asset, clips)
 }
 
-/// The one model or motion of a set as a GLB: a glTF with all that is in it, a .bvh as its skeleton and its clip.
+/// The one model or motion of a set as a GLB: a glTF with all that is in it, a .bvh as its skeleton and its clip, an .obj at
+/// rest.
 pub fn convert(files: &FileSet, options: &LoadOptions) -> Result<Vec<u8>, WriteError> {
     let files = files.unpacked()?;
     let (name, bytes) = find_model(&files)?;
     let asset = read(&files, name, bytes, options, &mut |_| ())?;
     if is_bvh(name, bytes) {
         return gltf::write_motion(&asset, &asset.clips.iter().collect::<Vec<_>>());
+    }
+    if is_obj(name, bytes) {
+        return gltf::write_asset(&asset, &asset.skeleton, &[]);
     }
     gltf::write_model(&files, name, &asset.skeleton, &[])
 }
@@ -108,7 +140,13 @@ fn read(
     options: &LoadOptions,
     on_images: &mut dyn FnMut(&[Image]),
 ) -> Result<Asset, LoadError> {
-    if is_bvh(name, bytes) { bvh::load(name, bytes, options) } else { gltf::load(files, name, bytes, on_images) }
+    if is_bvh(name, bytes) {
+        bvh::load(name, bytes, options)
+    } else if is_obj(name, bytes) {
+        obj::load(files, name, bytes, on_images)
+    } else {
+        gltf::load(files, name, bytes, on_images)
+    }
 }
 
 fn find_model(files: &FileSet) -> Result<(&str, &Arc<[u8]>), LoadError> {
@@ -125,6 +163,9 @@ fn find_model(files: &FileSet) -> Result<(&str, &Arc<[u8]>), LoadError> {
         (None, _) => Err(files
             .iter()
             .find_map(|(name, bytes)| {
+                if obj::is_companion(name) {
+                    return Some(obj::without_obj(name));
+                }
                 let format = foreign_format(name, bytes)?;
                 Some(LoadError::UnsupportedFormat { file: name.to_owned(), format })
             })
@@ -133,7 +174,12 @@ fn find_model(files: &FileSet) -> Result<(&str, &Arc<[u8]>), LoadError> {
 }
 
 fn is_model(name: &str, bytes: &[u8]) -> bool {
-    is_bvh(name, bytes) || is_gltf(name, bytes)
+    is_bvh(name, bytes) || is_gltf(name, bytes) || is_obj(name, bytes)
+}
+
+/// By the name alone: nothing in the text tells it from others.
+fn is_obj(name: &str, bytes: &[u8]) -> bool {
+    obj::is_obj(name) && !is_bvh(name, bytes) && !is_gltf(name, bytes)
 }
 
 fn is_bvh(name: &str, bytes: &[u8]) -> bool {
@@ -167,7 +213,6 @@ fn foreign_format(name: &str, bytes: &[u8]) -> Option<&'static str> {
         "x" => Some("DirectX .x"),
         "dae" => Some("COLLADA"),
         "blend" => Some("Blender's own"),
-        "obj" => Some("OBJ"),
         _ => None,
     }
 }

@@ -48,6 +48,8 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
         mesh: state.show.mesh,
         wireframe: state.show.wireframe,
         skeleton: state.show.skeleton,
+        boxes: state.show.boxes,
+        smooth: state.show.smooth,
         shadow: state.show.shadow,
         grid: None,
         ground_height: 0.0,

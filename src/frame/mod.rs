@@ -2,8 +2,10 @@
 //! the same library and state give the same frame.
 
 mod evaluate;
+mod formula;
 mod overlays;
 mod pick;
+mod pick_vertex;
 mod pose_document;
 mod view;
 
@@ -17,7 +19,9 @@ use crate::mesh::{Bounds, PaletteEntry, SkinningMode};
 use crate::state::Background;
 
 pub use evaluate::evaluate;
+pub use formula::{FormulaPart, JointMatrices, VertexFormula, joint_matrices, vertex_formula};
 pub use pick::{PickedJoint, pick_joint};
+pub use pick_vertex::pick_vertex;
 pub use pose_document::pose_document;
 
 /// What the renderer reads. Reused from frame to frame, so that nothing is allocated once it has grown.
@@ -57,6 +61,10 @@ pub struct Look {
     pub mesh: bool,
     pub wireframe: bool,
     pub skeleton: bool,
+    /// Of spheres and boxes.
+    pub boxes: bool,
+    /// Meshes without normals are smooth instead of flat.
+    pub smooth: bool,
     pub shadow: bool,
     pub grid: Option<Grid>,
     /// Height of the plane that shadows fall on, where the character stands.
@@ -135,7 +143,7 @@ pub struct Line {
 pub struct Bone {
     pub head: Vec3,
     pub tail: Vec3,
-    /// Radius at the widest, metres; a joint ball of the same radius is drawn at the head.
+    /// Radius at the widest, metres; a joint ball of the same radius is drawn at the head. A box is half as thick.
     pub radius: f32,
     /// Linear.
     pub color: Vec4,
@@ -154,6 +162,8 @@ impl Default for Look {
             mesh: true,
             wireframe: false,
             skeleton: false,
+            boxes: false,
+            smooth: false,
             shadow: true,
             grid: None,
             ground_height: 0.0,

@@ -45,7 +45,8 @@ pub(super) fn write_overlays(model: &Model, state: &ViewerState, source: Option<
     let chosen = state.joint.and_then(|joint| model.asset.skeleton.joint_of_source(joint));
     // Beside its source the model shows its bones too, or there would be nothing to compare.
     look.skeleton |= character.draws.is_empty() || source.is_some();
-    let bone_look = BoneLook { plain: BONE, chosen, of_source: false, size };
+    let boxes = state.show.boxes;
+    let bone_look = BoneLook { plain: BONE, chosen, of_source: false, boxes, size };
     write_bones(model, world_from_joint, &scratch.shown.joints, bone_look, bones);
     if let (Some(source), Some(on_stage)) = (source.filter(|_| state.show.error), characters.last()) {
         for bone in bones.iter_mut() {
@@ -61,7 +62,7 @@ pub(super) fn write_overlays(model: &Model, state: &ViewerState, source: Option<
     if let (Some(source), Some(on_stage)) = (source, characters.last()) {
         let partner = source.borrowed.pairs.iter().find(|pair| Some(pair.target) == chosen).map(|pair| pair.source);
         let size = source.model.rest_bounds().transformed(&source.world_from_source).diagonal().max(1e-6);
-        let look = BoneLook { plain: SOURCE_BONE, chosen: partner, of_source: true, size };
+        let look = BoneLook { plain: SOURCE_BONE, chosen: partner, of_source: true, boxes, size };
         write_bones(source.model, &on_stage.world_from_joint, &scratch.source.joints, look, bones);
     }
     if let Some(joint) = chosen.filter(|joint| scratch.shown.joints[joint.get()]) {
@@ -88,6 +89,8 @@ struct BoneLook {
     plain: Vec4,
     chosen: Option<JointIndex>,
     of_source: bool,
+    /// As thick everywhere.
+    boxes: bool,
     /// Of the whole skeleton, metres.
     size: f32,
 }
@@ -115,7 +118,7 @@ fn write_bones(model: &Model, world_from_joint: &[Affine3A], in_scene: &[bool], 
             continue;
         }
         let color = if look.chosen == Some(bone.head) { CHOSEN } else { look.plain };
-        let radius = (0.1 * length).clamp(0.002 * size, 0.02 * size);
+        let radius = if look.boxes { 0.012 * size } else { (0.1 * length).clamp(0.002 * size, 0.02 * size) };
         bones.push(Bone {
             head,
             tail,

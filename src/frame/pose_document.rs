@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::{Frame, evaluate};
 use crate::anim::Clip;
 use crate::library::{Library, Model, warning_documents};
-use crate::mesh::{DeformedVertices, deform};
+use crate::mesh::{DeformedVertices, Geometry, Mesh, deform, smooth_normals};
 use crate::state::{Show, ViewerState, active_clip, clip_secs};
 
 /// What `gaitway pose --json` prints. World-space positions and normals of every mesh of the shown scene.
@@ -49,8 +49,17 @@ fn meshes(model: &Model, state: &ViewerState, frame: &Frame) -> Vec<Value> {
         let palette = &character.palette[draw.palette.start as usize..draw.palette.end as usize];
         let weights = &character.morph_weights[draw.morph_weights.start as usize..draw.morph_weights.end as usize];
         let node = asset.skeleton.source_index(asset.instances[draw.instance].joint);
-        for (primitive, geometry) in asset.meshes[draw.mesh].primitives.iter().enumerate() {
+        let mesh = &asset.meshes[draw.mesh];
+        let mut whole = Whole::new(mesh, state.show.smooth);
+        for (primitive, geometry) in mesh.primitives.iter().enumerate() {
+            let smooth = state.show.smooth && geometry.normals.is_empty();
+            let smoothed = smooth.then(|| Geometry { normals: smooth_normals(geometry), ..geometry.clone() });
+            let geometry = smoothed.as_ref().unwrap_or(geometry);
             deform(geometry, weights, palette, state.skinning, &mut deformed);
+            if !mesh.file_vertices.is_empty() {
+                whole.add(mesh, primitive, &deformed);
+                continue;
+            }
             documents.push(json!({
                 "node": node,
                 "mesh": draw.mesh,
@@ -59,8 +68,46 @@ fn meshes(model: &Model, state: &ViewerState, frame: &Frame) -> Vec<Value> {
                 "normals": flat(&deformed.normals, geometry.file_vertices),
             }));
         }
+        if !mesh.file_vertices.is_empty() {
+            documents.push(json!({
+                "node": node,
+                "mesh": draw.mesh,
+                "primitive": 0,
+                "positions": flat(&whole.positions, whole.positions.len()),
+                "normals": flat(&whole.normals, whole.normals.len()),
+            }));
+        }
     }
     documents
+}
+
+/// A mesh of several pieces whose file has one list of vertices: put together again in the file's order.
+struct Whole {
+    positions: Vec<glam::Vec3>,
+    /// Empty unless every piece has normals.
+    normals: Vec<glam::Vec3>,
+}
+
+impl Whole {
+    fn new(mesh: &Mesh, smooth: bool) -> Self {
+        let count = mesh.file_vertices.len();
+        let has_normals = smooth || mesh.primitives.iter().all(|geometry| !geometry.normals.is_empty());
+        Self {
+            positions: vec![glam::Vec3::ZERO; count],
+            normals: vec![glam::Vec3::ZERO; if has_normals { count } else { 0 }],
+        }
+    }
+
+    fn add(&mut self, mesh: &Mesh, primitive: usize, deformed: &DeformedVertices) {
+        for (at, &[piece, vertex]) in mesh.file_vertices.iter().enumerate() {
+            if piece as usize == primitive {
+                self.positions[at] = deformed.positions[vertex as usize];
+                if let Some(normal) = self.normals.get_mut(at) {
+                    *normal = deformed.normals[vertex as usize];
+                }
+            }
+        }
+    }
 }
 
 fn flat(vectors: &[glam::Vec3], count: usize) -> Vec<f32> {

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::Model;
 use crate::anim::{Clip, Interpolation};
 use crate::asset::{Asset, Warnings};
-use crate::mesh::{Bounds, Geometry};
+use crate::mesh::{Bounds, Geometry, Mesh};
 
 /// `files` are the names of the files that were read. Counts are of the file: a mesh hung on two nodes counts once.
 pub fn inspect(model: &Model, files: &[String]) -> Value {
@@ -26,7 +26,7 @@ pub fn inspect(model: &Model, files: &[String]) -> Value {
         "joints": model.rig().joint_count(asset),
         "meshes": asset.meshes.len(),
         "primitives": primitives().count(),
-        "vertices": primitives().map(|geometry| geometry.file_vertices).sum::<usize>(),
+        "vertices": asset.meshes.iter().map(Mesh::file_vertex_count).sum::<usize>(),
         "triangles": primitives().map(Geometry::triangles).sum::<usize>(),
         "morph_targets": asset.meshes.iter().map(target_count).sum::<usize>(),
         "clips": clips,

@@ -18,6 +18,13 @@ use std::sync::OnceLock;
 
 use crate::retarget::{Figures, FootTrack, JointMap, MapError, Proposal, propose};
 
+/// Which model is shown and which files it borrows from.
+#[derive(Debug, Clone)]
+pub struct Loaded {
+    pub model: ModelId,
+    pub motions: Vec<Motion>,
+}
+
 fn borrow_motion(
     model: &Model,
     motion: &Motion,
@@ -33,10 +40,12 @@ fn borrow_motion(
     motion::borrow(model.body(), motion, index, &resolved, |clip| rig::root_of(&model.asset, clip))
 }
 
-/// The loaded models, in the order they were opened.
+/// The loaded models, one of which is shown, and the motions that it borrows.
 #[derive(Debug, Default)]
 pub struct Library {
+    /// In the order they were opened.
     models: Vec<Model>,
+    shown: ModelId,
     /// Files that the shown model borrows clips from.
     motions: Vec<Motion>,
     /// The map for each motion that the borrowed clips were made with; none when they are to be made.
@@ -48,25 +57,59 @@ pub struct Library {
 }
 
 impl Library {
+    /// As many models are held: each keeps its meshes and images.
+    pub const MOST_MODELS: usize = 8;
+    /// Every clip of every motion is made over for the model, which takes time and memory.
+    pub const MOST_MOTIONS: usize = 64;
+
     /// Replaces everything by one model.
-    pub fn set(&mut self, mut model: Model) -> ModelId {
+    pub fn set(&mut self, model: Model) -> ModelId {
+        self.models.clear();
+        self.add(model)
+    }
+
+    /// Takes in one more model and shows it. With more than [`Library::MOST_MODELS`] the oldest goes.
+    pub fn add(&mut self, mut model: Model) -> ModelId {
         self.next_id += 1;
         model.id = ModelId(self.next_id);
-        self.models.clear();
+        if self.models.len() >= Self::MOST_MODELS
+            && let Some(oldest) = self.models.iter().position(|model| model.id != self.shown)
+        {
+            self.models.remove(oldest);
+        }
         self.models.push(model);
-        self.forget_borrowed();
+        self.show(ModelId(self.next_id));
         ModelId(self.next_id)
     }
 
-    /// Takes everything out, so that it can be put back when what follows does not work.
-    pub fn take(&mut self) -> Vec<Model> {
-        std::mem::take(&mut self.models)
+    /// Shows one of the models; false when it is not there.
+    pub fn show(&mut self, id: ModelId) -> bool {
+        let is_there = self.get(id).is_some();
+        if is_there && self.shown != id {
+            self.shown = id;
+            self.forget_borrowed();
+        }
+        is_there
     }
 
-    /// Undoes [`Library::take`].
-    pub fn put_back(&mut self, models: Vec<Model>) {
-        self.models = models;
-        self.forget_borrowed();
+    /// Lets go of a model, other than the one that is shown.
+    pub fn remove(&mut self, id: ModelId) {
+        let shown = self.shown;
+        self.models.retain(|model| model.id == shown || model.id != id);
+    }
+
+    /// What is shown and what it borrows, to come back to.
+    pub fn loaded(&self) -> Loaded {
+        Loaded { model: self.shown, motions: self.motions.clone() }
+    }
+
+    /// Shows what was shown before; false when that model has gone.
+    pub fn restore(&mut self, loaded: Loaded) -> bool {
+        let is_there = self.show(loaded.model);
+        if is_there {
+            self.set_motions(loaded.motions);
+        }
+        is_there
     }
 
     fn forget_borrowed(&mut self) {
@@ -90,7 +133,7 @@ impl Library {
 
     /// What is proposed for a motion over the shown model; worked out once.
     pub fn proposal(&self, motion: usize) -> Option<&Proposal> {
-        let (model, slot) = (self.models.first()?, self.proposals.get(motion)?);
+        let (model, slot) = (self.active()?, self.proposals.get(motion)?);
         let motion = self.motions.get(motion)?;
         Some(slot.get_or_init(|| propose(&model.asset, &motion.asset)))
     }
@@ -109,7 +152,8 @@ impl Library {
         }
         self.borrow_errors.clear();
         let mut borrowed = Vec::new();
-        if let Some(model) = self.models.first_mut() {
+        let shown = self.shown;
+        if let Some(model) = self.models.iter_mut().find(|model| model.id == shown) {
             for (index, motion) in self.motions.iter().enumerate() {
                 match borrow_motion(model, motion, index, maps.get(index).and_then(Option::as_ref)) {
                     Ok(clips) => borrowed.extend(clips),
@@ -149,7 +193,7 @@ impl Library {
 
     /// The model that is shown and edited.
     pub fn active(&self) -> Option<&Model> {
-        self.models.first()
+        self.get(self.shown)
     }
 
     pub fn get(&self, id: ModelId) -> Option<&Model> {

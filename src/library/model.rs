@@ -130,6 +130,13 @@ impl Model {
         &self.clip_titles
     }
 
+    /// Whether there is such a vertex: indices of an instance, a piece of its mesh and a vertex there.
+    pub fn has_vertex(&self, instance: usize, primitive: usize, vertex: usize) -> bool {
+        let mesh = self.asset.instances.get(instance).and_then(|instance| self.asset.meshes.get(instance.mesh));
+        let piece = mesh.and_then(|mesh| mesh.primitives.get(primitive));
+        piece.is_some_and(|geometry| vertex < geometry.positions.len())
+    }
+
     /// Which joints make up the skeleton that is drawn, and how they hang together.
     pub fn rig(&self) -> &Rig {
         &self.rig

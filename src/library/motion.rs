@@ -16,8 +16,10 @@ use crate::retarget::{
 /// A loaded file whose clips others may borrow.
 #[derive(Debug, Clone)]
 pub struct Motion {
-    /// File name or URL, as the link writes it.
+    /// File name or URL.
     pub source: String,
+    /// What a view lists to get it again: the source, or the archive or folder that it came out of.
+    pub origin: String,
     pub asset: Arc<Asset>,
     pub slots: Humanoid,
     /// Given by the library.
@@ -28,7 +30,7 @@ pub struct Motion {
 impl Motion {
     pub fn new(source: String, asset: Arc<Asset>) -> Self {
         let slots = recognize(&asset).humanoid();
-        Self { source, asset, slots, stage_id: ModelId::default(), stage: Arc::default() }
+        Self { origin: source.clone(), source, asset, slots, stage_id: ModelId::default(), stage: Arc::default() }
     }
 
     /// The file as something to look at, without its images; made when somebody first asks.

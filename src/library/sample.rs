@@ -1,5 +1,6 @@
-//! The walker: a small robot made in code, so that there is something to look at before any file is opened. 22 joints
-//! in a T-pose facing +Z, smooth weights at every bend, three clips, one morph target (closing eyes).
+//! The sample characters: files of `assets/samples`, which are part of the program everywhere but on the page, where they
+//! lie beside it; and the walker, a small robot made in code, so that there is always something to look at. The walker has
+//! 22 joints in a T-pose facing +Z, smooth weights at every bend, three clips, one morph target (closing eyes).
 
 mod motion;
 mod shape;
@@ -11,13 +12,34 @@ use crate::anim::{Joint, JointIndex, Skeleton, SkeletonError, Transform};
 use crate::asset::{Asset, MeshInstance, Scene};
 use crate::mesh::{Geometry, Material, Mesh, Skin, SkinError};
 
-/// Names that `sample:NAME` understands.
-pub const NAMES: [&str; 1] = ["walker"];
+/// The name after `sample:` of the one that is made in code.
+pub const WALKER: &str = "walker";
 
-/// A model by its name after `sample:`; none when there is none of that name.
+/// What the window shows when nothing was asked for; the page begins with the first scene of its gallery.
+#[cfg(not(target_arch = "wasm32"))]
+pub const FIRST: &str = "sample:pilot";
+
+#[cfg(not(target_arch = "wasm32"))]
+include!(concat!(env!("OUT_DIR"), "/samples.rs"));
+
+/// The files of a sample by its name after `sample:`, each with its content; none for a name that no file has.
+#[cfg(not(target_arch = "wasm32"))]
+pub fn files(name: &str) -> impl Iterator<Item = (&'static str, &'static [u8])> {
+    FILES.iter().filter(move |(of, ..)| *of == name).map(|&(_, file, bytes)| (file, bytes))
+}
+
+/// All names that `sample:NAME` understands.
+#[cfg(not(target_arch = "wasm32"))]
+pub fn names() -> Vec<&'static str> {
+    let mut names: Vec<&str> = FILES.iter().map(|&(name, ..)| name).chain([WALKER]).collect();
+    names.dedup();
+    names
+}
+
+/// A model that is made in code, by its name after `sample:`; none when there is none of that name.
 pub fn load(name: &str) -> Option<Model> {
     let images: Vec<Option<ImageData>> = Vec::new();
-    (name == NAMES[0]).then(|| Model::new(format!("sample:{name}"), walker(), images))
+    (name == WALKER).then(|| Model::new(format!("sample:{name}"), walker(), images))
 }
 
 /// Joints of the walker, by their number in [`JOINTS`].
@@ -91,8 +113,13 @@ fn build() -> Result<Asset, SampleError> {
     let skeleton = skeleton()?;
     let skin = skin(&skeleton)?;
     let meshes = vec![
-        Mesh { name: "Body".to_owned(), primitives: shape::body(), target_names: Vec::new() },
-        Mesh { name: "Eyes".to_owned(), primitives: vec![shape::eyes()], target_names: vec!["Blink".to_owned()] },
+        Mesh { name: "Body".to_owned(), primitives: shape::body(), ..Mesh::default() },
+        Mesh {
+            name: "Eyes".to_owned(),
+            primitives: vec![shape::eyes()],
+            target_names: vec!["Blink".to_owned()],
+            ..Mesh::default()
+        },
     ];
     meshes
         .iter()

@@ -31,6 +31,21 @@ pub struct Mesh {
     pub primitives: Vec<Geometry>,
     /// Names of the morph targets; as many as each primitive has targets.
     pub target_names: Vec<String>,
+    /// What the file calls its pieces, one name for each; empty when it has no names for them.
+    pub part_names: Vec<String>,
+    /// Where each vertex of the file is, as piece and vertex there, if the file has one list for the whole mesh and the mesh
+    /// several pieces; else empty.
+    pub file_vertices: Vec<[u32; 2]>,
+}
+
+impl Mesh {
+    /// How many vertices the file has for it.
+    pub fn file_vertex_count(&self) -> usize {
+        match self.file_vertices.len() {
+            0 => self.primitives.iter().map(|geometry| geometry.file_vertices).sum(),
+            count => count,
+        }
+    }
 }
 
 /// Positions in mesh space (bind space for a skinned mesh), metres. Optional attributes are empty or have one entry per

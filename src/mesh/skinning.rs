@@ -63,6 +63,35 @@ pub fn deform(
     }
 }
 
+/// One vertex as [`deform`] has it: where it is bound, after morphing, and where it comes to be. `scratch` is only room.
+pub fn deform_vertex(
+    geometry: &Geometry,
+    vertex: usize,
+    morph_weights: &[f32],
+    palette: &[PaletteEntry],
+    mode: SkinningMode,
+    scratch: &mut DeformedVertices,
+) -> [Vec3; 2] {
+    let mut bound = geometry.positions[vertex];
+    for (target, &weight) in geometry.morph_targets.iter().zip(morph_weights).filter(|(_, weight)| **weight != 0.0) {
+        bound += weight * target.positions.get(vertex).copied().unwrap_or_default();
+    }
+    scratch.positions.clear();
+    scratch.positions.push(bound);
+    scratch.normals.clear();
+    let influences = &geometry.influences;
+    let rows = match (influences.is_empty() || palette.len() == 1, mode) {
+        (true, _) => matrix_of(&palette[0], mode),
+        (false, SkinningMode::Rigid) => {
+            matrix_of(&palette[influences.joints[vertex * influences.stride] as usize], mode)
+        }
+        (false, SkinningMode::Linear) => blend(influences.of_vertex(vertex), palette),
+        (false, SkinningMode::DualQuaternion) => blend_dual_quaternions(influences.of_vertex(vertex), palette),
+    };
+    transform(scratch, |_| rows);
+    [bound, scratch.positions[0]]
+}
+
 /// The rows of a 3×4 matrix.
 type Rows = [Vec4; 3];
 

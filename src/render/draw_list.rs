@@ -132,7 +132,10 @@ impl DrawList {
                     let offset = self.push_uniform(&uniform);
                     let heat = draw.heat_joint.is_some();
                     let shading = if heat { Shading::Heat } else { primitive.shading };
-                    let features = primitive.features.with(light_features, shading == Shading::Lit);
+                    let mut features = primitive.features.with(light_features, shading == Shading::Lit);
+                    if frame.look.smooth && geometry.topology == Topology::Triangles {
+                        features = features.without(Features::FLAT);
+                    }
                     let key = MeshKey {
                         shading,
                         influences: geometry.influences,

@@ -6,7 +6,7 @@ use bytemuck::{Pod, Zeroable};
 use wgpu::util::DeviceExt;
 
 use super::UploadError;
-use crate::mesh::{Geometry, Influences, Topology};
+use crate::mesh::{Geometry, Influences, Topology, smooth_normals};
 
 /// Texels in a row of a vertex texture; skinning.wgsl has the same number.
 pub const VERTEX_TEXTURE_WIDTH: u32 = 2048;
@@ -134,10 +134,13 @@ impl GpuGeometry {
             return Err(too_many());
         }
 
+        // Drawn flat, unless the person wants what has no normals to be smooth.
+        let smooth = if geometry.normals.is_empty() { smooth_normals(geometry) } else { Vec::new() };
+        let normals = if smooth.is_empty() { &geometry.normals } else { &smooth };
         let shape: Vec<ShapeVertex> = (0..count)
             .map(|vertex| ShapeVertex {
                 position: geometry.positions[vertex].to_array(),
-                normal: geometry.normals.get(vertex).map_or([0.0; 3], |normal| normal.to_array()),
+                normal: normals.get(vertex).map_or([0.0; 3], |normal| normal.to_array()),
             })
             .collect();
         let surface: Vec<SurfaceVertex> = (0..count)

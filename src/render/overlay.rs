@@ -1,5 +1,7 @@
 //! What is drawn over the model: lines and bones, as instances.
 
+use std::ops::Range;
+
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use wgpu::util::DeviceExt;
@@ -73,12 +75,21 @@ pub(super) struct Overlay {
     lines_on_top: u32,
     bones: Instances<BoneInstance>,
     bone_shape: wgpu::Buffer,
-    bone_vertices: u32,
+    bone_ranges: BoneRanges,
+    /// Of what is drawn now.
+    bone_vertices: Range<u32>,
+}
+
+/// Vertices of a pointed bone with its ball, and of the ball with a box.
+#[derive(Clone)]
+struct BoneRanges {
+    pointed: Range<u32>,
+    boxes: Range<u32>,
 }
 
 impl Overlay {
     pub fn new(device: &wgpu::Device) -> Self {
-        let shape = bone_shape();
+        let (shape, bone_ranges) = bone_shape();
         Self {
             lines: Instances::new(device, "lines"),
             lines_on_top: 0,
@@ -88,11 +99,15 @@ impl Overlay {
                 contents: bytemuck::cast_slice(&shape),
                 usage: wgpu::BufferUsages::VERTEX,
             }),
-            bone_vertices: shape.len() as u32,
+            bone_vertices: bone_ranges.pointed.clone(),
+            bone_ranges,
         }
     }
 
-    pub fn upload(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, lines: &[Line], bones: &[Bone]) {
+    /// `boxes`: bones are drawn as boxes.
+    pub fn upload(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, lines: &[Line], bones: &[Bone], boxes: bool) {
+        let BoneRanges { pointed, boxes: as_boxes } = &self.bone_ranges;
+        self.bone_vertices = if boxes { as_boxes.clone() } else { pointed.clone() };
         let instance = |line: &Line| LineInstance {
             from: line.from.to_array(),
             width_pixels: line.width_pixels,
@@ -116,7 +131,7 @@ impl Overlay {
     }
 
     /// Instances of the lines that are not, or are, drawn through everything.
-    pub fn lines(&self, on_top: bool) -> std::ops::Range<u32> {
+    pub fn lines(&self, on_top: bool) -> Range<u32> {
         if on_top { self.lines_on_top..self.lines.now.len() as u32 } else { 0..self.lines_on_top }
     }
 
@@ -125,7 +140,7 @@ impl Overlay {
     }
 
     pub fn bone_triangles(&self) -> u32 {
-        self.bones() * self.bone_vertices / 3
+        self.bones() * self.bone_vertices.len() as u32 / 3
     }
 
     pub fn draw_lines(&self, pass: &mut wgpu::RenderPass<'_>, on_top: bool) {
@@ -136,12 +151,13 @@ impl Overlay {
     pub fn draw_bones(&self, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_vertex_buffer(0, self.bone_shape.slice(..));
         pass.set_vertex_buffer(1, self.bones.buffer.slice(..));
-        pass.draw(0..self.bone_vertices, 0..self.bones());
+        pass.draw(self.bone_vertices.clone(), 0..self.bones());
     }
 }
 
-/// Triangles of the octahedron from head (y 0) to tail (y 1), flat, and of the ball around the head, smooth.
-fn bone_shape() -> Vec<BoneVertex> {
+/// Triangles of the octahedron from head (y 0) to tail (y 1), flat, of the ball around the head, smooth, and of a box in
+/// place of the octahedron.
+fn bone_shape() -> (Vec<BoneVertex>, BoneRanges) {
     /// Where along the bone it is widest.
     const WAIST: f32 = 0.12;
     let mut shape = Vec::new();
@@ -156,6 +172,7 @@ fn bone_shape() -> Vec<BoneVertex> {
             );
         }
     }
+    let ball_start = shape.len() as u32;
     for x in [Vec3::X, Vec3::NEG_X] {
         for y in [Vec3::Y, Vec3::NEG_Y] {
             for z in [Vec3::Z, Vec3::NEG_Z] {
@@ -164,7 +181,25 @@ fn bone_shape() -> Vec<BoneVertex> {
             }
         }
     }
-    shape
+    let ball_end = shape.len() as u32;
+    for normal in [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z] {
+        box_side(normal, &mut shape);
+    }
+    let ranges = BoneRanges { pointed: 0..ball_end, boxes: ball_start..shape.len() as u32 };
+    (shape, ranges)
+}
+
+/// Half as thick as the ball.
+fn box_side(normal: Vec3, shape: &mut Vec<BoneVertex>) {
+    let right = Vec3::new(normal.y, normal.z, normal.x);
+    let up = normal.cross(right);
+    let corner = |x: f32, y: f32| {
+        let unit = 0.5 * (normal + x * right + y * up);
+        let position = (unit + 0.5 * Vec3::Y).to_array();
+        BoneVertex { position, normal: normal.extend(0.0).to_array() }
+    };
+    let [a, b, c, d] = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+    shape.extend([a, b, c, a, c, d]);
 }
 
 fn ball_part([a, b, c]: [Vec3; 3], splits: u32, shape: &mut Vec<BoneVertex>) {
@@ -186,11 +221,20 @@ mod tests {
 
     #[test]
     fn triangles_of_the_bone_face_outwards() {
-        for triangle in bone_shape().as_chunks::<3>().0 {
+        let (shape, ranges) = bone_shape();
+        for (triangle, first) in shape.as_chunks::<3>().0.iter().zip((0..).step_by(3)) {
             let [a, b, c] = triangle.map(|vertex| Vec3::from(vertex.position));
             let winding = (b - a).cross(c - a);
             let ball = triangle[0].normal[3] == 1.0;
-            let middle = (a + b + c) / 3.0 - if ball { Vec3::ZERO } else { 0.2 * Vec3::Y };
+            let is_box = !ranges.pointed.contains(&first);
+            let inside = if ball {
+                0.0
+            } else if is_box {
+                0.5
+            } else {
+                0.2
+            };
+            let middle = (a + b + c) / 3.0 - inside * Vec3::Y;
             assert!(winding.dot(middle) > 0.0, "{a} {b} {c}");
             for vertex in triangle {
                 assert!(winding.dot(Vec3::from_slice(&vertex.normal)) > 0.0, "{a} {b} {c}");

@@ -114,6 +114,10 @@ impl Features {
         self.0 & other.0 != 0
     }
 
+    pub fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
+    }
+
     pub fn only(self, other: Self) -> Self {
         Self(self.0 & other.0)
     }
@@ -178,6 +182,7 @@ struct ScenePipeline<'a> {
     depth_write: bool,
     depth_compare: wgpu::CompareFunction,
     writes: wgpu::ColorWrites,
+    blend: Option<wgpu::BlendState>,
     cull: Option<wgpu::Face>,
 }
 
@@ -209,7 +214,7 @@ impl ScenePipeline<'_> {
                 compilation_options: options(),
                 targets: &[Some(wgpu::ColorTargetState {
                     format: SCENE_FORMAT,
-                    blend: BLENDED,
+                    blend: self.blend,
                     write_mask: self.writes,
                 })],
             }),
@@ -250,6 +255,7 @@ impl Pipelines {
             depth_write: false,
             depth_compare: wgpu::CompareFunction::LessEqual,
             writes: wgpu::ColorWrites::ALL,
+            blend: BLENDED,
             cull: None,
         }
         .create(device, samples);
@@ -279,6 +285,7 @@ impl Pipelines {
             depth_write: true,
             depth_compare: wgpu::CompareFunction::LessEqual,
             writes: wgpu::ColorWrites::ALL,
+            blend: BLENDED,
             cull: Some(wgpu::Face::Back),
         }
         .create(device, samples);
@@ -295,6 +302,7 @@ impl Pipelines {
             depth_write: true,
             depth_compare: wgpu::CompareFunction::Always,
             writes: wgpu::ColorWrites::empty(),
+            blend: BLENDED,
             cull: None,
         }
         .create(device, samples);
@@ -314,6 +322,7 @@ impl Pipelines {
                 depth_write: false,
                 depth_compare: wgpu::CompareFunction::LessEqual,
                 writes: wgpu::ColorWrites::ALL,
+                blend: BLENDED,
                 cull: None,
             }
             .create(device, samples)
@@ -331,8 +340,10 @@ impl Pipelines {
             constants: &[],
             buffers: &[],
             depth_write: false,
-            depth_compare: wgpu::CompareFunction::Always,
+            // Behind everything, so that it is only worked out where it is seen.
+            depth_compare: wgpu::CompareFunction::LessEqual,
             writes: wgpu::ColorWrites::ALL,
+            blend: None,
             cull: None,
         }
         .create(device, samples);

@@ -189,7 +189,7 @@ impl Renderer {
             self.shadow_group = self.shadow_buffer.bind_group(device, &self.layouts, &self.palette);
         }
         let bones = if frame.look.skeleton { &frame.bones[..] } else { &[] };
-        self.overlay.upload(device, queue, &frame.lines, bones);
+        self.overlay.upload(device, queue, &frame.lines, bones, frame.look.boxes);
         self.stats = RenderStats::default();
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("picture") });
         if shadow {
@@ -291,13 +291,13 @@ impl Renderer {
             stats.draw_calls += more.draw_calls;
             stats.triangles += more.triangles;
         };
+        let draw = self.draws.bind_group();
+        add(draw_items(pass, self.draws.solid(), pane, draw, &self.models, &self.pipelines));
         if background == Background::Studio {
             pass.set_pipeline(&self.pipelines.background);
             pass.draw(0..3, 0..1);
             add(RenderStats { draw_calls: 1, triangles: 0 });
         }
-        let draw = self.draws.bind_group();
-        add(draw_items(pass, self.draws.solid(), pane, draw, &self.models, &self.pipelines));
         if ground.is_some_and(|ground| ground.grid) {
             pass.set_pipeline(&self.pipelines.grid);
             pass.draw(0..18, 0..1);

@@ -7,13 +7,15 @@ use glam::Vec3;
 use super::framing::{frame_all, resolve_camera, resolved_bounds};
 use super::maps::{self, map_in_force, settled_maps};
 use super::playhead::{active_clip, choice_of_clip, clip_of, clip_secs, play_range};
-use super::{CameraChoice, ClipChoice, Command, Fade, OrbitCamera, ViewerState};
+use super::{CameraChoice, ClipChoice, Command, Fade, OrbitCamera, VertexChoice, ViewerState};
 use crate::anim::{LoopMode, TimeRange};
 use crate::library::{Library, Model};
 
 /// For commands that need the automatic camera without knowing the picture: wide enough for most windows. Who knows the
 /// real shape sends `SetCamera` with [`resolve_camera`] first.
 const USUAL_ASPECT: f32 = 16.0 / 9.0;
+
+const MOST_NAME_LETTERS: usize = 80;
 
 const MOST_PITCH_RADIANS: f32 = 89.9 * PI / 180.0;
 
@@ -62,11 +64,20 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::ClearMorphs => state.morph.clear(),
         Command::SetPose { joint, degrees } => set_pose(state, model, joint, degrees),
         Command::ClearPose => state.pose.clear(),
+        Command::RenameJoint { joint, name } => rename(state, model, joint, &name),
         Command::SetShow(show) => state.show = show,
         Command::SelectJoint(joint) => {
             let known = |joint: usize| model.is_none_or(|model| joint < model.asset.skeleton.len());
             if joint.is_none_or(known) {
                 state.joint = joint;
+            }
+        }
+        Command::SelectVertex(vertex) => {
+            let known = |choice: VertexChoice| {
+                model.is_none_or(|model| model.has_vertex(choice.instance, choice.primitive, choice.vertex))
+            };
+            if vertex.is_none_or(known) {
+                state.vertex = vertex;
             }
         }
         Command::SetCamera(choice) => set_camera(state, model, choice),
@@ -149,6 +160,10 @@ fn replace(state: &mut ViewerState, new: ViewerState) {
     state.pose.clear();
     for (joint, degrees) in wanted.pose {
         set_pose(state, None, joint, Some(degrees));
+    }
+    state.names.clear();
+    for (joint, name) in wanted.names {
+        rename(state, None, joint, &name);
     }
     state.turntable = default.turntable;
     set_f32(&mut state.turntable, wanted.turntable, -360.0, 360.0);
@@ -308,6 +323,25 @@ fn set_pose(state: &mut ViewerState, model: Option<&Model>, joint: usize, degree
             state.pose.insert(joint, degrees.map(half_turn));
         }
         Some(_) => {}
+    }
+}
+
+/// A name is a line of at most [`MOST_NAME_LETTERS`]; nothing, or what the file says, is no name of its own.
+fn rename(state: &mut ViewerState, model: Option<&Model>, joint: usize, name: &str) {
+    let line: String = name.chars().filter(|letter| !letter.is_control()).take(MOST_NAME_LETTERS).collect();
+    let name = line.trim();
+    let in_file = model.map(|model| {
+        let skeleton = &model.asset.skeleton;
+        skeleton.joint_of_source(joint).map(|joint| skeleton.name(joint))
+    });
+    match in_file {
+        Some(None) => {}
+        _ if name.is_empty() || in_file == Some(Some(name)) => {
+            state.names.remove(&joint);
+        }
+        _ => {
+            state.names.insert(joint, name.to_owned());
+        }
     }
 }
 

@@ -34,8 +34,14 @@ pub enum Command {
         degrees: Option<[f32; 3]>,
     },
     ClearPose,
+    /// Calls a joint (its number in the file) something else; an empty name: as the file does.
+    RenameJoint {
+        joint: usize,
+        name: String,
+    },
     SetShow(super::Show),
     SelectJoint(Option<usize>),
+    SelectVertex(Option<super::VertexChoice>),
     SetCamera(CameraChoice),
     /// Turns about the target, radians.
     Orbit {

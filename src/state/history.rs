@@ -1,17 +1,25 @@
-//! Undo and redo: of edits (how the model is bent and shown), not of time or camera; one step per gesture.
+//! Undo and redo: of edits (how the model is bent and shown) and of what is opened, not of time or camera; one step per
+//! gesture.
 
 use std::mem::Discriminant;
 
 use super::{Command, ViewerState, apply};
-use crate::library::Library;
+use crate::library::{Library, Loaded};
 
-/// What was set before each edit, newest last.
+/// What was there before each step, newest last.
 #[derive(Debug, Default)]
 pub struct History {
-    past: Vec<ViewerState>,
-    future: Vec<ViewerState>,
+    past: Vec<Step>,
+    future: Vec<Step>,
     /// The kind of command the present gesture consists of.
     gesture: Option<Discriminant<Command>>,
+}
+
+#[derive(Debug)]
+struct Step {
+    state: ViewerState,
+    /// For what was opened: with it the whole view comes back. Edits bring back themselves alone.
+    loaded: Option<Loaded>,
 }
 
 impl History {
@@ -30,10 +38,7 @@ impl History {
         apply(state, library, command);
         if !same_edits(&before, state) {
             if self.gesture != Some(kind) {
-                if self.past.len() == Self::MOST_STEPS {
-                    self.past.remove(0);
-                }
-                self.past.push(before);
+                self.push(Step { state: before, loaded: None });
             }
             self.future.clear();
             self.gesture = Some(kind);
@@ -45,9 +50,28 @@ impl History {
         self.gesture = None;
     }
 
-    /// Forgets everything, as when another model is opened.
-    pub fn clear(&mut self) {
-        *self = Self::default();
+    /// Remembers what was shown before something was opened, borrowed or taken away.
+    pub fn opened(&mut self, state: ViewerState, loaded: Loaded) {
+        self.gesture = None;
+        self.push(Step { state, loaded: Some(loaded) });
+        self.future.clear();
+    }
+
+    fn push(&mut self, step: Step) {
+        if self.past.len() == Self::MOST_STEPS {
+            self.past.remove(0);
+        }
+        self.past.push(step);
+    }
+
+    /// Forgets the steps that lead back over a model which has gone.
+    pub fn forget_gone(&mut self, library: &Library) {
+        let is_gone = |step: &Step| step.loaded.as_ref().is_some_and(|loaded| library.get(loaded.model).is_none());
+        for steps in [&mut self.past, &mut self.future] {
+            if let Some(last) = steps.iter().rposition(is_gone) {
+                steps.drain(..=last);
+            }
+        }
     }
 
     pub fn can_undo(&self) -> bool {
@@ -59,21 +83,39 @@ impl History {
     }
 
     /// Takes the last step back; false when there is none.
-    pub fn undo(&mut self, state: &mut ViewerState) -> bool {
+    pub fn undo(&mut self, state: &mut ViewerState, library: &mut Library) -> bool {
         self.gesture = None;
         let Some(step) = self.past.pop() else { return false };
-        self.future.push(state.clone());
-        take_edits(state, &step);
+        self.future.push(step.take(state, library));
         true
     }
 
     /// Takes back the last undo; false when there is none.
-    pub fn redo(&mut self, state: &mut ViewerState) -> bool {
+    pub fn redo(&mut self, state: &mut ViewerState, library: &mut Library) -> bool {
         self.gesture = None;
         let Some(step) = self.future.pop() else { return false };
-        self.past.push(state.clone());
-        take_edits(state, &step);
+        self.past.push(step.take(state, library));
         true
+    }
+}
+
+impl Step {
+    /// Puts what it remembers in force; gives back the step the other way.
+    fn take(self, state: &mut ViewerState, library: &mut Library) -> Self {
+        let before = state.clone();
+        match self.loaded {
+            Some(loaded) => {
+                let back = library.loaded();
+                if library.restore(loaded) {
+                    *state = self.state;
+                }
+                Self { state: before, loaded: Some(back) }
+            }
+            None => {
+                take_edits(state, &self.state);
+                Self { state: before, loaded: None }
+            }
+        }
     }
 }
 
@@ -85,6 +127,7 @@ fn is_edit(command: &Command) -> bool {
             | Command::ClearMorphs
             | Command::SetPose { .. }
             | Command::ClearPose
+            | Command::RenameJoint { .. }
             | Command::SetShow(_)
             | Command::SetUp(_)
             | Command::SetExposure(_)
@@ -103,6 +146,7 @@ fn take_edits(state: &mut ViewerState, from: &ViewerState) {
     state.skinning = from.skinning;
     state.morph.clone_from(&from.morph);
     state.pose.clone_from(&from.pose);
+    state.names.clone_from(&from.names);
     state.show = from.show;
     state.up = from.up;
     state.exposure = from.exposure;
@@ -118,6 +162,7 @@ fn same_edits(a: &ViewerState, b: &ViewerState) -> bool {
     a.skinning == b.skinning
         && a.morph == b.morph
         && a.pose == b.pose
+        && a.names == b.names
         && a.show == b.show
         && a.up == b.up
         && a.exposure == b.exposure

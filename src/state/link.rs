@@ -7,7 +7,7 @@ use std::fmt::Display;
 use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_encode};
 use serde_json::{Map, Value, json};
 
-use super::{Background, CameraChoice, ClipChoice, Fade, OrbitCamera, Show, UpAxis, ViewerState};
+use super::{Background, CameraChoice, ClipChoice, Fade, OrbitCamera, Show, UpAxis, VertexChoice, ViewerState};
 use super::{MotionMap, map_code};
 use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
@@ -24,7 +24,7 @@ pub enum LinkError {
 }
 
 /// Keys of the link in the order they are written.
-const KEYS: [&str; 28] = [
+const KEYS: [&str; 30] = [
     "model",
     "motion",
     "map",
@@ -42,8 +42,10 @@ const KEYS: [&str; 28] = [
     "skinning",
     "morph",
     "pose",
+    "names",
     "show",
     "joint",
+    "vertex",
     "camera",
     "fov",
     "follow",
@@ -61,6 +63,9 @@ const REPEATABLE: [&str; 3] = ["model", "motion", "map"];
 /// Kept readable: `/`, `:`, `,` and the like need no escape in a fragment.
 const ESCAPED: &AsciiSet =
     &CONTROLS.add(b' ').add(b'"').add(b'#').add(b'%').add(b'&').add(b'+').add(b'<').add(b'=').add(b'>').add(b'`');
+
+/// What stands between names, and what escapes.
+const IN_NAMES: &AsciiSet = &CONTROLS.add(b'%').add(b',').add(b':');
 
 /// The part after `#`; only what differs from the default is written.
 pub fn to_link(state: &ViewerState) -> String {
@@ -125,6 +130,7 @@ pub fn to_object(state: &ViewerState) -> Value {
             "environment" => json!(state.environment_degrees),
             "scene" => json!(state.scene),
             "joint" => json!(state.joint),
+            "vertex" if state.vertex.is_none() => Value::Null,
             "range" if state.range.is_none() => Value::Null,
             "fade" if state.fade.is_none() => Value::Null,
             _ => Value::String(text),
@@ -184,6 +190,7 @@ fn reset(state: &mut ViewerState, key: &str) {
         "clip" => state.clip = ClipChoice::First,
         "scene" => state.scene = None,
         "joint" => state.joint = None,
+        "vertex" => state.vertex = None,
         "range" => state.range = None,
         "fade" => state.fade = None,
         "model" => state.model.clear(),
@@ -227,8 +234,14 @@ fn value_of(state: &ViewerState, key: &str) -> String {
         "skinning" => word_of(&SKINNING_MODES, &state.skinning),
         "morph" => joined(state.morph.iter().map(|(index, weight)| format!("{index}:{weight}"))),
         "pose" => joined(state.pose.iter().map(|(joint, [x, y, z])| format!("{joint}:{x}:{y}:{z}"))),
+        "names" => {
+            joined(state.names.iter().map(|(joint, name)| format!("{joint}:{}", utf8_percent_encode(name, IN_NAMES))))
+        }
         "show" => show_text(state),
         "joint" => number(state.joint),
+        "vertex" => state
+            .vertex
+            .map_or(String::new(), |choice| format!("{}:{}:{}", choice.instance, choice.primitive, choice.vertex)),
         "camera" => camera_text(&state.camera),
         "fov" => state.fov_degrees.to_string(),
         "follow" => flag_text(state.follow).to_owned(),
@@ -296,6 +309,8 @@ fn read_value(state: &mut ViewerState, key: &str, value: &str) -> Read {
         "clip" => state.clip = ClipChoice::Named(value.to_owned()),
         "scene" => return put(&mut state.scene, optional(value), "a scene's index"),
         "joint" => return put(&mut state.joint, optional(value), "a joint's number in the file"),
+        "vertex" if value.is_empty() => state.vertex = None,
+        "vertex" => return put(&mut state.vertex, read_vertex(value).map(Some), "INSTANCE:PIECE:VERTEX, from 0"),
         "t" => return put(&mut state.time_secs, finite(value), "seconds"),
         "fade" if value.is_empty() => state.fade = None,
         "fade" => return put(&mut state.fade, read_fade(value), "two times in seconds and a clip: 0.1,1.5,Walk"),
@@ -313,6 +328,7 @@ fn read_value(state: &mut ViewerState, key: &str, value: &str) -> Read {
             let expected = "joints with three angles in degrees: 4:30:0:-15,7:0:90:0";
             return put(&mut state.pose, read_pose(value), expected);
         }
+        "names" => return put(&mut state.names, read_names(value), "joints with their names: 4:Left%20knee,7:Hand"),
         "show" => return read_show(state, value),
         "camera" => {
             let expected = "yaw,pitch,distance,x,y,z in degrees and metres, gltf:INDEX or auto";
@@ -522,9 +538,26 @@ fn read_pose(text: &str) -> Option<BTreeMap<usize, [f32; 3]>> {
     text.split(',').filter(|part| !part.is_empty()).map(turned).collect()
 }
 
+/// Names are escaped once more for the marks between them.
+fn read_names(text: &str) -> Option<BTreeMap<usize, String>> {
+    let named = |part: &str| {
+        let (joint, name) = part.split_once(':')?;
+        let name = percent_decode_str(name).decode_utf8().ok()?;
+        let is_line = !name.trim().is_empty() && !name.contains(char::is_control);
+        is_line.then_some((joint.trim().parse().ok()?, name.into_owned()))
+    };
+    text.split(',').filter(|part| !part.is_empty()).map(named).collect()
+}
+
+fn read_vertex(text: &str) -> Option<VertexChoice> {
+    let mut numbers = text.split(':').map(|part| part.trim().parse().ok());
+    let choice = VertexChoice { instance: numbers.next()??, primitive: numbers.next()??, vertex: numbers.next()?? };
+    numbers.next().is_none().then_some(choice)
+}
+
 /// The words of `show`, each with its flag, and what the flag is when the word is there. The mesh and its shadow belong to
 /// any picture, so the words for them take them away.
-fn show_flags(show: &mut Show) -> [(&'static str, &mut bool, bool); 11] {
+fn show_flags(show: &mut Show) -> [(&'static str, &mut bool, bool); 13] {
     [
         ("no-mesh", &mut show.mesh, false),
         ("skeleton", &mut show.skeleton, true),
@@ -537,6 +570,8 @@ fn show_flags(show: &mut Show) -> [(&'static str, &mut bool, bool); 11] {
         ("source", &mut show.source, true),
         ("over", &mut show.over, true),
         ("error", &mut show.error, true),
+        ("boxes", &mut show.boxes, true),
+        ("smooth", &mut show.smooth, true),
     ]
 }
 

@@ -9,6 +9,7 @@ mod link;
 mod map_code;
 mod map_edit;
 mod maps;
+mod names;
 mod playhead;
 mod stage;
 mod view;
@@ -26,9 +27,10 @@ pub use maps::{
     MapProblem, MotionMap, NumberedMap, map_in_force, maps_in_force, named, names_checksum, number_of, numbered,
     proposed, settled_maps,
 };
+pub use names::{title, written_skeleton};
 pub use playhead::{
     PoseSampler, active_clip, choice_of_clip, clip_secs, degrees_by_hand, play_range, rotation_by_hand,
     world_from_model,
 };
 pub use stage::{SourceOnStage, source_on_stage};
-pub use view::{Background, ClipChoice, Fade, Show, UpAxis, ViewerState};
+pub use view::{Background, ClipChoice, Fade, Show, UpAxis, VertexChoice, ViewerState};

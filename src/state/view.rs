@@ -42,9 +42,14 @@ pub struct ViewerState {
     /// Joints turned by hand, by their numbers in the file: Euler angles in degrees, see [`super::rotation_by_hand`]. They
     /// win over the clip.
     pub pose: BTreeMap<usize, [f32; 3]>,
+    /// Names given to joints by hand, by their numbers in the file; never empty. They are shown and written instead of the
+    /// file's.
+    pub names: BTreeMap<usize, String>,
     pub show: Show,
     /// The chosen joint, by its number in the file: its transforms are shown, and its influence with `show.weights`.
     pub joint: Option<usize>,
+    /// The chosen vertex: how its joints move it is shown.
+    pub vertex: Option<VertexChoice>,
     pub camera: CameraChoice,
     pub fov_degrees: f32,
     /// The camera stays with the character's root.
@@ -83,8 +88,10 @@ impl Default for ViewerState {
             skinning: SkinningMode::Linear,
             morph: BTreeMap::new(),
             pose: BTreeMap::new(),
+            names: BTreeMap::new(),
             show: Show::default(),
             joint: None,
+            vertex: None,
             camera: CameraChoice::Auto,
             fov_degrees: 35.0,
             follow: false,
@@ -97,6 +104,14 @@ impl Default for ViewerState {
             unknown: BTreeMap::new(),
         }
     }
+}
+
+/// A vertex of one piece of a mesh, where that mesh hangs on a node: all as indices into the asset's lists.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct VertexChoice {
+    pub instance: usize,
+    pub primitive: usize,
+    pub vertex: usize,
 }
 
 /// What is left of a clip that was changed for another.
@@ -138,6 +153,10 @@ pub struct Show {
     pub over: bool,
     /// With the source: bones are coloured by how far their turns away from the rest differ from the source's.
     pub error: bool,
+    /// The skeleton as spheres and boxes instead of pointed bones.
+    pub boxes: bool,
+    /// Meshes without normals are smooth instead of flat.
+    pub smooth: bool,
 }
 
 impl Default for Show {
@@ -154,6 +173,8 @@ impl Default for Show {
             source: false,
             over: false,
             error: false,
+            boxes: false,
+            smooth: false,
         }
     }
 }

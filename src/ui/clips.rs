@@ -15,6 +15,9 @@ const MANY_CLIPS: usize = 8;
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     let Some(model) = shown.library.active() else { return };
     header(ui, model, out);
+    if shown.library.models().len() > 1 {
+        models(ui, shown, out);
+    }
     controls::section(ui, "CLIPS");
     let titles = model.clip_titles();
     if titles.len() > MANY_CLIPS {
@@ -62,6 +65,32 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
                 "This file has no animation. Drop a motion to borrow one (.bvh, .vrma, a .glb without meshes), or take \
                  another model's clips with “Motion…”.",
             );
+        }
+    });
+}
+
+/// The models to turn to.
+fn models(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
+    const MOST_HIGH: f32 = 132.0;
+    controls::section(ui, "MODELS");
+    ScrollArea::vertical().id_salt("models").max_height(MOST_HIGH).auto_shrink([false, true]).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 2.0;
+        let active = shown.library.active().map(|model| model.id);
+        for model in shown.library.models() {
+            let name = short_name(&model.source);
+            let chosen = active == Some(model.id);
+            ui.horizontal(|ui| {
+                ui.spacing_mut().item_spacing.x = 2.0;
+                let width = ui.available_width() - CLEAR_SIZE - 2.0;
+                let row = ui.allocate_ui(egui::vec2(width, 30.0), |ui| controls::list_row(ui, &name, "", chosen)).inner;
+                if row.clicked() && !chosen {
+                    out.actions.push(UiAction::ShowModel(model.id));
+                }
+                let close = format!("Close {name}");
+                if !chosen && icon_button_sized(ui, Icon::Close, &close, false, CLEAR_SIZE).clicked() {
+                    out.actions.push(UiAction::CloseModel(model.id));
+                }
+            });
         }
     });
 }

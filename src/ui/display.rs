@@ -5,7 +5,7 @@ use egui::Ui;
 use super::controls::{self, SliderSettings};
 use super::{Output, Shown};
 use crate::library::Model;
-use crate::mesh::SkinningMode;
+use crate::mesh::{Geometry, SkinningMode, Topology};
 use crate::state::{Command, Show, active_clip};
 
 const MODES: [(SkinningMode, &str); 3] =
@@ -74,9 +74,28 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
             controls::hint(ui, hint);
         }
     }
+    more(ui, shown, out);
     source(ui, shown, out);
     if let Some(model) = shown.library.active() {
         morphs(ui, shown, model, out);
+    }
+}
+
+/// What only some models or views have a use for.
+fn more(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
+    let show = shown.state.show;
+    if controls::switch(ui, "Skeleton of spheres and boxes", show.boxes) {
+        // Who asks for them wants to see them.
+        let boxes = !show.boxes;
+        out.commands.push(Command::SetShow(Show { boxes, skeleton: show.skeleton || boxes, ..show }));
+    }
+    let lacks_normals = |geometry: &Geometry| geometry.normals.is_empty() && geometry.topology == Topology::Triangles;
+    let pieces = |model: &Model| model.asset.meshes.iter().flat_map(|mesh| &mesh.primitives).any(lacks_normals);
+    if shown.library.active().is_some_and(pieces) {
+        if controls::switch(ui, "Smooth surface", show.smooth) {
+            out.commands.push(Command::SetShow(Show { smooth: !show.smooth, ..show }));
+        }
+        controls::hint(ui, "The file has no normals for some of its mesh: flat faces, unless this is on.");
     }
 }
 

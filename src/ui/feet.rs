@@ -2,8 +2,9 @@
 
 use egui::{Align2, FontId, Rect, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
-use super::{Shown, scene_tree, scrub, style};
+use super::{Shown, scrub, style};
 use crate::retarget::FootTrack;
+use crate::state::title;
 
 const LANE: f32 = 16.0;
 /// A slide of this speed fills a lane.
@@ -22,7 +23,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
     for track in tracks {
         let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), LANE), Sense::hover());
         let lane = rect.shrink2(vec2(scrub::MARGIN, 1.0));
-        let name = scene_tree::title(&model.asset, track.joint);
+        let name = title(Some(shown.state), &model.asset, track.joint);
         response
             .widget_info(|| WidgetInfo::labeled(egui::accesskit::Role::Image, true, format!("{name} on the ground")));
         lane_of(ui, lane, track, duration_secs);

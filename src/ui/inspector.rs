@@ -28,7 +28,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
         // The tree scrolls by itself, under the chosen joint's numbers.
         Tab::Scene => scene_tree::show(ui, shown, local, out),
         Tab::Display => scrolled(ui, "display", |ui| display::show(ui, shown, out)),
-        Tab::File => scrolled(ui, "file", |ui| report::show(ui, shown)),
+        Tab::File => scrolled(ui, "file", |ui| report::show(ui, shown, out)),
         Tab::Motion => motion::show(ui, shown, local, out),
         Tab::View => scrolled(ui, "view", |ui| view_options::show(ui, shown, local, out)),
     }

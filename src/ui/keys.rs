@@ -103,7 +103,12 @@ pub const KEY_TABLE: &[KeyHelp] = &[
             out.commands.push(Command::SetShow(show));
         },
     },
-    KeyHelp { keys: "Ctrl Z, Ctrl Y", does: "Undo, redo a setting", pressed: &[], act: |_, _, _, _| {} },
+    KeyHelp {
+        keys: "Ctrl Z, Ctrl Y",
+        does: "Undo, redo a setting or what was opened",
+        pressed: &[],
+        act: |_, _, _, _| {},
+    },
     KeyHelp {
         keys: "?",
         does: "This list",

@@ -5,6 +5,7 @@ mod clips;
 mod controls;
 mod display;
 mod feet;
+mod formula;
 mod gizmo;
 mod icons;
 mod inspector;
@@ -102,6 +103,11 @@ pub struct UiState {
     pub toast: Option<Toast>,
     /// The chosen joint can be turned by hand.
     pub turning: bool,
+    /// The chosen joint's matrices are shown.
+    matrices: bool,
+    probe: formula::Probe,
+    /// A joint that is being renamed, as the file numbers it, and what has been typed so far.
+    renaming: Option<(usize, String)>,
     /// A video is being recorded: nothing but the picture is on the canvas.
     pub recording: bool,
     picture: view_options::PictureSettings,
@@ -133,6 +139,9 @@ impl Default for UiState {
             help_open: false,
             error: None,
             turning: false,
+            matrices: false,
+            probe: formula::Probe::default(),
+            renaming: None,
             recording: false,
             picture: view_options::PictureSettings::default(),
             grab: None,
@@ -194,6 +203,8 @@ pub enum Saved {
     Model { clip: usize },
     /// The skeleton with one of the clips, without meshes.
     Clip { clip: usize },
+    /// The whole model as a .glb: as it stands, or at rest.
+    Whole { posed: bool },
     /// What is on the screen, at a size of its own in pixels.
     Picture { size: [u32; 2], transparent: bool },
 }
@@ -203,6 +214,13 @@ pub struct Toast {
     pub text: String,
     /// egui's time at which it goes.
     pub until_secs: f64,
+    /// What it says can be undone: it has a button for that.
+    pub undoable: bool,
+}
+
+impl Toast {
+    /// Longer than others, for the hand to get there.
+    pub const UNDOABLE_SECS: f64 = 3.5;
 }
 
 /// What pressing things asks for.
@@ -223,8 +241,12 @@ pub enum UiAction {
     UsePath(PathPurpose, String),
     /// Give the person a file.
     Save(Saved),
-    /// Borrow nothing any more.
-    RemoveMotions,
+    /// Show another of the models that are there.
+    ShowModel(ModelId),
+    /// Let go of a model that is not shown.
+    CloseModel(ModelId),
+    /// Borrow no more from a motion.
+    RemoveMotion(usize),
     /// Show the skeleton of a motion by itself instead of the model.
     ShowMotionAlone(usize),
     /// What is offered for motions that were refused.

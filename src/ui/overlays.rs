@@ -136,7 +136,25 @@ fn notices(ui: &mut Ui, picture: Rect, local: &mut UiState, out: &mut Output) {
             });
         }
         if let Some(toast) = &local.toast {
-            notice(ui, palette.line, |ui| ui.label(&toast.text));
+            let pressed = notice(ui, palette.line, |ui| {
+                if !toast.undoable {
+                    ui.label(&toast.text);
+                    return false;
+                }
+                let button = 70.0;
+                ui.horizontal(|ui| {
+                    ui.scope(|ui| {
+                        ui.set_max_width(width - 32.0 - button);
+                        ui.add(egui::Label::new(&toast.text).wrap());
+                    });
+                    ui.button("Undo").on_hover_text("Back to what was there before (Ctrl+Z)").clicked()
+                })
+                .inner
+            });
+            if pressed {
+                out.actions.push(UiAction::Undo);
+                local.toast = None;
+            }
         }
     });
 }
@@ -159,7 +177,7 @@ fn refused_offers(ui: &mut Ui, local: &mut UiState, out: &mut Output) {
     });
 }
 
-fn notice<R>(ui: &mut Ui, line: Color32, contents: impl FnOnce(&mut Ui) -> R) {
+fn notice<R>(ui: &mut Ui, line: Color32, contents: impl FnOnce(&mut Ui) -> R) -> R {
     let palette = style::palette(ui);
     egui::Frame::new()
         .fill(palette.panel)
@@ -167,7 +185,8 @@ fn notice<R>(ui: &mut Ui, line: Color32, contents: impl FnOnce(&mut Ui) -> R) {
         .corner_radius(10)
         .shadow(ui.visuals().popup_shadow)
         .inner_margin(egui::Margin::symmetric(16, 12))
-        .show(ui, contents);
+        .show(ui, contents)
+        .inner
 }
 
 pub(super) fn modal(name: &str, context: &Context) -> egui::Modal {
@@ -225,10 +244,12 @@ fn help(context: &Context, local: &mut UiState) {
 fn path_prompt(context: &Context, local: &mut UiState, out: &mut Output) {
     let Some(PathPrompt { purpose, path }) = &mut local.path_prompt else { return };
     let (title, hint, button) = match purpose {
-        PathPurpose::Open => ("Open a file", "Path of a .glb, .gltf, .bvh, .zip or folder", "Open"),
+        PathPurpose::Open => ("Open a file", "Path of a .glb, .gltf, .bvh, .obj, .zip or folder", "Open"),
         PathPurpose::OpenMotion => ("Borrow motion", "Path of a .bvh, .glb, .vrma or joint map .json", "Open"),
         PathPurpose::Save(Saved::Map { .. }) => ("Save the joint map", "Path of the file to write", "Save"),
-        PathPurpose::Save(Saved::Model { .. }) => ("Save the model", "Path of the .glb to write", "Save"),
+        PathPurpose::Save(Saved::Model { .. } | Saved::Whole { .. }) => {
+            ("Save the model", "Path of the .glb to write", "Save")
+        }
         PathPurpose::Save(Saved::Clip { .. }) => ("Save the clip", "Path of the .glb to write", "Save"),
         PathPurpose::Save(Saved::Picture { .. }) => ("Save the picture", "Path of the .png to write", "Save"),
     };

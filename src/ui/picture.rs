@@ -6,9 +6,9 @@ use egui::{Align, Layout, PaintCallback, Painter, PointerButton, Pos2, Rect, Res
 use glam::Vec2;
 
 use super::icons::{Icon, icon_button};
-use super::{Output, Sheet, Shown, UiAction, UiState, display, gizmo, is_narrow, keys, motion, scene_tree, style};
+use super::{Output, Sheet, Shown, UiAction, UiState, display, formula, gizmo, is_narrow, keys, motion, style};
 use crate::frame::{PickedJoint, pick_joint};
-use crate::state::{Command, source_on_stage};
+use crate::state::{Command, source_on_stage, title};
 
 /// Where the pixels go: under everything that was painted on the picture.
 pub struct PictureSlot {
@@ -47,7 +47,9 @@ pub fn picture(ui: &mut Ui, rect: Rect, shown: Shown<'_>, local: &mut UiState, o
         if !gizmo::show(ui, &painter, &response, &shown, local, out) {
             camera(ui, &response, &shown, out);
         }
-        joints(ui, &painter, &response, &shown, local, out);
+        if !formula::point_at_vertex(&response, &shown, local, out) {
+            joints(ui, &painter, &response, &shown, local, out);
+        }
         keys::listen(ui.ctx(), &shown, local, out);
         if !shown.state.embed {
             buttons(ui, rect, local, out);
@@ -154,6 +156,7 @@ pub fn labels(ui: &Ui, rect: Rect, shown: Shown<'_>, local: &UiState) {
     }
     let pointer = ui.input(|input| input.pointer.hover_pos()).filter(|at| rect.contains(*at));
     let pane = pane_at(&shown, rect, pointer);
+    formula::mark(ui, &painter, pane, &shown, local);
     let both = |picked: Option<PickedJoint>| [picked, picked.and_then(|picked| partner(&shown, picked))];
     let chosen = both(shown.state.joint.map(PickedJoint::Model));
     for picked in chosen.into_iter().flatten() {
@@ -194,7 +197,8 @@ fn label(ui: &Ui, painter: &Painter, pane: Rect, shown: &Shown<'_>, picked: Pick
     };
     let joint = asset.skeleton.joint_of_source(joint)?;
     let position = to_screen(shown, pane, character.world_from_joint.get(joint.get())?.translation.into())?;
-    let mut text = scene_tree::title(asset, joint);
+    let state = matches!(picked, PickedJoint::Model(_)).then_some(shown.state);
+    let mut text = title(state, asset, joint).into_owned();
     if let (PickedJoint::Model(_), Some(source)) = (picked, &source) {
         let pair = source.borrowed.pairs.iter().find(|pair| pair.target == joint);
         let error = pair.and_then(|pair| {

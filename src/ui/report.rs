@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use egui::{RichText, Ui};
 
-use super::{Shown, controls, style};
+use super::{Output, Saved, Shown, UiAction, controls, style};
 use crate::asset::{Asset, Warning};
-use crate::mesh::Geometry;
+use crate::mesh::{Geometry, Mesh};
 
-pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
+pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let Some(model) = shown.library.active() else { return };
     let asset: &Asset = &model.asset;
     let primitives = || asset.meshes.iter().flat_map(|mesh| &mesh.primitives);
@@ -23,7 +23,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
             ("Joints", grouped(model.rig().joint_count(asset))),
             ("Meshes", grouped(asset.meshes.len())),
             ("Primitives", grouped(primitives().count())),
-            ("Vertices", grouped(primitives().map(|geometry| geometry.file_vertices).sum())),
+            ("Vertices", grouped(asset.meshes.iter().map(Mesh::file_vertex_count).sum())),
             ("Triangles", grouped(primitives().map(Geometry::triangles).sum())),
             ("Materials", grouped(asset.materials.len())),
             ("Images", grouped(asset.images.len())),
@@ -40,6 +40,8 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
         }
     });
 
+    save(ui, asset, out);
+
     controls::section(ui, "EXTENSIONS");
     if asset.extensions_used.is_empty() {
         controls::hint(ui, "None.");
@@ -54,7 +56,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
 
     controls::section(ui, "WARNINGS");
     if asset.warnings.is_empty() {
-        controls::hint(ui, "None: the file is as the specification says, as far as Gaitway looks.");
+        controls::hint(ui, "None: nothing was odd about the files, as far as Gaitway looks.");
         return;
     }
     let mut by_code: BTreeMap<&str, Vec<&Warning>> = BTreeMap::new();
@@ -70,6 +72,24 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
             }
         });
     }
+}
+
+/// Models of other formats can be had as GLB; a glTF file is one already.
+fn save(ui: &mut Ui, asset: &Asset, out: &mut Output) {
+    if asset.format != "obj" {
+        return;
+    }
+    if asset.skins.is_empty() {
+        controls::hint(ui, "A static model: there were no .skel and .attach with the .obj.");
+    }
+    controls::section(ui, "SAVE AS GLB");
+    for (label, posed) in [("At rest", false), ("As it stands", true)] {
+        let button = egui::Button::new(label).min_size(egui::vec2(ui.available_width(), 32.0));
+        if ui.add(button).clicked() {
+            out.actions.push(UiAction::Save(Saved::Whole { posed }));
+        }
+    }
+    controls::hint(ui, "With all weights of each vertex, in sets of four. Joints keep the names that you gave them.");
 }
 
 /// A name at the left and its value at the right end; a value that does not fit goes on below.

@@ -5,11 +5,11 @@ use glam::{Affine3A, EulerRot, Quat, Vec3};
 
 use super::controls::SliderSettings;
 use super::report::short;
-use super::{Output, Shown, UiState, clips, controls, style};
+use super::{Output, Shown, UiState, clips, controls, formula, style};
 use crate::anim::{JointIndex, Transform};
 use crate::asset::Asset;
 use crate::library::Model;
-use crate::state::{Command, PoseSampler, degrees_by_hand};
+use crate::state::{Command, PoseSampler, ViewerState, degrees_by_hand, title};
 
 const ROW_HEIGHT: f32 = 26.0;
 /// Of the panel: with less, a joint that is turned by hand has it alone.
@@ -24,11 +24,27 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
         local.scrolled_to = None;
     }
     let chosen = shown.state.joint.and_then(|joint| model.asset.skeleton.joint_of_source(joint));
-    if let Some(joint) = chosen.filter(|_| local.turning && ui.available_height() < ROOMY_HEIGHT) {
-        // The sliders leave no room for the tree; another joint is chosen in the picture.
+    let turns = chosen.is_some() && local.turning && ui.available_height() < ROOMY_HEIGHT;
+    if turns || (chosen.is_some() && local.matrices) || local.probe.is_on(shown) {
+        // They leave no room for the tree; another joint is chosen in the picture.
         ScrollArea::vertical().id_salt("joint").auto_shrink([false, false]).show(ui, |ui| {
+            // Room for the floating scroll bar.
+            ui.set_max_width(ui.available_width() - 6.0);
             ui.add_space(4.0);
-            controls::card(ui, |ui| joint_card(ui, shown, model, joint, local, out));
+            // Above the joint, which comes and goes by presses on the vertex's lines.
+            let vertex_first = local.probe.is_on(shown);
+            if vertex_first {
+                controls::card(ui, |ui| formula::vertex(ui, shown, model, local, out));
+                ui.add_space(6.0);
+            }
+            if let Some(joint) = chosen {
+                controls::card(ui, |ui| joint_card(ui, shown, model, joint, local, out));
+                ui.add_space(6.0);
+            }
+            if !vertex_first {
+                controls::card(ui, |ui| formula::vertex(ui, shown, model, local, out));
+            }
+            ui.add_space(12.0);
         });
         return;
     }
@@ -38,6 +54,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
     } else {
         controls::hint(ui, "Click a joint here or in the picture to see its transforms.");
     }
+    formula::vertex(ui, shown, model, local, out);
     ui.add_space(6.0);
     clips::search_field(ui, &mut local.joint_search, "Search nodes by name");
     ui.add_space(2.0);
@@ -51,7 +68,7 @@ struct Row {
     has_children: bool,
 }
 
-fn rows(asset: &Asset, local: &UiState) -> Vec<Row> {
+fn rows(asset: &Asset, state: &ViewerState, local: &UiState) -> Vec<Row> {
     let skeleton = &asset.skeleton;
     let wanted = local.joint_search.to_lowercase();
     let mut has_children = vec![false; skeleton.len()];
@@ -71,17 +88,11 @@ fn rows(asset: &Asset, local: &UiState) -> Vec<Row> {
             if !hidden[joint.get()] {
                 rows.push(Row { joint, depth: depths[joint.get()], has_children: has_children[joint.get()] });
             }
-        } else if title(asset, joint).to_lowercase().contains(&wanted) {
+        } else if title(Some(state), asset, joint).to_lowercase().contains(&wanted) {
             rows.push(Row { joint, depth: 0, has_children: false });
         }
     }
     rows
-}
-
-/// A name to show; nodes without one get their number.
-pub(super) fn title(asset: &Asset, joint: JointIndex) -> String {
-    let name = asset.skeleton.name(joint);
-    if name.is_empty() { format!("Node {}", asset.skeleton.source_index(joint)) } else { name.to_owned() }
 }
 
 fn tree(ui: &mut Ui, shown: &Shown<'_>, model: &Model, local: &mut UiState, out: &mut Output) {
@@ -99,7 +110,7 @@ fn tree(ui: &mut Ui, shown: &Shown<'_>, model: &Model, local: &mut UiState, out:
     for instance in &asset.instances {
         kinds[instance.joint.get()] = Kind::Mesh;
     }
-    let rows = rows(asset, local);
+    let rows = rows(asset, shown.state, local);
     if rows.is_empty() {
         controls::hint(ui, format!("No node's name contains “{}”.", local.joint_search));
         return;
@@ -127,7 +138,7 @@ fn tree(ui: &mut Ui, shown: &Shown<'_>, model: &Model, local: &mut UiState, out:
             match tree_row(
                 ui,
                 row,
-                &title(asset, row.joint),
+                &title(Some(shown.state), asset, row.joint),
                 kinds[row.joint.get()],
                 chosen,
                 local.folded.contains(&source),
@@ -243,33 +254,28 @@ fn kind_mark(ui: &Ui, kind: Kind, center: egui::Pos2, palette: style::Palette) {
 fn joint_card(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, panel: &mut UiState, out: &mut Output) {
     let asset = &model.asset;
     ui.horizontal(|ui| {
-        let name = RichText::new(title(asset, joint)).strong().size(15.0);
-        let width = ui.available_width() - 34.0;
+        let width = ui.available_width() - 100.0;
         ui.scope(|ui| {
             ui.set_max_width(width);
-            ui.add(egui::Label::new(name).truncate().selectable(true));
+            name(ui, shown, asset, joint, panel, out);
         });
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let close = super::icons::icon_button_sized(ui, super::icons::Icon::Close, "Choose no joint", false, 24.0);
             if close.clicked() {
                 out.commands.push(Command::SelectJoint(None));
             }
+            if panel.renaming.is_none() && ui.small_button("Rename").clicked() {
+                let name = title(Some(shown.state), asset, joint).into_owned();
+                panel.renaming = Some((asset.skeleton.source_index(joint), name));
+            }
         });
     });
     let mut sampler = PoseSampler::default();
     sampler.sample(model, shown.state);
     let local = sampler.pose.locals.get(joint.get()).copied().unwrap_or_default();
-    let parent = asset.skeleton.parent(joint).map_or("no parent".to_owned(), |parent| title(asset, parent));
-    let (heads, _) = ui.allocate_exact_size(vec2(ui.available_width(), 12.0), Sense::hover());
-    for (axis, name) in ["X", "Y", "Z"].into_iter().enumerate() {
-        let right = heads.left() + 60.0 + (heads.width() - 60.0) / 3.0 * (axis + 1) as f32;
-        let (at, font) = (pos2(right, heads.center().y), egui::FontId::proportional(11.0));
-        ui.painter().text(at, egui::Align2::RIGHT_CENTER, name, font, style::palette(ui).weak_text);
-    }
-    transform(ui, &format!("Local, in {parent}"), &local);
-    let character = shown.frame.characters.first();
-    if let Some(world) = character.and_then(|character| character.world_from_joint.get(joint.get())) {
-        transform(ui, "World", &decomposed(world));
+    // The matrices say the same in another way.
+    if !panel.matrices {
+        parts(ui, shown, asset, joint, &local);
     }
     ui.add_space(2.0);
     if controls::switch(ui, "Turn by hand", panel.turning) {
@@ -277,6 +283,12 @@ fn joint_card(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, 
     }
     if panel.turning {
         by_hand(ui, shown, asset, joint, local.rotation, out);
+    }
+    if controls::switch(ui, "Matrices", panel.matrices) {
+        panel.matrices = !panel.matrices;
+    }
+    if panel.matrices {
+        ui.scope(|ui| formula::matrices(ui, shown, model, joint));
     }
     if !shown.state.pose.is_empty() {
         let count = shown.state.pose.len();
@@ -290,6 +302,46 @@ fn joint_card(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, 
                 out.commands.push(Command::ClearPose);
             }
         });
+    }
+}
+
+/// Translation, rotation and scale: below the parent, and in the world.
+fn parts(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, local: &Transform) {
+    let parent =
+        asset.skeleton.parent(joint).map_or("no parent".into(), |parent| title(Some(shown.state), asset, parent));
+    let (heads, _) = ui.allocate_exact_size(vec2(ui.available_width(), 12.0), Sense::hover());
+    for (axis, name) in ["X", "Y", "Z"].into_iter().enumerate() {
+        let right = heads.left() + 60.0 + (heads.width() - 60.0) / 3.0 * (axis + 1) as f32;
+        let (at, font) = (pos2(right, heads.center().y), egui::FontId::proportional(11.0));
+        ui.painter().text(at, egui::Align2::RIGHT_CENTER, name, font, style::palette(ui).weak_text);
+    }
+    transform(ui, &format!("Local, in {parent}"), local);
+    let character = shown.frame.characters.first();
+    if let Some(world) = character.and_then(|character| character.world_from_joint.get(joint.get())) {
+        transform(ui, "World", &decomposed(world));
+    }
+}
+
+/// The joint's name, or the field to change it in: Enter or a press elsewhere takes it, Esc does not.
+fn name(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, panel: &mut UiState, out: &mut Output) {
+    let number = asset.skeleton.source_index(joint);
+    let Some((_, typed)) = panel.renaming.as_mut().filter(|(of, _)| *of == number) else {
+        panel.renaming = None;
+        let name = RichText::new(title(Some(shown.state), asset, joint)).strong().size(15.0);
+        ui.add(egui::Label::new(name).truncate().selectable(true));
+        return;
+    };
+    let in_file = asset.skeleton.name(joint);
+    let field = egui::TextEdit::singleline(typed).hint_text(in_file).desired_width(f32::INFINITY);
+    let field = ui.add(field).accessible_name("Name of the joint");
+    let given_up = ui.input(|input| input.key_pressed(egui::Key::Escape));
+    if field.lost_focus() {
+        if !given_up {
+            out.commands.push(Command::RenameJoint { joint: number, name: typed.clone() });
+        }
+        panel.renaming = None;
+    } else if !field.has_focus() {
+        field.request_focus();
     }
 }
 
@@ -328,7 +380,7 @@ fn transform(ui: &mut Ui, title: &str, value: &Transform) {
         let font = egui::FontId::monospace(12.0);
         let width = (rect.width() - 60.0) / 3.0;
         let texts = numbers.to_array().map(|number| match unit {
-            "°" => format!("{:.1}°", number + 0.0),
+            "°" => formula::fixed(number, 1) + "°",
             _ => short(number),
         });
         for (column, text) in texts.iter().enumerate() {

@@ -34,7 +34,7 @@ pub async fn follow_link(link: String, again: bool) -> Result<String, JsError> {
     let page = page().map_err(error)?;
     let mut state = state_of_link(&link, &page.shell);
     if state.model.is_empty() {
-        state.model.push(format!("sample:{}", sample::NAMES[0]));
+        state.model.push(format!("sample:{}", sample::WALKER));
     }
     take_over(&page, state, again, true).await.map_err(error)
 }
@@ -52,7 +52,7 @@ pub async fn apply(partial: String) -> Result<String, JsError> {
         return settled(promise).await.map(|_| news(&[], &[])).map_err(error);
     }
     if state.model.is_empty() {
-        state.model.push(format!("sample:{}", sample::NAMES[0]));
+        state.model.push(format!("sample:{}", sample::WALKER));
     }
     take_over(&page, state, false, false).await.map_err(error)
 }
@@ -175,7 +175,7 @@ async fn show(page: &Rc<Page>, what: What) -> Result<Shown, String> {
     match opened {
         Ok((mut contents, state)) => {
             let what = match &contents {
-                Contents { model: Some(_), .. } => "model",
+                Contents { models, .. } if !models.is_empty() => "model",
                 Contents { motions: Some(_), .. } => "motion",
                 _ => "map",
             };

@@ -7,7 +7,7 @@ use wasm_bindgen::prelude::*;
 
 use super::shell::{self, Shell};
 use crate::app::{App, Backend, Host, Inbox, set_fatal_hook, web_options};
-use crate::files::{Contents, Item, OpenError, Role, open_items, open_view};
+use crate::files::{Contents, Item, OpenError, OpenedModel, Role, open_items, open_view};
 use crate::library::sample;
 use crate::state::{ViewerState, from_link, to_link};
 
@@ -83,7 +83,7 @@ async fn first_contents(
     let items = super::calls::items_of(items)?;
     let motion_items = super::calls::items_of(motion_items)?;
     if state.model.is_empty() {
-        state.model.push(format!("sample:{}", sample::NAMES[0]));
+        state.model.push(format!("sample:{}", sample::WALKER));
     }
     let progress = |name: &str, received: u64, total: u64| shell.progress(name, received as f64, total as f64);
     let listed = std::mem::take(&mut state.motion);
@@ -95,7 +95,7 @@ async fn first_contents(
         if !items.is_empty() {
             let own = open_items(items, Role::Model, &progress).await?;
             let motions = own.motions.into_iter().chain(contents.motions).flatten().collect();
-            contents = Contents { model: own.model, model_files: own.model_files, motions: Some(motions), ..contents };
+            contents = Contents { models: own.models, motions: Some(motions), ..contents };
         }
         if !motion_items.is_empty() {
             match open_items(motion_items, Role::Motion, &progress).await {
@@ -114,16 +114,20 @@ async fn first_contents(
         }
         Err(error) => {
             let mut problems = vec![error.to_string()];
-            let mut model = None;
+            let mut models = Vec::new();
             for motion in listed {
                 match open_items(vec![Item::Url(motion)], Role::Model, &progress).await {
-                    Ok(found) => model = model.or(found.model),
+                    Ok(found) => models.extend(found.models),
                     Err(error) => problems.push(error.to_string()),
                 }
             }
-            let model = model.or_else(|| sample::load(sample::NAMES[0])).ok_or_else(|| problems.join("\n"))?;
-            let state = about_no_model(state, model.source.clone());
-            Ok((Contents { model: Some(model), motions: Some(Vec::new()), ..Contents::default() }, state, problems))
+            models.truncate(1);
+            if models.is_empty() {
+                models.extend(sample::load(sample::WALKER).map(OpenedModel::from));
+            }
+            let model = models.first().ok_or_else(|| problems.join("\n"))?;
+            let state = about_no_model(state, model.model.source.clone());
+            Ok((Contents { models, motions: Some(Vec::new()), ..Contents::default() }, state, problems))
         }
     }
 }
@@ -199,14 +203,6 @@ impl Host for PageHost {
 
     fn stop_recording(&self, name: Option<&str>) {
         self.shell.stop_recording(name);
-    }
-
-    fn motion_is_model(&self) {
-        self.shell.motion_is_model();
-    }
-
-    fn motions_removed(&self) {
-        self.shell.motions_removed();
     }
 
     /// The shell takes every drop before the canvas sees it, since it keeps the files and reads folders.

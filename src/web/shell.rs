@@ -26,14 +26,6 @@ extern "C" {
     #[wasm_bindgen(method, js_name = stopRecording)]
     pub fn stop_recording(this: &Shell, name: Option<&str>);
 
-    /// The files that were borrowed from are shown as the model from now on.
-    #[wasm_bindgen(method, js_name = motionIsModel)]
-    pub fn motion_is_model(this: &Shell);
-
-    /// Nothing is borrowed any more.
-    #[wasm_bindgen(method, js_name = motionsRemoved)]
-    pub fn motions_removed(this: &Shell);
-
     /// Bytes of a file that have arrived before there is anything to see; a total of 0 is not known.
     #[wasm_bindgen(method)]
     pub fn progress(this: &Shell, name: &str, received_bytes: f64, total_bytes: f64);

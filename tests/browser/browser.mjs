@@ -48,9 +48,10 @@ export async function startSite() {
   };
 }
 
-/** A fresh page that is ready. `page.troubles` collects uncaught errors and messages of level error, `page.requests` all URLs. */
-async function openPage(browser, address, { renderer, link = "", viewport = VIEWPORT, before, ready = true }) {
-  const context = await browser.newContext({ viewport });
+/** A fresh page that is ready, with the walker unless told otherwise (an empty link: as somebody first comes). `page.troubles` collects uncaught errors and messages of level error, `page.requests` all URLs. */
+async function openPage(browser, address, { renderer, link = "model=sample:walker", viewport = VIEWPORT, before, ready = true }) {
+  // What each fresh profile would keep is megabytes; offline.test.mjs looks at it.
+  const context = await browser.newContext({ viewport, serviceWorkers: "block" });
   const page = await context.newPage();
   page.setDefaultTimeout(60_000);
   page.troubles = [];
@@ -58,6 +59,7 @@ async function openPage(browser, address, { renderer, link = "", viewport = VIEW
   page.on("pageerror", (error) => page.troubles.push(error.message));
   page.on("console", (message) => message.type() === "error" && page.troubles.push(message.text()));
   page.on("request", (request) => page.requests.push(request.url()));
+  await page.addInitScript(() => addEventListener("securitypolicyviolation", ({ violatedDirective, blockedURI }) => console.error(`against the content security policy: ${violatedDirective} ${blockedURI}`)));
   if (before !== undefined) await page.addInitScript(before);
   await page.goto(`${address}${renderer === undefined ? "" : `?renderer=${renderer}`}${link === "" ? "" : `#${link}`}`);
   if (ready) await whenReady(page);

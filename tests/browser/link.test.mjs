@@ -7,7 +7,7 @@ import path from "node:path";
 import { after, before, describe, test } from "node:test";
 import { dataFolder, skipWithoutData } from "../three/data.mjs";
 import { BACK_ENDS, apply, drop, meanDifference, open, picture, pose, startSite, state, until, whenShown } from "./browser.mjs";
-import { serve } from "./server.mjs";
+import { neverAnswers, serve } from "./server.mjs";
 
 const FOX = "khronos/Fox/glTF-Binary/Fox.glb";
 const FOX_VERTICES = 1728;
@@ -36,17 +36,19 @@ const whenModel = (page, name) => until(page, async (name) => (await window.gait
 
 for (const renderer of BACK_ENDS)
   describe(`link on ${renderer}`, { skip: skipWithoutData }, () => {
-    let site, strict, own, folder;
+    let site, strict, own, silent, folder;
     before(async () => {
       site = await startSite();
       // Its files are for its own pages alone.
       strict = await serve({ "/": dataFolder });
+      silent = await neverAnswers();
       folder = fs.mkdtempSync(path.join(os.tmpdir(), "gaitway-link-"));
       own = await serve({ "/": folder }, { "access-control-allow-origin": "*" });
     });
     after(async () => {
       await site?.close();
       await strict?.close();
+      await silent?.close();
       await own?.close();
       if (folder !== undefined) fs.rmSync(folder, { recursive: true });
     });
@@ -92,6 +94,12 @@ for (const renderer of BACK_ENDS)
         assert.match(page.url(), /map-of-nothing/);
       },
     );
+
+    onPage("does not wait for a site that never answers", () => fragment([["model", site.data(FOX)], ["motion", `${silent.origin}/walk.bvh`]]), async (page) => {
+      await whenMissing(page);
+      assert.match((await missing(page)).join(), /walk\.bvh: nothing has come from the site for 20 seconds/);
+      assert.equal((await pose(page)).meshes[0].positions.length, 3 * FOX_VERTICES);
+    });
 
     onPage("shows the motion's own skeleton when the model cannot be had", () => fragment([["model", `${CLOSED}/a.glb`], ["motion", site.data(DANCE)], ["embed", "1"]]), async (page) => {
       await whenMissing(page);
@@ -157,11 +165,11 @@ for (const renderer of BACK_ENDS)
       await share(page);
       assert.match(await page.locator("#share-local").innerText(), /dance\.bvh \(motion\)/);
       const link = await linkOf(page);
-      assert.ok(link.includes("Xbot.glb") && !link.includes("motion="), link);
+      assert.ok(link.includes("Xbot.glb") && link.includes("motion=file:dance.bvh"), link);
       await page.locator("#share-close").click();
       // The address bar keeps to the same.
       await until(page, () => location.hash.includes("t=1"));
-      assert.ok(!page.url().includes("dance.bvh"), page.url());
+      assert.ok(page.url().includes("motion=file:dance.bvh"), page.url());
     });
 
     onPage("says when a link is too long for a QR code", () => `model=sample:walker&whatever=${"x".repeat(3000)}`, async (page) => {

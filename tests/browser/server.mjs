@@ -14,8 +14,16 @@ const TYPES = {
   ".mjs": "text/javascript",
   ".png": "image/png",
   ".svg": "image/svg+xml",
+  ".webmanifest": "application/manifest+json",
+  ".webp": "image/webp",
   ".wasm": "application/wasm",
 };
+
+/** What the build puts beside a file for hosts that send it compressed. */
+const COPIES = [
+  { encoding: "br", ending: ".br" },
+  { encoding: "gzip", ending: ".gz" },
+];
 
 /**
  * Serves `mounts` (`{prefix: folder}`, prefixes with a slash at both ends) on a free port of 127.0.0.1.
@@ -33,9 +41,20 @@ export async function serve(mounts, headers = {}) {
       return;
     }
     const type = TYPES[path.extname(file)] ?? "application/octet-stream";
-    response.writeHead(200, { "content-type": type, "content-length": fs.statSync(file).size, ...headers });
-    fs.createReadStream(file).pipe(response);
+    const copy = COPIES.find(({ encoding, ending }) => (request.headers["accept-encoding"] ?? "").includes(encoding) && fs.existsSync(file + ending));
+    const [sent, compressed] = copy === undefined ? [file, {}] : [file + copy.ending, { "content-encoding": copy.encoding }];
+    response.writeHead(200, { "content-type": type, "content-length": fs.statSync(sent).size, ...compressed, ...headers });
+    fs.createReadStream(sent).pipe(response);
   });
+  return await listening(server);
+}
+
+/** A server that takes every question and answers none: `{origin, close}`. */
+export async function neverAnswers() {
+  return await listening(http.createServer(() => {}));
+}
+
+async function listening(server) {
   await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
   return {
     origin: `http://127.0.0.1:${server.address().port}`,

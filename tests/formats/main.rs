@@ -8,9 +8,12 @@ mod humanoid;
 mod influences;
 mod invalid;
 mod mutation;
+mod obj;
 mod sweep;
 mod tangents;
 mod write;
 
+#[path = "../support/coursework.rs"]
+mod coursework;
 #[path = "../support/data_folder.rs"]
 mod data_folder;

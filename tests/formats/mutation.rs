@@ -3,7 +3,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use gaitway::formats::{LoadOptions, convert, load, missing_files, write_motion};
+use gaitway::formats::{FileSet, LoadOptions, convert, load, missing_files, write_motion};
 
 use crate::build_gltf::{Build, one};
 use crate::data_folder::data_folder;
@@ -185,4 +185,39 @@ fn damaged_files_never_panic() {
     }
     assert!(failures.is_empty(), "{failures:?}");
     assert!(read > 20, "only {read} damaged files were read at all: the damage hides what it should test");
+}
+
+/// One of the four files of an exercise model is damaged, the others are fine.
+#[test]
+fn damaged_exercises_never_panic() {
+    let obj = "mtllib m.mtl\nv 0 0 0\nv 1 0 0 1 0 0\nv 1 1 0\nv 0.3 0.3 0\nvt 0 0\nvn 0 0 1\ng a\nusemtl red\n\
+               f 1/1/1 2/1/1 3/1/1 4/1/1\no b\nf -4 -3 -1\ns 1\nf 1 \\\n2 3\n";
+    let skel = "0 0 0 -1\n0.5 0 0 0\n0 1 0 1\n";
+    let attach = "0 0\n0.25 0.75\n1 0\n0.5 0.4\n";
+    let mtl = "newmtl red\nKd 1 0.5 0\nd 0.5\nNs 10\nKs 1 1 1\nmap_Kd -s 1 1 1 skin.png\n";
+    let texts = [("m.obj", obj), ("m.skel", skel), ("m.attach", attach), ("m.mtl", mtl)];
+    let mut random = Random(0x0123_4567_89AB_CDEF);
+    let mut read = 0;
+    for case in 0..4000 {
+        let mut files = FileSet::default();
+        let damaged = random.below(texts.len());
+        for (at, (name, text)) in texts.iter().enumerate() {
+            let bytes = if at == damaged { damage(text.as_bytes(), &mut random) } else { text.as_bytes().to_vec() };
+            files.insert(*name, bytes);
+        }
+        let _ = missing_files(&files);
+        match load(&files) {
+            Ok(asset) => {
+                read += 1;
+                let joints = asset.skins.first().map(|skin| skin.joints().len());
+                for geometry in &asset.meshes[0].primitives {
+                    geometry.validate(joints).unwrap_or_else(|problem| panic!("case {case}: {problem}"));
+                }
+                let written = convert(&files, &LoadOptions::default()).expect("what is read can be written");
+                load(&one("written.glb", written)).expect("what is written can be read");
+            }
+            Err(problem) => assert!(!problem.to_string().is_empty()),
+        }
+    }
+    assert!((500..3900).contains(&read), "{read} of 4000 were read");
 }

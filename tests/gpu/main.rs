@@ -1,5 +1,9 @@
 //! What the GPU draws: shaders, layouts, skinning against the shared cases, and a few small pictures.
 
+#[path = "../support/coursework.rs"]
+mod coursework;
+#[path = "../support/data_folder.rs"]
+mod data_folder;
 mod device;
 mod layouts;
 mod lights;

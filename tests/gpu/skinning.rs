@@ -1,7 +1,9 @@
 //! The GPU moves vertices as the shared cases and the CPU say: each vertex is drawn as one pixel that holds its place.
 
 use bytemuck::Zeroable;
-use gaitway::mesh::{Geometry, PaletteEntry, SkinningMode, deform, palette_entry};
+use gaitway::anim::model_from_joint;
+use gaitway::formats::{FileSet, load};
+use gaitway::mesh::{Geometry, Influences, PaletteEntry, SkinningMode, deform, palette_entry, write_palette};
 use gaitway::render::geometry::{GpuGeometry, InfluenceSource, vertex_buffers};
 use gaitway::render::palette::PaletteTexture;
 use gaitway::render::shaders::SKINNED_VERTEX;
@@ -9,6 +11,8 @@ use gaitway::render::uniforms::{DrawUniform, FrameUniform};
 use glam::{Affine3A, DVec3, Quat, Vec3};
 use wgpu::util::DeviceExt;
 
+use crate::coursework::{Exercise, pose};
+use crate::data_folder::data_folder;
 use crate::device::{Gpu, gpu};
 use crate::skinning_cases::{Case, cases, expected, morphing, scattered};
 
@@ -273,5 +277,47 @@ fn a_thousand_joints_move_as_on_the_cpu() {
             compare(&name, &positions, &wide(&on_cpu.positions), 1e-5);
             compare(&name, &normals, &wide(&on_cpu.normals), 1e-4);
         }
+    }
+}
+
+/// The skinning exercise's own models, with up to 13 weights a vertex, against its formula in double precision.
+#[test]
+fn the_exercise_models_bend_as_the_formula_says() {
+    let (Some(gpu), Some(folder)) = (gpu(), data_folder()) else { return };
+    for (name, seed) in [("Model1", 1), ("Model2", 2), ("Model3", 3), ("Model4", 4)] {
+        let text = |kind: &str| std::fs::read_to_string(folder.join(format!("mit6837/{name}.{kind}"))).unwrap();
+        let mut files = FileSet::default();
+        for kind in ["obj", "skel", "attach"] {
+            files.insert(format!("{name}.{kind}"), text(kind).into_bytes());
+        }
+        let asset = load(&files).unwrap();
+        let whole = &asset.meshes[0].primitives[0];
+        // As many vertices as the probe has pixels, from all over the body.
+        let kept: Vec<usize> = (0..whole.positions.len()).step_by(4).collect();
+        let stride = whole.influences.stride;
+        let of_kept = |vertex: &usize| vertex * stride..(vertex + 1) * stride;
+        let geometry = Geometry {
+            positions: kept.iter().map(|&vertex| whole.positions[vertex]).collect(),
+            normals: vec![Vec3::Y; kept.len()],
+            influences: Influences {
+                stride,
+                joints: kept.iter().flat_map(|vertex| whole.influences.joints[of_kept(vertex)].to_vec()).collect(),
+                weights: kept.iter().flat_map(|vertex| whole.influences.weights[of_kept(vertex)].to_vec()).collect(),
+            },
+            indices: (0..kept.len() as u32).collect(),
+            ..Geometry::default()
+        };
+        let (exact, rounded) = pose(18, seed);
+        let mut locals = asset.skeleton.rest().locals.clone();
+        for (source, rotation) in rounded.into_iter().enumerate() {
+            locals[asset.skeleton.joint_of_source(source).unwrap().get()].rotation = rotation;
+        }
+        let (mut world, mut palette) = (Vec::new(), Vec::new());
+        model_from_joint(&asset.skeleton, &locals, Affine3A::IDENTITY, &mut world);
+        write_palette(&asset.skins[0], &world, SkinningMode::Linear, &mut palette);
+        let [positions, _] = on_gpu(&gpu, &geometry, &palette, &[], SkinningMode::Linear);
+        let bent = Exercise::read(&text("obj"), &text("skel"), &text("attach")).bent(&exact);
+        let expected: Vec<DVec3> = kept.iter().map(|&vertex| bent[vertex]).collect();
+        compare(name, &positions, &expected, 2e-6);
     }
 }

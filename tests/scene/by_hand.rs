@@ -82,7 +82,7 @@ fn joints_that_are_not_there_and_numbers_that_are_none_change_nothing() {
 
 #[test]
 fn turns_are_undone_one_gesture_at_a_time() {
-    let library = walker();
+    let mut library = walker();
     let (mut state, mut history) = (ViewerState::default(), History::default());
     for angle in [5.0, 10.0, 15.0] {
         history.apply(&mut state, &library, Command::SetPose { joint: HEAD, degrees: Some([angle, 0.0, 0.0]) });
@@ -90,9 +90,9 @@ fn turns_are_undone_one_gesture_at_a_time() {
     history.end_gesture();
     history.apply(&mut state, &library, Command::ClearPose);
     assert!(state.pose.is_empty());
-    assert!(history.undo(&mut state));
+    assert!(history.undo(&mut state, &mut library));
     assert_eq!(state.pose[&HEAD], [15.0, 0.0, 0.0]);
-    assert!(history.undo(&mut state));
+    assert!(history.undo(&mut state, &mut library));
     assert!(state.pose.is_empty());
 }
 

@@ -1,12 +1,13 @@
 //! Undo and redo.
 
+use gaitway::library::{Library, Model, ModelId, Motion};
 use gaitway::state::{Command, History, UpAxis, ViewerState};
 
 use crate::data::walker;
 
 #[test]
 fn a_gesture_is_one_step() {
-    let library = walker();
+    let mut library = walker();
     let (mut state, mut history) = (ViewerState::default(), History::default());
     for stops in [0.1, 0.2, 0.3] {
         history.apply(&mut state, &library, Command::SetExposure(stops));
@@ -15,34 +16,38 @@ fn a_gesture_is_one_step() {
     }
     history.end_gesture();
     history.apply(&mut state, &library, Command::SetExposure(1.0));
-    assert!(history.undo(&mut state));
+    assert!(history.undo(&mut state, &mut library));
     assert_eq!(state.exposure, 0.3);
-    assert!(history.undo(&mut state));
+    assert!(history.undo(&mut state, &mut library));
     assert_eq!(state.exposure, 0.0);
-    assert!(!history.undo(&mut state));
-    assert!(history.redo(&mut state) && history.redo(&mut state) && !history.redo(&mut state));
+    assert!(!history.undo(&mut state, &mut library));
+    assert!(
+        history.redo(&mut state, &mut library)
+            && history.redo(&mut state, &mut library)
+            && !history.redo(&mut state, &mut library)
+    );
     assert_eq!(state.exposure, 1.0);
 }
 
 #[test]
 fn time_and_camera_stay_where_they_are() {
-    let library = walker();
+    let mut library = walker();
     let (mut state, mut history) = (ViewerState::default(), History::default());
     history.apply(&mut state, &library, Command::SetUp(UpAxis::Z));
     history.apply(&mut state, &library, Command::Seek(0.5));
     history.apply(&mut state, &library, Command::Orbit { yaw_radians: 1.0, pitch_radians: 0.0 });
     let before = state.clone();
-    assert!(history.undo(&mut state));
+    assert!(history.undo(&mut state, &mut library));
     assert_eq!(state, ViewerState { up: UpAxis::Y, ..before });
     assert!(!history.can_undo());
 }
 
 #[test]
 fn a_new_edit_forgets_what_was_undone() {
-    let library = walker();
+    let mut library = walker();
     let (mut state, mut history) = (ViewerState::default(), History::default());
     history.apply(&mut state, &library, Command::SetExposure(1.0));
-    history.undo(&mut state);
+    history.undo(&mut state, &mut library);
     history.apply(&mut state, &library, Command::SetUp(UpAxis::X));
     assert!(!history.can_redo());
 }
@@ -53,4 +58,73 @@ fn what_changes_nothing_is_no_step() {
     let (mut state, mut history) = (ViewerState::default(), History::default());
     history.apply(&mut state, &library, Command::SetExposure(0.0));
     assert!(!history.can_undo());
+}
+
+/// A library with two models; the second is shown.
+fn two_models() -> (Library, ModelId, ModelId) {
+    let mut library = Library::default();
+    let model = |source: &str| Model::new(source.to_owned(), walker().active().unwrap().asset.clone(), Vec::new());
+    let first = library.set(model("first.glb"));
+    let second = library.add(model("second.glb"));
+    (library, first, second)
+}
+
+#[test]
+fn what_was_opened_is_a_step_between_edits() {
+    let (mut library, first, second) = two_models();
+    let mut history = History::default();
+    library.show(first);
+    let mut state = ViewerState { time_secs: 0.7, ..ViewerState::default() };
+    history.apply(&mut state, &library, Command::SetExposure(1.0));
+    history.opened(state.clone(), library.loaded());
+    library.show(second);
+    let asset = library.active().unwrap().asset.clone();
+    library.set_motions(vec![Motion::new("dance.glb".to_owned(), asset)]);
+    state = ViewerState { motion: vec!["dance.glb".to_owned()], ..ViewerState::default() };
+    history.end_gesture();
+    history.apply(&mut state, &library, Command::SetExposure(2.0));
+
+    let shown = |library: &Library| library.active().map(|model| model.id);
+    assert!(history.undo(&mut state, &mut library));
+    assert_eq!((shown(&library), state.exposure, state.motion.len()), (Some(second), 0.0, 1));
+    assert!(history.undo(&mut state, &mut library));
+    assert_eq!((shown(&library), state.exposure, state.time_secs), (Some(first), 1.0, 0.7));
+    assert!(library.motions().is_empty() && state.motion.is_empty());
+    assert!(history.undo(&mut state, &mut library));
+    assert_eq!(state.exposure, 0.0);
+    while history.redo(&mut state, &mut library) {}
+    assert_eq!((shown(&library), state.exposure, library.motions().len()), (Some(second), 2.0, 1));
+}
+
+#[test]
+fn no_step_leads_to_a_model_that_has_gone() {
+    let (mut library, first, second) = two_models();
+    let (mut state, mut history) = (ViewerState::default(), History::default());
+    history.apply(&mut state, &library, Command::SetExposure(1.0));
+    library.show(first);
+    history.opened(state.clone(), library.loaded());
+    library.show(second);
+    history.apply(&mut state, &library, Command::SetExposure(2.0));
+    library.remove(first);
+    history.forget_gone(&library);
+    assert!(history.undo(&mut state, &mut library));
+    assert!(!history.can_undo());
+    assert_eq!(library.active().map(|model| model.id), Some(second));
+}
+
+#[test]
+fn the_oldest_model_goes_and_never_the_shown_one() {
+    let (mut library, first, second) = two_models();
+    library.show(first);
+    let asset = library.active().unwrap().asset.clone();
+    let mut newest = first;
+    for index in library.models().len()..=Library::MOST_MODELS {
+        library.show(first);
+        newest = library.add(Model::new(format!("{index}.glb"), asset.clone(), Vec::new()));
+    }
+    assert_eq!(library.models().len(), Library::MOST_MODELS);
+    assert!(library.get(first).is_some() && library.get(second).is_none());
+    assert_eq!(library.active().map(|model| model.id), Some(newest));
+    library.remove(newest);
+    assert!(library.get(newest).is_some(), "what is shown stays");
 }

@@ -10,7 +10,7 @@ use gaitway::retarget::{
 };
 use gaitway::state::{
     Background, CameraChoice, ClipChoice, Fade, LinkError, MotionMap, NumberedMap, OrbitCamera, Show, UpAxis,
-    ViewerState, from_link, from_object, to_link, to_object,
+    VertexChoice, ViewerState, from_link, from_object, to_link, to_object,
 };
 use glam::Vec3;
 
@@ -125,13 +125,22 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
         ("morph", with(&|state| state.morph = BTreeMap::from([(0, 0.3), (12, -1.0)]))),
         ("pose", with(&|state| state.pose = BTreeMap::from([(3, [30.5, 0.0, -179.9]), (12, [0.0, 1.0 / 3.0, 0.0])]))),
         (
+            "names",
+            with(&|state| {
+                let names = [(0, "Hips"), (3, "left: knee, 100 % & more"), (12, "ümläut 歩")];
+                state.names = names.into_iter().map(|(joint, name)| (joint, name.to_owned())).collect();
+            }),
+        ),
+        (
             "show",
             with(&|state| {
                 let overlays = Show { skeleton: true, mesh: false, grid: false, ..Show::default() };
+                let overlays = Show { boxes: true, smooth: true, ..overlays };
                 state.show = Show { split: true, source: true, over: true, error: true, ..overlays };
             }),
         ),
         ("joint", with(&|state| state.joint = Some(0))),
+        ("vertex", with(&|state| state.vertex = Some(VertexChoice { instance: 0, primitive: 1, vertex: 13335 }))),
         ("camera", with(&|state| state.camera = CameraChoice::Orbit(orbit))),
         ("fov_degrees", with(&|state| state.fov_degrees = 50.0)),
         ("follow", with(&|state| state.follow = true)),
@@ -210,6 +219,18 @@ fn links_read_as_written_down() {
         target: Vec3::new(0.0, 1.0, 0.0),
     };
     check_read("camera=90,0,4,0,1,0", ViewerState { camera: CameraChoice::Orbit(orbit), ..default });
+}
+
+#[test]
+fn what_is_no_name_and_no_vertex_is_told_of() {
+    check_bad("names=3", "names");
+    check_bad("names=3:", "names");
+    check_bad("names=3: ", "names");
+    check_bad("names=x:Hand", "names");
+    check_bad("names=3:two%0Alines", "names");
+    check_bad("vertex=1:2", "vertex");
+    check_bad("vertex=1:2:3:4", "vertex");
+    check_bad("vertex=0:0:-1", "vertex");
 }
 
 /// What a plain map looks like in a link is part of what old links rely on.

@@ -8,7 +8,7 @@ use gaitway::mesh::SkinningMode;
 use gaitway::retarget::{ClipRef, Feet, JointMap, MapEntry, RootOptions, RootPart, SourceRef, Unmapped};
 use gaitway::state::{
     Background, CameraChoice, ClipChoice, Fade, LinkError, MotionMap, NumberedMap, OrbitCamera, Show, UpAxis,
-    ViewerState, from_link, from_object, to_link, to_object,
+    VertexChoice, ViewerState, from_link, from_object, to_link, to_object,
 };
 use glam::{Quat, Vec3};
 use serde_json::Value;
@@ -50,6 +50,12 @@ impl Random {
             ".", "-", "{", "\t",
         ];
         (0..1 + self.below(12)).map(|_| self.one(&LETTERS)).collect()
+    }
+
+    /// As joints may be called: one line, with something on it.
+    fn name(&mut self) -> String {
+        let line: String = self.text().chars().filter(|letter| !letter.is_control()).collect();
+        format!("{}x", line.trim_start())
     }
 
     fn texts(&mut self) -> Vec<String> {
@@ -103,7 +109,7 @@ impl Random {
 
     fn state(&mut self) -> ViewerState {
         let mut state = ViewerState::default();
-        for field in 0..28 {
+        for field in 0..30 {
             if self.often() {
                 self.set(&mut state, field);
             }
@@ -139,7 +145,9 @@ impl Random {
             16 => {
                 let (mesh, grid, shadow) = (self.often(), self.often(), self.often());
                 let (split, source) = (self.often(), self.often());
-                state.show = Show { mesh, grid, shadow, split, source, weights: self.often(), ..state.show };
+                let (boxes, smooth) = (self.often(), self.often());
+                let weights = self.often();
+                state.show = Show { mesh, grid, shadow, split, source, weights, boxes, smooth, ..state.show };
             }
             17 => state.joint = Some(self.below(300)),
             18 => state.camera = self.camera(),
@@ -157,6 +165,13 @@ impl Random {
                 state.pose = (0..self.below(5)).map(|_| (self.below(300), turns(self))).collect();
             }
             26 => state.turntable = self.number(),
+            27 => {
+                state.names = (0..self.below(4)).map(|_| (self.below(300), self.name())).collect();
+            }
+            28 => {
+                let (instance, primitive, vertex) = (self.below(3), self.below(9), self.below(99_999));
+                state.vertex = Some(VertexChoice { instance, primitive, vertex });
+            }
             _ => state.embed = self.often(),
         }
     }

@@ -5,6 +5,9 @@ mod allocation;
 mod by_hand;
 mod cli;
 mod cli_borrow;
+#[path = "../support/coursework.rs"]
+mod coursework;
+mod coursework_scene;
 mod crossfade;
 mod data;
 mod decode;

@@ -260,14 +260,14 @@ fn fifty_edits_are_undone_and_done_again() {
     }
     let last = pose_document(&library, &state);
     for expected in seen.iter().rev().skip(1) {
-        assert!(history.undo(&mut state));
+        assert!(history.undo(&mut state, &mut library));
         settle(&mut library, &mut state);
         assert_eq!(&state, expected);
     }
     assert_eq!(state, first);
     assert!(!history.can_undo());
     for expected in &seen[1..] {
-        assert!(history.redo(&mut state));
+        assert!(history.redo(&mut state, &mut library));
         settle(&mut library, &mut state);
         assert_eq!(&state, expected);
     }
@@ -277,7 +277,7 @@ fn fifty_edits_are_undone_and_done_again() {
 
 #[test]
 fn a_drag_is_one_step() {
-    let (library, mut state) = dancing();
+    let (mut library, mut state) = dancing();
     let mut history = History::default();
     let before = state.clone();
     let neck = number(&library, "Neck");
@@ -288,7 +288,7 @@ fn a_drag_is_one_step() {
         history.apply(&mut state, &library, Command::Advance(0.01));
     }
     history.end_gesture();
-    assert!(history.undo(&mut state));
+    assert!(history.undo(&mut state, &mut library));
     assert_eq!(state, before);
     assert!(!history.can_undo());
 }

@@ -147,16 +147,16 @@ fn one_source_is_changed_and_taken_back() {
     let (neck, head) = (number(&library, "Neck"), number(&library, "Head"));
     let change = Command::SetSource { motion: 0, target: neck, source: Some(head) };
     history.apply(&mut state, &library, change);
-    let source = |state: &ViewerState| {
-        map_in_force(&library, state, 0).expect("a map").joints[&format!("#{neck}")].source.clone()
+    let source = |library: &Library, state: &ViewerState| {
+        map_in_force(library, state, 0).expect("a map").joints[&format!("#{neck}")].source.clone()
     };
-    assert_eq!(source(&state), Some(SourceRef::Number(head)));
+    assert_eq!(source(&library, &state), Some(SourceRef::Number(head)));
     history.end_gesture();
     history.apply(&mut state, &library, Command::SetFeet(Some(Feet::Plant)));
-    assert!(history.undo(&mut state) && history.undo(&mut state) && !history.can_undo());
+    assert!(history.undo(&mut state, &mut library) && history.undo(&mut state, &mut library) && !history.can_undo());
     assert_eq!(state, before);
-    assert!(history.redo(&mut state));
-    assert_eq!(source(&state), Some(SourceRef::Number(head)));
+    assert!(history.redo(&mut state, &mut library));
+    assert_eq!(source(&library, &state), Some(SourceRef::Number(head)));
     for (target, source) in [(9999, None), (neck, Some(9999))] {
         let now = state.clone();
         apply(&mut state, &library, Command::SetSource { motion: 0, target, source });

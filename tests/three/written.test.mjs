@@ -74,6 +74,42 @@ describe("converted files are valid", { skip: skipWithoutData }, () => {
     });
 });
 
+describe("models of the skinning exercise are written with all their weights", { skip: skipWithoutData }, () => {
+  if (skipWithoutData) return;
+  for (const name of ["Model1", "Model2", "Model3", "Model4"])
+    test(name, async () => {
+      const model = path.join(dataFolder, "mit6837", `${name}.obj`);
+      for (const view of [[], ["--view", "v=1&pose=5:-60:0:10,13:0:0:45&names=5:Left thigh"]]) {
+        const out = await write("convert", model, ...view);
+        assert.deepEqual(await issues(out, true), {});
+        const { json } = readGltf(out);
+        const { attributes } = json.meshes[0].primitives[0];
+        // 13 weights take four sets of four, the 11 of Model3 three.
+        assert.equal(Object.keys(attributes).filter((key) => key.startsWith("WEIGHTS_")).length, name === "Model3" ? 3 : 4);
+        assert.equal(json.accessors[attributes.POSITION].count, 13336);
+        assert.equal(json.nodes[5].name, view.length ? "Left thigh" : "joint 5");
+        assert.equal(json.nodes[5].rotation !== undefined, view.length > 0);
+      }
+    });
+
+  test("materials, pictures and parts", async () => {
+    const own = fs.mkdtempSync(path.join(folder, "obj-"));
+    const png = "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mP8z8BQDwAEhQGAhKmMIQAAAABJRU5ErkJggg==";
+    fs.writeFileSync(path.join(own, "skin.png"), Buffer.from(png, "base64"));
+    fs.writeFileSync(path.join(own, "m.mtl"), "newmtl red\nKd 1 0 0\nd 0.5\nnewmtl skin\nmap_Kd skin.png\nKe 0.1 0 0\n");
+    fs.writeFileSync(
+      path.join(own, "m.obj"),
+      "mtllib m.mtl\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0 0 1\nv 0 1 0 1 1 1\nvt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\n" +
+        "g a\nusemtl red\nf 1/1/1 2/2/1 3/3/1\ng b\nusemtl skin\nf 1/1/1 3/3/1 4/2/1\n",
+    );
+    const out = await write("convert", path.join(own, "m.obj"));
+    assert.deepEqual(await issues(out, true), {});
+    const { json } = readGltf(out);
+    assert.deepEqual(json.meshes[0].primitives.map(({ extras }) => extras.name), ["a / red", "b / skin"]);
+    assert.equal(json.images.length, 1);
+  });
+});
+
 describe("borrowed clips are added and nothing is lost", { skip: skipWithoutData }, () => {
   if (skipWithoutData) return;
   for (const pair of PAIRS) {

@@ -89,8 +89,8 @@ pub fn bench_of(size: [f32; 2], library: Library) -> Harness<'static, Bench> {
                 }
                 for action in &output.actions {
                     match action {
-                        UiAction::Undo => bench.history.undo(&mut bench.state),
-                        UiAction::Redo => bench.history.redo(&mut bench.state),
+                        UiAction::Undo => bench.history.undo(&mut bench.state, &mut bench.library),
+                        UiAction::Redo => bench.history.redo(&mut bench.state, &mut bench.library),
                         _ => continue,
                     };
                     settle(bench);

@@ -3,9 +3,11 @@
 mod bench;
 mod by_hand;
 mod clips;
+mod exercise;
 mod inspector;
 mod keys;
 mod layout;
+mod models;
 mod motion;
 mod picture;
 mod transport;

@@ -180,7 +180,7 @@ fn files_are_asked_of_the_host() {
         UiAction::ChooseMotion,
         UiAction::Save(Saved::Model { clip: 3 }),
         UiAction::ShowMotionAlone(0),
-        UiAction::RemoveMotions,
+        UiAction::RemoveMotion(0),
     ];
     assert_eq!(harness.state().actions, expected);
 }
@@ -553,6 +553,13 @@ fn three_hundred_joints_have_their_lines() {
     press(&mut harness, "Motion");
     assert!(harness.query_by_label("300 joints follow the motion's 300.").is_some());
     assert!(harness.query_by_label("Order: Body").is_none(), "it has no body");
+    assert!(harness.query_by_label_contains("Tentacle250 follows").is_none(), "far out of sight");
+    harness.state_mut().state.joint = Some(250);
+    harness.run();
+    let found = harness.get_by_label_contains("Tentacle250 follows");
+    assert!(found.rect().top() > 0.0 && found.rect().bottom() < WIDE[1], "{:?}", found.rect());
+    harness.state_mut().state.joint = None;
+    harness.run();
     press_row(&mut harness, "Tentacle250 follows");
     assert_eq!(press(&mut harness, "Nothing"), [Command::SetSource { motion: 0, target: 250, source: None }]);
     choose(&mut harness, "Which joints are shown", "Follow nothing (1)");

@@ -1,4 +1,4 @@
-//! Work on the repository: `cargo xtask serve`, `build`, `test`, `setup`. Each sets up what it needs first.
+//! Work on the repository: `cargo xtask serve`, `build`, `pictures`, `test`, `setup`. Each sets up what it needs first.
 
 mod page;
 mod process;
@@ -13,7 +13,9 @@ use anyhow::{Context, bail};
 
 const USAGE: &str = "\
 cargo xtask serve [--port N]   builds the page and serves it on 127.0.0.1 (port 8080)
-cargo xtask build [--bench]    builds the page into dist/; --bench with what benches/web measures
+cargo xtask build [--url URL]  builds the page into dist/, for any host; URL is where it will be, for previews of links
+cargo xtask build --bench      the same with what benches/web measures
+cargo xtask pictures           draws the pictures in README and docs anew
 cargo xtask test               runs every check and test, cheap ones first
 cargo xtask setup              installs what the others need and is missing";
 
@@ -33,8 +35,10 @@ fn run() -> anyhow::Result<()> {
     match arguments.as_slice() {
         ["serve"] => serve_page(8080),
         ["serve", "--port", port] => serve_page(port.parse().with_context(|| format!("--port {port}"))?),
-        ["build"] => build_page(&[]),
-        ["build", "--bench"] => build_page(&["bench"]),
+        ["build"] => build_page(&[], None),
+        ["build", "--url", url] => build_page(&[], Some(&site_url(url)?)),
+        ["build", "--bench"] => build_page(&["bench"], None),
+        ["pictures"] => setup::page().and_then(|()| process::run("node", &["xtask/site/docs.mjs"])),
         ["test"] => test::run(),
         ["setup"] => setup::page().and_then(|()| setup::tests()),
         ["help" | "--help" | "-h"] => {
@@ -46,14 +50,21 @@ fn run() -> anyhow::Result<()> {
     }
 }
 
-fn build_page(features: &[&str]) -> anyhow::Result<()> {
+fn build_page(features: &[&str], url: Option<&str>) -> anyhow::Result<()> {
     setup::page()?;
-    page::build(features)?;
-    sizes::print()
+    page::build(features, url)?;
+    sizes::compress_and_print()
+}
+
+/// The folder that an address means, with the slash at its end that relative addresses need.
+fn site_url(url: &str) -> anyhow::Result<String> {
+    let is_web = url.starts_with("https://") || url.starts_with("http://");
+    anyhow::ensure!(is_web, "--url {url}: expected an address such as https://example.org/gaitway/");
+    Ok(format!("{}/", url.trim_end_matches('/')))
 }
 
 fn serve_page(port: u16) -> anyhow::Result<()> {
     setup::page()?;
-    page::build(&[])?;
+    page::build(&[], None)?;
     serve::run(port)
 }

@@ -1,5 +1,5 @@
-//! The page: trunk compiles and binds, wasm-opt and terser make it smaller, and the length of the program is written down
-//! so that the page can show how far its loading has got.
+//! The page: trunk compiles and binds, wasm-opt and terser make it smaller, the length of the program is written down so that
+//! the page can show how far its loading has got, and `xtask/site` puts samples, pictures and the service worker beside it.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -24,7 +24,8 @@ pub fn dist() -> PathBuf {
     repository().join("dist")
 }
 
-pub fn build(features: &[&str]) -> anyhow::Result<()> {
+/// `url`: where the site will be, for what has to name whole addresses.
+pub fn build(features: &[&str], url: Option<&str>) -> anyhow::Result<()> {
     let features = features.join(",");
     let mut arguments = vec!["build", "--offline"];
     if !features.is_empty() {
@@ -34,7 +35,12 @@ pub fn build(features: &[&str]) -> anyhow::Result<()> {
     let wasm = file_ending("_bg.wasm")?;
     optimise(&wasm)?;
     shorten_scripts()?;
-    write_length(&wasm)
+    write_length(&wasm)?;
+    let dist = dist();
+    let folder = dist.to_str().context("the repository's path is not UTF-8")?;
+    let mut arguments = vec!["xtask/site/finish.mjs", folder];
+    arguments.extend(url);
+    run("node", &arguments)
 }
 
 fn optimise(wasm: &Path) -> anyhow::Result<()> {

@@ -75,6 +75,9 @@ fn content_type(path: &Path) -> &'static str {
         Some("png") => "image/png",
         Some("json" | "gltf") => "application/json",
         Some("glb") => "model/gltf-binary",
+        Some("webmanifest") => "application/manifest+json",
+        Some("webp") => "image/webp",
+        Some("jpg") => "image/jpeg",
         _ => "application/octet-stream",
     }
 }

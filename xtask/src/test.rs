@@ -11,8 +11,8 @@ pub fn run() -> anyhow::Result<()> {
     setup::page()?;
     setup::tests()?;
     run_cargo()?;
-    page::build(&[])?;
-    sizes::print()?;
+    page::build(&[], None)?;
+    sizes::compress_and_print()?;
     let files = node_tests()?;
     let files: Vec<&str> = files.iter().map(String::as_str).collect();
     let target = target_folder();

@@ -1,6 +1,7 @@
 """Measures the finished files as a player plays them: how deep soles go, how fast a foot slides while it bears weight,
 and whether clips close. `python check.py FILE.glb [CLIP=SPEED …]`: SPEED metres a second of the treadmill (0 where not
-given; +Z walks). A foot bears weight while part of its sole is within 4 mm of the ground and neither rises nor falls."""
+given; +Z walks). A foot bears weight while part of its sole is within 4 mm of the ground and neither rises nor falls.
+"""
 
 import json
 import struct
@@ -36,7 +37,11 @@ class File:
         """World matrices of all nodes."""
         nodes = self.json["nodes"]
         local = [
-            {"translation": n.get("translation", [0, 0, 0]), "rotation": n.get("rotation", [0, 0, 0, 1]), "scale": n.get("scale", [1, 1, 1])}
+            {
+                "translation": n.get("translation", [0, 0, 0]),
+                "rotation": n.get("rotation", [0, 0, 0, 1]),
+                "scale": n.get("scale", [1, 1, 1]),
+            }
             for n in nodes
         ]
         for c in clip["channels"] if clip else []:
@@ -46,7 +51,9 @@ class File:
             k = min(i + 1, len(times) - 1)
             t = 0.0 if k == i else np.clip((time - times[i]) / (times[k] - times[i]), 0, 1)
             a, b = values[i], values[k]
-            local[c["target"]["node"]][c["target"]["path"]] = slerp(a, b, t) if c["target"]["path"] == "rotation" else a + (b - a) * t
+            local[c["target"]["node"]][c["target"]["path"]] = (
+                slerp(a, b, t) if c["target"]["path"] == "rotation" else a + (b - a) * t
+            )
         out = [None] * len(nodes)
 
         def visit(i, parent):

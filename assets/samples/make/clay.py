@@ -507,10 +507,14 @@ def mesh_of(shape, low, high, quads, step=0.008, half=True, relax=3, seed=0):
             return mesh_of(shape, low, high, quads, step, False, relax, seed)
     vertices = project(shape, vertices, 6, plane)
     vertices = _relax(vertices, faces, shape, plane, relax)
+    if touches:
+        plane |= vertices[:, 0] < 2e-4
+        vertices[plane, 0] = 0.0
     mesh = Mesh(vertices, faces)
     mesh.plane = plane
     mesh.whole = not half
-    return _outward(mesh, shape)
+    # A face that lies in the mirror plane would only meet its own image.
+    return _outward(_only(mesh, np.array([not all(plane[i] for i in f) for f in faces])), shape)
 
 
 def _outward(mesh, shape):

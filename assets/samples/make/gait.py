@@ -15,7 +15,7 @@ passing, up).
 
 import numpy as np
 
-from rig import between, conj, frame, mul, qx, qy, qz, quat, rotate, slerp, smooth_step
+from rig import conj, frame, mul, qx, qy, qz, quat, rotate, slerp, smooth_step
 
 UP = np.array([0.0, 1.0, 0.0])
 AHEAD = np.array([0.0, 0.0, 1.0])

@@ -34,7 +34,8 @@ def torso():
             (1.475, 0, -0.018, 0.072, 0.064),
             (1.53, 0, -0.010, 0.062, 0.062),
         ],
-        power=2.35, rounding=0.03,
+        power=2.35,
+        rounding=0.03,
     )
     seat = ellipsoid((0.075, 0.905, -0.055), (0.082, 0.085, 0.065))
     chest = ellipsoid((0.078, 1.315, 0.070), (0.088, 0.070, 0.046))
@@ -93,22 +94,31 @@ def glove():
             (0.76, 1.409, -0.017, 0.0235, 0.045),
             (0.80, 1.409, -0.018, 0.0185, 0.047),
         ],
-        rounding=0.014, power=2.4,
+        rounding=0.014,
+        power=2.4,
     )
     hand = union(palm, ellipsoid((0.742, 1.397, 0.012), (0.030, 0.018, 0.024)), k=0.015)
     s = humanoid.skeleton(prefix="")
     for name, (r0, r1) in {
-        "Index": (0.0122, 0.0098), "Middle": (0.0125, 0.0100), "Ring": (0.0120, 0.0096), "Pinky": (0.0108, 0.0088)
+        "Index": (0.0122, 0.0098),
+        "Middle": (0.0125, 0.0100),
+        "Ring": (0.0120, 0.0096),
+        "Pinky": (0.0108, 0.0088),
     }.items():
         p = humanoid.finger_places(name)
         finger = union(
-            capsule(p[0] - [0.022, 0, 0], p[1], r0 * 1.08, r0), capsule(p[1], p[2], r0, (r0 + r1) / 2),
-            capsule(p[2], p[3] - [0.006, 0, 0], (r0 + r1) / 2, r1), k=0.002,
+            capsule(p[0] - [0.022, 0, 0], p[1], r0 * 1.08, r0),
+            capsule(p[1], p[2], r0, (r0 + r1) / 2),
+            capsule(p[2], p[3] - [0.006, 0, 0], (r0 + r1) / 2, r1),
+            k=0.002,
         )
         hand = union(hand, finger, k=0.0055)
     t = [s.world[s[f"LeftHandThumb{i}"]] for i in (1, 2, 3, 4)]
     thumb = union(
-        capsule(t[0], t[1], 0.0175, 0.0145), capsule(t[1], t[2], 0.0145, 0.0128), capsule(t[2], t[3], 0.0128, 0.0105), k=0.003
+        capsule(t[0], t[1], 0.0175, 0.0145),
+        capsule(t[1], t[2], 0.0145, 0.0128),
+        capsule(t[2], t[3], 0.0128, 0.0105),
+        k=0.003,
     )
     hand = union(hand, thumb, k=0.010)
     wrist = sideways([(0.645, 1.411, -0.017, 0.0385, 0.0405), (0.70, 1.411, -0.017, 0.0315, 0.0365)], rounding=0.006)
@@ -117,10 +127,29 @@ def glove():
 
 def cuff():
     """The gauntlet: a flared tube with a rolled rim, its inside running back to the sleeve."""
-    cone = sideways([(0.56, 1.411, -0.018, 0.0585, 0.0605), (0.625, 1.411, -0.018, 0.0525, 0.0545), (0.66, 1.411, -0.017, 0.0440, 0.0470),
-                     (0.71, 1.411, -0.017, 0.0345, 0.0395)], rounding=0.004)
-    profile = [(0.614, -0.014), (0.597, -0.007), (0.592, 0.000), (0.595, 0.0045), (0.604, 0.0050), (0.609, 0.0015), (0.630, 0.0),
-               (0.650, 0.0), (0.668, 0.0), (0.684, 0.0008), (0.693, 0.0005), (0.697, -0.004)]
+    cone = sideways(
+        [
+            (0.56, 1.411, -0.018, 0.0585, 0.0605),
+            (0.625, 1.411, -0.018, 0.0525, 0.0545),
+            (0.66, 1.411, -0.017, 0.0440, 0.0470),
+            (0.71, 1.411, -0.017, 0.0345, 0.0395),
+        ],
+        rounding=0.004,
+    )
+    profile = [
+        (0.614, -0.014),
+        (0.597, -0.007),
+        (0.592, 0.000),
+        (0.595, 0.0045),
+        (0.604, 0.0050),
+        (0.609, 0.0015),
+        (0.630, 0.0),
+        (0.650, 0.0),
+        (0.668, 0.0),
+        (0.684, 0.0008),
+        (0.693, 0.0005),
+        (0.697, -0.004),
+    ]
     return clay.ring(cone, (0, 1.411, -0.0175), (1, 0, 0), (0, 1, 0), profile, 20)
 
 
@@ -145,22 +174,51 @@ def boot():
             (0.160, 0.115, 0.040, 0.048, 0.034),
             (0.200, 0.115, 0.036, 0.034, 0.026),
         ],
-        rounding=0.022, power=2.3,
+        rounding=0.022,
+        power=2.3,
     )
     sole = upright(
-        [(0.0, 0.1125, 0.056, 0.054, 0.152), (0.014, 0.1125, 0.056, 0.056, 0.154), (0.030, 0.1125, 0.056, 0.0545, 0.152)],
-        rounding=0.007, power=2.7,
+        [
+            (0.0, 0.1125, 0.056, 0.054, 0.152),
+            (0.014, 0.1125, 0.056, 0.056, 0.154),
+            (0.030, 0.1125, 0.056, 0.0545, 0.152),
+        ],
+        rounding=0.007,
+        power=2.7,
     )
     waist = ellipsoid((0.06, 0.0, 0.028), (0.022, 0.024, 0.045))
     sole = cut(sole, waist, k=0.01)
-    strap = common(grown(union(shaft, foot, k=0.03), 0.0055), box((0.11, 0.125, 0.0), (0.2, 0.013, 0.2), 0.004,
-                   rotation=np.array([[1, 0, 0], [0, 0.94, -0.34], [0, 0.34, 0.94]])), k=0.004)
+    strap = common(
+        grown(union(shaft, foot, k=0.03), 0.0055),
+        box(
+            (0.11, 0.125, 0.0),
+            (0.2, 0.013, 0.2),
+            0.004,
+            rotation=np.array([[1, 0, 0], [0, 0.94, -0.34], [0, 0.34, 0.94]]),
+        ),
+        k=0.004,
+    )
     return union(union(union(shaft, foot, k=0.03), strap, k=0.004), sole, k=0.006)
 
 
 def boot_rim():
-    shaft = upright([(0.20, 0.108, -0.020, 0.0530, 0.0580), (0.28, 0.108, -0.016, 0.0610, 0.0680), (0.37, 0.107, -0.008, 0.0720, 0.0800)])
-    profile = [(0.300, 0.000), (0.308, 0.0035), (0.322, 0.0050), (0.338, 0.0045), (0.345, 0.0015), (0.346, -0.005), (0.338, -0.012), (0.318, -0.018)]
+    shaft = upright(
+        [
+            (0.20, 0.108, -0.020, 0.0530, 0.0580),
+            (0.28, 0.108, -0.016, 0.0610, 0.0680),
+            (0.37, 0.107, -0.008, 0.0720, 0.0800),
+        ]
+    )
+    profile = [
+        (0.300, 0.000),
+        (0.308, 0.0035),
+        (0.322, 0.0050),
+        (0.338, 0.0045),
+        (0.345, 0.0015),
+        (0.346, -0.005),
+        (0.338, -0.012),
+        (0.318, -0.018),
+    ]
     return clay.ring(shaft, (0.1075, 0, -0.012), (0, 1, 0), (0, 0, 1), profile, 20)
 
 
@@ -180,7 +238,15 @@ def vest():
 def hem():
     """The vest's lower border."""
     outside = grown(union(TORSO, ARM, k=0.075), 0.015)
-    profile = [(-0.013, -0.020), (-0.013, -0.004), (-0.010, 0.0035), (0.0, 0.0052), (0.012, 0.0048), (0.020, 0.0035), (0.023, -0.006)]
+    profile = [
+        (-0.013, -0.020),
+        (-0.013, -0.004),
+        (-0.010, 0.0035),
+        (0.0, 0.0052),
+        (0.012, 0.0048),
+        (0.020, 0.0035),
+        (0.023, -0.006),
+    ]
     return clay.ring(outside, (0, 1.110, 0.003), (0, 1, 0), (0, 0, 1), profile, 40, half=True)
 
 
@@ -188,7 +254,15 @@ BELT_Y = 1.022
 
 
 def belt():
-    profile = [(-0.024, -0.006), (-0.024, 0.006), (-0.020, 0.0105), (0.0, 0.0115), (0.020, 0.0105), (0.024, 0.006), (0.024, -0.006)]
+    profile = [
+        (-0.024, -0.006),
+        (-0.024, 0.006),
+        (-0.020, 0.0105),
+        (0.0, 0.0115),
+        (0.020, 0.0105),
+        (0.024, 0.006),
+        (0.024, -0.006),
+    ]
     return clay.ring(TORSO, (0, BELT_Y, -0.004), (0, 1, 0), (0, 0, 1), profile, 40, half=True)
 
 
@@ -220,8 +294,14 @@ HEAD = (0.0, 1.640, 0.004)
 def helmet_outer():
     dome = ellipsoid((0, 1.655, -0.004), (0.131, 0.137, 0.150))
     jaw = forward(
-        [(-0.07, 0, 1.585, 0.098, 0.072), (0.0, 0, 1.575, 0.108, 0.074), (0.07, 0, 1.567, 0.098, 0.066), (0.142, 0, 1.566, 0.058, 0.046)],
-        rounding=0.045, power=2.3,
+        [
+            (-0.07, 0, 1.585, 0.098, 0.072),
+            (0.0, 0, 1.575, 0.108, 0.074),
+            (0.07, 0, 1.567, 0.098, 0.066),
+            (0.142, 0, 1.566, 0.058, 0.046),
+        ],
+        rounding=0.045,
+        power=2.3,
     )
     return union(dome, jaw, k=0.05)
 
@@ -230,7 +310,7 @@ def window(p, grow=0.0):
     """The visor's outline on the helmet: wraps round to the temples, negative inside."""
     around = np.arctan2(np.abs(p[:, 0]), np.maximum(p[:, 2] + 0.03, 1e-3)) * 0.145
     middle = 1.652 - 0.30 * np.maximum(around - 0.06, 0.0) ** 1.0 * 0.25
-    across, tall = 0.172 + grow, 0.060 + grow - 0.06 * np.maximum(around - 0.05, 0) 
+    across, tall = 0.172 + grow, 0.060 + grow - 0.06 * np.maximum(around - 0.05, 0)
     f = ((around / across) ** 4 + (np.abs(p[:, 1] - middle) / tall) ** 4 + 1e-12) ** 0.25
     return (f - 1.0) * tall + np.where(p[:, 2] < -0.03, 1.0, 0.0)
 
@@ -256,15 +336,37 @@ def helmet():
 
 
 def visor():
-    # Its border lies inside the helmet's wall, so what is seen of it is the frame's clean edge.
-    glass = common(grown(HELMET_OUTER, -0.0035), lambda p: window(p, 0.012), k=0.004)
-    return cut(glass, grown(HELMET_OUTER, -0.026), k=0.004)
+    """A sheet of glass just under the helmet's outer surface; its border lies inside the wall, so the frame's edge is what is seen."""
+    glass = grown(HELMET_OUTER, -0.0035)
+    around, heights = np.linspace(0.0, 1.29, 11), np.linspace(1.578, 1.728, 10)
+    a, y = [c.reshape(-1) for c in np.meshgrid(around, heights)]
+    out = np.column_stack([np.sin(a), 0 * a, np.cos(a)])
+    center = np.column_stack([0 * a, y, 0 * a - 0.03])
+    n = len(around)
+    faces = [
+        [r * n + c, r * n + c + 1, (r + 1) * n + c + 1, (r + 1) * n + c]
+        for r in range(len(heights) - 1)
+        for c in range(n - 1)
+    ]
+    mesh = clay.Mesh(clay.cast(glass, center + out * 0.25, -out * 0.25, 1.0), faces)
+    mesh.plane = a == 0.0
+    mesh.vertices[mesh.plane, 0] = 0.0
+    mesh.whole = False
+    return mesh
 
 
 def collar():
     """The neck ring the helmet sits on."""
     neck = upright([(1.42, 0, -0.016, 0.092, 0.082), (1.46, 0, -0.015, 0.092, 0.083), (1.54, 0, -0.010, 0.086, 0.080)])
-    profile = [(1.440, -0.006), (1.446, 0.010), (1.458, 0.016), (1.476, 0.017), (1.490, 0.012), (1.497, 0.002), (1.496, -0.012)]
+    profile = [
+        (1.440, -0.006),
+        (1.446, 0.010),
+        (1.458, 0.016),
+        (1.476, 0.017),
+        (1.490, 0.012),
+        (1.497, 0.002),
+        (1.496, -0.012),
+    ]
     return clay.ring(neck, (0, 0, -0.014), (0, 1, 0), (0, 0, 1), profile, 28, half=True)
 
 
@@ -282,12 +384,16 @@ LIMB = union(TORSO, ARM, k=0.075)
 
 def shoulder_pad():
     profile = [(0, 0.027), (0.45, 0.026), (0.72, 0.0235), (0.86, 0.019), (0.94, 0.010), (1, -0.004)]
-    return clay.patch(LIMB, (0.212, 1.47, -0.018), (0.30, 1, 0), (0, 0, 1), (0.052, 0.060), profile, 10, power=2.6, reach=0.3)
+    return clay.patch(
+        LIMB, (0.212, 1.47, -0.018), (0.30, 1, 0), (0, 0, 1), (0.052, 0.060), profile, 10, power=2.6, reach=0.3
+    )
 
 
 def knee_pad():
     profile = [(0, 0.026), (0.32, 0.025), (0.42, 0.018), (0.75, 0.0165), (0.88, 0.012), (1, -0.004)]
-    return clay.patch(LEG, (0.105, 0.518, 0.08), (0.06, 0.02, 1), (0, 1, 0), (0.050, 0.076), profile, 10, power=2.6, reach=0.2)
+    return clay.patch(
+        LEG, (0.105, 0.518, 0.08), (0.06, 0.02, 1), (0, 1, 0), (0.050, 0.076), profile, 10, power=2.6, reach=0.2
+    )
 
 
 class Part:
@@ -313,7 +419,7 @@ PARTS = [
     Part("pouch", pouch(), "Hips", [(0.05, 0.93, 0.03), (0.18, 1.08, 0.15)], 220, 0.003, solid=False),
     Part("side pouch", side_pouch(), "Hips", [(0.11, 0.93, -0.09), (0.22, 1.08, 0.04)], 220, 0.003, solid=False),
     Part("helmet", clay.mirrored(helmet()), "Head", [(0, 1.45, -0.2), (0.2, 1.83, 0.22)], 1100),
-    Part("visor", clay.mirrored(visor()), "Head", [(0, 1.5, -0.1), (0.2, 1.78, 0.22)], 150, 0.003, solid=False),
+    Part("visor", None, "Head", mesh=visor),
     Part("collar", None, mesh=collar),
     Part("pack", clay.mirrored(pack()), "Spine2", [(0, 1.08, -0.28), (0.2, 1.48, -0.08)], 500, 0.005),
     Part("shoulder", None, mesh=shoulder_pad),
@@ -342,7 +448,15 @@ def sculpt():
 # ---------------------------------------------------------------- colours and relief
 
 # Where the charts of the atlas part: front and back, top and bottom, inside and outside.
-SPLITS = {"suit": (0, 0, 1), "glove": (0, 1, 0), "boot": (1, 0, 0), "vest": (0, 0, 1), "shoulder": (0, 1, 0), "knee": (0, 0, 1), "visor": (0, 0, 1)}
+SPLITS = {
+    "suit": (0, 0, 1),
+    "glove": (0, 1, 0),
+    "boot": (1, 0, 0),
+    "vest": (0, 0, 1),
+    "shoulder": (0, 1, 0),
+    "knee": (0, 0, 1),
+    "visor": (0, 0, 1),
+}
 NAMES = [p.name for p in PARTS]
 ORANGE, DEEP, CHARCOAL, INK = srgb("#d9581c"), srgb("#b8430f"), srgb("#3a3f47"), srgb("#23262b")
 BONE, TEAL, SILVER, TAN = srgb("#e9e3d6"), srgb("#1f9a98"), srgb("#c9ccd0"), srgb("#6b5a48")
@@ -366,7 +480,9 @@ def suit_regions(p):
     around_leg = np.arctan2(x - 0.104, z - 0.005)  # 0: front, + outside
     sleeve = np.where(on_arm, np.abs(around_arm) * 0.048 - 0.030, 1.0)
     flank = np.where(
-        (~on_arm) & trunk & (y < 1.42), np.abs(np.arctan2(x / 0.155, z / 0.10 + 0.12) - 1.62) * 0.125 - 0.034 - 0.10 * np.clip(y - 1.2, 0, 0.1), 1.0
+        (~on_arm) & trunk & (y < 1.42),
+        np.abs(np.arctan2(x / 0.155, z / 0.10 + 0.12) - 1.62) * 0.125 - 0.034 - 0.10 * np.clip(y - 1.2, 0, 0.1),
+        1.0,
     )
     inner = np.where(y < 0.93, np.abs(np.abs(around_leg) - np.pi * 0.5) * 0.07, 1.0)
     inner = np.where((y < 0.93) & (around_leg < 0), inner - 0.034, 1.0)
@@ -386,13 +502,29 @@ def folds(p):
     q = np.column_stack([x, y, z])
     warp = noise(q, 0.07, 1) * 0.016 + noise(q, 0.03, 2) * 0.004
     near = lambda d, w: np.exp(-((d / w) ** 2))
-    arm = np.where(x > 0.22, near(x - 0.455, 0.055) * (0.5 + 0.5 * np.tanh((z + 0.03) / 0.03)) + 0.6 * near(x - 0.57, 0.03) + 0.35 * near(x - 0.27, 0.05), 0)
-    leg = np.where(y < 0.92, 0.9 * near(y - 0.50, 0.05) * (0.35 + 0.65 * (z < 0.01)) + 1.0 * near(y - 0.385, 0.035) + 0.7 * near(y - 0.86, 0.05), 0)
+    arm = np.where(
+        x > 0.22,
+        near(x - 0.455, 0.055) * (0.5 + 0.5 * np.tanh((z + 0.03) / 0.03))
+        + 0.6 * near(x - 0.57, 0.03)
+        + 0.35 * near(x - 0.27, 0.05),
+        0,
+    )
+    leg = np.where(
+        y < 0.92,
+        0.9 * near(y - 0.50, 0.05) * (0.35 + 0.65 * (z < 0.01))
+        + 1.0 * near(y - 0.385, 0.035)
+        + 0.7 * near(y - 0.86, 0.05),
+        0,
+    )
     waist = np.where(x < 0.2, 0.8 * near(y - 1.075, 0.035) + 0.4 * near(y - 0.965, 0.04), 0)
     wave_x = np.sin((x + warp) * 2 * np.pi / 0.030 + 9 * z)
     wave_y = np.sin((y + warp) * 2 * np.pi / 0.031 + 7 * x)
     round_ = lambda w: 0.5 * w + 0.5 * np.abs(w) * w
-    return 0.0018 * (arm * round_(wave_x) + (leg + waist) * round_(wave_y)) + 0.0012 * noise(q, 0.09, 5) + 0.0005 * noise(q, 0.035, 7)
+    return (
+        0.0018 * (arm * round_(wave_x) + (leg + waist) * round_(wave_y))
+        + 0.0012 * noise(q, 0.09, 5)
+        + 0.0005 * noise(q, 0.035, 7)
+    )
 
 
 def height(part, p):
@@ -425,9 +557,12 @@ def height(part, p):
         tread = np.where(sole < 0.003, 0.0012 * np.clip(3 * np.cos(np.arctan2(x - 0.112, z - 0.05) * 26), -1, 1), 0)
         front = np.where((z > -0.02) & (y > 0.14), np.abs(x - 0.108), 1.0)
         return (
-            tread + groove(y - 0.0315, 0.004, 0.0015) + groove(front - 0.020, 0.004, 0.0012)
+            tread
+            + groove(y - 0.0315, 0.004, 0.0015)
+            + groove(front - 0.020, 0.004, 0.0012)
             + np.where(front < 0.02, 0.0012 * np.cos(y * 2 * np.pi / 0.022), 0)
-            + np.where(y < 0.10, groove(z - 0.125 + 0.4 * (x - 0.113) ** 2 / 0.05, 0.004, 0.0012), 0) + 0.0002 * noise(q, 0.005, 4)
+            + np.where(y < 0.10, groove(z - 0.125 + 0.4 * (x - 0.113) ** 2 / 0.05, 0.004, 0.0012), 0)
+            + 0.0002 * noise(q, 0.005, 4)
         )
     if name == "helmet":
         seam = groove(np.where(window(p, 0.016) > 0.006, z + 0.052 - 0.35 * (y - 1.6), 1.0), 0.0035, 0.0016)
@@ -436,8 +571,14 @@ def height(part, p):
         frame = groove(window(p, 0.016) - 0.001, 0.003, 0.0012)
         return seam + jaw + vents * edge(np.abs(y - 1.56) - 0.018, 0.003) + frame
     if name == "pack":
-        lines = groove(np.where(z < -0.21, y - 1.235, 1.0), 0.004, 0.0018) + groove(np.where(x < 0.056, y - 1.36, 1.0), 0.004, 0.0015)
-        grille = np.where((x < 0.036) & (z < -0.236), 0.002 * np.clip(2 * np.cos(y * 2 * np.pi / 0.016), -1, 1) * edge(band(y, 1.255, 1.345), 0.004), 0)
+        lines = groove(np.where(z < -0.21, y - 1.235, 1.0), 0.004, 0.0018) + groove(
+            np.where(x < 0.056, y - 1.36, 1.0), 0.004, 0.0015
+        )
+        grille = np.where(
+            (x < 0.036) & (z < -0.236),
+            0.002 * np.clip(2 * np.cos(y * 2 * np.pi / 0.016), -1, 1) * edge(band(y, 1.255, 1.345), 0.004),
+            0,
+        )
         return lines + grille + groove(z + 0.158, 0.004, 0.0015)
     if name in ("shoulder", "knee"):
         return 0.0002 * noise(q, 0.01, 2)
@@ -523,7 +664,9 @@ def paint(part, p, n, opened):
     if name in ("belt", "pouch", "side pouch"):
         c = np.tile(TAN, (len(p), 1))
         if name == "belt":
-            stitch = edge(np.abs(np.abs(y - BELT_Y) - 0.017) - 0.0008, 0.001) * (np.cos((x + z) * 2 * np.pi / 0.007) > -0.2)
+            stitch = edge(np.abs(np.abs(y - BELT_Y) - 0.017) - 0.0008, 0.001) * (
+                np.cos((x + z) * 2 * np.pi / 0.007) > -0.2
+            )
             c = mixed(c, BONE, 0.4 * stitch)
         else:
             stud = edge(np.hypot((x + z) - (0.215 if name == "pouch" else 5.0), y - BELT_Y + 0.002) - 0.006)
@@ -586,18 +729,27 @@ def main():
             w[mine] = 0
             w[mine, s["mixamorig:" + part.carrier]] = 1
     values, slots = rig.strongest(w, joints)
-    material = out.add("materials", {
-        "name": "pilot",
-        "pbrMetallicRoughness": {
-            "baseColorTexture": {"index": out.image(base, quality=69, name="pilot colour")},
-            "metallicRoughnessTexture": {"index": (relief := out.image(orm, quality=62, name="pilot surface"))},
+    material = out.add(
+        "materials",
+        {
+            "name": "pilot",
+            "pbrMetallicRoughness": {
+                "baseColorTexture": {"index": out.image(base, quality=69, name="pilot colour")},
+                "metallicRoughnessTexture": {"index": (relief := out.image(orm, quality=62, name="pilot surface"))},
+            },
+            "normalTexture": {"index": out.image(bump, quality=69, name="pilot relief")},
+            "occlusionTexture": {"index": relief},
         },
-        "normalTexture": {"index": out.image(bump, quality=69, name="pilot relief")},
-        "occlusionTexture": {"index": relief},
-    })
+    )
     primitive = out.primitive(
-        shown.place, shown.normal, shown.triangles, material, shown.uv, joints=slots[shown.vertex],
-        weights=values[shown.vertex], tangent=shown.tangent,
+        shown.place,
+        shown.normal,
+        shown.triangles,
+        material,
+        shown.uv,
+        joints=slots[shown.vertex],
+        weights=values[shown.vertex],
+        tangent=shown.tangent,
     )
     print(len(shown.place), "vertices,", len(shown.triangles), "triangles")
     mesh = out.add("meshes", {"name": "pilot", "primitives": [primitive]})

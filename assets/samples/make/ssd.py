@@ -41,7 +41,11 @@ JOINTS = [
 
 
 def skull():
-    s = union(ellipsoid((0, 1.385, -0.012), (0.205, 0.190, 0.185)), ellipsoid((0, 1.285, 0.030), (0.160, 0.110, 0.140)), k=0.08)
+    s = union(
+        ellipsoid((0, 1.385, -0.012), (0.205, 0.190, 0.185)),
+        ellipsoid((0, 1.285, 0.030), (0.160, 0.110, 0.140)),
+        k=0.08,
+    )
     return union(s, ellipsoid((0.088, 1.300, 0.092), (0.062, 0.055, 0.060)), k=0.06)
 
 
@@ -60,7 +64,9 @@ def head():
     upper = common(sphere(eye, 0.0690), halfspace(eye + [0, 0.016, 0.030], (0.05, -1.0, 0.55)), k=0.008)
     shape = union(shape, upper, k=0.010)
     brow = union(
-        capsule((0.034, 1.480, 0.158), (0.082, 1.494, 0.140), 0.018, 0.023), capsule((0.082, 1.494, 0.140), (0.148, 1.466, 0.096), 0.023, 0.014), k=0.01
+        capsule((0.034, 1.480, 0.158), (0.082, 1.494, 0.140), 0.018, 0.023),
+        capsule((0.082, 1.494, 0.140), (0.148, 1.466, 0.096), 0.023, 0.014),
+        k=0.01,
     )
     shape = union(shape, brow, k=0.018)
     shape = union(shape, ellipsoid((0, 1.330, 0.196), (0.043, 0.040, 0.056)), k=0.022)
@@ -75,7 +81,9 @@ def head():
     shape = union(shape, capsule(lip * [0, 1, 1], lip + [0.030, 0.003, -0.004], 0.014, 0.009), k=0.018)
     # A tuft.
     tuft = union(
-        capsule((0, 1.545, -0.02), (0.0, 1.650, -0.045), 0.055, 0.034), capsule((0.0, 1.650, -0.045), (0.0, 1.715, -0.115), 0.034, 0.016), k=0.03
+        capsule((0, 1.545, -0.02), (0.0, 1.650, -0.045), 0.055, 0.034),
+        capsule((0.0, 1.650, -0.045), (0.0, 1.715, -0.115), 0.034, 0.016),
+        k=0.03,
     )
     tuft = union(tuft, capsule((0.045, 1.545, -0.05), (0.085, 1.625, -0.10), 0.042, 0.018), k=0.03)
     return union(shape, tuft, k=0.03)
@@ -83,14 +91,27 @@ def head():
 
 def leg():
     limb = upright(
-        [(0.64, 0.095, -0.005, 0.085, 0.105), (0.56, 0.108, -0.002, 0.100, 0.108), (0.46, 0.117, 0.004, 0.090, 0.096), (0.325, 0.124, 0.012, 0.071, 0.076),
-         (0.22, 0.128, -0.012, 0.072, 0.082), (0.12, 0.130, -0.020, 0.056, 0.060), (0.05, 0.130, -0.015, 0.054, 0.062)],
+        [
+            (0.64, 0.095, -0.005, 0.085, 0.105),
+            (0.56, 0.108, -0.002, 0.100, 0.108),
+            (0.46, 0.117, 0.004, 0.090, 0.096),
+            (0.325, 0.124, 0.012, 0.071, 0.076),
+            (0.22, 0.128, -0.012, 0.072, 0.082),
+            (0.12, 0.130, -0.020, 0.056, 0.060),
+            (0.05, 0.130, -0.015, 0.054, 0.062),
+        ],
         rounding=0.03,
     )
     foot = forward(
-        [(-0.105, 0.130, 0.052, 0.040, 0.044), (-0.06, 0.131, 0.060, 0.058, 0.060), (0.02, 0.135, 0.062, 0.066, 0.062), (0.10, 0.142, 0.046, 0.078, 0.046),
-         (0.16, 0.146, 0.038, 0.080, 0.038)],
-        rounding=0.025, power=2.3,
+        [
+            (-0.105, 0.130, 0.052, 0.040, 0.044),
+            (-0.06, 0.131, 0.060, 0.058, 0.060),
+            (0.02, 0.135, 0.062, 0.066, 0.062),
+            (0.10, 0.142, 0.046, 0.078, 0.046),
+            (0.16, 0.146, 0.038, 0.080, 0.038),
+        ],
+        rounding=0.025,
+        power=2.3,
     )
     for x, z, r in ((0.088, 0.175, 0.041), (0.146, 0.190, 0.038), (0.200, 0.168, 0.034)):
         foot = union(foot, ellipsoid((x, r * 0.98, z), (r, r, r * 1.15)), k=0.018)
@@ -102,16 +123,31 @@ LEG = leg()
 
 
 def body():
-    trunk = union(ellipsoid((0, 0.735, 0.022), (0.185, 0.185, 0.170)), ellipsoid((0, 0.965, -0.012), (0.172, 0.140, 0.118)), k=0.14)
+    trunk = union(
+        ellipsoid((0, 0.735, 0.022), (0.185, 0.185, 0.170)),
+        ellipsoid((0, 0.965, -0.012), (0.172, 0.140, 0.118)),
+        k=0.14,
+    )
     trunk = union(trunk, ellipsoid((0, 0.600, -0.008), (0.178, 0.105, 0.140)), k=0.10)
     trunk = union(trunk, capsule((0, 1.02, -0.012), (0, 1.20, -0.005), 0.082, 0.075), k=0.06)
     arm = sideways(
-        [(0.10, 1.030, -0.012, 0.070, 0.070), (0.19, 1.035, -0.012, 0.078, 0.078), (0.29, 1.036, -0.013, 0.062, 0.064), (0.415, 1.035, -0.015, 0.052, 0.053),
-         (0.50, 1.035, -0.014, 0.058, 0.060), (0.58, 1.035, -0.012, 0.048, 0.052), (0.65, 1.033, -0.010, 0.036, 0.046)],
+        [
+            (0.10, 1.030, -0.012, 0.070, 0.070),
+            (0.19, 1.035, -0.012, 0.078, 0.078),
+            (0.29, 1.036, -0.013, 0.062, 0.064),
+            (0.415, 1.035, -0.015, 0.052, 0.053),
+            (0.50, 1.035, -0.014, 0.058, 0.060),
+            (0.58, 1.035, -0.012, 0.048, 0.052),
+            (0.65, 1.033, -0.010, 0.036, 0.046),
+        ],
         rounding=0.03,
     )
     hand = ellipsoid((0.690, 1.032, -0.010), (0.068, 0.032, 0.062))
-    for z0, z1, length, r in ((0.036, 0.058, 0.105, 0.0255), (-0.010, -0.012, 0.120, 0.0265), (-0.054, -0.078, 0.100, 0.0245)):
+    for z0, z1, length, r in (
+        (0.036, 0.058, 0.105, 0.0255),
+        (-0.010, -0.012, 0.120, 0.0265),
+        (-0.054, -0.078, 0.100, 0.0245),
+    ):
         hand = union(hand, capsule((0.705, 1.031, z0), (0.725 + length, 1.024, z1), r, r * 0.88), k=0.016)
     hand = union(hand, capsule((0.660, 1.026, 0.034), (0.728, 1.014, 0.098), 0.027, 0.0235), k=0.022)
     arm = union(arm, hand, k=0.03)
@@ -128,13 +164,23 @@ def bands():
     """Belt, hems and bracelets: loops of their own, laid round the body."""
 
     def roll(half, thick):
-        across = [(-half, -0.008), (-half, 0.4 * thick), (-0.72 * half, 0.9 * thick), (0.0, thick), (0.72 * half, 0.9 * thick), (half, 0.4 * thick), (half, -0.008)]
+        across = [
+            (-half, -0.008),
+            (-half, 0.4 * thick),
+            (-0.72 * half, 0.9 * thick),
+            (0.0, thick),
+            (0.72 * half, 0.9 * thick),
+            (half, 0.4 * thick),
+            (half, -0.008),
+        ]
         return across
 
     out = [clay.ring(IMP, (0, 0.652, 0.0), (0, 1, 0.10), (0, 0, 1), roll(0.022, 0.017), 40)]
     for sign in (1, -1):
         trouser = lambda p, sign=sign: LEG(p * [sign, 1, 1]) - 0.010
-        out.append(clay.ring(trouser, (sign * 0.121, 0.425, 0.007), (sign * -0.10, 1, 0), (0, 0, 1), roll(0.019, 0.012), 26))
+        out.append(
+            clay.ring(trouser, (sign * 0.121, 0.425, 0.007), (sign * -0.10, 1, 0), (0, 0, 1), roll(0.019, 0.012), 26)
+        )
         out.append(clay.ring(IMP, (sign * 0.592, 1.034, -0.011), (1, 0, 0), (0, 0, 1), roll(0.014, 0.012), 18))
     return out
 
@@ -166,7 +212,13 @@ def gates(s):
     up = (0, 1, 0)
     g.gate("pelvis", up, 0.001, shift=-5.0)
     g.gate("chest", up, 0.22)
-    g.gate("head", up, 0.09, shift=0.01, near=lambda p: 1 - rig.smooth_step((np.abs(p[:, 0]) - 0.10) / 0.08) * (p[:, 1] < 1.15))
+    g.gate(
+        "head",
+        up,
+        0.09,
+        shift=0.01,
+        near=lambda p: 1 - rig.smooth_step((np.abs(p[:, 0]) - 0.10) / 0.08) * (p[:, 1] < 1.15),
+    )
     for side, sign in (("l", 1.0), ("r", -1.0)):
         high = lambda p, sign=sign: np.maximum(
             rig.smooth_step((p[:, 1] - 0.88) / 0.12), rig.smooth_step((sign * p[:, 0] - 0.17) / 0.08)
@@ -185,7 +237,11 @@ def gates(s):
 def number(v, digits):
     text = f"{v:.{digits}f}".rstrip("0").rstrip(".")
     text = "0" if text in ("-0", "") else text
-    return text.replace("0.", ".", 1) if text.startswith("0.") else text.replace("-0.", "-.", 1) if text.startswith("-0.") else text
+    return (
+        text.replace("0.", ".", 1)
+        if text.startswith("0.")
+        else text.replace("-0.", "-.", 1) if text.startswith("-0.") else text
+    )
 
 
 def main():
@@ -193,7 +249,9 @@ def main():
     for joint in JOINTS:
         s.add(*joint)
     # Made whole: this body shows its middle line, where halves would be sewn.
-    mesh = clay.mesh_of(lambda p: IMP(shrunk(p)), (-1.06, -0.03, -0.50), (1.06, 2.48, 0.62), 5900, 0.012, half=False, relax=5)
+    mesh = clay.mesh_of(
+        lambda p: IMP(shrunk(p)), (-1.06, -0.03, -0.50), (1.06, 2.48, 0.62), 5900, 0.012, half=False, relax=5
+    )
     mesh.vertices = clay.project(IMP, shrunk(mesh.vertices), 3)
     w = gates(s).weights(mesh.vertices, "root")
     # Diffused over the surface, a part of it far: that is what makes the weights dense.
@@ -211,7 +269,9 @@ def main():
     rows = np.arange(len(w))
     w[rows, w.argmax(axis=1)] += 1.0 - w.sum(axis=1)
     used = (w > 0).sum(axis=1)
-    print(f"{len(mesh.vertices)} vertices, {len(mesh.faces)} quads, influences: mean {used.mean():.1f}, most {used.max()}")
+    print(
+        f"{len(mesh.vertices)} vertices, {len(mesh.faces)} quads, influences: mean {used.mean():.1f}, most {used.max()}"
+    )
     with open(os.path.join(HERE, "..", "ssd.obj"), "w") as f:
         f.write("# An imp in clay, made for Gaitway; CC0 1.0\n")
         for v in mesh.vertices:

@@ -13,9 +13,8 @@ import numpy as np
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import gait
-import moves
 import rig
-from gait import Tread, cycle, swing
+from gait import Tread, swing
 
 OUT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "walk.bvh")
 TICKS, TICK = 13, 1.0 / 15.0
@@ -61,7 +60,15 @@ def skeleton():
 def figure_of(s):
     names = {"hips": "hip", "spine": ["abdomen", "chest"], "neck": "neck", "head": "head"}
     for side, c in (("left", "l"), ("right", "r")):
-        roles = {"shoulder": "Collar", "arm": "Shldr", "forearm": "ForeArm", "hand": "Hand", "thigh": "Thigh", "shin": "Shin", "foot": "Foot"}
+        roles = {
+            "shoulder": "Collar",
+            "arm": "Shldr",
+            "forearm": "ForeArm",
+            "hand": "Hand",
+            "thigh": "Thigh",
+            "shin": "Shin",
+            "foot": "Foot",
+        }
         names.update({f"{side}.{r}": c + j for r, j in roles.items()})
     return gait.Figure(s, names)
 
@@ -71,10 +78,25 @@ def walk(figure):
     ankle = figure.place("left.foot")
     length = 1.6 * TICKS * TICK
     tread = Tread(
-        ankle, np.array([0, -ankle[1], -0.055]), np.array([0.004, -0.062, 0.125]), flat=0.08, rise=0.33, off=0.60, length=length,
+        ankle,
+        np.array([0, -ankle[1], -0.055]),
+        np.array([0.004, -0.062, 0.125]),
+        flat=0.08,
+        rise=0.33,
+        off=0.60,
+        length=length,
         start=0.245 * length + 0.02,
         pitch=[(0.0, 20), (0.08, 0), (0.33, 0), (0.45, -18), (0.60, -58), (0.69, -44), (0.80, -5), (0.93, 20)],
-        air=[(0, (0, 0)), (0.07, (0.018, 0.022)), (0.16, (0.034, 0.080)), (0.34, (0.055, 0.28)), (0.52, (0.040, 0.53)), (0.8, (0.026, 0.93)), (0.93, (0.012, 1.012)), (1, (0, 1))],
+        air=[
+            (0, (0, 0)),
+            (0.07, (0.018, 0.022)),
+            (0.16, (0.034, 0.080)),
+            (0.34, (0.055, 0.28)),
+            (0.52, (0.040, 0.53)),
+            (0.8, (0.026, 0.93)),
+            (0.93, (0.012, 1.012)),
+            (1, (0, 1)),
+        ],
         width=0.014,
     )
 
@@ -87,7 +109,18 @@ def walk(figure):
         figure.head(turns, pitch=-4.0, yaw=-6.0 * swing(p, 0.06), roll=0.35 * roll)
         for side, sign in (("left", 1), ("right", -1)):
             ahead, late = -sign * swing(p, 0.035), -sign * swing(p, 0.085)
-            figure.arm(turns, side, lower=77, swing=4 + 27 * ahead, elbow=30 + 16 * late, twist=-6, hand_twist=-12, wrist=6, shrug=-3, reach=3 * ahead)
+            figure.arm(
+                turns,
+                side,
+                lower=77,
+                swing=4 + 27 * ahead,
+                elbow=30 + 16 * late,
+                twist=-6,
+                hand_twist=-12,
+                wrist=6,
+                shrug=-3,
+                reach=3 * ahead,
+            )
         for side, sign, late in (("left", 1, 0.0), ("right", -1, 0.5)):
             place, pitch, _ = tread.at(p + late)
             place = place * [sign, 1, 1] + [0, 0, length * p]
@@ -142,7 +175,16 @@ def main():
         row = list((s.world[0] + np.asarray(shift["hip"])) * 100)
         for name in s.names:
             row += list(angles(rig.matrix(turns.get(name, gait.NONE)), orders[name]))
-        lines.append(" ".join(f"{v:.4f}".rstrip("0").rstrip(".").replace("-0", "0") if abs(v) < 5e-5 else f"{v:.4f}".rstrip("0").rstrip(".") for v in row))
+        lines.append(
+            " ".join(
+                (
+                    f"{v:.4f}".rstrip("0").rstrip(".").replace("-0", "0")
+                    if abs(v) < 5e-5
+                    else f"{v:.4f}".rstrip("0").rstrip(".")
+                )
+                for v in row
+            )
+        )
     with open(OUT, "w") as f:
         f.write("\n".join(lines) + "\n")
     print(len("\n".join(lines)) + 1, "bytes")

@@ -3,9 +3,9 @@
 
 use glam::DVec3;
 
-use super::lines::{Lines, number, quoted, text};
 use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
+use crate::formats::lines::{Lines, number, quoted, text};
 
 /// More channels than a joint can have a use for; some programs write scales too.
 const MOST_CHANNELS_OF_A_JOINT: usize = 16;

@@ -16,7 +16,6 @@
 
 mod frame_of_reference;
 mod hierarchy;
-mod lines;
 mod motion;
 
 use super::{LoadError, LoadOptions};
@@ -24,9 +23,9 @@ use crate::anim::{Clip, Joint, Skeleton, Transform};
 use crate::asset::{Asset, Warnings};
 use crate::formats::error::Problem;
 use crate::formats::file_set::bare_name;
+use crate::formats::lines::{self, Lines};
 use frame_of_reference::FrameOfReference;
 use hierarchy::Hierarchy;
-use lines::Lines;
 
 pub(super) fn is_bvh(bytes: &[u8]) -> bool {
     let text = bytes.strip_prefix(lines::BYTE_ORDER_MARK).unwrap_or(bytes).trim_ascii_start();

@@ -4,10 +4,10 @@ use glam::{DQuat, DVec3, Quat, Vec3};
 
 use super::frame_of_reference::FrameOfReference;
 use super::hierarchy::{Axis, BvhJoint, Channel, Hierarchy};
-use super::lines::{Lines, number, quoted, text};
 use crate::anim::{Clip, ClipBuilder, Interpolation, Keys, Skeleton};
 use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
+use crate::formats::lines::{Lines, number, quoted, text};
 
 /// Numbers in all frames together: a quarter of a gigabyte of them, some forty minutes of a body at 120 frames a second.
 const MOST_NUMBERS: usize = 1 << 25;

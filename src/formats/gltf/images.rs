@@ -13,7 +13,7 @@ use crate::formats::error::Problem;
 
 const MAX_SIDE_PIXELS: usize = 16_384;
 /// Of all images of a file together.
-const MAX_PIXELS: usize = 256 << 20;
+pub const MAX_IMAGE_PIXELS: usize = 256 << 20;
 
 pub fn images(
     files: &FileSet,
@@ -21,7 +21,7 @@ pub fn images(
     accessors: &Accessors,
     warnings: &mut Warnings,
 ) -> Result<Vec<Image>, Problem> {
-    let mut budget = MAX_PIXELS;
+    let mut budget = MAX_IMAGE_PIXELS;
     let mut images = Vec::with_capacity(accessors.root.images.len());
     for (index, image) in accessors.root.images.iter().enumerate() {
         let place = format!("images[{index}]");
@@ -53,7 +53,7 @@ pub fn images(
         let missing = Image { name: name.clone(), mime: "", bytes: Arc::from([]), width: 0, height: 0 };
         images.push(match bytes {
             None => missing,
-            Some(bytes) => match header(&bytes, &mut budget) {
+            Some(bytes) => match image_header(&bytes, &mut budget) {
                 Ok((mime, width, height)) => Image { name, mime, bytes, width, height },
                 Err(problem) => {
                     warnings.push(Warning::ImageUnreadable { image: place, problem });
@@ -66,7 +66,7 @@ pub fn images(
 }
 
 /// Kind by content (the file's own word for it is often wrong), and size.
-fn header(bytes: &[u8], budget: &mut usize) -> Result<(&'static str, u32, u32), String> {
+pub fn image_header(bytes: &[u8], budget: &mut usize) -> Result<(&'static str, u32, u32), String> {
     let mime = match imagesize::image_type(bytes) {
         Ok(ImageType::Png) => "image/png",
         Ok(ImageType::Jpeg) => "image/jpeg",

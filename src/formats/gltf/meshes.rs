@@ -43,7 +43,7 @@ fn read_mesh(
     let target_names = (0..targets)
         .map(|target| names.and_then(|names| names.get(target)?.as_str()).unwrap_or_default().to_owned())
         .collect();
-    Ok(Mesh { name: mesh.name.clone(), primitives, target_names })
+    Ok(Mesh { name: mesh.name.clone(), primitives, target_names, ..Mesh::default() })
 }
 
 /// Attributes of one primitive or morph target, looked up by semantic.

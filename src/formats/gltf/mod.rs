@@ -23,8 +23,9 @@ use crate::formats::{FileSet, LoadError};
 use accessor::{Accessors, Bytes};
 use container::Container;
 
+pub(super) use images::{MAX_IMAGE_PIXELS, image_header};
 pub use write::WriteError;
-pub(super) use write::{model as write_model, motion as write_motion};
+pub(super) use write::{asset as write_asset, model as write_model, motion as write_motion};
 
 /// URIs of the files that a model names besides itself, decoded, which are not in the set. Empty when it cannot be read.
 pub(super) fn missing_files(files: &FileSet, file: &str, bytes: &[u8]) -> Vec<String> {

@@ -8,9 +8,9 @@ use super::picker::Picking;
 use super::rows::rows;
 use crate::anim::JointIndex;
 use crate::frame::Character;
-use crate::state::{Command, map_in_force};
+use crate::state::{Command, map_in_force, title};
 use crate::ui::inspector::Tab;
-use crate::ui::{Output, Sheet, Shown, UiState, picture, scene_tree, style};
+use crate::ui::{Output, Sheet, Shown, UiState, picture, style};
 
 /// What the next click in the picture means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,7 +50,7 @@ pub(in crate::ui) fn show(
 ) -> bool {
     let Some(clicking) = local.motion.clicking else { return false };
     let (Clicking::Target { motion } | Clicking::Source { motion, .. }) = clicking;
-    let Some(pairing) = Pairing::of(shown.library, motion) else {
+    let Some(pairing) = Pairing::of(shown, motion) else {
         local.motion.clicking = None;
         return false;
     };
@@ -73,10 +73,14 @@ pub(in crate::ui) fn show(
     };
     places.iter().for_each(|&(_, at)| dot(at, 3.5));
     local.hovered_joint = None;
+    let state = matches!(clicking, Clicking::Target { .. }).then_some(shown.state);
     if let Some((joint, at)) = response.hover_pos().and_then(|position| nearest(&places, position)) {
         dot(at, 6.0);
-        let galley =
-            painter.layout_no_wrap(scene_tree::title(asset, joint), FontId::proportional(13.0), palette.on_accent);
+        let galley = painter.layout_no_wrap(
+            title(state, asset, joint).into_owned(),
+            FontId::proportional(13.0),
+            palette.on_accent,
+        );
         let tag = Rect::from_center_size(at - vec2(0.0, 24.0), galley.size() + vec2(16.0, 6.0));
         painter.rect_filled(tag, 6.0, palette.accent);
         painter.galley(tag.center() - galley.size() / 2.0, galley, palette.on_accent);
@@ -135,13 +139,13 @@ fn nearest(places: &[(JointIndex, Pos2)], position: Pos2) -> Option<(JointIndex,
 pub(in crate::ui) fn banner(context: &Context, picture: Rect, shown: &Shown<'_>, local: &mut UiState) {
     let Some(clicking) = local.motion.clicking else { return };
     let (Clicking::Target { motion } | Clicking::Source { motion, .. }) = clicking;
-    let Some(pairing) = Pairing::of(shown.library, motion) else { return };
+    let Some(pairing) = Pairing::of(shown, motion) else { return };
     let text = match clicking {
         Clicking::Target { .. } => "Click a joint of the model".to_owned(),
         Clicking::Source { target, .. } => {
             let asset = &pairing.model.asset;
             let joint = asset.skeleton.joint_of_source(target);
-            let name = joint.map_or_else(String::new, |joint| scene_tree::title(asset, joint));
+            let name = joint.map_or_else(String::new, |joint| pairing.target_title(joint).into_owned());
             format!("Click the joint of the motion that {name} is to follow")
         }
     };

@@ -12,6 +12,10 @@ use crate::state::Command;
 use crate::ui::{Output, Shown, controls, style};
 
 const ROW_HEIGHT: f32 = 44.0;
+/// Of more rows than this, those out of sight are only room: a rig may have hundreds.
+const MANY_ROWS: usize = 120;
+/// How far out of sight a row is still there: the Tab key brings it into sight.
+const NEAR: f32 = 4.0 * ROW_HEIGHT;
 const HEADING_HEIGHT: f32 = 32.0;
 /// How far a joint stands to the right of the one it hangs under, and how often at most.
 const INDENT: f32 = 8.0;
@@ -100,10 +104,11 @@ pub(super) fn show(
     tab.table.scrolled_to = chosen;
     ui.spacing_mut().item_spacing.y = 0.0;
     let by_body = !tab.table.tree && has_body(pairing);
+    let many = rows.len() > MANY_ROWS;
     let mut line = |ui: &mut Ui, row: &Row, tab: &mut MotionTab| {
         let is_chosen = chosen == Some(row.number);
         let indents = if by_body || !wanted.is_empty() { 0 } else { row.depth.min(MOST_INDENTS) };
-        match show_row(ui, row, prefix, is_chosen, indents as f32 * INDENT, scroll) {
+        match show_row(ui, row, prefix, is_chosen, indents as f32 * INDENT, scroll, many) {
             Some(Pressed::Target) => {
                 let joint = (!is_chosen).then_some(row.number);
                 // Already in sight: it was just pressed.
@@ -206,11 +211,22 @@ enum Pressed {
 }
 
 /// How it stands and the target at the left, its source at the right, the reason under both. Either half is a button.
-fn show_row(ui: &mut Ui, row: &Row, prefix: &str, chosen: bool, indent: f32, scroll: bool) -> Option<Pressed> {
+fn show_row(
+    ui: &mut Ui,
+    row: &Row,
+    prefix: &str,
+    chosen: bool,
+    indent: f32,
+    scroll: bool,
+    many: bool,
+) -> Option<Pressed> {
     let (rect, whole) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT), Sense::hover());
     if chosen && scroll {
         // To the top: there is more under it.
         whole.scroll_to_me(Some(egui::Align::TOP));
+    }
+    if many && !chosen && !ui.is_rect_visible(rect.expand2(vec2(0.0, NEAR))) {
+        return None;
     }
     // Names that stand further in keep their room.
     let middle = rect.center().x + 0.5 * indent;

@@ -8,16 +8,21 @@ mod options;
 mod picker;
 mod rows;
 
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+use std::sync::Arc;
+
 use egui::{RichText, ScrollArea, Ui};
 
 use self::rows::Row;
 use super::icons::{Icon, icon_button_sized};
-use super::{Output, Shown, UiAction, UiState, clips, controls, scene_tree, short_name, style};
+use super::{Output, Shown, UiAction, UiState, clips, controls, short_name, style};
 use crate::anim::JointIndex;
 use crate::asset::Asset;
-use crate::library::{Library, Model, Motion};
+use crate::library::{Model, ModelId, Motion};
 use crate::retarget::{ClipRef, Contradiction, JointMap, Proposal, SourceRef, Unmapped};
-use crate::state::{Command, MapEdit, active_clip, choice_of_clip, map_in_force};
+use crate::state::{Command, MapEdit, ViewerState, active_clip, choice_of_clip, map_in_force, title};
 
 pub(super) use clicking::{banner, show as clicking, stop as stop_clicking};
 pub(super) use picker::show as picker;
@@ -35,6 +40,17 @@ pub(super) struct MotionTab {
     clicking: Option<clicking::Clicking>,
     typed: Option<detail::Typed>,
     turn: Option<detail::Turn>,
+    rows: Option<KeptRows>,
+}
+
+/// The table's rows, and what they were worked out from.
+#[derive(Debug)]
+struct KeptRows {
+    model: ModelId,
+    motion: Arc<Asset>,
+    map: JointMap,
+    names: BTreeMap<usize, String>,
+    rows: Rc<[Row]>,
 }
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
@@ -56,6 +72,21 @@ impl MotionTab {
     pub fn is_picking(&self) -> bool {
         self.picking.is_some()
     }
+
+    /// The table's rows, worked out anew when one of the files, the map or a name given by hand is another.
+    fn rows(&mut self, pairing: &Pairing<'_>, map: &JointMap) -> Rc<[Row]> {
+        let (model, motion, names) = (pairing.model.id, &pairing.motion.asset, &pairing.state.names);
+        let is_same = |kept: &KeptRows| {
+            kept.model == model && Arc::ptr_eq(&kept.motion, motion) && kept.map == *map && kept.names == *names
+        };
+        let kept = self.rows.take().filter(is_same).unwrap_or_else(|| {
+            let rows = rows::rows(pairing, map).into();
+            KeptRows { model, motion: motion.clone(), map: map.clone(), names: names.clone(), rows }
+        });
+        let rows = kept.rows.clone();
+        self.rows = Some(kept);
+        rows
+    }
 }
 
 /// One motion over the shown model.
@@ -65,6 +96,8 @@ struct Pairing<'a> {
     motion: &'a Motion,
     index: usize,
     proposal: Option<&'a Proposal>,
+    /// What is set: the model's joints may have names given by hand.
+    state: &'a ViewerState,
 }
 
 impl<'a> Pairing<'a> {
@@ -73,12 +106,13 @@ impl<'a> Pairing<'a> {
         let model = shown.library.active()?;
         let playing = active_clip(model, shown.state).and_then(|clip| model.borrowed(clip));
         let index = playing.map_or(before, |borrowed| borrowed.motion);
-        Self::of(shown.library, index).or_else(|| Self::of(shown.library, 0))
+        Self::of(shown, index).or_else(|| Self::of(shown, 0))
     }
 
-    fn of(library: &'a Library, index: usize) -> Option<Self> {
+    fn of(shown: &Shown<'a>, index: usize) -> Option<Self> {
+        let library = shown.library;
         let (model, motion) = (library.active()?, library.motions().get(index)?);
-        Some(Self { model, motion, index, proposal: library.proposal(index) })
+        Some(Self { model, motion, index, proposal: library.proposal(index), state: shown.state })
     }
 
     /// Which of the model's clips joints without a source play, and whether it stands still; none: they rest.
@@ -90,6 +124,11 @@ impl<'a> Pairing<'a> {
             ClipRef::Name(name) => clips.iter().position(|clip| clip.name() == name).unwrap_or(usize::MAX),
         };
         Some((index, *frozen))
+    }
+
+    /// What a joint of the model is called.
+    fn target_title(&self, joint: JointIndex) -> Cow<'a, str> {
+        title(Some(self.state), &self.model.asset, joint)
     }
 
     fn clip_title(&self, clip: usize) -> &'a str {
@@ -115,7 +154,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
     let map = map_in_force(shown.library, shown.state, pairing.index).unwrap_or_default();
     local.motion.motion = pairing.index;
     let part = local.motion.part;
-    let rows = if part == Part::Joints { rows::rows(&pairing, &map) } else { Vec::new() };
+    let rows = if part == Part::Joints { local.motion.rows(&pairing, &map) } else { Rc::default() };
     if ui.available_height() >= ROOMY_HEIGHT {
         head(ui, shown, &pairing, &map, &rows, local, out);
         scrolled(ui, part, |ui| body(ui, shown, &pairing, &map, &rows, &mut local.motion, out));
@@ -295,5 +334,5 @@ fn remarks(pairing: &Pairing<'_>) -> Vec<String> {
 
 /// A joint as lists show it: its number in the file and its name.
 fn joint_text(asset: &Asset, joint: JointIndex) -> String {
-    format!("{}  {}", asset.skeleton.source_index(joint), scene_tree::title(asset, joint))
+    format!("{}  {}", asset.skeleton.source_index(joint), title(None, asset, joint))
 }

@@ -128,7 +128,7 @@ pub(super) fn files(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, out: 
         out.actions.push(UiAction::ShowMotionAlone(pairing.index));
     }
     if wide(ui, true, "Remove motion") {
-        out.actions.push(UiAction::RemoveMotions);
+        out.actions.push(UiAction::RemoveMotion(pairing.index));
     }
 }
 

@@ -4,8 +4,8 @@ use egui::{Context, Key, ScrollArea, Ui};
 
 use super::{Pairing, joint_text};
 use crate::anim::JointIndex;
-use crate::state::{Command, map_in_force};
-use crate::ui::{Output, Shown, UiState, controls, overlays, scene_tree};
+use crate::state::{Command, map_in_force, title};
+use crate::ui::{Output, Shown, UiState, controls, overlays};
 
 /// Which joint a source is chosen for.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,7 +27,7 @@ impl Picking {
 /// Shown over everything while a source is chosen.
 pub fn show(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     let Some(picking) = &mut local.motion.picking else { return };
-    let Some(pairing) = Pairing::of(shown.library, picking.motion) else {
+    let Some(pairing) = Pairing::of(shown, picking.motion) else {
         local.motion.picking = None;
         return;
     };
@@ -38,7 +38,7 @@ pub fn show(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut
         ui.set_width((screen.width() - 64.0).min(380.0));
         let asset = &pairing.model.asset;
         let target = asset.skeleton.joint_of_source(picking.target);
-        let name = target.map_or_else(String::new, |joint| scene_tree::title(asset, joint));
+        let name = target.map_or_else(String::new, |joint| pairing.target_title(joint).into_owned());
         ui.heading(format!("What does {name} follow?"));
         ui.add_space(4.0);
         let field = egui::TextEdit::singleline(&mut picking.search)
@@ -114,7 +114,7 @@ fn matching(pairing: &Pairing<'_>, search: &str) -> Vec<JointIndex> {
     let mut found: Vec<(bool, usize, JointIndex)> = skeleton
         .joints()
         .filter_map(|joint| {
-            let (at, name) = (skeleton.source_index(joint), scene_tree::title(asset, joint).to_lowercase());
+            let (at, name) = (skeleton.source_index(joint), title(None, asset, joint).to_lowercase());
             let exact = number == Some(at) || name == wanted;
             (exact || name.contains(&wanted)).then_some((!exact, at, joint))
         })

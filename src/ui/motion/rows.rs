@@ -8,11 +8,11 @@ use crate::anim::JointIndex;
 use crate::asset::Slot;
 use crate::retarget::{Contradiction, JointMap};
 use crate::state::muted_properties;
-use crate::ui::scene_tree;
 
 /// Below this a proposal is a guess.
 const UNSURE: f32 = 0.6;
 
+#[derive(Debug)]
 pub(super) struct Row {
     pub joint: JointIndex,
     /// The joint's number in its file.
@@ -272,10 +272,9 @@ impl Whole {
         }
         let mut others = self.followers.get(&source).into_iter().flatten().filter(|&&other| other != target);
         let first = others.next()?;
-        let asset = &pairing.model.asset;
         let more = others.count();
         let and = if more == 0 { String::new() } else { format!(" and {more} more") };
-        Some(format!("shared with {}{and}", scene_tree::title(asset, *first)))
+        Some(format!("shared with {}{and}", pairing.target_title(*first)))
     }
 
     fn row(
@@ -336,7 +335,7 @@ impl Whole {
         Row {
             joint,
             number,
-            target: scene_tree::title(&pairing.model.asset, joint),
+            target: pairing.target_title(joint).into_owned(),
             what,
             source,
             source_text: source.map_or_else(|| "none".to_owned(), |source| joint_text(&pairing.motion.asset, source)),

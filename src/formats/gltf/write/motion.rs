@@ -9,7 +9,21 @@ use crate::asset::Asset;
 /// A GLB with the asset's joints as nodes, numbered as in the file it came from, its scenes, and `clips` (of this skeleton).
 /// Meshes are left out, and with them channels of morph weights.
 pub fn motion(asset: &Asset, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
-    let skeleton = &asset.skeleton;
+    let mut root = nodes_and_scenes(asset, &asset.skeleton);
+    let mut binary = Vec::new();
+    let added = clip::add(clips, &asset.skeleton, false, clip::Counts::default(), &mut binary)?;
+    if !added.animations.is_empty() {
+        root["animations"] = json!(added.animations);
+        root["accessors"] = json!(added.accessors);
+        root["bufferViews"] = json!(added.buffer_views);
+        root["buffers"] = json!([{ "byteLength": binary.len() }]);
+    }
+    glb::glb(root.to_string().into_bytes(), binary)
+}
+
+/// The beginning of a file's JSON: `skeleton`'s joints (those of the asset, perhaps with other names and another rest) in
+/// the asset's scenes.
+pub(super) fn nodes_and_scenes(asset: &Asset, skeleton: &Skeleton) -> Value {
     let nodes: Vec<Value> = (0..skeleton.len())
         .filter_map(|source| skeleton.joint_of_source(source))
         .map(|joint| node(skeleton, joint))
@@ -41,15 +55,7 @@ pub fn motion(asset: &Asset, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
         root["scenes"] = json!(scenes);
         root["nodes"] = json!(nodes);
     }
-    let mut binary = Vec::new();
-    let added = clip::add(clips, skeleton, false, clip::Counts::default(), &mut binary)?;
-    if !added.animations.is_empty() {
-        root["animations"] = json!(added.animations);
-        root["accessors"] = json!(added.accessors);
-        root["bufferViews"] = json!(added.buffer_views);
-        root["buffers"] = json!([{ "byteLength": binary.len() }]);
-    }
-    glb::glb(root.to_string().into_bytes(), binary)
+    root
 }
 
 fn node(skeleton: &Skeleton, joint: JointIndex) -> Value {

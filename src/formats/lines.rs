@@ -1,4 +1,4 @@
-//! The text of a .bvh as words with the lines they stand on. The text need not be UTF-8: names come from many code pages.
+//! Text files as words with the lines they stand on. The text need not be UTF-8: names come from many code pages.
 
 use std::borrow::Cow;
 

@@ -1,0 +1,45 @@
+//! What a step costs the CPU while a slider of a skinning-exercise model is turned: pose, matrices, palette and all else that
+//! makes a frame; and what bending every vertex there would cost, which the GPU does.
+
+mod support;
+
+use std::hint::black_box;
+
+use gaitway::formats::load;
+use gaitway::frame::{Frame, evaluate, pose_document};
+use gaitway::library::{Library, Model};
+use gaitway::mesh::{DeformedVertices, SkinningMode, deform};
+use gaitway::state::{Command, Show, ViewerState, apply};
+use support::data_folder::data_folder;
+use support::{files_of, measure};
+
+fn main() {
+    let Some(folder) = data_folder() else { return };
+    let Some(files) = files_of(&folder.join("mit6837/Model1.obj")) else { return };
+    let asset = load(&files).unwrap_or_else(|problem| panic!("{problem}"));
+    println!("{:44} {:>10} {:>10}", "13,336 vertices, 18 joints, up to 13 weights", "µs", "(fastest)");
+    let mut library = Library::default();
+    library.set(Model::new("Model1.obj".to_owned(), asset, Vec::new()));
+    let print = |name: &str, nanos: support::Nanos| {
+        println!("{name:44} {:>10.1} {:>10.1}", nanos.median / 1e3, nanos.fastest / 1e3);
+    };
+    for (name, split) in [("a turned slider", false), ("a turned slider, three modes side by side", true)] {
+        let show = Show { skeleton: true, split, ..Show::default() };
+        let mut state = ViewerState { show, ..ViewerState::default() };
+        let (mut frame, mut angle) = (Frame::default(), 0.0_f32);
+        let nanos = measure(|| {
+            angle = (angle + 1.0) % 90.0;
+            apply(&mut state, &library, Command::SetPose { joint: 5, degrees: Some([angle, 0.0, 0.0]) });
+            evaluate(black_box(&library), &state, 1.5, &mut frame);
+        });
+        print(name, nanos);
+    }
+    let mut frame = Frame::default();
+    evaluate(&library, &ViewerState::default(), 1.5, &mut frame);
+    let geometry = library.active().map(|model| &model.asset.meshes[0].primitives[0]);
+    let (Some(geometry), Some(character)) = (geometry, frame.characters.first()) else { return };
+    let mut out = DeformedVertices::default();
+    let work = || deform(black_box(geometry), &[], &character.palette, SkinningMode::Linear, &mut out);
+    print("all vertices on the CPU", measure(work));
+    print("the pose document", measure(|| drop(black_box(pose_document(&library, &ViewerState::default())))));
+}

@@ -1,0 +1,205 @@
+//! A model that came from another format as a GLB of its own: nodes, meshes, skins, materials, pictures and clips.
+//! What only glTF files have (morph targets, cameras, lights) is not written.
+
+use glam::{Mat4, Vec3};
+use serde_json::{Value, json};
+
+use super::motion::nodes_and_scenes;
+use super::{WriteError, clip, glb};
+use crate::anim::{Clip, Skeleton};
+use crate::asset::Asset;
+use crate::mesh::{AlphaMode, Geometry, Material, Mesh, Skin, TextureRef, Topology};
+
+const ARRAY_BUFFER: u32 = 34962;
+const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+
+const UNSIGNED_SHORT: u32 = 5123;
+const UNSIGNED_INT: u32 = 5125;
+const FLOAT: u32 = 5126;
+
+/// `skeleton` has the asset's joints, perhaps with other names and bent into another pose; the mesh stays bound as it is.
+/// Nodes are numbered as in the file the asset came from; a skinned mesh gets a node of its own behind them, since a node
+/// that holds one must not move it. Influences are written in sets of four.
+pub fn asset(asset: &Asset, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
+    let mut root = nodes_and_scenes(asset, skeleton);
+    let mut data = Data::default();
+    let meshes: Vec<Value> = asset.meshes.iter().map(|written| mesh(written, &mut data)).collect();
+    let skins: Vec<Value> = asset.skins.iter().map(|written| skin(written, skeleton, &mut data)).collect();
+    hang_meshes(asset, skeleton, &mut root);
+    let images: Vec<Value> = asset.images.iter().map(|image| data.image(image)).collect();
+    let textures: Vec<Value> = asset.textures.iter().map(|texture| json!({ "source": texture.image })).collect();
+    let materials: Vec<Value> = asset.materials.iter().map(material).collect();
+    let counts = clip::Counts { accessors: data.accessors.len(), buffer_views: data.views.len() };
+    let Data { mut binary, mut views, mut accessors } = data;
+    let added = clip::add(clips, skeleton, false, counts, &mut binary)?;
+    accessors.extend(added.accessors.iter().map(|accessor| json!(accessor)));
+    views.extend(added.buffer_views.iter().map(|view| json!(view)));
+    let lists = [
+        ("meshes", meshes),
+        ("skins", skins),
+        ("materials", materials),
+        ("textures", textures),
+        ("images", images),
+        ("animations", added.animations.iter().map(|animation| json!(animation)).collect()),
+        ("accessors", accessors),
+        ("bufferViews", views),
+    ];
+    // An empty list is not allowed.
+    for (key, list) in lists.into_iter().filter(|(_, list)| !list.is_empty()) {
+        root[key] = Value::Array(list);
+    }
+    if !binary.is_empty() {
+        root["buffers"] = json!([{ "byteLength": binary.len() }]);
+    }
+    glb::glb(root.to_string().into_bytes(), binary)
+}
+
+fn hang_meshes(asset: &Asset, skeleton: &Skeleton, root: &mut Value) {
+    for instance in &asset.instances {
+        match instance.skin {
+            None => root["nodes"][skeleton.source_index(instance.joint)]["mesh"] = json!(instance.mesh),
+            Some(skin) => {
+                let mut node = json!({ "mesh": instance.mesh, "skin": skin });
+                if !asset.meshes[instance.mesh].name.is_empty() {
+                    node["name"] = json!(asset.meshes[instance.mesh].name);
+                }
+                let Some(nodes) = root["nodes"].as_array_mut() else { continue };
+                nodes.push(node);
+                let index = nodes.len() - 1;
+                if let Some(roots) = root["scenes"][asset.default_scene.unwrap_or(0)]["nodes"].as_array_mut() {
+                    roots.push(json!(index));
+                }
+            }
+        }
+    }
+}
+
+/// The buffer as it grows, with what points into it.
+#[derive(Default)]
+struct Data {
+    binary: Vec<u8>,
+    views: Vec<Value>,
+    accessors: Vec<Value>,
+}
+
+impl Data {
+    fn view(&mut self, target: Option<u32>, bytes: impl IntoIterator<Item = u8>) -> usize {
+        glb::pad(&mut self.binary, 0);
+        let start = self.binary.len();
+        self.binary.extend(bytes);
+        let mut view = json!({ "buffer": 0, "byteOffset": start, "byteLength": self.binary.len() - start });
+        if let Some(target) = target {
+            view["target"] = json!(target);
+        }
+        self.views.push(view);
+        self.views.len() - 1
+    }
+
+    fn accessor(&mut self, view: usize, component: u32, shape: &str, count: usize) -> usize {
+        self.accessors.push(json!({ "bufferView": view, "componentType": component, "count": count, "type": shape }));
+        self.accessors.len() - 1
+    }
+
+    fn floats<const N: usize>(&mut self, target: Option<u32>, shape: &str, elements: &[[f32; N]]) -> usize {
+        let bytes = elements.iter().flatten().flat_map(|number| number.to_le_bytes());
+        let view = self.view(target, bytes);
+        self.accessor(view, FLOAT, shape, elements.len())
+    }
+
+    fn attribute<const N: usize>(&mut self, shape: &str, elements: impl Iterator<Item = [f32; N]>) -> usize {
+        self.floats(Some(ARRAY_BUFFER), shape, &elements.collect::<Vec<_>>())
+    }
+
+    fn image(&mut self, image: &crate::asset::Image) -> Value {
+        let view = self.view(None, image.bytes.iter().copied());
+        json!({ "name": image.name, "mimeType": image.mime, "bufferView": view })
+    }
+}
+
+fn mesh(mesh: &Mesh, data: &mut Data) -> Value {
+    let pieces = mesh.primitives.iter().enumerate();
+    let primitives: Vec<Value> = pieces
+        .map(|(index, geometry)| {
+            let mut piece = primitive(geometry, data);
+            if let Some(name) = mesh.part_names.get(index).filter(|name| !name.is_empty()) {
+                piece["extras"] = json!({ "name": name });
+            }
+            piece
+        })
+        .collect();
+    json!({ "name": mesh.name, "primitives": primitives })
+}
+
+fn primitive(geometry: &Geometry, data: &mut Data) -> Value {
+    let mut attributes = json!({});
+    let positions = data.attribute("VEC3", geometry.positions.iter().map(|at| at.to_array()));
+    let least = geometry.positions.iter().copied().fold(Vec3::INFINITY, Vec3::min);
+    let most = geometry.positions.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
+    // All digits: readers compare them with the data.
+    data.accessors[positions]["min"] = json!(least.as_dvec3().to_array());
+    data.accessors[positions]["max"] = json!(most.as_dvec3().to_array());
+    attributes["POSITION"] = json!(positions);
+    if !geometry.normals.is_empty() {
+        attributes["NORMAL"] = json!(data.attribute("VEC3", geometry.normals.iter().map(|normal| normal.to_array())));
+    }
+    if !geometry.uvs[0].is_empty() {
+        attributes["TEXCOORD_0"] = json!(data.attribute("VEC2", geometry.uvs[0].iter().map(|uv| uv.to_array())));
+    }
+    if !geometry.colors.is_empty() {
+        attributes["COLOR_0"] = json!(data.attribute("VEC4", geometry.colors.iter().map(|color| color.to_array())));
+    }
+    let influences = &geometry.influences;
+    let sets = influences.stride / 4;
+    let (joints, weights) = (influences.joints.as_chunks::<4>().0, influences.weights.as_chunks::<4>().0);
+    for set in 0..sets {
+        let of_set = joints.iter().skip(set).step_by(sets);
+        let view = data.view(Some(ARRAY_BUFFER), of_set.flatten().flat_map(|joint| joint.to_le_bytes()));
+        let accessor = data.accessor(view, UNSIGNED_SHORT, "VEC4", geometry.positions.len());
+        attributes[format!("JOINTS_{set}")] = json!(accessor);
+        let accessor = data.attribute("VEC4", weights.iter().skip(set).step_by(sets).copied());
+        attributes[format!("WEIGHTS_{set}")] = json!(accessor);
+    }
+    let view = data.view(Some(ELEMENT_ARRAY_BUFFER), geometry.indices.iter().flat_map(|index| index.to_le_bytes()));
+    let indices = data.accessor(view, UNSIGNED_INT, "SCALAR", geometry.indices.len());
+    let mode = match geometry.topology {
+        Topology::Points => 0,
+        Topology::Lines => 1,
+        Topology::Triangles => 4,
+    };
+    let mut primitive = json!({ "attributes": attributes, "indices": indices, "mode": mode });
+    if let Some(material) = geometry.material {
+        primitive["material"] = json!(material);
+    }
+    primitive
+}
+
+fn skin(skin: &Skin, skeleton: &Skeleton, data: &mut Data) -> Value {
+    let matrices: Vec<[f32; 16]> =
+        skin.joint_from_bind().iter().map(|matrix| Mat4::from(*matrix).to_cols_array()).collect();
+    let matrices = data.floats(None, "MAT4", &matrices);
+    let joints: Vec<usize> = skin.joints().iter().map(|&joint| skeleton.source_index(joint)).collect();
+    json!({ "name": skin.name(), "joints": joints, "inverseBindMatrices": matrices })
+}
+
+/// Colours, alpha, the picture; what else a material has is not in the formats this is for.
+fn material(material: &Material) -> Value {
+    let mut surface = json!({
+        "baseColorFactor": material.base_color.to_array(),
+        "metallicFactor": material.metallic,
+        "roughnessFactor": material.roughness,
+    });
+    if let Some(TextureRef { texture, uv_set, .. }) = material.base_color_texture {
+        surface["baseColorTexture"] = json!({ "index": texture, "texCoord": uv_set });
+    }
+    let mut written = json!({ "name": material.name, "pbrMetallicRoughness": surface });
+    if material.emissive != Vec3::ZERO {
+        written["emissiveFactor"] = json!(material.emissive.to_array());
+    }
+    if material.alpha_mode == AlphaMode::Blend {
+        written["alphaMode"] = json!("BLEND");
+    }
+    if material.double_sided {
+        written["doubleSided"] = json!(true);
+    }
+    written
+}

@@ -1,0 +1,115 @@
+//! `.attach`: how hard each joint pulls each vertex. One row a vertex, in the order of the .obj; one column for every joint
+//! but the first, whose weight is 0 and is not written.
+
+use crate::asset::{Warning, Warnings};
+use crate::formats::error::Problem;
+use crate::formats::lines::{Lines, number, quoted};
+use crate::mesh::{Influences, MAX_INFLUENCES};
+
+/// Sums further off 1 than this are worth a word; smaller errors are rounding.
+const SUM_TOLERANCE: f64 = 1e-3;
+
+/// `file` is what warnings call it. Rows are divided by their sum; a row of zeros follows the first joint. Of more than
+/// [`MAX_INFLUENCES`] weights the largest are kept.
+pub fn read(
+    file: &str,
+    bytes: &[u8],
+    vertices: usize,
+    joints: usize,
+    warnings: &mut Warnings,
+) -> Result<Influences, Problem> {
+    // All pairs of all rows, strongest first, and where each row ends.
+    let mut pairs: Vec<(u16, f32)> = Vec::new();
+    let mut ends: Vec<usize> = Vec::new();
+    let mut row: Vec<(u16, f64)> = Vec::new();
+    let (mut missing, mut normalized, mut most, mut largest_lost_weight) = (0, 0, 1, 0.0_f32);
+    let mut lines = Lines::new(bytes);
+    while let Some((line, content)) = lines.next_full_line() {
+        if content.starts_with(b"#") {
+            continue;
+        }
+        if ends.len() == vertices {
+            let expected = format!("{vertices} rows, one for each vertex of the .obj");
+            return Err(Problem::new(format!("line {line}"), expected, "more"));
+        }
+        let total = read_row(line, content, joints, &mut row)?;
+        if row.is_empty() {
+            missing += 1;
+            row.push((0, 1.0));
+        } else if (total - 1.0).abs() > SUM_TOLERANCE {
+            normalized += 1;
+        }
+        // Stable: of equal weights, the one that comes first in the file stays first.
+        row.sort_by(|a, b| b.1.total_cmp(&a.1));
+        most = most.max(row.len());
+        if let Some(lost) = row.get(MAX_INFLUENCES) {
+            largest_lost_weight = largest_lost_weight.max((lost.1 / total) as f32);
+        }
+        row.truncate(MAX_INFLUENCES);
+        let kept: f64 = row.iter().map(|pair| pair.1).sum();
+        pairs.extend(row.iter().map(|&(joint, weight)| (joint, (weight / kept) as f32)));
+        ends.push(pairs.len());
+    }
+    // A skeleton of one joint has rows without a column, which are not there to be counted.
+    if ends.len() < vertices && joints > 1 {
+        let expected = format!("{vertices} rows, one for each vertex of the .obj");
+        return Err(Problem::new(lines.place(), expected, format!("{} and the end of the file", ends.len())));
+    }
+    for _ in ends.len()..vertices {
+        pairs.push((0, 1.0));
+        ends.push(pairs.len());
+    }
+    let mesh = || file.to_owned();
+    if most > MAX_INFLUENCES {
+        let (found, kept) = (most, MAX_INFLUENCES);
+        warnings.push(Warning::InfluencesDropped { mesh: mesh(), found, kept, largest_lost_weight });
+    }
+    if missing > 0 {
+        warnings.push(Warning::WeightsMissing { mesh: mesh(), vertices: missing });
+    }
+    if normalized > 0 {
+        warnings.push(Warning::WeightsNormalized { mesh: mesh(), vertices: normalized });
+    }
+    let stride = most.min(MAX_INFLUENCES).next_multiple_of(4);
+    let mut influences =
+        Influences { stride, joints: vec![0; stride * vertices], weights: vec![0.0; stride * vertices] };
+    let mut start = 0;
+    for (vertex, &end) in ends.iter().enumerate() {
+        for (at, &(joint, weight)) in pairs[start..end].iter().enumerate() {
+            influences.joints[vertex * stride + at] = joint;
+            influences.weights[vertex * stride + at] = weight;
+        }
+        start = end;
+    }
+    Ok(influences)
+}
+
+/// The joints of one row that pull, in the file's order, and the sum of their weights.
+fn read_row(line: usize, content: &[u8], joints: usize, row: &mut Vec<(u16, f64)>) -> Result<f64, Problem> {
+    row.clear();
+    let mut columns = 0;
+    let mut total = 0.0;
+    let expected = || format!("{} weights, one for each joint of the .skel but the first", joints.saturating_sub(1));
+    for word in content.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()) {
+        columns += 1;
+        if columns >= joints {
+            return Err(Problem::new(format!("line {line}"), expected(), "more"));
+        }
+        let weight = number(word).filter(|&weight| weight >= 0.0 && weight <= f64::from(f32::MAX));
+        let weight = weight.ok_or_else(|| {
+            Problem::new(
+                format!("line {line}, number {columns}"),
+                "a weight: a number of 0 or more",
+                quoted(Some(word)),
+            )
+        })?;
+        if weight > 0.0 {
+            row.push((columns as u16, weight));
+            total += weight;
+        }
+    }
+    if columns + 1 != joints {
+        return Err(Problem::new(format!("line {line}"), expected(), columns));
+    }
+    Ok(total)
+}

@@ -1,0 +1,345 @@
+//! The statements of a Wavefront .obj: vertices, faces, and the names of groups and materials.
+//!
+//! ```text
+//! v x y z [w | r g b]     a vertex, with a weight for curves (ignored) or a colour
+//! vt u [v [w]]            a texture coordinate, v upwards
+//! vn x y z                a normal
+//! f 1 2 3                 corners: v, v/vt, v//vn or v/vt/vn; from 1, or backwards from −1, the last one so far
+//! o, g, usemtl, mtllib    object, groups, material, material libraries
+//! ```
+//!
+//! A `\` at the end of a line continues it; `#` begins a comment. Numbers of vertices may point forward. Lines, points,
+//! curves and surfaces are not read, which a warning says.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+use glam::{DVec3, Vec2, Vec3};
+
+use crate::asset::{Warning, Warnings};
+use crate::formats::error::Problem;
+use crate::formats::lines::{Lines, number, quoted, text};
+
+/// Groups and materials make parts, each with a draw of its own.
+const MOST_PARTS: usize = 4096;
+
+/// No texture coordinate or no normal.
+pub const NONE: u32 = u32::MAX;
+
+/// Vertex, texture coordinate and normal, from 0. The latter two may be [`NONE`].
+pub type Corner = [u32; 3];
+
+#[derive(Debug, Default)]
+pub struct ObjText {
+    pub positions: Vec<Vec3>,
+    /// One per vertex as the file has them (as a screen shows them), or empty: some vertex has none.
+    pub colors: Vec<Vec3>,
+    pub uvs: Vec<Vec2>,
+    pub normals: Vec<Vec3>,
+    /// Corners of all faces, one after the other.
+    pub corners: Vec<Corner>,
+    pub faces: Vec<Face>,
+    pub parts: Vec<Part>,
+    /// Names of material libraries.
+    pub libraries: Vec<String>,
+}
+
+#[derive(Debug, Clone, Copy)]
+pub struct Face {
+    /// Its corners end here; they begin where the face before ends.
+    pub end: u32,
+    pub part: u32,
+    line: u32,
+}
+
+/// What has the same object, group and material.
+#[derive(Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Part {
+    pub object: String,
+    pub group: String,
+    pub material: String,
+}
+
+struct Reader<'a> {
+    obj: ObjText,
+    part: Part,
+    part_index: Option<u32>,
+    known_parts: BTreeMap<Part, u32>,
+    warnings: &'a mut Warnings,
+}
+
+pub fn read(bytes: &[u8], warnings: &mut Warnings) -> Result<ObjText, Problem> {
+    let mut reader = Reader {
+        obj: ObjText::default(),
+        part: Part::default(),
+        part_index: None,
+        known_parts: BTreeMap::new(),
+        warnings,
+    };
+    let mut lines = Lines::new(bytes);
+    while let Some((line, words)) = lines.next_full_line() {
+        let words = continued(words, &mut lines);
+        reader.statement(line, &words)?;
+    }
+    let mut obj = reader.obj;
+    if obj.colors.len() != obj.positions.len() {
+        obj.colors = Vec::new();
+    }
+    check_corners(&obj)?;
+    Ok(obj)
+}
+
+/// The material libraries that a file names, without reading the rest.
+pub fn libraries(bytes: &[u8]) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut lines = Lines::new(bytes);
+    while let Some((_, line)) = lines.next_full_line() {
+        if let Some(names) = line.strip_prefix(b"mtllib") {
+            for library in library_names(&text(&continued(names, &mut lines))) {
+                if !found.contains(&library) {
+                    found.push(library);
+                }
+            }
+        }
+    }
+    found
+}
+
+/// The line with those that continue it.
+fn continued<'a>(line: &'a [u8], lines: &mut Lines<'a>) -> Cow<'a, [u8]> {
+    let mut whole = Cow::Borrowed(line);
+    while let Some(kept) = whole.strip_suffix(b"\\") {
+        let kept = kept.len();
+        let whole = whole.to_mut();
+        whole.truncate(kept);
+        whole.push(b' ');
+        match lines.next_full_line() {
+            Some((_, more)) => whole.extend_from_slice(more),
+            None => break,
+        }
+    }
+    whole
+}
+
+fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let words = line.split(|byte| byte.is_ascii_whitespace() || *byte == 0x0B).filter(|word| !word.is_empty());
+    words.take_while(|word| !word.starts_with(b"#"))
+}
+
+impl Reader<'_> {
+    fn statement(&mut self, line: usize, statement: &[u8]) -> Result<(), Problem> {
+        let mut rest = words(statement);
+        let Some(keyword) = rest.next() else { return Ok(()) };
+        match keyword {
+            b"v" => self.vertex(line, rest),
+            b"vt" => {
+                let (found, uv) = numbers::<3>(line, rest)?;
+                if found == 0 {
+                    return Err(Problem::new(place(line), "1 to 3 numbers after “vt”", "none"));
+                }
+                // A texture's rows are counted from the top here.
+                self.obj.uvs.push(Vec2::new(uv[0], 1.0 - uv[1]));
+                Ok(())
+            }
+            b"vn" => {
+                let (found, normal) = numbers::<3>(line, rest)?;
+                if found != 3 {
+                    return Err(Problem::new(place(line), "3 numbers after “vn”", found));
+                }
+                self.obj.normals.push(Vec3::from(normal).normalize_or(Vec3::Y));
+                Ok(())
+            }
+            b"f" | b"fo" => self.face(line, rest),
+            b"o" | b"g" | b"usemtl" => {
+                let name = text(statement[keyword.len()..].trim_ascii()).into_owned();
+                self.part_index = None;
+                match keyword {
+                    b"o" => self.part = Part { object: name, group: String::new(), ..std::mem::take(&mut self.part) },
+                    b"g" => self.part.group = name,
+                    _ => self.part.material = name,
+                }
+                Ok(())
+            }
+            b"mtllib" => {
+                for library in library_names(&text(statement[keyword.len()..].trim_ascii())) {
+                    if !self.obj.libraries.contains(&library) {
+                        self.obj.libraries.push(library);
+                    }
+                }
+                Ok(())
+            }
+            // Smoothing groups: without normals a model is flat, or smooth where the person wants it.
+            b"s" => Ok(()),
+            other => {
+                let problem = format!("{} is not read; vertices and faces are", quoted(Some(other)));
+                self.warnings.push(Warning::Other { code: "obj-statement", place: place(line), problem });
+                Ok(())
+            }
+        }
+    }
+
+    fn vertex<'a>(&mut self, line: usize, words: impl Iterator<Item = &'a [u8]>) -> Result<(), Problem> {
+        let (found, read) = numbers::<7>(line, words)?;
+        let color = match found {
+            3 | 4 => None,
+            6 | 7 => Some(Vec3::new(read[found - 3], read[found - 2], read[found - 1])),
+            _ => {
+                let expected = "3 numbers after “v”, or 4 with a weight, or 3 more with a colour";
+                return Err(Problem::new(place(line), expected, found));
+            }
+        };
+        let obj = &mut self.obj;
+        if let Some(color) = color.filter(|_| obj.colors.len() == obj.positions.len()) {
+            obj.colors.push(color);
+        }
+        obj.positions.push(Vec3::new(read[0], read[1], read[2]));
+        if obj.positions.len() >= NONE as usize {
+            return Err(Problem::new(place(line), "fewer vertices than 32 bits can count", "more"));
+        }
+        Ok(())
+    }
+
+    fn face<'a>(&mut self, line: usize, words: impl Iterator<Item = &'a [u8]>) -> Result<(), Problem> {
+        let first = self.obj.corners.len();
+        for word in words {
+            let mut parts = word.split(|&byte| byte == b'/');
+            let mut corner = [NONE; 3];
+            let so_far = [self.obj.positions.len(), self.obj.uvs.len(), self.obj.normals.len()];
+            for (slot, so_far) in corner.iter_mut().zip(so_far) {
+                if let Some(part) = parts.next().filter(|part| !part.is_empty()) {
+                    *slot = index(part, so_far).ok_or_else(|| {
+                        let expected = "corners such as 1, 1/1, 1//1 or 1/1/1, counted from 1 or backwards from -1";
+                        Problem::new(place(line), expected, quoted(Some(word)))
+                    })?;
+                }
+            }
+            if corner[0] == NONE || parts.next().is_some() {
+                let expected = "corners such as 1, 1/1, 1//1 or 1/1/1";
+                return Err(Problem::new(place(line), expected, quoted(Some(word))));
+            }
+            self.obj.corners.push(corner);
+        }
+        let (count, end) = (self.obj.corners.len() - first, self.obj.corners.len());
+        if count < 3 {
+            return Err(Problem::new(place(line), "a face of at least 3 corners", count));
+        }
+        let end = u32::try_from(end)
+            .map_err(|_| Problem::new(place(line), "fewer corners than 32 bits can count", "more"))?;
+        let part = self.part_of_next_face(line);
+        self.obj.faces.push(Face { end, part, line: u32::try_from(line).unwrap_or(u32::MAX) });
+        Ok(())
+    }
+
+    fn part_of_next_face(&mut self, line: usize) -> u32 {
+        if let Some(part) = self.part_index {
+            return part;
+        }
+        let next = self.obj.parts.len() as u32;
+        let index = match self.known_parts.get(&self.part) {
+            Some(&index) => index,
+            None if self.obj.parts.len() == MOST_PARTS => {
+                let problem = format!("more than {MOST_PARTS} parts; what follows is put into the last of them");
+                self.warnings.push(Warning::Other { code: "obj-parts", place: place(line), problem });
+                next - 1
+            }
+            None => {
+                self.known_parts.insert(self.part.clone(), next);
+                self.obj.parts.push(self.part.clone());
+                next
+            }
+        };
+        self.part_index = Some(index);
+        index
+    }
+}
+
+fn place(line: usize) -> String {
+    format!("line {line}")
+}
+
+/// Up to `N` numbers that fit into 32 bits, and how many there are.
+fn numbers<'a, const N: usize>(
+    line: usize,
+    words: impl Iterator<Item = &'a [u8]>,
+) -> Result<(usize, [f32; N]), Problem> {
+    let mut read = [0.0; N];
+    let mut found = 0;
+    for word in words {
+        let Some(slot) = read.get_mut(found) else {
+            return Err(Problem::new(place(line), format!("at most {N} numbers"), "more"));
+        };
+        let value = number(word).map(|value| value as f32).filter(|value| value.is_finite());
+        *slot = value.ok_or_else(|| Problem::new(place(line), "a finite number", quoted(Some(word))))?;
+        found += 1;
+    }
+    Ok((found, read))
+}
+
+/// From 0; what points backwards is worked out from how many there are so far.
+fn index(word: &[u8], so_far: usize) -> Option<u32> {
+    let number: i64 = std::str::from_utf8(word).ok()?.parse().ok()?;
+    let index = if number < 0 { (so_far as i64).checked_add(number)? } else { number - 1 };
+    u32::try_from(index).ok().filter(|&index| index != NONE)
+}
+
+/// Names may have spaces in them, and several may stand on one line.
+fn library_names(names: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut name = String::new();
+    for word in names.split_whitespace() {
+        if !name.is_empty() {
+            name.push(' ');
+        }
+        name.push_str(word);
+        if word.to_lowercase().ends_with(".mtl") {
+            found.push(std::mem::take(&mut name));
+        }
+    }
+    if !name.is_empty() {
+        found.push(name);
+    }
+    found
+}
+
+fn check_corners(obj: &ObjText) -> Result<(), Problem> {
+    let counts =
+        [("vertices", obj.positions.len()), ("texture coordinates", obj.uvs.len()), ("normals", obj.normals.len())];
+    let mut start = 0;
+    for face in &obj.faces {
+        for corner in &obj.corners[start..face.end as usize] {
+            for (at, (&index, (what, count))) in corner.iter().zip(counts).enumerate() {
+                if index as usize >= count && (index != NONE || at == 0) {
+                    let found = u64::from(index) + 1;
+                    return Err(Problem::new(place(face.line as usize), format!("one of the {count} {what}"), found));
+                }
+            }
+        }
+        start = face.end as usize;
+    }
+    Ok(())
+}
+
+impl ObjText {
+    /// Each face with its corners.
+    pub fn faces(&self) -> impl Iterator<Item = (&Face, &[Corner])> {
+        let mut start = 0;
+        self.faces.iter().map(move |face| {
+            let corners = &self.corners[start..face.end as usize];
+            start = face.end as usize;
+            (face, corners)
+        })
+    }
+
+    /// Where a corner is.
+    pub fn point(&self, corner: &Corner) -> DVec3 {
+        self.positions[corner[0] as usize].as_dvec3()
+    }
+}
+
+impl Part {
+    /// How it is called: what the file names, most general first.
+    pub fn name(&self) -> String {
+        let names = [&self.object, &self.group, &self.material];
+        names.into_iter().filter(|name| !name.is_empty()).map(String::as_str).collect::<Vec<_>>().join(" / ")
+    }
+}

@@ -1,0 +1,494 @@
+//! .obj with .skel and .attach: broken files first, each with its own words, then what good ones mean, then the real ones
+//! against the exercise's formula in double precision.
+
+use gaitway::anim::model_from_joint;
+use gaitway::asset::{Asset, Warning};
+use gaitway::formats::{FileSet, LoadError, LoadOptions, convert, load, missing_files};
+use gaitway::mesh::{AlphaMode, DeformedVertices, SkinningMode, deform, write_palette};
+use glam::{Affine3A, DMat4, DVec3, Vec2, Vec3};
+
+use crate::coursework::{Exercise, pose};
+use crate::data_folder::data_folder;
+
+/// A square of two triangles, bound to two joints.
+pub const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
+pub const TWO_JOINTS: &str = "0 0 0 -1\n0.5 0 0 0\n";
+pub const ROWS: &str = "0\n0.25\n1\n0.5\n";
+
+fn set(files: &[(&str, &str)]) -> FileSet {
+    let mut set = FileSet::default();
+    for (name, text) in files {
+        set.insert(*name, text.as_bytes().to_vec());
+    }
+    set
+}
+
+fn exercise(obj: &str, skel: &str, attach: &str) -> Result<Asset, LoadError> {
+    load(&set(&[("m.obj", obj), ("m.skel", skel), ("m.attach", attach)]))
+}
+
+fn alone(obj: &str) -> Asset {
+    load(&set(&[("m.obj", obj)])).unwrap_or_else(|problem| panic!("{problem}\n{obj}"))
+}
+
+fn check_error(found: Result<Asset, LoadError>, wanted: [&str; 4]) {
+    let [wanted_file, wanted_place, wanted_expected, wanted_found] = wanted;
+    match found {
+        Err(LoadError::Invalid { file, place, expected, found }) => {
+            assert_eq!((file.as_str(), place.as_str()), (wanted_file, wanted_place), "{expected}; {found}");
+            assert!(expected.contains(wanted_expected), "{place}: {expected}");
+            assert!(found.contains(wanted_found), "{place}: {found}");
+        }
+        other => panic!("{wanted:?}: {other:?}"),
+    }
+}
+
+#[test]
+fn a_broken_obj_says_what_is_wrong_and_where() {
+    let cases = [
+        ("v 1 2\n", ["m.obj", "line 1", "3 numbers after “v”", "2"]),
+        ("v 1 2 3 4 5\n", ["m.obj", "line 1", "4 with a weight", "5"]),
+        ("v 0 0 0\nv 1 x 0\n", ["m.obj", "line 2", "finite number", "“x”"]),
+        ("v 0 0 0\nv 1 inf 0\n", ["m.obj", "line 2", "finite number", "“inf”"]),
+        ("v 0 0 1e60\n", ["m.obj", "line 1", "finite number", "“1e60”"]),
+        ("vt\n", ["m.obj", "line 1", "1 to 3 numbers", "none"]),
+        ("vn 0 1\n", ["m.obj", "line 1", "3 numbers", "2"]),
+        ("v 0 0 0\nf 1 1\n", ["m.obj", "line 2", "at least 3 corners", "2"]),
+        ("v 0 0 0\nv 1 0 0\n\nf 1 2 3\n", ["m.obj", "line 4", "one of the 2 vertices", "3"]),
+        ("v 0 0 0\nf 1 1 0\n", ["m.obj", "line 2", "counted from 1", "“0”"]),
+        ("v 0 0 0\nf 1 1 -2\n", ["m.obj", "line 2", "backwards from -1", "“-2”"]),
+        ("v 0 0 0\nf 1/1 1/1 1/1\n", ["m.obj", "line 2", "one of the 0 texture coordinates", "1"]),
+        ("v 0 0 0\nf 1//2 1//2 1//2\n", ["m.obj", "line 2", "one of the 0 normals", "2"]),
+        ("v 0 0 0\nf 1/1/1/1 1 1\n", ["m.obj", "line 2", "1/1/1", "“1/1/1/1”"]),
+        ("v 0 0 0\nf one two three\n", ["m.obj", "line 2", "1/1/1", "“one”"]),
+        ("v 0 0 0\n", ["m.obj", "the whole file", "a face", "none"]),
+        ("", ["m.obj", "the whole file", "a face", "none"]),
+    ];
+    for (obj, wanted) in cases {
+        check_error(load(&set(&[("m.obj", obj)])), wanted);
+    }
+}
+
+#[test]
+fn a_broken_skeleton_says_what_is_wrong_and_where() {
+    let cases = [
+        ("", ["m.skel", "line 1", "x y z -1", "the end of the file"]),
+        ("0 0 0\n", ["m.skel", "line 1", "4 numbers", "3"]),
+        ("0 0 0 -1 7\n", ["m.skel", "line 1", "4 numbers", "more"]),
+        ("0 zero 0 -1\n", ["m.skel", "line 1", "finite number", "“zero”"]),
+        ("0 nan 0 -1\n", ["m.skel", "line 1", "finite number", "“nan”"]),
+        ("0 0 0 0\n", ["m.skel", "line 1", "the first joint has no parent", "“0”"]),
+        ("0 0 0 -1\n1 0 0 2\n1 0 0 1\n", ["m.skel", "line 2", "comes before it: 0 to 0", "“2”"]),
+        ("0 0 0 -1\n1 0 0 1\n", ["m.skel", "line 2", "comes before it", "“1”"]),
+        ("0 0 0 -1\n1 0 0 -2\n", ["m.skel", "line 2", "comes before it", "“-2”"]),
+        ("0 0 0 -1\n1 0 0 0.5\n", ["m.skel", "line 2", "the parent of joint 1", "“0.5”"]),
+        ("3e38 0 0 -1\n3e38 0 0 0\n", ["m.skel", "joints", "fit into 32 bits", "joint 1"]),
+    ];
+    for (skel, wanted) in cases {
+        check_error(exercise(SQUARE, skel, ROWS), wanted);
+    }
+}
+
+#[test]
+fn broken_weights_say_what_is_wrong_and_where() {
+    let cases = [
+        ("0\n0.25\n1\n", ["m.attach", "line 4", "4 rows", "3 and the end of the file"]),
+        ("0\n0.25\n1\n0.5\n0.5\n", ["m.attach", "line 5", "4 rows", "more"]),
+        ("0\n0.25 0.5\n1\n0.5\n", ["m.attach", "line 2", "1 weights, one for each joint", "more"]),
+        ("0\n0.25\nall\n0.5\n", ["m.attach", "line 3, number 1", "a weight", "“all”"]),
+        ("0\n-0.25\n1\n0.5\n", ["m.attach", "line 2, number 1", "0 or more", "“-0.25”"]),
+        ("0\n0.25\n1e400\n0.5\n", ["m.attach", "line 3, number 1", "a weight", "“1e400”"]),
+    ];
+    for (attach, wanted) in cases {
+        check_error(exercise(SQUARE, TWO_JOINTS, attach), wanted);
+    }
+    let three = "0 0 0 -1\n1 0 0 0\n1 0 0 1\n";
+    check_error(exercise(SQUARE, three, ROWS), ["m.attach", "line 1", "2 weights", "1"]);
+}
+
+#[test]
+fn a_set_that_is_not_complete_says_what_to_drop() {
+    let check = |files: &[(&str, &str)], wanted: &str, missing: &[&str]| {
+        let problem = load(&set(files)).expect_err("not complete").to_string();
+        assert!(problem.contains(wanted) && problem.contains("drop it together"), "{problem}");
+        assert_eq!(missing_files(&set(files)), missing);
+    };
+    check(&[("m.obj", SQUARE), ("m.skel", TWO_JOINTS)], "“m.attach”", &["m.attach"]);
+    check(&[("m.obj", SQUARE), ("m.attach", ROWS)], "“m.skel”", &["m.skel"]);
+    check(&[("m.skel", TWO_JOINTS), ("m.attach", ROWS)], "“m.obj”", &["m.obj"]);
+    let several = load(&set(&[("a.obj", SQUARE), ("b.obj", SQUARE)]));
+    assert!(matches!(several, Err(LoadError::SeveralModels { .. })));
+}
+
+#[test]
+fn files_find_each_other_by_stem_or_by_being_alone() {
+    let joints =
+        |files: &[(&str, &str)]| load(&set(files)).map(|asset| asset.skins.first().map(|skin| skin.joints().len()));
+    assert_eq!(joints(&[("f/m.obj", SQUARE), ("f/m.skel", TWO_JOINTS), ("f/m.attach", ROWS)]), Ok(Some(2)));
+    assert_eq!(joints(&[("M.OBJ", SQUARE), ("m.Skel", TWO_JOINTS), ("M.attach", ROWS)]), Ok(Some(2)));
+    assert_eq!(joints(&[("mesh.obj", SQUARE), ("bones.skel", TWO_JOINTS), ("w.attach", ROWS)]), Ok(Some(2)));
+    assert_eq!(joints(&[("m.obj", SQUARE)]), Ok(None), "a static model");
+    // Of two that could belong to it, none is guessed.
+    assert_eq!(joints(&[("m.obj", SQUARE), ("a.skel", TWO_JOINTS), ("b.skel", "0 0 0 -1")]), Ok(None));
+    assert_eq!(missing_files(&set(&[("m.obj", SQUARE)])), ["m.skel", "m.attach"]);
+}
+
+#[test]
+fn weights_are_divided_by_their_sum_and_odd_rows_are_told_of() {
+    let asset = exercise(SQUARE, "0 0 0 -1\n1 0 0 0\n1 0 0 0\n", "0 0\r\n1 3\r\n0.5 0.4999\r\n0.25 0.75").unwrap();
+    let of = |vertex| {
+        let influences = &asset.meshes[0].primitives[0].influences;
+        influences.of_vertex(vertex).filter(|pair| pair.1 > 0.0).collect::<Vec<_>>()
+    };
+    assert_eq!(of(0), [(0, 1.0)], "a row of zeros follows the first joint");
+    assert_eq!(of(1), [(2, 0.75), (1, 0.25)]);
+    assert!((of(2).iter().map(|pair| pair.1).sum::<f32>() - 1.0).abs() < 1e-7);
+    let warnings: Vec<&Warning> = asset.warnings.iter().collect();
+    let mesh = || "m.attach".to_owned();
+    // 0.9999 is within a thousandth of 1.
+    let wanted = [
+        &Warning::WeightsMissing { mesh: mesh(), vertices: 1 },
+        &Warning::WeightsNormalized { mesh: mesh(), vertices: 1 },
+    ];
+    assert_eq!(warnings, wanted);
+}
+
+#[test]
+fn sixteen_weights_are_kept_and_more_are_told_of() {
+    let joints = |count: usize| {
+        (0..count)
+            .map(|joint| if joint == 0 { "0 0 0 -1\n".to_owned() } else { "1 0 0 0\n".to_owned() })
+            .collect::<String>()
+    };
+    let rows = |count: usize| (0..4).map(|_| "1 ".repeat(count) + "\n").collect::<String>();
+    let asset = exercise(SQUARE, &joints(17), &rows(16)).unwrap();
+    assert_eq!((asset.meshes[0].primitives[0].influences.stride, asset.warnings.len()), (16, 1), "sums are 16, not 1");
+    let asset = exercise(SQUARE, &joints(21), &rows(20)).unwrap();
+    let dropped = asset.warnings.iter().find(|warning| warning.code() == "influences-dropped");
+    assert!(matches!(dropped, Some(Warning::InfluencesDropped { found: 20, kept: 16, .. })));
+    let total: f32 = asset.meshes[0].primitives[0].influences.of_vertex(0).map(|pair| pair.1).sum();
+    assert!((total - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn one_joint_needs_no_columns() {
+    let asset = exercise(SQUARE, "1 2 3 -1\n", "").unwrap();
+    assert_eq!(asset.meshes[0].primitives[0].influences.weights, [1.0, 0.0, 0.0, 0.0].repeat(4));
+    check_error(exercise(SQUARE, "1 2 3 -1\n", "1\n"), ["m.attach", "line 1", "0 weights", "more"]);
+}
+
+#[test]
+fn every_form_of_a_face_means_the_same() {
+    let head = "# a comment\r\nv 0 0 0\r\nv 1 0 0 1.0\r\nv 1 1 0\r\nvt 0 0\r\nvt 1\r\nvt 1 1 0\r\nvn 0 0 2\r\n";
+    for face in [
+        "f 1 2 3",
+        "f 1/1 2/2 3/3",
+        "f 1//1 2//1 3//1",
+        "f 1/1/1 2/2/1 3/3/1",
+        "f -3/-3/-1 -2/-2/-1 -1/-1/-1 # end",
+        "f 1 2 \\\r\n 3",
+    ] {
+        let asset = alone(&format!("{head}{face}\r\n"));
+        let geometry = &asset.meshes[0].primitives[0];
+        assert_eq!(geometry.positions, [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0)], "{face}");
+        assert_eq!(geometry.indices, [0, 1, 2], "{face}");
+        assert_eq!(asset.warnings.len(), 0, "{face}");
+        let slashes = face.matches('/').count();
+        assert_eq!(geometry.normals.is_empty(), slashes < 6, "{face}");
+        if !geometry.normals.is_empty() {
+            assert_eq!(geometry.normals[0], Vec3::Z, "unit length: {face}");
+        }
+        if face.contains("/1/") || slashes == 3 {
+            assert_eq!(
+                geometry.uvs[0],
+                [Vec2::new(0.0, 1.0), Vec2::new(1.0, 1.0), Vec2::new(1.0, 0.0)],
+                "rows from the top"
+            );
+        }
+    }
+    // Points are needed first only by what points backwards.
+    let asset = alone("f 1 2 3\nv 0 0 0\nv 1 0 0\nv 1 1 0\n");
+    assert_eq!(asset.meshes[0].primitives[0].indices, [0, 1, 2]);
+}
+
+/// Twice the area of all triangles, with the sign that the winding gives them.
+fn area(asset: &Asset) -> Vec3 {
+    let geometry = &asset.meshes[0].primitives[0];
+    let corners = geometry.indices.as_chunks::<3>().0;
+    let at = |index: u32| geometry.positions[index as usize];
+    corners.iter().map(|&[a, b, c]| (at(b) - at(a)).cross(at(c) - at(a))).sum()
+}
+
+#[test]
+fn polygons_are_cut_without_overlapping() {
+    // Both ways round, an arrow's head, an L, a star and a comb: the parts' areas have one sign and add up.
+    let shapes: [(&[[f32; 2]], f32); 5] = [
+        (&[[0., 0.], [1., 0.], [1., 1.], [0., 1.]], 2.0),
+        (&[[0., 0.], [2., 0.], [2., 2.], [1.9, 0.1]], 0.4),
+        (&[[0., 0.], [2., 0.], [2., 1.], [1., 1.], [1., 2.], [0., 2.]], 6.0),
+        (&[[0., 3.], [-0.5, 0.5], [-3., 0.], [-0.5, -0.5], [0., -3.], [0.5, -0.5], [3., 0.], [0.5, 0.5]], 12.0),
+        (
+            &[
+                [0., 0.],
+                [5., 0.],
+                [5., 3.],
+                [4., 3.],
+                [4., 1.],
+                [3., 1.],
+                [3., 3.],
+                [2., 3.],
+                [2., 1.],
+                [1., 1.],
+                [1., 3.],
+                [0., 3.],
+            ],
+            22.0,
+        ),
+    ];
+    for (shape, wanted) in shapes {
+        for backwards in [false, true] {
+            for start in 0..shape.len() {
+                let mut corners: Vec<[f32; 2]> = shape.iter().cycle().skip(start).take(shape.len()).copied().collect();
+                if backwards {
+                    corners.reverse();
+                }
+                let mut obj: String = corners.iter().map(|[x, y]| format!("v {x} 0 {y}\n")).collect();
+                obj.push('f');
+                obj.extend((1..=corners.len()).map(|corner| format!(" {corner}")));
+                let asset = alone(&obj);
+                let geometry = &asset.meshes[0].primitives[0];
+                assert_eq!(geometry.triangles(), shape.len() - 2);
+                let absolute: f32 = geometry
+                    .indices
+                    .as_chunks::<3>()
+                    .0
+                    .iter()
+                    .map(|triangle| {
+                        let [a, b, c] = triangle.map(|index| geometry.positions[index as usize]);
+                        (b - a).cross(c - a).length()
+                    })
+                    .sum();
+                let signed = area(&asset);
+                assert!((absolute - signed.length()).abs() < 1e-4, "{shape:?} from {start}: overlaps");
+                assert!((signed.length() - wanted).abs() < 1e-4, "{shape:?}: {signed}");
+            }
+        }
+    }
+    // Without an area, or crossing itself: as many triangles all the same.
+    assert_eq!(alone("v 0 0 0\nf 1 1 1 1 1\n").meshes[0].primitives[0].triangles(), 3);
+    assert_eq!(alone("v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 4\n").meshes[0].primitives[0].triangles(), 2);
+}
+
+#[test]
+fn a_vertex_with_two_texture_coordinates_is_one_vertex_of_the_file() {
+    let obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 9 9 9\nv 0 1 0\nvt 0 0\nvt 1 1\nf 1/1 2/1 3/1\nf 1/2 3/2 5/2\n";
+    let asset = load(&set(&[("m.obj", obj), ("m.skel", TWO_JOINTS), ("m.attach", "0\n0\n0.5\n1\n1\n")])).unwrap();
+    let geometry = &asset.meshes[0].primitives[0];
+    assert_eq!((geometry.file_vertices, geometry.positions.len()), (5, 7), "two are copied");
+    assert_eq!(geometry.positions[3], Vec3::splat(9.0), "one that no face names is there");
+    assert_eq!(geometry.positions[5..], [geometry.positions[0], geometry.positions[2]]);
+    assert_eq!(
+        geometry.influences.of_vertex(6).collect::<Vec<_>>(),
+        geometry.influences.of_vertex(2).collect::<Vec<_>>()
+    );
+    geometry.validate(Some(2)).unwrap();
+}
+
+#[test]
+fn groups_and_materials_are_parts_that_keep_the_order_of_the_file() {
+    let obj = "mtllib some where.mtl other.mtl\no Body\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 5 5 5\n\
+               g front\nusemtl red\nf 1 2 3\ng back\nf 1 3 4\ng front\nf 3 4 1\nusemtl \nf 4 1 2\n";
+    let mtl =
+        "newmtl red\nKd 1 0 0\nd 0.5\nNs 98\nKs 1 1 1\nmap_Kd -s 1 1 1 -clamp on skin a.png\nnewmtl dull\nKs 0 0 0\n";
+    let files = set(&[("m.obj", obj), ("some where.mtl", mtl)]);
+    assert_eq!(missing_files(&files), ["m.skel", "m.attach", "other.mtl", "skin a.png"]);
+    let asset = load(&files).unwrap();
+    let mesh = &asset.meshes[0];
+    assert_eq!(mesh.part_names, ["Body / front / red", "Body / back / red", "Body / front"]);
+    assert_eq!(mesh.primitives.iter().map(|part| part.triangles()).collect::<Vec<_>>(), [2, 1, 1]);
+    assert_eq!(mesh.file_vertex_count(), 5);
+    let places: Vec<Vec3> = mesh
+        .file_vertices
+        .iter()
+        .map(|&[part, vertex]| mesh.primitives[part as usize].positions[vertex as usize])
+        .collect();
+    let wanted = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y, Vec3::splat(5.0)];
+    assert_eq!(places, wanted);
+    let red = &asset.materials[mesh.primitives[0].material.unwrap()];
+    assert_eq!((red.name.as_str(), red.base_color.to_array()), ("red", [1.0, 0.0, 0.0, 0.5]));
+    assert_eq!(red.alpha_mode, AlphaMode::Blend);
+    assert!((red.roughness - 0.02_f32.sqrt()).abs() < 1e-6);
+    let codes: Vec<&str> = asset.warnings.iter().map(Warning::code).collect();
+    assert_eq!(codes, ["materials-missing", "image-missing"]);
+}
+
+#[test]
+fn vertices_may_have_colours_and_the_rest_is_told_of() {
+    let asset = alone("v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0.5 0.5 0.5\nf 1 2 3\nl 1 2\ncurv 1 2\ns off\n");
+    let colors = &asset.meshes[0].primitives[0].colors;
+    assert_eq!(colors[0].to_array(), [1.0, 0.0, 0.0, 1.0]);
+    assert!((colors[2].x - 0.21404).abs() < 1e-4, "as a screen shows them: {}", colors[2].x);
+    let codes: Vec<&str> = asset.warnings.iter().map(Warning::code).collect();
+    assert_eq!(codes, ["obj-statement", "obj-statement"]);
+    assert!(alone("v 0 0 0 1 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n").meshes[0].primitives[0].colors.is_empty());
+}
+
+fn real(name: &str) -> Option<(Asset, Exercise, FileSet)> {
+    let folder = data_folder()?.join("mit6837");
+    let mut files = FileSet::default();
+    let text = |kind: &str| std::fs::read_to_string(folder.join(format!("{name}.{kind}"))).expect("a real file");
+    for kind in ["obj", "skel", "attach"] {
+        files.insert(format!("{name}.{kind}"), text(kind).into_bytes());
+    }
+    Some((load(&files).expect("it loads"), Exercise::read(&text("obj"), &text("skel"), &text("attach")), files))
+}
+
+/// All vertices as the reference puts them with these joint rotations.
+fn deformed(asset: &Asset, locals: &[glam::Quat], mode: SkinningMode) -> Vec<Vec3> {
+    let skeleton = &asset.skeleton;
+    let mut pose = skeleton.rest().clone();
+    for (source, &rotation) in locals.iter().enumerate() {
+        pose.locals[skeleton.joint_of_source(source).unwrap().get()].rotation = rotation;
+    }
+    let (mut world, mut palette) = (Vec::new(), Vec::new());
+    model_from_joint(skeleton, &pose.locals, Affine3A::IDENTITY, &mut world);
+    write_palette(&asset.skins[0], &world, mode, &mut palette);
+    let mut moved = DeformedVertices::default();
+    deform(&asset.meshes[0].primitives[0], &[], &palette, mode, &mut moved);
+    moved.positions
+}
+
+#[test]
+fn the_exercise_models_stand_where_they_were_bound_and_bend_as_the_formula_says() {
+    for name in ["Model1", "Model2", "Model3", "Model4"] {
+        let Some((asset, exercise, _)) = real(name) else { return };
+        assert_eq!(
+            (asset.skeleton.len(), exercise.vertices.len(), asset.meshes[0].primitives[0].triangles()),
+            (18, 13336, 26668)
+        );
+        assert_eq!(asset.warnings.len(), 0, "{name}");
+        assert_eq!(asset.skeleton.name(asset.skeleton.joint_of_source(7).unwrap()), "joint 7");
+        let largest = |moved: &[Vec3], wanted: &[DVec3]| {
+            assert_eq!(moved.len(), wanted.len());
+            moved.iter().zip(wanted).map(|(a, b)| a.as_dvec3().distance(*b)).fold(0.0, f64::max)
+        };
+        let rest = vec![glam::Quat::IDENTITY; 18];
+        for mode in [SkinningMode::Linear, SkinningMode::Rigid, SkinningMode::DualQuaternion] {
+            let off = largest(&deformed(&asset, &rest, mode), &exercise.vertices);
+            assert!(off < 1e-6, "{name} at rest, {mode:?}: {off}");
+        }
+        for seed in 1..=8 {
+            let (exact, rounded) = pose(18, seed);
+            let off = largest(&deformed(&asset, &rounded, SkinningMode::Linear), &exercise.bent(&exact));
+            assert!(off < 1e-6, "{name}, pose {seed}: {off}");
+        }
+    }
+}
+
+#[test]
+fn a_written_exercise_model_means_the_same_to_another_reader() {
+    for name in ["Model1", "Model3"] {
+        let Some((_, exercise, files)) = real(name) else { return };
+        let written = convert(&files, &LoadOptions::default()).unwrap();
+        let (json, binary) = chunks(&written);
+        let (exact, _) = pose(18, 5);
+        let found = bent_glb(&json, binary, &exact);
+        let off = found.iter().zip(exercise.bent(&exact)).map(|(a, b)| a.distance(b)).fold(0.0, f64::max);
+        assert_eq!(found.len(), exercise.vertices.len());
+        assert!(off < 1e-6, "{name}: {off}");
+        // And to our own.
+        let mut set = FileSet::default();
+        set.insert("written.glb", written);
+        let asset = load(&set).unwrap();
+        assert_eq!(
+            (asset.warnings.len(), asset.meshes[0].primitives[0].influences.stride),
+            (0, if name == "Model3" { 12 } else { 16 })
+        );
+    }
+}
+
+fn chunks(glb: &[u8]) -> (serde_json::Value, &[u8]) {
+    let length = |at: usize| u32::from_le_bytes(glb[at..at + 4].try_into().unwrap()) as usize;
+    let json = &glb[20..20 + length(12)];
+    (serde_json::from_slice(json).unwrap(), &glb[20 + json.len() + 8..])
+}
+
+/// A reader of skinned GLBs that shares no code with the real one: all in double precision, joints turned by `rotations`.
+fn bent_glb(json: &serde_json::Value, binary: &[u8], rotations: &[glam::DQuat]) -> Vec<DVec3> {
+    let number = |value: &serde_json::Value| value.as_u64().unwrap_or(0) as usize;
+    let read = |accessor: usize| -> Vec<f64> {
+        let accessor = &json["accessors"][accessor];
+        let view = &json["bufferViews"][number(&accessor["bufferView"])];
+        let start = number(&view["byteOffset"]) + number(&accessor["byteOffset"]);
+        let width = match accessor["type"].as_str().unwrap() {
+            "SCALAR" => 1,
+            "VEC3" => 3,
+            "VEC4" => 4,
+            "MAT4" => 16,
+            other => panic!("{other}"),
+        };
+        let count = number(&accessor["count"]) * width;
+        match number(&accessor["componentType"]) {
+            5123 => binary[start..start + 2 * count]
+                .as_chunks::<2>()
+                .0
+                .iter()
+                .map(|bytes| f64::from(u16::from_le_bytes(*bytes)))
+                .collect(),
+            5126 => binary[start..start + 4 * count]
+                .as_chunks::<4>()
+                .0
+                .iter()
+                .map(|bytes| f64::from(f32::from_le_bytes(*bytes)))
+                .collect(),
+            other => panic!("{other}"),
+        }
+    };
+    let nodes = json["nodes"].as_array().unwrap();
+    let mut world = vec![DMat4::IDENTITY; nodes.len()];
+    let mut parent = vec![None; nodes.len()];
+    for (index, node) in nodes.iter().enumerate() {
+        for child in node["children"].as_array().into_iter().flatten() {
+            parent[number(child)] = Some(index);
+        }
+    }
+    for index in 0..nodes.len() {
+        let at = |part: usize| nodes[index]["translation"][part].as_f64().unwrap_or(0.0);
+        let rotation = rotations.get(index).copied().unwrap_or_default();
+        let local = DMat4::from_rotation_translation(rotation, DVec3::new(at(0), at(1), at(2)));
+        // Parents come first in these files.
+        world[index] = parent[index].map_or(local, |parent: usize| world[parent] * local);
+    }
+    let primitive = &json["meshes"][0]["primitives"][0]["attributes"];
+    let skin = &json["skins"][0];
+    let inverse = read(number(&skin["inverseBindMatrices"]));
+    let palette: Vec<DMat4> = skin["joints"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .zip(inverse.as_chunks::<16>().0)
+        .map(|(joint, inverse)| world[number(joint)] * DMat4::from_cols_array(inverse))
+        .collect();
+    let positions = read(number(&primitive["POSITION"]));
+    let sets: Vec<[Vec<f64>; 2]> = (0..4)
+        .filter_map(|set| {
+            Some([format!("JOINTS_{set}"), format!("WEIGHTS_{set}")]).filter(|keys| !primitive[&keys[0]].is_null())
+        })
+        .map(|keys| keys.map(|key| read(number(&primitive[key]))))
+        .collect();
+    positions
+        .as_chunks::<3>()
+        .0
+        .iter()
+        .enumerate()
+        .map(|(vertex, position)| {
+            let mut sum = DVec3::ZERO;
+            for [joints, weights] in &sets {
+                for at in 4 * vertex..4 * vertex + 4 {
+                    sum += weights[at] * palette[joints[at] as usize].transform_point3(DVec3::from_array(*position));
+                }
+            }
+            sum
+        })
+        .collect()
+}

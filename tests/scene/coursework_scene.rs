@@ -1,0 +1,320 @@
+//! The skinning exercise as a scene: bent by hand, read from the command line, its formula laid open, written as GLB.
+
+use std::path::PathBuf;
+use std::process::Command as Process;
+
+use gaitway::files::{OpenError, open_paths};
+use gaitway::frame::{Frame, VertexFormula, evaluate, joint_matrices, pick_vertex, pose_document, vertex_formula};
+use gaitway::library::Library;
+use gaitway::mesh::{DeformedVertices, Geometry, SkinningMode, Topology, smooth_normals};
+use gaitway::state::{
+    ClipChoice, Command, History, Show, UpAxis, VertexChoice, ViewerState, apply, from_link, title, to_link,
+    written_skeleton,
+};
+use glam::{DQuat, DVec3, EulerRot, Vec2, Vec3};
+use serde_json::Value;
+
+use crate::coursework::Exercise;
+use crate::data::{folder, library_of, open, walker};
+
+const BENT: &str = "v=1&clip=&pose=0:10:-20:5,2:0:0:15,5:-60:0:10,6:70:0:0,12:0:30:-20,13:0:0:45,16:-30:20:0";
+
+fn bent() -> ViewerState {
+    from_link(BENT).0
+}
+
+/// The same turns as the exercise has them.
+fn rotations(state: &ViewerState) -> Vec<DQuat> {
+    let of = |joint: usize| {
+        let [x, y, z] = state.pose.get(&joint).copied().unwrap_or_default().map(|angle| f64::from(angle).to_radians());
+        DQuat::from_euler(EulerRot::XYZ, x, y, z)
+    };
+    (0..18).map(of).collect()
+}
+
+fn exercise(name: &str) -> Option<Exercise> {
+    let folder = folder()?.join("mit6837");
+    let text = |kind: &str| std::fs::read_to_string(folder.join(format!("{name}.{kind}"))).expect("a real file");
+    Some(Exercise::read(&text("obj"), &text("skel"), &text("attach")))
+}
+
+fn positions(document: &Value) -> Vec<DVec3> {
+    let meshes = document["meshes"].as_array().expect("meshes");
+    assert_eq!(meshes.len(), 1, "an .obj is one mesh");
+    let numbers: Vec<f64> =
+        meshes[0]["positions"].as_array().expect("positions").iter().filter_map(Value::as_f64).collect();
+    numbers.as_chunks::<3>().0.iter().map(|&at| DVec3::from_array(at)).collect()
+}
+
+fn furthest(a: &[DVec3], b: &[DVec3]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max)
+}
+
+#[test]
+fn sliders_bend_the_models_as_the_formula_says() {
+    for name in ["Model1", "Model2", "Model3", "Model4"] {
+        let (Some(exercise), Some(library)) = (exercise(name), open(&format!("mit6837/{name}.obj"))) else { return };
+        let state = bent();
+        let found = positions(&pose_document(&library, &state));
+        assert!(furthest(&found, &exercise.bent(&rotations(&state))) < 1e-6, "{name}");
+        assert!(furthest(&found, &exercise.vertices) > 0.05, "{name} is bent");
+        let rest = ViewerState { clip: ClipChoice::RestPose, ..ViewerState::default() };
+        assert!(furthest(&positions(&pose_document(&library, &rest)), &exercise.vertices) < 1e-6, "{name}");
+    }
+}
+
+#[test]
+fn a_set_is_opened_by_any_of_its_names() {
+    let Some(folder) = folder() else { return };
+    let folder = folder.join("mit6837");
+    for name in ["Model2.obj", "Model2.skel", "Model2.attach", "Model2"] {
+        let opened = open_paths(&[folder.join(name)]).unwrap_or_else(|problem| panic!("{name}: {problem}"));
+        assert_eq!(opened.model.rig().skin_joints(), 18, "{name}");
+        assert_eq!(opened.files.len(), 3, "{name}");
+    }
+    let all: Vec<PathBuf> = ["obj", "skel", "attach"].map(|kind| folder.join(format!("Model3.{kind}"))).into();
+    assert_eq!(open_paths(&all).expect("together").files, ["Model3.obj", "Model3.skel", "Model3.attach"]);
+    assert!(matches!(open_paths(&[folder.join("Model9")]), Err(OpenError::Read { .. })));
+    let several = open_paths(&[folder]).expect_err("four models").to_string();
+    assert!(several.contains("Model1.obj") && several.contains("Model4.obj"), "{several}");
+}
+
+fn run(arguments: &[&str]) -> Vec<u8> {
+    let output = Process::new(env!("CARGO_BIN_EXE_gaitway")).args(arguments).output().expect("the program runs");
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    output.stdout
+}
+
+#[test]
+fn the_command_line_reads_bends_and_writes_them() {
+    let (Some(folder), Some(exercise)) = (folder(), exercise("Model1")) else { return };
+    let model = folder.join("mit6837/Model1.obj");
+    let model = model.to_str().expect("a plain path");
+    let inspected: Value = serde_json::from_slice(&run(&["inspect", model, "--json"])).expect("JSON");
+    let numbers =
+        ["nodes", "joints", "meshes", "primitives", "vertices", "triangles"].map(|key| inspected[key].as_u64());
+    assert_eq!(numbers, [18, 18, 1, 1, 13336, 26668].map(Some));
+    assert_eq!((inspected["format"].as_str(), inspected["warnings"].as_array().map(Vec::len)), (Some("obj"), Some(0)));
+    let posed = |arguments: &[&str]| positions(&serde_json::from_slice(&run(arguments)).expect("JSON"));
+    assert!(furthest(&posed(&["pose", model, "--json"]), &exercise.vertices) < 1e-6);
+    let wanted = exercise.bent(&rotations(&bent()));
+    assert!(furthest(&posed(&["pose", model, "--view", BENT, "--json"]), &wanted) < 1e-6);
+
+    let out = std::env::temp_dir().join(format!("gaitway-coursework-{}.glb", std::process::id()));
+    let out_name = out.to_str().expect("a plain path");
+    run(&["convert", model, "--out", out_name]);
+    assert!(furthest(&posed(&["pose", out_name, "--json"]), &exercise.vertices) < 1e-6, "bound as before");
+    let named = format!("{BENT}&names=5:Left thigh");
+    run(&["convert", model, "--view", &named, "--out", out_name]);
+    let document: Value = serde_json::from_slice(&run(&["pose", out_name, "--json"])).expect("JSON");
+    std::fs::remove_file(&out).expect("it was written");
+    assert!(furthest(&positions(&document), &wanted) < 1e-6, "written as it stands");
+    assert_eq!(document["nodes"][5]["name"], "Left thigh");
+}
+
+fn evaluated(library: &Library, state: &ViewerState) -> Frame {
+    let mut frame = Frame::default();
+    evaluate(library, state, 1.0, &mut frame);
+    frame
+}
+
+#[test]
+fn the_formula_adds_up_to_what_is_drawn() {
+    let (Some(library), Some(exercise)) = (open("mit6837/Model1.obj"), exercise("Model1")) else { return };
+    let model = library.active().expect("a model");
+    for up in [UpAxis::Y, UpAxis::Z] {
+        let state = ViewerState { up, ..bent() };
+        let frame = evaluated(&library, &state);
+        let wanted = exercise.bent(&rotations(&state));
+        let mut formula = VertexFormula::default();
+        let mut most = 0;
+        for vertex in (0..13336).step_by(37) {
+            let choice = VertexChoice { instance: 0, primitive: 0, vertex };
+            assert!(vertex_formula(model, &frame.characters[0], choice, &mut formula));
+            most = most.max(formula.parts.len());
+            assert!(formula.sum.distance(formula.drawn) < 1e-6);
+            if up == UpAxis::Y {
+                assert!(formula.sum.as_dvec3().distance(wanted[vertex]) < 1e-6);
+            }
+            assert!((formula.parts.iter().map(|part| part.weight).sum::<f32>() - 1.0).abs() < 1e-6);
+            for part in &formula.parts {
+                let matrices = joint_matrices(model, &frame.characters[0], part.joint).expect("of the skin");
+                let alone = matrices.world_from_bind().transform_point3(formula.bound);
+                assert!(alone.distance(part.alone) < 1e-6 && part.share == part.weight * part.alone);
+            }
+        }
+        assert!(most > 8, "vertices with many influences were looked at: {most}");
+    }
+    let nowhere = VertexChoice { instance: 0, primitive: 0, vertex: 13336 };
+    let frame = evaluated(&library, &bent());
+    assert!(!vertex_formula(model, &frame.characters[0], nowhere, &mut VertexFormula::default()));
+}
+
+#[test]
+fn any_skinned_model_has_a_formula() {
+    let library = walker();
+    let model = library.active().expect("a model");
+    for skinning in [SkinningMode::Linear, SkinningMode::Rigid, SkinningMode::DualQuaternion] {
+        let state = ViewerState { skinning, time_secs: 0.4, ..ViewerState::default() };
+        let frame = evaluated(&library, &state);
+        let document = pose_document(&library, &state);
+        let mut formula = VertexFormula::default();
+        for (at, draw) in frame.characters[0].draws.iter().enumerate() {
+            let choice = VertexChoice { instance: draw.instance, primitive: 0, vertex: 3 };
+            assert!(vertex_formula(model, &frame.characters[0], choice, &mut formula));
+            let first = document["meshes"].as_array().expect("meshes").iter().find(|mesh| mesh["mesh"] == draw.mesh);
+            let number =
+                |axis: usize| first.expect("it is drawn")["positions"][9 + axis].as_f64().expect("a number") as f32;
+            let drawn = Vec3::new(number(0), number(1), number(2));
+            assert!(formula.drawn.distance(drawn) < 1e-5, "{skinning:?}, draw {at}");
+            if skinning == SkinningMode::Linear {
+                assert!(formula.sum.distance(drawn) < 1e-5, "draw {at}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_vertex_is_found_where_it_is_seen() {
+    let Some(library) = open("mit6837/Model1.obj") else { return };
+    let model = library.active().expect("a model");
+    let state = bent();
+    let frame = evaluated(&library, &state);
+    let character = &frame.characters[0];
+    let projection = frame.view.projection_from_view * frame.view.view_from_world;
+    let mut scratch = DeformedVertices::default();
+    let mut formula = VertexFormula::default();
+    let (mut found, mut hidden) = (0, 0);
+    for vertex in (0..13336).step_by(101) {
+        let choice = VertexChoice { instance: 0, primitive: 0, vertex };
+        vertex_formula(model, character, choice, &mut formula);
+        let at = projection.project_point3(formula.drawn);
+        match pick_vertex(model, &frame, character, at.truncate(), &mut scratch) {
+            Some(picked) if picked == choice => found += 1,
+            Some(picked) => {
+                // In front of it, or a neighbour where it is seen from its edge.
+                vertex_formula(model, character, picked, &mut formula);
+                let other = projection.project_point3(formula.drawn);
+                assert!(other.z <= at.z + 2e-3, "vertex {vertex}: {picked:?}");
+                assert!(other.truncate().distance(at.truncate()) < 0.05);
+                hidden += 1;
+            }
+            None => hidden += 1,
+        }
+    }
+    assert!(found > 30 && hidden > 30, "{found} seen, {hidden} hidden");
+    assert_eq!(pick_vertex(model, &frame, character, Vec2::new(-0.99, 0.99), &mut scratch), None);
+}
+
+#[test]
+fn joints_can_be_renamed() {
+    let mut library = walker();
+    let asset = &library.active().expect("a model").asset.clone();
+    let joint = asset.skeleton.joint_of_source(5).expect("a joint");
+    let (mut state, mut history) = (ViewerState::default(), History::default());
+    let before = title(Some(&state), asset, joint).into_owned();
+    let mut rename = |state: &mut ViewerState, name: &str| {
+        history.apply(state, &walker(), Command::RenameJoint { joint: 5, name: name.to_owned() });
+        history.end_gesture();
+        title(Some(state), asset, joint).into_owned()
+    };
+    assert_eq!(rename(&mut state, "  Crown,\tof: the head \n"), "Crown,of: the head");
+    assert_eq!(from_link(&to_link(&state)).0.names, state.names);
+    assert_eq!(rename(&mut state, &"x".repeat(500)).len(), 80);
+    assert_eq!(rename(&mut state, ""), before);
+    assert_eq!(rename(&mut state, &before.clone()), before, "as the file says is no name of its own");
+    assert!(state.names.is_empty());
+    assert!(history.undo(&mut state, &mut library));
+    assert_eq!(state.names[&5].len(), 80);
+    assert!(history.undo(&mut state, &mut library));
+    assert_eq!(state.names[&5], "Crown,of: the head");
+    assert_eq!(title(None, asset, joint), before, "other files keep their names");
+    apply(&mut state, &library, Command::RenameJoint { joint: 9999, name: "Nobody".to_owned() });
+    assert_eq!(state.names.len(), 1);
+    let written = written_skeleton(library.active().expect("a model"), &state, false);
+    assert_eq!(written.name(joint), "Crown,of: the head");
+    assert_eq!(written.rest(), asset.skeleton.rest());
+}
+
+#[test]
+fn smooth_normals_are_the_mean_by_angle() {
+    // A cube of triangles: however its sides are cut, a corner's normal points along its diagonal.
+    let side = |corner: usize, bit: usize| if corner & bit == 0 { -1.0 } else { 1.0 };
+    let positions: Vec<Vec3> = (0..8).map(|at| Vec3::new(side(at, 4), side(at, 2), side(at, 1))).collect();
+    let quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
+    let indices: Vec<u32> = quads.iter().flat_map(|[a, b, c, d]| [a, b, c, a, c, d].map(|&index| index)).collect();
+    let cube = Geometry { positions: positions.clone(), indices: indices.clone(), ..Geometry::default() };
+    for (normal, at) in smooth_normals(&cube).iter().zip(&positions) {
+        assert!(normal.distance(at.normalize()) < 1e-6, "{at}: {normal}");
+    }
+    // Every triangle with vertices of its own: the same.
+    let split: Vec<Vec3> = indices.iter().map(|&index| positions[index as usize]).collect();
+    let split = Geometry { indices: (0..36).collect(), positions: split, ..Geometry::default() };
+    for (normal, at) in smooth_normals(&split).iter().zip(&split.positions) {
+        assert!(normal.distance(at.normalize()) < 1e-6, "{at}: {normal}");
+    }
+    assert!(smooth_normals(&Geometry { topology: Topology::Lines, ..cube }).is_empty());
+}
+
+#[test]
+fn normals_are_in_the_pose_where_the_surface_is_smooth() {
+    let Some(library) = open("mit6837/Model4.obj") else { return };
+    let normals = |smooth: bool| {
+        let state = ViewerState { show: Show { smooth, ..Show::default() }, ..bent() };
+        pose_document(&library, &state)["meshes"][0]["normals"].as_array().map(Vec::len)
+    };
+    assert_eq!((normals(false), normals(true)), (Some(0), Some(3 * 13336)));
+}
+
+#[test]
+fn several_parts_are_one_mesh_in_the_order_of_the_file() {
+    let mut files = gaitway::formats::FileSet::default();
+    let obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 5 5 5\ng a\nf 3 4 1\ng b\nf 1 2 3\n";
+    files.insert("parts.obj", obj.as_bytes().to_vec());
+    let library = library_of(gaitway::files::open_bytes(&files, "parts.obj".to_owned()).expect("it opens").model);
+    let wanted = [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y, DVec3::splat(5.0)];
+    let document = pose_document(&library, &ViewerState::default());
+    assert_eq!(positions(&document), wanted);
+    assert_eq!(document["meshes"][0]["normals"].as_array().map(Vec::len), Some(0));
+    let model = library.active().expect("a model");
+    assert_eq!(gaitway::library::inspect(model, &[])["vertices"], 5);
+    assert_eq!(gaitway::library::inspect(model, &[])["primitives"], 2);
+}
+
+/// The joints have no names, so the map is written by hand.
+#[test]
+fn a_motion_can_be_lent_to_them() {
+    let Some(folder) = folder() else { return };
+    let (model, motion) = (folder.join("mit6837/Model1.obj"), folder.join("cosc422/original/Dwarf/avatar_walk.bvh"));
+    let scratch = |name: &str| std::env::temp_dir().join(format!("gaitway-lent-{}-{name}", std::process::id()));
+    let (map, out) = (scratch("map.json"), scratch("out.glb"));
+    let joints = r##"{ "gaitway_map": 1, "joints": { "joint 5": { "source": 18 }, "joint 6": { "source": 19 },
+        "#9": { "source": 15 }, "#10": { "source": 16 } } }"##;
+    std::fs::write(&map, joints).expect("a scratch file");
+    let text = |path: &PathBuf| path.to_str().expect("a plain path").to_owned();
+    let arguments = [
+        "retarget",
+        "--model",
+        &text(&model),
+        "--motion",
+        &text(&motion),
+        "--map",
+        &text(&map),
+        "--out",
+        &text(&out),
+        "--json",
+    ];
+    let report: Value = serde_json::from_slice(&run(&arguments)).expect("JSON");
+    let opened = open_paths(std::slice::from_ref(&out)).expect("it was written").model;
+    std::fs::remove_file(&map).expect("it was written");
+    std::fs::remove_file(&out).expect("it was written");
+    assert_eq!(report["mapped"].as_array().map(Vec::len), Some(4));
+    assert_eq!((opened.asset.clips.len(), opened.rig().skin_joints()), (1, 18));
+    let moved: Vec<usize> = opened.asset.clips[0]
+        .channels()
+        .iter()
+        .map(|channel| opened.asset.skeleton.source_index(channel.joint))
+        .collect();
+    assert!([5, 6, 9, 10].iter().all(|joint| moved.contains(joint)), "{moved:?}");
+}

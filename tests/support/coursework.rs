@@ -1,0 +1,62 @@
+//! The skinning exercise of MIT 6.837 done straightforwardly in double precision, from the texts of its three files:
+//! `p' = Σ w_j · T_j · B_j⁻¹ · p`. Shares no code with what it judges.
+
+use glam::{DMat4, DQuat, DVec3, Quat};
+
+pub struct Exercise {
+    pub vertices: Vec<DVec3>,
+    joints: Vec<(DVec3, Option<usize>)>,
+    /// One row for each vertex, one weight for each joint.
+    weights: Vec<Vec<f64>>,
+}
+
+impl Exercise {
+    pub fn read(obj: &str, skel: &str, attach: &str) -> Self {
+        let numbers = |line: &str| -> Vec<f64> { line.split_whitespace().map(|word| word.parse().unwrap()).collect() };
+        let vertices =
+            obj.lines().filter_map(|line| line.strip_prefix("v ")).map(|line| DVec3::from_slice(&numbers(line)));
+        let joints = skel
+            .lines()
+            .map(numbers)
+            .map(|row| (DVec3::from_slice(&row[..3]), if row[3] < 0.0 { None } else { Some(row[3] as usize) }));
+        let weights = attach.lines().map(|line| {
+            let row = numbers(line);
+            let sum: f64 = row.iter().sum();
+            std::iter::once(0.0).chain(row.into_iter().map(|weight| weight / sum)).collect()
+        });
+        Self { vertices: vertices.collect(), joints: joints.collect(), weights: weights.collect() }
+    }
+
+    /// Where the vertices are with every joint turned.
+    pub fn bent(&self, rotations: &[DQuat]) -> Vec<DVec3> {
+        let mut bind: Vec<DMat4> = Vec::new();
+        let mut world: Vec<DMat4> = Vec::new();
+        for (&(offset, parent), &rotation) in self.joints.iter().zip(rotations) {
+            let (bind_parent, world_parent) =
+                parent.map_or((DMat4::IDENTITY, DMat4::IDENTITY), |at| (bind[at], world[at]));
+            bind.push(bind_parent * DMat4::from_translation(offset));
+            world.push(world_parent * DMat4::from_rotation_translation(rotation, offset));
+        }
+        let moves: Vec<DMat4> = world.iter().zip(&bind).map(|(world, bind)| *world * bind.inverse()).collect();
+        let move_one = |(vertex, row): (&DVec3, &Vec<f64>)| {
+            row.iter().zip(&moves).map(|(&weight, moved)| weight * moved.transform_point3(*vertex)).sum()
+        };
+        self.vertices.iter().zip(&self.weights).map(move_one).collect()
+    }
+}
+
+/// Any angles for all joints, the same on every run: exact, and rounded as the real thing has them.
+#[allow(dead_code)] // Not every test program turns joints at random.
+pub fn pose(joints: usize, seed: u64) -> (Vec<DQuat>, Vec<Quat>) {
+    let mut random = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    let mut part = || {
+        random ^= random << 13;
+        random ^= random >> 7;
+        random ^= random << 17;
+        (random % 20_001) as f64 / 10_000.0 - 1.0
+    };
+    let rounded: Vec<Quat> = (0..joints)
+        .map(|_| DQuat::from_euler(glam::EulerRot::XYZ, 1.5 * part(), 1.5 * part(), 1.5 * part()).as_quat().normalize())
+        .collect();
+    (rounded.iter().map(|rotation| rotation.as_dquat().normalize()).collect(), rounded)
+}

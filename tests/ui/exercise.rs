@@ -1,0 +1,169 @@
+//! The skinning exercise in the panels: sliders, matrices, the formula at a vertex, names, and what can be saved.
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use gaitway::formats::{FileSet, load};
+use gaitway::library::Model;
+use gaitway::state::{Command, Show, VertexChoice};
+use gaitway::ui::{Saved, Tab, UiAction};
+
+use crate::bench::{Bench, NARROW, WIDE, bench, press, sample_bench};
+
+/// A strip along X: its beginning follows joint 1, its end joint 2, the middle both.
+fn strip(size: [f32; 2]) -> Harness<'static, Bench> {
+    let mut files = FileSet::default();
+    let obj = "v 0 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 2 0 0\nv 2 1 0\nf 1 3 4 2\nf 3 5 6 4\n";
+    for (name, text) in [
+        ("strip.obj", obj),
+        ("strip.skel", "0 0 0 -1\n0 0 0 0\n1 0 0 1\n"),
+        ("strip.attach", "1 0\n1 0\n0.75 0.25\n0.5 0.5\n0 1\n0 1\n"),
+    ] {
+        files.insert(name, text.as_bytes().to_vec());
+    }
+    let asset = load(&files).expect("a small exercise");
+    bench(size, Model::new("strip.obj".to_owned(), asset, Vec::new()))
+}
+
+fn has(harness: &Harness<'_, Bench>, label: &str) -> bool {
+    harness.query_by_label(label).is_some()
+}
+
+#[test]
+fn the_sliders_say_their_order_and_bend_the_model() {
+    let mut harness = strip(WIDE);
+    press(&mut harness, "joint 2");
+    press(&mut harness, "Turn by hand");
+    assert!(harness.query_by_label_contains("about its X, then its Y, then its Z").is_some());
+    harness.get_by_label("Turn Z").set_value_accesskit(90.0);
+    harness.run();
+    let world = harness.state().frame.characters[0].world_from_joint[2];
+    assert!(world.transform_point3(glam::Vec3::X).distance(glam::Vec3::new(1.0, 1.0, 0.0)) < 1e-5);
+}
+
+#[test]
+fn the_three_matrices_of_the_chosen_joint_are_shown() {
+    let mut harness = strip(WIDE);
+    press(&mut harness, "joint 2");
+    harness.state_mut().state.pose.insert(2, [0.0, 0.0, 90.0]);
+    assert_eq!(harness.query_all_by_label("Scale 1.000 1.000 1.000").count(), 2, "local and in the world");
+    press(&mut harness, "Matrices");
+    let zero = "0.0000";
+    let row = |numbers: [&str; 4]| format!(" {}", numbers.join(" "));
+    let last = row([zero, zero, zero, "1.0000"]);
+    let third = row([zero, zero, "1.0000", zero]);
+    let bind = [row(["1.0000", zero, zero, "-1.0000"]), row([zero, "1.0000", zero, zero])].concat();
+    let now = [row([zero, "-1.0000", zero, "1.0000"]), row(["1.0000", zero, zero, zero])].concat();
+    let product = [row([zero, "-1.0000", zero, "1.0000"]), row(["1.0000", zero, zero, "-1.0000"])].concat();
+    for (name, rows) in [("inv(B)", bind), ("T", now), ("T · inv(B)", product)] {
+        let label = format!("{name}:{rows}{third}{last}");
+        assert!(has(&harness, &label), "{label}");
+    }
+    assert!(!has(&harness, "Scale 1.000 1.000 1.000"), "the matrices say the same");
+    press(&mut harness, "Matrices");
+    assert!(harness.query_by_label_contains("inv(B):").is_none());
+}
+
+#[test]
+fn a_vertex_shows_shares_that_add_up() {
+    for size in [WIDE, NARROW] {
+        let mut harness = strip(size);
+        if size == NARROW {
+            press(&mut harness, "Inspector");
+        }
+        press(&mut harness, "Vertex under the pointer");
+        assert!(harness.query_by_label_contains("Point at the mesh").is_some());
+        // Turned by a quarter about Z, joint 2 alone would put (1, 1) to (0, 0).
+        harness.state_mut().state.pose.insert(2, [0.0, 0.0, 90.0]);
+        harness.state_mut().state.vertex = Some(VertexChoice { instance: 0, primitive: 0, vertex: 3 });
+        harness.run();
+        for label in [
+            "Vertex 3",
+            "p, where it is bound: 1.0000 1.0000 0.0000",
+            "joint 1, weight 0.5000",
+            "joint 2, weight 0.5000",
+            "share, w times that: 0.5000 0.5000 0.0000",
+            "share, w times that: 0.0000 0.0000 0.0000",
+            "p', the sum of the shares: 0.5000 0.5000 0.0000",
+        ] {
+            assert!(has(&harness, label), "{label} at {size:?}");
+        }
+        assert!(harness.query_by_label_contains("drawn").is_none(), "linear skinning draws the sum");
+        harness.state_mut().state.skinning = gaitway::mesh::SkinningMode::Rigid;
+        harness.run();
+        assert!(harness.query_by_label_contains("drawn, with the skinning").is_some());
+        assert_eq!(press(&mut harness, "joint 2, weight 0.5000"), [Command::SelectJoint(Some(2))]);
+        assert_eq!(press(&mut harness, "Let go"), [Command::SelectVertex(None)]);
+    }
+}
+
+#[test]
+fn a_click_keeps_the_vertex_and_a_click_beside_lets_it_go() {
+    let mut harness = strip(WIDE);
+    press(&mut harness, "Vertex under the pointer");
+    let middle = harness.state().picture.center();
+    let click = |harness: &mut Harness<'static, Bench>, at: egui::Pos2| {
+        harness.state_mut().commands.clear();
+        crate::bench::drag(harness, at, at, egui::PointerButton::Primary)
+    };
+    let kept = click(&mut harness, middle);
+    assert!(matches!(kept[..], [Command::SelectVertex(Some(_))]), "{kept:?}");
+    let aside = harness.state().picture.right_center() - egui::vec2(12.0, 0.0);
+    assert!(click(&mut harness, aside).contains(&Command::SelectVertex(None)));
+    // Switched off, a click is about joints again.
+    press(&mut harness, "Vertex under the pointer");
+    assert!(!click(&mut harness, middle).iter().any(|command| matches!(command, Command::SelectVertex(_))));
+}
+
+#[test]
+fn a_joint_is_renamed_in_its_card() {
+    let mut harness = strip(WIDE);
+    press(&mut harness, "joint 2");
+    press(&mut harness, "Rename");
+    let field = harness.get_by_label("Name of the joint");
+    field.focus();
+    field.type_text(" of the tip");
+    harness.run();
+    harness.state_mut().commands.clear();
+    harness.key_press(egui::Key::Enter);
+    harness.run();
+    let name = "joint 2 of the tip".to_owned();
+    assert_eq!(harness.state().commands, [Command::RenameJoint { joint: 2, name: name.clone() }]);
+    assert!(harness.query_all_by_label(&name).count() >= 2, "in the card and in the tree");
+    assert!(!has(&harness, "joint 2"));
+    press(&mut harness, "Rename");
+    harness.get_by_label("Name of the joint").type_text("!");
+    harness.run();
+    harness.key_press(egui::Key::Escape);
+    harness.run();
+    assert_eq!(harness.state().state.names[&2], name);
+}
+
+#[test]
+fn the_model_can_be_saved_at_rest_and_as_it_stands() {
+    let mut harness = strip(WIDE);
+    harness.state_mut().panels.tab = Tab::File;
+    harness.run();
+    press(&mut harness, "At rest");
+    press(&mut harness, "As it stands");
+    let whole = |posed| UiAction::Save(Saved::Whole { posed });
+    assert_eq!(harness.state().actions, [whole(false), whole(true)]);
+    let mut harness = sample_bench(WIDE);
+    harness.state_mut().panels.tab = Tab::File;
+    harness.run();
+    assert!(!has(&harness, "As it stands"), "a glTF is one already");
+}
+
+#[test]
+fn boxes_and_smooth_surfaces_are_in_the_display_tab() {
+    let mut harness = strip(WIDE);
+    harness.state_mut().panels.tab = Tab::Display;
+    harness.run();
+    let smooth = Show { smooth: true, ..Show::default() };
+    assert_eq!(press(&mut harness, "Smooth surface"), [Command::SetShow(smooth)]);
+    let boxes = Show { boxes: true, skeleton: true, ..smooth };
+    assert_eq!(press(&mut harness, "Skeleton of spheres and boxes"), [Command::SetShow(boxes)]);
+    let mut harness = sample_bench(WIDE);
+    harness.state_mut().panels.tab = Tab::Display;
+    harness.run();
+    assert!(!has(&harness, "Smooth surface"), "the sample has normals");
+}

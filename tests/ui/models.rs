@@ -1,0 +1,55 @@
+//! Several models at once, and the way back from what was opened.
+
+use egui_kittest::kittest::Queryable;
+use gaitway::library::{Library, Model, sample};
+use gaitway::ui::{Toast, UiAction};
+
+use crate::bench::{NARROW, WIDE, bench_of, press, sample_bench};
+
+fn two_models() -> Library {
+    let mut library = Library::default();
+    let first = library.set(sample::load("walker").expect("the sample is there"));
+    let asset = library.get(first).expect("just set").asset.clone();
+    library.add(Model::new("folder/other.glb".to_owned(), asset, Vec::new()));
+    library
+}
+
+#[test]
+fn models_are_listed_when_there_are_several() {
+    assert!(sample_bench(WIDE).query_by_label("Close walker").is_none(), "one needs no list");
+    for size in [WIDE, NARROW] {
+        let mut harness = bench_of(size, two_models());
+        if size == NARROW {
+            press(&mut harness, "Clips");
+        }
+        let first = harness.state().library.models()[0].id;
+        press(&mut harness, "walker");
+        assert_eq!(harness.state().actions, [UiAction::ShowModel(first)], "{size:?}");
+        assert!(harness.query_by_label("Close other.glb").is_none(), "what is shown stays");
+        harness.state_mut().actions.clear();
+        press(&mut harness, "Close walker");
+        assert_eq!(harness.state().actions, [UiAction::CloseModel(first)]);
+    }
+}
+
+#[test]
+fn what_was_opened_has_a_button_to_undo_it() {
+    for size in [WIDE, NARROW, [320.0, 480.0]] {
+        let mut harness = sample_bench(size);
+        let text = "Opened a-rather-long-name-of-a-character.glb. 3 others are in the list of models.".to_owned();
+        harness.state_mut().panels.toast = Some(Toast { text, until_secs: 1e9, undoable: true });
+        harness.step();
+        harness.step();
+        harness.step();
+        let button = harness.get_by_label("Undo").rect();
+        let words = harness.get_by_label_contains("Opened a-rather").rect();
+        let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
+        assert!(screen.contains_rect(button) && screen.contains_rect(words), "{button:?} {words:?} on {size:?}");
+        assert!(!button.intersects(words), "{button:?} over {words:?}");
+        harness.get_by_label("Undo").click();
+        harness.step();
+        harness.step();
+        assert_eq!(harness.state().actions, [UiAction::Undo]);
+        assert!(harness.state().panels.toast.is_none());
+    }
+}
