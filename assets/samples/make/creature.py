@@ -1,4 +1,4 @@
-"""Makes ../creature.glb: a fox with a scarf, 0.8 m high to the ears, with the clips idle, walk and run.
+"""Makes ../creature.glb: a fox with a scarf, 0.85 m high to the tips of its ears, with the clips idle, walk and run.
 
 Gaits. Walk: lateral sequence - left hind, left fore, right hind, right fore, a quarter of a stride apart - each paw on the
 ground for 0.63 of the stride, the body highest when a fore leg passes under it. Run: rotary gallop - left hind, right hind,
@@ -21,7 +21,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import clay
 import rig
-from clay import box, capsule, common, cut, ellipsoid, forward, grown, halfspace, union
+from clay import capsule, common, cut, ellipsoid, forward, halfspace, union
 from paint import edge, groove, noise, srgb
 from rig import conj, mul, qx, qy, qz, rotate, slerp, smooth_step
 from sculpting import bent, meshed, mixed, pointed, unit_normals
@@ -363,7 +363,6 @@ def paint(part, p, n, opened):
         c = c * (1.0 + 0.16 * f)[:, None]
         return shade(np.clip(c, 0, 1)), 0.88 * ones, metal
     if name == "eye":
-        d = p * [1, 1, 1] - EYE
         look = np.array([0.42, 0.06, 0.905])
         away = np.degrees(np.arccos(np.clip((np.column_stack([np.abs(p[:, 0]), y, z]) - EYE) @ look / 0.0205, -1, 1)))
         c = np.tile(srgb("#f3ede2"), (len(p), 1))
@@ -372,7 +371,7 @@ def paint(part, p, n, opened):
         c = mixed(c, INK * 0.4, edge(away - 36, 3))
         glint = np.linalg.norm(q - EYE - np.array([0.0040, 0.0080, 0.0180]), axis=1) - 0.0050
         c = mixed(c, np.ones(3), edge(glint, 0.001))
-        return c + 0 * d, 0.12 * ones, metal
+        return c, 0.12 * ones, metal
     if name == "lids":
         c = mixed(np.tile(ORANGE * 0.92, (len(p), 1)), SOCK, edge(np.abs(y - EYE[1] + 0.003) - 0.0125, 0.003))
         return shade(c), 0.8 * ones, metal

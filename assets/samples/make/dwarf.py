@@ -371,7 +371,7 @@ class Part:
 PARTS = [
     Part("cloth", CLOTH, None, [(0, 0.09, -0.25), (0.53, 1.06, 0.28)], 1040, 0.010),
     Part("skirt", None, "skirt", mesh=skirt),
-    Part("belt", None, mesh=belt),
+    Part("belt", None, "middle", mesh=belt),
     Part("buckle", buckle(), "middle", [(-0.08, 0.50, 0.21), (0.08, 0.65, 0.28)], 90, 0.004, solid=False, half=False),
     Part("bracer", None, mesh=bracer),
     Part("hand", hand(), "hand", [(0.40, 0.38, -0.08), (0.64, 0.66, 0.16)], 440, 0.004),
@@ -409,7 +409,8 @@ def sculpt():
         full = len(mesh.faces)
         if part.shape is not None:
             # What moves against a part must not hide it.
-            covers = [(p.shape, 0.006) for p in PARTS if p.solid and p is not part and p.carrier in (part.carrier, None)]
+            depth = 0.035 if part.carrier in ("beard", "hair") else 0.006
+            covers = [(p.shape, depth) for p in PARTS if p.solid and p is not part and p.carrier in (part.carrier, None)]
             if part.name == "face":
                 covers += [(p.shape, 0.030) for p in PARTS if p.name == "beard"]
             mesh = clay.without_hidden(mesh, covers)
@@ -495,8 +496,8 @@ def height(part, p):
         step = np.pi / 9
         to = (around - step / 2) - np.round((around - step / 2) / step) * step
         h = np.where(rim < 0.06, rivet(to * 0.165, rim - 0.026), 0.0)
-        across = (y - 1.20) - np.round((y - 1.20) / 0.05) * 0.05
-        h = h + np.where((x < 0.022) & (y > 1.21), rivet(x, 0.0 * across + (np.arctan2(y - 1.175, np.abs(z)) % 0.36 - 0.18) * 0.18), 0.0)
+        ridge = (np.arctan2(y - 1.175, np.abs(z)) % 0.36 - 0.18) * 0.18
+        h = h + np.where((x < 0.022) & (y > 1.21), rivet(x, ridge), 0.0)
         dents = 0.0007 * noise(q, 0.035, 4)
         return h + dents + groove(rim - 0.054, 0.004, 0.0012)
     if name == "horn":
@@ -564,7 +565,6 @@ def paint(part, p, n, opened):
     if name == "helmet":
         rim = (p - RIM_AT) @ RIM
         brass = np.maximum(edge(rim - 0.055), edge(np.where(y > 1.19, x - 0.0225, 1.0)))
-        away = (p * [np.sign(p[:, 0]) if False else 1, 1, 1])
         socket = np.column_stack([x, y, z]) - [0.105, 1.245, -0.01]
         s = socket @ axes((0.86, 0.50, 0), (0, 0, 1))
         brass = np.maximum(brass, edge(np.maximum(np.hypot(s[:, 1], s[:, 2]) - 0.050, 0.035 - s[:, 0])))
@@ -666,7 +666,7 @@ def weights_of(s, body):
         elif part.carrier == "skirt":
             # The wide hem clears the thighs of a walk; in front it has joints of its own for deeper bends.
             low = rig.smooth_step((0.56 - p[:, 1]) / 0.12)
-            front = low * rig.smooth_step((p[:, 2] + 0.08) / 0.20)
+            front = low * rig.smooth_step((p[:, 2] + 0.13) / 0.22)
             left = rig.smooth_step(p[:, 0] / 0.22 + 0.5)
             legs = 0.16 * low * (1 - front)
             w[mine, s["lskirt"]], w[mine, s["rskirt"]] = front * left, front * (1 - left)
@@ -718,7 +718,7 @@ def crouch_and_look(s):
         turns["beard2"] = mul(qy(0.35 * (late - y)), qx(4 * d - 10 * (drop - d)))
         for side, sign in (("left", 1), ("right", -1)):
             ankle = figure.place(f"{side}.foot").copy()
-            figure.leg(turns, moves, side, ankle, 0, 0, knee=np.array([sign * 0.35, 0, 1.0]))
+            figure.leg(turns, moves, side, ankle, 0, 0, knee=np.array([sign * 0.24, 0, 1.0]))
         turns["rcollar"] = qz(-20 * hand)
         # The left hand rests on the knee, the right one shades the eyes.
         for side, sign in (("left", 1), ("right", -1)):
@@ -737,7 +737,7 @@ def crouch_and_look(s):
                 # Fingers to the left, the palm down, the thumb to the helmet's rim.
                 along = (AT["lfist"] - WRIST) * [-1, 1, 1]
                 want = mul(head_turn, frame(np.array([0.90, 0.16, 0.34]), np.array([0.3, 0.35, -1.0]), along, np.array([0.32, 0.0, 1.0])))
-                pole = np.array([-1.0, -0.25, 0.10])
+                pole = np.array([-0.75, -0.85, 0.20])
             amount = float(np.clip(amount, 0, 1))
             place = free + (goal - free) * amount
             # Swings out on its way, round the belly and the beard.
@@ -747,7 +747,7 @@ def crouch_and_look(s):
             figure.limb(turns, moves, f"{side}.arm", f"{side}.forearm", f"{side}.hand", place, turn,
                         rotate(chest, rest_pole * (1 - amount)) + pole * amount, np.array([sign * 0.35, 0.0, -1.0]))
             # The hem gives way to the thigh.
-            turns[side[0] + "skirt"] = mul(qx(-34 * d), qz(sign * 13 * d))
+            turns[side[0] + "skirt"] = mul(qx(-34 * d), qz(sign * 17 * d))
         turns["lfist"] = qz(-18 * d)
         turns["rfist"] = qz(-10 * hand)
         return turns, moves
@@ -779,7 +779,7 @@ def main(size=int(os.environ.get("ATLAS", "640"))):
     material = out.add("materials", {
         "name": "dwarf",
         "pbrMetallicRoughness": {
-            "baseColorTexture": {"index": out.image(base, quality=78, name="dwarf colour")},
+            "baseColorTexture": {"index": out.image(base, quality=74, name="dwarf colour")},
             "metallicRoughnessTexture": {"index": (relief := out.image(orm, quality=72, name="dwarf surface"))},
         },
         "normalTexture": {"index": out.image(bump, quality=74, name="dwarf relief")},

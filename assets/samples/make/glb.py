@@ -79,24 +79,6 @@ class Glb:
             accessor["min"], accessor["max"] = short(kept.min(axis=0)), short(kept.max(axis=0))
         return self.add("accessors", accessor)
 
-    def sparse(self, array, tolerance=2e-6, bounds=False):
-        """A float VEC3 accessor of mostly zeros: only the rows that differ are stored."""
-        array = np.asarray(array, dtype="<f4")
-        rows = np.nonzero(np.abs(array).max(axis=1) > tolerance)[0]
-        accessor = {"componentType": FLOAT, "count": len(array), "type": "VEC3"}
-        if len(rows):
-            small = len(array) <= 65535
-            accessor["sparse"] = {
-                "count": len(rows),
-                "indices": {"bufferView": self.view(rows.astype("<u2" if small else "<u4").tobytes()), "componentType": U16 if small else U32},
-                "values": {"bufferView": self.view(array[rows].tobytes())},
-            }
-        if bounds:
-            kept = np.zeros_like(array)
-            kept[rows] = array[rows]
-            accessor["min"], accessor["max"] = ([float(v) for v in f(axis=0)] for f in (kept.min, kept.max))
-        return self.add("accessors", accessor)
-
     def _shared(self, array, kind, component, **more):
         """An accessor that equal data share: still joints and clips of one length would else repeat themselves."""
         key = (kind, component, np.ascontiguousarray(array, dtype="<i2" if component == I16 else "<f4").tobytes())

@@ -14,8 +14,8 @@ import numpy as np
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import clay
-from clay import capsule, common, cut, ellipsoid, grown, halfspace, sphere, union, upright
-from paint import edge, groove, noise, srgb
+from clay import capsule, common, cut, ellipsoid, halfspace, sphere, union, upright
+from paint import edge, noise, srgb
 from rig import mul, qx, qy, qz, smooth_step
 from sculpting import bent, meshed, mixed, pointed
 
@@ -80,6 +80,8 @@ def hair():
     meshes = []
     for points, radii in LOCKS:
         middle = points[-1][0] < 0.01
+        # The root lies well inside the head.
+        points = [np.array(points[0]) * 0.80, *points[1:]]
         at = clay._smooth_table(np.linspace(0, 1, 3), np.column_stack([points, radii]))
         t = np.linspace(0, 1, 6) ** 0.85
         rows = at(t)
@@ -536,8 +538,8 @@ def targets(rig):
         ("smileLeft", smiles * left),
         ("smileRight", smiles * right),
         ("frown", skin(frown)),
-        ("blinkLeft", rig.lids(1.0, 1.0, (1,)) + 0),
-        ("blinkRight", rig.lids(1.0, 1.0, (-1,)) + 0),
+        ("blinkLeft", rig.lids(1.0, 1.0, (1,))),
+        ("blinkRight", rig.lids(1.0, 1.0, (-1,))),
         ("browUpLeft", (brows(brow_up) + lift) * left),
         ("browUpRight", (brows(brow_up) + lift) * right),
         ("browsDown", brows(brows_down) + rig.lids(0.22, 0.25, (1, -1))),
