@@ -100,10 +100,10 @@ pub fn libraries(bytes: &[u8]) -> Vec<String> {
     let mut found = Vec::new();
     let mut lines = Lines::new(bytes);
     while let Some((_, line)) = lines.next_full_line() {
-        if let Some(names) = line.strip_prefix(b"mtllib") {
-            if !add_libraries(&continued(names, &mut lines), &mut found) {
-                break;
-            }
+        if let Some(names) = line.strip_prefix(b"mtllib")
+            && !add_libraries(&continued(names, &mut lines), &mut found)
+        {
+            break;
         }
     }
     found
