@@ -115,16 +115,18 @@ fn no_step_leads_to_a_model_that_has_gone() {
 #[test]
 fn the_oldest_model_goes_and_never_the_shown_one() {
     let (mut library, first, second) = two_models();
-    library.show(first);
     let asset = library.active().unwrap().asset.clone();
-    let mut newest = first;
-    for index in library.models().len()..=Library::MOST_MODELS {
-        library.show(first);
-        newest = library.add(Model::new(format!("{index}.glb"), asset.clone(), Vec::new()));
+    for index in library.models().len()..Library::MOST_MODELS {
+        library.add(Model::new(format!("{index}.glb"), asset.clone(), Vec::new()));
     }
-    assert_eq!(library.models().len(), Library::MOST_MODELS);
-    assert!(library.get(first).is_some() && library.get(second).is_none());
-    assert_eq!(library.active().map(|model| model.id), Some(newest));
+    assert!(library.trim().is_empty());
+    let newest = library.add(Model::new("one-more.glb".to_owned(), asset, Vec::new()));
+    library.show(first);
+    let gone: Vec<ModelId> = library.trim().iter().map(|model| model.id).collect();
+    assert_eq!((gone, library.models().len()), (vec![second], Library::MOST_MODELS));
+    assert_eq!(library.active().map(|model| model.id), Some(first));
+    library.remove(first);
+    assert!(library.get(first).is_some(), "what is shown stays");
     library.remove(newest);
-    assert!(library.get(newest).is_some(), "what is shown stays");
+    assert!(library.get(newest).is_none());
 }
