@@ -466,11 +466,10 @@ impl App {
         self.toasted_steps = self.history.steps();
     }
 
-    /// The button of a toast takes back what the toast says, and goes when that is not the last step any more.
+    /// The button of a toast takes back what the toast says: it goes when that is not the last step any more.
     pub(super) fn watch_toast(&mut self) {
-        if let Some(toast) = &mut self.panels.toast {
-            toast.undoable &= self.history.steps() == self.toasted_steps;
-        }
+        let steps = self.history.steps();
+        self.panels.toast.take_if(|toast| toast.undoable && steps != self.toasted_steps);
     }
 
     /// Whether anything that is shown or borrowed from is a person's own.

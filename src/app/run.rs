@@ -221,6 +221,11 @@ impl App {
         }
         let aspect = self.panels.aspect;
         let turns = self.state.turntable != 0.0 && matches!(self.state.camera, CameraChoice::Auto);
+        // Whoever takes hold of the picture or of a joint wants it to stand still.
+        let holds = matches!(command, Command::Orbit { .. } | Command::Pan { .. } | Command::SetPose { .. });
+        if holds && self.state.turntable != 0.0 {
+            self.history.apply(&mut self.state, &self.library, Command::SetTurntable(0.0));
+        }
         let relative = matches!(command, Command::Orbit { .. } | Command::Pan { .. } | Command::Zoom(_))
             || (turns && matches!(command, Command::Advance(_)));
         // The automatic camera depends on the picture's shape, which commands do not know.

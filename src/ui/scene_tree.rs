@@ -280,6 +280,9 @@ fn joint_card(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, 
     ui.add_space(2.0);
     if controls::switch(ui, "Turn by hand", panel.turning) {
         panel.turning = !panel.turning;
+        if shown.state.turntable != 0.0 {
+            out.commands.push(Command::SetTurntable(0.0));
+        }
     }
     if panel.turning {
         by_hand(ui, shown, asset, joint, local.rotation, out);

@@ -53,7 +53,7 @@ fn run() -> anyhow::Result<()> {
 fn build_page(features: &[&str], url: Option<&str>) -> anyhow::Result<()> {
     setup::page()?;
     page::build(features, url)?;
-    sizes::compress_and_print()
+    sizes::compress_and_print(features.is_empty())
 }
 
 /// The folder that an address means, with the slash at its end that relative addresses need.

@@ -12,7 +12,7 @@ pub fn run() -> anyhow::Result<()> {
     setup::tests()?;
     run_cargo()?;
     page::build(&[], None)?;
-    sizes::compress_and_print()?;
+    sizes::compress_and_print(true)?;
     let files = node_tests()?;
     let files: Vec<&str> = files.iter().map(String::as_str).collect();
     let target = target_folder();
