@@ -34,6 +34,7 @@ pub fn build(features: &[&str], url: Option<&str>) -> anyhow::Result<()> {
     run("trunk", &arguments)?;
     let wasm = file_ending("_bg.wasm")?;
     optimise(&wasm)?;
+    rename_imports(&wasm)?;
     shorten_scripts()?;
     write_length(&wasm)?;
     let dist = dist();
@@ -49,6 +50,13 @@ fn optimise(wasm: &Path) -> anyhow::Result<()> {
         "node",
         &[&["node_modules/binaryen/bin/wasm-opt", "--gufa", "-Oz"], &WASM_FEATURES[..], &[file, "-o", file]].concat(),
     )
+}
+
+/// The script has the program's name with another ending.
+fn rename_imports(wasm: &Path) -> anyhow::Result<()> {
+    let program = wasm.to_str().context("the repository's path is not UTF-8")?;
+    let script = program.replace("_bg.wasm", ".js");
+    run("node", &["xtask/site/imports.mjs", program, &script])
 }
 
 /// Trunk's own way of doing this gives up on what it cannot parse.
