@@ -214,7 +214,7 @@ for (const renderer of BACK_ENDS)
       await until(page, async (last) => JSON.stringify(await window.gaitway.state()) === last, JSON.stringify(last));
     });
 
-    onPage("a map of 300 joints is proposed, edited and handed on", () => "", async (page) => {
+    onPage("a map of 300 joints is proposed, edited and handed on", () => "play=0", async (page) => {
       const chains = { "model.bvh": longChain(1), "motion.bvh": longChain(2) };
       const serveChains = (page) =>
         page.route("https://chains.example/**", (route) =>
