@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::App;
 use crate::files::{Contents, ModelFiles, OpenedModel};
-use crate::library::{BorrowError, Library, Loaded, Model, ModelId, Motion};
+use crate::library::{BorrowError, BorrowedClip, Library, Loaded, Model, ModelId, Motion};
 use crate::retarget::{JointMap, MapError, propose};
 use crate::state::{
     ClipChoice, Command, MapEdit, MotionMap, NumberedMap, ViewerState, active_clip, choice_of_clip, maps_in_force,
@@ -271,15 +271,13 @@ impl App {
             self.tell(problems);
             return Ok(());
         }
-        self.state.map.extend(map.map(MotionMap::Names));
-        let problems = self.borrow_also(motions.clone())?;
+        let problems = self.borrow_also(motions.clone(), map.map(MotionMap::Names))?;
         let first = self.library.motions().len() - motions.len();
-        let borrowed = |app: &Self| {
-            let Some(model) = app.library.active() else { return 0 };
-            let is_new = |&clip: &usize| model.borrowed(clip).is_some_and(|borrowed| borrowed.motion >= first);
-            (model.asset.clips.len()..model.clip_count()).filter(is_new).count()
-        };
-        if borrowed(self) == 0 && !motions.is_empty() {
+        let clips = self
+            .library
+            .active()
+            .map_or(0, |model| model.borrowed_clips().filter(|(_, borrowed)| borrowed.motion >= first).count());
+        if clips == 0 && !motions.is_empty() {
             if let Some((state, loaded)) = before {
                 self.library.restore(loaded);
                 self.state = state;
@@ -295,7 +293,7 @@ impl App {
         // The new clip may go elsewhere than the one that the camera was turned to.
         self.apply(Command::FrameAll);
         let names: Vec<String> = motions.iter().map(|motion| short_name(&motion.source)).collect();
-        let clips = match borrowed(self) {
+        let clips = match clips {
             1 => "A clip is".to_owned(),
             clips => format!("{clips} clips are"),
         };
@@ -304,7 +302,12 @@ impl App {
     }
 
     /// Puts motions behind those that are there; what came from the same places gives way. Gives back what does not work.
-    fn borrow_also(&mut self, motions: Vec<Motion>) -> Result<Vec<String>, String> {
+    /// `maps` are for them.
+    fn borrow_also(
+        &mut self,
+        motions: Vec<Motion>,
+        maps: impl IntoIterator<Item = MotionMap>,
+    ) -> Result<Vec<String>, String> {
         let is_new = |known: &Motion| motions.iter().any(|motion| motion.origin == known.origin);
         let mut all: Vec<Motion> = self.library.motions().iter().filter(|known| !is_new(known)).cloned().collect();
         all.extend(motions);
@@ -312,6 +315,7 @@ impl App {
         if together > most {
             return Err(format!("{together} motions together; at most {most} are borrowed from, remove some first"));
         }
+        self.state.map.extend(maps);
         let model = self.library.active().map(|model| model.origin.clone());
         self.state.motion = Contents::motion_sources(&all, model.as_deref());
         self.library.set_motions(all);
@@ -409,18 +413,16 @@ impl App {
     /// Plays this clip, else the first borrowed one; nothing for none.
     fn choose_borrowed(&mut self, choice: Option<BorrowedChoice>) {
         let (Some(choice), Some(model)) = (choice, self.library.active()) else { return };
-        let own = model.asset.clips.len();
-        let is_it = |&clip: &usize| {
-            model.borrowed(clip).is_some_and(|borrowed| {
-                let motion = self.library.motions().get(borrowed.motion);
-                borrowed.source_clip == choice.source_clip && motion.is_some_and(|motion| choice.is_of(motion))
-            })
+        let is_it = |borrowed: &BorrowedClip| {
+            let motion = self.library.motions().get(borrowed.motion);
+            borrowed.source_clip == choice.source_clip && motion.is_some_and(|motion| choice.is_of(motion))
         };
-        let found = (own..model.clip_count()).find(is_it);
-        if let Some(clip) = found.or((own < model.clip_count()).then_some(own)) {
+        let found = model.borrowed_clips().find(|(_, borrowed)| is_it(borrowed));
+        if let Some((clip, _)) = found.or_else(|| model.borrowed_clips().next()) {
+            let found = found.is_some();
             let clip = choice_of_clip(model, clip);
             self.apply(Command::SetClip(clip));
-            if found.is_some() {
+            if found {
                 self.apply(Command::Seek(choice.time_secs));
             }
         }
@@ -429,10 +431,7 @@ impl App {
     /// A model is shown that motions do not fit: they go, quietly, since nobody asked for them.
     fn put_unfit_away(&mut self) {
         let Some(model) = self.library.active() else { return };
-        let fits = |motion: usize| {
-            (model.asset.clips.len()..model.clip_count())
-                .any(|clip| model.borrowed(clip).is_some_and(|borrowed| borrowed.motion == motion))
-        };
+        let fits = |motion: usize| model.borrowed_clips().any(|(_, borrowed)| borrowed.motion == motion);
         let motions = self.library.motions().iter().cloned().enumerate();
         let (fit, unfit): (Vec<_>, Vec<_>) = motions.partition(|(index, _)| fits(*index));
         if unfit.is_empty() {
@@ -529,14 +528,15 @@ impl App {
             return;
         };
         let before = self.before_opening();
+        let mut maps: Vec<MotionMap> = Vec::new();
         for motion in &motions {
             let checksum = names_checksum(&model.asset, &motion.asset);
             let map = MotionMap::Numbers(NumberedMap { checksum, map: JointMap::default() });
-            if !self.state.map.contains(&map) {
-                self.state.map.push(map);
+            if !self.state.map.contains(&map) && !maps.contains(&map) {
+                maps.push(map);
             }
         }
-        match self.borrow_also(motions) {
+        match self.borrow_also(motions, maps) {
             Ok(problems) => {
                 self.remember(before);
                 self.tell(problems);

@@ -92,6 +92,11 @@ impl Model {
         self.borrowed.get(clip.checked_sub(self.asset.clips.len())?)
     }
 
+    /// The borrowed clips with their indices among all clips.
+    pub fn borrowed_clips(&self) -> impl Iterator<Item = (usize, &BorrowedClip)> {
+        self.borrowed.iter().enumerate().map(|(at, borrowed)| (self.asset.clips.len() + at, borrowed))
+    }
+
     /// What plays below a clip on joints that it does not move; nothing for the asset's own clips.
     pub fn layers(&self, clip: usize) -> &[LayerClip] {
         self.borrowed(clip).map_or(&[], |borrowed| &borrowed.layers)

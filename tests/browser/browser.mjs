@@ -120,6 +120,16 @@ export function drop(page, files) {
   }, files);
 }
 
+/** The part of an address after the `#`: `parts` are pairs of key and value. */
+export const fragment = (parts) => parts.map(([key, value]) => `${key}=${encodeURIComponent(value)}`).join("&");
+
+/** Opens the dialog with the link, as the keyboard reaches it. */
+export async function share(page) {
+  await page.locator("#do-share").focus();
+  await page.keyboard.press("Enter");
+  await page.locator("#share").waitFor({ state: "visible" });
+}
+
 /** Waits until what is on the screen has this many vertices. */
 export function whenShown(page, vertices) {
   const shows = async (vertices) => {

@@ -6,7 +6,7 @@ import os from "node:os";
 import path from "node:path";
 import { after, before, describe, test } from "node:test";
 import { dataFolder, skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, apply, drop, meanDifference, open, picture, pose, startSite, state, until, whenShown } from "./browser.mjs";
+import { BACK_ENDS, apply, drop, fragment, meanDifference, open, picture, pose, share, startSite, state, until, whenShown } from "./browser.mjs";
 import { neverAnswers, serve } from "./server.mjs";
 
 const FOX = "khronos/Fox/glTF-Binary/Fox.glb";
@@ -21,15 +21,6 @@ const CLOSED = "http://127.0.0.1:9";
 const missing = (page) => page.locator("#missing-parts li").allInnerTexts();
 const whenMissing = (page) => page.locator("#missing").waitFor({ state: "visible" });
 const linkOf = (page) => page.locator("#share-link").inputValue();
-
-/** The dialog with the link, as the keyboard reaches it. */
-async function share(page) {
-  await page.locator("#do-share").focus();
-  await page.keyboard.press("Enter");
-  await page.locator("#share").waitFor({ state: "visible" });
-}
-
-const fragment = (parts) => parts.map(([key, value]) => `${key}=${encodeURIComponent(value)}`).join("&");
 
 /** Waits until this is the model that is shown. */
 const whenModel = (page, name) => until(page, async (name) => (await window.gaitway.state()).model.join() === name, name);

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
 import { skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, apply, drop, meanDifference, picture, pose, startSite, state, stats, until, untilStill, whenReady, whenShown } from "./browser.mjs";
+import { BACK_ENDS, apply, drop, fragment, meanDifference, picture, pose, share, startSite, state, stats, until, untilStill, whenReady, whenShown } from "./browser.mjs";
 
 const SOLDIER = "threejs/Soldier.glb";
 const FOX = "khronos/Fox/glTF-Binary/Fox.glb";
@@ -25,13 +25,10 @@ const DWARF_MAP = {
   unmapped: { clip: 0 },
 };
 
-const fragment = (parts) => parts.map(([key, value]) => `${key}=${encodeURIComponent(value)}`).join("&");
 const afterHash = (address) => address.split("#")[1];
 
 async function sharedLink(page) {
-  await page.locator("#do-share").focus();
-  await page.keyboard.press("Enter");
-  await page.locator("#share").waitFor({ state: "visible" });
+  await share(page);
   const link = await page.locator("#share-link").inputValue();
   await page.locator("#share-close").click();
   return link;

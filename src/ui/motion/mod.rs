@@ -303,8 +303,7 @@ fn header(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, map: &JointMap,
 }
 
 fn first_clip_of(model: &Model, motion: usize) -> Option<Command> {
-    let is_its = |&clip: &usize| model.borrowed(clip).is_some_and(|borrowed| borrowed.motion == motion);
-    let clip = (model.asset.clips.len()..model.clip_count()).find(is_its)?;
+    let (clip, _) = model.borrowed_clips().find(|(_, borrowed)| borrowed.motion == motion)?;
     Some(Command::SetClip(choice_of_clip(model, clip)))
 }
 
