@@ -65,9 +65,7 @@ fn open_set(set: &FileSet, samples: Vec<Model>, origins: &Origins, role: Role) -
     let has_sample = !samples.is_empty();
     let Contents { mut models, motions, map, .. } = contents(set, samples, origins, role)?;
     if models.len() > 1 {
-        // Models of one folder share its name as their source.
-        let name = |opened: OpenedModel| opened.files.map_or(opened.model.source, |files| files.name);
-        let found = models.into_iter().map(name).collect();
+        let found = models.into_iter().map(|opened| opened.model.source).collect();
         return Err(SortError::SeveralModels { found }.into());
     }
     let no_model = || SortError::NoModel { found: set.names().map(str::to_owned).collect() };

@@ -13,9 +13,8 @@ pub fn inspect(model: &Model, files: &[String]) -> Value {
     let primitives = || asset.meshes.iter().flat_map(|mesh| &mesh.primitives);
     let skins: Vec<Value> =
         asset.skins.iter().map(|skin| json!({ "name": skin.name(), "joints": skin.joints().len() })).collect();
-    let borrowed: Vec<Value> = (asset.clips.len()..model.clip_count())
-        .filter_map(|index| Some(clip_document(index, model.clip(index)?)))
-        .collect();
+    let borrowed: Vec<Value> =
+        model.borrowed_clips().map(|(index, borrowed)| clip_document(index, &borrowed.clip)).collect();
     let clips: Vec<Value> = asset.clips.iter().enumerate().map(|(index, clip)| clip_document(index, clip)).collect();
     json!({
         "files": files,

@@ -21,7 +21,7 @@ pub struct ModelId(pub u64);
 pub struct Model {
     /// Given by the library.
     pub id: ModelId,
-    /// File name, URL or `sample:NAME`, as the link writes it.
+    /// What it is called: a file name, URL or `sample:NAME`.
     pub source: String,
     /// What a view lists to get it again: the source, or the archive or folder that it came out of.
     pub origin: String,

@@ -16,9 +16,9 @@ use crate::retarget::{
 /// A loaded file whose clips others may borrow.
 #[derive(Debug, Clone)]
 pub struct Motion {
-    /// File name or URL.
+    /// As [`Model::source`].
     pub source: String,
-    /// What a view lists to get it again: the source, or the archive or folder that it came out of.
+    /// As [`Model::origin`].
     pub origin: String,
     /// As [`Model::is_own`].
     pub is_own: bool,
