@@ -67,10 +67,17 @@ async function openPage(browser, address, { renderer, link = "model=sample:walke
   return page;
 }
 
-/** Waits until a function of the page, which may be asynchronous, gives something true. (Playwright's own wait takes a promise for that.) */
+/** What the question gives that was put to a page just as it left for the next. */
+const LEAVING = /Execution context was destroyed/;
+
+/** Waits until a function of the page, which may be asynchronous, gives something true; a page on its way to the next is asked again there. (Playwright's own wait takes a promise for something true.) */
 export async function until(page, holds, argument) {
   const deadline = Date.now() + 60_000;
-  while (!(await page.evaluate(holds, argument))) {
+  const asked = () =>
+    page.evaluate(holds, argument).catch((error) => {
+      if (!LEAVING.test(error.message)) throw error;
+    });
+  while (!(await asked())) {
     if (Date.now() > deadline) throw new Error(`still not so after a minute: ${holds}`);
     await page.waitForTimeout(50);
   }

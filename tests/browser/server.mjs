@@ -56,6 +56,8 @@ export async function neverAnswers() {
 
 async function listening(server) {
   await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
+  // A test that fails before it closes its server must not keep the whole run from ending.
+  server.unref();
   return {
     origin: `http://127.0.0.1:${server.address().port}`,
     close: () => {

@@ -20,8 +20,8 @@ pub fn run() -> anyhow::Result<()> {
     let program = program.to_str().context("the target folder's path is not UTF-8")?;
     let chromium = setup::chromium().context("there is no browser: set CHROMIUM")?;
     let chromium = chromium.to_str().context("the browser's path is not UTF-8")?;
-    // One file at a time: each drives a browser that draws on the processor.
-    let arguments = [&["--test", "--test-concurrency=1"], files.as_slice()].concat();
+    // One file at a time: each drives a browser that draws on the processor. A file takes minutes; one that hangs is ended.
+    let arguments = [&["--test", "--test-concurrency=1", "--test-timeout=1200000"], files.as_slice()].concat();
     run_with("node", &arguments, &[("GAITWAY_CLI", program), ("CHROMIUM", chromium)])
 }
 
