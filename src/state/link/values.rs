@@ -1,0 +1,301 @@
+//! What stands after a key of the link, written and read: each as short as it can be and still be read back the same.
+
+use std::collections::BTreeMap;
+use std::fmt::Display;
+
+use percent_encoding::percent_decode_str;
+
+use super::Read;
+use crate::anim::{LoopMode, TimeRange};
+use crate::mesh::SkinningMode;
+use crate::retarget::{ClipRef, Feet, JointMap, RootOptions, RootPart, Unmapped};
+use crate::state::{Background, CameraChoice, ClipChoice, Fade, MotionMap, OrbitCamera, Show, UpAxis, VertexChoice};
+use crate::state::{ViewerState, map_code};
+
+pub(super) const FEET: [(&str, Feet); 2] = [("off", Feet::Off), ("plant", Feet::Plant)];
+
+const ROOT_PARTS: [(&str, RootPart); 3] =
+    [("keep", RootPart::Keep), ("in-place", RootPart::InPlace), ("freeze", RootPart::Freeze)];
+
+pub(super) const LOOP_MODES: [(&str, LoopMode); 3] =
+    [("once", LoopMode::Once), ("loop", LoopMode::Loop), ("ping-pong", LoopMode::PingPong)];
+
+pub(super) const SKINNING_MODES: [(&str, SkinningMode); 3] = [
+    ("linear", SkinningMode::Linear),
+    ("rigid", SkinningMode::Rigid),
+    ("dual-quaternion", SkinningMode::DualQuaternion),
+];
+
+pub(super) const UP_AXES: [(&str, UpAxis); 6] = [
+    ("x", UpAxis::X),
+    ("y", UpAxis::Y),
+    ("z", UpAxis::Z),
+    ("-x", UpAxis::MinusX),
+    ("-y", UpAxis::MinusY),
+    ("-z", UpAxis::MinusZ),
+];
+
+pub(super) fn word_of<T: PartialEq>(words: &[(&str, T)], value: &T) -> String {
+    words.iter().find(|(_, other)| other == value).map_or(String::new(), |(word, _)| (*word).to_owned())
+}
+
+pub(super) fn from_word<T: Copy>(words: &[(&str, T)], text: &str) -> Option<T> {
+    words.iter().find(|(word, _)| *word == text).map(|(_, value)| *value)
+}
+
+pub(super) fn flag_text(flag: bool) -> &'static str {
+    if flag { "1" } else { "0" }
+}
+
+pub(super) fn flag(text: &str) -> Option<bool> {
+    match text {
+        "1" | "true" => Some(true),
+        "0" | "false" => Some(false),
+        _ => None,
+    }
+}
+
+pub(super) fn joined<T: Display>(parts: impl Iterator<Item = T>) -> String {
+    parts.map(|part| part.to_string()).collect::<Vec<_>>().join(",")
+}
+
+/// A number with a point; infinities and NaN are refused.
+pub(super) fn finite<T: std::str::FromStr + Copy + Into<f64>>(text: &str) -> Option<T> {
+    text.trim().parse::<T>().ok().filter(|&value| Into::<f64>::into(value).is_finite())
+}
+
+/// Empty: not set.
+pub(super) fn optional(text: &str) -> Option<Option<usize>> {
+    if text.is_empty() { Some(None) } else { text.parse().ok().map(Some) }
+}
+
+pub(super) fn map_text(map: &MotionMap) -> String {
+    match map {
+        MotionMap::Numbers(map) => map_code::encode(map),
+        // A map is plain data: it can always be written.
+        MotionMap::Names(map) => serde_json::to_string(map).unwrap_or_default(),
+        MotionMap::File(address) => address.clone(),
+    }
+}
+
+/// The compact form, JSON, or an address.
+pub(super) fn read_map(text: &str) -> Option<MotionMap> {
+    if text.starts_with('{') {
+        JointMap::from_json(text).ok().map(MotionMap::Names)
+    } else if text.starts_with(map_code::MARK) {
+        map_code::decode(text).map(MotionMap::Numbers)
+    } else {
+        (!text.is_empty()).then(|| MotionMap::File(text.to_owned()))
+    }
+}
+
+/// `rest`, `clip:CLIP` or `first-key:CLIP`; a clip's name that could be taken for its index stands in quotation marks.
+pub(super) fn unmapped_text(unmapped: &Unmapped) -> String {
+    let Unmapped::Clip { clip, frozen } = unmapped else { return "rest".to_owned() };
+    let clip = match clip {
+        ClipRef::Index(index) => index.to_string(),
+        ClipRef::Name(name) if name.parse::<usize>().is_ok() || name.starts_with('"') => format!("\"{name}\""),
+        ClipRef::Name(name) => name.clone(),
+    };
+    format!("{}:{clip}", if *frozen { "first-key" } else { "clip" })
+}
+
+pub(super) fn read_unmapped(text: &str) -> Option<Unmapped> {
+    if text == "rest" {
+        return Some(Unmapped::Rest);
+    }
+    let (word, clip) = text.split_once(':')?;
+    let frozen = match word {
+        "clip" => false,
+        "first-key" => true,
+        _ => return None,
+    };
+    let quoted = clip.strip_prefix('"').and_then(|clip| clip.strip_suffix('"'));
+    let clip = match (quoted, clip.parse()) {
+        (Some(name), _) => ClipRef::Name(name.to_owned()),
+        (None, Ok(index)) => ClipRef::Index(index),
+        (None, Err(_)) => ClipRef::Name(clip.to_owned()),
+    };
+    Some(Unmapped::Clip { clip, frozen })
+}
+
+/// `horizontal:PART,vertical:PART,yaw:PART,extract`, each where it is not the default; `keep` when nothing else is left.
+pub(super) fn root_text(root: &RootOptions) -> String {
+    let parts = [("horizontal", root.horizontal), ("vertical", root.vertical), ("yaw", root.yaw)];
+    let parts = parts.into_iter().filter(|(_, part)| *part != RootPart::Keep);
+    let words = parts.map(|(name, part)| format!("{name}:{}", word_of(&ROOT_PARTS, &part)));
+    let text = joined(words.chain(root.extract.then(|| "extract".to_owned())));
+    if text.is_empty() { "keep".to_owned() } else { text }
+}
+
+/// As [`root_text`] writes it. `in-place` or `freeze` alone is about the travel over the ground.
+pub(super) fn read_root(text: &str) -> Option<RootOptions> {
+    let mut root = RootOptions::default();
+    for word in text.split(',').map(str::trim) {
+        let (name, part) = word.split_once(':').unwrap_or(("horizontal", word));
+        if word == "extract" {
+            root.extract = true;
+            continue;
+        }
+        let slot = match name {
+            "horizontal" => &mut root.horizontal,
+            "vertical" => &mut root.vertical,
+            "yaw" => &mut root.yaw,
+            _ => return None,
+        };
+        *slot = from_word(&ROOT_PARTS, part)?;
+    }
+    Some(root)
+}
+
+pub(super) fn read_range(text: &str) -> Option<Option<TimeRange>> {
+    let (start, end) = text.split_once(',')?;
+    let (start_secs, end_secs) = (finite(start)?, finite(end)?);
+    (start_secs <= end_secs).then_some(Some(TimeRange { start_secs, end_secs }))
+}
+
+/// Since the change, where the clip was, its name: nothing for the rest pose.
+pub(super) fn fade_text(fade: &Fade) -> String {
+    let clip = match &fade.clip {
+        ClipChoice::Named(name) => name,
+        ClipChoice::First | ClipChoice::RestPose => "",
+    };
+    format!("{},{},{clip}", fade.elapsed_secs, fade.time_secs)
+}
+
+pub(super) fn read_fade(text: &str) -> Option<Option<Fade>> {
+    let mut parts = text.splitn(3, ',');
+    let (elapsed_secs, time_secs) = (finite(parts.next()?)?, finite(parts.next()?)?);
+    let clip = match parts.next()? {
+        "" => ClipChoice::RestPose,
+        name => ClipChoice::Named(name.to_owned()),
+    };
+    Some(Some(Fade { clip, time_secs, elapsed_secs }))
+}
+
+pub(super) fn read_morph(text: &str) -> Option<BTreeMap<usize, f32>> {
+    let pair = |pair: &str| {
+        let (index, weight) = pair.split_once(':')?;
+        Some((index.trim().parse().ok()?, finite(weight)?))
+    };
+    text.split(',').filter(|part| !part.is_empty()).map(pair).collect()
+}
+
+pub(super) fn read_pose(text: &str) -> Option<BTreeMap<usize, [f32; 3]>> {
+    let turned = |part: &str| {
+        let (joint, angles) = part.split_once(':')?;
+        let mut angles = angles.split(':').map(finite::<f32>);
+        let degrees = [angles.next()??, angles.next()??, angles.next()??];
+        angles.next().is_none().then_some((joint.trim().parse().ok()?, degrees))
+    };
+    text.split(',').filter(|part| !part.is_empty()).map(turned).collect()
+}
+
+/// Names are escaped once more for the marks between them.
+pub(super) fn read_names(text: &str) -> Option<BTreeMap<usize, String>> {
+    let named = |part: &str| {
+        let (joint, name) = part.split_once(':')?;
+        let name = percent_decode_str(name).decode_utf8().ok()?;
+        let is_line = !name.trim().is_empty() && !name.contains(char::is_control);
+        is_line.then_some((joint.trim().parse().ok()?, name.into_owned()))
+    };
+    text.split(',').filter(|part| !part.is_empty()).map(named).collect()
+}
+
+pub(super) fn read_vertex(text: &str) -> Option<VertexChoice> {
+    let mut numbers = text.split(':').map(|part| part.trim().parse().ok());
+    let choice = VertexChoice { instance: numbers.next()??, primitive: numbers.next()??, vertex: numbers.next()?? };
+    numbers.next().is_none().then_some(choice)
+}
+
+/// The words of `show`, each with its flag, and what the flag is when the word is there. The mesh and its shadow belong to
+/// any picture, so the words for them take them away.
+fn show_flags(show: &mut Show) -> [(&'static str, &mut bool, bool); 13] {
+    [
+        ("no-mesh", &mut show.mesh, false),
+        ("skeleton", &mut show.skeleton, true),
+        ("weights", &mut show.weights, true),
+        ("bounds", &mut show.bounds, true),
+        ("wireframe", &mut show.wireframe, true),
+        ("grid", &mut show.grid, true),
+        ("no-shadow", &mut show.shadow, false),
+        ("split", &mut show.split, true),
+        ("source", &mut show.source, true),
+        ("over", &mut show.over, true),
+        ("error", &mut show.error, true),
+        ("boxes", &mut show.boxes, true),
+        ("smooth", &mut show.smooth, true),
+    ]
+}
+
+pub(super) fn show_text(state: &ViewerState) -> String {
+    let mut show = state.show;
+    let flags = show_flags(&mut show).into_iter();
+    let words = flags.filter(|(_, flag, when)| **flag == *when).map(|(word, ..)| word.to_owned());
+    joined(words.chain(state.unknown.get("show").cloned()))
+}
+
+pub(super) fn read_show(state: &mut ViewerState, text: &str) -> Read {
+    let mut unknown = Vec::new();
+    show_flags(&mut state.show).into_iter().for_each(|(_, flag, when)| *flag = !when);
+    state.unknown.remove("show");
+    for word in text.split(',').map(str::trim).filter(|word| !word.is_empty()) {
+        match show_flags(&mut state.show).into_iter().find(|(other, ..)| *other == word) {
+            Some((_, flag, when)) => *flag = when,
+            None => unknown.push(word.to_owned()),
+        }
+    }
+    if unknown.is_empty() { Read::Done } else { Read::UnknownShow(unknown) }
+}
+
+pub(super) fn camera_text(camera: &CameraChoice) -> String {
+    match camera {
+        CameraChoice::Auto => "auto".to_owned(),
+        CameraChoice::File(index) => format!("gltf:{index}"),
+        CameraChoice::Orbit(OrbitCamera { yaw_radians, pitch_radians, distance, target }) => {
+            let (yaw, pitch) = (degrees_text(*yaw_radians), degrees_text(*pitch_radians));
+            format!("{yaw},{pitch},{distance},{},{},{}", target.x, target.y, target.z)
+        }
+    }
+}
+
+/// The shortest decimal that reads back as the same angle.
+fn degrees_text(radians: f32) -> String {
+    let degrees = f64::from(radians).to_degrees();
+    let reads_back = |text: &String| text.parse::<f64>().is_ok_and(|degrees| degrees.to_radians() as f32 == radians);
+    (0..12).map(|digits| format!("{degrees:.digits$}")).find(reads_back).unwrap_or_else(|| degrees.to_string())
+}
+
+pub(super) fn read_camera(text: &str) -> Option<CameraChoice> {
+    if text == "auto" {
+        return Some(CameraChoice::Auto);
+    }
+    if let Some(index) = text.strip_prefix("gltf:") {
+        return index.parse().ok().map(CameraChoice::File);
+    }
+    let parts: Vec<&str> = text.split(',').collect();
+    let &[yaw, pitch, distance, x, y, z] = parts.as_slice() else { return None };
+    let radians = |text: &str| finite::<f64>(text).map(|degrees| degrees.to_radians() as f32);
+    let distance = finite::<f32>(distance).filter(|&distance| distance > 0.0)?;
+    let target = glam::Vec3::new(finite(x)?, finite(y)?, finite(z)?);
+    Some(CameraChoice::Orbit(OrbitCamera {
+        yaw_radians: radians(yaw)?,
+        pitch_radians: radians(pitch)?,
+        distance,
+        target,
+    }))
+}
+
+pub(super) fn read_background(text: &str) -> Option<Background> {
+    match text {
+        "studio" => Some(Background::Studio),
+        "transparent" => Some(Background::Transparent),
+        _ => {
+            let hex = text.strip_prefix('#').unwrap_or(text);
+            let ok = hex.len() == 6 && hex.bytes().all(|byte| byte.is_ascii_hexdigit());
+            let number = u32::from_str_radix(hex, 16).ok().filter(|_| ok)?;
+            let [_, red, green, blue] = number.to_be_bytes();
+            Some(Background::Color([red, green, blue]))
+        }
+    }
+}
