@@ -250,6 +250,7 @@ const isTrap = (error) => typeof WebAssembly === "object" && error instanceof We
 /** What an instance tells the page; `current` is false for one that has been replaced. */
 const hooks = (current) => ({
   choose: (role) => openDialog(role),
+  gallery: () => dispatchEvent(new CustomEvent("gaitway:samples")),
   save: (name, bytes) => save(name, bytes),
   startRecording,
   stopRecording,

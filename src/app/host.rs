@@ -15,6 +15,13 @@ pub trait Host {
         let _ = (path, role, inbox);
     }
 
+    /// Whether there is a gallery of samples.
+    fn has_gallery(&self) -> bool {
+        false
+    }
+
+    fn show_gallery(&self) {}
+
     /// Gives a file to the person; false when that needs a path, which [`Host::save_path`] then gets.
     fn save_file(&self, name: &str, bytes: &[u8]) -> bool;
 

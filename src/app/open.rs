@@ -85,7 +85,8 @@ impl App {
         let known = self.library.models().len();
         let id = self.hold(first);
         if let Err(error) = self.upload(&before) {
-            self.close_model(id);
+            self.library.remove(id);
+            self.let_go();
             return Err(error);
         }
         let others: Vec<String> = models
@@ -112,6 +113,10 @@ impl App {
             let model = vec![origin];
             about_model(ViewerState { model, motion, map, unmapped, root, feet, ..ViewerState::default() }, old)
         });
+        if is_link {
+            self.panels.turn_to_link(&self.state);
+        }
+        self.panels.turn_to_model(&self.library);
         let has_map = map.is_some();
         self.state.map.extend(map.map(MotionMap::Names));
         let problems = self.refresh_motion();
@@ -242,10 +247,12 @@ impl App {
         self.changed = true;
     }
 
-    /// Lets go of a model that is not shown.
+    /// Takes a model that is not shown off the list.
     pub(super) fn close_model(&mut self, id: ModelId) {
-        self.library.remove(id);
-        self.let_go();
+        let Some(name) = self.library.get(id).map(|model| short_name(&model.source)) else { return };
+        self.history.closed(self.library.listed());
+        self.library.close(id);
+        self.toast_undoable(format!("Closed {name}."));
     }
 
     /// Borrows from these files too; one that is there already is read anew. Without a state the view stays, and the first

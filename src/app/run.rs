@@ -110,6 +110,7 @@ impl App {
             recording: None,
             staged: None,
         };
+        app.panels.has_gallery = app.host.has_gallery();
         app.show(contents, state)?;
         inbox_ready(inbox);
         Ok(app)
@@ -264,6 +265,7 @@ impl App {
     fn act(&mut self, action: UiAction) {
         match action {
             UiAction::OpenFiles => self.choose(Role::Any, PathPurpose::Open),
+            UiAction::ShowGallery => self.host.show_gallery(),
             UiAction::ChooseMotion => self.choose(Role::Motion, PathPurpose::OpenMotion),
             UiAction::UsePath(PathPurpose::Open, path) => self.host.open_path(&path, Role::Any, &self.inbox),
             UiAction::UsePath(PathPurpose::OpenMotion, path) => self.host.open_path(&path, Role::Motion, &self.inbox),
@@ -306,7 +308,7 @@ impl App {
             }
             UiAction::ShowRefusedAlone => self.show_refused_alone(),
             UiAction::MapRefusedByHand => self.map_refused_by_hand(),
-            UiAction::CopyLink => {
+            UiAction::ShareLink => {
                 let link = to_link(&self.state);
                 if !self.host.share(&link) {
                     self.context.copy_text(self.host.link(&link));

@@ -45,6 +45,8 @@ fn borrow_motion(
 pub struct Library {
     /// In the order they were opened.
     models: Vec<Model>,
+    /// Off the list, the one that was closed last at the end.
+    closed: Vec<Model>,
     shown: ModelId,
     /// Files that the shown model borrows clips from.
     motions: Vec<Motion>,
@@ -65,6 +67,7 @@ impl Library {
     /// Replaces everything by one model.
     pub fn set(&mut self, model: Model) -> ModelId {
         self.models.clear();
+        self.closed.clear();
         self.add(model)
     }
 
@@ -77,8 +80,11 @@ impl Library {
         ModelId(self.next_id)
     }
 
-    /// Lets go of the oldest models until there are no more than [`Library::MOST_MODELS`]; gives them back.
+    /// Lets go of closed models and then of the oldest others until there are no more than [`Library::MOST_MODELS`]; gives
+    /// the others back.
     pub fn trim(&mut self) -> Vec<Model> {
+        let spare = (self.models.len() + self.closed.len()).saturating_sub(Self::MOST_MODELS);
+        self.closed.drain(..spare.min(self.closed.len()));
         let mut gone = Vec::new();
         while self.models.len() > Self::MOST_MODELS
             && let Some(oldest) = self.models.iter().position(|model| model.id != self.shown)
@@ -88,9 +94,12 @@ impl Library {
         gone
     }
 
-    /// Shows one of the models; false when it is not there.
+    /// Shows one of the models, which puts a closed one back on the list; false when it is not there.
     pub fn show(&mut self, id: ModelId) -> bool {
         let is_there = self.get(id).is_some();
+        if let Some(at) = self.closed.iter().position(|model| model.id == id) {
+            self.models.push(self.closed.remove(at));
+        }
         if is_there && self.shown != id {
             self.shown = id;
             self.forget_borrowed();
@@ -98,10 +107,30 @@ impl Library {
         is_there
     }
 
-    /// Lets go of a model, other than the one that is shown.
+    /// Lets go of a model for good, other than the one that is shown.
     pub fn remove(&mut self, id: ModelId) {
         let shown = self.shown;
         self.models.retain(|model| model.id == shown || model.id != id);
+    }
+
+    /// Takes a model, other than the one that is shown, off the list; while there is room it can come back.
+    pub fn close(&mut self, id: ModelId) {
+        if let Some(at) = self.models.iter().position(|model| model.id == id && id != self.shown) {
+            self.closed.push(self.models.remove(at));
+        }
+    }
+
+    /// Which models are on the list.
+    pub fn listed(&self) -> Vec<ModelId> {
+        self.models.iter().map(|model| model.id).collect()
+    }
+
+    /// Puts these models on the list, and the one that is shown, and closes the others.
+    pub fn set_listed(&mut self, ids: &[ModelId]) {
+        let place = |model: &Model| ids.iter().position(|&id| id == model.id);
+        let all = self.closed.drain(..).chain(self.models.drain(..));
+        (self.models, self.closed) = all.partition(|model| place(model).is_some() || model.id == self.shown);
+        self.models.sort_by_key(|model| place(model).unwrap_or(ids.len()));
     }
 
     /// What is shown and what it borrows, to come back to.
@@ -193,6 +222,7 @@ impl Library {
         &self.borrow_errors
     }
 
+    /// Those on the list.
     pub fn models(&self) -> &[Model] {
         &self.models
     }
@@ -202,7 +232,8 @@ impl Library {
         self.get(self.shown)
     }
 
+    /// A model, whether it is on the list or closed.
     pub fn get(&self, id: ModelId) -> Option<&Model> {
-        self.models.iter().find(|model| model.id == id)
+        self.models.iter().chain(&self.closed).find(|model| model.id == id)
     }
 }

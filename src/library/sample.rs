@@ -36,6 +36,24 @@ pub fn names() -> Vec<&'static str> {
     names
 }
 
+/// What people call the samples that are not called so in links.
+const TITLES: [(&str, &str); 9] = [
+    ("pilot", "Pilot"),
+    ("mannequin", "Mannequin"),
+    ("mannequin_run", "Mannequin's run"),
+    ("dwarf", "Dwarf"),
+    ("walk", "Walk"),
+    ("ssd", "Imp"),
+    ("creature", "Fox"),
+    ("morphs", "Goblin"),
+    (WALKER, "Walker"),
+];
+
+/// What a sample is called on the screen, by its name after `sample:`.
+pub fn title(name: &str) -> &str {
+    TITLES.iter().find(|(of, _)| *of == name).map_or(name, |(_, title)| title)
+}
+
 /// A model that is made in code, by its name after `sample:`; none when there is none of that name.
 pub fn load(name: &str) -> Option<Model> {
     let images: Vec<Option<ImageData>> = Vec::new();

@@ -238,9 +238,10 @@ fn advance(state: &mut ViewerState, model: Option<&Model>, clock_secs: f64) {
     }
     let range = play_range(model, clip, state);
     let length = range.length_secs();
-    state.time_secs += clock_secs * state.speed;
+    let secs = clock_secs * state.speed;
+    state.time_secs = whole_microseconds(state.time_secs + secs);
     if let Some(fade) = &mut state.fade {
-        fade.elapsed_secs += clock_secs * state.speed;
+        fade.elapsed_secs = whole_microseconds(fade.elapsed_secs + secs);
         let from = clip_of(model, &fade.clip);
         if fade.elapsed_secs >= model.crossfade_secs(from, Some(clip)) {
             state.fade = None;
@@ -255,16 +256,23 @@ fn advance(state: &mut ViewerState, model: Option<&Model>, clock_secs: f64) {
         // loop on durations of their own, which one round of the clip would cut off.
         _ if !model.layers(clip).is_empty() => {}
         LoopMode::Loop if length > 0.0 && state.time_secs > range.end_secs => {
-            state.time_secs = range.start_secs + (state.time_secs - range.start_secs).rem_euclid(length);
+            state.time_secs =
+                range.start_secs + whole_microseconds((state.time_secs - range.start_secs).rem_euclid(length));
         }
         LoopMode::PingPong if length > 0.0 && state.time_secs > range.start_secs + 2.0 * length => {
-            state.time_secs = range.start_secs + (state.time_secs - range.start_secs).rem_euclid(2.0 * length);
+            state.time_secs =
+                range.start_secs + whole_microseconds((state.time_secs - range.start_secs).rem_euclid(2.0 * length));
         }
         _ => {}
     }
     if length <= 0.0 {
         state.time_secs = range.start_secs;
     }
+}
+
+/// Where the playhead happens to be has few digits in a link. What is set is not touched: a key's own time is met exactly.
+fn whole_microseconds(secs: f64) -> f64 {
+    (secs * 1e6).round() / 1e6
 }
 
 fn step(state: &mut ViewerState, model: Option<&Model>, frames: i32) {

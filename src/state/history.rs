@@ -4,7 +4,7 @@
 use std::mem::Discriminant;
 
 use super::{Command, ViewerState, apply};
-use crate::library::{Library, Loaded};
+use crate::library::{Library, Loaded, ModelId};
 
 /// What was there before each step, newest last.
 #[derive(Debug, Default)]
@@ -16,10 +16,13 @@ pub struct History {
 }
 
 #[derive(Debug)]
-struct Step {
-    state: ViewerState,
-    /// For what was opened: with it the whole view comes back. Edits bring back themselves alone.
-    loaded: Option<Loaded>,
+enum Step {
+    /// Edits bring back themselves alone.
+    Edits(ViewerState),
+    /// What was opened: with it the whole view comes back.
+    View(ViewerState, Loaded),
+    /// Which models were on the list.
+    Listed(Vec<ModelId>),
 }
 
 impl History {
@@ -38,7 +41,7 @@ impl History {
         apply(state, library, command);
         if !same_edits(&before, state) {
             if self.gesture != Some(kind) {
-                self.push(Step { state: before, loaded: None });
+                self.push(Step::Edits(before));
             }
             self.future.clear();
             self.gesture = Some(kind);
@@ -52,8 +55,17 @@ impl History {
 
     /// Remembers what was shown before something was opened, borrowed or taken away.
     pub fn opened(&mut self, state: ViewerState, loaded: Loaded) {
+        self.begin(Step::View(state, loaded));
+    }
+
+    /// Remembers which models were on the list before one was closed.
+    pub fn closed(&mut self, listed: Vec<ModelId>) {
+        self.begin(Step::Listed(listed));
+    }
+
+    fn begin(&mut self, step: Step) {
         self.gesture = None;
-        self.push(Step { state, loaded: Some(loaded) });
+        self.push(step);
         self.future.clear();
     }
 
@@ -66,8 +78,10 @@ impl History {
 
     /// Forgets the steps that lead back over a model which has gone.
     pub fn forget_gone(&mut self, library: &Library) {
-        let is_gone = |step: &Step| step.loaded.as_ref().is_some_and(|loaded| library.get(loaded.model).is_none());
+        let is_gone = |step: &Step| matches!(step, Step::View(_, loaded) if library.get(loaded.model).is_none());
+        let is_whole = |ids: &[ModelId]| ids.iter().all(|&id| library.get(id).is_some());
         for steps in [&mut self.past, &mut self.future] {
+            steps.retain(|step| !matches!(step, Step::Listed(ids) if !is_whole(ids)));
             if let Some(last) = steps.iter().rposition(is_gone) {
                 steps.drain(..=last);
             }
@@ -107,18 +121,21 @@ impl History {
 impl Step {
     /// Puts what it remembers in force; gives back the step the other way.
     fn take(self, state: &mut ViewerState, library: &mut Library) -> Self {
-        let before = state.clone();
-        match self.loaded {
-            Some(loaded) => {
-                let back = library.loaded();
-                if library.restore(loaded) {
-                    *state = self.state;
-                }
-                Self { state: before, loaded: Some(back) }
+        match self {
+            Self::Edits(edits) => {
+                let before = state.clone();
+                take_edits(state, &edits);
+                Self::Edits(before)
             }
-            None => {
-                take_edits(state, &self.state);
-                Self { state: before, loaded: None }
+            Self::View(view, loaded) => {
+                let back = library.loaded();
+                let before = if library.restore(loaded) { std::mem::replace(state, view) } else { state.clone() };
+                Self::View(before, back)
+            }
+            Self::Listed(ids) => {
+                let before = library.listed();
+                library.set_listed(&ids);
+                Self::Listed(before)
             }
         }
     }

@@ -2,9 +2,9 @@
 
 use egui::{RichText, ScrollArea, Ui};
 
-use super::icons::{Icon, icon_button, icon_button_sized};
+use super::icons::{Icon, icon_button_sized};
 use super::{Output, Shown, UiAction, UiState, controls, style};
-use crate::library::Model;
+use crate::library::{Model, sample};
 use crate::state::{ClipChoice, Command, choice_of_clip};
 
 /// As high as a search field, so that nothing moves when the first letter is typed.
@@ -28,6 +28,9 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
     }
     let wanted = local.clip_search.to_lowercase();
     let chosen = shown.clip_index();
+    // What is chosen stays in sight when the list gets shorter, and comes into sight when another is chosen elsewhere.
+    let seen = (model.id, chosen, ui.available_height() as u32);
+    let scrolls = local.clips_seen.replace(seen) != Some(seen);
     ScrollArea::vertical().id_salt("clips").auto_shrink([false, true]).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         let mut found = false;
@@ -45,13 +48,16 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
             found = true;
             let motion = model.borrowed(index).map(|borrowed| borrowed.motion);
             if motion != heading
-                && let Some(motion) = motion.and_then(|motion| shown.library.motions().get(motion))
+                && let Some(motion) = motion
             {
-                motion_heading(ui, &short_name(&motion.source));
+                motion_heading(ui, &name_among(shown.library.motions().iter().map(|motion| &*motion.source), motion));
             }
             heading = motion;
             let duration = model.clip(index).map_or(0.0, |clip| clip.duration_secs());
             let row = controls::list_row(ui, title, &format!("{duration:.2} s"), chosen == Some(index));
+            if scrolls && chosen == Some(index) {
+                row.scroll_to_me(None);
+            }
             if row.clicked() {
                 out.commands.push(Command::SetClip(choice_of_clip(model, index)));
             }
@@ -76,8 +82,9 @@ fn models(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     ScrollArea::vertical().id_salt("models").max_height(MOST_HIGH).auto_shrink([false, true]).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         let active = shown.library.active().map(|model| model.id);
-        for model in shown.library.models() {
-            let name = short_name(&model.source);
+        let models = shown.library.models();
+        for (index, model) in models.iter().enumerate() {
+            let name = name_among(models.iter().map(|model| &*model.source), index);
             let chosen = active == Some(model.id);
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = 2.0;
@@ -111,7 +118,8 @@ fn header(ui: &mut Ui, model: &Model, out: &mut Output) {
     ui.add(egui::Label::new(RichText::new(place).small().color(palette.weak_text)).truncate());
     ui.add_space(8.0);
     ui.horizontal(|ui| {
-        let open = egui::Button::new("Open…").min_size(egui::vec2(76.0, 32.0));
+        ui.spacing_mut().item_spacing.x = 6.0;
+        let open = egui::Button::new("Open…").min_size(egui::vec2(68.0, 32.0));
         if ui.add(open).on_hover_text("Open a model; files can also be dropped anywhere").clicked() {
             out.actions.push(UiAction::OpenFiles);
         }
@@ -119,8 +127,9 @@ fn header(ui: &mut Ui, model: &Model, out: &mut Output) {
         if ui.add(motion).on_hover_text("Borrow motion from another file, or load a joint map").clicked() {
             out.actions.push(UiAction::ChooseMotion);
         }
-        if icon_button(ui, Icon::Link, "Copy a link to this view", false).clicked() {
-            out.actions.push(UiAction::CopyLink);
+        let share = egui::Button::new("Share…").min_size(egui::vec2(68.0, 32.0));
+        if ui.add(share).on_hover_text("A link to this view, with all that is set").clicked() {
+            out.actions.push(UiAction::ShareLink);
         }
     });
 }
@@ -128,7 +137,7 @@ fn header(ui: &mut Ui, model: &Model, out: &mut Output) {
 /// The last part of a path or URL, and where it is.
 fn name_and_place(source: &str) -> (String, String) {
     if let Some(sample) = source.strip_prefix("sample:") {
-        return (sample.to_owned(), "Sample".to_owned());
+        return (sample::title(sample).to_owned(), "Sample".to_owned());
     }
     let source = source.split(['?', '#']).next().unwrap_or(source);
     match source.trim_end_matches('/').rsplit_once(['/', '\\']) {
@@ -141,6 +150,14 @@ fn name_and_place(source: &str) -> (String, String) {
 /// What a file is called without the place where it lies.
 pub fn short_name(source: &str) -> String {
     name_and_place(source).0
+}
+
+/// What one of several files is called in a list of them: those of the same name are numbered.
+pub(super) fn name_among<'a>(sources: impl Iterator<Item = &'a str>, index: usize) -> String {
+    let names: Vec<String> = sources.map(short_name).collect();
+    let Some(name) = names.get(index) else { return String::new() };
+    let same = |names: &[String]| names.iter().filter(|other| *other == name).count();
+    if same(&names) > 1 { format!("{name} ({})", same(&names[..=index])) } else { name.clone() }
 }
 
 /// A search field that can be emptied.

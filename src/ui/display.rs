@@ -36,6 +36,12 @@ fn explanation(mode: SkinningMode) -> &'static str {
 
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let state = shown.state;
+    let model = shown.library.active();
+    // Where nothing is skinned they are what there is to play with.
+    let morphs_first = model.is_some_and(|model| model.asset.skins.is_empty());
+    if let Some(model) = model.filter(|_| morphs_first) {
+        morphs(ui, shown, model, out);
+    }
     controls::section(ui, "SKINNING");
     if let Some(mode) = controls::segmented(ui, Some(state.skinning), &MODES) {
         out.commands.push(Command::SetSkinning(mode));
@@ -76,7 +82,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     }
     more(ui, shown, out);
     source(ui, shown, out);
-    if let Some(model) = shown.library.active() {
+    if let Some(model) = model.filter(|_| !morphs_first) {
         morphs(ui, shown, model, out);
     }
 }

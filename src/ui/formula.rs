@@ -142,9 +142,6 @@ fn matrix(ui: &mut Ui, name: &str, what: &str, matrix: &Affine3A) {
 
 /// The switch for looking at vertices, and the formula at the one that was found.
 pub(super) fn vertex(ui: &mut Ui, shown: &Shown<'_>, model: &Model, local: &mut UiState, out: &mut Output) {
-    if model.asset.instances.is_empty() {
-        return;
-    }
     let on = local.probe.is_on(shown);
     if controls::switch(ui, "Vertex under the pointer", on) {
         local.probe.on = !on;

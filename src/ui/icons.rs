@@ -18,7 +18,7 @@ pub enum Icon {
     Clips,
     Sliders,
     Open,
-    Link,
+    Samples,
     Help,
     Close,
     MarkIn,
@@ -165,9 +165,10 @@ pub fn paint(painter: &Painter, icon: Icon, square: Rect, color: Color32) {
                 (0.06, 0.7),
             ]);
         }
-        Icon::Link => {
-            outline(0.3, 0.02, 0.98, 0.7);
-            line(&[(0.3, 0.3), (0.02, 0.3), (0.02, 0.98), (0.7, 0.98), (0.7, 0.7)]);
+        Icon::Samples => {
+            for (x, y) in [(0.06, 0.06), (0.58, 0.06), (0.06, 0.58), (0.58, 0.58)] {
+                outline(x, y, x + 0.36, y + 0.36);
+            }
         }
         Icon::Help => {
             painter.circle_stroke(at(0.5, 0.5), unit * 0.47, thin);

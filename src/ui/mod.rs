@@ -26,7 +26,7 @@ use egui::{Rect, Ui};
 
 use crate::anim::Clip;
 use crate::frame::{Frame, PickedJoint};
-use crate::library::{Library, ModelId};
+use crate::library::{Library, Model, ModelId};
 use crate::state::{Command, ViewerState, active_clip, clip_secs};
 
 pub use clips::short_name;
@@ -80,8 +80,12 @@ pub struct UiState {
     pub sheet: Option<Sheet>,
     pub tab: Tab,
     pub clip_search: String,
+    /// The model, its chosen clip and the height of the list when it was last shown.
+    clips_seen: Option<(ModelId, Option<usize>, u32)>,
     pub joint_search: String,
     pub help_open: bool,
+    /// There is a gallery of samples, which can be asked for.
+    pub has_gallery: bool,
     /// Shown until dismissed.
     pub error: Option<String>,
     /// The error is about motions that were refused: what else can be done with them is offered.
@@ -128,6 +132,20 @@ pub struct UiState {
 }
 
 impl UiState {
+    /// A link about a joint that is turned by hand means the turning.
+    pub fn turn_to_link(&mut self, state: &ViewerState) {
+        self.turning = state.joint.is_some_and(|joint| state.pose.contains_key(&joint));
+    }
+
+    /// Of a model without skins that has morph targets their sliders are shown: its tree tells little.
+    pub fn turn_to_model(&mut self, library: &Library) {
+        let has_morphs = |model: &Model| !model.asset.skeleton.rest().morph_weights.is_empty();
+        let is_morphed = |model: &Model| model.asset.skins.is_empty() && has_morphs(model);
+        if self.tab == Tab::Scene && library.active().is_some_and(is_morphed) {
+            self.tab = Tab::Display;
+        }
+    }
+
     /// Ends what was begun about one of the motions: there are others now.
     pub fn other_motions(&mut self) {
         self.motion.other_motions();
@@ -145,8 +163,10 @@ impl Default for UiState {
             sheet: None,
             tab: Tab::Scene,
             clip_search: String::new(),
+            clips_seen: None,
             joint_search: String::new(),
             help_open: false,
+            has_gallery: false,
             error: None,
             turning: false,
             matrices: false,
@@ -245,6 +265,8 @@ pub struct Output {
 pub enum UiAction {
     /// Let the person choose files.
     OpenFiles,
+    /// Show the gallery of samples.
+    ShowGallery,
     /// Let the person choose files to borrow motion from, or a joint map.
     ChooseMotion,
     /// Do what the prompt was for with what was typed into it.
@@ -265,8 +287,8 @@ pub enum UiAction {
     /// Record one round of the clip, or end that before its time.
     Record,
     StopRecording,
-    /// Put a link to this view on the clipboard.
-    CopyLink,
+    /// Give the person a link to this view.
+    ShareLink,
     Undo,
     Redo,
 }
@@ -294,7 +316,7 @@ pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Outp
         if local.clips_open {
             egui::Panel::left("clips")
                 .frame(side)
-                .default_size(244.0)
+                .default_size(252.0)
                 .size_range(190.0..=(0.3 * width).clamp(190.0, 420.0))
                 .show_separator_line(false)
                 .show(ui, |ui| clips::show(ui, &shown, local, out));

@@ -208,6 +208,7 @@ fn help(context: &Context, local: &mut UiState) {
             });
         });
         let pointer = [
+            ("Drop files", "Open a model, borrow motions for it, put a joint map in force"),
             ("Drag", "Look around"),
             ("Right drag, shift drag", "Move the picture"),
             ("Wheel, pinch", "Nearer, farther"),

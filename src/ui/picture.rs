@@ -304,6 +304,9 @@ fn buttons(ui: &mut Ui, rect: Rect, local: &mut UiState, out: &mut Output) {
                 out.actions.push(UiAction::OpenFiles);
             }
         }
+        if local.has_gallery && icon_button(ui, Icon::Samples, "Samples", false).clicked() {
+            out.actions.push(UiAction::ShowGallery);
+        }
     });
     let mut bar = ui.new_child(egui::UiBuilder::new().max_rect(strip).layout(Layout::right_to_left(Align::Center)));
     pill(&mut bar, |ui| {

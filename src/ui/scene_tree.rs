@@ -24,41 +24,57 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
         local.scrolled_to = None;
     }
     let chosen = shown.state.joint.and_then(|joint| model.asset.skeleton.joint_of_source(joint));
+    ui.add_space(4.0);
     let turns = chosen.is_some() && local.turning && ui.available_height() < ROOMY_HEIGHT;
     if turns || (chosen.is_some() && local.matrices) || local.probe.is_on(shown) {
         // They leave no room for the tree; another joint is chosen in the picture.
         ScrollArea::vertical().id_salt("joint").auto_shrink([false, false]).show(ui, |ui| {
             // Room for the floating scroll bar.
             ui.set_max_width(ui.available_width() - 6.0);
-            ui.add_space(4.0);
-            // Above the joint, which comes and goes by presses on the vertex's lines.
-            let vertex_first = local.probe.is_on(shown);
-            if vertex_first {
-                controls::card(ui, |ui| formula::vertex(ui, shown, model, local, out));
-                ui.add_space(6.0);
-            }
-            if let Some(joint) = chosen {
-                controls::card(ui, |ui| joint_card(ui, shown, model, joint, local, out));
-                ui.add_space(6.0);
-            }
-            if !vertex_first {
-                controls::card(ui, |ui| formula::vertex(ui, shown, model, local, out));
-            }
+            cards(ui, shown, model, chosen, local, out);
             ui.add_space(12.0);
         });
         return;
     }
-    if let Some(joint) = chosen {
-        ui.add_space(4.0);
-        controls::card(ui, |ui| joint_card(ui, shown, model, joint, local, out));
-    } else {
-        controls::hint(ui, "Click a joint here or in the picture to see its transforms.");
-    }
-    formula::vertex(ui, shown, model, local, out);
+    cards(ui, shown, model, chosen, local, out);
     ui.add_space(6.0);
     clips::search_field(ui, &mut local.joint_search, "Search nodes by name");
     ui.add_space(2.0);
     tree(ui, shown, model, local, out);
+}
+
+/// The chosen joint and the vertex that is looked at. Presses on the vertex's lines choose joints, so the vertex is above;
+/// while it is only a switch, it leaves the room to the joint.
+fn cards(
+    ui: &mut Ui,
+    shown: &Shown<'_>,
+    model: &Model,
+    chosen: Option<JointIndex>,
+    local: &mut UiState,
+    out: &mut Output,
+) {
+    let Some(joint) = chosen else {
+        vertex(ui, shown, model, local, out);
+        controls::hint(ui, "Click a joint here or in the picture to see its transforms.");
+        return;
+    };
+    let vertex_first = local.probe.is_on(shown);
+    if vertex_first {
+        vertex(ui, shown, model, local, out);
+    }
+    controls::card(ui, |ui| joint_card(ui, shown, model, joint, local, out));
+    if !vertex_first {
+        vertex(ui, shown, model, local, out);
+    }
+}
+
+fn vertex(ui: &mut Ui, shown: &Shown<'_>, model: &Model, local: &mut UiState, out: &mut Output) {
+    if local.probe.is_on(shown) {
+        controls::card(ui, |ui| formula::vertex(ui, shown, model, local, out));
+        ui.add_space(6.0);
+    } else if !model.asset.instances.is_empty() {
+        formula::vertex(ui, shown, model, local, out);
+    }
 }
 
 /// One line of the tree.

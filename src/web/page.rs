@@ -191,6 +191,14 @@ impl Host for PageHost {
         true
     }
 
+    fn has_gallery(&self) -> bool {
+        true
+    }
+
+    fn show_gallery(&self) {
+        self.shell.gallery();
+    }
+
     fn save_file(&self, name: &str, bytes: &[u8]) -> bool {
         self.shell.save(name, bytes);
         true

@@ -14,6 +14,10 @@ extern "C" {
     #[wasm_bindgen(method)]
     pub fn choose(this: &Shell, role: &str);
 
+    /// Shows the gallery of samples.
+    #[wasm_bindgen(method)]
+    pub fn gallery(this: &Shell);
+
     /// Gives the person a file, as a download.
     #[wasm_bindgen(method)]
     pub fn save(this: &Shell, name: &str, bytes: &[u8]);

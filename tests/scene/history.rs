@@ -113,6 +113,41 @@ fn no_step_leads_to_a_model_that_has_gone() {
 }
 
 #[test]
+fn a_closed_model_comes_back_and_the_view_stays() {
+    let (mut library, first, second) = two_models();
+    let (mut state, mut history) = (ViewerState::default(), History::default());
+    history.closed(library.listed());
+    library.close(second);
+    assert_eq!(library.listed(), [first, second], "what is shown stays");
+    library.close(first);
+    assert_eq!(library.listed(), [second]);
+    state.time_secs = 0.7;
+    assert!(history.undo(&mut state, &mut library));
+    assert_eq!((library.listed(), state.time_secs), (vec![first, second], 0.7));
+    assert!(history.redo(&mut state, &mut library));
+    assert_eq!(library.listed(), [second]);
+    assert_eq!(library.active().map(|model| model.id), Some(second));
+    assert!(library.show(first), "a step may lead to a closed model");
+    assert_eq!(library.listed(), [second, first]);
+}
+
+#[test]
+fn closed_models_go_first() {
+    let (mut library, first, second) = two_models();
+    let (mut state, mut history) = (ViewerState::default(), History::default());
+    let asset = library.active().unwrap().asset.clone();
+    history.closed(library.listed());
+    library.close(first);
+    for index in 1..Library::MOST_MODELS {
+        library.add(Model::new(format!("{index}.glb"), asset.clone(), Vec::new()));
+    }
+    assert!(library.trim().is_empty(), "nobody has to hear of it");
+    assert!(library.get(first).is_none() && library.get(second).is_some());
+    history.forget_gone(&library);
+    assert!(!history.undo(&mut state, &mut library), "no step leads to a list with it");
+}
+
+#[test]
 fn the_oldest_model_goes_and_never_the_shown_one() {
     let (mut library, first, second) = two_models();
     let asset = library.active().unwrap().asset.clone();

@@ -1,11 +1,12 @@
 //! The left panel.
 
+use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use gaitway::anim::ClipBuilder;
 use gaitway::state::{ClipChoice, Command};
 use gaitway::ui::UiAction;
 
-use crate::bench::{WIDE, bench, model_with_clips, press, sample_bench};
+use crate::bench::{Bench, WIDE, bench, model_with_clips, press, sample_bench};
 
 #[test]
 fn every_clip_and_the_rest_pose_can_be_chosen() {
@@ -15,6 +16,23 @@ fn every_clip_and_the_rest_pose_can_be_chosen() {
         assert_eq!(press(&mut harness, name), [expected], "{name}");
     }
     assert_eq!(press(&mut harness, "Rest pose"), [Command::SetClip(ClipChoice::RestPose)]);
+}
+
+#[test]
+fn the_chosen_clip_is_in_sight() {
+    let mut harness = bench(WIDE, model_with_clips(60));
+    let is_in_sight = |harness: &Harness<'_, Bench>| {
+        let row = harness.get_by_label("Move 50").rect();
+        let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, harness.ctx.content_rect().size());
+        screen.contains_rect(row)
+    };
+    assert!(!is_in_sight(&harness));
+    harness.state_mut().state.clip = ClipChoice::Named("Move 50".to_owned());
+    harness.run_steps(30);
+    assert!(is_in_sight(&harness));
+    harness.set_size(egui::vec2(WIDE[0], 0.6 * WIDE[1]));
+    harness.run_steps(30);
+    assert!(is_in_sight(&harness), "the list got shorter");
 }
 
 #[test]
@@ -66,9 +84,9 @@ fn a_name_that_is_cut_is_told_in_full_under_the_pointer() {
 }
 
 #[test]
-fn open_and_copy_link_are_asked_of_the_host() {
+fn open_and_share_are_asked_of_the_host() {
     let mut harness = sample_bench(WIDE);
     press(&mut harness, "Open…");
-    press(&mut harness, "Copy a link to this view");
-    assert_eq!(harness.state().actions, [UiAction::OpenFiles, UiAction::CopyLink]);
+    press(&mut harness, "Share…");
+    assert_eq!(harness.state().actions, [UiAction::OpenFiles, UiAction::ShareLink]);
 }

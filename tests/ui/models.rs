@@ -16,19 +16,30 @@ fn two_models() -> Library {
 
 #[test]
 fn models_are_listed_when_there_are_several() {
-    assert!(sample_bench(WIDE).query_by_label("Close walker").is_none(), "one needs no list");
+    assert!(sample_bench(WIDE).query_by_label("Close Walker").is_none(), "one needs no list");
     for size in [WIDE, NARROW] {
         let mut harness = bench_of(size, two_models());
         if size == NARROW {
             press(&mut harness, "Clips");
         }
         let first = harness.state().library.models()[0].id;
-        press(&mut harness, "walker");
+        press(&mut harness, "Walker");
         assert_eq!(harness.state().actions, [UiAction::ShowModel(first)], "{size:?}");
         assert!(harness.query_by_label("Close other.glb").is_none(), "what is shown stays");
         harness.state_mut().actions.clear();
-        press(&mut harness, "Close walker");
+        press(&mut harness, "Close Walker");
         assert_eq!(harness.state().actions, [UiAction::CloseModel(first)]);
+    }
+}
+
+#[test]
+fn models_of_one_name_are_told_apart() {
+    let mut library = two_models();
+    let asset = library.active().expect("there are two").asset.clone();
+    library.add(Model::new("elsewhere/other.glb".to_owned(), asset, Vec::new()));
+    let harness = bench_of(WIDE, library);
+    for name in ["Walker", "other.glb (1)", "Close other.glb (1)", "other.glb (2)"] {
+        assert_eq!(harness.query_all_by_label(name).count(), 1, "{name}");
     }
 }
 

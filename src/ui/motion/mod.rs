@@ -17,7 +17,7 @@ use egui::{RichText, ScrollArea, Ui};
 
 use self::rows::Row;
 use super::icons::{Icon, icon_button_sized};
-use super::{Output, Shown, UiAction, UiState, clips, controls, short_name, style};
+use super::{Output, Shown, UiAction, UiState, clips, controls, style};
 use crate::anim::JointIndex;
 use crate::asset::Asset;
 use crate::library::{Model, ModelId, Motion};
@@ -277,12 +277,14 @@ fn header(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, map: &JointMap,
     let motions = shown.library.motions();
     if motions.len() > 1 {
         ui.add_space(4.0);
-        let name = short_name(&pairing.motion.source);
-        let combo =
-            egui::ComboBox::from_id_salt("motion file").width(ui.available_width()).truncate().selected_text(name);
+        let name = |index| clips::name_among(motions.iter().map(|motion| &*motion.source), index);
+        let combo = egui::ComboBox::from_id_salt("motion file")
+            .width(ui.available_width())
+            .truncate()
+            .selected_text(name(pairing.index));
         let response = combo.show_ui(ui, |ui| {
-            for (index, motion) in motions.iter().enumerate() {
-                if ui.selectable_label(index == pairing.index, short_name(&motion.source)).clicked() {
+            for index in 0..motions.len() {
+                if ui.selectable_label(index == pairing.index, name(index)).clicked() {
                     out.commands.extend(first_clip_of(pairing.model, index));
                 }
             }
