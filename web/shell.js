@@ -208,14 +208,18 @@ async function start(renderer) {
     const canvas = document.createElement("canvas");
     canvas.setAttribute("role", "application");
     canvas.setAttribute("aria-label", "The model and its controls. Ctrl+O opens files.");
+    // On the screen it would wait for the device, and the whole page with it, until the first picture is drawn.
+    canvas.style.visibility = "hidden";
     byId("stage").replaceChildren(canvas);
     backend = attempt;
+    const ended = new Promise((_, reject) => (giveUp = reject));
+    ended.catch(() => {});
     const link = withoutAwaited(kept.link);
     let missing;
     try {
       const isOwn = [...heldItems(link), ...heldMotions(link)].some((item) => ownFiles.has(item));
       const run = bindings.run(canvas, attempt ?? undefined, link, entries, motionEntries, isOwn, hooks(() => app === bindings || app === null));
-      missing = JSON.parse(await Promise.race([run, new Promise((_, reject) => (giveUp = reject))]));
+      missing = JSON.parse(await Promise.race([run, ended]));
     } catch (error) {
       if (panel === "stopped") throw error;
       problems.push(`${NAMES[attempt] ?? "Graphics"}: ${error.message}`);
@@ -225,7 +229,9 @@ async function start(renderer) {
     backend = JSON.parse(bindings.stats()).backend;
     canvas.addEventListener("webglcontextlost", () => stopped("The browser took the graphics context away."));
     await frames(2);
+    await Promise.race([bindings.begin(), ended]);
     if (stopReason !== null) throw new Error(stopReason);
+    canvas.style.visibility = "";
     // What is typed goes through a field that nobody sees.
     byId("stage").querySelector("input")?.setAttribute("aria-label", "Typed into the picture");
     show(null);

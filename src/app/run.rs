@@ -46,6 +46,8 @@ pub struct App {
     inbox: Inbox,
     pub(super) context: egui::Context,
     pub(super) host: Box<dyn Host>,
+    /// Time stands still until the first picture is seen: where that takes long, the next ones would wait in a queue.
+    begun: bool,
     /// Answered once the picture shows what they asked for.
     after_draw: Vec<Box<dyn FnOnce()>>,
     screenshots: Vec<Reply<Vec<u8>>>,
@@ -100,6 +102,7 @@ impl App {
             inbox: inbox.clone(),
             context: cc.egui_ctx.clone(),
             host,
+            begun: cfg!(not(target_arch = "wasm32")),
             after_draw: Vec::new(),
             screenshots: Vec::new(),
             backend: device::backend_name(&info),
@@ -193,6 +196,20 @@ impl App {
             ScriptCall::Screenshot(reply) => self.screenshots.push(reply),
             ScriptCall::Stats(reply) => reply(Ok(self.stats())),
         }
+    }
+
+    /// The first picture is drawn and seen.
+    #[cfg(target_arch = "wasm32")]
+    pub fn begin(&mut self) {
+        self.begun = true;
+        self.context.request_repaint();
+    }
+
+    /// Resolves when the device has drawn all that was asked of it so far.
+    #[cfg(target_arch = "wasm32")]
+    pub fn drawn(&self) -> impl Future<Output = ()> + use<> {
+        let (device, queue, _) = self.scene.last_picture();
+        async move { crate::render::finished(&device, &queue).await }
     }
 
     pub fn stats(&self) -> serde_json::Value {
@@ -345,6 +362,9 @@ impl App {
 
     /// Time goes by while playing; nothing is asked for when it does not.
     fn advance(&mut self, context: &egui::Context) {
+        if !self.begun {
+            return;
+        }
         let shown = Shown { library: &self.library, state: &self.state, frame: &self.frame };
         let moves = shown.clip().is_some_and(|clip| clip.duration_secs() > 0.0);
         let turns = self.state.turntable != 0.0 && !matches!(self.state.camera, CameraChoice::File(_));

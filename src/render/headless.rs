@@ -1,6 +1,8 @@
 //! A device without a window, and pixels back from the GPU: for the command line, tests and screenshots.
 
 use std::sync::Arc;
+#[cfg(target_arch = "wasm32")]
+use std::sync::atomic::AtomicBool;
 use std::sync::atomic::{AtomicU8, Ordering};
 
 /// Why there is no device.
@@ -91,13 +93,31 @@ async fn map(device: &wgpu::Device, buffer: &wgpu::Buffer) -> bool {
         return false;
     }
     #[cfg(target_arch = "wasm32")]
-    while state.load(Ordering::Acquire) == WAITING {
+    if !poll_while(device, || state.load(Ordering::Acquire) == WAITING).await {
+        return false;
+    }
+    state.load(Ordering::Acquire) == MAPPED
+}
+
+/// Resolves when the device has done all that was submitted to it so far, or was lost.
+#[cfg(target_arch = "wasm32")]
+pub async fn finished(device: &wgpu::Device, queue: &wgpu::Queue) {
+    let works = Arc::new(AtomicBool::new(true));
+    let from_callback = works.clone();
+    queue.on_submitted_work_done(move || from_callback.store(false, Ordering::Release));
+    poll_while(device, || works.load(Ordering::Acquire)).await;
+}
+
+/// Lets the device call back, once in each turn of the event loop; false when it was lost.
+#[cfg(target_arch = "wasm32")]
+async fn poll_while(device: &wgpu::Device, waits: impl Fn() -> bool) -> bool {
+    while waits() {
         if device.poll(wgpu::PollType::Poll).is_err() {
             return false;
         }
         next_turn().await;
     }
-    state.load(Ordering::Acquire) == MAPPED
+    true
 }
 
 /// Resolves in a later turn of the page's event loop.

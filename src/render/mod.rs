@@ -21,6 +21,8 @@ mod texture;
 pub mod uniforms;
 
 pub use blit::Blit;
+#[cfg(target_arch = "wasm32")]
+pub use headless::finished;
 #[cfg(not(target_arch = "wasm32"))]
 pub use headless::headless_device;
 pub use headless::{HeadlessError, read_pixels};

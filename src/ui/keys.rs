@@ -165,15 +165,17 @@ pub(super) fn listen(context: &Context, shown: &Shown<'_>, local: &mut UiState, 
     }
 }
 
+/// On a slow machine a key is pressed several times within a frame: each counts.
 fn undo_and_redo(context: &Context, out: &mut Output) {
-    let undo = egui::KeyboardShortcut::new(Modifiers::COMMAND, Key::Z);
-    let redo = egui::KeyboardShortcut::new(Modifiers::COMMAND, Key::Y);
-    let redo_too = egui::KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
     // The longer one first: the shorter would swallow it.
-    if context.input_mut(|input| input.consume_shortcut(&redo_too) || input.consume_shortcut(&redo)) {
-        out.actions.push(UiAction::Redo);
-    } else if context.input_mut(|input| input.consume_shortcut(&undo)) {
-        out.actions.push(UiAction::Undo);
+    let shortcuts = [
+        (Modifiers::COMMAND | Modifiers::SHIFT, Key::Z, UiAction::Redo),
+        (Modifiers::COMMAND, Key::Y, UiAction::Redo),
+        (Modifiers::COMMAND, Key::Z, UiAction::Undo),
+    ];
+    for (modifiers, key, action) in shortcuts {
+        let presses = context.input_mut(|input| input.count_and_consume_key(modifiers, key));
+        out.actions.extend(std::iter::repeat_n(action, presses));
     }
 }
 

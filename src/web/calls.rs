@@ -103,6 +103,14 @@ pub async fn screenshot() -> Result<Uint8Array, JsError> {
     settled(promise).await.map(JsValue::unchecked_into).map_err(error)
 }
 
+/// Resolves when the first picture is drawn. From then on time goes by.
+#[wasm_bindgen]
+pub async fn begin() -> Result<(), JsError> {
+    let page = page().map_err(error)?;
+    with_app(&page, |app| app.drawn()).map_err(error)?.await;
+    with_app(&page, App::begin).map_err(error)
+}
+
 /// What the live regions say: `{model, clip, playing, problem}`; no clip is the rest pose.
 #[wasm_bindgen]
 pub fn summary() -> Result<String, JsError> {

@@ -43,6 +43,18 @@ fn undo_and_redo_are_asked_for() {
 }
 
 #[test]
+fn every_press_within_a_frame_counts() {
+    let mut harness = sample_bench(WIDE);
+    for pressed in [true, false].into_iter().cycle().take(6) {
+        let (key, modifiers) = (Key::Z, egui::Modifiers::COMMAND);
+        let event = egui::Event::Key { key, physical_key: None, pressed, repeat: false, modifiers };
+        harness.input_mut().events.push(event);
+    }
+    harness.step();
+    assert_eq!(harness.state().actions, [UiAction::Undo, UiAction::Undo, UiAction::Undo]);
+}
+
+#[test]
 fn typing_is_not_taken_for_keys() {
     let mut harness = sample_bench(WIDE);
     harness.get_by_label("Search nodes by name").click();
