@@ -160,7 +160,8 @@ fn files_of_sample(name: &str) -> Result<Vec<(String, String)>, OpenError> {
 }
 
 /// Opens all that a view lists, but for motions that are `held`; its model only if asked for. A motion or a map that cannot
-/// be had is a problem in the answer. Addresses of maps in the view are replaced by what they hold. `progress` is told which part of how many it is.
+/// be had is a problem in the answer. Addresses of maps in the view are replaced by what they hold. `progress` is told
+/// which part of how many it is.
 pub async fn open_view(
     state: &mut ViewerState,
     with_model: bool,

@@ -36,7 +36,7 @@ pub fn names() -> Vec<&'static str> {
     names
 }
 
-/// What people call the samples that are not called so in links.
+/// What the samples are called on the screen.
 const TITLES: [(&str, &str); 9] = [
     ("pilot", "Pilot"),
     ("mannequin", "Mannequin"),

@@ -37,8 +37,9 @@ pub fn start() {
 }
 
 /// Shows what the link says, or `items` (see [`super::calls::open`]) in the link's view, borrowing from `motion_items` and
-/// what else the link lists; `is_own`: these are a person's own files. Resolves when the first picture is on its way, to a JSON list of what could not be had. `renderer`
-/// is `webgpu`, `webgl2` or nothing. Rejects when no device is to be had; call again with a new canvas then.
+/// what else the link lists; `is_own`: these are a person's own files. Resolves when the first picture is on its way, to a
+/// JSON list of what could not be had; [`super::calls::begin`] comes next. `renderer` is `webgpu`, `webgl2` or nothing.
+/// Rejects when no device is to be had; call again with a new canvas then.
 #[wasm_bindgen]
 pub async fn run(
     canvas: web_sys::HtmlCanvasElement,

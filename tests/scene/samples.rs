@@ -73,5 +73,6 @@ fn every_sample_opens() {
         let found: Vec<String> =
             contents.models.iter().map(|opened| opened.model.source.clone()).chain(motions).collect();
         assert_eq!(found, [source]);
+        assert_ne!(sample::title(name), name, "it should have a title for the screen");
     }
 }
