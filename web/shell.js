@@ -489,7 +489,7 @@ const wantedBy = (link) => pairsOf(link).filter(([key, value]) => (key === "mode
 function awaitFiles(link) {
   byId("bring").close();
   const wanted = wantedBy(link).map(([key, value]) => ({ key, name: value.slice(BRING.length) }));
-  awaited = wanted.length > 0 ? { link, wanted, sets: [] } : null;
+  awaited = wanted.length > 0 ? { link, wanted, missing: wanted, sets: [] } : null;
 }
 
 /** What of a link can be shown before its files are there. */
@@ -504,7 +504,7 @@ function withoutAwaited(link) {
 function showAwaited() {
   if (awaited === null || panel !== null || byId("bring").open) return;
   byId("bring").returnValue = "";
-  list("bring-files", awaited.wanted.map(({ key, name }) => `${name} (${key === "model" ? "the model" : "motion"})`));
+  list("bring-files", awaited.missing.map(({ key, name }) => `${name} (${key === "model" ? "the model" : "motion"})`));
   byId("bring").showModal();
   byId("bring-choose").focus();
 }
@@ -522,6 +522,10 @@ async function fulfil(items, taken) {
   if (!found.every(({ set }) => set !== undefined)) {
     // Something else was opened: that is what the person wants to see.
     if (taken && !found.some(({ set }) => set === items)) awaited = null;
+    else {
+      awaited.missing = found.filter(({ set }) => set === undefined);
+      showAwaited();
+    }
     return false;
   }
   let whole = link;
@@ -747,7 +751,7 @@ let openAs;
 
 const DIALOG = {
   any: { title: "Open a model", what: ".glb, .gltf with its files, .vrm, .obj (with .skel and .attach) or a .zip of them; motions for it (.bvh, .vrma) can come along. Files stay in this browser.", example: "https://example.org/character.glb", sample: "Samples" },
-  motion: { title: "Borrow motion", what: ".bvh, .vrma, .glb or .gltf: the clips of any skeleton, or a joint map (.json). Files stay in this browser.", example: "https://example.org/walk.bvh", sample: "A sample walk" },
+  motion: { title: "Borrow motion", what: ".bvh, .vrma, .glb or .gltf: the clips of any skeleton, or a joint map (.json). Files stay in this browser.", example: "https://example.org/walk.bvh", sample: "Sample walk" },
 };
 
 function openDialog(role = "any") {

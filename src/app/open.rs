@@ -115,6 +115,9 @@ impl App {
         });
         if is_link {
             self.panels.turn_to_link(&self.state);
+            // Space is for the new view, not for a button that was pressed before.
+            let focused = self.context.memory(|memory| memory.focused());
+            focused.inspect(|&id| self.context.memory_mut(|memory| memory.surrender_focus(id)));
         }
         self.panels.turn_to_model(&self.library);
         let has_map = map.is_some();
@@ -247,9 +250,16 @@ impl App {
         self.changed = true;
     }
 
-    /// Takes a model that is not shown off the list.
+    /// Takes a model off the list. When it is the one that is shown, its neighbour is turned to; the only one stays.
     pub(super) fn close_model(&mut self, id: ModelId) {
         let Some(name) = self.library.get(id).map(|model| short_name(&model.source)) else { return };
+        if self.library.active().is_some_and(|active| active.id == id) {
+            let models = self.library.models();
+            let at = models.iter().position(|model| model.id == id).unwrap_or(0);
+            let neighbour = models.get(at + 1).or_else(|| models.get(at.checked_sub(1)?)).map(|model| model.id);
+            let Some(neighbour) = neighbour else { return };
+            self.turn_to(neighbour);
+        }
         self.history.closed(self.library.listed());
         self.library.close(id);
         self.toast_undoable(format!("Closed {name}."));

@@ -9,6 +9,7 @@ use crate::state::{ClipChoice, Command, choice_of_clip};
 
 /// As high as a search field, so that nothing moves when the first letter is typed.
 const CLEAR_SIZE: f32 = 28.0;
+const MODEL_ROW_HEIGHT: f32 = 30.0;
 /// With more clips than this there is a search field.
 const MANY_CLIPS: usize = 8;
 
@@ -16,7 +17,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
     let Some(model) = shown.library.active() else { return };
     header(ui, model, out);
     if shown.library.models().len() > 1 {
-        models(ui, shown, out);
+        models(ui, shown, local, out);
     }
     controls::section(ui, "CLIPS");
     let titles = model.clip_titles();
@@ -75,26 +76,32 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
     });
 }
 
-/// The models to turn to.
-fn models(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
-    const MOST_HIGH: f32 = 132.0;
+/// The models to turn to, in no more than a part of the panel.
+fn models(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     controls::section(ui, "MODELS");
-    ScrollArea::vertical().id_salt("models").max_height(MOST_HIGH).auto_shrink([false, true]).show(ui, |ui| {
+    let room = ui.available_height();
+    let most_high = (0.4 * room).max(2.0 * MODEL_ROW_HEIGHT);
+    let active = shown.library.active().map(|model| model.id);
+    let seen = active.map(|id| (id, room as u32));
+    let scrolls = std::mem::replace(&mut local.models_seen, seen) != seen;
+    ScrollArea::vertical().id_salt("models").max_height(most_high).auto_shrink([false, true]).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
-        let active = shown.library.active().map(|model| model.id);
         let models = shown.library.models();
         for (index, model) in models.iter().enumerate() {
             let name = name_among(models.iter().map(|model| &*model.source), index);
             let chosen = active == Some(model.id);
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = 2.0;
-                let width = ui.available_width() - CLEAR_SIZE - 2.0;
-                let row = ui.allocate_ui(egui::vec2(width, 30.0), |ui| controls::list_row(ui, &name, "", chosen)).inner;
+                let size = egui::vec2(ui.available_width() - CLEAR_SIZE - 2.0, MODEL_ROW_HEIGHT);
+                let row = ui.allocate_ui(size, |ui| controls::list_row(ui, &name, "", chosen)).inner;
+                if scrolls && chosen {
+                    row.scroll_to_me(None);
+                }
                 if row.clicked() && !chosen {
                     out.actions.push(UiAction::ShowModel(model.id));
                 }
                 let close = format!("Close {name}");
-                if !chosen && icon_button_sized(ui, Icon::Close, &close, false, CLEAR_SIZE).clicked() {
+                if icon_button_sized(ui, Icon::Close, &close, false, CLEAR_SIZE).clicked() {
                     out.actions.push(UiAction::CloseModel(model.id));
                 }
             });

@@ -32,6 +32,11 @@ impl Probe {
         self.on || shown.state.vertex.is_some()
     }
 
+    /// Another model has other vertices.
+    pub fn forget(&mut self) {
+        (self.hovered, self.looked_at, self.is_hit) = (None, None, false);
+    }
+
     fn vertex(&self, shown: &Shown<'_>) -> Option<VertexChoice> {
         shown.state.vertex.or(self.hovered)
     }

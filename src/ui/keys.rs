@@ -103,6 +103,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
             out.commands.push(Command::SetShow(show));
         },
     },
+    KeyHelp { keys: "Ctrl O", does: "Open files", pressed: &[], act: |_, _, _, _| {} },
     KeyHelp {
         keys: "Ctrl Z, Ctrl Y",
         does: "Undo, redo a setting or what was opened",
@@ -136,13 +137,13 @@ pub const KEY_TABLE: &[KeyHelp] = &[
     },
 ];
 
-/// Listens, unless someone is typing or a control has the keyboard; to undo and redo also when a mere button has it.
+/// Listens, unless someone is typing or a control has the keyboard; to shortcuts also when a mere button has it.
 pub(super) fn listen(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     if local.path_prompt.is_some() || local.motion.is_picking() {
         return;
     }
     if !context.text_edit_focused() {
-        undo_and_redo(context, out);
+        shortcuts(context, out);
     }
     if context.egui_wants_keyboard_input() {
         return;
@@ -166,12 +167,13 @@ pub(super) fn listen(context: &Context, shown: &Shown<'_>, local: &mut UiState, 
 }
 
 /// On a slow machine a key is pressed several times within a frame: each counts.
-fn undo_and_redo(context: &Context, out: &mut Output) {
+fn shortcuts(context: &Context, out: &mut Output) {
     // The longer one first: the shorter would swallow it.
     let shortcuts = [
         (Modifiers::COMMAND | Modifiers::SHIFT, Key::Z, UiAction::Redo),
         (Modifiers::COMMAND, Key::Y, UiAction::Redo),
         (Modifiers::COMMAND, Key::Z, UiAction::Undo),
+        (Modifiers::COMMAND, Key::O, UiAction::OpenFiles),
     ];
     for (modifiers, key, action) in shortcuts {
         let presses = context.input_mut(|input| input.count_and_consume_key(modifiers, key));

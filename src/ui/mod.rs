@@ -80,6 +80,8 @@ pub struct UiState {
     pub sheet: Option<Sheet>,
     pub tab: Tab,
     pub clip_search: String,
+    /// The shown model and the height of the panel when its row was last brought into sight.
+    models_seen: Option<(ModelId, u32)>,
     /// The model, its chosen clip and the height of the list when it was last shown.
     clips_seen: Option<(ModelId, Option<usize>, u32)>,
     pub joint_search: String,
@@ -135,6 +137,9 @@ impl UiState {
     /// A link about a joint that is turned by hand means the turning.
     pub fn turn_to_link(&mut self, state: &ViewerState) {
         self.turning = state.joint.is_some_and(|joint| state.pose.contains_key(&joint));
+        if self.turning {
+            self.tab = Tab::Scene;
+        }
     }
 
     /// Of a model without skins that has morph targets their sliders are shown: its tree tells little.
@@ -163,6 +168,7 @@ impl Default for UiState {
             sheet: None,
             tab: Tab::Scene,
             clip_search: String::new(),
+            models_seen: None,
             clips_seen: None,
             joint_search: String::new(),
             help_open: false,
@@ -275,7 +281,7 @@ pub enum UiAction {
     Save(Saved),
     /// Show another of the models that are there.
     ShowModel(ModelId),
-    /// Let go of a model that is not shown.
+    /// Let go of a model; of the one that is shown when there is another.
     CloseModel(ModelId),
     /// Borrow no more from a motion.
     RemoveMotion(usize),

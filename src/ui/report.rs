@@ -152,8 +152,10 @@ pub(super) fn short(number: f32) -> String {
     let size = number.abs();
     if size == 0.0 || !number.is_finite() {
         format!("{}", number + 0.0)
-    } else if !(0.005..1e6).contains(&size) {
+    } else if !(0.0005..1e6).contains(&size) {
         format!("{number:.1e}")
+    } else if size < 0.01 {
+        format!("{number:.4}")
     } else if size >= 100.0 {
         format!("{number:.1}")
     } else {

@@ -12,8 +12,7 @@ use crate::library::Model;
 use crate::state::{Command, PoseSampler, ViewerState, degrees_by_hand, title};
 
 const ROW_HEIGHT: f32 = 26.0;
-/// Of the panel: with less, a joint that is turned by hand has it alone.
-const ROOMY_HEIGHT: f32 = 860.0;
+const LEAST_TREE_HEIGHT: f32 = 8.0 * ROW_HEIGHT;
 
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     let Some(model) = shown.library.active() else { return };
@@ -22,25 +21,21 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
         local.folded.clear();
         local.joint_search.clear();
         local.scrolled_to = None;
+        local.probe.forget();
     }
     let chosen = shown.state.joint.and_then(|joint| model.asset.skeleton.joint_of_source(joint));
-    ui.add_space(4.0);
-    let turns = chosen.is_some() && local.turning && ui.available_height() < ROOMY_HEIGHT;
-    if turns || (chosen.is_some() && local.matrices) || local.probe.is_on(shown) {
-        // They leave no room for the tree; another joint is chosen in the picture.
-        ScrollArea::vertical().id_salt("joint").auto_shrink([false, false]).show(ui, |ui| {
-            // Room for the floating scroll bar.
-            ui.set_max_width(ui.available_width() - 6.0);
-            cards(ui, shown, model, chosen, local, out);
-            ui.add_space(12.0);
-        });
-        return;
-    }
-    cards(ui, shown, model, chosen, local, out);
-    ui.add_space(6.0);
-    clips::search_field(ui, &mut local.joint_search, "Search nodes by name");
-    ui.add_space(2.0);
-    tree(ui, shown, model, local, out);
+    let height = ui.available_height();
+    // What is above the tree may need more than all of the room.
+    ScrollArea::vertical().id_salt("scene").auto_shrink([false, false]).show(ui, |ui| {
+        let top = ui.cursor().top();
+        ui.add_space(4.0);
+        cards(ui, shown, model, chosen, local, out);
+        ui.add_space(6.0);
+        clips::search_field(ui, &mut local.joint_search, "Search nodes by name");
+        ui.add_space(2.0);
+        let left = (top + height - ui.cursor().top()).max(LEAST_TREE_HEIGHT);
+        ui.allocate_ui(vec2(ui.available_width(), left), |ui| tree(ui, shown, model, local, out));
+    });
 }
 
 /// The chosen joint and the vertex that is looked at. Presses on the vertex's lines choose joints, so the vertex is above;
@@ -289,10 +284,6 @@ fn joint_card(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, 
     let mut sampler = PoseSampler::default();
     sampler.sample(model, shown.state);
     let local = sampler.pose.locals.get(joint.get()).copied().unwrap_or_default();
-    // The matrices say the same in another way.
-    if !panel.matrices {
-        parts(ui, shown, asset, joint, &local);
-    }
     ui.add_space(2.0);
     if controls::switch(ui, "Turn by hand", panel.turning) {
         panel.turning = !panel.turning;
@@ -302,12 +293,6 @@ fn joint_card(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, 
     }
     if panel.turning {
         by_hand(ui, shown, asset, joint, local.rotation, out);
-    }
-    if controls::switch(ui, "Matrices", panel.matrices) {
-        panel.matrices = !panel.matrices;
-    }
-    if panel.matrices {
-        ui.scope(|ui| formula::matrices(ui, shown, model, joint));
     }
     if !shown.state.pose.is_empty() {
         let count = shown.state.pose.len();
@@ -321,6 +306,16 @@ fn joint_card(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, 
                 out.commands.push(Command::ClearPose);
             }
         });
+    }
+    // The matrices say the same in another way.
+    if !panel.matrices {
+        parts(ui, shown, asset, joint, &local);
+    }
+    if controls::switch(ui, "Matrices", panel.matrices) {
+        panel.matrices = !panel.matrices;
+    }
+    if panel.matrices {
+        ui.scope(|ui| formula::matrices(ui, shown, model, joint));
     }
 }
 

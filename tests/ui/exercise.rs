@@ -45,6 +45,7 @@ fn the_three_matrices_of_the_chosen_joint_are_shown() {
     let mut harness = strip(WIDE);
     press(&mut harness, "joint 2");
     harness.state_mut().state.pose.insert(2, [0.0, 0.0, 90.0]);
+    harness.run();
     assert_eq!(harness.query_all_by_label("Scale 1.000 1.000 1.000").count(), 2, "local and in the world");
     press(&mut harness, "Matrices");
     let zero = "0.0000";

@@ -25,11 +25,27 @@ fn models_are_listed_when_there_are_several() {
         let first = harness.state().library.models()[0].id;
         press(&mut harness, "Walker");
         assert_eq!(harness.state().actions, [UiAction::ShowModel(first)], "{size:?}");
-        assert!(harness.query_by_label("Close other.glb").is_none(), "what is shown stays");
+        assert!(harness.query_by_label("Close other.glb").is_some(), "what is shown can be closed too");
         harness.state_mut().actions.clear();
         press(&mut harness, "Close Walker");
         assert_eq!(harness.state().actions, [UiAction::CloseModel(first)]);
     }
+}
+
+#[test]
+fn the_shown_model_is_in_sight_among_many() {
+    let mut library = two_models();
+    let asset = library.active().expect("there are two").asset.clone();
+    for index in library.models().len()..Library::MOST_MODELS {
+        library.add(Model::new(format!("{index}.glb"), asset.clone(), Vec::new()));
+    }
+    let mut harness = bench_of([1280.0, 400.0], library);
+    harness.run_steps(30);
+    let last = format!("Close {}.glb", Library::MOST_MODELS - 1);
+    // Its section leaves room to the clips.
+    let section = harness.get_by_label("CLIPS").rect();
+    assert!(harness.get_by_label(&last).rect().bottom() <= section.top());
+    assert!(harness.get_by_label("Rest pose").rect().bottom() < 400.0);
 }
 
 #[test]

@@ -66,7 +66,7 @@ fn parse(file: &str, json: &[u8]) -> Result<schema::Root, LoadError> {
         file: file.to_owned(),
         line: problem.line(),
         column: problem.column(),
-        problem: problem.to_string(),
+        problem: without_place(&problem),
     };
     // Most files are read once; one that does not fit may be of another version.
     let root = serde_json::from_slice::<schema::Root>(json);
@@ -76,6 +76,13 @@ fn parse(file: &str, json: &[u8]) -> Result<schema::Root, LoadError> {
     };
     check_version(file, &version)?;
     root.map_err(error)
+}
+
+/// What a problem says but for its line and column, which are said apart.
+fn without_place(problem: &serde_json::Error) -> String {
+    let place = format!(" at line {} column {}", problem.line(), problem.column());
+    let text = problem.to_string();
+    text.strip_suffix(&place).map_or(text.clone(), str::to_owned)
 }
 
 fn check_version(file: &str, found: &schema::Version) -> Result<(), LoadError> {

@@ -62,7 +62,10 @@ pub fn show(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut
         let map = map_in_force(shown.library, shown.state, picking.motion).unwrap_or_default();
         let now = pairing.source_in(&map, picking.target).flatten();
         let fresh = std::mem::take(&mut picking.fresh);
-        list(ui, &pairing, &found, now.filter(|_| fresh), now, &mut chosen);
+        // What Enter would take is marked, else what is followed now.
+        let searches = !picking.search.trim().is_empty();
+        let marked = if searches { found.first().copied() } else { now };
+        list(ui, &pairing, &found, now.filter(|_| fresh), marked, !searches && now.is_none(), &mut chosen);
         ui.add_space(4.0);
         closed |= ui.button("Cancel").clicked();
     });
@@ -80,10 +83,11 @@ fn list(
     pairing: &Pairing<'_>,
     found: &[JointIndex],
     scroll_to: Option<JointIndex>,
-    now: Option<JointIndex>,
+    marked: Option<JointIndex>,
+    marks_nothing: bool,
     chosen: &mut Option<Option<usize>>,
 ) {
-    if controls::list_row(ui, "Nothing", "", now.is_none()).clicked() {
+    if controls::list_row(ui, "Nothing", "", marks_nothing).clicked() {
         *chosen = Some(None);
     }
     let height = (ui.ctx().content_rect().height() - 292.0).clamp(90.0, 360.0);
@@ -91,7 +95,7 @@ fn list(
         ui.spacing_mut().item_spacing.y = 2.0;
         for &joint in found {
             let asset = &pairing.motion.asset;
-            let row = controls::list_row(ui, &joint_text(asset, joint), "", now == Some(joint));
+            let row = controls::list_row(ui, &joint_text(asset, joint), "", marked == Some(joint));
             if scroll_to == Some(joint) {
                 row.scroll_to_me(Some(egui::Align::Center));
             }

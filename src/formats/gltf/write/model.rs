@@ -13,7 +13,7 @@ use super::{WriteError, glb};
 use crate::anim::{Clip, JointIndex, Skeleton};
 use crate::asset::Warnings;
 use crate::formats::gltf::accessor::Bytes;
-use crate::formats::gltf::{container, data, parse, resolve_buffers, schema};
+use crate::formats::gltf::{container, data, parse, resolve_buffers, schema, without_place};
 use crate::formats::{FileSet, LoadError};
 
 /// The file `file` of the set as a GLB that needs no other file, with `clips` (of `skeleton`, which was read from the same
@@ -29,7 +29,7 @@ pub fn model(files: &FileSet, file: &str, skeleton: &Skeleton, clips: &[&Clip]) 
         file: file.to_owned(),
         line: problem.line(),
         column: problem.column(),
-        problem: problem.to_string(),
+        problem: without_place(&problem),
     })?;
     if schema.nodes.len() != skeleton.len() {
         let (nodes, joints) = (schema.nodes.len(), skeleton.len());
