@@ -124,17 +124,19 @@ fn header(ui: &mut Ui, model: &Model, out: &mut Output) {
     ui.add(egui::Label::new(RichText::new(name).heading().color(palette.text)).truncate());
     ui.add(egui::Label::new(RichText::new(place).small().color(palette.weak_text)).truncate());
     ui.add_space(8.0);
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 6.0;
-        let open = egui::Button::new("Open…").min_size(egui::vec2(68.0, 32.0));
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = egui::Vec2::splat(6.0);
+        ui.spacing_mut().button_padding.x = 6.0;
+        let size = egui::vec2(((ui.available_width() - 12.0) / 3.0).clamp(62.0, 80.0), 32.0);
+        let open = egui::Button::new("Open…").min_size(size);
         if ui.add(open).on_hover_text("Open a model; files can also be dropped anywhere").clicked() {
             out.actions.push(UiAction::OpenFiles);
         }
-        let motion = egui::Button::new("Motion…").min_size(egui::vec2(76.0, 32.0));
+        let motion = egui::Button::new("Motion…").min_size(size);
         if ui.add(motion).on_hover_text("Borrow motion from another file, or load a joint map").clicked() {
             out.actions.push(UiAction::ChooseMotion);
         }
-        let share = egui::Button::new("Share…").min_size(egui::vec2(68.0, 32.0));
+        let share = egui::Button::new("Share…").min_size(size);
         if ui.add(share).on_hover_text("A link to this view, with all that is set").clicked() {
             out.actions.push(UiAction::ShareLink);
         }

@@ -164,13 +164,15 @@ fn label_and_value(ui: &mut Ui, label: &str, value: &mut f64, settings: &SliderS
 
 /// A rounded card that fills the width.
 pub fn card<R>(ui: &mut Ui, contents: impl FnOnce(&mut Ui) -> R) -> R {
-    let fill = style::palette(ui).surface;
+    let style::Palette { surface, panel, .. } = style::palette(ui);
     egui::Frame::new()
-        .fill(fill)
+        .fill(surface)
         .corner_radius(8)
         .inner_margin(egui::Margin::same(10))
         .show(ui, |ui| {
             ui.set_width(ui.available_width());
+            // Buttons elsewhere have the card's own colour.
+            ui.visuals_mut().widgets.inactive.weak_bg_fill = panel;
             contents(ui)
         })
         .inner
