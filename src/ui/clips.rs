@@ -126,8 +126,9 @@ fn header(ui: &mut Ui, model: &Model, out: &mut Output) {
     ui.add_space(8.0);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = egui::Vec2::splat(6.0);
-        ui.spacing_mut().button_padding.x = 6.0;
-        let size = egui::vec2(((ui.available_width() - 12.0) / 3.0).clamp(62.0, 80.0), 32.0);
+        // All three in a row of the narrowest panel that a screen of 800 pixels gives.
+        ui.spacing_mut().button_padding.x = 7.0;
+        let size = egui::vec2(0.0, 32.0);
         let open = egui::Button::new("Open…").min_size(size);
         if ui.add(open).on_hover_text("Open a model; files can also be dropped anywhere").clicked() {
             out.actions.push(UiAction::OpenFiles);

@@ -36,6 +36,17 @@ fn the_chosen_clip_is_in_sight() {
 }
 
 #[test]
+fn the_buttons_of_the_header_stand_in_one_row() {
+    for size in [WIDE, [1920.0, 1080.0], [800.0, 600.0]] {
+        let harness = sample_bench(size);
+        let [open, motion, share] = ["Open…", "Motion…", "Share…"].map(|label| harness.get_by_label(label).rect());
+        assert!(open.top() == motion.top() && motion.top() == share.top(), "{open:?} {motion:?} {share:?} on {size:?}");
+        assert!(open.right() < motion.left() && motion.right() < share.left());
+        assert!(share.right() < harness.state().picture.left(), "{share:?} on {size:?}");
+    }
+}
+
+#[test]
 fn few_clips_need_no_search() {
     assert!(sample_bench(WIDE).query_by_label("Search 3 clips").is_none());
 }
