@@ -116,8 +116,9 @@ impl App {
         if is_link {
             self.panels.turn_to_link(&self.state);
             // Space is for the new view, not for a button that was pressed before.
-            let focused = self.context.memory(|memory| memory.focused());
-            focused.inspect(|&id| self.context.memory_mut(|memory| memory.surrender_focus(id)));
+            if let Some(focused) = self.context.memory(|memory| memory.focused()) {
+                self.context.memory_mut(|memory| memory.surrender_focus(focused));
+            }
         }
         self.panels.turn_to_model(&self.library);
         let has_map = map.is_some();
@@ -250,7 +251,8 @@ impl App {
         self.changed = true;
     }
 
-    /// Takes a model off the list. When it is the one that is shown, its neighbour is turned to; the only one stays.
+    /// Takes a model off the list. When it is the one that is shown, its neighbour is turned to, and the step back to it puts
+    /// it on the list again; the only one stays.
     pub(super) fn close_model(&mut self, id: ModelId) {
         let Some(name) = self.library.get(id).map(|model| short_name(&model.source)) else { return };
         if self.library.active().is_some_and(|active| active.id == id) {
@@ -259,8 +261,12 @@ impl App {
             let neighbour = models.get(at + 1).or_else(|| models.get(at.checked_sub(1)?)).map(|model| model.id);
             let Some(neighbour) = neighbour else { return };
             self.turn_to(neighbour);
+            if self.library.active().is_none_or(|active| active.id != neighbour) {
+                return;
+            }
+        } else {
+            self.history.closed(self.library.listed());
         }
-        self.history.closed(self.library.listed());
         self.library.close(id);
         self.toast_undoable(format!("Closed {name}."));
     }

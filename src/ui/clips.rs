@@ -17,7 +17,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
     let Some(model) = shown.library.active() else { return };
     header(ui, model, out);
     if shown.library.models().len() > 1 {
-        models(ui, shown, local, out);
+        models(ui, shown, model, local, out);
     }
     controls::section(ui, "CLIPS");
     let titles = model.clip_titles();
@@ -29,6 +29,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
     }
     let wanted = local.clip_search.to_lowercase();
     let chosen = shown.clip_index();
+    let motions = names_of(shown.library.motions().iter().map(|motion| &*motion.source));
     // What is chosen stays in sight when the list gets shorter, and comes into sight when another is chosen elsewhere.
     let seen = (model.id, chosen, ui.available_height() as u32);
     let scrolls = local.clips_seen.replace(seen) != Some(seen);
@@ -49,9 +50,9 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
             found = true;
             let motion = model.borrowed(index).map(|borrowed| borrowed.motion);
             if motion != heading
-                && let Some(motion) = motion
+                && let Some(name) = motion.and_then(|motion| motions.get(motion))
             {
-                motion_heading(ui, &name_among(shown.library.motions().iter().map(|motion| &*motion.source), motion));
+                motion_heading(ui, name);
             }
             heading = motion;
             let duration = model.clip(index).map_or(0.0, |clip| clip.duration_secs());
@@ -77,23 +78,22 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
 }
 
 /// The models to turn to, in no more than a part of the panel.
-fn models(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
+fn models(ui: &mut Ui, shown: &Shown<'_>, active: &Model, local: &mut UiState, out: &mut Output) {
     controls::section(ui, "MODELS");
     let room = ui.available_height();
     let most_high = (0.4 * room).max(2.0 * MODEL_ROW_HEIGHT);
-    let active = shown.library.active().map(|model| model.id);
-    let seen = active.map(|id| (id, room as u32));
-    let scrolls = std::mem::replace(&mut local.models_seen, seen) != seen;
+    let seen = (active.id, room as u32);
+    let scrolls = local.models_seen.replace(seen) != Some(seen);
     ScrollArea::vertical().id_salt("models").max_height(most_high).auto_shrink([false, true]).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         let models = shown.library.models();
-        for (index, model) in models.iter().enumerate() {
-            let name = name_among(models.iter().map(|model| &*model.source), index);
-            let chosen = active == Some(model.id);
+        let names = names_of(models.iter().map(|model| &*model.source));
+        for (model, name) in models.iter().zip(&names) {
+            let chosen = active.id == model.id;
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = 2.0;
                 let size = egui::vec2(ui.available_width() - CLEAR_SIZE - 2.0, MODEL_ROW_HEIGHT);
-                let row = ui.allocate_ui(size, |ui| controls::list_row(ui, &name, "", chosen)).inner;
+                let row = ui.allocate_ui(size, |ui| controls::list_row(ui, name, "", chosen)).inner;
                 if scrolls && chosen {
                     row.scroll_to_me(None);
                 }
@@ -162,12 +162,14 @@ pub fn short_name(source: &str) -> String {
     name_and_place(source).0
 }
 
-/// What one of several files is called in a list of them: those of the same name are numbered.
-pub(super) fn name_among<'a>(sources: impl Iterator<Item = &'a str>, index: usize) -> String {
+/// What files are called in a list of them: those of the same name are numbered.
+pub(super) fn names_of<'a>(sources: impl Iterator<Item = &'a str>) -> Vec<String> {
     let names: Vec<String> = sources.map(short_name).collect();
-    let Some(name) = names.get(index) else { return String::new() };
-    let same = |names: &[String]| names.iter().filter(|other| *other == name).count();
-    if same(&names) > 1 { format!("{name} ({})", same(&names[..=index])) } else { name.clone() }
+    let numbered = |(index, name): (usize, &String)| {
+        let same = |names: &[String]| names.iter().filter(|other| *other == name).count();
+        if same(&names) > 1 { format!("{name} ({})", same(&names[..=index])) } else { name.clone() }
+    };
+    names.iter().enumerate().map(numbered).collect()
 }
 
 /// A search field that can be emptied.

@@ -64,10 +64,13 @@ fn cards(
 }
 
 fn vertex(ui: &mut Ui, shown: &Shown<'_>, model: &Model, local: &mut UiState, out: &mut Output) {
+    if model.asset.instances.is_empty() {
+        return;
+    }
     if local.probe.is_on(shown) {
         controls::card(ui, |ui| formula::vertex(ui, shown, model, local, out));
         ui.add_space(6.0);
-    } else if !model.asset.instances.is_empty() {
+    } else {
         formula::vertex(ui, shown, model, local, out);
     }
 }

@@ -7,7 +7,7 @@ use gaitway::library::Model;
 use gaitway::state::{Command, Show, VertexChoice};
 use gaitway::ui::{Saved, Tab, UiAction};
 
-use crate::bench::{Bench, NARROW, WIDE, bench, press, sample_bench};
+use crate::bench::{Bench, NARROW, WIDE, bench, model_with_clips, press, sample_bench};
 
 /// A strip along X: its beginning follows joint 1, its end joint 2, the middle both.
 fn strip(size: [f32; 2]) -> Harness<'static, Bench> {
@@ -62,6 +62,15 @@ fn the_three_matrices_of_the_chosen_joint_are_shown() {
     assert!(!has(&harness, "Scale 1.000 1.000 1.000"), "the matrices say the same");
     press(&mut harness, "Matrices");
     assert!(harness.query_by_label_contains("inv(B):").is_none());
+}
+
+#[test]
+fn a_model_without_meshes_has_no_vertices_to_look_at() {
+    let mut harness = strip(WIDE);
+    press(&mut harness, "Vertex under the pointer");
+    harness.state_mut().library.set(model_with_clips(2));
+    harness.run();
+    assert!(harness.query_by_label("Vertex under the pointer").is_none());
 }
 
 #[test]

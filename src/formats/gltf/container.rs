@@ -29,11 +29,10 @@ pub fn open<'a>(file: &str, bytes: &'a [u8]) -> Result<Container<'a>, LoadError>
     };
     let header = || invalid("GLB header", "12 bytes", format!("{}", bytes.len()));
     let version = word(4).ok_or_else(header)?;
-    if version > 2 {
-        return Err(invalid("GLB header", "version 2", format!("version {version} (not a GLB, or damaged?)")));
-    }
-    if version != 2 {
-        return Err(LoadError::UnsupportedVersion { file: file.to_owned(), found: format!("{version}.0") });
+    match version {
+        2 => {}
+        0 | 1 => return Err(LoadError::UnsupportedVersion { file: file.to_owned(), found: format!("{version}.0") }),
+        _ => return Err(invalid("GLB header", "version 2", format!("version {version} (not a GLB, or damaged?)"))),
     }
     let length = word(8).ok_or_else(header)? as usize;
     if length > bytes.len() {

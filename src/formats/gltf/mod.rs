@@ -62,12 +62,7 @@ pub(super) fn load(
 }
 
 fn parse(file: &str, json: &[u8]) -> Result<schema::Root, LoadError> {
-    let error = |problem: serde_json::Error| LoadError::Json {
-        file: file.to_owned(),
-        line: problem.line(),
-        column: problem.column(),
-        problem: without_place(&problem),
-    };
+    let error = |problem| json_error(file, &problem);
     // Most files are read once; one that does not fit may be of another version.
     let root = serde_json::from_slice::<schema::Root>(json);
     let version = match &root {
@@ -78,11 +73,12 @@ fn parse(file: &str, json: &[u8]) -> Result<schema::Root, LoadError> {
     root.map_err(error)
 }
 
-/// What a problem says but for its line and column, which are said apart.
-fn without_place(problem: &serde_json::Error) -> String {
-    let place = format!(" at line {} column {}", problem.line(), problem.column());
+fn json_error(file: &str, problem: &serde_json::Error) -> LoadError {
+    let (line, column) = (problem.line(), problem.column());
     let text = problem.to_string();
-    text.strip_suffix(&place).map_or(text.clone(), str::to_owned)
+    // It ends with the place, which is said apart.
+    let problem = text.strip_suffix(&format!(" at line {line} column {column}")).unwrap_or(&text).to_owned();
+    LoadError::Json { file: file.to_owned(), line, column, problem }
 }
 
 fn check_version(file: &str, found: &schema::Version) -> Result<(), LoadError> {

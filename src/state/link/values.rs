@@ -173,12 +173,17 @@ pub(super) fn read_fade(text: &str) -> Option<Option<Fade>> {
     Some(Some(Fade { clip, time_secs, elapsed_secs }))
 }
 
+/// The entries between commas, each read by itself; nothing where one cannot be read.
+fn each<K: Ord, V>(text: &str, read: impl Fn(&str) -> Option<(K, V)>) -> Option<BTreeMap<K, V>> {
+    text.split(',').filter(|part| !part.is_empty()).map(read).collect()
+}
+
 pub(super) fn read_morph(text: &str) -> Option<BTreeMap<usize, f32>> {
     let pair = |pair: &str| {
         let (index, weight) = pair.split_once(':')?;
         Some((index.trim().parse().ok()?, finite(weight)?))
     };
-    text.split(',').filter(|part| !part.is_empty()).map(pair).collect()
+    each(text, pair)
 }
 
 pub(super) fn read_pose(text: &str) -> Option<BTreeMap<usize, [f32; 3]>> {
@@ -188,7 +193,7 @@ pub(super) fn read_pose(text: &str) -> Option<BTreeMap<usize, [f32; 3]>> {
         let degrees = [angles.next()??, angles.next()??, angles.next()??];
         angles.next().is_none().then_some((joint.trim().parse().ok()?, degrees))
     };
-    text.split(',').filter(|part| !part.is_empty()).map(turned).collect()
+    each(text, turned)
 }
 
 /// Names are escaped once more for the marks between them.
@@ -199,7 +204,7 @@ pub(super) fn read_names(text: &str) -> Option<BTreeMap<usize, String>> {
         let is_line = !name.trim().is_empty() && !name.contains(char::is_control);
         is_line.then_some((joint.trim().parse().ok()?, name.into_owned()))
     };
-    text.split(',').filter(|part| !part.is_empty()).map(named).collect()
+    each(text, named)
 }
 
 pub(super) fn read_vertex(text: &str) -> Option<VertexChoice> {

@@ -277,14 +277,14 @@ fn header(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, map: &JointMap,
     let motions = shown.library.motions();
     if motions.len() > 1 {
         ui.add_space(4.0);
-        let name = |index| clips::name_among(motions.iter().map(|motion| &*motion.source), index);
+        let names = clips::names_of(motions.iter().map(|motion| &*motion.source));
         let combo = egui::ComboBox::from_id_salt("motion file")
             .width(ui.available_width())
             .truncate()
-            .selected_text(name(pairing.index));
+            .selected_text(&names[pairing.index]);
         let response = combo.show_ui(ui, |ui| {
-            for index in 0..motions.len() {
-                if ui.selectable_label(index == pairing.index, name(index)).clicked() {
+            for (index, name) in names.iter().enumerate() {
+                if ui.selectable_label(index == pairing.index, name).clicked() {
                     out.commands.extend(first_clip_of(pairing.model, index));
                 }
             }

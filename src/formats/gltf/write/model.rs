@@ -13,7 +13,7 @@ use super::{WriteError, glb};
 use crate::anim::{Clip, JointIndex, Skeleton};
 use crate::asset::Warnings;
 use crate::formats::gltf::accessor::Bytes;
-use crate::formats::gltf::{container, data, parse, resolve_buffers, schema, without_place};
+use crate::formats::gltf::{container, data, json_error, parse, resolve_buffers, schema};
 use crate::formats::{FileSet, LoadError};
 
 /// The file `file` of the set as a GLB that needs no other file, with `clips` (of `skeleton`, which was read from the same
@@ -25,12 +25,7 @@ pub fn model(files: &FileSet, file: &str, skeleton: &Skeleton, clips: &[&Clip]) 
         files.get(file).ok_or_else(|| LoadError::NoModel { found: files.names().map(str::to_owned).collect() })?;
     let container = container::open(file, bytes)?;
     let schema = parse(file, container.json)?;
-    let mut json: Object = serde_json::from_slice(container.json).map_err(|problem| LoadError::Json {
-        file: file.to_owned(),
-        line: problem.line(),
-        column: problem.column(),
-        problem: without_place(&problem),
-    })?;
+    let mut json: Object = serde_json::from_slice(container.json).map_err(|problem| json_error(file, &problem))?;
     if schema.nodes.len() != skeleton.len() {
         let (nodes, joints) = (schema.nodes.len(), skeleton.len());
         return Err(WriteError::OtherSkeleton { file: file.to_owned(), nodes, joints });
