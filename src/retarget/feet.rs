@@ -1,13 +1,15 @@
-//! Planted feet: where the source's foot stands, the target's toes stay in one place. The legs reach for it with two bones
-//! (law of cosines), the knee keeping its plane and the foot its direction; hips come down when a leg would have to be
-//! longer than it is.
+//! Planted feet: where the source's foot stands, the target's toes stay in one place, on the ground. The whole body comes down
+//! (or up) to where its feet stand lowest; for the rest the legs reach with two bones (law of cosines), the knee keeping its
+//! plane and the foot its direction; hips come down further when a leg would have to be longer than it is.
+
+use std::ops::Range;
 
 use glam::{DMat3, DQuat, DVec3};
 
 use super::bake::{RetargetError, Retargeted, Retargeting};
 use super::contacts::contacts;
 use super::law::NewChannel;
-use super::rest::{Reference, unit};
+use super::rest::{Reference, ancestry, unit};
 use super::root::Removed;
 use crate::anim::{Interpolation, JointIndex, Keys, Pose, Property, SampleCursor};
 use crate::asset::Slot;
@@ -18,24 +20,29 @@ const EASE_SECS: f64 = 0.12;
 /// A leg is never stretched further than this share of its length: a straight knee has no plane.
 const MOST_REACH: f64 = 0.999;
 
+/// Shares of the hips' height above the ground: a body that hovers by more than the first does so on purpose, and a foot that
+/// then still is off the ground by more than the second stands on something else.
+const MOST_HOVER: f64 = 0.25;
+const LEVEL: f64 = 0.08;
+
 /// Keys of a planted clip are at most this far apart.
 const MOST_STEP_SECS: f32 = 1.0 / 30.0;
 
-/// One leg: which joints it is made of, in the target, and what to watch in the source.
+/// One leg: which joints it is made of, in the target.
 struct Leg {
     hip: JointIndex,
     knee: JointIndex,
     ankle: JointIndex,
     /// What stays in place: the toes, or the ankle itself.
     toes: JointIndex,
-    source_toes: JointIndex,
+    /// When the source's foot stands: ranges of the times that are looked at.
+    stands: Vec<Range<usize>>,
 }
 
 /// A leg at all times: how far its foot is to be moved.
 struct Plan {
     leg: Leg,
     moves: Vec<DVec3>,
-    standing: bool,
 }
 
 impl Retargeting<'_> {
@@ -47,14 +54,14 @@ impl Retargeting<'_> {
         let times = self.planted_times();
         let mut cursor = SampleCursor::default();
         let mut pose = Pose::default();
-        let targets: Vec<Reference> =
+        let mut targets: Vec<Reference> =
             times.iter().map(|&time| self.target_at(&unplanted.clip, time, &mut cursor, &mut pose)).collect();
         let (laws, _) = self.turned_laws();
         let removed = self.root().map(|root| root.removed(&laws, &times)).unwrap_or_default();
-        let plans: Vec<Plan> = self.legs().into_iter().map(|leg| self.plan(leg, &times, &targets, &removed)).collect();
-        if plans.iter().all(|plan| !plan.standing) {
-            return Ok(unplanted);
-        }
+        let legs = self.legs(&times);
+        let Some(hover) = self.hover(&legs, &targets) else { return Ok(unplanted) };
+        self.lower(&mut targets, hover);
+        let plans: Vec<Plan> = legs.into_iter().map(|leg| self.plan(leg, &times, &targets, &removed)).collect();
         let drops = self.drops(&times, &targets, &plans);
 
         let mut rotations: Vec<(JointIndex, Vec<DQuat>)> = Vec::new();
@@ -66,7 +73,7 @@ impl Retargeting<'_> {
             }
             rotations.extend([plan.leg.hip, plan.leg.knee, plan.leg.ankle].into_iter().zip(keys));
         }
-        let lowered = drops.iter().any(|&drop| drop > 0.0);
+        let lowered = hover != 0.0 || drops.iter().any(|&drop| drop > 0.0);
         let hips = self.hips.map(|hips| self.map.pairs[hips.pair].target).filter(|_| lowered);
         let replaced = |joint: JointIndex, property: Property| match property {
             Property::Rotation => rotations.iter().any(|(other, _)| *other == joint),
@@ -114,7 +121,7 @@ impl Retargeting<'_> {
     }
 
     /// Legs of which hip, knee and ankle are mapped.
-    fn legs(&self) -> Vec<Leg> {
+    fn legs(&self, times: &[f32]) -> Vec<Leg> {
         let pair = |slot: Slot| self.alignment.pair_of_slot.get(&slot).map(|&pair| &self.map.pairs[pair]);
         let sides = [
             [Slot::LeftUpperLeg, Slot::LeftLowerLeg, Slot::LeftFoot, Slot::LeftToes],
@@ -124,48 +131,86 @@ impl Retargeting<'_> {
             let (hip, knee, ankle) = (pair(hip)?, pair(knee)?, pair(ankle)?);
             let toes = pair(toes).unwrap_or(ankle);
             let (hip, knee) = (hip.target, knee.target);
-            Some(Leg { hip, knee, ankle: ankle.target, toes: toes.target, source_toes: toes.source })
+            let stands = self.stands(toes.source, times);
+            Some(Leg { hip, knee, ankle: ankle.target, toes: toes.target, stands })
         };
         sides.into_iter().filter_map(leg).collect()
     }
 
-    /// How far a foot is to be moved at each time, so that its toes stay where they are on average while it stands.
-    fn plan(&self, leg: Leg, times: &[f32], targets: &[Reference], removed: &Removed) -> Plan {
-        let source: Vec<DVec3> =
-            times.iter().map(|&time| self.source_at(time).positions[leg.source_toes.get()]).collect();
+    /// When a foot of the source stands.
+    fn stands(&self, toes: JointIndex, times: &[f32]) -> Vec<Range<usize>> {
+        let source: Vec<DVec3> = times.iter().map(|&time| self.source_at(time).positions[toes.get()]).collect();
         let standing = contacts(times, &source, self.source_height());
+        let begins = (0..times.len()).filter(|&at| standing[at] && (at == 0 || !standing[at - 1]));
+        let end = |from: usize| (from..times.len()).find(|&at| !standing[at]).unwrap_or(times.len());
+        begins.map(|from| from..end(from)).collect()
+    }
+
+    /// How high the toes are above where they rest.
+    fn height(&self, leg: &Leg, target: &Reference) -> f64 {
+        let height = |at: &Reference| at.positions[leg.toes.get()].y;
+        height(target) - height(&self.alignment.target)
+    }
+
+    /// By how much the body is too high: a quarter of the time that feet stand they are lower. The very lowest stand is often
+    /// a slip of the capture. None when no foot ever stands.
+    fn hover(&self, legs: &[Leg], targets: &[Reference]) -> Option<f64> {
+        let mut heights = Vec::new();
+        for leg in legs {
+            let standing = leg.stands.iter().flat_map(|stand| &targets[stand.clone()]);
+            heights.extend(standing.map(|target| self.height(leg, target)));
+        }
+        let at = heights.len() / 4;
+        if heights.is_empty() {
+            return None;
+        }
+        let hover = *heights.select_nth_unstable_by(at, f64::total_cmp).1;
+        let near = self.hips.is_some_and(|hips| hover.abs() < MOST_HOVER * hips.height);
+        Some(if near { hover } else { 0.0 })
+    }
+
+    /// Lowers the hips and what hangs on them.
+    fn lower(&self, targets: &mut [Reference], by: f64) {
+        let Some(hips) = self.hips.map(|hips| self.map.pairs[hips.pair].target) else { return };
+        let skeleton = &self.model.asset.skeleton;
+        let body: Vec<JointIndex> =
+            skeleton.joints().filter(|&joint| ancestry(skeleton, joint).any(|above| above == hips)).collect();
+        for target in targets {
+            body.iter().for_each(|joint| target.positions[joint.get()].y -= by);
+        }
+    }
+
+    /// How far a foot is to be moved at each time, so that its toes stay where they are on average while it stands, on the
+    /// ground where that is near.
+    fn plan(&self, leg: Leg, times: &[f32], targets: &[Reference], removed: &Removed) -> Plan {
         // Of a figure walking in one place the ground moves: feet stand on it, so travel is added back.
         let travel = |index: usize| removed.horizontal.get(index).map_or(DVec3::ZERO, |(_, travel)| *travel);
-        let level = DVec3::new(1.0, 0.0, 1.0);
-        let toes = |index: usize| (targets[index].positions[leg.toes.get()] + travel(index)) * level;
-        let ground = self.hips.map(|hips| hips.target_ground);
+        let toes = |index: usize| targets[index].positions[leg.toes.get()] + travel(index);
         let mut moves = vec![DVec3::ZERO; times.len()];
-        let mut index = 0;
-        while index < times.len() {
-            if !standing[index] {
-                index += 1;
-                continue;
+        for stand in &leg.stands {
+            let mut place = stand.clone().map(toes).sum::<DVec3>() / stand.len() as f64;
+            let heights = targets[stand.clone()].iter().map(|target| self.height(&leg, target));
+            let height = heights.sum::<f64>() / stand.len() as f64;
+            if self.hips.is_some_and(|hips| height.abs() < LEVEL * hips.height) {
+                place.y -= height;
             }
-            let end = (index..times.len()).find(|&at| !standing[at]).unwrap_or(times.len());
-            let place = (index..end).map(toes).sum::<DVec3>() / (end - index) as f64;
-            let (first, last) = (place - toes(index), place - toes(end - 1));
+            let (from, to) = (stand.start, stand.end - 1);
+            let (first, last) = (place - toes(from), place - toes(to));
             for (at, by) in moves.iter_mut().enumerate() {
                 let secs = |other: usize| (f64::from(times[at]) - f64::from(times[other])).abs();
                 *by += match at {
-                    at if at < index => first * ease(secs(index)),
-                    at if at >= end => last * ease(secs(end - 1)),
+                    at if at < from => first * ease(secs(from)),
+                    at if at > to => last * ease(secs(to)),
                     at => place - toes(at),
                 };
             }
-            index = end;
         }
-        if let Some(ground) = ground {
+        if let Some(hips) = self.hips {
             for (by, target) in moves.iter_mut().zip(targets) {
-                by.y = (ground - target.positions[leg.toes.get()].y).max(0.0);
+                by.y = by.y.max(hips.target_ground - target.positions[leg.toes.get()].y);
             }
         }
-        let standing = standing.contains(&true);
-        Plan { leg, moves, standing }
+        Plan { leg, moves }
     }
 
     /// How far the hips must come down at each time for all legs to reach, smooth over time.

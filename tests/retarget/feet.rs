@@ -8,8 +8,9 @@ use glam::{Quat, Vec3};
 use crate::figure::{Figure, Rig, build};
 use crate::laws::{body, map};
 
-/// Two steps of a second each: one leg stands still under the body that passes over it while the other swings.
-fn walker() -> Figure {
+/// Two steps of a second each: one leg stands still under the body that passes over it while the other swings. `lift`: how
+/// high above the ground all of it happens.
+fn walker(lift: f32) -> Figure {
     let mut figure = build(&Rig::default());
     let skeleton = &figure.asset.skeleton;
     let mut clip = ClipBuilder::new("walk", skeleton);
@@ -31,7 +32,7 @@ fn walker() -> Figure {
             forward += length * (before - angle(time, standing).sin());
         }
         let down = length * (1.0 - angle(time, standing).cos());
-        places.push(rest + Vec3::new(0.0, -down, forward));
+        places.push(rest + Vec3::new(0.0, lift - down, forward));
     }
     clip.channel(hips, Interpolation::Linear, &times, Keys::Translation(places)).unwrap();
     for (upper, foot, phase) in [(Slot::LeftUpperLeg, Slot::LeftFoot, 0.0), (Slot::RightUpperLeg, Slot::RightFoot, 1.0)]
@@ -66,7 +67,7 @@ fn carry(model: &Figure, motion: &Figure, map: &ResolvedMap) -> (Retargeted, Fig
 
 #[test]
 fn planting_stops_feet_that_slide_because_legs_differ() {
-    let motion = walker();
+    let motion = walker(0.0);
     // Longer thighs and shins than the hips' height over the ground accounts for.
     let model = build(&Rig { axes: 3, leg_length: 0.6, size: 1.4, armature: true, ..Rig::default() });
     let plain = map(&model, &motion);
@@ -88,7 +89,7 @@ fn planting_stops_feet_that_slide_because_legs_differ() {
 
 #[test]
 fn feet_in_place_are_planted_on_the_ground_that_moves() {
-    let motion = walker();
+    let motion = walker(0.0);
     let model = build(&Rig { axes: 3, leg_length: 0.6, ..Rig::default() });
     let mut plain = map(&model, &motion);
     plain.root.horizontal = RootPart::InPlace;
@@ -99,8 +100,26 @@ fn feet_in_place_are_planted_on_the_ground_that_moves() {
 }
 
 #[test]
+fn feet_that_hover_or_sink_are_brought_to_the_ground() {
+    for lift in [0.12, -0.08] {
+        let motion = walker(lift);
+        let model = build(&Rig { axes: 3, size: 1.4, armature: true, ..Rig::default() });
+        let planted = ResolvedMap { feet: Feet::Plant, ..map(&model, &motion) };
+        let (done, _) = carry(&model, &motion, &planted);
+        let height = |clip, time: f32| model.world(clip, time)[model.joint(Slot::LeftToes).get()].1.y;
+        let rest = 1.4 * 0.02;
+        for time in (3..27).map(|frame| frame as f32 / 30.0) {
+            let before = height(done.unplanted.as_ref().unwrap(), time) - rest;
+            let after = height(&done.clip, time) - rest;
+            assert!((before - 1.4 * f64::from(lift)).abs() < 0.02, "at {time} s it was {before} m off");
+            assert!(after.abs() < 0.002, "at {time} s it is {after} m off");
+        }
+    }
+}
+
+#[test]
 fn who_stands_well_is_left_alone() {
-    let motion = walker();
+    let motion = walker(0.0);
     let mut same = map(&motion, &motion);
     same.rest.model = RestChoice::Node;
     same.feet = Feet::Plant;
