@@ -19,8 +19,10 @@ fn main() -> io::Result<()> {
         let Some((name, ending)) = file.split_once('.') else { continue };
         if ENDINGS.contains(&ending) {
             println!("cargo::rerun-if-changed={FOLDER}/{file}");
-            let path = folder.join(&file);
-            writeln!(text, "({name:?}, {file:?}, include_bytes!({path:?})),").map_err(io::Error::other)?;
+            // The folder is looked up when this is compiled: the checkout may have been moved since.
+            let path = format!("/{FOLDER}/{file}");
+            writeln!(text, r#"({name:?}, {file:?}, include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), {path:?}))),"#)
+                .map_err(io::Error::other)?;
         }
     }
     text.push_str("];\n");
