@@ -228,8 +228,11 @@ async function start(renderer) {
     app = bindings;
     backend = JSON.parse(bindings.stats()).backend;
     canvas.addEventListener("webglcontextlost", () => stopped("The browser took the graphics context away."));
+    const seen = drawUnseen(canvas);
     await frames(2);
     await Promise.race([bindings.begin(), ended]);
+    seen();
+    await frames(2);
     if (stopReason !== null) throw new Error(stopReason);
     canvas.style.visibility = "";
     // What is typed goes through a field that nobody sees.
@@ -245,6 +248,29 @@ async function start(renderer) {
   const attempts = other !== null && has(other) ? [`Open this page with ?renderer=${other} instead.`, ...TRY_GRAPHICS] : TRY_GRAPHICS;
   cannotRun(problems, attempts);
   throw new Error(problems.join(" "));
+}
+
+/**
+ * Has WebGPU draw into a texture of its own until the answer is called: what goes into a canvas is handed over, and there the
+ * browser's graphics process, and with it every page, would wait until all shaders are compiled.
+ */
+function drawUnseen(canvas) {
+  const context = backend === "webgpu" ? canvas.getContext("webgpu") : null;
+  if (!context?.getConfiguration) return () => {};
+  let texture = null;
+  context.getCurrentTexture = () => {
+    const { device, format, usage } = context.getConfiguration();
+    const { width, height } = canvas;
+    if (texture?.width !== width || texture.height !== height) {
+      texture?.destroy();
+      texture = device.createTexture({ size: [width, height], format, usage });
+    }
+    return texture;
+  };
+  return () => {
+    delete context.getCurrentTexture;
+    texture?.destroy();
+  };
 }
 
 // An instance that runs out of memory or stack says nothing itself.

@@ -60,12 +60,10 @@ impl ModelUploader {
         model: &Model,
     ) -> Result<GpuModel, UploadError> {
         let asset = &model.asset;
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("upload") });
         let mut materials = Materials {
             uploader: self,
             device,
             queue,
-            encoder: &mut encoder,
             model,
             images: HashMap::new(),
             samplers: HashMap::new(),
@@ -87,7 +85,6 @@ impl ModelUploader {
             }
             meshes.push(primitives);
         }
-        queue.submit([encoder.finish()]);
         Ok(GpuModel { id: model.id, asset: asset.clone(), meshes })
     }
 }
@@ -122,7 +119,6 @@ struct Materials<'a> {
     uploader: &'a mut ModelUploader,
     device: &'a wgpu::Device,
     queue: &'a wgpu::Queue,
-    encoder: &'a mut wgpu::CommandEncoder,
     model: &'a Model,
     images: HashMap<(usize, bool), Option<wgpu::TextureView>>,
     samplers: HashMap<Sampler, wgpu::Sampler>,
@@ -233,7 +229,7 @@ impl Materials<'_> {
             .entry((image, srgb))
             .or_insert_with(|| {
                 let data = self.model.images.get(image)?.as_ref()?;
-                self.uploader.mips.upload(self.device, self.queue, self.encoder, data, srgb)
+                self.uploader.mips.upload(self.device, self.queue, data, srgb)
             })
             .clone()?;
         let sampler = self

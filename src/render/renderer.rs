@@ -122,11 +122,14 @@ impl Renderer {
                 entries: &entries,
             })
         };
+        let pipelines = Pipelines::new(device, &layouts, options.samples);
+        // A browser's graphics process answers others between submissions only: those of what follows are on their own.
+        queue.submit([]);
         // Software draws each pixel's extra samples and extra texels itself: leave out both.
         let anisotropy = if options.samples > 1 { 4 } else { 1 };
         Self {
             options,
-            pipelines: Pipelines::new(device, &layouts, options.samples),
+            pipelines,
             uploader: ModelUploader::new(device, queue, anisotropy),
             models: Vec::new(),
             overlay: Overlay::new(device),

@@ -47,7 +47,7 @@ impl MipMaker {
     }
 
     /// Fills all levels below the first.
-    fn fill(&mut self, device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder, texture: &wgpu::Texture) {
+    fn fill(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, texture: &wgpu::Texture) {
         let format = texture.format();
         let pipeline = self.pipelines.entry(format).or_insert_with(|| {
             let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -84,6 +84,7 @@ impl MipMaker {
                 ..Default::default()
             })
         };
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("mips") });
         for level in 1..texture.mip_level_count() {
             let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("mips"),
@@ -114,15 +115,16 @@ impl MipMaker {
             pass.set_bind_group(0, &bind_group, &[]);
             pass.draw(0..3, 0..1);
         }
+        queue.submit([encoder.finish()]);
     }
 
     /// The image with all its mip levels; none when it has no pixels or is a browser's handle larger than the device
-    /// can hold. Other images that are too large are halved until they fit.
+    /// can hold. Other images that are too large are halved until they fit. Each is submitted by itself: a browser's graphics
+    /// process answers others between submissions only.
     pub fn upload(
         &mut self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
-        encoder: &mut wgpu::CommandEncoder,
         image: &ImageData,
         srgb: bool,
     ) -> Option<wgpu::TextureView> {
@@ -187,7 +189,7 @@ impl MipMaker {
                 texture
             }
         };
-        self.fill(device, encoder, &texture);
+        self.fill(device, queue, &texture);
         Some(texture.create_view(&Default::default()))
     }
 }

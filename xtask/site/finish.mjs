@@ -105,7 +105,7 @@ html = replaced(html, "<!-- scenes -->", cards.join("\n        "));
 const models = (link) => link.split("&").filter((pair) => pair.startsWith("model=")).join("&");
 // Of several scenes of one model the first, which is the plainest.
 const pictures = Object.fromEntries(scenes.map(({ link }, index) => [models(link), stills[index].large]).reverse());
-html = replaced(html, 'id="loading-still"', `id="loading-still" src="${stills[0]?.large ?? ""}" data-pictures="${escaped(JSON.stringify(pictures))}"`);
+html = replaced(html, 'id="loading-still"', `id="loading-still" src="${stills[0]?.large ?? ""}" data-link="${escaped(scenes[0]?.link ?? "")}" data-pictures="${escaped(JSON.stringify(pictures))}"`);
 html = replaced(html, "<title>", `${head.join("\n    ")}\n    <title>`);
 
 const files = fs
