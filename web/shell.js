@@ -50,6 +50,14 @@ function sayProblem(message) {
   byId("problem").textContent = message;
 }
 
+/** Shows what is wrong with what was to be opened, where nothing gets as far as the app. */
+function refuse(message) {
+  sayProblem(message);
+  app?.refuse(message);
+}
+
+const EMPTY_FOLDER = "There are no files in this folder. Choose or drop one with a model in it.";
+
 /** `total` 0: not known. */
 function showProgress(what, received, total) {
   const known = total > 0;
@@ -799,7 +807,11 @@ function openFromDialog(items) {
 }
 
 byId("open-files").addEventListener("change", ({ target }) => target.files.length > 0 && openFromDialog([...target.files]));
-byId("open-folder").addEventListener("change", ({ target }) => target.files.length > 0 && openFromDialog(insideFolder([...target.files])));
+byId("open-folder").addEventListener("change", ({ target }) => {
+  if (target.files.length > 0) return openFromDialog(insideFolder([...target.files]));
+  byId("open").close();
+  refuse(EMPTY_FOLDER);
+});
 byId("open-sample").addEventListener("click", () => {
   if (openAs === "motion") return openFromDialog(["sample:walker"]);
   byId("open").close();
@@ -859,7 +871,7 @@ for (const type of ["dragenter", "dragover", "dragleave", "drop"])
         showDrop(false);
         byId("open").close();
         byId("bring").close();
-        dropped(event.dataTransfer).then((items) => openByHand(items), (error) => sayProblem(error.message));
+        dropped(event.dataTransfer).then((items) => openByHand(items), (error) => refuse(error.message));
       }
     },
     { capture: true },
@@ -877,6 +889,7 @@ async function dropped(transfer) {
     if (entry?.isDirectory) await walk(entry, folders.length === 1 && entries.length === 1 ? "" : `${entry.name}/`, files);
     else if (file !== null) files.push({ name: file.name, content: file });
   }
+  if (files.length === 0) throw new Error(EMPTY_FOLDER);
   return files;
 }
 

@@ -8,8 +8,8 @@ use crate::files::{Contents, ModelFiles, OpenedModel};
 use crate::library::{BorrowError, BorrowedClip, Library, Loaded, Model, ModelId, Motion};
 use crate::retarget::{JointMap, MapError, propose};
 use crate::state::{
-    ClipChoice, Command, MapEdit, MotionMap, NumberedMap, ViewerState, active_clip, choice_of_clip, maps_in_force,
-    names_checksum, numbered, settled_maps,
+    ClipChoice, Command, MapEdit, MotionMap, NumberedMap, Show, ViewerState, active_clip, choice_of_clip,
+    maps_in_force, names_checksum, numbered, settled_maps,
 };
 use crate::ui::{Tab, Toast, short_name};
 
@@ -80,6 +80,7 @@ impl App {
         let mut models = models.into_iter();
         let Some(first) = models.next() else { return Ok(()) };
         let (name, origin) = (short_name(&first.model.source), first.model.origin.clone());
+        let lacks_joints = name.to_lowercase().ends_with(".obj") && first.model.asset.skins.is_empty();
         let before = self.before_opening();
         let choice = self.borrowed_choice();
         let known = self.library.models().len();
@@ -147,7 +148,9 @@ impl App {
                 [] => String::new(),
                 gone => format!(" {} made room.", gone.join(", ")),
             };
-            self.toast_undoable(format!("{opened} {name}.{others}{gone}"));
+            let hint =
+                if lacks_joints { " Its joints come with it when its .skel and .attach are opened too." } else { "" };
+            self.toast_undoable(format!("{opened} {name}.{others}{gone}{hint}"));
         }
         Ok(())
     }
@@ -576,6 +579,8 @@ impl App {
 /// What `about` says of a model, its motion and the way it is looked at, and of everything else what was set before.
 fn about_model(about: ViewerState, before: ViewerState) -> ViewerState {
     ViewerState {
+        // Of which joint the weights are shown is about the model.
+        show: Show { weights: about.show.weights, ..before.show },
         model: about.model,
         motion: about.motion,
         map: about.map,

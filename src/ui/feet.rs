@@ -1,12 +1,15 @@
 //! The strip under the timeline: when each foot stands, and how fast it slides meanwhile.
 
-use egui::{Align2, FontId, Rect, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+use egui::{FontId, Rect, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
 use super::{Shown, scrub, style};
 use crate::retarget::FootTrack;
 use crate::state::title;
 
 const LANE: f32 = 16.0;
+/// Of the letters in a lane, and what of the lane is hidden under them.
+const SMALL: f32 = 10.5;
+const VEIL: f32 = 0.85;
 /// A slide of this speed fills a lane.
 const FULL_METRES_PER_SEC: f32 = 0.5;
 
@@ -20,7 +23,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
     if tracks.is_empty() || duration_secs <= 0.0 {
         return;
     }
-    for track in tracks {
+    for (index, track) in tracks.iter().enumerate() {
         let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), LANE), Sense::hover());
         let lane = rect.shrink2(vec2(scrub::MARGIN, 1.0));
         let name = title(Some(shown.state), &model.asset, track.joint);
@@ -28,8 +31,14 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
             .widget_info(|| WidgetInfo::labeled(egui::accesskit::Role::Image, true, format!("{name} on the ground")));
         lane_of(ui, lane, track, duration_secs);
         let palette = style::palette(ui);
-        let at = lane.left_center() + vec2(4.0, 0.0);
-        ui.painter().text(at, Align2::LEFT_CENTER, &name, FontId::proportional(10.5), palette.weak_text);
+        let named = ui.painter().layout_no_wrap(name.to_string(), FontId::proportional(SMALL), palette.weak_text);
+        let end = lane.left() + named.size().x + 8.0;
+        ui.painter().rect_filled(lane.with_max_x(end), 3.0, palette.surface.gamma_multiply(VEIL));
+        let at = pos2(lane.left() + 4.0, lane.center().y - 0.5 * named.size().y);
+        ui.painter().galley(at, named, palette.weak_text);
+        if index == 0 {
+            legend(ui, lane.with_min_x(end));
+        }
         let x = lane.left() + (shown.clip_time_secs() as f32 / duration_secs).clamp(0.0, 1.0) * lane.width();
         ui.painter().vline(x, lane.y_range(), Stroke::new(1.5, palette.accent));
         if let Some(pointer) = response.hover_pos() {
@@ -37,8 +46,33 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
             let at = track.times.partition_point(|&time| time < secs).min(track.times.len().saturating_sub(1));
             let stands = if track.touching.get(at) == Some(&true) { "stands" } else { "in the air" };
             let speed = 100.0 * track.metres_per_sec.get(at).copied().unwrap_or(0.0);
-            response.on_hover_text(format!("{name}: {stands}, {speed:.0} cm/s over the ground"));
+            response.on_hover_text_at_pointer(format!(
+                "{name}: {stands}, {speed:.0} cm/s over the ground\nA bar as high as the lane: 50 cm/s or more"
+            ));
         }
+    }
+}
+
+/// What the colours of the lanes mean, where there is room for it.
+fn legend(ui: &Ui, room: Rect) {
+    let palette = style::palette(ui);
+    let entry =
+        |text: &str| ui.painter().layout_no_wrap(text.to_owned(), FontId::proportional(SMALL), palette.weak_text);
+    let entries = [(palette.chosen, entry("stands")), (palette.warning, entry("slides"))];
+    const SQUARE: f32 = 8.0;
+    let width = |galley: &egui::Galley| SQUARE + 4.0 + galley.size().x + 10.0;
+    let whole = entries.iter().map(|(_, galley)| width(galley)).sum::<f32>();
+    if whole > room.width() {
+        return;
+    }
+    ui.painter().rect_filled(room.with_max_x(room.left() + whole), 3.0, palette.surface.gamma_multiply(VEIL));
+    let mut x = room.left() + 2.0;
+    for (color, galley) in entries {
+        let square = Rect::from_center_size(pos2(x + 0.5 * SQUARE, room.center().y), egui::Vec2::splat(SQUARE));
+        ui.painter().rect(square, 2.0, color, Stroke::new(1.0, palette.panel), egui::StrokeKind::Outside);
+        let at = pos2(square.right() + 4.0, room.center().y - 0.5 * galley.size().y);
+        x += width(&galley);
+        ui.painter().galley(at, galley, palette.weak_text);
     }
 }
 

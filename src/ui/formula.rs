@@ -198,6 +198,7 @@ fn table(
     // All numbers of the card with the same decimals, so that they can be added up.
     let largest = formula.parts.iter().map(|part| part.alone.abs().max_element()).fold(0.0, f32::max);
     let digits = decimals(largest.max(formula.bound.abs().max_element()));
+    heads(ui);
     numbers(ui, "p", "where it is bound", formula.bound, digits, true);
     for part in &formula.parts {
         let name = title(Some(shown.state), &model.asset, part.joint);
@@ -233,6 +234,21 @@ fn table(
     }
 }
 
+/// Where the number of a column ends, in a line of a name and three numbers.
+fn column_end(line: Rect, column: usize) -> f32 {
+    const NAME_WIDTH: f32 = 44.0;
+    line.left() + NAME_WIDTH + (line.width() - NAME_WIDTH) / 3.0 * (column + 1) as f32
+}
+
+/// Above the numbers: which axis they are of.
+fn heads(ui: &mut Ui) {
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), LINE), Sense::hover());
+    for (column, axis) in ["X", "Y", "Z"].into_iter().enumerate() {
+        let at = pos2(column_end(rect, column), rect.center().y);
+        ui.painter().text(at, Align2::RIGHT_CENTER, axis, FontId::proportional(11.0), style::palette(ui).weak_text);
+    }
+}
+
 /// A name and three numbers.
 fn numbers(ui: &mut Ui, name: &str, what: &str, value: Vec3, digits: usize, strong: bool) {
     let palette = style::palette(ui);
@@ -240,12 +256,10 @@ fn numbers(ui: &mut Ui, name: &str, what: &str, value: Vec3, digits: usize, stro
     let color = if strong { palette.text } else { palette.weak_text };
     let font = FontId::proportional(if strong { 13.0 } else { 12.0 });
     ui.painter().text(rect.left_center(), Align2::LEFT_CENTER, name, font, color);
-    let width = (rect.width() - 44.0) / 3.0;
     let mut text = format!("{name}, {what}:");
     for (column, number) in value.to_array().into_iter().enumerate() {
         let written = fixed(number, digits);
-        let right = rect.left() + 44.0 + width * (column + 1) as f32;
-        let at = pos2(right, rect.center().y);
+        let at = pos2(column_end(rect, column), rect.center().y);
         ui.painter().text(at, Align2::RIGHT_CENTER, &written, FontId::monospace(12.0), color);
         text.push(' ');
         text.push_str(&written);

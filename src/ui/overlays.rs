@@ -219,6 +219,8 @@ fn help(context: &Context, local: &mut UiState) {
         ];
         let lines = KEY_TABLE.iter().map(|line| (line.keys, line.does)).chain(pointer);
         let most = (ui.ctx().content_rect().height() - 160.0).max(120.0);
+        // Its bar is there all the time: whole lines fit, and nothing else says that there are more.
+        ui.spacing_mut().scroll = egui::style::ScrollStyle::solid();
         egui::ScrollArea::vertical().max_height(most).min_scrolled_height(most).show(ui, |ui| {
             // Small screens have no room for the longest keys and the longest words side by side.
             let columns = [0.37 * width, 0.63 * width - 18.0];

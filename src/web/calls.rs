@@ -56,6 +56,13 @@ pub async fn apply(partial: String) -> Result<String, JsError> {
     take_over(&page, state, false, false).await.map_err(error)
 }
 
+/// Shows why something that was asked of the shell cannot be had.
+#[wasm_bindgen]
+pub fn refuse(problem: String) -> Result<(), JsError> {
+    page().map_err(error)?.inbox.send(Message::Failed(problem));
+    Ok(())
+}
+
 /// Whether anything that is shown or borrowed from is a person's own.
 #[wasm_bindgen]
 pub fn is_private() -> Result<bool, JsError> {

@@ -43,6 +43,14 @@ for (const renderer of BACK_ENDS)
     const gallery = (page) => page.locator("#gallery");
     const card = (page, name) => page.locator(`#gallery-scenes a >> nth=${scenes.findIndex((scene) => scene.name === name)}`);
 
+    onFirstScreen("fetches the program and the sample once, side by side", {}, async (page) => {
+      for (const ending of [".wasm", ".glb"]) assert.equal(page.requests.filter((url) => url.endsWith(ending)).length, 1, ending);
+      const begins = await page.evaluate(() =>
+        [".wasm", ".glb"].map((ending) => performance.getEntriesByType("resource").find(({ name }) => name.endsWith(ending)).initiatorType),
+      );
+      assert.deepEqual(begins, ["link", "link"], "both are asked for by the page itself");
+    });
+
     for (const scene of scenes)
       test(`${scene.name} opens from its link, moves, and looks like its picture`, async () => {
         const page = await site.page({ renderer, link: scene.link });

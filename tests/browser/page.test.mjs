@@ -178,6 +178,25 @@ for (const renderer of BACK_ENDS) {
       assert.ok(later - earlier <= 2, `${later - earlier} frames in an idle second`);
     });
 
+    onPage("says that a folder has no files in it", {}, async (page) => {
+      await apply(page, { play: 0 });
+      const before = await page.screenshot();
+      await page.locator("#do-open").evaluate((button) => button.click());
+      await page.locator("#open-folder").dispatchEvent("change");
+      await until(page, () => /no files in this folder/.test(document.querySelector("#problem").textContent));
+      assert.equal(await page.locator("#open").isVisible(), false);
+      await page.waitForTimeout(500);
+      assert.ok(!before.equals(await page.screenshot()), "the notice should be on the screen");
+    });
+
+    onPage("shows the next model without the weights of a joint of the last", { data: true }, async (page) => {
+      await apply(page, { joint: 5, show: "grid,weights" });
+      await drop(page, [{ name: "Fox.glb", url: site.data(FOX) }]);
+      await whenShown(page, FOX_VERTICES);
+      const { joint, show } = await state(page);
+      assert.deepEqual([joint, show], [null, "grid"]);
+    });
+
     test("keeps what it shows when a file is broken", { skip: skipWithoutData }, async () => {
       const page = await site.page({ renderer });
       try {

@@ -43,6 +43,7 @@ pub(super) fn show(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, out: &mut
     if controls::switch(ui, "Hold feet on the ground", planted) {
         out.commands.push(Command::SetFeet(Some(if planted { Feet::Off } else { Feet::Plant })));
     }
+    controls::hint(ui, "Feet that stand stay in one place; a motion that hovers comes down.");
 
     controls::section(ui, "JOINTS THAT FOLLOW NOTHING");
     unmapped(ui, pairing, map, out);
