@@ -2,19 +2,25 @@
 
 const byId = (id) => document.getElementById(id);
 
+/** Names of files that came with one of the link. */
+const MOST_BESIDE = 4;
 const ROLES = { model: "the model", motion: "motion" };
 
 addEventListener("gaitway:share", ({ detail: { address, embedded, local, qr } }) => {
   byId("share-local").hidden = local.length === 0;
   byId("share-files").replaceChildren(
-    ...local.map(({ key, name }) => {
+    ...local.map(({ key, name, beside }) => {
       const item = document.createElement("li");
-      item.textContent = `${name} (${ROLES[key]})`;
+      const [most, more] = [beside.slice(0, MOST_BESIDE), beside.length - MOST_BESIDE];
+      const others = most.length === 0 ? "" : `, with ${most.join(", ")}${more > 0 ? ` and ${more} more` : ""}`;
+      item.textContent = `${name} (${ROLES[key]})${others}`;
       return item;
     }),
   );
   byId("share-link").value = address;
   byId("share-frame").value = frame(embedded);
+  // What has to be dropped is on a computer, not on a phone; and there is no room for both.
+  byId("share-code").hidden = local.length > 0;
   byId("share-no-qr").hidden = qr !== null;
   byId("share-no-qr").textContent = `The link has ${address.length} characters: too long for a QR code that a camera can read.`;
   byId("share-qr").replaceChildren(...(qr === null ? [] : [picture(qr)]));

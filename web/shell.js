@@ -237,7 +237,8 @@ async function start(renderer) {
     backend = JSON.parse(bindings.stats()).backend;
     canvas.addEventListener("webglcontextlost", () => stopped("The browser took the graphics context away."));
     const seen = drawUnseen(canvas);
-    await frames(2);
+    // One for the panels, one for the scene, one to be sure that both were before it.
+    await frames(3);
     await Promise.race([bindings.begin(), ended]);
     seen();
     await frames(2);
@@ -385,6 +386,13 @@ const isHeld = (name) => held.some((items) => items.some((item) => typeof item !
 
 /** The parts of a link that lie on this computer alone: `[key, name, pair]`. */
 const localParts = (link) => pairsOf(link).filter(([key, value]) => (key === "model" || key === "motion") && isHeld(value));
+
+/** What came together with a file of a link and is no part of it by itself: textures, .bin, .skel, … */
+function besides(name, link) {
+  const parts = localParts(link).map(([, other]) => other);
+  const set = held.findLast((items) => items.some((item) => nameOf(item) === name)) ?? [];
+  return set.map(nameOf).filter((other) => !parts.includes(other));
+}
 
 /** Before the name of a file in a link that somebody has to bring along. */
 const BRING = "file:";
@@ -535,10 +543,14 @@ function withoutAwaited(link) {
   return pairsOf(link).filter(([key, value]) => stays([key]) && !value.startsWith(BRING)).map(([, , pair]) => pair).join("&");
 }
 
+const endingOf = (name) => name.split(".").pop().toLowerCase();
+/** What a file of a kind may need beside it, which a link does not name. */
+const BESIDE = { gltf: ", with its .bin and images", obj: ", with its .skel and .attach" };
+
 function showAwaited() {
   if (awaited === null || panel !== null || byId("bring").open) return;
   byId("bring").returnValue = "";
-  list("bring-files", awaited.missing.map(({ key, name }) => `${name} (${key === "model" ? "the model" : "motion"})`));
+  list("bring-files", awaited.missing.map(({ key, name }) => `${name} (${key === "model" ? "the model" : "motion"})${BESIDE[endingOf(name)] ?? ""}`));
   byId("bring").showModal();
   byId("bring-choose").focus();
 }
@@ -600,7 +612,7 @@ function share(link) {
   const page = url.href.split("#")[0];
   const rest = publicLink(link);
   const address = `${page}#${rest}`;
-  const local = localParts(link).map(([key, name]) => ({ key, name }));
+  const local = localParts(link).map(([key, name]) => ({ key, name, beside: besides(name, link) }));
   const embedded = `${page}#${rest.split("&").filter((pair) => !pair.startsWith("embed=")).join("&")}&embed=1`;
   dispatchEvent(new CustomEvent("gaitway:share", { detail: { address, embedded, local, qr: app.qr(address) ?? null } }));
 }
@@ -643,9 +655,20 @@ async function open(items, { as } = {}) {
   return await openAll(items, { as });
 }
 
+/** A .skel or .attach that comes after its .obj: with what came before it. */
+function completed(items) {
+  if (items.length === 0 || !items.every((item) => ["skel", "attach"].includes(endingOf(nameOf(item))))) return items;
+  const stem = nameOf(items[0]).replace(/\.[^.]*$/, "");
+  const mesh = held.findLast((items) => items.some((item) => nameOf(item) === `${stem}.obj`));
+  if (mesh === undefined) return items;
+  const others = ["skel", "attach"].map((ending) => held.flat().findLast((item) => nameOf(item) === `${stem}.${ending}`));
+  const all = [...mesh, ...others.filter((item) => item !== undefined), ...items];
+  return [...new Map(all.map((item) => [nameOf(item), item])).values()];
+}
+
 /** `isOwn`: files among them are a person's own, which a page around this one gets to know nothing of. */
 async function openAll(items, { as, isOwn = true } = {}) {
-  const wanted = normalised(items);
+  const wanted = completed(normalised(items));
   await running();
   try {
     const { shown, document } = await bring(wanted, as, isOwn);

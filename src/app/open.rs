@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::App;
 use crate::files::{Contents, ModelFiles, OpenedModel};
-use crate::library::{BorrowError, BorrowedClip, Library, Loaded, Model, ModelId, Motion};
+use crate::library::{BorrowError, BorrowedClip, Library, Loaded, Model, ModelId, Motion, sample};
 use crate::retarget::{JointMap, MapError, propose};
 use crate::state::{
     ClipChoice, Command, MapEdit, MotionMap, NumberedMap, Show, ViewerState, active_clip, choice_of_clip,
@@ -97,10 +97,16 @@ impl App {
                 name
             })
             .collect();
+        // Shown while the files of a link are waited for: nobody asked for it, so it leaves when they come.
+        let is_walker = |model: &&Model| model.origin.strip_prefix("sample:") == Some(sample::WALKER);
+        let stand_in = self.library.active().filter(is_walker).map(|model| model.id);
         self.library.show(id);
         let is_link = state.is_some();
         let was_loaded = before.is_some();
         self.remember(before);
+        if let Some(stand_in) = stand_in.filter(|&stand_in| is_link && stand_in != id) {
+            self.library.close(stand_in);
+        }
         let gone = self.let_go();
         let keeps_motions = motions.is_none() && !is_link;
         if !keeps_motions {

@@ -48,6 +48,8 @@ pub struct App {
     pub(super) host: Box<dyn Host>,
     /// Time stands still until the first picture is seen: where that takes long, the next ones would wait in a queue.
     begun: bool,
+    /// The panels have been laid out once.
+    laid_out: bool,
     /// Answered once the picture shows what they asked for.
     after_draw: Vec<Box<dyn FnOnce()>>,
     screenshots: Vec<Reply<Vec<u8>>>,
@@ -103,6 +105,7 @@ impl App {
             context: cc.egui_ctx.clone(),
             host,
             begun: cfg!(not(target_arch = "wasm32")),
+            laid_out: cfg!(not(target_arch = "wasm32")),
             after_draw: Vec::new(),
             screenshots: Vec::new(),
             backend: device::backend_name(&info),
@@ -463,7 +466,10 @@ impl eframe::App for App {
         }
         self.advance(&context);
         self.go_on_recording(&context);
-        if rect.is_positive() {
+        if !std::mem::replace(&mut self.laid_out, true) {
+            // The panels alone, then the scene: both in one frame would keep a page from answering for too long.
+            context.request_repaint();
+        } else if rect.is_positive() {
             self.draw(rect, context.pixels_per_point());
             slot.fill(|rect| self.scene.paint(rect));
             let shown = Shown { library: &self.library, state: &self.state, frame: &self.frame };

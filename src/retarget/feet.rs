@@ -207,7 +207,9 @@ impl Retargeting<'_> {
         }
         if let Some(hips) = self.hips {
             for (by, target) in moves.iter_mut().zip(targets) {
-                by.y = by.y.max(hips.target_ground - target.positions[leg.toes.get()].y);
+                let lowest =
+                    [leg.toes, leg.ankle].map(|joint| target.positions[joint.get()].y).into_iter().reduce(f64::min);
+                by.y = by.y.max(hips.target_ground - lowest.unwrap_or(hips.target_ground));
             }
         }
         Plan { leg, moves }

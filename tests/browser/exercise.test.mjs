@@ -94,6 +94,17 @@ for (const renderer of BACK_ENDS) {
       },
     );
 
+    onPage("a mesh that came first gets its joints from the files that come after it", { forgiven: /Model1/ }, async (page) => {
+      const joints = async (name) => {
+        await drop(page, [{ name, url: site.data(`mit6837/${name}`) }]);
+        await page.waitForTimeout(1500);
+        return (await stats(page)).joints;
+      };
+      assert.equal(await joints("Model1.obj"), 1);
+      assert.equal(await joints("Model1.skel"), 1, "the .attach is missing still");
+      assert.equal(await joints("Model1.attach"), 18);
+    });
+
     onPage("a set that is not complete says what is missing, and the picture stays", { forgiven: /Model1/ }, async (page) => {
       const before = (await pose(page)).meshes.length;
       const problem = await page.evaluate(async ([obj, skel]) => {

@@ -155,6 +155,7 @@ for (const renderer of BACK_ENDS)
       await apply(page, { play: 0, t: 1 });
       await share(page);
       assert.match(await page.locator("#share-local").innerText(), /dance\.bvh \(motion\)/);
+      assert.equal(await page.locator("#share-code").isVisible(), false);
       const link = await linkOf(page);
       assert.ok(link.includes("Xbot.glb") && link.includes("motion=file:dance.bvh"), link);
       await page.locator("#share-close").click();

@@ -116,6 +116,21 @@ fn a_source_is_typed_by_number_or_name() {
 }
 
 #[test]
+fn a_source_is_chosen_by_arrow_keys() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, "Motion");
+    let neck = number(&harness, "Neck");
+    for (keys, source) in
+        [(&[egui::Key::ArrowDown][..], neck + 1), (&[egui::Key::ArrowUp, egui::Key::ArrowUp], neck - 1)]
+    {
+        press_row(&mut harness, "Neck follows");
+        keys.iter().for_each(|&key| assert_eq!(press_key(&mut harness, key), []));
+        let commands = press_key(&mut harness, egui::Key::Enter);
+        assert_eq!(commands, [Command::SetSource { motion: 0, target: neck, source: Some(source) }]);
+    }
+}
+
+#[test]
 fn keys_do_nothing_else_while_a_source_is_chosen() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
     press(&mut harness, "Motion");

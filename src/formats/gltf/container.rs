@@ -14,27 +14,30 @@ const JSON_CHUNK: u32 = 0x4E4F_534A;
 const BINARY_CHUNK: u32 = 0x004E_4942;
 
 pub fn open<'a>(file: &str, bytes: &'a [u8]) -> Result<Container<'a>, LoadError> {
-    if !bytes.starts_with(b"glTF") {
-        return Ok(Container { json: without_bom(bytes), binary: None, is_glb: false });
-    }
     let invalid = |place: &str, expected: &str, found: String| LoadError::Invalid {
         file: file.to_owned(),
         place: place.to_owned(),
         expected: expected.to_owned(),
         found,
     };
+    if bytes.is_empty() {
+        return Err(invalid("the whole file", "a glTF", "nothing: it is empty".to_owned()));
+    }
+    if !bytes.starts_with(b"glTF") {
+        return Ok(Container { json: without_bom(bytes), binary: None, is_glb: false });
+    }
     let word = |at: usize| {
         let four = bytes.get(at..at.checked_add(4)?)?;
         Some(u32::from_le_bytes([four[0], four[1], four[2], four[3]]))
     };
     let header = || invalid("GLB header", "12 bytes", format!("{}", bytes.len()));
-    let version = word(4).ok_or_else(header)?;
+    let (version, length) = word(4).zip(word(8)).ok_or_else(header)?;
     match version {
         2 => {}
         0 | 1 => return Err(LoadError::UnsupportedVersion { file: file.to_owned(), found: format!("{version}.0") }),
         _ => return Err(invalid("GLB header", "version 2", format!("version {version} (not a GLB, or damaged?)"))),
     }
-    let length = word(8).ok_or_else(header)? as usize;
+    let length = length as usize;
     if length > bytes.len() {
         return Err(invalid("GLB header", &format!("{length} bytes in all"), format!("{} (cut short?)", bytes.len())));
     }

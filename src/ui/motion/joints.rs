@@ -259,8 +259,12 @@ fn show_row(
         let color = if row.look { palette.warning } else { palette.weak_text };
         controls::elided_small(ui, below, &row.why, color);
     }
-    let target = target.on_hover_ui(|ui| drop(ui.label(format!("{follows}. Click for more."))));
-    let source = source.on_hover_ui(|ui| drop(ui.label(format!("{follows}. Click to choose another."))));
+    let told = match row.source {
+        Some(_) => follows,
+        None => format!("{}: {}", row.target, row.why),
+    };
+    let target = target.on_hover_ui(|ui| drop(ui.label(format!("{told}. Click for more."))));
+    let source = source.on_hover_ui(|ui| drop(ui.label(format!("{told}. Click to choose another."))));
     if target.clicked() { Some(Pressed::Target) } else { source.clicked().then_some(Pressed::Source) }
 }
 

@@ -14,13 +14,15 @@ pub(super) struct Picking {
     /// The joint's number in the model's file.
     target: usize,
     search: String,
+    /// Where the arrow keys have led.
+    stepped: Option<JointIndex>,
     /// Shown for the first time: the present source is scrolled to.
     fresh: bool,
 }
 
 impl Picking {
     pub fn new(motion: usize, target: usize) -> Self {
-        Self { motion, target, search: String::new(), fresh: true }
+        Self { motion, target, search: String::new(), stepped: None, fresh: true }
     }
 }
 
@@ -41,6 +43,10 @@ pub fn show(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut
         let name = target.map_or_else(String::new, |joint| pairing.target_title(joint).into_owned());
         ui.heading(format!("What does {name} follow?"));
         ui.add_space(4.0);
+        let steps = ui.input_mut(|input| {
+            let mut presses = |key| input.count_and_consume_key(egui::Modifiers::NONE, key) as isize;
+            presses(Key::ArrowDown) - presses(Key::ArrowUp)
+        });
         let field = egui::TextEdit::singleline(&mut picking.search)
             .hint_text("Name or number")
             .margin(egui::Margin::symmetric(10, 6))
@@ -51,21 +57,28 @@ pub fn show(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut
             field.request_focus();
         }
         let found = matching(&pairing, &picking.search);
-        // Nothing typed chooses nothing.
-        if entered
-            && !picking.search.trim().is_empty()
-            && let Some(&first) = found.first()
-        {
-            chosen = Some(Some(pairing.motion.asset.skeleton.source_index(first)));
+        if field.changed() {
+            picking.stepped = None;
         }
         ui.add_space(4.0);
         let map = map_in_force(shown.library, shown.state, picking.motion).unwrap_or_default();
         let now = pairing.source_in(&map, picking.target).flatten();
         let fresh = std::mem::take(&mut picking.fresh);
+        // Nothing typed and no step taken chooses nothing.
+        let searched = found.first().copied().filter(|_| !picking.search.trim().is_empty());
+        if steps != 0 && !found.is_empty() {
+            let from = picking.stepped.or(searched).or(now).and_then(|at| found.iter().position(|&joint| joint == at));
+            let to = from.map_or(0, |from| from.saturating_add_signed(steps).min(found.len() - 1));
+            picking.stepped = Some(found[to]);
+        }
+        let taken = picking.stepped.or(searched);
+        if let Some(taken) = taken.filter(|_| entered) {
+            chosen = Some(Some(pairing.motion.asset.skeleton.source_index(taken)));
+        }
         // What Enter would take is marked, else what is followed now.
-        let searches = !picking.search.trim().is_empty();
-        let marked = if searches { found.first().copied() } else { now };
-        list(ui, &pairing, &found, now.filter(|_| fresh), marked, !searches && now.is_none(), &mut chosen);
+        let marked = taken.or(now);
+        let scroll_to = if steps != 0 { picking.stepped } else { now.filter(|_| fresh) };
+        list(ui, &pairing, &found, scroll_to, marked, marked.is_none(), &mut chosen);
         ui.add_space(4.0);
         closed |= ui.button("Cancel").clicked();
     });
