@@ -387,11 +387,18 @@ const isHeld = (name) => held.some((items) => items.some((item) => typeof item !
 /** The parts of a link that lie on this computer alone: `[key, name, pair]`. */
 const localParts = (link) => pairsOf(link).filter(([key, value]) => (key === "model" || key === "motion") && isHeld(value));
 
-/** What came together with a file of a link and is no part of it by itself: textures, .bin, .skel, … */
-function besides(name, link) {
-  const parts = localParts(link).map(([, other]) => other);
+/** What a file of a kind is made of besides itself, which a link does not name: in words, and by the endings of the names. */
+const BESIDE = {
+  gltf: { words: "its .bin and images", ending: /\.(bin|png|jpe?g|webp)$/i },
+  obj: { words: "its .skel and .attach", ending: /\.(skel|attach|mtl|png|jpe?g)$/i },
+};
+
+const endingOf = (name) => name.split(".").pop().toLowerCase();
+
+/** The names of such files that came together with one. */
+function besides(name) {
   const set = held.findLast((items) => items.some((item) => nameOf(item) === name)) ?? [];
-  return set.map(nameOf).filter((other) => !parts.includes(other));
+  return set.map(nameOf).filter((other) => BESIDE[endingOf(name)]?.ending.test(other));
 }
 
 /** Before the name of a file in a link that somebody has to bring along. */
@@ -543,14 +550,14 @@ function withoutAwaited(link) {
   return pairsOf(link).filter(([key, value]) => stays([key]) && !value.startsWith(BRING)).map(([, , pair]) => pair).join("&");
 }
 
-const endingOf = (name) => name.split(".").pop().toLowerCase();
-/** What a file of a kind may need beside it, which a link does not name. */
-const BESIDE = { gltf: ", with its .bin and images", obj: ", with its .skel and .attach" };
-
 function showAwaited() {
   if (awaited === null || panel !== null || byId("bring").open) return;
   byId("bring").returnValue = "";
-  list("bring-files", awaited.missing.map(({ key, name }) => `${name} (${key === "model" ? "the model" : "motion"})${BESIDE[endingOf(name)] ?? ""}`));
+  const lines = awaited.missing.map(({ key, name }) => {
+    const beside = BESIDE[endingOf(name)];
+    return `${name} (${key === "model" ? "the model" : "motion"})${beside === undefined ? "" : `, with ${beside.words}`}`;
+  });
+  list("bring-files", lines);
   byId("bring").showModal();
   byId("bring-choose").focus();
 }
@@ -581,6 +588,7 @@ async function fulfil(items, taken) {
   }
   awaited = null;
   await follow(whole, { link: whole, items: heldItems(whole), motionItems: heldMotions(whole) });
+  if (valuesOf(withoutAwaited(link), "model").length === 0) app?.close_stand_in();
   return true;
 }
 
@@ -612,7 +620,7 @@ function share(link) {
   const page = url.href.split("#")[0];
   const rest = publicLink(link);
   const address = `${page}#${rest}`;
-  const local = localParts(link).map(([key, name]) => ({ key, name, beside: besides(name, link) }));
+  const local = localParts(link).map(([key, name]) => ({ key, name, beside: besides(name) }));
   const embedded = `${page}#${rest.split("&").filter((pair) => !pair.startsWith("embed=")).join("&")}&embed=1`;
   dispatchEvent(new CustomEvent("gaitway:share", { detail: { address, embedded, local, qr: app.qr(address) ?? null } }));
 }

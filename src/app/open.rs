@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use super::App;
 use crate::files::{Contents, ModelFiles, OpenedModel};
-use crate::library::{BorrowError, BorrowedClip, Library, Loaded, Model, ModelId, Motion, sample};
+#[cfg(target_arch = "wasm32")]
+use crate::library::sample;
+use crate::library::{BorrowError, BorrowedClip, Library, Loaded, Model, ModelId, Motion};
 use crate::retarget::{JointMap, MapError, propose};
 use crate::state::{
     ClipChoice, Command, MapEdit, MotionMap, NumberedMap, Show, ViewerState, active_clip, choice_of_clip,
@@ -97,16 +99,10 @@ impl App {
                 name
             })
             .collect();
-        // Shown while the files of a link are waited for: nobody asked for it, so it leaves when they come.
-        let is_walker = |model: &&Model| model.origin.strip_prefix("sample:") == Some(sample::WALKER);
-        let stand_in = self.library.active().filter(is_walker).map(|model| model.id);
         self.library.show(id);
         let is_link = state.is_some();
         let was_loaded = before.is_some();
         self.remember(before);
-        if let Some(stand_in) = stand_in.filter(|&stand_in| is_link && stand_in != id) {
-            self.library.close(stand_in);
-        }
         let gone = self.let_go();
         let keeps_motions = motions.is_none() && !is_link;
         if !keeps_motions {
@@ -258,6 +254,16 @@ impl App {
         self.choose_borrowed(choice);
         self.dirty = true;
         self.changed = true;
+    }
+
+    /// Takes the walker off the list: shown while a link's own files are waited for, it is nothing that anybody asked for.
+    #[cfg(target_arch = "wasm32")]
+    pub fn close_stand_in(&mut self) {
+        let is_walker = |model: &&Model| model.origin.strip_prefix("sample:") == Some(sample::WALKER);
+        if let Some(walker) = self.library.models().iter().find(is_walker).map(|model| model.id) {
+            self.library.close(walker);
+            self.context.request_repaint();
+        }
     }
 
     /// Takes a model off the list. When it is the one that is shown, its neighbour is turned to, and the step back to it puts

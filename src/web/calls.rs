@@ -56,6 +56,13 @@ pub async fn apply(partial: String) -> Result<String, JsError> {
     take_over(&page, state, false, false).await.map_err(error)
 }
 
+/// Takes the model off the list that was shown while a link's own files were waited for.
+#[wasm_bindgen]
+pub fn close_stand_in() -> Result<(), JsError> {
+    let page = page().map_err(error)?;
+    with_app(&page, App::close_stand_in).map_err(error)
+}
+
 /// Shows why something that was asked of the shell cannot be had.
 #[wasm_bindgen]
 pub fn refuse(problem: String) -> Result<(), JsError> {
