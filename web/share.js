@@ -19,8 +19,8 @@ addEventListener("gaitway:share", ({ detail: { address, embedded, local, qr } })
   );
   byId("share-link").value = address;
   byId("share-frame").value = frame(embedded);
-  // What has to be dropped is on a computer, not on a phone; and there is no room for both.
-  byId("share-code").hidden = local.length > 0;
+  // What has to be dropped is on a computer rather than on a phone; and there is no room for both.
+  byId("share-code").open = local.length === 0;
   byId("share-no-qr").hidden = qr !== null;
   byId("share-no-qr").textContent = `The link has ${address.length} characters: too long for a QR code that a camera can read.`;
   byId("share-qr").replaceChildren(...(qr === null ? [] : [picture(qr)]));
@@ -67,3 +67,4 @@ async function copy(id, done, failed) {
 
 byId("share-copy").addEventListener("click", () => copy("share-link", "Link copied.", "The browser does not let a page copy; the link is selected: copy it with the keyboard."));
 byId("share-copy-frame").addEventListener("click", () => copy("share-frame", "HTML copied.", "The browser does not let a page copy; the text is selected: copy it with the keyboard."));
+byId("share-code").querySelector("summary").addEventListener("click", () => requestAnimationFrame(() => byId("share-code").scrollIntoView({ block: "center" })));

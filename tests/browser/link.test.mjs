@@ -155,7 +155,10 @@ for (const renderer of BACK_ENDS)
       await apply(page, { play: 0, t: 1 });
       await share(page);
       assert.match(await page.locator("#share-local").innerText(), /dance\.bvh \(motion\)/);
-      assert.equal(await page.locator("#share-code").isVisible(), false);
+      // The code is there when it is asked for.
+      assert.equal(await page.locator("#share-qr svg").isVisible(), false);
+      await page.locator("#share-code summary").click();
+      assert.equal(await page.locator("#share-qr svg").isVisible(), true);
       const link = await linkOf(page);
       assert.ok(link.includes("Xbot.glb") && link.includes("motion=file:dance.bvh"), link);
       await page.locator("#share-close").click();
