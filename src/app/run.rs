@@ -335,16 +335,35 @@ impl App {
                     self.toast("Link copied.".to_owned());
                 }
             }
-            UiAction::Undo | UiAction::Redo => {
-                let done = match action {
-                    UiAction::Undo => self.history.undo(&mut self.state, &mut self.library),
-                    _ => self.history.redo(&mut self.state, &mut self.library),
-                };
-                self.dirty |= done;
-                self.changed |= done;
-                let problems = self.refresh_motion();
-                self.tell(problems);
-            }
+            UiAction::Undo => self.step(true),
+            UiAction::Redo => self.step(false),
+        }
+    }
+
+    /// One step back, or on again. That a motion goes or comes with it is said: it may have been opened long before.
+    fn step(&mut self, back: bool) {
+        let borrowed = |app: &Self| -> Vec<String> {
+            app.library.motions().iter().map(|motion| ui::short_name(&motion.source)).collect()
+        };
+        let before = borrowed(self);
+        let done = match back {
+            true => self.history.undo(&mut self.state, &mut self.library),
+            false => self.history.redo(&mut self.state, &mut self.library),
+        };
+        self.dirty |= done;
+        self.changed |= done;
+        let problems = self.refresh_motion();
+        self.tell(problems);
+        let after = borrowed(self);
+        let only_in = |some: &[String], others: &[String]| -> String {
+            some.iter().filter(|name| !others.contains(name)).cloned().collect::<Vec<_>>().join(", ")
+        };
+        let (gone, come) = (only_in(&before, &after), only_in(&after, &before));
+        let keys = if back { "Ctrl+Y" } else { "Ctrl+Z" };
+        if !gone.is_empty() {
+            self.toast(format!("Nothing is borrowed from {gone} any more. {keys} brings it back."));
+        } else if !come.is_empty() {
+            self.toast(format!("Borrowed from {come} again."));
         }
     }
 

@@ -175,7 +175,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
 fn scrolled(ui: &mut Ui, part: Part, contents: impl FnOnce(&mut Ui)) {
     ScrollArea::vertical().id_salt(("motion", part)).auto_shrink([false, false]).show(ui, |ui| {
         // Room for the floating scroll bar.
-        ui.set_max_width(ui.available_width() - 6.0);
+        ui.set_max_width(ui.available_width() - 12.0);
         contents(ui);
         ui.add_space(12.0);
     });
