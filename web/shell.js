@@ -236,11 +236,12 @@ async function start(renderer) {
     app = bindings;
     backend = JSON.parse(bindings.stats()).backend;
     canvas.addEventListener("webglcontextlost", () => stopped("The browser took the graphics context away."));
-    const seen = drawUnseen(canvas);
+    const handOver = drawUnseen(canvas);
     // One for the panels, one for the scene, one to be sure that both were before it.
     await frames(3);
     await Promise.race([bindings.begin(), ended]);
-    seen();
+    handOver();
+    // The first one that is handed over, before it is seen.
     await frames(2);
     if (stopReason !== null) throw new Error(stopReason);
     canvas.style.visibility = "";

@@ -5,8 +5,6 @@ use std::sync::Arc;
 
 use super::App;
 use crate::files::{Contents, ModelFiles, OpenedModel};
-#[cfg(target_arch = "wasm32")]
-use crate::library::sample;
 use crate::library::{BorrowError, BorrowedClip, Library, Loaded, Model, ModelId, Motion};
 use crate::retarget::{JointMap, MapError, propose};
 use crate::state::{
@@ -259,7 +257,7 @@ impl App {
     /// Takes the walker off the list: shown while a link's own files are waited for, it is nothing that anybody asked for.
     #[cfg(target_arch = "wasm32")]
     pub fn close_stand_in(&mut self) {
-        let is_walker = |model: &&Model| model.origin.strip_prefix("sample:") == Some(sample::WALKER);
+        let is_walker = |model: &&Model| model.origin.strip_prefix("sample:") == Some(crate::library::sample::WALKER);
         if let Some(walker) = self.library.models().iter().find(is_walker).map(|model| model.id) {
             self.library.close(walker);
             self.context.request_repaint();

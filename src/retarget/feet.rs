@@ -207,9 +207,8 @@ impl Retargeting<'_> {
         }
         if let Some(hips) = self.hips {
             for (by, target) in moves.iter_mut().zip(targets) {
-                let lowest =
-                    [leg.toes, leg.ankle].map(|joint| target.positions[joint.get()].y).into_iter().reduce(f64::min);
-                by.y = by.y.max(hips.target_ground - lowest.unwrap_or(hips.target_ground));
+                let height = |joint: JointIndex| target.positions[joint.get()].y;
+                by.y = by.y.max(hips.target_ground - height(leg.toes).min(height(leg.ankle)));
             }
         }
         Plan { leg, moves }

@@ -1,6 +1,6 @@
 //! The right panel: one tab at a time.
 
-use egui::{ScrollArea, Ui};
+use egui::Ui;
 
 use super::{Output, Shown, UiState, controls, display, motion, report, scene_tree, view_options};
 
@@ -27,18 +27,9 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
     match local.tab {
         // The tree scrolls by itself, under the chosen joint's numbers.
         Tab::Scene => scene_tree::show(ui, shown, local, out),
-        Tab::Display => scrolled(ui, "display", |ui| display::show(ui, shown, out)),
-        Tab::File => scrolled(ui, "file", |ui| report::show(ui, shown, out)),
+        Tab::Display => controls::scrolled(ui, "display", |ui| display::show(ui, shown, out)),
+        Tab::File => controls::scrolled(ui, "file", |ui| report::show(ui, shown, out)),
         Tab::Motion => motion::show(ui, shown, local, out),
-        Tab::View => scrolled(ui, "view", |ui| view_options::show(ui, shown, local, out)),
+        Tab::View => controls::scrolled(ui, "view", |ui| view_options::show(ui, shown, local, out)),
     }
-}
-
-fn scrolled(ui: &mut Ui, id: &str, contents: impl FnOnce(&mut Ui)) {
-    ScrollArea::vertical().id_salt(id).auto_shrink([false, false]).show(ui, |ui| {
-        // Room for the floating scroll bar.
-        ui.set_max_width(ui.available_width() - 12.0);
-        contents(ui);
-        ui.add_space(12.0);
-    });
 }

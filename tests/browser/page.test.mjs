@@ -185,7 +185,8 @@ for (const renderer of BACK_ENDS) {
       await page.locator("#open-folder").dispatchEvent("change");
       await until(page, () => /no files in this folder/.test(document.querySelector("#problem").textContent));
       assert.equal(await page.locator("#open").isVisible(), false);
-      await page.waitForTimeout(500);
+      // Answered after the next frame.
+      await apply(page, { play: 0 });
       assert.ok(!before.equals(await page.screenshot()), "the notice should be on the screen");
     });
 

@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
-use egui::{RichText, ScrollArea, Ui};
+use egui::{RichText, Ui};
 
 use self::rows::Row;
 use super::icons::{Icon, icon_button_sized};
@@ -160,25 +160,17 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
     local.motion.motion = pairing.index;
     let part = local.motion.part;
     let rows = if part == Part::Joints { local.motion.rows(&pairing, &map) } else { Rc::default() };
+    // Each part keeps its own place.
+    let place = ("motion", part);
     if ui.available_height() >= ROOMY_HEIGHT {
         head(ui, shown, &pairing, &map, &rows, local, out);
-        scrolled(ui, part, |ui| body(ui, shown, &pairing, &map, &rows, &mut local.motion, out));
+        controls::scrolled(ui, place, |ui| body(ui, shown, &pairing, &map, &rows, &mut local.motion, out));
     } else {
-        scrolled(ui, part, |ui| {
+        controls::scrolled(ui, place, |ui| {
             head(ui, shown, &pairing, &map, &rows, local, out);
             body(ui, shown, &pairing, &map, &rows, &mut local.motion, out);
         });
     }
-}
-
-/// `part` keeps the places of the parts apart.
-fn scrolled(ui: &mut Ui, part: Part, contents: impl FnOnce(&mut Ui)) {
-    ScrollArea::vertical().id_salt(("motion", part)).auto_shrink([false, false]).show(ui, |ui| {
-        // Room for the floating scroll bar.
-        ui.set_max_width(ui.available_width() - 12.0);
-        contents(ui);
-        ui.add_space(12.0);
-    });
 }
 
 fn head(
