@@ -58,8 +58,15 @@ function refuse(message) {
 
 const EMPTY_FOLDER = "There are no files in this folder. Choose or drop one with a model in it.";
 
+/** What came with every piece of a file would keep the page from answering: no more often than it is read. */
+const PROGRESS_MS = 100;
+let progressAt = -Infinity;
+
 /** `total` 0: not known. */
 function showProgress(what, received, total) {
+  const isBetween = received > 0 && received !== total;
+  if (isBetween && performance.now() < progressAt + PROGRESS_MS) return;
+  progressAt = performance.now();
   const known = total > 0;
   const bar = byId("loading-progress");
   if (known) bar.value = Math.min(1, received / total);

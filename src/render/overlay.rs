@@ -6,6 +6,8 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use wgpu::util::DeviceExt;
 
+use super::pipelines::{BLENDED, Layouts, ScenePipeline, pipeline_layout};
+use super::shaders;
 use crate::frame::{Bone, Line};
 
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -69,7 +71,93 @@ fn instance_buffer(device: &wgpu::Device, label: &'static str, size: u64) -> wgp
     })
 }
 
+/// Made when there is first something to draw with them.
+struct OverlayPipelines {
+    lines: wgpu::RenderPipeline,
+    bones: wgpu::RenderPipeline,
+    clear_depth: wgpu::RenderPipeline,
+}
+
+impl OverlayPipelines {
+    fn new(device: &wgpu::Device, layouts: &Layouts, samples: u32) -> Self {
+        let frame_layout = pipeline_layout(device, "frame only", &[Some(&layouts.frame)]);
+        let empty_layout = pipeline_layout(device, "nothing", &[]);
+
+        let line_module = shaders::LINES.module(device);
+        let line_attributes = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32, 2 => Float32x3, 3 => Float32x4];
+        let lines = ScenePipeline {
+            label: "lines",
+            module: &line_module,
+            layout: &frame_layout,
+            vertex: "line_vertex",
+            fragment: "line_fragment",
+            constants: &[],
+            buffers: &[Some(wgpu::VertexBufferLayout {
+                array_stride: size_of::<LineInstance>() as u64,
+                step_mode: wgpu::VertexStepMode::Instance,
+                attributes: &line_attributes,
+            })],
+            depth_write: false,
+            depth_compare: wgpu::CompareFunction::LessEqual,
+            writes: wgpu::ColorWrites::ALL,
+            blend: BLENDED,
+            cull: None,
+        }
+        .create(device, samples);
+
+        let bone_module = shaders::BONES.module(device);
+        let bone_shape = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x4];
+        let bone_instance = wgpu::vertex_attr_array![2 => Float32x3, 3 => Float32, 4 => Float32x3, 5 => Float32x4];
+        let bones = ScenePipeline {
+            label: "bones",
+            module: &bone_module,
+            layout: &frame_layout,
+            vertex: "bone_vertex",
+            fragment: "bone_fragment",
+            constants: &[],
+            buffers: &[
+                Some(wgpu::VertexBufferLayout {
+                    array_stride: size_of::<BoneVertex>() as u64,
+                    step_mode: wgpu::VertexStepMode::Vertex,
+                    attributes: &bone_shape,
+                }),
+                Some(wgpu::VertexBufferLayout {
+                    array_stride: size_of::<BoneInstance>() as u64,
+                    step_mode: wgpu::VertexStepMode::Instance,
+                    attributes: &bone_instance,
+                }),
+            ],
+            depth_write: true,
+            depth_compare: wgpu::CompareFunction::LessEqual,
+            writes: wgpu::ColorWrites::ALL,
+            blend: BLENDED,
+            cull: Some(wgpu::Face::Back),
+        }
+        .create(device, samples);
+
+        let clear_module = shaders::DEPTH_CLEAR.module(device);
+        let clear_depth = ScenePipeline {
+            label: "clear depth",
+            module: &clear_module,
+            layout: &empty_layout,
+            vertex: "full_screen",
+            fragment: "nothing",
+            constants: &[],
+            buffers: &[],
+            depth_write: true,
+            depth_compare: wgpu::CompareFunction::Always,
+            writes: wgpu::ColorWrites::empty(),
+            blend: BLENDED,
+            cull: None,
+        }
+        .create(device, samples);
+        Self { lines, bones, clear_depth }
+    }
+}
+
 pub(super) struct Overlay {
+    samples: u32,
+    pipelines: Option<OverlayPipelines>,
     lines: Instances<LineInstance>,
     /// Lines before this one are hidden by what is in front of them, the others are not.
     lines_on_top: u32,
@@ -88,9 +176,11 @@ struct BoneRanges {
 }
 
 impl Overlay {
-    pub fn new(device: &wgpu::Device) -> Self {
+    pub fn new(device: &wgpu::Device, samples: u32) -> Self {
         let (shape, bone_ranges) = bone_shape();
         Self {
+            samples,
+            pipelines: None,
             lines: Instances::new(device, "lines"),
             lines_on_top: 0,
             bones: Instances::new(device, "bones"),
@@ -105,7 +195,17 @@ impl Overlay {
     }
 
     /// `boxes`: bones are drawn as boxes.
-    pub fn upload(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, lines: &[Line], bones: &[Bone], boxes: bool) {
+    pub fn upload(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        layouts: &Layouts,
+        (lines, bones): (&[Line], &[Bone]),
+        boxes: bool,
+    ) {
+        if !(lines.is_empty() && bones.is_empty()) {
+            self.pipelines.get_or_insert_with(|| OverlayPipelines::new(device, layouts, self.samples));
+        }
         let BoneRanges { pointed, boxes: as_boxes } = &self.bone_ranges;
         self.bone_vertices = if boxes { as_boxes.clone() } else { pointed.clone() };
         let instance = |line: &Line| LineInstance {
@@ -143,12 +243,23 @@ impl Overlay {
         self.bones() * self.bone_vertices.len() as u32 / 3
     }
 
+    /// What comes after it is in front of everything.
+    pub fn clear_depth(&self, pass: &mut wgpu::RenderPass<'_>) {
+        let Some(pipelines) = &self.pipelines else { return };
+        pass.set_pipeline(&pipelines.clear_depth);
+        pass.draw(0..3, 0..1);
+    }
+
     pub fn draw_lines(&self, pass: &mut wgpu::RenderPass<'_>, on_top: bool) {
+        let Some(pipelines) = &self.pipelines else { return };
+        pass.set_pipeline(&pipelines.lines);
         pass.set_vertex_buffer(0, self.lines.buffer.slice(..));
         pass.draw(0..6, self.lines(on_top));
     }
 
     pub fn draw_bones(&self, pass: &mut wgpu::RenderPass<'_>) {
+        let Some(pipelines) = &self.pipelines else { return };
+        pass.set_pipeline(&pipelines.bones);
         pass.set_vertex_buffer(0, self.bone_shape.slice(..));
         pass.set_vertex_buffer(1, self.bones.buffer.slice(..));
         pass.draw(self.bone_vertices.clone(), 0..self.bones());

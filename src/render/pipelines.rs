@@ -155,6 +155,7 @@ pub(super) struct MeshKey {
 pub(super) struct MeshPipeline(usize);
 
 pub(super) struct Pipelines {
+    queue: wgpu::Queue,
     samples: u32,
     mesh_module: wgpu::ShaderModule,
     mesh_layout: wgpu::PipelineLayout,
@@ -162,32 +163,46 @@ pub(super) struct Pipelines {
     meshes: Vec<wgpu::RenderPipeline>,
     pub grid: wgpu::RenderPipeline,
     pub ground_shadow: wgpu::RenderPipeline,
-    pub lines: wgpu::RenderPipeline,
-    pub bones: wgpu::RenderPipeline,
-    pub clear_depth: wgpu::RenderPipeline,
     pub background: wgpu::RenderPipeline,
 }
 
-const BLENDED: Option<wgpu::BlendState> = Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING);
+/// A browser's graphics process answers others between submissions only: what takes long there is on its own.
+pub(super) fn answer_others(queue: &wgpu::Queue) {
+    queue.submit([]);
+}
+
+pub(super) fn pipeline_layout(
+    device: &wgpu::Device,
+    label: &str,
+    groups: &[Option<&wgpu::BindGroupLayout>],
+) -> wgpu::PipelineLayout {
+    device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(label),
+        bind_group_layouts: groups,
+        immediate_size: 0,
+    })
+}
+
+pub(super) const BLENDED: Option<wgpu::BlendState> = Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING);
 
 /// A pipeline that draws into the scene with one of the simple shaders.
-struct ScenePipeline<'a> {
-    label: &'a str,
-    module: &'a wgpu::ShaderModule,
-    layout: &'a wgpu::PipelineLayout,
-    vertex: &'a str,
-    fragment: &'a str,
-    constants: &'a [(&'a str, f64)],
-    buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
-    depth_write: bool,
-    depth_compare: wgpu::CompareFunction,
-    writes: wgpu::ColorWrites,
-    blend: Option<wgpu::BlendState>,
-    cull: Option<wgpu::Face>,
+pub(super) struct ScenePipeline<'a> {
+    pub label: &'a str,
+    pub module: &'a wgpu::ShaderModule,
+    pub layout: &'a wgpu::PipelineLayout,
+    pub vertex: &'a str,
+    pub fragment: &'a str,
+    pub constants: &'a [(&'a str, f64)],
+    pub buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
+    pub depth_write: bool,
+    pub depth_compare: wgpu::CompareFunction,
+    pub writes: wgpu::ColorWrites,
+    pub blend: Option<wgpu::BlendState>,
+    pub cull: Option<wgpu::Face>,
 }
 
 impl ScenePipeline<'_> {
-    fn create(&self, device: &wgpu::Device, samples: u32) -> wgpu::RenderPipeline {
+    pub fn create(&self, device: &wgpu::Device, samples: u32) -> wgpu::RenderPipeline {
         let options =
             || wgpu::PipelineCompilationOptions { constants: self.constants, zero_initialize_workgroup_memory: false };
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -225,90 +240,12 @@ impl ScenePipeline<'_> {
 }
 
 impl Pipelines {
-    pub fn new(device: &wgpu::Device, layouts: &Layouts, samples: u32) -> Self {
-        let pipeline_layout = |label, groups: &[Option<&wgpu::BindGroupLayout>]| {
-            device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                label: Some(label),
-                bind_group_layouts: groups,
-                immediate_size: 0,
-            })
-        };
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, layouts: &Layouts, samples: u32) -> Self {
         let frame = Some(&layouts.frame);
         let (draw, primitive, light) = (Some(&layouts.draw), Some(&layouts.primitive), Some(&layouts.light));
-        let frame_layout = pipeline_layout("frame only", &[frame]);
-        let empty_layout = pipeline_layout("nothing", &[]);
-
-        let line_module = shaders::LINES.module(device);
-        let line_attributes = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32, 2 => Float32x3, 3 => Float32x4];
-        let lines = ScenePipeline {
-            label: "lines",
-            module: &line_module,
-            layout: &frame_layout,
-            vertex: "line_vertex",
-            fragment: "line_fragment",
-            constants: &[],
-            buffers: &[Some(wgpu::VertexBufferLayout {
-                array_stride: size_of::<super::overlay::LineInstance>() as u64,
-                step_mode: wgpu::VertexStepMode::Instance,
-                attributes: &line_attributes,
-            })],
-            depth_write: false,
-            depth_compare: wgpu::CompareFunction::LessEqual,
-            writes: wgpu::ColorWrites::ALL,
-            blend: BLENDED,
-            cull: None,
-        }
-        .create(device, samples);
-
-        let bone_module = shaders::BONES.module(device);
-        let bone_shape = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x4];
-        let bone_instance = wgpu::vertex_attr_array![2 => Float32x3, 3 => Float32, 4 => Float32x3, 5 => Float32x4];
-        let bones = ScenePipeline {
-            label: "bones",
-            module: &bone_module,
-            layout: &frame_layout,
-            vertex: "bone_vertex",
-            fragment: "bone_fragment",
-            constants: &[],
-            buffers: &[
-                Some(wgpu::VertexBufferLayout {
-                    array_stride: size_of::<super::overlay::BoneVertex>() as u64,
-                    step_mode: wgpu::VertexStepMode::Vertex,
-                    attributes: &bone_shape,
-                }),
-                Some(wgpu::VertexBufferLayout {
-                    array_stride: size_of::<super::overlay::BoneInstance>() as u64,
-                    step_mode: wgpu::VertexStepMode::Instance,
-                    attributes: &bone_instance,
-                }),
-            ],
-            depth_write: true,
-            depth_compare: wgpu::CompareFunction::LessEqual,
-            writes: wgpu::ColorWrites::ALL,
-            blend: BLENDED,
-            cull: Some(wgpu::Face::Back),
-        }
-        .create(device, samples);
-
-        let clear_module = shaders::DEPTH_CLEAR.module(device);
-        let clear_depth = ScenePipeline {
-            label: "clear depth",
-            module: &clear_module,
-            layout: &empty_layout,
-            vertex: "full_screen",
-            fragment: "nothing",
-            constants: &[],
-            buffers: &[],
-            depth_write: true,
-            depth_compare: wgpu::CompareFunction::Always,
-            writes: wgpu::ColorWrites::empty(),
-            blend: BLENDED,
-            cull: None,
-        }
-        .create(device, samples);
-
+        let frame_layout = pipeline_layout(device, "frame only", &[frame]);
         let ground_module = shaders::GROUND_PLANE.module(device);
-        let ground_layout = pipeline_layout("ground", &[frame, light]);
+        let ground_layout = pipeline_layout(device, "ground", &[frame, light]);
         let taps = [("SHADOW_TAPS", if samples > 1 { 12.0 } else { 4.0 })];
         let ground = |label, vertex, fragment| {
             ScenePipeline {
@@ -329,6 +266,7 @@ impl Pipelines {
         };
         let grid = ground("grid", "grid_vertex", "grid_fragment");
         let ground_shadow = ground("ground shadow", "shadow_vertex", "shadow_fragment");
+        answer_others(queue);
 
         let background_module = shaders::BACKDROP.module(device);
         let background = ScenePipeline {
@@ -347,17 +285,17 @@ impl Pipelines {
             cull: None,
         }
         .create(device, samples);
+        let mesh_module = shaders::MESH.module(device);
+        answer_others(queue);
         Self {
+            queue: queue.clone(),
             samples,
-            mesh_module: shaders::MESH.module(device),
-            mesh_layout: pipeline_layout("mesh", &[frame, light, draw, primitive]),
+            mesh_module,
+            mesh_layout: pipeline_layout(device, "mesh", &[frame, light, draw, primitive]),
             by_key: HashMap::new(),
             meshes: Vec::new(),
             grid,
             ground_shadow,
-            lines,
-            bones,
-            clear_depth,
             background,
         }
     }
@@ -369,6 +307,7 @@ impl Pipelines {
         let pipeline = MeshPipeline(self.meshes.len());
         self.meshes.push(self.create_mesh(device, key));
         self.by_key.insert(key, pipeline);
+        answer_others(&self.queue);
         pipeline
     }
 

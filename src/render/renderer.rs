@@ -6,7 +6,7 @@ use super::frame_uniform::{GroundPlane, frame_uniform};
 use super::model::{GpuModel, ModelUploader};
 use super::overlay::Overlay;
 use super::palette::PaletteTexture;
-use super::pipelines::{Layouts, Pipelines};
+use super::pipelines::{Layouts, Pipelines, answer_others};
 use super::shadow::ShadowMap;
 use super::targets::Targets;
 use super::uniforms::FrameUniform;
@@ -99,8 +99,10 @@ impl UniformBuffer {
 
 impl Renderer {
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, options: RendererOptions) -> Self {
+        answer_others(queue);
         let layouts = Layouts::new(device);
         let environment = Environment::new(device, queue);
+        answer_others(queue);
         let shadow_map = ShadowMap::new(device);
         let palette = PaletteTexture::new(device);
         let frame_buffer = UniformBuffer::new(device, "frame");
@@ -122,9 +124,7 @@ impl Renderer {
                 entries: &entries,
             })
         };
-        let pipelines = Pipelines::new(device, &layouts, options.samples);
-        // A browser's graphics process answers others between submissions only: those of what follows are on their own.
-        queue.submit([]);
+        let pipelines = Pipelines::new(device, queue, &layouts, options.samples);
         // Software draws each pixel's extra samples and extra texels itself: leave out both.
         let anisotropy = if options.samples > 1 { 4 } else { 1 };
         Self {
@@ -132,7 +132,7 @@ impl Renderer {
             pipelines,
             uploader: ModelUploader::new(device, queue, anisotropy),
             models: Vec::new(),
-            overlay: Overlay::new(device),
+            overlay: Overlay::new(device, options.samples),
             draws: DrawList::new(device, &layouts),
             frame_group: frame_buffer.bind_group(device, &layouts, &palette),
             shadow_group: shadow_buffer.bind_group(device, &layouts, &palette),
@@ -192,7 +192,7 @@ impl Renderer {
             self.shadow_group = self.shadow_buffer.bind_group(device, &self.layouts, &self.palette);
         }
         let bones = if frame.look.skeleton { &frame.bones[..] } else { &[] };
-        self.overlay.upload(device, queue, &frame.lines, bones, frame.look.boxes);
+        self.overlay.upload(device, queue, &self.layouts, (&frame.lines, bones), frame.look.boxes);
         self.stats = RenderStats::default();
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("picture") });
         if shadow {
@@ -315,17 +315,14 @@ impl Renderer {
         add(draw_items(pass, self.draws.blended(), pane, draw, &self.models, &self.pipelines));
         for on_top in [false, true] {
             if on_top && (self.overlay.bones() > 0 || !self.overlay.lines(true).is_empty()) {
-                pass.set_pipeline(&self.pipelines.clear_depth);
-                pass.draw(0..3, 0..1);
+                self.overlay.clear_depth(pass);
                 add(RenderStats { draw_calls: 1, triangles: 0 });
             }
             if on_top && self.overlay.bones() > 0 {
-                pass.set_pipeline(&self.pipelines.bones);
                 self.overlay.draw_bones(pass);
                 add(RenderStats { draw_calls: 1, triangles: self.overlay.bone_triangles() });
             }
             if !self.overlay.lines(on_top).is_empty() {
-                pass.set_pipeline(&self.pipelines.lines);
                 self.overlay.draw_lines(pass, on_top);
                 add(RenderStats { draw_calls: 1, triangles: 0 });
             }
