@@ -13,8 +13,8 @@ use crate::frame::{Frame, evaluate, pose_document};
 use crate::library::{Library, ModelId, Motion, inspect};
 use crate::render::read_pixels;
 use crate::state::{
-    CameraChoice, Command, History, ViewerState, frame_all, from_object, resolve_camera, source_on_stage, to_link,
-    to_object,
+    CameraChoice, Command, History, OrbitCamera, ViewerState, frame_all, from_object, resolve_camera, source_on_stage,
+    split_ratio, to_link, to_object,
 };
 use crate::ui::{self, Output, PathPrompt, PathPurpose, Progress, Shown, UiAction, UiState};
 
@@ -247,8 +247,14 @@ impl App {
         if holds && self.state.turntable != 0.0 {
             self.history.apply(&mut self.state, &self.library, Command::SetTurntable(0.0));
         }
-        let relative = matches!(command, Command::Orbit { .. } | Command::Pan { .. } | Command::Zoom(_))
+        let relative = matches!(command, Command::Orbit { .. } | Command::Pan { .. } | Command::Zoom { .. })
             || (turns && matches!(command, Command::Advance(_)));
+        if let (Command::SetShow(show), CameraChoice::Orbit(orbit)) = (&command, self.state.camera)
+            && show.split != self.state.show.split
+        {
+            let orbit = OrbitCamera { distance: orbit.distance * split_ratio(&self.state, aspect), ..orbit };
+            self.history.apply(&mut self.state, &self.library, Command::SetCamera(CameraChoice::Orbit(orbit)));
+        }
         // The automatic camera depends on the picture's shape, which commands do not know.
         let command = if matches!(command, Command::FrameAll) && self.state.camera != CameraChoice::Auto {
             Command::SetCamera(CameraChoice::Orbit(frame_all(&self.library, &self.state, aspect)))
@@ -363,6 +369,7 @@ impl App {
         if !gone.is_empty() {
             self.toast(format!("Nothing is borrowed from {gone} any more. {keys} brings it back."));
         } else if !come.is_empty() {
+            self.panels.tab = ui::Tab::Motion;
             self.toast(format!("Borrowed from {come} again."));
         }
     }
@@ -390,7 +397,7 @@ impl App {
         let shown = Shown { library: &self.library, state: &self.state, frame: &self.frame };
         let moves = shown.clip().is_some_and(|clip| clip.duration_secs() > 0.0);
         let turns = self.state.turntable != 0.0 && !matches!(self.state.camera, CameraChoice::File(_));
-        if ((self.state.playing && moves) || turns) && !self.panels.scrubbing {
+        if ((self.state.playing && moves) || turns) && !self.panels.holds_time {
             let (secs, unsmoothed_secs) = context.input(|input| (input.stable_dt, input.unstable_dt));
             // A pause (a hidden page, a long load) is not made up for.
             self.apply(Command::Advance(f64::from(secs.min(0.25))));

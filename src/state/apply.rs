@@ -89,17 +89,19 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         }
         Command::Pan { right, up } => {
             let mut orbit = resolve_camera(library, state, USUAL_ASPECT);
-            let picture_height = 2.0 * orbit.distance * (0.5 * state.fov_degrees.to_radians()).tan();
-            let back = orbit.direction();
-            let to_right = Vec3::Y.cross(back).normalize_or(Vec3::X);
-            orbit.target += picture_height * (right * to_right + up * back.cross(to_right));
+            orbit.target += in_picture(&orbit, state.fov_degrees, right, up);
             set_camera(state, model, CameraChoice::Orbit(orbit));
         }
-        Command::Zoom(factor) => {
+        Command::Zoom { factor, right, up } => {
             let mut orbit = resolve_camera(library, state, USUAL_ASPECT);
             let size = model.map_or(1.0, |_| resolved_bounds(library, state).diagonal().max(1e-6));
             if factor > 0.0 {
-                orbit.distance = (orbit.distance * factor).clamp(0.01 * size, 100.0 * size);
+                let distance = (orbit.distance * factor).clamp(0.01 * size, 100.0 * size);
+                if state.turntable == 0.0 {
+                    let part = 1.0 - distance / orbit.distance;
+                    orbit.target += in_picture(&orbit, state.fov_degrees, part * right, part * up);
+                }
+                orbit.distance = distance;
                 set_camera(state, model, CameraChoice::Orbit(orbit));
             }
         }
@@ -366,6 +368,14 @@ fn turn(state: &mut ViewerState, library: &Library, clock_secs: f64) {
         orbit.yaw_radians += radians as f32;
         set_camera(state, library.active(), CameraChoice::Orbit(orbit));
     }
+}
+
+/// A way in the plane of the target, in fractions of the picture's height.
+fn in_picture(orbit: &OrbitCamera, fov_degrees: f32, right: f32, up: f32) -> Vec3 {
+    let picture_height = 2.0 * orbit.distance * (0.5 * fov_degrees.to_radians()).tan();
+    let back = orbit.direction();
+    let to_right = Vec3::Y.cross(back).normalize_or(Vec3::X);
+    picture_height * (right * to_right + up * back.cross(to_right))
 }
 
 fn set_camera(state: &mut ViewerState, model: Option<&Model>, choice: CameraChoice) {

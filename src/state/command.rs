@@ -53,8 +53,13 @@ pub enum Command {
         right: f32,
         up: f32,
     },
-    /// Multiplies the distance.
-    Zoom(f32),
+    /// Multiplies the distance. What is that far right of and above the picture's middle, in fractions of its height, stays
+    /// where it is; while the camera turns by itself, its middle does.
+    Zoom {
+        factor: f32,
+        right: f32,
+        up: f32,
+    },
     /// Back to automatic framing, keeping the direction.
     FrameAll,
     SetFov(f32),

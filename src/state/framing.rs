@@ -52,6 +52,15 @@ pub fn pane_aspect(state: &ViewerState, aspect: f32) -> f32 {
     aspect * rows as f32 / columns as f32
 }
 
+/// What to multiply the camera's distance by when comparing begins, or ends, in a picture of this aspect ratio: each of the
+/// narrower panes then shows what was in the middle of the whole picture.
+pub fn split_ratio(state: &ViewerState, aspect: f32) -> f32 {
+    let mut other = state.clone();
+    other.show.split = !state.show.split;
+    let [now, then] = [state, &other].map(|state| pane_aspect(state, aspect).min(1.0));
+    if state.show.split { (now / then).min(1.0) } else { (now / then).max(1.0) }
+}
+
 /// The orbit camera that shows what the state asks for in a picture of this aspect ratio (width over height). A camera of the
 /// file becomes the orbit camera nearest to it: same place and direction, no roll.
 pub fn resolve_camera(library: &Library, state: &ViewerState, aspect: f32) -> OrbitCamera {

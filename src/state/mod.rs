@@ -18,7 +18,8 @@ pub use apply::apply;
 pub use camera::{CameraChoice, OrbitCamera};
 pub use command::Command;
 pub use framing::{
-    frame_all, front_yaw_radians, pane_aspect, panes, resolve_camera, resolved_bounds, world_from_file_camera,
+    frame_all, front_yaw_radians, pane_aspect, panes, resolve_camera, resolved_bounds, split_ratio,
+    world_from_file_camera,
 };
 pub use history::History;
 pub use link::{LinkError, from_link, from_object, to_link, to_object};

@@ -9,7 +9,10 @@ use crate::state::{ClipChoice, Command, choice_of_clip};
 
 /// As high as a search field, so that nothing moves when the first letter is typed.
 const CLEAR_SIZE: f32 = 28.0;
-const MODEL_ROW_HEIGHT: f32 = 30.0;
+/// With the space below it.
+const ROW_HEIGHT: f32 = 32.0;
+/// Of the heading of the clips.
+const CLIPS_HEADING: f32 = 40.0;
 /// With more clips than this there is a search field.
 const MANY_CLIPS: usize = 8;
 
@@ -81,7 +84,9 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
 fn models(ui: &mut Ui, shown: &Shown<'_>, active: &Model, local: &mut UiState, out: &mut Output) {
     controls::section(ui, "MODELS");
     let room = ui.available_height();
-    let most_high = (0.4 * room).max(2.0 * MODEL_ROW_HEIGHT);
+    // What the clips do not need, or their fair share.
+    let clips_need = CLIPS_HEADING + (active.clip_count() + 1) as f32 * ROW_HEIGHT;
+    let most_high = (room - clips_need).max(0.4 * room).max(2.0 * ROW_HEIGHT);
     let seen = (active.id, room as u32);
     let scrolls = local.models_seen.replace(seen) != Some(seen);
     ScrollArea::vertical().id_salt("models").max_height(most_high).auto_shrink([false, true]).show(ui, |ui| {
@@ -92,7 +97,7 @@ fn models(ui: &mut Ui, shown: &Shown<'_>, active: &Model, local: &mut UiState, o
             let chosen = active.id == model.id;
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = 2.0;
-                let size = egui::vec2(ui.available_width() - CLEAR_SIZE - 2.0, MODEL_ROW_HEIGHT);
+                let size = egui::vec2(ui.available_width() - CLEAR_SIZE - 2.0, ROW_HEIGHT);
                 let row = ui.allocate_ui(size, |ui| controls::list_row(ui, name, "", chosen)).inner;
                 if scrolls && chosen {
                     row.scroll_to_me(None);

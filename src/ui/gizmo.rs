@@ -72,7 +72,10 @@ pub(super) fn show(
         let degrees = degrees.map(|angle| (10.0 * angle).round() / 10.0);
         out.commands.push(Command::SetPose { joint: handle.joint, degrees: Some(degrees) });
     }
-    handle.paint(ui, painter, shown, local.grab.or(hover));
+    let aimed_at = local.grab.or(hover);
+    // What moves is hard to take hold of.
+    local.holds_time |= aimed_at.is_some();
+    handle.paint(ui, painter, shown, aimed_at);
     local.grab.is_some()
 }
 

@@ -37,7 +37,8 @@ pub const KEY_TABLE: &[KeyHelp] = &[
         does: "Nearer, farther",
         pressed: &[Key::ArrowUp, Key::ArrowDown],
         act: |_, _, which, out| {
-            out.commands.push(Command::Zoom(if which == 0 { ZOOM_STEP } else { 1.0 / ZOOM_STEP }));
+            let factor = if which == 0 { ZOOM_STEP } else { 1.0 / ZOOM_STEP };
+            out.commands.push(Command::Zoom { factor, right: 0.0, up: 0.0 });
         },
     },
     KeyHelp {

@@ -95,8 +95,8 @@ pub struct UiState {
     pub progress: Option<Progress>,
     /// Asks for a path, where the platform has no way to choose files: what has been typed so far.
     pub path_prompt: Option<PathPrompt>,
-    /// The playhead is held: time stands still meanwhile.
-    pub scrubbing: bool,
+    /// Time stands still: the playhead is held, or the rings around a joint are aimed at.
+    pub holds_time: bool,
     /// The joint under the pointer, as the file numbers it.
     pub hovered_joint: Option<usize>,
     hovered: Option<PickedJoint>,
@@ -184,7 +184,7 @@ impl Default for UiState {
             motion_refused: false,
             progress: None,
             path_prompt: None,
-            scrubbing: false,
+            holds_time: false,
             hovered_joint: None,
             hovered: None,
             aspect: 1.6,
@@ -309,7 +309,7 @@ pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Outp
     // The screen is cleared to the panels' colour: filling them again would cost as much as the rest where the CPU draws.
     let side = egui::Frame::new().inner_margin(egui::Margin { left: 14, right: 14, top: 14, bottom: 8 });
     let bottom = egui::Frame::new().inner_margin(egui::Margin { left: 12, right: 12, top: 2, bottom: 6 });
-    local.scrubbing = false;
+    local.holds_time = false;
     if local.recording {
         return ui.available_rect_before_wrap();
     }

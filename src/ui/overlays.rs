@@ -18,7 +18,7 @@ pub fn overlays(ui: &mut Ui, picture: Rect, shown: Shown<'_>, local: &mut UiStat
     } else {
         local.sheet = None;
     }
-    notices(ui, picture, local, out);
+    notices(ui, picture, &shown, local, out);
     // Shown from the next pass on: the press that opened it would count as one beside it, which closes it.
     if local.help_open && local.help_shown {
         help(ui.ctx(), local);
@@ -83,8 +83,8 @@ fn sheet(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) 
     });
 }
 
-/// Progress, errors and short messages, at the bottom of the picture.
-fn notices(ui: &mut Ui, picture: Rect, local: &mut UiState, out: &mut Output) {
+/// Progress, errors and short messages, in the lower left corner of the picture: the character is in its middle.
+fn notices(ui: &mut Ui, picture: Rect, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     let now_secs = ui.input(|input| input.time);
     if let Some(toast) = &local.toast {
         let left_secs = toast.until_secs - now_secs;
@@ -98,11 +98,13 @@ fn notices(ui: &mut Ui, picture: Rect, local: &mut UiState, out: &mut Output) {
         return;
     }
     let palette = style::palette(ui);
-    let width = (picture.width() - 32.0).min(520.0);
+    let width = (picture.width() - 28.0).min(520.0);
+    // Above the names of what is compared.
+    let bottom = picture.bottom() - if shown.state.show.split { 38.0 } else { 14.0 };
     let area = Area::new(Id::unique("notices"))
         .order(Order::Foreground)
-        .pivot(Align2::CENTER_BOTTOM)
-        .fixed_pos(pos2(picture.center().x, picture.bottom() - 14.0));
+        .pivot(Align2::LEFT_BOTTOM)
+        .fixed_pos(pos2(picture.left() + 14.0, bottom));
     area.show(ui.ctx(), |ui| {
         ui.set_max_width(width);
         if let Some(progress) = &local.progress {
@@ -211,7 +213,7 @@ fn help(context: &Context, local: &mut UiState) {
             ("Drop files", "Open a model, borrow motions for it, put a joint map in force"),
             ("Drag", "Look around"),
             ("Right drag, shift drag", "Move the picture"),
-            ("Wheel, pinch", "Nearer, farther"),
+            ("Wheel, pinch", "Nearer, farther, towards the pointer"),
             ("Two fingers", "Move the picture"),
             ("Drag a ring", "Turn the chosen joint, with “Turn by hand” in the tab Scene"),
             ("Click a joint", "Choose it; in the tab Motion, mend what it follows"),

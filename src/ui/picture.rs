@@ -78,10 +78,14 @@ fn checkerboard(painter: &Painter, rect: Rect, shown: &Shown<'_>, palette: style
 fn camera(ui: &Ui, response: &Response, shown: &Shown<'_>, out: &mut Output) {
     let height = pane_at(shown, response.rect, None).height().max(1.0);
     let pan = |by: egui::Vec2| Command::Pan { right: -by.x / height, up: by.y / height };
+    let zoom = |factor: f32, at: Option<Pos2>| {
+        let from_middle = at.map_or(egui::Vec2::ZERO, |at| at - pane_at(shown, response.rect, Some(at)).center());
+        Command::Zoom { factor, right: from_middle.x / height, up: -from_middle.y / height }
+    };
     let (touch, shift) = ui.input(|input| (input.multi_touch(), input.modifiers.shift));
     if let Some(touch) = touch.filter(|touch| response.rect.contains(touch.start_pos)) {
         if touch.zoom_delta > 0.0 && touch.zoom_delta != 1.0 {
-            out.commands.push(Command::Zoom(1.0 / touch.zoom_delta));
+            out.commands.push(zoom(1.0 / touch.zoom_delta, Some(touch.center_pos)));
         }
         if touch.translation_delta != egui::Vec2::ZERO {
             out.commands.push(pan(touch.translation_delta));
@@ -103,10 +107,10 @@ fn camera(ui: &Ui, response: &Response, shown: &Shown<'_>, out: &mut Output) {
     if response.contains_pointer() {
         let (scrolled, pinched) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
         if scrolled != 0.0 {
-            out.commands.push(Command::Zoom((-scrolled * ZOOM_PER_SCROLL_POINT).exp()));
+            out.commands.push(zoom((-scrolled * ZOOM_PER_SCROLL_POINT).exp(), response.hover_pos()));
         }
         if pinched > 0.0 && pinched != 1.0 {
-            out.commands.push(Command::Zoom(1.0 / pinched));
+            out.commands.push(zoom(1.0 / pinched, response.hover_pos()));
         }
     }
     if response.double_clicked() {

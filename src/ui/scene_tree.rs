@@ -129,7 +129,7 @@ fn tree(ui: &mut Ui, shown: &Shown<'_>, model: &Model, local: &mut UiState, out:
         controls::hint(ui, format!("No node's name contains “{}”.", local.joint_search));
         return;
     }
-    let mut area = ScrollArea::vertical().id_salt("tree").auto_shrink([false, false]);
+    let mut area = ScrollArea::vertical().id_salt(("tree", model.id)).auto_shrink([false, false]);
     if local.scrolled_to != shown.state.joint && local.scroll_next != shown.state.joint {
         // The card of the joint has just taken its room; egui would spring back from where the tree could be before.
         local.scroll_next = shown.state.joint;

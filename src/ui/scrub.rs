@@ -20,12 +20,16 @@ pub enum Scrubbed {
     Range(TimeRange),
 }
 
-/// Where the keys of a clip lie, thinned to what can be told apart at the bar's width; kept from frame to frame.
+/// Marks closer than this cannot be told apart; that many in a row are one bar.
+const CLOSE: f32 = 3.0;
+const MANY: usize = 8;
+
+/// Where the keys of a clip lie, as far as they can be told apart at the bar's width; kept from frame to frame.
 #[derive(Debug, Default)]
 pub struct KeyMarks {
     of: Option<(ModelId, usize, u32, u32, usize)>,
-    /// From 0 (start) to 1 (end).
-    positions: Vec<f32>,
+    /// From 0 (start) to 1 (end): single keys, and keys too close for marks of their own, as first and last.
+    stretches: Vec<[f32; 2]>,
 }
 
 impl KeyMarks {
@@ -37,20 +41,23 @@ impl KeyMarks {
             return;
         }
         self.of = Some(of);
-        self.positions.clear();
+        self.stretches.clear();
         let duration = clip.duration_secs();
         if duration <= 0.0 {
             return;
         }
-        // Marks closer than this would merge into a bar.
-        let slots = (width / 3.0).max(1.0) as usize;
-        let mut taken = vec![false; slots + 1];
+        let slots = (width / CLOSE).max(1.0) as usize;
+        let mut first_key = vec![None; slots + 1];
         for &time in clip.timelines().iter().flatten() {
             let position = time / duration;
             let slot = ((position * slots as f32).round() as usize).min(slots);
-            if !taken[slot] {
-                taken[slot] = true;
-                self.positions.push(position);
+            first_key[slot].get_or_insert(position);
+        }
+        for keys in first_key.chunk_by(|one, next| one.is_some() == next.is_some()) {
+            let Some((&Some(first), &Some(last))) = keys.first().zip(keys.last()) else { continue };
+            match keys.len() < MANY {
+                true => self.stretches.extend(keys.iter().flatten().map(|&key| [key, key])),
+                false => self.stretches.push([first, last]),
             }
         }
     }
@@ -125,10 +132,15 @@ pub fn show(ui: &mut Ui, scrub: &Scrub<'_>, of: (ModelId, usize), marks: &mut Ke
     let x = x_of(scrub.time_secs);
     let played = Rect::from_x_y_ranges(start_x..=x.max(start_x), rail.y_range());
     painter.rect_filled(played, 2.5, palette.accent);
-    for &position in &marks.positions {
-        let mark_x = rail.left() + position * rail.width();
+    for &stretch in &marks.stretches {
+        let [first, last] = stretch.map(|position| rail.left() + position * rail.width());
         let color = palette.weak_text.gamma_multiply(0.75);
-        painter.vline(mark_x, rail.bottom() + 5.0..=rail.bottom() + 11.0, Stroke::new(1.0, color));
+        if first == last {
+            painter.vline(first, rail.bottom() + 5.0..=rail.bottom() + 11.0, Stroke::new(1.0, color));
+        } else {
+            let bar = Rect::from_x_y_ranges(first..=last, rail.bottom() + 7.0..=rail.bottom() + 9.0);
+            painter.rect_filled(bar, 1.0, color.gamma_multiply(0.6));
+        }
     }
     let center = pos2(x, rail.center().y);
     let radius = if held || seek.hovered() { 8.0 } else { 7.0 };

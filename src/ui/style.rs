@@ -115,7 +115,8 @@ fn style(theme: Theme, palette: &Palette) -> Style {
     spacing.icon_width_inner = 10.0;
     spacing.window_margin = Margin::same(16);
     spacing.menu_margin = Margin::same(8);
-    spacing.scroll = egui::style::ScrollStyle::floating();
+    // A thin bar is there all the time: rows that end at an edge do not say that there are more.
+    spacing.scroll = egui::style::ScrollStyle { dormant_handle_opacity: 0.5, ..egui::style::ScrollStyle::floating() };
     style
 }
 

@@ -17,7 +17,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, narrow: 
     let of = (model.map_or(ModelId::default(), |model| model.id), clip_index.unwrap_or(usize::MAX));
     let bar = Scrub { clip, time_secs, range: shown.state.range };
     let (scrubbed, held) = scrub::show(ui, &bar, of, &mut local.key_marks);
-    local.scrubbing = held;
+    local.holds_time = held;
     match scrubbed {
         Some(Scrubbed::Seek(secs)) => out.commands.push(Command::Seek(secs)),
         Some(Scrubbed::Range(range)) => out.commands.push(Command::SetRange(Some(range))),

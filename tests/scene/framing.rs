@@ -1,8 +1,10 @@
 //! Everything a clip shows is in the picture, at any size and shape of the picture.
 
 use gaitway::frame::{Frame, evaluate};
-use gaitway::state::{CameraChoice, Command, OrbitCamera, UpAxis, ViewerState, apply, resolve_camera, resolved_bounds};
-use glam::{Vec3, Vec4Swizzles};
+use gaitway::state::{
+    CameraChoice, Command, OrbitCamera, UpAxis, ViewerState, apply, resolve_camera, resolved_bounds, split_ratio,
+};
+use glam::{Vec2, Vec3, Vec4Swizzles};
 
 use crate::data::{moving_box, walker};
 
@@ -74,4 +76,49 @@ fn up_axes_end_up() {
         assert!((world_from_joint.translation.y - expected).abs() < 1e-6, "{up:?}");
         assert!((world_from_joint.matrix3.determinant() - 1.0).abs() < 1e-6, "{up:?}");
     }
+}
+
+#[test]
+fn zooming_keeps_what_is_under_the_pointer() {
+    let library = walker();
+    // Of the picture's height, right of its middle and above it.
+    let (pointer, aspect) = (Vec2::new(0.31, -0.22), 1.6);
+    let mut state = ViewerState { playing: false, ..ViewerState::default() };
+    state.camera = CameraChoice::Orbit(resolve_camera(&library, &state, aspect));
+    let view = |state: &ViewerState| {
+        let mut frame = Frame::default();
+        evaluate(&library, state, aspect, &mut frame);
+        frame.view
+    };
+    let before = view(&state);
+    let ndc = Vec2::new(2.0 * pointer.x / aspect, 2.0 * pointer.y);
+    // In the plane of the target.
+    let target = resolve_camera(&library, &state, aspect).target;
+    let depth = (before.projection_from_view * before.view_from_world * target.extend(1.0)).xyzw();
+    let projection_from_world = before.projection_from_view * before.view_from_world;
+    let clip = glam::Vec4::new(ndc.x * depth.w, ndc.y * depth.w, depth.z, depth.w);
+    let point = (projection_from_world.inverse() * clip).xyz();
+    for factor in [0.5, 0.7, 2.5] {
+        apply(&mut state, &library, Command::Zoom { factor, right: pointer.x, up: pointer.y });
+        let now = view(&state);
+        let seen = now.projection_from_view * now.view_from_world * point.extend(1.0);
+        assert!((seen.xy() / seen.w).distance(ndc) < 1e-3, "{factor}: {:?} {ndc:?}", seen.xy() / seen.w);
+    }
+    // A camera that turns by itself keeps to what it turns about.
+    state.turntable = 6.0;
+    let target = resolve_camera(&library, &state, aspect).target;
+    apply(&mut state, &library, Command::Zoom { factor: 0.5, right: pointer.x, up: pointer.y });
+    assert_eq!(resolve_camera(&library, &state, aspect).target, target);
+}
+
+#[test]
+fn a_pane_shows_what_the_middle_of_the_picture_showed() {
+    for aspect in [0.5, 1.0, 1.6] {
+        let mut state = ViewerState::default();
+        let there = split_ratio(&state, aspect);
+        state.show.split = true;
+        let back = split_ratio(&state, aspect);
+        assert!(there >= 1.0 && (there * back - 1.0).abs() < 1e-6, "{aspect}: {there} {back}");
+    }
+    assert!((split_ratio(&ViewerState::default(), 1.5) - 2.0).abs() < 1e-6, "half as wide as high");
 }

@@ -75,6 +75,17 @@ fn a_drag_beside_the_rings_turns_the_camera() {
 }
 
 #[test]
+fn time_stands_still_while_the_rings_are_aimed_at() {
+    let mut harness = turning(WIDE);
+    let (middle, corner) = (place_of_joint(harness.state()), harness.state().picture.left_bottom() + vec2(30.0, -30.0));
+    for (at, holds) in [(middle, true), (corner, false)] {
+        harness.event(egui::Event::PointerMoved(at));
+        harness.run();
+        assert_eq!(harness.state().panels.holds_time, holds, "{at}");
+    }
+}
+
+#[test]
 fn a_ring_turns_about_its_own_axis_alone() {
     let mut harness = turning(WIDE);
     let middle = place_of_joint(harness.state());

@@ -41,10 +41,36 @@ fn the_wheel_goes_nearer() {
     });
     harness.run();
     let factor: f32 = harness.state().commands.iter().fold(1.0, |factor, command| match command {
-        Command::Zoom(by) => factor * by,
+        Command::Zoom { factor: by, right, up } => {
+            assert!(right.abs() < 1e-3 && up.abs() < 1e-3, "{right} {up}");
+            factor * by
+        }
         other => panic!("{other:?}"),
     });
     assert!((0.5..0.99).contains(&factor), "{factor}");
+}
+
+#[test]
+fn the_wheel_goes_towards_the_pointer() {
+    let mut harness = sample_bench(WIDE);
+    let picture = harness.state().picture;
+    harness.event(Event::PointerMoved(picture.center() + vec2(0.25, -0.1) * picture.height()));
+    harness.run();
+    harness.state_mut().commands.clear();
+    harness.event(Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Line,
+        delta: vec2(0.0, 1.0),
+        source: egui::MouseWheelSource::Wheel,
+        phase: TouchPhase::Move,
+        modifiers: Modifiers::NONE,
+    });
+    harness.run();
+    let commands = &harness.state().commands;
+    assert!(!commands.is_empty());
+    for command in commands {
+        let Command::Zoom { right, up, .. } = command else { panic!("{command:?}") };
+        assert!((right - 0.25).abs() < 1e-3 && (up - 0.1).abs() < 1e-3, "{right} {up}");
+    }
 }
 
 #[test]
@@ -69,7 +95,10 @@ fn two_fingers_pinch_and_move_but_do_not_turn() {
         harness.run();
     }
     let commands = &harness.state().commands;
-    assert!(commands.iter().any(|command| matches!(command, Command::Zoom(by) if *by < 1.0)), "{commands:?}");
+    assert!(
+        commands.iter().any(|command| matches!(command, Command::Zoom { factor, .. } if *factor < 1.0)),
+        "{commands:?}"
+    );
     assert!(!commands.iter().any(|command| matches!(command, Command::Orbit { .. })), "{commands:?}");
 }
 

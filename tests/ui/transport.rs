@@ -45,7 +45,7 @@ fn scrubbing_seeks_and_holds_the_time() {
     let Some(Command::Seek(secs)) = commands.last() else { panic!("{commands:?}") };
     let half = f64::from(harness.state().library.active().unwrap().asset.clips[0].duration_secs()) / 2.0;
     assert!((secs - half).abs() < 0.01, "{secs} is not about {half}");
-    assert!(!harness.state().panels.scrubbing, "let go");
+    assert!(!harness.state().panels.holds_time, "let go");
 }
 
 #[test]
