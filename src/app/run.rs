@@ -9,7 +9,7 @@ use super::record::Recording;
 use super::scene_texture::SceneTexture;
 use super::{Host, Inbox, Message, Opening, Reply, ScriptCall, device, encode_png};
 use crate::files::{Contents, Role, set_largest_image};
-use crate::frame::{Frame, evaluate, pose_document};
+use crate::frame::{Frame, evaluate, pose_document, travelled};
 use crate::library::{Library, ModelId, Motion, inspect};
 use crate::render::read_pixels;
 use crate::state::{
@@ -249,10 +249,7 @@ impl App {
         }
         let relative = matches!(command, Command::Orbit { .. } | Command::Pan { .. } | Command::Zoom { .. })
             || (turns && matches!(command, Command::Advance(_)));
-        if let (Command::SetShow(show), CameraChoice::Orbit(orbit)) = (&command, self.state.camera)
-            && show.split != self.state.show.split
-        {
-            let orbit = OrbitCamera { distance: orbit.distance * split_ratio(&self.state, aspect), ..orbit };
+        if let Some(orbit) = self.kept_camera(&command) {
             self.history.apply(&mut self.state, &self.library, Command::SetCamera(CameraChoice::Orbit(orbit)));
         }
         // The automatic camera depends on the picture's shape, which commands do not know.
@@ -285,6 +282,23 @@ impl App {
         if is_about_motion {
             let problems = self.refresh_motion();
             self.tell(problems);
+        }
+    }
+
+    /// The camera set by hand, so that it still shows what it shows now when the command has been applied.
+    fn kept_camera(&self, command: &Command) -> Option<OrbitCamera> {
+        let CameraChoice::Orbit(orbit) = self.state.camera else { return None };
+        match *command {
+            Command::SetShow(show) if show.split != self.state.show.split => {
+                let ratio = split_ratio(&self.state, self.panels.aspect);
+                Some(OrbitCamera { distance: ratio * orbit.distance, ..orbit })
+            }
+            Command::SetFollow(follow) if follow != self.state.follow => {
+                let travel = travelled(&self.library, &self.state);
+                let target = if follow { orbit.target - travel } else { orbit.target + travel };
+                Some(OrbitCamera { target, ..orbit })
+            }
+            _ => None,
         }
     }
 

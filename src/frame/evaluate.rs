@@ -84,7 +84,10 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
         write_source(source, clip_now(model, state), scratch, character);
     }
 
-    let travel = travel(model, state, scratch, &characters[0].world_from_joint);
+    let travel = match state.follow {
+        true => travel(model, state, scratch, &characters[0].world_from_joint),
+        false => Vec3::ZERO,
+    };
     frame.bounds = moved(resolved_bounds(library, state), travel);
     write_lights(model, frame);
     overlays::write_ground(model, state, frame);
@@ -160,9 +163,18 @@ fn heat_joint(model: &Model, instance: &MeshInstance, chosen: JointIndex) -> u32
     position.map_or(u32::MAX, |position| position as u32)
 }
 
-/// How far over the ground the root has gone since the start of the clip; zero when the camera does not follow.
+/// How far over the ground the model's root has gone since the start of the clip: where a camera that follows is then.
+pub fn travelled(library: &Library, state: &ViewerState) -> Vec3 {
+    let Some(model) = library.active() else { return Vec3::ZERO };
+    let (mut scratch, mut world_from_joint) = (Scratch::default(), Vec::new());
+    scratch.sampler.sample(model, state);
+    let locals = &scratch.sampler.pose.locals;
+    model_from_joint(&model.asset.skeleton, locals, world_from_model(state.up), &mut world_from_joint);
+    travel(model, state, &mut scratch, &world_from_joint)
+}
+
 fn travel(model: &Model, state: &ViewerState, scratch: &mut Scratch, world_from_joint: &[Affine3A]) -> Vec3 {
-    let clip = active_clip(model, state).filter(|_| state.follow);
+    let clip = active_clip(model, state);
     let Some((clip, root)) = clip.and_then(|clip| Some((clip, model.root_of_clip(clip)?))) else { return Vec3::ZERO };
     let skeleton = &model.asset.skeleton;
     scratch.first_pose.copy_from(skeleton.rest());

@@ -18,7 +18,7 @@ use crate::library::ModelId;
 use crate::mesh::{Bounds, PaletteEntry, SkinningMode};
 use crate::state::Background;
 
-pub use evaluate::evaluate;
+pub use evaluate::{evaluate, travelled};
 pub use formula::{FormulaPart, JointMatrices, VertexFormula, joint_matrices, vertex_formula};
 pub use pick::{PickedJoint, pick_joint};
 pub use pick_vertex::pick_vertex;

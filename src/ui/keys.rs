@@ -73,6 +73,12 @@ pub const KEY_TABLE: &[KeyHelp] = &[
         act: |_, _, _, out| out.commands.push(Command::SetCamera(CameraChoice::Auto)),
     },
     KeyHelp {
+        keys: "C",
+        does: "The camera goes along with the character, or stays",
+        pressed: &[Key::C],
+        act: |shown, _, _, out| out.commands.push(Command::SetFollow(!shown.state.follow)),
+    },
+    KeyHelp {
         keys: "I  O",
         does: "In point, out point here",
         pressed: &[Key::I, Key::O],

@@ -22,6 +22,7 @@ fn keys_do_what_the_help_says() {
         (Key::Num1, clip("Walk")),
         (Key::Num3, clip("Wave")),
         (Key::F, Command::FrameAll),
+        (Key::C, Command::SetFollow(true)),
         (Key::Home, Command::SetCamera(CameraChoice::Auto)),
     ];
     let mut harness = sample_bench(WIDE);
