@@ -125,8 +125,9 @@ impl App {
         let has_map = map.is_some();
         self.state.map.extend(map.map(MotionMap::Names));
         let problems = self.refresh_motion();
+        let mut unfit = None;
         if keeps_motions {
-            self.put_unfit_away();
+            unfit = self.put_unfit_away();
             self.choose_borrowed(choice);
         } else {
             if is_link || !self.library.motions().is_empty() || has_map {
@@ -150,7 +151,8 @@ impl App {
             };
             let hint =
                 if lacks_joints { " Its joints come with it when its .skel and .attach are opened too." } else { "" };
-            self.toast_undoable(format!("{opened} {name}.{others}{gone}{hint}"));
+            let unfit = unfit.map(|unfit| format!(" {unfit}")).unwrap_or_default();
+            self.toast_undoable(format!("{opened} {name}.{others}{gone}{hint}{unfit}"));
         }
         Ok(())
     }
@@ -248,7 +250,9 @@ impl App {
         self.state = about_model(ViewerState { motion, ..left }, old);
         self.library.set_motions(motions);
         self.refresh_motion();
-        self.put_unfit_away();
+        if let Some(unfit) = self.put_unfit_away() {
+            self.toast(unfit);
+        }
         self.choose_borrowed(choice);
         self.dirty = true;
         self.changed = true;
@@ -464,18 +468,19 @@ impl App {
         }
     }
 
-    /// A model is shown that motions do not fit: they go, quietly, since nobody asked for them.
-    fn put_unfit_away(&mut self) {
-        let Some(model) = self.library.active() else { return };
+    /// A model is shown that motions do not fit: they go, without an error, since nobody asked for them. Gives back what is
+    /// to be said about it.
+    fn put_unfit_away(&mut self) -> Option<String> {
+        let model = self.library.active()?;
         let fits = |motion: usize| model.borrowed_clips().any(|(_, borrowed)| borrowed.motion == motion);
         let motions = self.library.motions().iter().cloned().enumerate();
         let (fit, unfit): (Vec<_>, Vec<_>) = motions.partition(|(index, _)| fits(*index));
         if unfit.is_empty() {
-            return;
+            return None;
         }
         let names: Vec<String> = unfit.iter().map(|(_, motion)| short_name(&motion.source)).collect();
         self.borrow_only(fit.into_iter().map(|(_, motion)| motion).collect());
-        self.toast(format!("Nothing is borrowed from {} any more: it does not fit this model.", names.join(", ")));
+        Some(format!("Nothing is borrowed from {} any more: it does not fit this model.", names.join(", ")))
     }
 
     /// Lets go of all motions but these.

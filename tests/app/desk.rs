@@ -1,0 +1,153 @@
+//! The app in a harness, drawing on whatever adapter there is, with files opened as if they had been dropped.
+
+use std::cell::RefCell;
+use std::path::PathBuf;
+use std::rc::Rc;
+
+use eframe::egui_wgpu::{RenderState, RendererOptions};
+use egui_kittest::kittest::Queryable;
+use egui_kittest::{Harness, TestRenderer};
+use gaitway::app::{App, Host, Inbox, Message, native_options};
+use gaitway::files::{Role, read_paths};
+use gaitway::library::Library;
+use gaitway::state::{Command, ViewerState};
+
+use crate::data_folder::data_folder;
+
+pub struct Desk {
+    harness: Harness<'static, App>,
+    inbox: Inbox,
+}
+
+/// None, and a line that says so, when there is no adapter; a failure with `REQUIRE_GPU=1`.
+pub fn desk(first: &str) -> Option<Desk> {
+    let Some(gpu) = gpu() else {
+        let required = std::env::var("REQUIRE_GPU").as_deref() == Ok("1");
+        assert!(!required, "REQUIRE_GPU is set, but there is no adapter");
+        eprintln!("skipped: no graphics adapter");
+        return None;
+    };
+    let contents = read_paths(&[first.into()], Role::Model).expect("is there");
+    let inbox = Rc::new(RefCell::new(None));
+    let ready = inbox.clone();
+    let harness = Harness::builder().with_size([1280.0, 720.0]).renderer(Gpu(gpu)).build_eframe(|cc| {
+        App::new(cc, Box::new(Window), contents, None, move |inbox| *ready.borrow_mut() = Some(inbox)).expect("starts")
+    });
+    let inbox = inbox.take().expect("given at the start");
+    let mut desk = Desk { harness, inbox };
+    desk.command(Command::TogglePlaying);
+    assert!(!desk.state().playing);
+    Some(desk)
+}
+
+/// The path of a real file; none, with a line that says so, where there are none.
+pub fn real(name: &str) -> Option<PathBuf> {
+    Some(data_folder()?.join(name))
+}
+
+impl Desk {
+    /// Opens files or samples as one set.
+    pub fn open(&mut self, files: &[PathBuf]) {
+        self.inbox.send(match read_paths(files, Role::Any) {
+            Ok(contents) => Message::Opened { contents: Box::new(contents), state: None, reply: None },
+            Err(error) => Message::OpenFailed(error.to_string()),
+        });
+        self.settle();
+    }
+
+    pub fn command(&mut self, command: Command) {
+        self.inbox.send(Message::Commands(vec![command]));
+        self.settle();
+    }
+
+    /// Presses what bears this label.
+    pub fn press(&mut self, label: &str) {
+        self.harness.get_by_label(label).click();
+        self.settle();
+    }
+
+    pub fn undo(&mut self) {
+        self.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
+        self.settle();
+    }
+
+    pub fn redo(&mut self) {
+        self.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Y);
+        self.settle();
+    }
+
+    /// A few frames: the panels are laid out before what was asked for is done.
+    fn settle(&mut self) {
+        self.harness.run_steps(4);
+    }
+
+    pub fn state(&self) -> &ViewerState {
+        self.harness.state().state()
+    }
+
+    pub fn library(&self) -> &Library {
+        self.harness.state().library()
+    }
+
+    pub fn problem(&self) -> Option<&str> {
+        self.harness.state().problem()
+    }
+
+    /// What the shown model was opened from.
+    pub fn shown(&self) -> &str {
+        &self.library().active().expect("a model").source
+    }
+
+    /// What all models on the list were opened from.
+    pub fn models(&self) -> Vec<&str> {
+        self.library().models().iter().map(|model| &*model.source).collect()
+    }
+
+    pub fn borrowed_clips(&self) -> usize {
+        self.library().active().expect("a model").borrowed_clips().count()
+    }
+
+    /// Whether this can be read somewhere.
+    pub fn says(&self, text: &str) -> bool {
+        self.harness.query_all_by_label_contains(text).next().is_some()
+    }
+}
+
+fn gpu() -> Option<RenderState> {
+    let options = native_options().wgpu_options;
+    let instance = pollster::block_on(options.wgpu_setup.new_instance());
+    pollster::block_on(RenderState::create(&options, &instance, None, RendererOptions::default())).ok()
+}
+
+/// Gives the app a device; what the panels look like is not drawn.
+struct Gpu(RenderState);
+
+impl TestRenderer for Gpu {
+    fn setup_eframe(&self, cc: &mut eframe::CreationContext<'_>, _frame: &mut eframe::Frame) {
+        cc.wgpu_render_state = Some(self.0.clone());
+    }
+
+    fn handle_delta(&mut self, delta: &mut egui::TexturesDelta) {
+        delta.clear();
+    }
+}
+
+struct Window;
+
+impl Host for Window {
+    fn choose_files(&self, _role: Role, _inbox: &Inbox) -> bool {
+        false
+    }
+
+    fn save_file(&self, _name: &str, _bytes: &[u8]) -> bool {
+        false
+    }
+
+    fn open_dropped(&self, _files: Vec<egui::DroppedFileHandle>, _inbox: &Inbox) {}
+
+    fn link(&self, fragment: &str) -> String {
+        format!("#{fragment}")
+    }
+
+    fn state_changed(&self, _state: &ViewerState) {}
+}

@@ -1,0 +1,7 @@
+//! The app without a window: what is opened, closed, borrowed, taken back, and what is said about it.
+
+#[path = "../support/data_folder.rs"]
+mod data_folder;
+mod desk;
+mod open;
+mod view;

@@ -1,0 +1,159 @@
+//! What becomes of opened files, and that all of it can be taken back.
+
+use gaitway::state::{ClipChoice, Command};
+
+use crate::desk::{desk, real};
+
+#[test]
+fn a_second_model_is_shown_and_the_first_waits() {
+    let Some(mut desk) = desk("sample:pilot") else { return };
+    desk.command(Command::SetClip(ClipChoice::Named("run".to_owned())));
+    desk.open(&["sample:creature".into()]);
+    assert_eq!(desk.shown(), "sample:creature");
+    assert_eq!(desk.models(), ["sample:pilot", "sample:creature"]);
+    assert!(desk.says("Opened Fox"), "it is said");
+    desk.press("Pilot");
+    assert_eq!(desk.shown(), "sample:pilot");
+    assert_eq!(desk.state().clip, ClipChoice::Named("run".to_owned()), "as it was left");
+}
+
+#[test]
+fn what_was_opened_can_be_taken_back() {
+    let Some(mut desk) = desk("sample:pilot") else { return };
+    let before = desk.state().clone();
+    desk.open(&["sample:creature".into()]);
+    desk.press("Undo");
+    assert_eq!((desk.shown(), desk.state()), ("sample:pilot", &before));
+    desk.redo();
+    assert_eq!(desk.shown(), "sample:creature");
+}
+
+#[test]
+fn the_same_file_again_is_the_model_that_is_there() {
+    let Some(mut desk) = desk("sample:pilot") else { return };
+    desk.open(&["sample:creature".into()]);
+    desk.open(&["sample:pilot".into()]);
+    assert_eq!(desk.models(), ["sample:pilot", "sample:creature"]);
+    assert_eq!(desk.shown(), "sample:pilot");
+    assert!(desk.says("Opened again: Pilot"));
+}
+
+#[test]
+fn a_closed_model_gives_way_to_its_neighbour_and_comes_back() {
+    let Some(mut desk) = desk("sample:pilot") else { return };
+    desk.open(&["sample:creature".into()]);
+    desk.open(&["sample:dwarf".into()]);
+    desk.press("Close Dwarf");
+    assert_eq!((desk.shown(), desk.models()), ("sample:creature", vec!["sample:pilot", "sample:creature"]));
+    desk.undo();
+    assert_eq!(desk.shown(), "sample:dwarf");
+    assert_eq!(desk.models().len(), 3);
+    // One that is not shown only leaves the list.
+    desk.press("Close Pilot");
+    assert_eq!((desk.shown(), desk.models()), ("sample:dwarf", vec!["sample:creature", "sample:dwarf"]));
+    desk.undo();
+    assert_eq!(desk.models().len(), 3);
+}
+
+#[test]
+fn a_motion_is_borrowed_from_and_goes_and_comes_with_undo() {
+    let Some(mut desk) = desk("sample:pilot") else { return };
+    desk.open(&["sample:walk".into()]);
+    assert_eq!(desk.shown(), "sample:pilot", "a motion does not replace the model");
+    assert_eq!(desk.borrowed_clips(), 1);
+    assert!(desk.says("A clip is borrowed from Walk"));
+    let clip = desk.state().clip.clone();
+    assert_ne!(clip, ClipChoice::First, "it plays");
+    desk.undo();
+    assert_eq!((desk.borrowed_clips(), desk.library().motions().len()), (0, 0));
+    assert!(desk.says("Nothing is borrowed from Walk any more. Ctrl+Y brings it back."));
+    desk.redo();
+    assert_eq!((desk.borrowed_clips(), &desk.state().clip), (1, &clip));
+    assert!(desk.says("Borrowed from Walk again."));
+    assert!(desk.says("Search joints of the model"), "back in the tab that is about it");
+}
+
+#[test]
+fn a_motion_goes_along_to_a_model_that_it_fits_and_quietly_leaves_another() {
+    let Some(mut desk) = desk("sample:pilot") else { return };
+    desk.open(&["sample:walk".into()]);
+    desk.open(&["sample:mannequin".into()]);
+    assert_eq!((desk.shown(), desk.borrowed_clips()), ("sample:mannequin", 1));
+    desk.open(&["sample:morphs".into()]);
+    assert_eq!((desk.borrowed_clips(), desk.library().motions().len()), (0, 0));
+    assert!(desk.says("it does not fit this model"), "and says so");
+    assert_eq!(desk.problem(), None, "nobody asked for it: no error");
+    desk.press("Mannequin");
+    assert_eq!(desk.borrowed_clips(), 1);
+}
+
+#[test]
+fn a_motion_that_fits_nowhere_changes_nothing_and_can_be_mapped_by_hand() {
+    let Some(mut desk) = desk("sample:morphs") else { return };
+    let before = desk.state().clone();
+    desk.open(&["sample:walk".into()]);
+    let problem = desk.problem().expect("is said");
+    assert!(problem.contains("no joint in common with Goblin"), "{problem}");
+    assert_eq!((desk.state(), desk.library().motions().len()), (&before, 0));
+    desk.press("Choose joints by hand");
+    assert_eq!((desk.problem(), desk.library().motions().len()), (None, 1));
+    desk.undo();
+    assert_eq!(desk.library().motions().len(), 0);
+}
+
+#[test]
+fn a_joint_map_without_a_motion_is_refused_and_with_one_is_a_step() {
+    let Some(mut desk) = desk("sample:pilot") else { return };
+    let map = std::env::temp_dir().join(format!("gaitway-app-map-{}.json", std::process::id()));
+    std::fs::write(&map, r#"{"gaitway_map": 1, "joints": {"mixamorig:Hips": {"source": "hip"}}}"#).expect("written");
+    let before = desk.state().clone();
+    desk.open(std::slice::from_ref(&map));
+    let problem = desk.problem().expect("is said").to_owned();
+    assert!(problem.contains("there is no motion to use it for"), "{problem}");
+    assert_eq!(desk.state(), &before);
+    desk.open(&["sample:walk".into()]);
+    let proposed = desk.state().map.clone();
+    desk.open(std::slice::from_ref(&map));
+    std::fs::remove_file(&map).expect("was there");
+    assert_eq!(desk.problem(), None);
+    assert_ne!(desk.state().map, proposed);
+    assert!(desk.says("The joint map is used for Walk"));
+    desk.undo();
+    assert_eq!(desk.state().map, proposed);
+}
+
+#[test]
+fn a_file_that_cannot_be_read_loses_nothing() {
+    let Some(mut desk) = desk("sample:pilot") else { return };
+    let file = std::env::temp_dir().join(format!("gaitway-app-{}.glb", std::process::id()));
+    std::fs::write(&file, b"glTF").expect("written");
+    let before = desk.state().clone();
+    desk.open(std::slice::from_ref(&file));
+    std::fs::remove_file(&file).expect("was there");
+    assert!(desk.problem().is_some_and(|problem| problem.contains(".glb")), "{:?}", desk.problem());
+    assert_eq!((desk.shown(), desk.state()), ("sample:pilot", &before));
+    desk.press("Dismiss the error");
+    assert_eq!(desk.problem(), None);
+}
+
+#[test]
+fn real_files_are_put_where_they_belong() {
+    let (Some(soldier), Some(walk), Some(obj)) =
+        (real("threejs/Soldier.glb"), real("bvh/cmu_01_01.bvh"), real("mit6837/Model1.obj"))
+    else {
+        return;
+    };
+    let Some(mut desk) = desk("sample:pilot") else { return };
+    // All at once: one is the model, the other its motion.
+    desk.open(&[soldier, walk]);
+    assert!(desk.shown().ends_with("Soldier.glb") && desk.borrowed_clips() == 1, "{}", desk.shown());
+    // Where nothing lies beside it.
+    let alone = std::env::temp_dir().join(format!("gaitway-app-{}.obj", std::process::id()));
+    std::fs::copy(&obj, &alone).expect("copied");
+    desk.open(std::slice::from_ref(&alone));
+    std::fs::remove_file(&alone).expect("was there");
+    assert!(desk.library().active().expect("a model").asset.skins.is_empty());
+    assert!(desk.says("Its joints come with it when its .skel and .attach are opened too."));
+    desk.open(&[obj.clone(), obj.with_extension("skel"), obj.with_extension("attach")]);
+    assert!(!desk.library().active().expect("a model").asset.skins.is_empty());
+}

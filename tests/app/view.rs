@@ -1,0 +1,43 @@
+//! What the view keeps while settings change that the commands alone could not keep.
+
+use gaitway::frame::travelled;
+use gaitway::state::{CameraChoice, Command, OrbitCamera, Show};
+use glam::Vec3;
+
+use crate::desk::{Desk, desk};
+
+fn orbit(desk: &Desk) -> OrbitCamera {
+    let CameraChoice::Orbit(orbit) = desk.state().camera else { panic!("{:?}", desk.state().camera) };
+    orbit
+}
+
+#[test]
+fn comparing_keeps_what_is_in_the_middle_and_gives_it_back() {
+    let Some(mut desk) = desk("sample:pilot") else { return };
+    desk.command(Command::Orbit { yaw_radians: 0.4, pitch_radians: 0.1 });
+    let before = orbit(&desk);
+    let show = desk.state().show;
+    desk.command(Command::SetShow(Show { split: true, ..show }));
+    let compared = orbit(&desk);
+    assert!(compared.distance > 1.2 * before.distance, "each pane is narrower than high");
+    assert_eq!(compared.target, before.target);
+    desk.command(Command::SetShow(show));
+    assert!((orbit(&desk).distance / before.distance - 1.0).abs() < 1e-5);
+}
+
+#[test]
+fn going_along_begins_and_ends_where_the_camera_is() {
+    let Some(mut desk) = desk("sample:mannequin") else { return };
+    desk.open(&["sample:mannequin_run".into()]);
+    desk.command(Command::Orbit { yaw_radians: 0.4, pitch_radians: 0.1 });
+    desk.command(Command::Seek(0.5));
+    let travel = travelled(desk.library(), desk.state());
+    assert!(travel.length() > 0.5, "it runs: {travel}");
+    let before = orbit(&desk).target;
+    desk.command(Command::SetFollow(true));
+    assert!((orbit(&desk).target + travel).distance(before) < 1e-4, "what is added while it follows");
+    desk.command(Command::Seek(0.0));
+    desk.command(Command::SetFollow(false));
+    assert!(orbit(&desk).target.distance(before - travel) < 1e-4);
+    assert_eq!(travelled(desk.library(), desk.state()), Vec3::ZERO, "nowhere yet");
+}
