@@ -594,8 +594,8 @@ impl App {
 /// What `about` says of a model, its motion and the way it is looked at, and of everything else what was set before.
 fn about_model(about: ViewerState, before: ViewerState) -> ViewerState {
     ViewerState {
-        // Of which joint the weights are shown is about the model.
-        show: Show { weights: about.show.weights, ..before.show },
+        // Of which joint the weights are shown is about the model, and so is comparing: the next one is first seen whole.
+        show: Show { weights: about.show.weights, split: about.show.split, ..before.show },
         model: about.model,
         motion: about.motion,
         map: about.map,

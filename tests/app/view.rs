@@ -26,6 +26,17 @@ fn comparing_keeps_what_is_in_the_middle_and_gives_it_back() {
 }
 
 #[test]
+fn the_next_model_is_seen_whole_and_the_last_one_as_it_was_left() {
+    let Some(mut desk) = desk("sample:pilot") else { return };
+    let show = Show { split: true, wireframe: true, ..desk.state().show };
+    desk.command(Command::SetShow(show));
+    desk.open(&["sample:creature".into()]);
+    assert_eq!(desk.state().show, Show { split: false, ..show }, "what is not about the model stays");
+    desk.press("Pilot");
+    assert_eq!(desk.state().show, show);
+}
+
+#[test]
 fn going_along_begins_and_ends_where_the_camera_is() {
     let Some(mut desk) = desk("sample:mannequin") else { return };
     desk.open(&["sample:mannequin_run".into()]);
