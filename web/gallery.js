@@ -42,6 +42,7 @@ addEventListener("gaitway:samples", () => {
 byId("gallery-close").addEventListener("click", () => show(false));
 byId("do-samples").addEventListener("click", () => dispatchEvent(new CustomEvent("gaitway:samples")));
 byId("gallery-own").addEventListener("click", () => byId("do-open").click());
-gallery.addEventListener("keydown", ({ key }) => key === "Escape" && show(false));
+// In the picture the key is for what is chosen there.
+addEventListener("keydown", ({ key, target }) => key === "Escape" && (target === document.body || gallery.contains(target)) && show(false));
 // Who clicks wants to play with it: the keys go to the picture. Who came by keyboard goes on from here.
 for (const card of cards) card.addEventListener("click", ({ detail, ctrlKey, metaKey, shiftKey }) => detail > 0 && !(ctrlKey || metaKey || shiftKey) && toCanvas());

@@ -379,10 +379,13 @@ function filesOf(link) {
 
 const valuesOf = (link, ...keys) => pairsOf(link).filter(([key]) => keys.includes(key)).map(([, value]) => value);
 
+/** The file that a link's value names: of one model of an archive, the archive. */
+const fileOf = (value) => value.split("#/")[0];
+
 const nameOf = (item) => (typeof item === "string" ? item : item.name);
 
 /** The sets that files of a link are in, by their names. */
-const setsOf = (link, key) => [...new Set(valuesOf(link, key).map((name) => held.findLast((items) => items.some((item) => nameOf(item) === name))))].filter(Boolean);
+const setsOf = (link, key) => [...new Set(valuesOf(link, key).map(fileOf).map((name) => held.findLast((items) => items.some((item) => nameOf(item) === name))))].filter(Boolean);
 
 /** What a link's model is opened from, besides addresses. */
 const heldItems = (link) => setsOf(link, "model").flat();
@@ -390,7 +393,7 @@ const heldItems = (link) => setsOf(link, "model").flat();
 /** What its motions are opened from, where that is something else. */
 const heldMotions = (link) => setsOf(link, "motion").filter((set) => !setsOf(link, "model").includes(set)).flat();
 
-const isHeld = (name) => held.some((items) => items.some((item) => typeof item !== "string" && item.name === name));
+const isHeld = (value) => held.some((items) => items.some((item) => typeof item !== "string" && item.name === fileOf(value)));
 
 /** The parts of a link that lie on this computer alone: `[key, name, pair]`. */
 const localParts = (link) => pairsOf(link).filter(([key, value]) => (key === "model" || key === "motion") && isHeld(value));
@@ -545,7 +548,10 @@ const wantedBy = (link) => pairsOf(link).filter(([key, value]) => (key === "mode
 /** Waits for the files that a link names, if it names any. */
 function awaitFiles(link) {
   byId("bring").close();
-  const wanted = wantedBy(link).map(([key, value]) => ({ key, name: value.slice(BRING.length) }));
+  const wanted = wantedBy(link).map(([key, value, pair]) => {
+    const brought = value.slice(BRING.length);
+    return { key, pair, name: fileOf(brought), member: brought.slice(fileOf(brought).length) };
+  });
   awaited = wanted.length > 0 ? { link, wanted, missing: wanted, sets: [] } : null;
 }
 
@@ -576,9 +582,9 @@ async function fulfil(items, taken) {
   awaited.sets.push(items);
   const { link, wanted, sets } = awaited;
   const lastPart = (path) => path.split("/").pop();
-  const found = wanted.map(({ key, name }) => {
+  const found = wanted.map(({ key, pair, name, member }) => {
     const set = sets.findLast((items) => items.some((item) => lastPart(nameOf(item)) === lastPart(name)));
-    return { key, name, set, as: set?.map(nameOf).find((path) => lastPart(path) === lastPart(name)) };
+    return { key, pair, name, member, set, as: set?.map(nameOf).find((path) => lastPart(path) === lastPart(name)) };
   });
   if (!found.every(({ set }) => set !== undefined)) {
     // Something else was opened: that is what the person wants to see.
@@ -590,9 +596,8 @@ async function fulfil(items, taken) {
     return false;
   }
   let whole = link;
-  for (const { key, name, as } of found) {
-    const pair = wantedBy(link).find(([other, value]) => other === key && value === BRING + name)[2];
-    whole = whole.split("&").map((other) => (other === pair ? `${key}=${encodeURIComponent(as)}` : other)).join("&");
+  for (const { key, pair, member, as } of found) {
+    whole = whole.split("&").map((other) => (other === pair ? `${key}=${encodeURIComponent(as + member)}` : other)).join("&");
   }
   awaited = null;
   await follow(whole, { link: whole, items: heldItems(whole), motionItems: heldMotions(whole) });
@@ -628,7 +633,7 @@ function share(link) {
   const page = url.href.split("#")[0];
   const rest = publicLink(link);
   const address = `${page}#${rest}`;
-  const local = localParts(link).map(([key, name]) => ({ key, name, beside: besides(name) }));
+  const local = localParts(link).map(([key, value]) => ({ key, name: fileOf(value), beside: besides(fileOf(value)) }));
   const embedded = `${page}#${rest.split("&").filter((pair) => !pair.startsWith("embed=")).join("&")}&embed=1`;
   dispatchEvent(new CustomEvent("gaitway:share", { detail: { address, embedded, local, qr: app.qr(address) ?? null } }));
 }

@@ -80,7 +80,7 @@ impl App {
         let mut models = models.into_iter();
         let Some(first) = models.next() else { return Ok(()) };
         let (name, origin) = (short_name(&first.model.source), first.model.origin.clone());
-        let lacks_joints = name.to_lowercase().ends_with(".obj") && first.model.asset.skins.is_empty();
+        let lacks_joints = is_obj(&name) && first.model.asset.skins.is_empty();
         let before = self.before_opening();
         let choice = self.borrowed_choice();
         let known = self.library.models().len();
@@ -98,6 +98,7 @@ impl App {
             })
             .collect();
         self.library.show(id);
+        self.close_incomplete(id);
         let is_link = state.is_some();
         let was_loaded = before.is_some();
         self.remember(before);
@@ -155,6 +156,18 @@ impl App {
             self.toast_undoable(format!("{opened} {name}.{others}{gone}{hint}{unfit}"));
         }
         Ok(())
+    }
+
+    /// A model that has come with its joints takes the place of what its .obj showed without them.
+    fn close_incomplete(&mut self, id: ModelId) {
+        let Some(whole) = self.library.get(id).filter(|model| !model.asset.skins.is_empty()) else { return };
+        let is_part = |known: &&Model| {
+            let is_same = known.source == whole.source && known.is_own == whole.is_own;
+            is_same && is_obj(&known.source) && known.asset.skins.is_empty()
+        };
+        if let Some(part) = self.library.models().iter().find(is_part).map(|part| part.id) {
+            self.library.close(part);
+        }
     }
 
     /// Brings the shown model to the device; where that does not work, what was there before is shown again.
@@ -616,6 +629,10 @@ fn about_model(about: ViewerState, before: ViewerState) -> ViewerState {
         up: about.up,
         ..before
     }
+}
+
+fn is_obj(name: &str) -> bool {
+    name.to_lowercase().ends_with(".obj")
 }
 
 /// A map without any pair is one that a person has just begun.

@@ -161,7 +161,7 @@ impl App {
                 self.panels.error = Some(error);
             }
             Message::OpenGivenUp => self.panels.progress = None,
-            Message::Failed(error) => self.tell(vec![error]),
+            Message::Failed(error) => self.panels.error = Some(error),
             Message::Save(name, bytes) => {
                 self.host.save_file(&name, &bytes);
                 self.toast(format!("Saved {name}."));
@@ -274,6 +274,12 @@ impl App {
                 | Command::SetRoot(_)
                 | Command::SetFeet(_)
         );
+        if let Command::SetFollow(follow) = command
+            && follow != self.state.follow
+        {
+            let follows = if follow { "goes along with the character" } else { "stays where it is" };
+            self.toast(format!("The camera {follows}."));
+        }
         let refits = matches!(command, Command::SetUp(_));
         self.history.apply(&mut self.state, &self.library, command);
         if refits {
@@ -360,8 +366,11 @@ impl App {
         }
     }
 
-    /// One step back, or on again. That a motion goes or comes with it is said: it may have been opened long before.
+    /// One step back, or on again. That another model is shown then, or that a motion goes or comes, is said: it may have
+    /// been opened long before.
     fn step(&mut self, back: bool) {
+        let shown = |app: &Self| app.library.active().map(|model| (model.id, ui::short_name(&model.source)));
+        let shown_before = shown(self);
         let borrowed = |app: &Self| -> Vec<String> {
             app.library.motions().iter().map(|motion| ui::short_name(&motion.source)).collect()
         };
@@ -372,6 +381,8 @@ impl App {
         };
         self.dirty |= done;
         self.changed |= done;
+        // What it said was about another step.
+        self.panels.toast.take_if(|_| done);
         let problems = self.refresh_motion();
         self.tell(problems);
         let after = borrowed(self);
@@ -383,8 +394,11 @@ impl App {
         if !gone.is_empty() {
             self.toast(format!("Nothing is borrowed from {gone} any more. {keys} brings it back."));
         } else if !come.is_empty() {
-            self.panels.tab = ui::Tab::Motion;
             self.toast(format!("Borrowed from {come} again."));
+        } else if let (Some((before, old)), Some((now, new))) = (shown_before, shown(self))
+            && before != now
+        {
+            self.toast(format!("{new} is shown again. {keys} leads back to {old}."));
         }
     }
 

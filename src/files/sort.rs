@@ -173,6 +173,14 @@ pub fn read_map(file: &str, bytes: &[u8]) -> Result<JointMap, SortError> {
         .map_err(|problem| SortError::Map { file: file.to_owned(), problem })
 }
 
+/// Between an archive and which of its models is meant, in the place where a model came from.
+const MEMBER: &str = "#/";
+
+/// The file that something came from: of one model of an archive, the archive.
+pub(super) fn archive_of(origin: &str) -> &str {
+    origin.split(MEMBER).next().unwrap_or(origin)
+}
+
 /// Where the files of a set came from: by their names in it, the path or address that a view lists.
 #[derive(Debug, Default)]
 pub(super) struct Origins {
@@ -197,6 +205,15 @@ impl Origins {
         models.extend(shown.into_iter().map(OpenedModel::from));
         let place = |model: &OpenedModel| self.known.iter().position(|(_, origin)| *origin == model.model.origin);
         models.sort_by_key(|model| place(model).unwrap_or(usize::MAX));
+        // The first model of an archive is meant by the archive's name.
+        let mut seen: Vec<String> = Vec::new();
+        for OpenedModel { model, files } in &mut models {
+            let of_archive = seen.contains(&model.origin);
+            seen.push(model.origin.clone());
+            if let Some(files) = files.as_ref().filter(|_| of_archive) {
+                model.origin = format!("{}{MEMBER}{}", model.origin, files.name);
+            }
+        }
         let of_set = |(name, asset): (String, Asset)| {
             let (origin, source) = self.origin_and_source(&name);
             let mut motion = Motion::new(source, asset.into());
@@ -223,7 +240,7 @@ impl Contents {
     pub fn motion_sources(motions: &[Motion], model: Option<&str>) -> Vec<String> {
         let mut sources: Vec<String> = Vec::new();
         for motion in motions {
-            if model != Some(&motion.origin) && !sources.contains(&motion.origin) {
+            if model.map(archive_of) != Some(&motion.origin) && !sources.contains(&motion.origin) {
                 sources.push(motion.origin.clone());
             }
         }

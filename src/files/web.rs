@@ -8,7 +8,7 @@ use wasm_bindgen::{JsCast, JsValue};
 use wasm_bindgen_futures::JsFuture;
 
 use super::image_limit::{fitted, made_smaller};
-use super::sort::{Origins, sort_noticing_images};
+use super::sort::{Origins, archive_of, sort_noticing_images};
 use super::{Contents, OpenedModel, Role, SortError, raw_address, read_map};
 use crate::asset::{Asset, Image, Warning};
 use crate::formats::{FileSet, missing_files};
@@ -78,7 +78,8 @@ pub async fn open_items(
     role: Role,
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<Contents, OpenError> {
-    let mut origins = Origins { other: source_of(&items).ok_or(OpenError::Nothing)?, ..Origins::default() };
+    let source = source_of(&items).ok_or(OpenError::Nothing)?;
+    let mut origins = Origins { other: archive_of(&source).to_owned(), ..Origins::default() };
     let mut set = FileSet::default();
     let mut samples: Vec<Model> = Vec::new();
     let mut bases = Vec::new();
@@ -180,10 +181,19 @@ pub async fn open_view(
     if with_model {
         let items = state.model.iter().map(|model| Item::Url(model.clone())).collect();
         contents = open_items(items, Role::Model, progress).await?;
+        if let [named] = &mut state.model[..]
+            && archive_of(named) != *named
+            && !contents.models.iter().any(|opened| opened.model.origin == *named)
+        {
+            contents.problems.push(format!("{named}: there is no such model in this file; its first one is shown"));
+            *named = archive_of(named).to_owned();
+        }
     }
     let mut motions = contents.motions.take().unwrap_or_default();
     // What came with the model out of one archive is not listed.
-    let is_of_model = |motion: &&Motion| state.model.contains(&motion.origin) && !state.motion.contains(&motion.origin);
+    let is_of_model = |motion: &&Motion| {
+        state.model.iter().any(|model| archive_of(model) == motion.origin) && !state.motion.contains(&motion.origin)
+    };
     motions.extend(held.iter().filter(is_of_model).cloned());
     for source in &state.motion {
         if is_held(source) {

@@ -23,6 +23,9 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
     if tracks.is_empty() || duration_secs <= 0.0 {
         return;
     }
+    // Names and legend lie over the first steps: whoever points at the lanes wants to see those.
+    let lanes = Rect::from_min_size(ui.cursor().min, vec2(ui.available_width(), LANE * tracks.len() as f32));
+    let pointed_at = ui.rect_contains_pointer(lanes);
     for (index, track) in tracks.iter().enumerate() {
         let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), LANE), Sense::hover());
         let lane = rect.shrink2(vec2(scrub::MARGIN, 1.0));
@@ -31,13 +34,8 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
             .widget_info(|| WidgetInfo::labeled(egui::accesskit::Role::Image, true, format!("{name} on the ground")));
         lane_of(ui, lane, track, duration_secs);
         let palette = style::palette(ui);
-        let named = ui.painter().layout_no_wrap(name.to_string(), FontId::proportional(SMALL), palette.weak_text);
-        let end = lane.left() + named.size().x + 8.0;
-        ui.painter().rect_filled(lane.with_max_x(end), 3.0, palette.surface.gamma_multiply(VEIL));
-        let at = pos2(lane.left() + 4.0, lane.center().y - 0.5 * named.size().y);
-        ui.painter().galley(at, named, palette.weak_text);
-        if index == 0 {
-            legend(ui, lane.with_min_x(end));
+        if !pointed_at {
+            labels(ui, lane, &name, index == 0);
         }
         let x = lane.left() + (shown.clip_time_secs() as f32 / duration_secs).clamp(0.0, 1.0) * lane.width();
         ui.painter().vline(x, lane.y_range(), Stroke::new(1.5, palette.accent));
@@ -50,6 +48,19 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
                 "{name}: {stands}, {speed:.0} cm/s over the ground\nA bar as high as the lane: 50 cm/s or more"
             ));
         }
+    }
+}
+
+/// The name of a lane's foot, and in the first lane what the colours mean.
+fn labels(ui: &Ui, lane: Rect, name: &str, first: bool) {
+    let palette = style::palette(ui);
+    let named = ui.painter().layout_no_wrap(name.to_owned(), FontId::proportional(SMALL), palette.weak_text);
+    let end = lane.left() + named.size().x + 8.0;
+    ui.painter().rect_filled(lane.with_max_x(end), 3.0, palette.surface.gamma_multiply(VEIL));
+    let at = pos2(lane.left() + 4.0, lane.center().y - 0.5 * named.size().y);
+    ui.painter().galley(at, named, palette.weak_text);
+    if first {
+        legend(ui, lane.with_min_x(end));
     }
 }
 

@@ -17,14 +17,14 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
     let mut tabs = vec![(Tab::Scene, "Scene"), (Tab::Display, "Display"), (Tab::File, "File"), (Tab::View, "View")];
     if !shown.library.motions().is_empty() {
         tabs.push((Tab::Motion, "Motion"));
-    } else if local.tab == Tab::Motion {
-        local.tab = Tab::Scene;
     }
-    if let Some(tab) = controls::segmented(ui, Some(local.tab), &tabs) {
+    // A motion that was taken back may come again: its tab is open then if it was.
+    let open = |tab: Tab| if tabs.iter().any(|(there, _)| *there == tab) { tab } else { Tab::Scene };
+    if let Some(tab) = controls::segmented(ui, Some(open(local.tab)), &tabs) {
         local.tab = tab;
     }
     ui.add_space(4.0);
-    match local.tab {
+    match open(local.tab) {
         // The tree scrolls by itself, under the chosen joint's numbers.
         Tab::Scene => scene_tree::show(ui, shown, local, out),
         Tab::Display => controls::scrolled(ui, "display", |ui| display::show(ui, shown, out)),

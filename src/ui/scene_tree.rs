@@ -28,6 +28,8 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
     // What is above the tree may need more than all of the room.
     ScrollArea::vertical().id_salt("scene").auto_shrink([false, false]).show(ui, |ui| {
         let top = ui.cursor().top();
+        // Room for the bar, as in the other tabs.
+        ui.set_max_width(ui.available_width() - controls::BAR);
         ui.add_space(4.0);
         cards(ui, shown, model, chosen, local, out);
         ui.add_space(6.0);
@@ -50,7 +52,7 @@ fn cards(
 ) {
     let Some(joint) = chosen else {
         vertex(ui, shown, model, local, out);
-        controls::hint(ui, "Click a joint here or in the picture to see its transforms.");
+        controls::hint(ui, "Choose a joint here or in the picture to see its transforms.");
         return;
     };
     let vertex_first = local.probe.is_on(shown);
@@ -146,6 +148,7 @@ fn tree(ui: &mut Ui, shown: &Shown<'_>, model: &Model, local: &mut UiState, out:
     }
     let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
     area.show_rows(ui, ROW_HEIGHT, rows.len(), |ui, visible| {
+        ui.set_max_width(ui.available_width() - controls::BAR);
         for row in rows.get(visible).unwrap_or_default() {
             let source = asset.skeleton.source_index(row.joint);
             let chosen = shown.state.joint == Some(source);

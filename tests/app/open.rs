@@ -1,6 +1,10 @@
 //! What becomes of opened files, and that all of it can be taken back.
 
-use gaitway::state::{ClipChoice, Command};
+use std::io::Write;
+use std::path::PathBuf;
+
+use gaitway::library::sample;
+use gaitway::state::{ClipChoice, Command, to_link};
 
 use crate::desk::{desk, real};
 
@@ -24,6 +28,7 @@ fn what_was_opened_can_be_taken_back() {
     desk.open(&["sample:creature".into()]);
     desk.press("Undo");
     assert_eq!((desk.shown(), desk.state()), ("sample:pilot", &before));
+    assert!(desk.says("Pilot is shown again. Ctrl+Y leads back to Fox."));
     desk.redo();
     assert_eq!(desk.shown(), "sample:creature");
 }
@@ -70,7 +75,12 @@ fn a_motion_is_borrowed_from_and_goes_and_comes_with_undo() {
     desk.redo();
     assert_eq!((desk.borrowed_clips(), &desk.state().clip), (1, &clip));
     assert!(desk.says("Borrowed from Walk again."));
-    assert!(desk.says("Search joints of the model"), "back in the tab that is about it");
+    assert!(!desk.says("Search joints of the model"), "the tab stays");
+    desk.press("Motion");
+    assert!(desk.says("Search joints of the model"));
+    desk.undo();
+    desk.redo();
+    assert!(desk.says("Search joints of the model"), "back in the tab that was open");
 }
 
 #[test]
@@ -137,6 +147,27 @@ fn a_file_that_cannot_be_read_loses_nothing() {
 }
 
 #[test]
+fn of_an_archive_a_link_names_the_model_that_is_shown() {
+    let Some(mut desk) = desk("sample:pilot") else { return };
+    let archive = std::env::temp_dir().join(format!("gaitway-app-{}.zip", std::process::id()));
+    let mut writer = zip::ZipWriter::new(std::fs::File::create(&archive).expect("created"));
+    for name in ["creature", "dwarf"] {
+        for (file, bytes) in sample::files(name) {
+            writer.start_file(format!("in/{file}"), zip::write::SimpleFileOptions::default()).expect("begun");
+            writer.write_all(bytes).expect("written");
+        }
+    }
+    writer.finish().expect("finished");
+    desk.open(std::slice::from_ref(&archive));
+    std::fs::remove_file(&archive).expect("was there");
+    let file = archive.file_name().and_then(|name| name.to_str()).expect("has a name").to_owned();
+    assert_eq!(desk.state().model, std::slice::from_ref(&file), "the first one");
+    desk.press("dwarf.glb");
+    assert_eq!(desk.state().model, [format!("{file}#/in/dwarf.glb")]);
+    assert!(to_link(desk.state()).contains("%23/in/dwarf.glb"), "{}", to_link(desk.state()));
+}
+
+#[test]
 fn real_files_are_put_where_they_belong() {
     let (Some(soldier), Some(walk), Some(obj)) =
         (real("threejs/Soldier.glb"), real("bvh/cmu_01_01.bvh"), real("mit6837/Model1.obj"))
@@ -147,13 +178,21 @@ fn real_files_are_put_where_they_belong() {
     // All at once: one is the model, the other its motion.
     desk.open(&[soldier, walk]);
     assert!(desk.shown().ends_with("Soldier.glb") && desk.borrowed_clips() == 1, "{}", desk.shown());
-    // Where nothing lies beside it.
-    let alone = std::env::temp_dir().join(format!("gaitway-app-{}.obj", std::process::id()));
-    std::fs::copy(&obj, &alone).expect("copied");
-    desk.open(std::slice::from_ref(&alone));
-    std::fs::remove_file(&alone).expect("was there");
+    // Where nothing lies beside it, and then does.
+    let folder = std::env::temp_dir().join(format!("gaitway-app-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("made");
+    let copies = ["obj", "skel", "attach"].map(|ending| folder.join("Model1").with_extension(ending));
+    let copied = |copy: &PathBuf| {
+        std::fs::copy(obj.with_extension(copy.extension().expect("has one")), copy).expect("copied");
+    };
+    copied(&copies[0]);
+    desk.open(&copies[..1]);
     assert!(desk.library().active().expect("a model").asset.skins.is_empty());
     assert!(desk.says("Its joints come with it when its .skel and .attach are opened too."));
-    desk.open(&[obj.clone(), obj.with_extension("skel"), obj.with_extension("attach")]);
+    copies[1..].iter().for_each(copied);
+    desk.open(&copies);
+    std::fs::remove_dir_all(&folder).expect("was there");
     assert!(!desk.library().active().expect("a model").asset.skins.is_empty());
+    let objs = desk.models().iter().filter(|name| name.ends_with(".obj")).count();
+    assert_eq!(objs, 1, "the whole one takes the place of the bare one");
 }

@@ -26,7 +26,7 @@ pub(super) fn show(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, out: &mut
     if let Some(horizontal) = parts(ui, "Over the ground", root.horizontal) {
         out.commands.push(set(RootOptions { horizontal, ..root }));
     }
-    controls::hint(ui, "In place takes the way out and leaves the sway.");
+    controls::hint(ui, "In place: the character walks on the spot and still sways.");
     if let Some(vertical) = parts(ui, "Up and down", root.vertical) {
         out.commands.push(set(RootOptions { vertical, ..root }));
     }
