@@ -6,6 +6,7 @@ import os from "node:os";
 import path from "node:path";
 import { after, before, describe, test } from "node:test";
 import { dataFolder, skipWithoutData } from "../three/data.mjs";
+import { archive } from "./archive.mjs";
 import { BACK_ENDS, apply, drop, fragment, meanDifference, open, picture, pose, share, startSite, state, until, whenShown } from "./browser.mjs";
 import { neverAnswers, serve } from "./server.mjs";
 
@@ -171,6 +172,31 @@ for (const renderer of BACK_ENDS)
       await share(page);
       assert.match(await page.locator("#share-no-qr").innerText(), /\d{4} characters: too long for a QR code/);
       assert.equal(await page.locator("#share-qr svg").count(), 0);
+    });
+
+    /** Two models in one file, of which the fox is the first. */
+    const TWO = () => archive({ "a/fox.glb": fs.readFileSync(path.join(dataFolder, FOX)), "b/man.glb": fs.readFileSync(path.join(dataFolder, CESIUM_MAN)) });
+
+    onPage("names one of the models of an archive", () => (fs.writeFileSync(path.join(folder, "two.zip"), TWO()), fragment([["model", `${own.origin}/two.zip#/b/man.glb`]])), async (page) => {
+      await whenShown(page, CESIUM_MAN_VERTICES);
+      assert.deepEqual((await state(page)).model, [`${own.origin}/two.zip#/b/man.glb`]);
+      await page.goto(page.url().replace("man.glb", "gone.glb"));
+      await page.reload();
+      await whenMissing(page);
+      assert.match((await missing(page)).join(), /two\.zip#\/b\/gone\.glb: there is no such model in this file; its first one is shown/);
+      await whenShown(page, FOX_VERTICES);
+    });
+
+    onPage("waits for an archive that is to be brought and shows its model", () => fragment([["model", "file:two.zip#/b/man.glb"], ["t", 0.5], ["play", 0]]), async (page) => {
+      fs.writeFileSync(path.join(folder, "two.zip"), TWO());
+      assert.match(await page.locator("#bring-files").innerText(), /^two\.zip \(the model\)$/);
+      await page.keyboard.press("Escape");
+      await drop(page, [{ name: "two.zip", url: `${own.origin}/two.zip` }]);
+      await whenShown(page, CESIUM_MAN_VERTICES);
+      assert.deepEqual([(await state(page)).model, (await state(page)).t], [["two.zip#/b/man.glb"], 0.5]);
+      await share(page);
+      assert.match(await page.locator("#share-local").innerText(), /two\.zip \(the model\)/);
+      assert.ok((await linkOf(page)).includes("model=file:two.zip%23%2Fb%2Fman.glb"), await linkOf(page));
     });
 
     onPage("goes back and forward through models, dropped ones too", () => fragment([["model", site.data(FOX)]]), async (page) => {
