@@ -379,8 +379,11 @@ function filesOf(link) {
 
 const valuesOf = (link, ...keys) => pairsOf(link).filter(([key]) => keys.includes(key)).map(([, value]) => value);
 
-/** The file that a link's value names: of one model of an archive, the archive. */
-const fileOf = (value) => value.split("#/")[0];
+/** The file that a link's value names: of one model of an archive, the archive. A folder's name may end like one. */
+function fileOf(value) {
+  const [file, member] = value.split("#/", 2);
+  return member !== undefined && (file.includes("://") || /\.zip$/i.test(file)) ? file : value;
+}
 
 const nameOf = (item) => (typeof item === "string" ? item : item.name);
 

@@ -176,9 +176,10 @@ pub fn read_map(file: &str, bytes: &[u8]) -> Result<JointMap, SortError> {
 /// Between an archive and which of its models is meant, in the place where a model came from.
 const MEMBER: &str = "#/";
 
-/// The file that something came from: of one model of an archive, the archive.
+/// The file that something came from: of one model of an archive, the archive. A folder's name may end like one.
 pub(super) fn archive_of(origin: &str) -> &str {
-    origin.split(MEMBER).next().unwrap_or(origin)
+    let is_file = |name: &str| name.contains("://") || name.to_lowercase().ends_with(".zip");
+    origin.split_once(MEMBER).map(|(file, _)| file).filter(|file| is_file(file)).unwrap_or(origin)
 }
 
 /// Where the files of a set came from: by their names in it, the path or address that a view lists.

@@ -4,9 +4,10 @@ use std::cell::RefCell;
 use std::path::PathBuf;
 use std::rc::Rc;
 
+use eframe::App as _;
 use eframe::egui_wgpu::{RenderState, RendererOptions};
+use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use egui_kittest::{Harness, TestRenderer};
 use gaitway::app::{App, Host, Inbox, Message, native_options};
 use gaitway::files::{Role, read_paths};
 use gaitway::library::Library;
@@ -15,7 +16,8 @@ use gaitway::state::{Command, ViewerState};
 use crate::data_folder::data_folder;
 
 pub struct Desk {
-    harness: Harness<'static, App>,
+    /// The app begins with the first frame, which has what it is made of.
+    harness: Harness<'static, Option<App>>,
     inbox: Inbox,
 }
 
@@ -27,12 +29,27 @@ pub fn desk(first: &str) -> Option<Desk> {
         eprintln!("skipped: no graphics adapter");
         return None;
     };
-    let contents = read_paths(&[first.into()], Role::Model).expect("is there");
+    let mut contents = Some(read_paths(&[first.into()], Role::Model).expect("is there"));
     let inbox = Rc::new(RefCell::new(None));
     let ready = inbox.clone();
-    let harness = Harness::builder().with_size([1280.0, 720.0]).renderer(Gpu(gpu)).build_eframe(|cc| {
-        App::new(cc, Box::new(Window), contents, None, move |inbox| *ready.borrow_mut() = Some(inbox)).expect("starts")
-    });
+    let mut frame = eframe::Frame::_new_kittest();
+    let show = move |ui: &mut egui::Ui, app: &mut Option<App>| {
+        let app = app.get_or_insert_with(|| {
+            let mut cc = eframe::CreationContext::_new_kittest(ui.ctx().clone());
+            cc.wgpu_render_state = Some(gpu.clone());
+            let (contents, ready) = (contents.take().expect("begins once"), ready.clone());
+            let ready = move |inbox| *ready.borrow_mut() = Some(inbox);
+            App::new(&cc, Box::new(Window), contents, None, ready).expect("starts")
+        });
+        // The harness leaves a margin around what it shows; the window has none.
+        let whole = ui.ctx().content_rect();
+        let mut ui = ui.new_child(egui::UiBuilder::new().max_rect(whole));
+        ui.set_clip_rect(whole);
+        let context = ui.ctx().clone();
+        app.logic(&context, &mut frame);
+        app.ui(&mut ui, &mut frame);
+    };
+    let harness = Harness::builder().with_size([1280.0, 720.0]).build_ui_state(show, None);
     let inbox = inbox.take().expect("given at the start");
     let mut desk = Desk { harness, inbox };
     desk.command(Command::TogglePlaying);
@@ -81,16 +98,20 @@ impl Desk {
         self.harness.run_steps(4);
     }
 
+    fn app(&self) -> &App {
+        self.harness.state().as_ref().expect("has begun")
+    }
+
     pub fn state(&self) -> &ViewerState {
-        self.harness.state().state()
+        self.app().state()
     }
 
     pub fn library(&self) -> &Library {
-        self.harness.state().library()
+        self.app().library()
     }
 
     pub fn problem(&self) -> Option<&str> {
-        self.harness.state().problem()
+        self.app().problem()
     }
 
     /// What the shown model was opened from.
@@ -117,19 +138,6 @@ fn gpu() -> Option<RenderState> {
     let options = native_options().wgpu_options;
     let instance = pollster::block_on(options.wgpu_setup.new_instance());
     pollster::block_on(RenderState::create(&options, &instance, None, RendererOptions::default())).ok()
-}
-
-/// Gives the app a device; what the panels look like is not drawn.
-struct Gpu(RenderState);
-
-impl TestRenderer for Gpu {
-    fn setup_eframe(&self, cc: &mut eframe::CreationContext<'_>, _frame: &mut eframe::Frame) {
-        cc.wgpu_render_state = Some(self.0.clone());
-    }
-
-    fn handle_delta(&mut self, delta: &mut egui::TexturesDelta) {
-        delta.clear();
-    }
 }
 
 struct Window;
