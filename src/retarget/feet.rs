@@ -17,8 +17,10 @@ use crate::asset::Slot;
 /// Into and out of a stand, seconds.
 const EASE_SECS: f64 = 0.12;
 
-/// A leg is never stretched further than this share of its length: a straight knee has no plane.
+/// A leg is never stretched further than this share of its length: a straight knee has no plane. Further than the second only
+/// where it is without planting: in a nearly straight leg millimetres of the foot's place turn the knee by degrees.
 const MOST_REACH: f64 = 0.999;
+const EASY_REACH: f64 = 0.99;
 
 /// Shares of the hips' height above the ground: a body that hovers by more than the first does so on purpose, and a foot that
 /// then still is off the ground by more than the second stands on something else.
@@ -236,7 +238,8 @@ impl Retargeting<'_> {
     fn drop_for(&self, leg: &Leg, target: &Reference, by: DVec3) -> f64 {
         let at = |joint: JointIndex| target.positions[joint.get()];
         let (hip, knee, ankle) = (at(leg.hip), at(leg.knee), at(leg.ankle));
-        let reach = MOST_REACH * ((knee - hip).length() + (ankle - knee).length());
+        let length = (knee - hip).length() + (ankle - knee).length();
+        let reach = (ankle - hip).length().clamp(EASY_REACH * length, MOST_REACH * length);
         let from = ankle + by - hip;
         if by.length() <= 1e-9 || from.length() <= reach {
             return 0.0;

@@ -12,7 +12,7 @@ use glam::{Affine3A, Quat, Vec3};
 
 use crate::data_folder::data_folder;
 
-fn read(folder: &Path, name: &str) -> Asset {
+pub fn read(folder: &Path, name: &str) -> Asset {
     let mut files = FileSet::default();
     files.insert(name.rsplit('/').next().unwrap(), std::fs::read(folder.join(name)).unwrap());
     load(&files).unwrap()

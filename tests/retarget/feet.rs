@@ -1,10 +1,16 @@
 //! Planted feet, on a figure that walks with its feet sliding.
 
-use gaitway::anim::{ClipBuilder, Interpolation, Keys};
+use std::collections::BTreeMap;
+
+use gaitway::anim::{Clip, ClipBuilder, Interpolation, Keys};
 use gaitway::asset::Slot;
-use gaitway::retarget::{Feet, Figures, ResolvedMap, RestChoice, Retargeted, Retargeting, RootPart};
+use gaitway::retarget::{
+    Feet, Figures, ResolvedMap, RestChoice, Retargeted, Retargeting, RootPart, propose, recognize,
+};
 use glam::{Quat, Vec3};
 
+use crate::coursework::read;
+use crate::data_folder::data_folder;
 use crate::figure::{Figure, Rig, build};
 use crate::laws::{body, map};
 
@@ -128,4 +134,39 @@ fn who_stands_well_is_left_alone() {
         (figures.foot_slide_metres_per_sec.unwrap(), figures.foot_slide_source_metres_per_sec.unwrap());
     assert!(ours <= theirs + 1e-3, "{ours} against {theirs}");
     assert!(figures.limb_direction_error_degrees_mean.unwrap() < 1.0, "{figures:?}");
+}
+
+/// In a nearly straight leg millimetres of the foot's place turn the knee by degrees: it twitches.
+#[test]
+fn a_planted_leg_is_hardly_straighter_than_it_was() {
+    let Some(folder) = data_folder() else { return };
+    let real = |file| {
+        let asset = read(&folder, file);
+        Figure { slots: recognize(&asset).humanoid(), asset, t_pose: BTreeMap::new() }
+    };
+    let (model, motion) = (real("threejs/Soldier.glb"), real("bvh/cmu_01_01.bvh"));
+    let proposed = propose(&model.asset, &motion.asset).to_map(&model.asset, &motion.asset);
+    let map = ResolvedMap { feet: Feet::Plant, ..proposed.resolve(&model.asset, &motion.asset).unwrap() };
+    let (done, _) = carry(&model, &motion, &map);
+    let legs = [
+        [Slot::LeftUpperLeg, Slot::LeftLowerLeg, Slot::LeftFoot],
+        [Slot::RightUpperLeg, Slot::RightLowerLeg, Slot::RightFoot],
+    ];
+    // 1: straight.
+    let reach = |clip: &Clip, time: f32| {
+        let world = model.world(clip, time);
+        legs.map(|leg| {
+            let [hip, knee, ankle] = leg.map(|slot| world[model.joint(slot).get()].1);
+            hip.distance(ankle) / (hip.distance(knee) + knee.distance(ankle))
+        })
+    };
+    let mut straightest: f64 = 0.0;
+    for time in (0..22 * 30).map(|frame| frame as f32 / 30.0) {
+        let (before, after) = (reach(done.unplanted.as_ref().unwrap(), time), reach(&done.clip, time));
+        for (before, after) in before.into_iter().zip(after) {
+            assert!(after < before.max(0.99) + 0.003, "at {time} s {before} became {after}");
+            straightest = straightest.max(after);
+        }
+    }
+    assert!(straightest > 0.98, "it walks: {straightest}");
 }
