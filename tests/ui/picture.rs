@@ -1,9 +1,10 @@
 //! Pointer and wheel on the picture.
 
 use egui::{Event, Modifiers, PointerButton, TouchDeviceId, TouchId, TouchPhase, pos2, vec2};
+use egui_kittest::Harness;
 use gaitway::state::{Command, Show};
 
-use crate::bench::{NARROW, WIDE, drag, sample_bench};
+use crate::bench::{Bench, NARROW, WIDE, drag, sample_bench};
 
 #[test]
 fn dragging_turns_or_moves_the_camera() {
@@ -25,11 +26,9 @@ fn dragging_turns_or_moves_the_camera() {
     }
 }
 
-#[test]
-fn the_wheel_goes_nearer() {
-    let mut harness = sample_bench(WIDE);
-    let center = harness.state().picture.center();
-    harness.event(Event::PointerMoved(center));
+/// One step of the wheel with the pointer here.
+fn wheel(harness: &mut Harness<'_, Bench>, at: egui::Pos2) -> Vec<Command> {
+    harness.event(Event::PointerMoved(at));
     harness.run();
     harness.state_mut().commands.clear();
     harness.event(Event::MouseWheel {
@@ -40,36 +39,21 @@ fn the_wheel_goes_nearer() {
         modifiers: Modifiers::NONE,
     });
     harness.run();
-    let factor: f32 = harness.state().commands.iter().fold(1.0, |factor, command| match command {
-        Command::Zoom { factor: by, right, up } => {
-            assert!(right.abs() < 1e-3 && up.abs() < 1e-3, "{right} {up}");
-            factor * by
-        }
-        other => panic!("{other:?}"),
-    });
-    assert!((0.5..0.99).contains(&factor), "{factor}");
+    std::mem::take(&mut harness.state_mut().commands)
 }
 
 #[test]
-fn the_wheel_goes_towards_the_pointer() {
+fn the_wheel_goes_nearer_towards_the_pointer() {
     let mut harness = sample_bench(WIDE);
     let picture = harness.state().picture;
-    harness.event(Event::PointerMoved(picture.center() + vec2(0.25, -0.1) * picture.height()));
-    harness.run();
-    harness.state_mut().commands.clear();
-    harness.event(Event::MouseWheel {
-        unit: egui::MouseWheelUnit::Line,
-        delta: vec2(0.0, 1.0),
-        source: egui::MouseWheelSource::Wheel,
-        phase: TouchPhase::Move,
-        modifiers: Modifiers::NONE,
-    });
-    harness.run();
-    let commands = &harness.state().commands;
-    assert!(!commands.is_empty());
-    for command in commands {
-        let Command::Zoom { right, up, .. } = command else { panic!("{command:?}") };
-        assert!((right - 0.25).abs() < 1e-3 && (up - 0.1).abs() < 1e-3, "{right} {up}");
+    for beside in [vec2(0.0, 0.0), vec2(0.25, -0.1)] {
+        let mut together = 1.0;
+        for command in wheel(&mut harness, picture.center() + beside * picture.height()) {
+            let Command::Zoom { factor, right, up } = command else { panic!("{command:?}") };
+            assert!((right - beside.x).abs() < 1e-3 && (up + beside.y).abs() < 1e-3, "{right} {up}");
+            together *= factor;
+        }
+        assert!((0.5..0.99).contains(&together), "{together}");
     }
 }
 
