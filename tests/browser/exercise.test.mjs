@@ -37,11 +37,11 @@ for (const renderer of BACK_ENDS) {
       // The switch “Turn by hand” of the chosen joint, then the knob of the first slider: egui's panels are pixels to a page.
       await apply(page, { joint: 5 });
       // egui finds what is under the pointer by the frame before.
-      await page.mouse.move(753, 118);
+      await page.mouse.move(741, 118);
       await page.waitForTimeout(500);
-      await page.mouse.click(753, 118);
+      await page.mouse.click(741, 118);
       await page.waitForTimeout(1000);
-      await page.mouse.move(648, 216);
+      await page.mouse.move(642, 216);
       await page.waitForTimeout(500);
       await page.mouse.down();
       await page.waitForTimeout(200);
@@ -49,7 +49,8 @@ for (const renderer of BACK_ENDS) {
       const { frames } = await stats(page);
       let before = (await state(page)).pose;
       for (let step = 1; step <= STEPS; step++) {
-        await page.mouse.move(648 + 2 * step, 216);
+        // egui takes the roundest number within a point to either side: no two steps have one in common.
+        await page.mouse.move(642 + 3 * step, 216);
         // Each step of the slider is shown before the next one.
         await until(page, async (before) => (await window.gaitway.state()).pose !== before, before);
         before = (await state(page)).pose;
