@@ -126,9 +126,9 @@ impl App {
         let has_map = map.is_some();
         self.state.map.extend(map.map(MotionMap::Names));
         let problems = self.refresh_motion();
-        let mut unfit = None;
+        let about_motions;
         if keeps_motions {
-            unfit = self.put_unfit_away();
+            about_motions = self.put_unfit_away();
             self.choose_borrowed(choice);
         } else {
             if is_link || !self.library.motions().is_empty() || has_map {
@@ -137,6 +137,8 @@ impl App {
             if !is_link && let Some(motion) = self.library.motions().first() {
                 self.choose_borrowed(Some(BorrowedChoice::first_of(motion)));
             }
+            let clips = self.library.active().map_or(0, |model| model.borrowed_clips().count());
+            about_motions = (clips > 0).then(|| borrowed_from(clips, self.library.motions()));
         }
         if was_loaded && !is_link {
             let is_new = self.library.models().len() + gone.len() > known;
@@ -152,8 +154,8 @@ impl App {
             };
             let hint =
                 if lacks_joints { " Its joints come with it when its .skel and .attach are opened too." } else { "" };
-            let unfit = unfit.map(|unfit| format!(" {unfit}")).unwrap_or_default();
-            self.toast_undoable(format!("{opened} {name}.{others}{gone}{hint}{unfit}"));
+            let about_motions = about_motions.map(|sentence| format!(" {sentence}")).unwrap_or_default();
+            self.toast_undoable(format!("{opened} {name}.{others}{gone}{hint}{about_motions}"));
         }
         Ok(())
     }
@@ -345,12 +347,7 @@ impl App {
         self.choose_borrowed(motions.first().map(BorrowedChoice::first_of));
         // The new clip may go elsewhere than the one that the camera was turned to.
         self.apply(Command::FrameAll);
-        let names: Vec<String> = motions.iter().map(|motion| short_name(&motion.source)).collect();
-        let clips = match clips {
-            1 => "A clip is".to_owned(),
-            clips => format!("{clips} clips are"),
-        };
-        self.toast_undoable(format!("{clips} borrowed from {}.", names.join(", ")));
+        self.toast_undoable(borrowed_from(clips, &motions));
         Ok(())
     }
 
@@ -629,6 +626,16 @@ fn about_model(about: ViewerState, before: ViewerState) -> ViewerState {
         up: about.up,
         ..before
     }
+}
+
+/// Says how many clips came from motions.
+fn borrowed_from(clips: usize, motions: &[Motion]) -> String {
+    let names: Vec<String> = motions.iter().map(|motion| short_name(&motion.source)).collect();
+    let clips = match clips {
+        1 => "A clip is".to_owned(),
+        clips => format!("{clips} clips are"),
+    };
+    format!("{clips} borrowed from {}.", names.join(", "))
 }
 
 fn is_obj(name: &str) -> bool {

@@ -178,6 +178,7 @@ fn real_files_are_put_where_they_belong() {
     // All at once: one is the model, the other its motion.
     desk.open(&[soldier, walk]);
     assert!(desk.shown().ends_with("Soldier.glb") && desk.borrowed_clips() == 1, "{}", desk.shown());
+    assert!(desk.says("Opened Soldier.glb. A clip is borrowed from cmu_01_01.bvh."));
     // Where nothing lies beside it, and then does.
     let folder = std::env::temp_dir().join(format!("gaitway-app-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("made");
