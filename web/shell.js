@@ -58,14 +58,14 @@ function refuse(message) {
 
 const EMPTY_FOLDER = "There are no files in this folder. Choose or drop one with a model in it.";
 
-/** What came with every piece of a file would keep the page from answering: no more often than it is read. */
+/** Progress is shown no more often than that: with every piece of a file it would keep the page from answering. */
 const PROGRESS_MS = 100;
 let progressAt = -Infinity;
 
 /** `total` 0: not known. */
 function showProgress(what, received, total) {
-  const isBetween = received > 0 && received !== total;
-  if (isBetween && performance.now() < progressAt + PROGRESS_MS) return;
+  const hasMore = received > 0 && received !== total;
+  if (hasMore && performance.now() < progressAt + PROGRESS_MS) return;
   progressAt = performance.now();
   const known = total > 0;
   const bar = byId("loading-progress");
@@ -379,11 +379,8 @@ function filesOf(link) {
 
 const valuesOf = (link, ...keys) => pairsOf(link).filter(([key]) => keys.includes(key)).map(([, value]) => value);
 
-/** The file that a link's value names: of one model of an archive, the archive. A folder's name may end like one. */
-function fileOf(value) {
-  const [file, member] = value.split("#/", 2);
-  return member !== undefined && (file.includes("://") || /\.zip$/i.test(file)) ? file : value;
-}
+/** The file that a link's value names: of one model of an archive, the archive. */
+const fileOf = (value) => value.split(/(?:#!\/|(?<=\.zip)#\/)/i)[0];
 
 const nameOf = (item) => (typeof item === "string" ? item : item.name);
 

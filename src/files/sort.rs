@@ -173,13 +173,13 @@ pub fn read_map(file: &str, bytes: &[u8]) -> Result<JointMap, SortError> {
         .map_err(|problem| SortError::Map { file: file.to_owned(), problem })
 }
 
-/// Between an archive and which of its models is meant, in the place where a model came from.
-const MEMBER: &str = "#/";
+/// Between the folder or archive that a model came out of and its path in there, where that is not its first model. As
+/// between a .jar and what is in it, but in a URL's fragment, which no server sees.
+const MEMBER: &str = "#!/";
 
-/// The file that something came from: of one model of an archive, the archive. A folder's name may end like one.
-pub(super) fn archive_of(origin: &str) -> &str {
-    let is_file = |name: &str| name.contains("://") || name.to_lowercase().ends_with(".zip");
-    origin.split_once(MEMBER).map(|(file, _)| file).filter(|file| is_file(file)).unwrap_or(origin)
+/// The folder or archive that one of its models came out of; of anything else, itself.
+pub(super) fn container_of(origin: &str) -> &str {
+    origin.split_once(MEMBER).map_or(origin, |(container, _)| container)
 }
 
 /// Where the files of a set came from: by their names in it, the path or address that a view lists.
@@ -204,17 +204,27 @@ impl Origins {
     pub fn contents(&self, sorted: Sorted, mut models: Vec<OpenedModel>, samples: Vec<Model>, role: Role) -> Contents {
         let (borrowed_from, shown) = if role == Role::Motion { (samples, Vec::new()) } else { (Vec::new(), samples) };
         models.extend(shown.into_iter().map(OpenedModel::from));
-        let place = |model: &OpenedModel| self.known.iter().position(|(_, origin)| *origin == model.model.origin);
-        models.sort_by_key(|model| place(model).unwrap_or(usize::MAX));
         // The first model of an archive is meant by the archive's name.
         let mut seen: Vec<String> = Vec::new();
         for OpenedModel { model, files } in &mut models {
-            let of_archive = seen.contains(&model.origin);
-            seen.push(model.origin.clone());
-            if let Some(files) = files.as_ref().filter(|_| of_archive) {
-                model.origin = format!("{}{MEMBER}{}", model.origin, files.name);
+            match files {
+                Some(files) if seen.contains(&model.origin) => {
+                    model.origin = format!("{}{MEMBER}{}", model.origin, files.name);
+                }
+                _ => seen.push(model.origin.clone()),
             }
         }
+        let place = |model: &OpenedModel| self.known.iter().position(|(_, origin)| *origin == model.model.origin);
+        models.sort_by_key(|model| place(model).unwrap_or(usize::MAX));
+        let is_missing = |origin: &str| {
+            let is_there = models.iter().any(|opened| opened.model.origin == origin);
+            role != Role::Motion && container_of(origin) != origin && !is_there
+        };
+        let missing = self.known.iter().filter(|(_, origin)| is_missing(origin));
+        let problem = |(_, origin): &(String, String)| {
+            format!("{origin}: there is no such model in this file; its first one is shown")
+        };
+        let problems = missing.map(problem).collect();
         let of_set = |(name, asset): (String, Asset)| {
             let (origin, source) = self.origin_and_source(&name);
             let mut motion = Motion::new(source, asset.into());
@@ -224,7 +234,8 @@ impl Origins {
         let of_sample = |sample: Model| Motion::new(sample.source, sample.asset);
         let motions = sorted.motions.into_iter().map(of_set).chain(borrowed_from.into_iter().map(of_sample));
         let motions: Vec<Motion> = motions.collect();
-        Contents { motions: (!motions.is_empty()).then_some(motions), models, map: sorted.map, ..Contents::default() }
+        let motions = (!motions.is_empty()).then_some(motions);
+        Contents { motions, models, map: sorted.map, problems, ..Contents::default() }
     }
 }
 
@@ -241,7 +252,7 @@ impl Contents {
     pub fn motion_sources(motions: &[Motion], model: Option<&str>) -> Vec<String> {
         let mut sources: Vec<String> = Vec::new();
         for motion in motions {
-            if model.map(archive_of) != Some(&motion.origin) && !sources.contains(&motion.origin) {
+            if model.map(container_of) != Some(&motion.origin) && !sources.contains(&motion.origin) {
                 sources.push(motion.origin.clone());
             }
         }

@@ -8,7 +8,7 @@ use wasm_bindgen::{JsCast, JsValue};
 use wasm_bindgen_futures::JsFuture;
 
 use super::image_limit::{fitted, made_smaller};
-use super::sort::{Origins, archive_of, sort_noticing_images};
+use super::sort::{Origins, container_of, sort_noticing_images};
 use super::{Contents, OpenedModel, Role, SortError, raw_address, read_map};
 use crate::asset::{Asset, Image, Warning};
 use crate::formats::{FileSet, missing_files};
@@ -79,7 +79,7 @@ pub async fn open_items(
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<Contents, OpenError> {
     let source = source_of(&items).ok_or(OpenError::Nothing)?;
-    let mut origins = Origins { other: archive_of(&source).to_owned(), ..Origins::default() };
+    let mut origins = Origins { other: container_of(&source).to_owned(), ..Origins::default() };
     let mut set = FileSet::default();
     let mut samples: Vec<Model> = Vec::new();
     let mut bases = Vec::new();
@@ -182,17 +182,15 @@ pub async fn open_view(
         let items = state.model.iter().map(|model| Item::Url(model.clone())).collect();
         contents = open_items(items, Role::Model, progress).await?;
         if let [named] = &mut state.model[..]
-            && archive_of(named) != *named
             && !contents.models.iter().any(|opened| opened.model.origin == *named)
         {
-            contents.problems.push(format!("{named}: there is no such model in this file; its first one is shown"));
-            *named = archive_of(named).to_owned();
+            *named = container_of(named).to_owned();
         }
     }
     let mut motions = contents.motions.take().unwrap_or_default();
     // What came with the model out of one archive is not listed.
     let is_of_model = |motion: &&Motion| {
-        state.model.iter().any(|model| archive_of(model) == motion.origin) && !state.motion.contains(&motion.origin)
+        state.model.iter().any(|model| container_of(model) == motion.origin) && !state.motion.contains(&motion.origin)
     };
     motions.extend(held.iter().filter(is_of_model).cloned());
     for source in &state.motion {

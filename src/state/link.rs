@@ -286,7 +286,7 @@ enum Read {
 fn read_value(state: &mut ViewerState, key: &str, value: &str) -> Read {
     match key {
         "v" => return if value == "1" { Read::Done } else { Read::Bad("1, the only version there is") },
-        "model" => state.model.push(value.to_owned()),
+        "model" => state.model.push(with_current_member(value)),
         "motion" => state.motion.push(value.to_owned()),
         "map" => match read_map(value) {
             Some(map) => state.map.push(map),

@@ -163,8 +163,8 @@ fn of_an_archive_a_link_names_the_model_that_is_shown() {
     let file = archive.file_name().and_then(|name| name.to_str()).expect("has a name").to_owned();
     assert_eq!(desk.state().model, std::slice::from_ref(&file), "the first one");
     desk.press("dwarf.glb");
-    assert_eq!(desk.state().model, [format!("{file}#/in/dwarf.glb")]);
-    assert!(to_link(desk.state()).contains("%23/in/dwarf.glb"), "{}", to_link(desk.state()));
+    assert_eq!(desk.state().model, [format!("{file}#!/in/dwarf.glb")]);
+    assert!(to_link(desk.state()).contains("%23!/in/dwarf.glb"), "{}", to_link(desk.state()));
 }
 
 #[test]

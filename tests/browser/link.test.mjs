@@ -177,26 +177,30 @@ for (const renderer of BACK_ENDS)
     /** Two models in one file, of which the fox is the first. */
     const TWO = () => archive({ "a/fox.glb": fs.readFileSync(path.join(dataFolder, FOX)), "b/man.glb": fs.readFileSync(path.join(dataFolder, CESIUM_MAN)) });
 
-    onPage("names one of the models of an archive", () => (fs.writeFileSync(path.join(folder, "two.zip"), TWO()), fragment([["model", `${own.origin}/two.zip#/b/man.glb`]])), async (page) => {
+    onPage("names one of the models of an archive", () => (fs.writeFileSync(path.join(folder, "two.zip"), TWO()), fragment([["model", `${own.origin}/two.zip#!/b/man.glb`]])), async (page) => {
       await whenShown(page, CESIUM_MAN_VERTICES);
-      assert.deepEqual((await state(page)).model, [`${own.origin}/two.zip#/b/man.glb`]);
+      assert.deepEqual((await state(page)).model, [`${own.origin}/two.zip#!/b/man.glb`]);
       await page.goto(page.url().replace("man.glb", "gone.glb"));
       await page.reload();
       await whenMissing(page);
-      assert.match((await missing(page)).join(), /two\.zip#\/b\/gone\.glb: there is no such model in this file; its first one is shown/);
+      assert.match((await missing(page)).join(), /two\.zip#!\/b\/gone\.glb: there is no such model in this file; its first one is shown/);
       await whenShown(page, FOX_VERTICES);
+      // As an address that is opened, too.
+      await page.locator("#missing").press("Escape");
+      await open(page, `${own.origin}/two.zip#!/b/man.glb`);
+      await whenShown(page, CESIUM_MAN_VERTICES);
     });
 
-    onPage("waits for an archive that is to be brought and shows its model", () => fragment([["model", "file:two.zip#/b/man.glb"], ["t", 0.5], ["play", 0]]), async (page) => {
+    onPage("waits for an archive that is to be brought and shows its model", () => fragment([["model", "file:two.zip#!/b/man.glb"], ["t", 0.5], ["play", 0]]), async (page) => {
       fs.writeFileSync(path.join(folder, "two.zip"), TWO());
       assert.match(await page.locator("#bring-files").innerText(), /^two\.zip \(the model\)$/);
       await page.keyboard.press("Escape");
       await drop(page, [{ name: "two.zip", url: `${own.origin}/two.zip` }]);
       await whenShown(page, CESIUM_MAN_VERTICES);
-      assert.deepEqual([(await state(page)).model, (await state(page)).t], [["two.zip#/b/man.glb"], 0.5]);
+      assert.deepEqual([(await state(page)).model, (await state(page)).t], [["two.zip#!/b/man.glb"], 0.5]);
       await share(page);
       assert.match(await page.locator("#share-local").innerText(), /two\.zip \(the model\)/);
-      assert.ok((await linkOf(page)).includes("model=file:two.zip%23%2Fb%2Fman.glb"), await linkOf(page));
+      assert.ok((await linkOf(page)).includes("model=file:two.zip%23!%2Fb%2Fman.glb"), await linkOf(page));
     });
 
     onPage("goes back and forward through models, dropped ones too", () => fragment([["model", site.data(FOX)]]), async (page) => {

@@ -318,3 +318,12 @@ fn an_object_changes_only_its_keys() {
     let (same, errors) = from_object(&state, &serde_json::json!("t=1"));
     assert_eq!((same, errors.len()), (state, 1));
 }
+
+#[test]
+fn an_early_link_to_a_model_in_an_archive_keeps_working() {
+    let (state, errors) = from_link("v=1&model=https://example.org/two.zip%23/in/fox.glb");
+    assert_eq!(state.model, ["https://example.org/two.zip#!/in/fox.glb"]);
+    assert!(errors.is_empty(), "{errors:?}");
+    let (state, _) = from_link("v=1&model=https://example.org/two.zip%23!/in/fox.glb&model=fox.glb%23/b");
+    assert_eq!(state.model, ["https://example.org/two.zip#!/in/fox.glb", "fox.glb#/b"]);
+}

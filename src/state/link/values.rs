@@ -304,3 +304,13 @@ pub(super) fn read_background(text: &str) -> Option<Background> {
         }
     }
 }
+
+/// An early version wrote `ARCHIVE#/MEMBER` where links now have `ARCHIVE#!/MEMBER`.
+pub(super) fn with_current_member(value: &str) -> String {
+    match value.split_once("#/") {
+        Some((file, member)) if file.contains("://") || file.to_lowercase().ends_with(".zip") => {
+            format!("{file}#!/{member}")
+        }
+        _ => value.to_owned(),
+    }
+}
