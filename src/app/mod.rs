@@ -1,10 +1,12 @@
 //! The frame loop: owns the state, the library, the renderer and the panels.
 
+mod borrow;
 mod device;
 mod host;
 mod inbox;
 #[cfg(not(target_arch = "wasm32"))]
 mod native;
+mod notices;
 mod open;
 mod png;
 mod record;

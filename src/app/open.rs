@@ -1,22 +1,15 @@
-//! What becomes of opened files: a model is shown and the others wait beside it, motions are borrowed from, a joint map is
-//! put in force. What does not work leaves everything as it was; what works can be undone.
+//! What becomes of opened files: a model is shown and the others wait beside it. What does not work leaves everything as it
+//! was; what works can be undone. Motions and maps that came with it: see `borrow`.
 
 use std::sync::Arc;
 
 use super::App;
+use super::borrow::{BorrowedChoice, borrowed_from};
 use crate::files::{Contents, ModelFiles, OpenedModel};
-use crate::library::{BorrowError, BorrowedClip, Library, Loaded, Model, ModelId, Motion};
-use crate::retarget::{JointMap, MapError, propose};
-use crate::state::{
-    ClipChoice, Command, MapEdit, MotionMap, NumberedMap, Show, ViewerState, active_clip, choice_of_clip,
-    maps_in_force, names_checksum, numbered, settled_maps,
-};
-use crate::ui::{Tab, Toast, short_name};
-
-/// Motions that could not be borrowed from, kept so that the person can say what to do with them.
-pub(super) struct Refused {
-    motions: Vec<Motion>,
-}
+use crate::library::{Library, Loaded, Model, ModelId, Motion};
+use crate::retarget::JointMap;
+use crate::state::{MotionMap, Show, ViewerState};
+use crate::ui::short_name;
 
 /// What is kept of a loaded model besides the model.
 #[derive(Default)]
@@ -25,24 +18,6 @@ pub(super) struct Shelved {
     pub files: Option<ModelFiles>,
     /// How it was shown when another was turned to, and what it borrowed then.
     left: Option<(ViewerState, Vec<Motion>)>,
-}
-
-/// A borrowed clip, whichever model it is made over for.
-struct BorrowedChoice {
-    origin: String,
-    source: String,
-    source_clip: usize,
-    time_secs: f64,
-}
-
-impl BorrowedChoice {
-    fn first_of(motion: &Motion) -> Self {
-        Self { origin: motion.origin.clone(), source: motion.source.clone(), source_clip: 0, time_secs: 0.0 }
-    }
-
-    fn is_of(&self, motion: &Motion) -> bool {
-        self.origin == motion.origin && self.source == motion.source
-    }
 }
 
 impl App {
@@ -173,7 +148,7 @@ impl App {
     }
 
     /// Brings the shown model to the device; where that does not work, what was there before is shown again.
-    fn upload(&mut self, before: &Option<(ViewerState, Loaded)>) -> Result<(), String> {
+    pub(super) fn upload(&mut self, before: &Option<(ViewerState, Loaded)>) -> Result<(), String> {
         let Some(Err(error)) = self.library.active().map(|model| self.scene.upload(model, None)) else { return Ok(()) };
         if let Some((_, loaded)) = before {
             self.library.restore(loaded.clone());
@@ -183,12 +158,12 @@ impl App {
     }
 
     /// What a step back leads to; none before there is anything.
-    fn before_opening(&self) -> Option<(ViewerState, Loaded)> {
+    pub(super) fn before_opening(&self) -> Option<(ViewerState, Loaded)> {
         self.library.active().map(|_| (self.state.clone(), self.library.loaded()))
     }
 
     /// Makes a step of what was done since, and keeps the view of the model that was shown.
-    fn remember(&mut self, before: Option<(ViewerState, Loaded)>) {
+    pub(super) fn remember(&mut self, before: Option<(ViewerState, Loaded)>) {
         let Some((state, loaded)) = before else { return };
         if loaded.model != self.library.loaded().model
             && let Some(shelved) = self.shelf.get_mut(&loaded.model)
@@ -231,7 +206,7 @@ impl App {
         state.model == self.state.model || self.held(state).is_some()
     }
 
-    fn held(&self, state: &ViewerState) -> Option<ModelId> {
+    pub(super) fn held(&self, state: &ViewerState) -> Option<ModelId> {
         let [name] = &state.model[..] else { return None };
         let known = self.library.models().iter().rev().find(|model| model.origin == *name)?;
         Some(known.id)
@@ -303,254 +278,11 @@ impl App {
         self.toast_undoable(format!("Closed {name}."));
     }
 
-    /// Borrows from these files too; one that is there already is read anew. Without a state the view stays, and the first
-    /// clip that came is chosen; when none did, everything stays as it was.
-    fn borrow_from(
-        &mut self,
-        motions: Vec<Motion>,
-        map: Option<JointMap>,
-        state: Option<ViewerState>,
-    ) -> Result<(), String> {
-        let before = self.before_opening();
-        if let Some(state) = state {
-            if state.model != self.state.model {
-                let held = self.held(&state).ok_or("something else was opened meanwhile")?;
-                self.library.show(held);
-                self.upload(&before)?;
-            }
-            self.remember(before);
-            self.state = state;
-            self.state.map.extend(map.map(MotionMap::Names));
-            self.library.set_motions(motions);
-            let problems = self.refresh_motion();
-            self.tell(problems);
-            return Ok(());
-        }
-        let problems = self.borrow_also(motions.clone(), map.map(MotionMap::Names))?;
-        let first = self.library.motions().len() - motions.len();
-        let clips = self
-            .library
-            .active()
-            .map_or(0, |model| model.borrowed_clips().filter(|(_, borrowed)| borrowed.motion >= first).count());
-        if clips == 0 && !motions.is_empty() {
-            if let Some((state, loaded)) = before {
-                self.library.restore(loaded);
-                self.state = state;
-            }
-            self.refresh_motion();
-            self.refused = Some(Refused { motions });
-            self.panels.motion_refused = true;
-            return Err(self.why_refused(problems));
-        }
-        self.remember(before);
-        self.tell(problems);
-        self.choose_borrowed(motions.first().map(BorrowedChoice::first_of));
-        // The new clip may go elsewhere than the one that the camera was turned to.
-        self.apply(Command::FrameAll);
-        self.toast_undoable(borrowed_from(clips, &motions));
-        Ok(())
-    }
-
-    /// Puts motions behind those that are there; what came from the same places gives way. Gives back what does not work.
-    /// `maps` are for them.
-    fn borrow_also(
-        &mut self,
-        motions: Vec<Motion>,
-        maps: impl IntoIterator<Item = MotionMap>,
-    ) -> Result<Vec<String>, String> {
-        let is_new = |known: &Motion| motions.iter().any(|motion| motion.origin == known.origin);
-        let mut all: Vec<Motion> = self.library.motions().iter().filter(|known| !is_new(known)).cloned().collect();
-        all.extend(motions);
-        let (together, most) = (all.len(), Library::MOST_MOTIONS);
-        if together > most {
-            return Err(format!("{together} motions together; at most {most} are borrowed from, remove some first"));
-        }
-        self.state.map.extend(maps);
-        let model = self.library.active().map(|model| model.origin.clone());
-        self.state.motion = Contents::motion_sources(&all, model.as_deref());
-        self.library.set_motions(all);
-        Ok(self.refresh_motion())
-    }
-
-    /// The page offers what else can be done, where other places say how to write a map.
-    fn why_refused(&self, problems: Vec<String>) -> String {
-        let Some(Refused { motions, .. }) = &self.refused else { return problems.join("\n") };
-        let (Some(model), [motion]) = (self.library.active(), &motions[..]) else { return problems.join("\n") };
-        let has_clips = !motion.asset.clips.is_empty();
-        if has_clips && propose(&model.asset, &motion.asset).pairs.is_empty() {
-            return format!(
-                "{}: it has no joint in common with {}: neither names nor parts of a body agree",
-                short_name(&motion.source),
-                short_name(&model.source)
-            );
-        }
-        problems.join("\n")
-    }
-
-    /// Puts a map in force for every motion that it fits.
-    fn use_map(&mut self, map: &JointMap) -> Result<(), String> {
-        let Some(model) = self.library.active() else { return Ok(()) };
-        if self.library.motions().is_empty() {
-            return Err(
-                "this is a joint map, and there is no motion to use it for; open the motion first, or both together"
-                    .to_owned(),
-            );
-        }
-        let mut fitting = Vec::new();
-        let mut problem = None;
-        for (index, motion) in self.library.motions().iter().enumerate() {
-            match numbered(map, &model.asset, &motion.asset) {
-                Ok(map) => fitting.push((index, map)),
-                Err(error) => problem = problem.or(Some(format!("{}: {error}", motion.source))),
-            }
-        }
-        if let Some(problem) = problem.filter(|_| fitting.is_empty()) {
-            return Err(problem);
-        }
-        let names: Vec<String> = fitting
-            .iter()
-            .filter_map(|(motion, _)| Some(short_name(&self.library.motions().get(*motion)?.source)))
-            .collect();
-        self.history.end_gesture();
-        let steps = self.history.steps();
-        for (motion, map) in fitting {
-            self.apply(Command::EditMap { motion, edit: MapEdit::Load(Box::new(map)) });
-        }
-        self.history.end_gesture();
-        let text = format!("The joint map is used for {}.", names.join(", "));
-        if self.history.steps() == steps {
-            self.toast(text)
-        } else {
-            self.toast_undoable(text)
-        }
-        Ok(())
-    }
-
-    /// Makes the borrowed clips again if anything they hang on has changed, and gives back what does not work and has not
-    /// been told before.
-    pub(super) fn refresh_motion(&mut self) -> Vec<String> {
-        let (maps, problems) = settled_maps(&self.library, &self.state);
-        let mut told: Vec<String> = problems.iter().map(ToString::to_string).collect();
-        if maps != self.state.map {
-            self.history.apply(&mut self.state, &self.library, Command::SettleMaps);
-            self.changed = true;
-        }
-        let maps = maps_in_force(&self.library, &self.state);
-        if self.library.borrow_each(maps) {
-            self.dirty = true;
-            let errors = self.library.borrow_errors().iter().filter(|error| !is_unfinished(error));
-            let errors: Vec<String> = errors.map(ToString::to_string).collect();
-            told.extend(errors.iter().filter(|error| !self.borrow_errors.contains(error)).cloned());
-            self.borrow_errors = errors;
-        }
-        told
-    }
-
-    pub(super) fn tell(&mut self, problems: Vec<String>) {
-        if !problems.is_empty() {
-            let before = self.panels.error.take().into_iter();
-            self.panels.error = Some(before.chain(problems).collect::<Vec<_>>().join("\n"));
-        }
-    }
-
-    fn borrowed_choice(&self) -> Option<BorrowedChoice> {
-        let model = self.library.active()?;
-        let borrowed = model.borrowed(active_clip(model, &self.state)?)?;
-        let choice = BorrowedChoice::first_of(self.library.motions().get(borrowed.motion)?);
-        Some(BorrowedChoice { source_clip: borrowed.source_clip, time_secs: self.state.time_secs, ..choice })
-    }
-
-    /// Plays this clip, else the first borrowed one; nothing for none.
-    fn choose_borrowed(&mut self, choice: Option<BorrowedChoice>) {
-        let (Some(choice), Some(model)) = (choice, self.library.active()) else { return };
-        let is_it = |borrowed: &BorrowedClip| {
-            let motion = self.library.motions().get(borrowed.motion);
-            borrowed.source_clip == choice.source_clip && motion.is_some_and(|motion| choice.is_of(motion))
-        };
-        let found = model.borrowed_clips().find(|(_, borrowed)| is_it(borrowed));
-        if let Some((clip, _)) = found.or_else(|| model.borrowed_clips().next()) {
-            let found = found.is_some();
-            let clip = choice_of_clip(model, clip);
-            self.apply(Command::SetClip(clip));
-            if found {
-                self.apply(Command::Seek(choice.time_secs));
-            }
-        }
-    }
-
-    /// A model is shown that motions do not fit: they go, without an error, since nobody asked for them. Gives back what is
-    /// to be said about it.
-    fn put_unfit_away(&mut self) -> Option<String> {
-        let model = self.library.active()?;
-        let fits = |motion: usize| model.borrowed_clips().any(|(_, borrowed)| borrowed.motion == motion);
-        let motions = self.library.motions().iter().cloned().enumerate();
-        let (fit, unfit): (Vec<_>, Vec<_>) = motions.partition(|(index, _)| fits(*index));
-        if unfit.is_empty() {
-            return None;
-        }
-        let names: Vec<String> = unfit.iter().map(|(_, motion)| short_name(&motion.source)).collect();
-        self.borrow_only(fit.into_iter().map(|(_, motion)| motion).collect());
-        Some(format!("Nothing is borrowed from {} any more: it does not fit this model.", names.join(", ")))
-    }
-
-    /// Lets go of all motions but these.
-    fn borrow_only(&mut self, motions: Vec<Motion>) {
-        let model = self.library.active().map(|model| model.origin.clone());
-        self.state.motion = Contents::motion_sources(&motions, model.as_deref());
-        if motions.is_empty() {
-            self.state.map.clear();
-            (self.state.unmapped, self.state.root, self.state.feet) = (None, None, None);
-        }
-        self.library.set_motions(motions);
-        self.refresh_motion();
-        (self.dirty, self.changed) = (true, true);
-    }
-
-    /// A toast with a way back.
-    fn toast_undoable(&mut self, text: String) {
-        self.toast(text);
-        if let Some(toast) = &mut self.panels.toast {
-            toast.undoable = true;
-            toast.until_secs += Toast::UNDOABLE_SECS;
-        }
-        self.toasted_steps = self.history.steps();
-    }
-
-    /// The button of a toast takes back what the toast says: it goes when that is not the last step any more.
-    pub(super) fn watch_toast(&mut self) {
-        let steps = self.history.steps();
-        self.panels.toast.take_if(|toast| toast.undoable && steps != self.toasted_steps);
-    }
-
     /// Whether anything that is shown or borrowed from is a person's own.
     pub fn is_private(&self) -> bool {
         self.has_own_map
             || self.library.active().is_some_and(|model| model.is_own)
             || self.library.motions().iter().any(|motion| motion.is_own)
-    }
-
-    pub(super) fn toast(&mut self, text: String) {
-        const SECS: f64 = 2.5;
-        const SECS_PER_LETTER: f64 = 0.03;
-        let secs = SECS + SECS_PER_LETTER * text.len() as f64;
-        let until_secs = self.context.input(|input| input.time) + secs;
-        self.panels.toast = Some(Toast { text, until_secs, undoable: false });
-    }
-
-    /// Borrows no more from a motion, and from what came with it out of the same archive.
-    pub(super) fn remove_motion(&mut self, index: usize) {
-        let Some(motion) = self.library.motions().get(index) else { return };
-        let (origin, name) = (motion.origin.clone(), short_name(&motion.origin));
-        let others = self.library.motions().iter().filter(|motion| motion.origin != origin).cloned().collect();
-        let before = self.before_opening();
-        let choice = self.borrowed_choice();
-        self.borrow_only(others);
-        self.remember(before);
-        match choice {
-            Some(_) if self.library.motions().is_empty() => self.apply(Command::SetClip(ClipChoice::First)),
-            choice => self.choose_borrowed(choice),
-        }
-        self.toast_undoable(format!("Nothing is borrowed from {name} any more."));
     }
 
     /// Shows a motion's own skeleton instead of the model; nothing is borrowed then.
@@ -561,41 +293,6 @@ impl App {
         if let Err(error) = self.show_models(vec![model.into()], Some(Vec::new()), None, None) {
             self.panels.error = Some(error);
         }
-        self.dirty = true;
-        self.changed = true;
-    }
-
-    pub(super) fn show_refused_alone(&mut self) {
-        if let Some(Refused { motions }) = self.refused.take()
-            && let Some(motion) = motions.first()
-        {
-            self.show_motion_alone(motion);
-        }
-    }
-
-    /// Takes refused motions in with empty maps, to be filled in by hand.
-    pub(super) fn map_refused_by_hand(&mut self) {
-        let (Some(Refused { motions }), Some(model)) = (self.refused.take(), self.library.active()) else {
-            return;
-        };
-        let before = self.before_opening();
-        let mut maps: Vec<MotionMap> = Vec::new();
-        for motion in &motions {
-            let checksum = names_checksum(&model.asset, &motion.asset);
-            let map = MotionMap::Numbers(NumberedMap { checksum, map: JointMap::default() });
-            if !self.state.map.contains(&map) && !maps.contains(&map) {
-                maps.push(map);
-            }
-        }
-        match self.borrow_also(motions, maps) {
-            Ok(problems) => {
-                self.remember(before);
-                self.tell(problems);
-            }
-            Err(error) => self.tell(vec![error]),
-        }
-        self.panels.tab = Tab::Motion;
-        self.panels.inspector_open = true;
         self.dirty = true;
         self.changed = true;
     }
@@ -628,21 +325,6 @@ fn about_model(about: ViewerState, before: ViewerState) -> ViewerState {
     }
 }
 
-/// Says how many clips came from motions.
-fn borrowed_from(clips: usize, motions: &[Motion]) -> String {
-    let names: Vec<String> = motions.iter().map(|motion| short_name(&motion.source)).collect();
-    let clips = match clips {
-        1 => "A clip is".to_owned(),
-        clips => format!("{clips} clips are"),
-    };
-    format!("{clips} borrowed from {}.", names.join(", "))
-}
-
 fn is_obj(name: &str) -> bool {
     name.to_lowercase().ends_with(".obj")
-}
-
-/// A map without any pair is one that a person has just begun.
-fn is_unfinished(error: &BorrowError) -> bool {
-    matches!(error, BorrowError::Map { problem: MapError::NothingMapped, .. })
 }

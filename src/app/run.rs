@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::open::{Refused, Shelved};
+use super::borrow::Refused;
+use super::open::Shelved;
 use super::record::Recording;
 use super::scene_texture::SceneTexture;
 use super::{Host, Inbox, Message, Opening, Reply, ScriptCall, device, encode_png};
@@ -157,11 +158,10 @@ impl App {
             }
             Message::OpenFailed(error) => {
                 self.panels.progress = None;
-                self.panels.motion_refused = false;
-                self.panels.error = Some(error);
+                self.fail(error);
             }
             Message::OpenGivenUp => self.panels.progress = None,
-            Message::Failed(error) => self.panels.error = Some(error),
+            Message::Failed(error) => self.fail(error),
             Message::Save(name, bytes) => {
                 self.host.save_file(&name, &bytes);
                 self.toast(format!("Saved {name}."));
@@ -363,42 +363,6 @@ impl App {
             }
             UiAction::Undo => self.step(true),
             UiAction::Redo => self.step(false),
-        }
-    }
-
-    /// One step back, or on again. That another model is shown then, or that a motion goes or comes, is said: it may have
-    /// been opened long before.
-    fn step(&mut self, back: bool) {
-        let shown = |app: &Self| app.library.active().map(|model| (model.id, ui::short_name(&model.source)));
-        let shown_before = shown(self);
-        let borrowed = |app: &Self| -> Vec<String> {
-            app.library.motions().iter().map(|motion| ui::short_name(&motion.source)).collect()
-        };
-        let before = borrowed(self);
-        let done = match back {
-            true => self.history.undo(&mut self.state, &mut self.library),
-            false => self.history.redo(&mut self.state, &mut self.library),
-        };
-        self.dirty |= done;
-        self.changed |= done;
-        // What it said was about another step.
-        self.panels.toast.take_if(|_| done);
-        let problems = self.refresh_motion();
-        self.tell(problems);
-        let after = borrowed(self);
-        let only_in = |some: &[String], others: &[String]| -> String {
-            some.iter().filter(|name| !others.contains(name)).cloned().collect::<Vec<_>>().join(", ")
-        };
-        let (gone, come) = (only_in(&before, &after), only_in(&after, &before));
-        let keys = if back { "Ctrl+Y" } else { "Ctrl+Z" };
-        if !gone.is_empty() {
-            self.toast(format!("Nothing is borrowed from {gone} any more. {keys} brings it back."));
-        } else if !come.is_empty() {
-            self.toast(format!("Borrowed from {come} again."));
-        } else if let (Some((before, old)), Some((now, new))) = (shown_before, shown(self))
-            && before != now
-        {
-            self.toast(format!("{new} is shown again. {keys} leads back to {old}."));
         }
     }
 

@@ -27,3 +27,9 @@ pub use headless::finished;
 pub use headless::headless_device;
 pub use headless::{HeadlessError, read_pixels};
 pub use renderer::{RenderStats, Renderer, RendererOptions, UploadError};
+
+/// Hands over what was asked of the device so far. A browser's graphics process answers others between submissions only, so
+/// what takes long there is handed over by itself.
+fn flush(queue: &wgpu::Queue) {
+    queue.submit([]);
+}

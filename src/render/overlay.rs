@@ -6,7 +6,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use wgpu::util::DeviceExt;
 
-use super::pipelines::{BLENDED, Layouts, ScenePipeline, pipeline_layout};
+use super::pipelines::{Layouts, ScenePipeline, pipeline_layout};
 use super::shaders;
 use crate::frame::{Bone, Line};
 
@@ -86,22 +86,12 @@ impl OverlayPipelines {
         let line_module = shaders::LINES.module(device);
         let line_attributes = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32, 2 => Float32x3, 3 => Float32x4];
         let lines = ScenePipeline {
-            label: "lines",
-            module: &line_module,
-            layout: &frame_layout,
-            vertex: "line_vertex",
-            fragment: "line_fragment",
-            constants: &[],
             buffers: &[Some(wgpu::VertexBufferLayout {
                 array_stride: size_of::<LineInstance>() as u64,
                 step_mode: wgpu::VertexStepMode::Instance,
                 attributes: &line_attributes,
             })],
-            depth_write: false,
-            depth_compare: wgpu::CompareFunction::LessEqual,
-            writes: wgpu::ColorWrites::ALL,
-            blend: BLENDED,
-            cull: None,
+            ..ScenePipeline::new("lines", &line_module, &frame_layout, ["line_vertex", "line_fragment"])
         }
         .create(device, samples);
 
@@ -109,12 +99,6 @@ impl OverlayPipelines {
         let bone_shape = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x4];
         let bone_instance = wgpu::vertex_attr_array![2 => Float32x3, 3 => Float32, 4 => Float32x3, 5 => Float32x4];
         let bones = ScenePipeline {
-            label: "bones",
-            module: &bone_module,
-            layout: &frame_layout,
-            vertex: "bone_vertex",
-            fragment: "bone_fragment",
-            constants: &[],
             buffers: &[
                 Some(wgpu::VertexBufferLayout {
                     array_stride: size_of::<BoneVertex>() as u64,
@@ -128,27 +112,17 @@ impl OverlayPipelines {
                 }),
             ],
             depth_write: true,
-            depth_compare: wgpu::CompareFunction::LessEqual,
-            writes: wgpu::ColorWrites::ALL,
-            blend: BLENDED,
             cull: Some(wgpu::Face::Back),
+            ..ScenePipeline::new("bones", &bone_module, &frame_layout, ["bone_vertex", "bone_fragment"])
         }
         .create(device, samples);
 
         let clear_module = shaders::DEPTH_CLEAR.module(device);
         let clear_depth = ScenePipeline {
-            label: "clear depth",
-            module: &clear_module,
-            layout: &empty_layout,
-            vertex: "full_screen",
-            fragment: "nothing",
-            constants: &[],
-            buffers: &[],
             depth_write: true,
             depth_compare: wgpu::CompareFunction::Always,
             writes: wgpu::ColorWrites::empty(),
-            blend: BLENDED,
-            cull: None,
+            ..ScenePipeline::new("clear depth", &clear_module, &empty_layout, ["full_screen", "nothing"])
         }
         .create(device, samples);
         Self { lines, bones, clear_depth }

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use super::flush;
 use super::geometry::{InfluenceSource, vertex_buffers};
 use super::shaders;
 use super::shadow::SHADOW_FORMAT;
@@ -166,11 +167,6 @@ pub(super) struct Pipelines {
     pub background: wgpu::RenderPipeline,
 }
 
-/// A browser's graphics process answers others between submissions only: what takes long there is on its own.
-pub(super) fn answer_others(queue: &wgpu::Queue) {
-    queue.submit([]);
-}
-
 pub(super) fn pipeline_layout(
     device: &wgpu::Device,
     label: &str,
@@ -183,7 +179,7 @@ pub(super) fn pipeline_layout(
     })
 }
 
-pub(super) const BLENDED: Option<wgpu::BlendState> = Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING);
+const BLENDED: Option<wgpu::BlendState> = Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING);
 
 /// A pipeline that draws into the scene with one of the simple shaders.
 pub(super) struct ScenePipeline<'a> {
@@ -201,7 +197,31 @@ pub(super) struct ScenePipeline<'a> {
     pub cull: Option<wgpu::Face>,
 }
 
-impl ScenePipeline<'_> {
+impl<'a> ScenePipeline<'a> {
+    /// Blended over what is there, hidden by what is in front of it. The last are the entry points of the vertex and
+    /// of the fragment shader.
+    pub fn new(
+        label: &'a str,
+        module: &'a wgpu::ShaderModule,
+        layout: &'a wgpu::PipelineLayout,
+        [vertex, fragment]: [&'a str; 2],
+    ) -> Self {
+        Self {
+            label,
+            module,
+            layout,
+            vertex,
+            fragment,
+            constants: &[],
+            buffers: &[],
+            depth_write: false,
+            depth_compare: wgpu::CompareFunction::LessEqual,
+            writes: wgpu::ColorWrites::ALL,
+            blend: BLENDED,
+            cull: None,
+        }
+    }
+
     pub fn create(&self, device: &wgpu::Device, samples: u32) -> wgpu::RenderPipeline {
         let options =
             || wgpu::PipelineCompilationOptions { constants: self.constants, zero_initialize_workgroup_memory: false };
@@ -249,44 +269,24 @@ impl Pipelines {
         let taps = [("SHADOW_TAPS", if samples > 1 { 12.0 } else { 4.0 })];
         let ground = |label, vertex, fragment| {
             ScenePipeline {
-                label,
-                module: &ground_module,
-                layout: &ground_layout,
-                vertex,
-                fragment,
                 constants: &taps,
-                buffers: &[],
-                depth_write: false,
-                depth_compare: wgpu::CompareFunction::LessEqual,
-                writes: wgpu::ColorWrites::ALL,
-                blend: BLENDED,
-                cull: None,
+                ..ScenePipeline::new(label, &ground_module, &ground_layout, [vertex, fragment])
             }
             .create(device, samples)
         };
         let grid = ground("grid", "grid_vertex", "grid_fragment");
         let ground_shadow = ground("ground shadow", "shadow_vertex", "shadow_fragment");
-        answer_others(queue);
+        flush(queue);
 
         let background_module = shaders::BACKDROP.module(device);
+        // Behind everything: only worked out where it is seen.
         let background = ScenePipeline {
-            label: "background",
-            module: &background_module,
-            layout: &frame_layout,
-            vertex: "full_screen",
-            fragment: "backdrop",
-            constants: &[],
-            buffers: &[],
-            depth_write: false,
-            // Behind everything, so that it is only worked out where it is seen.
-            depth_compare: wgpu::CompareFunction::LessEqual,
-            writes: wgpu::ColorWrites::ALL,
             blend: None,
-            cull: None,
+            ..ScenePipeline::new("background", &background_module, &frame_layout, ["full_screen", "backdrop"])
         }
         .create(device, samples);
         let mesh_module = shaders::MESH.module(device);
-        answer_others(queue);
+        flush(queue);
         Self {
             queue: queue.clone(),
             samples,
@@ -307,7 +307,7 @@ impl Pipelines {
         let pipeline = MeshPipeline(self.meshes.len());
         self.meshes.push(self.create_mesh(device, key));
         self.by_key.insert(key, pipeline);
-        answer_others(&self.queue);
+        flush(&self.queue);
         pipeline
     }
 

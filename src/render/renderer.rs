@@ -2,11 +2,12 @@
 
 use super::draw_list::{DrawList, Item};
 use super::environment::Environment;
+use super::flush;
 use super::frame_uniform::{GroundPlane, frame_uniform};
 use super::model::{GpuModel, ModelUploader};
 use super::overlay::Overlay;
 use super::palette::PaletteTexture;
-use super::pipelines::{Layouts, Pipelines, answer_others};
+use super::pipelines::{Layouts, Pipelines};
 use super::shadow::ShadowMap;
 use super::targets::Targets;
 use super::uniforms::FrameUniform;
@@ -99,10 +100,10 @@ impl UniformBuffer {
 
 impl Renderer {
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, options: RendererOptions) -> Self {
-        answer_others(queue);
+        flush(queue);
         let layouts = Layouts::new(device);
         let environment = Environment::new(device, queue);
-        answer_others(queue);
+        flush(queue);
         let shadow_map = ShadowMap::new(device);
         let palette = PaletteTexture::new(device);
         let frame_buffer = UniformBuffer::new(device, "frame");

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::pipelines::answer_others;
+use super::flush;
 use super::shaders;
 use crate::library::ImageData;
 use crate::mesh::{Filter, MipFilter, Sampler, Wrap};
@@ -190,7 +190,7 @@ impl MipMaker {
                 texture
             }
         };
-        answer_others(queue);
+        flush(queue);
         self.fill(device, queue, &texture);
         Some(texture.create_view(&Default::default()))
     }

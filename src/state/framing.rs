@@ -39,11 +39,11 @@ pub fn resolved_bounds(library: &Library, state: &ViewerState) -> Bounds {
 /// How a picture of this aspect ratio is divided: columns and rows. The compared skinning modes are side by side, or one
 /// above the other where there is more room for that.
 pub fn panes(state: &ViewerState, aspect: f32) -> [u32; 2] {
-    match state.show.split {
-        false => [1, 1],
-        true if aspect >= 1.0 => [3, 1],
-        true => [1, 3],
-    }
+    if state.show.split { split_panes(aspect) } else { [1, 1] }
+}
+
+fn split_panes(aspect: f32) -> [u32; 2] {
+    if aspect >= 1.0 { [3, 1] } else { [1, 3] }
 }
 
 /// Width over height of one pane of a picture of this aspect ratio.
@@ -55,10 +55,9 @@ pub fn pane_aspect(state: &ViewerState, aspect: f32) -> f32 {
 /// What to multiply the camera's distance by when comparing begins, or ends, in a picture of this aspect ratio: each of the
 /// narrower panes then shows what was in the middle of the whole picture.
 pub fn split_ratio(state: &ViewerState, aspect: f32) -> f32 {
-    let mut other = state.clone();
-    other.show.split = !state.show.split;
-    let [now, then] = [state, &other].map(|state| pane_aspect(state, aspect).min(1.0));
-    if state.show.split { (now / then).min(1.0) } else { (now / then).max(1.0) }
+    let [columns, rows] = split_panes(aspect);
+    let farther = (aspect.min(1.0) / (aspect * rows as f32 / columns as f32).min(1.0)).max(1.0);
+    if state.show.split { 1.0 / farther } else { farther }
 }
 
 /// The orbit camera that shows what the state asks for in a picture of this aspect ratio (width over height). A camera of the

@@ -23,9 +23,6 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
     if tracks.is_empty() || duration_secs <= 0.0 {
         return;
     }
-    // Names and legend lie over the first steps: whoever points at the lanes wants to see those.
-    let lanes = Rect::from_min_size(ui.cursor().min, vec2(ui.available_width(), LANE * tracks.len() as f32));
-    let pointed_at = ui.rect_contains_pointer(lanes);
     for (index, track) in tracks.iter().enumerate() {
         let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), LANE), Sense::hover());
         let lane = rect.shrink2(vec2(scrub::MARGIN, 1.0));
@@ -34,7 +31,8 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
             .widget_info(|| WidgetInfo::labeled(egui::accesskit::Role::Image, true, format!("{name} on the ground")));
         lane_of(ui, lane, track, duration_secs);
         let palette = style::palette(ui);
-        if !pointed_at {
+        // They lie over the first steps: whoever points at the lane wants to see those.
+        if !response.hovered() {
             labels(ui, lane, &name, index == 0);
         }
         let x = lane.left() + (shown.clip_time_secs() as f32 / duration_secs).clamp(0.0, 1.0) * lane.width();

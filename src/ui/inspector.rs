@@ -18,13 +18,11 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
     if !shown.library.motions().is_empty() {
         tabs.push((Tab::Motion, "Motion"));
     }
-    // A motion that was taken back may come again: its tab is open then if it was.
-    let open = |tab: Tab| if tabs.iter().any(|(there, _)| *there == tab) { tab } else { Tab::Scene };
-    if let Some(tab) = controls::segmented(ui, Some(open(local.tab)), &tabs) {
+    if let Some(tab) = controls::segmented(ui, Some(local.open_tab(shown.library)), &tabs) {
         local.tab = tab;
     }
     ui.add_space(4.0);
-    match open(local.tab) {
+    match local.open_tab(shown.library) {
         // The tree scrolls by itself, under the chosen joint's numbers.
         Tab::Scene => scene_tree::show(ui, shown, local, out),
         Tab::Display => controls::scrolled(ui, "display", |ui| display::show(ui, shown, out)),

@@ -146,9 +146,14 @@ impl UiState {
     pub fn turn_to_model(&mut self, library: &Library) {
         let has_morphs = |model: &Model| !model.asset.skeleton.rest().morph_weights.is_empty();
         let is_morphed = |model: &Model| model.asset.skins.is_empty() && has_morphs(model);
-        if self.tab == Tab::Scene && library.active().is_some_and(is_morphed) {
+        if self.open_tab(library) == Tab::Scene && library.active().is_some_and(is_morphed) {
             self.tab = Tab::Display;
         }
+    }
+
+    /// The tab that is open. One about motions that were taken back waits for them to come again.
+    fn open_tab(&self, library: &Library) -> Tab {
+        if self.tab == Tab::Motion && library.motions().is_empty() { Tab::Scene } else { self.tab }
     }
 
     /// Ends what was begun about one of the motions: there are others now.

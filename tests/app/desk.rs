@@ -13,6 +13,7 @@ use gaitway::files::{Role, read_paths};
 use gaitway::library::Library;
 use gaitway::state::{Command, ViewerState};
 
+use crate::adapter::or_skipped;
 use crate::data_folder::data_folder;
 
 pub struct Desk {
@@ -21,14 +22,9 @@ pub struct Desk {
     inbox: Inbox,
 }
 
-/// None, and a line that says so, when there is no adapter; a failure with `REQUIRE_GPU=1`.
+/// None where there is no adapter.
 pub fn desk(first: &str) -> Option<Desk> {
-    let Some(gpu) = gpu() else {
-        let required = std::env::var("REQUIRE_GPU").as_deref() == Ok("1");
-        assert!(!required, "REQUIRE_GPU is set, but there is no adapter");
-        eprintln!("skipped: no graphics adapter");
-        return None;
-    };
+    let gpu = or_skipped(gpu())?;
     let mut contents = Some(read_paths(&[first.into()], Role::Model).expect("is there"));
     let inbox = Rc::new(RefCell::new(None));
     let ready = inbox.clone();
@@ -134,10 +130,10 @@ impl Desk {
     }
 }
 
-fn gpu() -> Option<RenderState> {
+fn gpu() -> Result<RenderState, impl std::fmt::Display> {
     let options = native_options().wgpu_options;
     let instance = pollster::block_on(options.wgpu_setup.new_instance());
-    pollster::block_on(RenderState::create(&options, &instance, None, RendererOptions::default())).ok()
+    pollster::block_on(RenderState::create(&options, &instance, None, RendererOptions::default()))
 }
 
 struct Window;

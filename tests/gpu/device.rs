@@ -2,24 +2,15 @@
 
 use gaitway::render::headless_device;
 
+use crate::adapter::or_skipped;
+
 pub struct Gpu {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
 }
 
-/// None, and a line that says so, when there is no adapter; a failure with `REQUIRE_GPU=1`.
 pub fn gpu() -> Option<Gpu> {
-    match headless_device() {
-        Ok((device, queue, _)) => Some(Gpu { device, queue }),
-        Err(problem) => {
-            assert!(
-                std::env::var("REQUIRE_GPU").map_or(true, |value| value != "1"),
-                "REQUIRE_GPU is set, but: {problem}"
-            );
-            eprintln!("skipped: {problem}");
-            None
-        }
-    }
+    or_skipped(headless_device()).map(|(device, queue, _)| Gpu { device, queue })
 }
 
 impl Gpu {

@@ -1,5 +1,7 @@
 //! What the GPU draws: shaders, layouts, skinning against the shared cases, and a few small pictures.
 
+#[path = "../support/gpu.rs"]
+mod adapter;
 #[path = "../support/coursework.rs"]
 mod coursework;
 #[path = "../support/data_folder.rs"]

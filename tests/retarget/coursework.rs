@@ -1,22 +1,13 @@
 //! The three scenes of the COSC422 coursework with its own numbers, and real files borrowing from themselves.
 
-use std::path::Path;
-
 use gaitway::anim::{Clip, JointIndex, Pose, SampleCursor, Skeleton, model_from_joint};
 use gaitway::asset::Asset;
-use gaitway::formats::{FileSet, load};
 use gaitway::retarget::{
     Body, JointMap, ResolvedMap, Retargeted, Retargeting, RootPart, baking, layer_clips, propose, recognize,
 };
 use glam::{Affine3A, Quat, Vec3};
 
-use crate::data_folder::data_folder;
-
-pub fn read(folder: &Path, name: &str) -> Asset {
-    let mut files = FileSet::default();
-    files.insert(name.rsplit('/').next().unwrap(), std::fs::read(folder.join(name)).unwrap());
-    load(&files).unwrap()
-}
+use crate::data_folder::{data_folder, read};
 
 fn carry(model: &Asset, motion: &Asset, clip: usize, map: &ResolvedMap) -> Retargeted {
     let slots = [recognize(model).humanoid(), recognize(motion).humanoid()];

@@ -9,8 +9,7 @@ use gaitway::retarget::{
 };
 use glam::{Quat, Vec3};
 
-use crate::coursework::read;
-use crate::data_folder::data_folder;
+use crate::data_folder::{data_folder, read};
 use crate::figure::{Figure, Rig, build};
 use crate::laws::{body, map};
 

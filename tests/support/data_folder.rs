@@ -2,6 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use gaitway::asset::Asset;
+use gaitway::formats::{FileSet, load};
+
 /// The folder named by `GAITWAY_DATA`, else `../shared/data` beside the repository. None when there is none: the caller
 /// prints `skipped: …` through this function and passes, unless `GAITWAY_REQUIRE_DATA=1` turns that into a failure.
 #[allow(dead_code)]
@@ -17,4 +20,12 @@ pub fn data_folder() -> Option<PathBuf> {
     assert!(std::env::var("GAITWAY_REQUIRE_DATA").as_deref() != Ok("1"), "{missing}");
     println!("skipped: {missing}");
     None
+}
+
+/// What one of the real files holds.
+#[allow(dead_code)]
+pub fn read(folder: &Path, name: &str) -> Asset {
+    let mut files = FileSet::default();
+    files.insert(name.rsplit('/').next().unwrap(), std::fs::read(folder.join(name)).unwrap());
+    load(&files).unwrap()
 }
