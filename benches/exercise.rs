@@ -9,7 +9,7 @@ use gaitway::formats::load;
 use gaitway::frame::{Frame, evaluate, pose_document};
 use gaitway::library::{Library, Model};
 use gaitway::mesh::{DeformedVertices, SkinningMode, deform};
-use gaitway::state::{Command, Show, ViewerState, apply};
+use gaitway::state::{Command, Display, Inspect, Show, ViewerState, apply};
 use support::data_folder::data_folder;
 use support::{files_of, measure};
 
@@ -24,8 +24,10 @@ fn main() {
         println!("{name:44} {:>10.1} {:>10.1}", nanos.median / 1e3, nanos.fastest / 1e3);
     };
     for (name, split) in [("a turned slider", false), ("a turned slider, three modes side by side", true)] {
-        let show = Show { skeleton: true, split, ..Show::default() };
-        let mut state = ViewerState { show, ..ViewerState::default() };
+        let show = Show { skeleton: true, ..Show::default() };
+        let display = Display { show, ..Display::default() };
+        let inspect = Inspect { split, weights: false };
+        let mut state = ViewerState { display, inspect, ..ViewerState::default() };
         let (mut frame, mut angle) = (Frame::default(), 0.0_f32);
         let nanos = measure(|| {
             angle = (angle + 1.0) % 90.0;

@@ -45,14 +45,14 @@ impl App {
     ) -> Result<(), String> {
         let before = self.before_opening();
         if let Some(state) = state {
-            if state.model != self.state.model {
+            if state.sources.model != self.state.sources.model {
                 let held = self.held(&state).ok_or("something else was opened meanwhile")?;
                 self.library.show(held);
                 self.upload(&before)?;
             }
             self.remember(before);
             self.state = state;
-            self.state.map.extend(map.map(MotionMap::Names));
+            self.state.retarget.map.extend(map.map(MotionMap::Names));
             self.library.set_motions(motions);
             let problems = self.refresh_motion();
             self.tell(problems);
@@ -97,9 +97,9 @@ impl App {
         if together > most {
             return Err(format!("{together} motions together; at most {most} are borrowed from, remove some first"));
         }
-        self.state.map.extend(maps);
+        self.state.retarget.map.extend(maps);
         let model = self.library.active().map(|model| model.origin.clone());
-        self.state.motion = Contents::motion_sources(&all, model.as_deref());
+        self.state.sources.motion = Contents::motion_sources(&all, model.as_deref());
         self.library.set_motions(all);
         Ok(self.refresh_motion())
     }
@@ -163,7 +163,7 @@ impl App {
     pub(super) fn refresh_motion(&mut self) -> Vec<String> {
         let (maps, problems) = settled_maps(&self.library, &self.state);
         let mut told: Vec<String> = problems.iter().map(ToString::to_string).collect();
-        if maps != self.state.map {
+        if maps != self.state.retarget.map {
             self.history.apply(&mut self.state, &self.library, Command::SettleMaps);
             self.changed = true;
         }
@@ -182,7 +182,7 @@ impl App {
         let model = self.library.active()?;
         let borrowed = model.borrowed(active_clip(model, &self.state)?)?;
         let choice = BorrowedChoice::first_of(self.library.motions().get(borrowed.motion)?);
-        Some(BorrowedChoice { source_clip: borrowed.source_clip, time_secs: self.state.time_secs, ..choice })
+        Some(BorrowedChoice { source_clip: borrowed.source_clip, time_secs: self.state.playhead.time_secs, ..choice })
     }
 
     /// Plays this clip, else the first borrowed one; nothing for none.
@@ -221,10 +221,10 @@ impl App {
     /// Lets go of all motions but these.
     fn borrow_only(&mut self, motions: Vec<Motion>) {
         let model = self.library.active().map(|model| model.origin.clone());
-        self.state.motion = Contents::motion_sources(&motions, model.as_deref());
+        self.state.sources.motion = Contents::motion_sources(&motions, model.as_deref());
         if motions.is_empty() {
-            self.state.map.clear();
-            (self.state.unmapped, self.state.root, self.state.feet) = (None, None, None);
+            self.state.retarget.map.clear();
+            (self.state.retarget.unmapped, self.state.retarget.root, self.state.retarget.feet) = (None, None, None);
         }
         self.library.set_motions(motions);
         self.refresh_motion();
@@ -265,7 +265,7 @@ impl App {
         for motion in &motions {
             let checksum = names_checksum(&model.asset, &motion.asset);
             let map = MotionMap::Numbers(NumberedMap { checksum, map: JointMap::default() });
-            if !self.state.map.contains(&map) && !maps.contains(&map) {
+            if !self.state.retarget.map.contains(&map) && !maps.contains(&map) {
                 maps.push(map);
             }
         }

@@ -84,7 +84,7 @@ impl Host for Window {
     }
 
     fn state_changed(&self, state: &ViewerState) {
-        let title = match state.model.first() {
+        let title = match state.sources.model.first() {
             Some(model) => format!("{model} – Gaitway"),
             None => "Gaitway".to_owned(),
         };

@@ -8,7 +8,7 @@ use super::borrow::{BorrowedChoice, borrowed_from};
 use crate::files::{Contents, ModelFiles, OpenedModel};
 use crate::library::{Library, Loaded, Model, ModelId, Motion};
 use crate::retarget::JointMap;
-use crate::state::{MotionMap, Show, ViewerState};
+use crate::state::{MotionMap, RetargetEdits, Sources, ViewerState};
 use crate::ui::short_name;
 
 /// What is kept of a loaded model besides the model.
@@ -49,7 +49,7 @@ impl App {
         map: Option<JointMap>,
         state: Option<ViewerState>,
     ) -> Result<(), String> {
-        let named = state.as_ref().and_then(|state| state.model.first());
+        let named = state.as_ref().and_then(|state| state.sources.model.first());
         let at = models.iter().position(|opened| Some(&opened.model.origin) == named).unwrap_or(0);
         models.swap(0, at);
         let mut models = models.into_iter();
@@ -85,10 +85,9 @@ impl App {
         let motion = Contents::motion_sources(self.library.motions(), Some(&origin));
         self.state = state.unwrap_or_else(|| {
             let old = std::mem::take(&mut self.state);
-            let kept = if keeps_motions { old.clone() } else { ViewerState::default() };
-            let ViewerState { map, unmapped, root, feet, .. } = kept;
-            let model = vec![origin];
-            about_model(ViewerState { model, motion, map, unmapped, root, feet, ..ViewerState::default() }, old)
+            let retarget = if keeps_motions { old.retarget.clone() } else { RetargetEdits::default() };
+            let sources = Sources { model: vec![origin], motion, scene: None };
+            old.for_model(ViewerState { sources, retarget, ..ViewerState::default() })
         });
         if is_link {
             self.panels.turn_to_link(&self.state);
@@ -99,7 +98,7 @@ impl App {
         }
         self.panels.turn_to_model(&self.library);
         let has_map = map.is_some();
-        self.state.map.extend(map.map(MotionMap::Names));
+        self.state.retarget.map.extend(map.map(MotionMap::Names));
         let problems = self.refresh_motion();
         let about_motions;
         if keeps_motions {
@@ -203,11 +202,11 @@ impl App {
 
     /// Whether a view's model is there, shown or not.
     pub fn holds(&self, state: &ViewerState) -> bool {
-        state.model == self.state.model || self.held(state).is_some()
+        state.sources.model == self.state.sources.model || self.held(state).is_some()
     }
 
     pub(super) fn held(&self, state: &ViewerState) -> Option<ModelId> {
-        let [name] = &state.model[..] else { return None };
+        let [name] = &state.sources.model[..] else { return None };
         let known = self.library.models().iter().rev().find(|model| model.origin == *name)?;
         Some(known.id)
     }
@@ -229,15 +228,14 @@ impl App {
         self.remember(before);
         let left = self.shelf.get(&id).and_then(|shelved| shelved.left.clone());
         let origin = self.library.active().map(|model| model.origin.clone()).unwrap_or_default();
-        let (left, mut motions) =
-            left.unwrap_or_else(|| (ViewerState { model: vec![origin.clone()], ..ViewerState::default() }, Vec::new()));
+        let (left, mut motions) = left.unwrap_or_else(|| (ViewerState::of_model(origin.clone()), Vec::new()));
         // What has been read since wins.
         motions.retain(|known| !present.iter().any(|motion| motion.origin == known.origin));
         motions.extend(present);
         motions.truncate(Library::MOST_MOTIONS);
         let motion = Contents::motion_sources(&motions, Some(&origin));
         let old = std::mem::take(&mut self.state);
-        self.state = about_model(ViewerState { motion, ..left }, old);
+        self.state = old.for_model(ViewerState { sources: Sources { motion, ..left.sources }, ..left });
         self.library.set_motions(motions);
         self.refresh_motion();
         if let Some(unfit) = self.put_unfit_away() {
@@ -295,33 +293,6 @@ impl App {
         }
         self.dirty = true;
         self.changed = true;
-    }
-}
-
-/// What `about` says of a model, its motion and the way it is looked at, and of everything else what was set before.
-fn about_model(about: ViewerState, before: ViewerState) -> ViewerState {
-    ViewerState {
-        // Of which joint the weights are shown is about the model, and so is comparing: the next one is first seen whole.
-        show: Show { weights: about.show.weights, split: about.show.split, ..before.show },
-        model: about.model,
-        motion: about.motion,
-        map: about.map,
-        unmapped: about.unmapped,
-        root: about.root,
-        feet: about.feet,
-        scene: about.scene,
-        clip: about.clip,
-        time_secs: about.time_secs,
-        fade: None,
-        range: about.range,
-        morph: about.morph,
-        pose: about.pose,
-        names: about.names,
-        vertex: about.vertex,
-        joint: about.joint,
-        camera: about.camera,
-        up: about.up,
-        ..before
     }
 }
 

@@ -23,9 +23,9 @@ impl App {
         self.recording = Some(Recording {
             start_secs: None,
             bare_frames: 0,
-            length_secs: range.length_secs() / self.state.speed,
-            was_playing: self.state.playing,
-            time_secs: self.state.time_secs,
+            length_secs: range.length_secs() / self.state.playback.speed,
+            was_playing: self.state.playback.playing,
+            time_secs: self.state.playhead.time_secs,
         });
         self.panels.recording = true;
         self.apply(Command::SetPlaying(false));

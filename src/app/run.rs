@@ -148,7 +148,7 @@ impl App {
                 if let Some(reply) = reply {
                     match shown {
                         Ok(()) => {
-                            let document = self.library.active().map(|model| inspect(model, &self.state.model));
+                            let document = self.library.active().map(|model| inspect(model, &self.state.sources.model));
                             let document = document.unwrap_or_default();
                             self.after_draw.push(Box::new(move || reply(Ok(document))));
                         }
@@ -232,7 +232,7 @@ impl App {
 
     /// Whether a view is one of the files that are shown: a view must never name others than these.
     fn has_files_of(&self, state: &ViewerState) -> bool {
-        state.model == self.state.model && state.motion == self.state.motion
+        state.sources.model == self.state.sources.model && state.sources.motion == self.state.sources.motion
     }
 
     pub(super) fn apply(&mut self, command: Command) {
@@ -241,10 +241,10 @@ impl App {
             return;
         }
         let aspect = self.panels.aspect;
-        let turns = self.state.turntable != 0.0 && matches!(self.state.camera, CameraChoice::Auto);
+        let turns = self.state.camera_options.turntable != 0.0 && matches!(self.state.camera, CameraChoice::Auto);
         // Whoever takes hold of the picture or of a joint wants it to stand still.
         let holds = matches!(command, Command::Orbit { .. } | Command::Pan { .. } | Command::SetPose { .. });
-        if holds && self.state.turntable != 0.0 {
+        if holds && self.state.camera_options.turntable != 0.0 {
             self.history.apply(&mut self.state, &self.library, Command::SetTurntable(0.0));
         }
         let relative = matches!(command, Command::Orbit { .. } | Command::Pan { .. } | Command::Zoom { .. })
@@ -275,7 +275,7 @@ impl App {
                 | Command::SetFeet(_)
         );
         if let Command::SetFollow(follow) = command
-            && follow != self.state.follow
+            && follow != self.state.camera_options.follow
         {
             let follows = if follow { "goes along with the character" } else { "stays where it is" };
             self.toast(format!("The camera {follows}."));
@@ -295,11 +295,11 @@ impl App {
     fn kept_camera(&self, command: &Command) -> Option<OrbitCamera> {
         let CameraChoice::Orbit(orbit) = self.state.camera else { return None };
         match *command {
-            Command::SetShow(show) if show.split != self.state.show.split => {
+            Command::SetInspect(inspect) if inspect.split != self.state.inspect.split => {
                 let ratio = split_ratio(&self.state, self.panels.aspect);
                 Some(OrbitCamera { distance: ratio * orbit.distance, ..orbit })
             }
-            Command::SetFollow(follow) if follow != self.state.follow => {
+            Command::SetFollow(follow) if follow != self.state.camera_options.follow => {
                 let travel = travelled(&self.library, &self.state);
                 let target = if follow { orbit.target - travel } else { orbit.target + travel };
                 Some(OrbitCamera { target, ..orbit })
@@ -388,8 +388,8 @@ impl App {
         }
         let shown = Shown { library: &self.library, state: &self.state, frame: &self.frame };
         let moves = shown.clip().is_some_and(|clip| clip.duration_secs() > 0.0);
-        let turns = self.state.turntable != 0.0 && !matches!(self.state.camera, CameraChoice::File(_));
-        if ((self.state.playing && moves) || turns) && !self.panels.holds_time {
+        let turns = self.state.camera_options.turntable != 0.0 && !matches!(self.state.camera, CameraChoice::File(_));
+        if ((self.state.playback.playing && moves) || turns) && !self.panels.holds_time {
             let (secs, unsmoothed_secs) = context.input(|input| (input.stable_dt, input.unstable_dt));
             // A pause (a hidden page, a long load) is not made up for.
             self.apply(Command::Advance(f64::from(secs.min(0.25))));

@@ -8,7 +8,7 @@ use crate::frame::{Frame, evaluate};
 use crate::library::Model;
 use crate::render::read_pixels;
 use crate::retarget::{bake_layers, baking};
-use crate::state::{Background, ViewerState, active_clip, map_in_force, named, written_skeleton};
+use crate::state::{Background, Display, ViewerState, active_clip, map_in_force, named, written_skeleton};
 use crate::ui::{Saved, short_name};
 
 /// What to write, and how to call it.
@@ -64,8 +64,8 @@ impl App {
     ) -> impl Future<Output = Result<Vec<u8>, String>> + use<> {
         let largest = self.scene.largest_size();
         let size = [width.clamp(1, largest), height.clamp(1, largest)];
-        let background = if transparent { Background::Transparent } else { self.state.background };
-        let state = ViewerState { background, ..self.state.clone() };
+        let background = if transparent { Background::Transparent } else { self.state.display.background };
+        let state = ViewerState { display: Display { background, ..self.state.display }, ..self.state.clone() };
         let mut frame = Frame::default();
         evaluate(&self.library, &state, size[0] as f32 / size[1] as f32, &mut frame);
         let (device, queue, texture) = self.scene.draw_apart(&frame, size);

@@ -69,7 +69,7 @@ pub(super) fn load_library(opened: Opened, borrowing: &Borrowing) -> anyhow::Res
 /// What is not used of it is said.
 pub(super) fn state_of_link(library: &mut Library, link: &str, borrowing: &Borrowing) -> ViewerState {
     let mut state = state_of_view(library, link);
-    if borrowing.motion.is_none() && !state.motion.is_empty() {
+    if borrowing.motion.is_none() && !state.sources.motion.is_empty() {
         let read = |source: &String| match open_motion(Path::new(source.strip_prefix("file:").unwrap_or(source))) {
             Ok(motion) => Some(motion),
             Err(error) => {
@@ -77,13 +77,13 @@ pub(super) fn state_of_link(library: &mut Library, link: &str, borrowing: &Borro
                 None
             }
         };
-        let motions = state.motion.iter().filter_map(read).collect();
+        let motions = state.sources.motion.iter().filter_map(read).collect();
         library.set_motions(motions);
     }
     if borrowing.map.is_some() {
         return state;
     }
-    for map in &mut state.map {
+    for map in &mut state.retarget.map {
         if let MotionMap::File(file) = map {
             match open_map(Path::new(file.as_str())) {
                 Ok(read) => *map = MotionMap::Names(read),

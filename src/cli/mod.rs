@@ -338,7 +338,7 @@ fn state_of_view(library: &Library, link: &str) -> ViewerState {
 /// Puts the model at the wanted moment. What is not given stays as the state has it.
 /// `borrows`: a motion was named, so that its clips come first.
 fn set_moment(library: &Library, moment: &Moment, borrows: bool, state: &mut ViewerState) -> anyhow::Result<()> {
-    state.playing = false;
+    state.playback.playing = false;
     if let Some(model) = library.active() {
         let choice = match &moment.clip {
             Some(name) => {
@@ -360,12 +360,12 @@ fn set_moment(library: &Library, moment: &Moment, borrows: bool, state: &mut Vie
         if !time_secs.is_finite() {
             bail!("--time {time_secs}: expected a number of seconds");
         }
-        state.range = None;
-        state.loop_mode = LoopMode::Once;
+        state.playhead.range = None;
+        state.playback.loop_mode = LoopMode::Once;
         apply(state, library, Command::Seek(time_secs));
     }
     if let Some(skinning) = moment.skinning {
-        state.skinning = match skinning {
+        state.display.skinning = match skinning {
             Skinning::Linear => SkinningMode::Linear,
             Skinning::Rigid => SkinningMode::Rigid,
             Skinning::DualQuaternion => SkinningMode::DualQuaternion,

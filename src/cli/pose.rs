@@ -5,13 +5,16 @@ use std::fmt::Write;
 use super::borrow::{load_library, state_of_link};
 use super::{PoseArguments, open, print_bytes, print_json, set_moment};
 use crate::frame::pose_document;
-use crate::state::{ClipChoice, ViewerState};
+use crate::state::{ClipChoice, Playhead, ViewerState};
 
 pub(super) fn run(arguments: &PoseArguments) -> anyhow::Result<()> {
     let mut library = load_library(open(&arguments.input.files)?, &arguments.borrowing)?;
     let mut state = match &arguments.view {
         Some(link) => state_of_link(&mut library, link, &arguments.borrowing),
-        None => ViewerState { clip: ClipChoice::RestPose, ..ViewerState::default() },
+        None => ViewerState {
+            playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
+            ..ViewerState::default()
+        },
     };
     set_moment(&library, &arguments.moment, arguments.borrowing.motion.is_some(), &mut state)?;
     let document = pose_document(&library, &state);

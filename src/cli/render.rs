@@ -8,7 +8,7 @@ use crate::frame::{Frame, evaluate};
 use crate::library::Library;
 use crate::render::{Renderer, RendererOptions, headless_device, read_pixels};
 use crate::state::{
-    CameraChoice, ClipChoice, Command, OrbitCamera, ViewerState, apply, resolve_camera, source_on_stage,
+    CameraChoice, ClipChoice, Command, OrbitCamera, Playhead, ViewerState, apply, resolve_camera, source_on_stage,
 };
 
 pub(super) fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
@@ -36,7 +36,10 @@ pub(super) fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
 
 /// The link's view with the options on top.
 fn view(arguments: &RenderArguments, library: &mut Library) -> anyhow::Result<ViewerState> {
-    let mut state = ViewerState { clip: ClipChoice::RestPose, ..ViewerState::default() };
+    let mut state = ViewerState {
+        playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
+        ..ViewerState::default()
+    };
     if let Some(link) = &arguments.view {
         state = state_of_link(library, link, &arguments.borrowing);
     }

@@ -170,18 +170,18 @@ pub async fn open_view(
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<Contents, OpenError> {
     let mut contents = Contents::default();
-    let files = state.map.iter().filter(|map| matches!(map, MotionMap::File(_))).count();
+    let files = state.retarget.map.iter().filter(|map| matches!(map, MotionMap::File(_))).count();
     let is_held = |source: &String| held.iter().any(|motion| motion.origin == *source);
-    let parts = usize::from(with_model) + state.motion.iter().filter(|source| !is_held(source)).count() + files;
+    let parts = usize::from(with_model) + state.sources.motion.iter().filter(|source| !is_held(source)).count() + files;
     let part = Cell::new(usize::from(with_model));
     let progress = &|name: &str, received: u64, total: u64| match parts {
         0 | 1 => progress(name, received, total),
         _ => progress(&format!("{} of {parts}: {name}", part.get()), received, total),
     };
     if with_model {
-        let items = state.model.iter().map(|model| Item::Url(model.clone())).collect();
+        let items = state.sources.model.iter().map(|model| Item::Url(model.clone())).collect();
         contents = open_items(items, Role::Model, progress).await?;
-        if let [named] = &mut state.model[..]
+        if let [named] = &mut state.sources.model[..]
             && !contents.models.iter().any(|opened| opened.model.origin == *named)
         {
             *named = container_of(named).to_owned();
@@ -190,10 +190,11 @@ pub async fn open_view(
     let mut motions = contents.motions.take().unwrap_or_default();
     // What came with the model out of one archive is not listed.
     let is_of_model = |motion: &&Motion| {
-        state.model.iter().any(|model| container_of(model) == motion.origin) && !state.motion.contains(&motion.origin)
+        state.sources.model.iter().any(|model| container_of(model) == motion.origin)
+            && !state.sources.motion.contains(&motion.origin)
     };
     motions.extend(held.iter().filter(is_of_model).cloned());
-    for source in &state.motion {
+    for source in &state.sources.motion {
         if is_held(source) {
             motions.extend(held.iter().filter(|motion| motion.origin == *source).cloned());
             continue;
@@ -209,7 +210,7 @@ pub async fn open_view(
     }
     contents.motions = Some(motions);
     let mut maps = Vec::new();
-    for map in state.map.drain(..) {
+    for map in state.retarget.map.drain(..) {
         match map {
             MotionMap::File(url) => {
                 part.set(part.get() + 1);
@@ -221,7 +222,7 @@ pub async fn open_view(
             map => maps.push(map),
         }
     }
-    state.map = maps;
+    state.retarget.map = maps;
     Ok(contents)
 }
 

@@ -42,15 +42,15 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
     frame.bones.clear();
     frame.lights.clear();
     frame.look = Look {
-        exposure: state.exposure.exp2(),
-        environment_radians: state.environment_degrees.to_radians(),
-        background: state.background,
-        mesh: state.show.mesh,
-        wireframe: state.show.wireframe,
-        skeleton: state.show.skeleton,
-        boxes: state.show.boxes,
-        smooth: state.show.smooth,
-        shadow: state.show.shadow,
+        exposure: state.display.exposure.exp2(),
+        environment_radians: state.display.environment_degrees.to_radians(),
+        background: state.display.background,
+        mesh: state.display.show.mesh,
+        wireframe: state.display.show.wireframe,
+        skeleton: state.display.show.skeleton,
+        boxes: state.display.show.boxes,
+        smooth: state.display.show.smooth,
+        shadow: state.display.show.shadow,
         grid: None,
         ground_height: 0.0,
     };
@@ -62,9 +62,9 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
         return;
     };
     let source = source_on_stage(library, state);
-    let modes = if state.show.split { &COMPARED[..] } else { std::slice::from_ref(&state.skinning) };
+    let modes = if state.inspect.split { &COMPARED[..] } else { std::slice::from_ref(&state.display.skinning) };
     frame.characters.resize_with(modes.len() + usize::from(source.is_some()), Character::default);
-    frame.scratch.shown.choose(model, state.scene);
+    frame.scratch.shown.choose(model, state.sources.scene);
     if let Some(source) = &source {
         frame.scratch.source.choose(source.model, None);
     }
@@ -73,18 +73,19 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
     for (pane, (character, &skinning)) in characters.iter_mut().zip(modes).enumerate() {
         character.model = model.id;
         character.skinning = skinning;
-        character.pane = state.show.split.then_some(pane as u32);
+        character.pane = state.inspect.split.then_some(pane as u32);
         character.morph_weights.clone_from(&scratch.sampler.pose.morph_weights);
         let (skeleton, locals) = (&model.asset.skeleton, &scratch.sampler.pose.locals);
-        model_from_joint(skeleton, locals, world_from_model(state.up), &mut character.world_from_joint);
-        let chosen = state.joint.and_then(|joint| skeleton.joint_of_source(joint)).filter(|_| state.show.weights);
+        model_from_joint(skeleton, locals, world_from_model(state.edits.up), &mut character.world_from_joint);
+        let chosen =
+            state.selection.joint.and_then(|joint| skeleton.joint_of_source(joint)).filter(|_| state.inspect.weights);
         write_draws(model, chosen, &scratch.shown.joints, character);
     }
     if let (Some(source), Some(character)) = (&source, characters.last_mut()) {
         write_source(source, clip_now(model, state), scratch, character);
     }
 
-    let travel = match state.follow {
+    let travel = match state.camera_options.follow {
         true => travel(model, state, scratch, &characters[0].world_from_joint),
         false => Vec3::ZERO,
     };
@@ -169,7 +170,7 @@ pub fn travelled(library: &Library, state: &ViewerState) -> Vec3 {
     let (mut scratch, mut world_from_joint) = (Scratch::default(), Vec::new());
     scratch.sampler.sample(model, state);
     let locals = &scratch.sampler.pose.locals;
-    model_from_joint(&model.asset.skeleton, locals, world_from_model(state.up), &mut world_from_joint);
+    model_from_joint(&model.asset.skeleton, locals, world_from_model(state.edits.up), &mut world_from_joint);
     travel(model, state, &mut scratch, &world_from_joint)
 }
 
@@ -181,7 +182,7 @@ fn travel(model: &Model, state: &ViewerState, scratch: &mut Scratch, world_from_
     if let Some(clip) = model.clip(clip) {
         clip.sample(skeleton, 0.0, &mut scratch.first_cursor, &mut scratch.first_pose);
     }
-    let world_from_model = world_from_model(state.up);
+    let world_from_model = world_from_model(state.edits.up);
     model_from_joint(skeleton, &scratch.first_pose.locals, world_from_model, &mut scratch.world_from_first);
     let at = |world: &[Affine3A]| Vec3::from(world[root.get()].translation);
     let travel = (at(world_from_joint) - at(&scratch.world_from_first)) * Vec3::new(1.0, 0.0, 1.0);

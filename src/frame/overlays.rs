@@ -22,12 +22,12 @@ const AXES: [(Vec3, Vec4); 3] = [
 
 /// Expects the frame's bounds.
 pub(super) fn write_ground(model: &Model, state: &ViewerState, frame: &mut Frame) {
-    let rest = model.rest_bounds().transformed(&crate::state::world_from_model(state.up));
+    let rest = model.rest_bounds().transformed(&crate::state::world_from_model(state.edits.up));
     let rest = if rest.is_empty() { frame.bounds } else { rest };
     // Soles are rarely exactly at zero; what stands near it stands on it.
     let height = if rest.min.y.abs() <= 0.04 * rest.diagonal() { 0.0 } else { rest.min.y };
     frame.look.ground_height = height;
-    if state.show.grid {
+    if state.display.show.grid {
         let size = frame.bounds.diagonal().max(1e-6);
         let mut center = frame.bounds.center();
         center.y = height;
@@ -42,13 +42,13 @@ pub(super) fn write_overlays(model: &Model, state: &ViewerState, source: Option<
     let Some(character) = characters.first() else { return };
     let world_from_joint = &character.world_from_joint;
     let size = model.rest_bounds().diagonal().max(1e-6);
-    let chosen = state.joint.and_then(|joint| model.asset.skeleton.joint_of_source(joint));
+    let chosen = state.selection.joint.and_then(|joint| model.asset.skeleton.joint_of_source(joint));
     // Beside its source the model shows its bones too, or there would be nothing to compare.
     look.skeleton |= character.draws.is_empty() || source.is_some();
-    let boxes = state.show.boxes;
+    let boxes = state.display.show.boxes;
     let bone_look = BoneLook { plain: BONE, chosen, of_source: false, boxes, size };
     write_bones(model, world_from_joint, &scratch.shown.joints, bone_look, bones);
-    if let (Some(source), Some(on_stage)) = (source.filter(|_| state.show.error), characters.last()) {
+    if let (Some(source), Some(on_stage)) = (source.filter(|_| state.display.show.error), characters.last()) {
         for bone in bones.iter_mut() {
             let joint = model.asset.skeleton.joint_of_source(bone.joint as usize);
             let pair = source.borrowed.pairs.iter().find(|pair| Some(pair.target) == joint);
@@ -68,7 +68,7 @@ pub(super) fn write_overlays(model: &Model, state: &ViewerState, source: Option<
     if let Some(joint) = chosen.filter(|joint| scratch.shown.joints[joint.get()]) {
         write_axes(&world_from_joint[joint.get()], 0.06 * size, lines);
     }
-    if state.show.bounds {
+    if state.display.show.bounds {
         let bounds = model.pose_bounds(world_from_joint, &character.morph_weights, &scratch.shown.joints);
         if !bounds.is_empty() {
             write_box(bounds.corners(), lines);

@@ -6,7 +6,7 @@ use super::{Frame, evaluate};
 use crate::anim::Clip;
 use crate::library::{Library, Model, warning_documents};
 use crate::mesh::{DeformedVertices, Geometry, Mesh, deform, smooth_normals};
-use crate::state::{Show, ViewerState, active_clip, clip_secs};
+use crate::state::{ViewerState, active_clip, clip_secs};
 
 /// What `gaitway pose --json` prints. World-space positions and normals of every mesh of the shown scene.
 pub fn pose_document(library: &Library, state: &ViewerState) -> Value {
@@ -15,7 +15,9 @@ pub fn pose_document(library: &Library, state: &ViewerState) -> Value {
     };
     let mut frame = Frame::default();
     // One model, bent in the way that is chosen, also where the picture compares.
-    let state = &ViewerState { show: Show { split: false, source: false, ..state.show }, ..state.clone() };
+    let mut state = state.clone();
+    (state.inspect.split, state.display.show.source) = (false, false);
+    let state = &state;
     evaluate(library, state, 1.0, &mut frame);
     let clip = active_clip(model, state);
     json!({
@@ -50,13 +52,13 @@ fn meshes(model: &Model, state: &ViewerState, frame: &Frame) -> Vec<Value> {
         let weights = &character.morph_weights[draw.morph_weights.start as usize..draw.morph_weights.end as usize];
         let node = asset.skeleton.source_index(asset.instances[draw.instance].joint);
         let mesh = &asset.meshes[draw.mesh];
-        let mut whole = Whole::new(mesh, state.show.smooth);
-        let mut smooth = if state.show.smooth { smooth_normals(&mesh.primitives) } else { Vec::new() };
+        let mut whole = Whole::new(mesh, state.display.show.smooth);
+        let mut smooth = if state.display.show.smooth { smooth_normals(&mesh.primitives) } else { Vec::new() };
         for (primitive, geometry) in mesh.primitives.iter().enumerate() {
             let normals = smooth.get_mut(primitive).map(std::mem::take).filter(|normals| !normals.is_empty());
             let smoothed = normals.map(|normals| Geometry { normals, ..geometry.clone() });
             let geometry = smoothed.as_ref().unwrap_or(geometry);
-            deform(geometry, weights, palette, state.skinning, &mut deformed);
+            deform(geometry, weights, palette, state.display.skinning, &mut deformed);
             if mesh.file_vertices > 0 {
                 whole.add(&geometry.file_vertex, &deformed);
                 continue;

@@ -26,7 +26,7 @@ pub(super) fn place_camera(library: &Library, state: &ViewerState, aspect: f32, 
     orbit.target += travel;
     let eye = orbit.eye();
     let (near, far) = planes(frame, eye, orbit.target - eye, orbit.distance);
-    let projection_from_view = perspective(state.fov_degrees.to_radians(), pane_aspect, near, far);
+    let projection_from_view = perspective(state.camera_options.fov_degrees.to_radians(), pane_aspect, near, far);
     frame.view = View { view_from_world: look_at_mat4(eye, orbit.target, Vec3::Y), projection_from_view, eye };
 }
 

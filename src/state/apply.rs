@@ -7,7 +7,7 @@ use glam::Vec3;
 use super::framing::{frame_all, resolve_camera, resolved_bounds};
 use super::maps::{self, map_in_force, settled_maps};
 use super::playhead::{active_clip, choice_of_clip, clip_of, clip_secs, play_range};
-use super::{CameraChoice, ClipChoice, Command, Fade, OrbitCamera, VertexChoice, ViewerState};
+use super::{CameraChoice, ClipChoice, Command, Fade, OrbitCamera, RetargetEdits, VertexChoice, ViewerState};
 use crate::anim::{LoopMode, TimeRange};
 use crate::library::{Library, Model};
 
@@ -27,49 +27,50 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::SetScene(scene) => {
             let known = |scene: usize| model.is_none_or(|model| scene < model.asset.scenes.len());
             if scene.is_none_or(known) {
-                state.scene = scene;
+                state.sources.scene = scene;
             }
         }
         Command::SetClip(clip) => {
             let before = model.map(|model| (model, active_clip(model, state)));
-            let time_secs = state.time_secs;
-            state.clip = clip;
-            state.fade = before.filter(|_| state.playing).and_then(|(model, from)| {
+            let time_secs = state.playhead.time_secs;
+            state.playhead.clip = clip;
+            state.playhead.fade = before.filter(|_| state.playback.playing).and_then(|(model, from)| {
                 let fades = model.crossfade_secs(from, active_clip(model, state)) > 0.0;
                 let clip = from.map_or(ClipChoice::RestPose, |from| choice_of_clip(model, from));
                 fades.then_some(Fade { clip, time_secs, elapsed_secs: 0.0 })
             });
-            state.time_secs = 0.0;
-            state.range = None;
+            state.playhead.time_secs = 0.0;
+            state.playhead.range = None;
         }
         Command::SetPlaying(playing) => set_playing(state, model, playing),
-        Command::TogglePlaying => set_playing(state, model, !state.playing),
+        Command::TogglePlaying => set_playing(state, model, !state.playback.playing),
         Command::Seek(time_secs) => seek(state, model, time_secs),
         Command::Advance(clock_secs) => {
             turn(state, library, clock_secs);
             advance(state, model, clock_secs);
         }
         Command::StepFrames(frames) => step(state, model, frames),
-        Command::SetSpeed(speed) => set_f64(&mut state.speed, speed, 0.1, 4.0),
+        Command::SetSpeed(speed) => set_f64(&mut state.playback.speed, speed, 0.1, 4.0),
         Command::SetLoopMode(mode) => {
             // What is on the screen stays: the new mode would fold a playhead that has run on in its own way.
             if let Some((model, clip)) = active(state, model) {
-                state.time_secs = clip_secs(model, clip, state);
+                state.playhead.time_secs = clip_secs(model, clip, state);
             }
-            state.loop_mode = mode;
+            state.playback.loop_mode = mode;
         }
         Command::SetRange(range) => set_range(state, model, range),
-        Command::SetSkinning(mode) => state.skinning = mode,
+        Command::SetSkinning(mode) => state.display.skinning = mode,
         Command::SetMorph { index, weight } => set_morph(state, model, index, weight),
-        Command::ClearMorphs => state.morph.clear(),
+        Command::ClearMorphs => state.edits.morph.clear(),
         Command::SetPose { joint, degrees } => set_pose(state, model, joint, degrees),
-        Command::ClearPose => state.pose.clear(),
+        Command::ClearPose => state.edits.pose.clear(),
         Command::RenameJoint { joint, name } => rename(state, model, joint, &name),
-        Command::SetShow(show) => state.show = show,
+        Command::SetShow(show) => state.display.show = show,
+        Command::SetInspect(inspect) => state.inspect = inspect,
         Command::SelectJoint(joint) => {
             let known = |joint: usize| model.is_none_or(|model| joint < model.asset.skeleton.len());
             if joint.is_none_or(known) {
-                state.joint = joint;
+                state.selection.joint = joint;
             }
         }
         Command::SelectVertex(vertex) => {
@@ -77,7 +78,7 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
                 model.is_none_or(|model| model.has_vertex(choice.instance, choice.primitive, choice.vertex))
             };
             if vertex.is_none_or(known) {
-                state.vertex = vertex;
+                state.selection.vertex = vertex;
             }
         }
         Command::SetCamera(choice) => set_camera(state, model, choice),
@@ -89,7 +90,7 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         }
         Command::Pan { right, up } => {
             let mut orbit = resolve_camera(library, state, USUAL_ASPECT);
-            orbit.target += in_picture(&orbit, state.fov_degrees, right, up);
+            orbit.target += in_picture(&orbit, state.camera_options.fov_degrees, right, up);
             set_camera(state, model, CameraChoice::Orbit(orbit));
         }
         Command::Zoom { factor, right, up } => {
@@ -97,9 +98,9 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
             let size = model.map_or(1.0, |_| resolved_bounds(library, state).diagonal().max(1e-6));
             if factor > 0.0 {
                 let distance = (orbit.distance * factor).clamp(0.01 * size, 100.0 * size);
-                if state.turntable == 0.0 {
+                if state.camera_options.turntable == 0.0 {
                     let part = 1.0 - distance / orbit.distance;
-                    orbit.target += in_picture(&orbit, state.fov_degrees, part * right, part * up);
+                    orbit.target += in_picture(&orbit, state.camera_options.fov_degrees, part * right, part * up);
                 }
                 orbit.distance = distance;
                 set_camera(state, model, CameraChoice::Orbit(orbit));
@@ -111,14 +112,14 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
                 set_camera(state, model, CameraChoice::Orbit(orbit));
             }
         }
-        Command::SetFov(degrees) => set_f32(&mut state.fov_degrees, degrees, 5.0, 120.0),
-        Command::SetFollow(follow) => state.follow = follow,
-        Command::SetTurntable(speed) => set_f32(&mut state.turntable, speed, -360.0, 360.0),
-        Command::SetUp(up) => state.up = up,
-        Command::SetExposure(stops) => set_f32(&mut state.exposure, stops, -10.0, 10.0),
-        Command::SetEnvironment(degrees) => set_turn(&mut state.environment_degrees, degrees),
-        Command::SetBackground(background) => state.background = background,
-        Command::SetEmbed(embed) => state.embed = embed,
+        Command::SetFov(degrees) => set_f32(&mut state.camera_options.fov_degrees, degrees, 5.0, 120.0),
+        Command::SetFollow(follow) => state.camera_options.follow = follow,
+        Command::SetTurntable(speed) => set_f32(&mut state.camera_options.turntable, speed, -360.0, 360.0),
+        Command::SetUp(up) => state.edits.up = up,
+        Command::SetExposure(stops) => set_f32(&mut state.display.exposure, stops, -10.0, 10.0),
+        Command::SetEnvironment(degrees) => set_turn(&mut state.display.environment_degrees, degrees),
+        Command::SetBackground(background) => state.display.background = background,
+        Command::SetEmbed(embed) => state.page.embed = embed,
         Command::SetMap { motion, map } => {
             if let (Some(model), Some(about)) = (model, library.motions().get(motion)) {
                 let map = map.map(|map| *map).or_else(|| maps::proposed(library, motion));
@@ -127,10 +128,10 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         }
         Command::SetSource { motion, target, source } => set_source(state, library, motion, target, source),
         Command::EditMap { motion, edit } => super::map_edit::edit_map(state, library, motion, edit),
-        Command::SetUnmapped(unmapped) => state.unmapped = unmapped,
-        Command::SetRoot(root) => state.root = root,
-        Command::SetFeet(feet) => state.feet = feet,
-        Command::SettleMaps => state.map = settled_maps(library, state).0,
+        Command::SetUnmapped(unmapped) => state.retarget.unmapped = unmapped,
+        Command::SetRoot(root) => state.retarget.root = root,
+        Command::SetFeet(feet) => state.retarget.feet = feet,
+        Command::SettleMaps => state.retarget.map = settled_maps(library, state).0,
     }
 }
 
@@ -140,35 +141,35 @@ fn replace(state: &mut ViewerState, new: ViewerState) {
     let default = ViewerState::default();
     let wanted = new.clone();
     *state = new;
-    if !wanted.time_secs.is_finite() {
-        state.time_secs = default.time_secs;
+    if !wanted.playhead.time_secs.is_finite() {
+        state.playhead.time_secs = default.playhead.time_secs;
     }
     let finite = |fade: &Fade| fade.time_secs.is_finite() && fade.elapsed_secs.is_finite();
-    state.fade = wanted.fade.filter(finite);
-    state.speed = default.speed;
-    set_f64(&mut state.speed, wanted.speed, 0.1, 4.0);
-    state.fov_degrees = default.fov_degrees;
-    set_f32(&mut state.fov_degrees, wanted.fov_degrees, 5.0, 120.0);
-    state.exposure = default.exposure;
-    set_f32(&mut state.exposure, wanted.exposure, -10.0, 10.0);
-    state.environment_degrees = default.environment_degrees;
-    set_turn(&mut state.environment_degrees, wanted.environment_degrees);
-    state.range = None;
-    set_range(state, None, wanted.range);
-    state.morph.clear();
-    for (index, weight) in wanted.morph {
+    state.playhead.fade = wanted.playhead.fade.filter(finite);
+    state.playback.speed = default.playback.speed;
+    set_f64(&mut state.playback.speed, wanted.playback.speed, 0.1, 4.0);
+    state.camera_options.fov_degrees = default.camera_options.fov_degrees;
+    set_f32(&mut state.camera_options.fov_degrees, wanted.camera_options.fov_degrees, 5.0, 120.0);
+    state.display.exposure = default.display.exposure;
+    set_f32(&mut state.display.exposure, wanted.display.exposure, -10.0, 10.0);
+    state.display.environment_degrees = default.display.environment_degrees;
+    set_turn(&mut state.display.environment_degrees, wanted.display.environment_degrees);
+    state.playhead.range = None;
+    set_range(state, None, wanted.playhead.range);
+    state.edits.morph.clear();
+    for (index, weight) in wanted.edits.morph {
         set_morph(state, None, index, Some(weight));
     }
-    state.pose.clear();
-    for (joint, degrees) in wanted.pose {
+    state.edits.pose.clear();
+    for (joint, degrees) in wanted.edits.pose {
         set_pose(state, None, joint, Some(degrees));
     }
-    state.names.clear();
-    for (joint, name) in wanted.names {
+    state.edits.names.clear();
+    for (joint, name) in wanted.edits.names {
         rename(state, None, joint, &name);
     }
-    state.turntable = default.turntable;
-    set_f32(&mut state.turntable, wanted.turntable, -360.0, 360.0);
+    state.camera_options.turntable = default.camera_options.turntable;
+    set_f32(&mut state.camera_options.turntable, wanted.camera_options.turntable, -360.0, 360.0);
     state.camera = CameraChoice::Auto;
     set_camera(state, None, wanted.camera);
 }
@@ -184,7 +185,10 @@ fn set_source(state: &mut ViewerState, library: &Library, motion: usize, target:
     let has_target = model.asset.skeleton.joint_of_source(target).is_some();
     if has_target && source.is_none_or(|source| about.asset.skeleton.joint_of_source(source).is_some()) {
         // What is set besides the map stays beside it.
-        let bare = ViewerState { map: state.map.clone(), ..ViewerState::default() };
+        let bare = ViewerState {
+            retarget: RetargetEdits { map: state.retarget.map.clone(), ..RetargetEdits::default() },
+            ..ViewerState::default()
+        };
         let mut map = map_in_force(library, &bare, motion).unwrap_or_default();
         maps::set_source(&mut map, target, source);
         maps::set_map(state, &model.asset, about, Some(map));
@@ -211,14 +215,14 @@ fn set_turn(slot: &mut f32, degrees: f32) {
 
 /// Starting again at the end of a clip that plays once starts it over.
 fn set_playing(state: &mut ViewerState, model: Option<&Model>, playing: bool) {
-    state.playing = playing;
+    state.playback.playing = playing;
     if playing
-        && state.loop_mode == LoopMode::Once
+        && state.playback.loop_mode == LoopMode::Once
         && let Some((model, clip)) = active(state, model)
     {
         let range = play_range(model, clip, state);
-        if state.time_secs >= range.end_secs {
-            state.time_secs = range.start_secs;
+        if state.playhead.time_secs >= range.end_secs {
+            state.playhead.time_secs = range.start_secs;
         }
     }
 }
@@ -229,46 +233,46 @@ fn seek(state: &mut ViewerState, model: Option<&Model>, time_secs: f64) {
             let clip = active_clip(model, state).and_then(|clip| model.clip(clip));
             clip.map_or(0.0, |clip| f64::from(clip.duration_secs()))
         });
-        state.time_secs = time_secs.clamp(0.0, end);
+        state.playhead.time_secs = time_secs.clamp(0.0, end);
     }
 }
 
 fn advance(state: &mut ViewerState, model: Option<&Model>, clock_secs: f64) {
     let Some((model, clip)) = active(state, model) else { return };
-    if !state.playing || !clock_secs.is_finite() {
+    if !state.playback.playing || !clock_secs.is_finite() {
         return;
     }
     let range = play_range(model, clip, state);
     let length = range.length_secs();
-    let secs = clock_secs * state.speed;
-    state.time_secs = whole_microseconds(state.time_secs + secs);
-    if let Some(fade) = &mut state.fade {
+    let secs = clock_secs * state.playback.speed;
+    state.playhead.time_secs = whole_microseconds(state.playhead.time_secs + secs);
+    if let Some(fade) = &mut state.playhead.fade {
         fade.elapsed_secs = whole_microseconds(fade.elapsed_secs + secs);
         let from = clip_of(model, &fade.clip);
         if fade.elapsed_secs >= model.crossfade_secs(from, Some(clip)) {
-            state.fade = None;
+            state.playhead.fade = None;
         }
     }
-    match state.loop_mode {
-        LoopMode::Once if state.time_secs >= range.end_secs => {
-            state.time_secs = range.end_secs;
-            state.playing = false;
+    match state.playback.loop_mode {
+        LoopMode::Once if state.playhead.time_secs >= range.end_secs => {
+            state.playhead.time_secs = range.end_secs;
+            state.playback.playing = false;
         }
         // Whole rounds are taken off, so that the playhead stays a small number however long it runs; but not where layers
         // loop on durations of their own, which one round of the clip would cut off.
         _ if !model.layers(clip).is_empty() => {}
-        LoopMode::Loop if length > 0.0 && state.time_secs > range.end_secs => {
-            state.time_secs =
-                range.start_secs + whole_microseconds((state.time_secs - range.start_secs).rem_euclid(length));
+        LoopMode::Loop if length > 0.0 && state.playhead.time_secs > range.end_secs => {
+            state.playhead.time_secs =
+                range.start_secs + whole_microseconds((state.playhead.time_secs - range.start_secs).rem_euclid(length));
         }
-        LoopMode::PingPong if length > 0.0 && state.time_secs > range.start_secs + 2.0 * length => {
-            state.time_secs =
-                range.start_secs + whole_microseconds((state.time_secs - range.start_secs).rem_euclid(2.0 * length));
+        LoopMode::PingPong if length > 0.0 && state.playhead.time_secs > range.start_secs + 2.0 * length => {
+            state.playhead.time_secs = range.start_secs
+                + whole_microseconds((state.playhead.time_secs - range.start_secs).rem_euclid(2.0 * length));
         }
         _ => {}
     }
     if length <= 0.0 {
-        state.time_secs = range.start_secs;
+        state.playhead.time_secs = range.start_secs;
     }
 }
 
@@ -278,16 +282,16 @@ fn whole_microseconds(secs: f64) -> f64 {
 }
 
 fn step(state: &mut ViewerState, model: Option<&Model>, frames: i32) {
-    state.playing = false;
+    state.playback.playing = false;
     let Some((model, clip)) = active(state, model) else { return };
     let range = play_range(model, clip, state);
     let rate = model.frames_per_sec(clip);
     let stepped = ((clip_secs(model, clip, state) * rate).round() + f64::from(frames)) / rate;
     // Half a frame of slack: the last frame may lie a rounding error past the end.
     let slack = 0.5 / rate;
-    state.time_secs = if state.loop_mode == LoopMode::Loop && stepped > range.end_secs + slack {
+    state.playhead.time_secs = if state.playback.loop_mode == LoopMode::Loop && stepped > range.end_secs + slack {
         range.start_secs
-    } else if state.loop_mode == LoopMode::Loop && stepped < range.start_secs - slack {
+    } else if state.playback.loop_mode == LoopMode::Loop && stepped < range.start_secs - slack {
         range.end_secs
     } else {
         stepped.clamp(range.start_secs, range.end_secs)
@@ -296,7 +300,7 @@ fn step(state: &mut ViewerState, model: Option<&Model>, frames: i32) {
 
 fn set_range(state: &mut ViewerState, model: Option<&Model>, range: Option<TimeRange>) {
     let Some(range) = range else {
-        state.range = None;
+        state.playhead.range = None;
         return;
     };
     if !range.start_secs.is_finite() || !range.end_secs.is_finite() {
@@ -307,17 +311,17 @@ fn set_range(state: &mut ViewerState, model: Option<&Model>, range: Option<TimeR
         clip.map_or(0.0, |clip| f64::from(clip.duration_secs()))
     });
     let (first, second) = (range.start_secs.clamp(0.0, end), range.end_secs.clamp(0.0, end));
-    state.range = Some(TimeRange { start_secs: first.min(second), end_secs: first.max(second) });
+    state.playhead.range = Some(TimeRange { start_secs: first.min(second), end_secs: first.max(second) });
 }
 
 fn set_morph(state: &mut ViewerState, model: Option<&Model>, index: usize, weight: Option<f32>) {
     let known = model.is_none_or(|model| index < model.asset.skeleton.rest().morph_weights.len());
     match weight {
         None => {
-            state.morph.remove(&index);
+            state.edits.morph.remove(&index);
         }
         Some(weight) if known && weight.is_finite() => {
-            state.morph.insert(index, weight.clamp(-10.0, 10.0));
+            state.edits.morph.insert(index, weight.clamp(-10.0, 10.0));
         }
         Some(_) => {}
     }
@@ -327,10 +331,10 @@ fn set_pose(state: &mut ViewerState, model: Option<&Model>, joint: usize, degree
     let known = model.is_none_or(|model| model.asset.skeleton.joint_of_source(joint).is_some());
     match degrees {
         None => {
-            state.pose.remove(&joint);
+            state.edits.pose.remove(&joint);
         }
         Some(degrees) if known && degrees.iter().all(|angle| angle.is_finite()) => {
-            state.pose.insert(joint, degrees.map(half_turn));
+            state.edits.pose.insert(joint, degrees.map(half_turn));
         }
         Some(_) => {}
     }
@@ -347,10 +351,10 @@ fn rename(state: &mut ViewerState, model: Option<&Model>, joint: usize, name: &s
     match in_file {
         Some(None) => {}
         _ if name.is_empty() || in_file == Some(Some(name)) => {
-            state.names.remove(&joint);
+            state.edits.names.remove(&joint);
         }
         _ => {
-            state.names.insert(joint, name.to_owned());
+            state.edits.names.insert(joint, name.to_owned());
         }
     }
 }
@@ -362,7 +366,7 @@ fn half_turn(degrees: f32) -> f32 {
 
 /// The turntable. A file's own camera stays where it is.
 fn turn(state: &mut ViewerState, library: &Library, clock_secs: f64) {
-    let radians = f64::from(state.turntable).to_radians() * clock_secs;
+    let radians = f64::from(state.camera_options.turntable).to_radians() * clock_secs;
     if radians != 0.0 && radians.is_finite() && !matches!(state.camera, CameraChoice::File(_)) {
         let mut orbit = resolve_camera(library, state, USUAL_ASPECT);
         orbit.yaw_radians += radians as f32;

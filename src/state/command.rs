@@ -40,6 +40,7 @@ pub enum Command {
         name: String,
     },
     SetShow(super::Show),
+    SetInspect(super::Inspect),
     SelectJoint(Option<usize>),
     SelectVertex(Option<super::VertexChoice>),
     SetCamera(CameraChoice),

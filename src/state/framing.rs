@@ -21,11 +21,11 @@ const MARGIN: f32 = 1.08;
 /// when there is nothing.
 pub fn resolved_bounds(library: &Library, state: &ViewerState) -> Bounds {
     let bounds = library.active().map_or(Bounds::EMPTY, |model| {
-        let bounds = model.clip_bounds(state.scene, active_clip(model, state), state.follow);
-        bounds.transformed(&world_from_model(state.up))
+        let bounds = model.clip_bounds(state.sources.scene, active_clip(model, state), state.camera_options.follow);
+        bounds.transformed(&world_from_model(state.edits.up))
     });
     let source = source_on_stage(library, state).map_or(Bounds::EMPTY, |source| {
-        let bounds = source.model.clip_bounds(None, Some(source.clip), state.follow);
+        let bounds = source.model.clip_bounds(None, Some(source.clip), state.camera_options.follow);
         bounds.transformed(&source.world_from_source)
     });
     let bounds = bounds.union(source);
@@ -39,7 +39,7 @@ pub fn resolved_bounds(library: &Library, state: &ViewerState) -> Bounds {
 /// How a picture of this aspect ratio is divided: columns and rows. The compared skinning modes are side by side, or one
 /// above the other where there is more room for that.
 pub fn panes(state: &ViewerState, aspect: f32) -> [u32; 2] {
-    if state.show.split { split_panes(aspect) } else { [1, 1] }
+    if state.inspect.split { split_panes(aspect) } else { [1, 1] }
 }
 
 fn split_panes(aspect: f32) -> [u32; 2] {
@@ -57,7 +57,7 @@ pub fn pane_aspect(state: &ViewerState, aspect: f32) -> f32 {
 pub fn split_ratio(state: &ViewerState, aspect: f32) -> f32 {
     let [columns, rows] = split_panes(aspect);
     let farther = (aspect.min(1.0) / (aspect * rows as f32 / columns as f32).min(1.0)).max(1.0);
-    if state.show.split { 1.0 / farther } else { farther }
+    if state.inspect.split { 1.0 / farther } else { farther }
 }
 
 /// The orbit camera that shows what the state asks for in a picture of this aspect ratio (width over height). A camera of the
@@ -67,7 +67,13 @@ pub fn resolve_camera(library: &Library, state: &ViewerState, aspect: f32) -> Or
     let auto = || {
         let (yaw_radians, pitch_radians) = (front_yaw_radians(library, state) + AUTO_YAW_RADIANS, AUTO_PITCH_RADIANS);
         match library.active() {
-            Some(_) => fit(resolved_bounds(library, state), yaw_radians, pitch_radians, state.fov_degrees, aspect),
+            Some(_) => fit(
+                resolved_bounds(library, state),
+                yaw_radians,
+                pitch_radians,
+                state.camera_options.fov_degrees,
+                aspect,
+            ),
             None => OrbitCamera { yaw_radians, pitch_radians, distance: 3.0, target: Vec3::ZERO },
         }
     };
@@ -82,7 +88,7 @@ pub fn resolve_camera(library: &Library, state: &ViewerState, aspect: f32) -> Or
 /// looked at from there, in quarter turns.
 pub fn front_yaw_radians(library: &Library, state: &ViewerState) -> f32 {
     let forward = library.active().and_then(Model::forward);
-    let Some(forward) = forward.map(|forward| world_from_model(state.up).transform_vector3(forward)) else {
+    let Some(forward) = forward.map(|forward| world_from_model(state.edits.up).transform_vector3(forward)) else {
         return 0.0;
     };
     let level = Vec2::new(forward.x, forward.z);
@@ -100,7 +106,13 @@ pub fn frame_all(library: &Library, state: &ViewerState, aspect: f32) -> OrbitCa
     match library.active() {
         Some(_) => {
             let aspect = pane_aspect(state, aspect);
-            fit(resolved_bounds(library, state), now.yaw_radians, now.pitch_radians, state.fov_degrees, aspect)
+            fit(
+                resolved_bounds(library, state),
+                now.yaw_radians,
+                now.pitch_radians,
+                state.camera_options.fov_degrees,
+                aspect,
+            )
         }
         None => now,
     }
@@ -138,7 +150,12 @@ fn file_orbit(library: &Library, state: &ViewerState, index: usize) -> Option<Or
     let camera = model.asset.cameras.get(index)?;
     let (mut sampler, mut world_from_joint) = (PoseSampler::default(), Vec::new());
     sampler.sample(model, state);
-    model_from_joint(&model.asset.skeleton, &sampler.pose.locals, world_from_model(state.up), &mut world_from_joint);
+    model_from_joint(
+        &model.asset.skeleton,
+        &sampler.pose.locals,
+        world_from_model(state.edits.up),
+        &mut world_from_joint,
+    );
     let world_from_camera = world_from_file_camera(&world_from_joint[camera.joint.get()])?;
     let towards_eye = world_from_camera.matrix3.z_axis;
     let eye = world_from_camera.translation;

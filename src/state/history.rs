@@ -39,7 +39,7 @@ impl History {
         let kind = std::mem::discriminant(&command);
         let before = state.clone();
         apply(state, library, command);
-        if !same_edits(&before, state) {
+        if before.undoable() != state.undoable() {
             if self.gesture != Some(kind) {
                 self.push(Step::Edits(before));
             }
@@ -124,7 +124,7 @@ impl Step {
         match self {
             Self::Edits(edits) => {
                 let before = state.clone();
-                take_edits(state, &edits);
+                state.restore_undoable(&edits);
                 Self::Edits(before)
             }
             Self::View(view, loaded) => {
@@ -151,6 +151,7 @@ fn is_edit(command: &Command) -> bool {
             | Command::ClearPose
             | Command::RenameJoint { .. }
             | Command::SetShow(_)
+            | Command::SetInspect(_)
             | Command::SetUp(_)
             | Command::SetExposure(_)
             | Command::SetEnvironment(_)
@@ -162,36 +163,4 @@ fn is_edit(command: &Command) -> bool {
             | Command::SetRoot(_)
             | Command::SetFeet(_)
     )
-}
-
-fn take_edits(state: &mut ViewerState, from: &ViewerState) {
-    state.skinning = from.skinning;
-    state.morph.clone_from(&from.morph);
-    state.pose.clone_from(&from.pose);
-    state.names.clone_from(&from.names);
-    state.show = from.show;
-    state.up = from.up;
-    state.exposure = from.exposure;
-    state.environment_degrees = from.environment_degrees;
-    state.background = from.background;
-    state.map.clone_from(&from.map);
-    state.unmapped.clone_from(&from.unmapped);
-    state.root = from.root;
-    state.feet = from.feet;
-}
-
-fn same_edits(a: &ViewerState, b: &ViewerState) -> bool {
-    a.skinning == b.skinning
-        && a.morph == b.morph
-        && a.pose == b.pose
-        && a.names == b.names
-        && a.show == b.show
-        && a.up == b.up
-        && a.exposure == b.exposure
-        && a.environment_degrees == b.environment_degrees
-        && a.background == b.background
-        && a.map == b.map
-        && a.unmapped == b.unmapped
-        && a.root == b.root
-        && a.feet == b.feet
 }

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use glam::Quat;
 
-use super::ViewerState;
 use super::maps::{self, map_in_force};
+use super::{RetargetEdits, ViewerState};
 use crate::asset::Asset;
 use crate::library::Library;
 use crate::retarget::{
@@ -54,13 +54,16 @@ const PROPERTIES: [MutedProperty; 3] = [MutedProperty::Translation, MutedPropert
 pub(super) fn edit_map(state: &mut ViewerState, library: &Library, motion: usize, edit: MapEdit) {
     let (Some(model), Some(about)) = (library.active(), library.motions().get(motion)) else { return };
     // What is set besides the map stays beside it.
-    let bare = ViewerState { map: state.map.clone(), ..ViewerState::default() };
+    let bare = ViewerState {
+        retarget: RetargetEdits { map: state.retarget.map.clone(), ..RetargetEdits::default() },
+        ..ViewerState::default()
+    };
     let mut map = map_in_force(library, &bare, motion).unwrap_or_default();
     let has_target = |target: usize| model.asset.skeleton.joint_of_source(target).is_some();
     match edit {
         MapEdit::Load(new) => {
             map = *new;
-            (state.unmapped, state.root, state.feet) = (None, None, None);
+            (state.retarget.unmapped, state.retarget.root, state.retarget.feet) = (None, None, None);
         }
         MapEdit::Clear => map.joints.clear(),
         MapEdit::SwapSides => {

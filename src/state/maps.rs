@@ -59,12 +59,12 @@ pub fn names_checksum(model: &Asset, motion: &Asset) -> u32 {
 /// meant for it.
 pub fn map_in_force(library: &Library, state: &ViewerState, motion: usize) -> Option<JointMap> {
     let (model, motion) = (library.active()?, library.motions().get(motion)?);
-    let mut map = numbered_for(&state.map, names_checksum(&model.asset, &motion.asset))?.map.clone();
-    if let Some(unmapped) = &state.unmapped {
+    let mut map = numbered_for(&state.retarget.map, names_checksum(&model.asset, &motion.asset))?.map.clone();
+    if let Some(unmapped) = &state.retarget.unmapped {
         map.unmapped = unmapped.clone();
     }
-    map.root = state.root.unwrap_or(map.root);
-    map.feet = state.feet.unwrap_or(map.feet);
+    map.root = state.retarget.root.unwrap_or(map.root);
+    map.feet = state.retarget.feet.unwrap_or(map.feet);
     Some(map)
 }
 
@@ -77,10 +77,10 @@ pub fn maps_in_force(library: &Library, state: &ViewerState) -> Vec<Option<Joint
 /// proposals for the rest. What is still to be read stays. And what did not fit.
 pub fn settled_maps(library: &Library, state: &ViewerState) -> (Vec<MotionMap>, Vec<MapProblem>) {
     let Some(model) = library.active().filter(|_| !library.motions().is_empty()) else {
-        return (state.map.clone(), Vec::new());
+        return (state.retarget.map.clone(), Vec::new());
     };
     let mut settled: Vec<MotionMap> = Vec::new();
-    let mut used = vec![false; state.map.len()];
+    let mut used = vec![false; state.retarget.map.len()];
     let mut misfits: BTreeMap<usize, MapProblem> = BTreeMap::new();
     for (index, motion) in library.motions().iter().enumerate() {
         let checksum = names_checksum(&model.asset, &motion.asset);
@@ -88,7 +88,7 @@ pub fn settled_maps(library: &Library, state: &ViewerState) -> (Vec<MotionMap>, 
             continue;
         }
         let mut found = None;
-        for (at, map) in state.map.iter().enumerate() {
+        for (at, map) in state.retarget.map.iter().enumerate() {
             if let MotionMap::Names(map) = map {
                 match numbered(map, &model.asset, &motion.asset) {
                     Ok(map) => found = found.or(Some((at, map))),
@@ -100,7 +100,7 @@ pub fn settled_maps(library: &Library, state: &ViewerState) -> (Vec<MotionMap>, 
             }
         }
         let in_numbers = || {
-            state.map.iter().enumerate().find_map(|(at, map)| match map {
+            state.retarget.map.iter().enumerate().find_map(|(at, map)| match map {
                 MotionMap::Numbers(map) if map.checksum == checksum => Some((at, map.map.clone())),
                 _ => None,
             })
@@ -113,7 +113,7 @@ pub fn settled_maps(library: &Library, state: &ViewerState) -> (Vec<MotionMap>, 
         }
     }
     let mut problems = Vec::new();
-    for (at, map) in state.map.iter().enumerate() {
+    for (at, map) in state.retarget.map.iter().enumerate() {
         match map {
             MotionMap::File(_) => settled.push(map.clone()),
             MotionMap::Names(_) if !used[at] => problems.extend(misfits.remove(&at)),
@@ -216,12 +216,13 @@ fn numbered_for(maps: &[MotionMap], checksum: u32) -> Option<&NumberedMap> {
 /// Puts a map in the place of the one for a motion.
 pub(super) fn set_map(state: &mut ViewerState, model: &Asset, motion: &Motion, map: Option<JointMap>) {
     let checksum = names_checksum(model, &motion.asset);
-    let at = state.map.iter().position(|map| matches!(map, MotionMap::Numbers(map) if map.checksum == checksum));
+    let at =
+        state.retarget.map.iter().position(|map| matches!(map, MotionMap::Numbers(map) if map.checksum == checksum));
     match (at, map) {
-        (Some(at), Some(map)) => state.map[at] = MotionMap::Numbers(NumberedMap { checksum, map }),
-        (None, Some(map)) => state.map.push(MotionMap::Numbers(NumberedMap { checksum, map })),
+        (Some(at), Some(map)) => state.retarget.map[at] = MotionMap::Numbers(NumberedMap { checksum, map }),
+        (None, Some(map)) => state.retarget.map.push(MotionMap::Numbers(NumberedMap { checksum, map })),
         (Some(at), None) => {
-            state.map.remove(at);
+            state.retarget.map.remove(at);
         }
         (None, None) => {}
     }

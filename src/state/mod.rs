@@ -34,4 +34,7 @@ pub use playhead::{
     world_from_model,
 };
 pub use stage::{SourceOnStage, source_on_stage};
-pub use view::{Background, ClipChoice, Fade, Show, UpAxis, VertexChoice, ViewerState};
+pub use view::{
+    Background, CameraOptions, ClipChoice, Display, Edits, Fade, Inspect, PageOptions, Playback, Playhead,
+    RetargetEdits, Selection, Show, Sources, UpAxis, VertexChoice, ViewerState,
+};

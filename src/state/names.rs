@@ -10,7 +10,7 @@ use crate::library::Model;
 /// A name to show; nodes without one get their number. `state`: of the model that is shown; none for other files.
 pub fn title<'a>(state: Option<&'a ViewerState>, asset: &'a Asset, joint: JointIndex) -> Cow<'a, str> {
     let number = asset.skeleton.source_index(joint);
-    let by_hand = state.and_then(|state| state.names.get(&number));
+    let by_hand = state.and_then(|state| state.edits.names.get(&number));
     match (by_hand, asset.skeleton.name(joint)) {
         (Some(name), _) => Cow::Borrowed(name),
         (None, "") => Cow::Owned(format!("Node {number}")),
@@ -20,7 +20,7 @@ pub fn title<'a>(state: Option<&'a ViewerState>, asset: &'a Asset, joint: JointI
 
 /// The skeleton as it is written into a file: with the names given by hand, and in the pose of the moment if `posed`.
 pub fn written_skeleton(model: &Model, state: &ViewerState, posed: bool) -> Skeleton {
-    let names = state.names.iter().map(|(&number, name)| (number, name.as_str()));
+    let names = state.edits.names.iter().map(|(&number, name)| (number, name.as_str()));
     let named = model.asset.skeleton.with_names(names);
     if !posed {
         return named;

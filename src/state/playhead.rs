@@ -8,7 +8,7 @@ use crate::library::Model;
 
 /// The clip that plays, by index; none for the rest pose, for a model without clips, or when no clip is called that.
 pub fn active_clip(model: &Model, state: &ViewerState) -> Option<usize> {
-    clip_of(model, &state.clip)
+    clip_of(model, &state.playhead.clip)
 }
 
 /// The clip that a choice stands for.
@@ -39,7 +39,7 @@ pub fn choice_of_clip(model: &Model, clip: usize) -> ClipChoice {
 /// In and out points within a clip, in seconds.
 pub fn play_range(model: &Model, clip: usize, state: &ViewerState) -> TimeRange {
     let duration_secs = model.clip(clip).map_or(0.0, |clip| f64::from(clip.duration_secs()));
-    match state.range {
+    match state.playhead.range {
         Some(range) => TimeRange {
             start_secs: range.start_secs.clamp(0.0, duration_secs),
             end_secs: range.end_secs.clamp(0.0, duration_secs),
@@ -50,7 +50,7 @@ pub fn play_range(model: &Model, clip: usize, state: &ViewerState) -> TimeRange 
 
 /// The time of the clip that is shown: the playhead, folded into the range by the loop mode.
 pub fn clip_secs(model: &Model, clip: usize, state: &ViewerState) -> f64 {
-    clip_time(state.time_secs, play_range(model, clip, state), state.loop_mode)
+    clip_time(state.playhead.time_secs, play_range(model, clip, state), state.playback.loop_mode)
 }
 
 /// A pose, and what it takes to sample the next one without allocating.
@@ -68,8 +68,8 @@ impl PoseSampler {
     pub fn sample(&mut self, model: &Model, state: &ViewerState) {
         let clip = active_clip(model, state);
         let time_secs = clip.map_or(0.0, |clip| clip_secs(model, clip, state));
-        sample_clip(model, clip, time_secs, state.time_secs, &mut self.cursor, &mut self.pose);
-        if let Some(fade) = &state.fade {
+        sample_clip(model, clip, time_secs, state.playhead.time_secs, &mut self.cursor, &mut self.pose);
+        if let Some(fade) = &state.playhead.fade {
             let from = clip_of(model, &fade.clip);
             let length_secs = model.crossfade_secs(from, clip);
             let weight = if length_secs > 0.0 { (fade.elapsed_secs / length_secs).clamp(0.0, 1.0) } else { 1.0 };
@@ -77,18 +77,18 @@ impl PoseSampler {
             let duration_secs =
                 from.and_then(|from| model.clip(from)).map_or(0.0, |clip| f64::from(clip.duration_secs()));
             let range = TimeRange { start_secs: 0.0, end_secs: duration_secs };
-            let time_secs = clip_time(elapsed_secs, range, state.loop_mode);
+            let time_secs = clip_time(elapsed_secs, range, state.playback.loop_mode);
             sample_clip(model, from, time_secs, elapsed_secs, &mut self.before_cursor, &mut self.before);
             // Slow at both ends, so that nothing starts or stops at once.
             self.pose.blend(&self.before, (weight * weight * (3.0 - 2.0 * weight)) as f32);
         }
-        for (&joint, &degrees) in &state.pose {
+        for (&joint, &degrees) in &state.edits.pose {
             if let Some(joint) = model.asset.skeleton.joint_of_source(joint) {
                 let rest = model.asset.skeleton.rest().locals[joint.get()].rotation;
                 self.pose.locals[joint.get()].rotation = rotation_by_hand(rest, degrees);
             }
         }
-        for (&index, &weight) in &state.morph {
+        for (&index, &weight) in &state.edits.morph {
             if let Some(slot) = self.pose.morph_weights.get_mut(index) {
                 *slot = weight;
             }

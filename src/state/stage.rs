@@ -19,14 +19,16 @@ pub struct SourceOnStage<'a> {
 
 /// None when the state does not ask for it, or the clip is the model's own.
 pub fn source_on_stage<'a>(library: &'a Library, state: &ViewerState) -> Option<SourceOnStage<'a>> {
-    let model = library.active().filter(|_| state.show.source)?;
+    let model = library.active().filter(|_| state.display.show.source)?;
     let borrowed = model.borrowed(active_clip(model, state)?)?;
     let source = library.motions().get(borrowed.motion)?.stage();
-    let in_place = world_from_model(state.up) * borrowed.model_from_source;
+    let in_place = world_from_model(state.edits.up) * borrowed.model_from_source;
     let half_width = |bounds: Bounds| if bounds.is_empty() { 0.0 } else { 0.5 * bounds.size().x };
-    let sizes =
-        [model.rest_bounds().transformed(&world_from_model(state.up)), source.rest_bounds().transformed(&in_place)];
-    let apart = match state.show.over {
+    let sizes = [
+        model.rest_bounds().transformed(&world_from_model(state.edits.up)),
+        source.rest_bounds().transformed(&in_place),
+    ];
+    let apart = match state.display.show.over {
         true => 0.0,
         false => 1.15 * (half_width(sizes[0]) + half_width(sizes[1])),
     };

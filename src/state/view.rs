@@ -9,101 +9,207 @@ use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
 use crate::retarget::{Feet, RootOptions, Unmapped};
 
-/// Everything a person can set. Joints are named by their number in the file's own order, so that the state can be
-/// written down without the file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Everything the user can set. The group a field is in says what happens to it:
+///
+/// | group | starts over with another model | covered by undo |
+/// | --- | --- | --- |
+/// | `sources`, `playhead`, `selection`, `camera` | yes | no |
+/// | `retarget`, `edits`, `inspect` | yes | yes |
+/// | `display` | no | yes |
+/// | `playback`, `camera_options`, `page` | no | no |
+///
+/// [`ViewerState::for_model`] and [`UndoableEdits`] are the only code that depends on that. Joints are identified by their
+/// index in the file's own order, so that the state can be written down without the file.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ViewerState {
-    /// Where the shown model comes from: URLs, `sample:NAME`, or file names of dropped files.
+    pub sources: Sources,
+    pub retarget: RetargetEdits,
+    pub edits: Edits,
+    pub inspect: Inspect,
+    pub playhead: Playhead,
+    pub selection: Selection,
+    pub camera: CameraChoice,
+    pub playback: Playback,
+    pub display: Display,
+    pub camera_options: CameraOptions,
+    pub page: PageOptions,
+}
+
+impl ViewerState {
+    /// The view of another model: everything about the model is taken from `model`, the rest stays. A crossfade ends.
+    pub fn for_model(self, model: Self) -> Self {
+        let Self { playback, display, camera_options, page, .. } = self;
+        let playhead = Playhead { fade: None, ..model.playhead };
+        Self { playhead, playback, display, camera_options, page, ..model }
+    }
+
+    /// The default view of a model from this source.
+    pub fn of_model(source: String) -> Self {
+        let sources = Sources { model: vec![source], ..Sources::default() };
+        Self { sources, ..Self::default() }
+    }
+
+    /// What undo covers.
+    pub fn undoable(&self) -> UndoableEdits<'_> {
+        let Self { retarget, edits, inspect, display, .. } = self;
+        UndoableEdits { retarget, edits, inspect, display }
+    }
+
+    /// Takes over from another state what undo covers.
+    pub fn restore_undoable(&mut self, from: &Self) {
+        let UndoableEdits { retarget, edits, inspect, display } = from.undoable();
+        self.retarget.clone_from(retarget);
+        self.edits.clone_from(edits);
+        (self.inspect, self.display) = (*inspect, *display);
+    }
+}
+
+/// The groups of a [`ViewerState`] that undo covers.
+#[derive(Debug, PartialEq)]
+pub struct UndoableEdits<'a> {
+    retarget: &'a RetargetEdits,
+    edits: &'a Edits,
+    inspect: &'a Inspect,
+    display: &'a Display,
+}
+
+/// The files.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Sources {
+    /// Where the active model comes from: URLs, `sample:NAME`, or names of local files.
     pub model: Vec<String>,
-    /// Files that clips are borrowed from, besides those that come with the model: as for `model`.
+    /// Files whose clips are retargeted, besides those that come with the model: as for `model`.
     pub motion: Vec<String>,
-    /// Which joints follow which, one map for each pair of skeletons; what is missing is filled in automatically.
+    /// Scene of the file; none: the file's default.
+    pub scene: Option<usize>,
+}
+
+/// How motions are retargeted.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct RetargetEdits {
+    /// One joint map per pair of skeletons; a missing one is proposed.
     pub map: Vec<MotionMap>,
-    /// These three win over what the maps say; none: as they say.
+    /// These three override the maps; none: as the map says.
     pub unmapped: Option<Unmapped>,
     pub root: Option<RootOptions>,
     pub feet: Option<Feet>,
-    /// Scene of the file; none: the file's default.
-    pub scene: Option<usize>,
+}
+
+/// Changes to the model itself.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Edits {
+    /// Morph weights by index in `Pose::morph_weights`; they override the clip.
+    pub morph: BTreeMap<usize, f32>,
+    /// Joints posed manually, by index in the file: Euler angles in degrees, see [`super::rotation_by_hand`]. They override
+    /// the clip.
+    pub pose: BTreeMap<usize, [f32; 3]>,
+    /// Custom joint names, by index in the file; never empty. They are shown instead of the file's, and written except
+    /// where a glTF file is written as it was.
+    pub names: BTreeMap<usize, String>,
+    pub up: UpAxis,
+}
+
+/// What the viewport explains about the model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Inspect {
+    /// The influence of the selected joint as a heat map.
+    pub weights: bool,
+    /// The three skinning methods side by side.
+    pub split: bool,
+}
+
+/// The clip and the place in it.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Playhead {
     pub clip: ClipChoice,
-    /// The playhead in clip seconds; runs on beyond the range while looping.
+    /// In clip seconds; runs on beyond the range while looping.
     pub time_secs: f64,
-    /// The clip before, while it blends into the present one.
     pub fade: Option<Fade>,
+    /// In and out points; none: the whole clip.
+    pub range: Option<TimeRange>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Selection {
+    /// By index in the file: its transforms are shown, and its influence with `inspect.weights`.
+    pub joint: Option<usize>,
+    /// The vertex whose skinning is explained.
+    pub vertex: Option<VertexChoice>,
+}
+
+/// How clips play.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Playback {
     pub playing: bool,
     pub speed: f64,
     pub loop_mode: LoopMode,
-    /// In and out points; none: the whole clip.
-    pub range: Option<TimeRange>,
-    pub skinning: SkinningMode,
-    /// Morph weights set by hand, by index in `Pose::morph_weights`; they win over the clip.
-    pub morph: BTreeMap<usize, f32>,
-    /// Joints turned by hand, by their numbers in the file: Euler angles in degrees, see [`super::rotation_by_hand`]. They
-    /// win over the clip.
-    pub pose: BTreeMap<usize, [f32; 3]>,
-    /// Names given to joints by hand, by their numbers in the file; never empty. They are shown instead of the
-    /// file's, and written but where a glTF file is written as it was.
-    pub names: BTreeMap<usize, String>,
-    pub show: Show,
-    /// The chosen joint, by its number in the file: its transforms are shown, and its influence with `show.weights`.
-    pub joint: Option<usize>,
-    /// The chosen vertex: how its joints move it is shown.
-    pub vertex: Option<VertexChoice>,
-    pub camera: CameraChoice,
-    pub fov_degrees: f32,
-    /// The camera stays with the character's root.
-    pub follow: bool,
-    /// How fast the camera goes around the target by itself, degrees per second of the clock.
-    pub turntable: f32,
-    pub up: UpAxis,
-    /// In stops: the picture is multiplied by 2^exposure.
-    pub exposure: f32,
-    /// Turn of the environment about the vertical.
-    pub environment_degrees: f32,
-    pub background: Background,
-    /// Only the picture and the transport.
-    pub embed: bool,
-    /// Keys of a link that this version does not know: kept and written back.
-    pub unknown: BTreeMap<String, String>,
 }
 
-impl Default for ViewerState {
+impl Default for Playback {
+    fn default() -> Self {
+        Self { playing: true, speed: 1.0, loop_mode: LoopMode::Loop }
+    }
+}
+
+/// How the scene is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Display {
+    pub skinning: SkinningMode,
+    pub show: Show,
+    /// In stops: the picture is multiplied by 2^exposure.
+    pub exposure: f32,
+    /// Rotation of the lighting about the vertical.
+    pub environment_degrees: f32,
+    pub background: Background,
+}
+
+impl Default for Display {
     fn default() -> Self {
         Self {
-            model: Vec::new(),
-            motion: Vec::new(),
-            map: Vec::new(),
-            unmapped: None,
-            root: None,
-            feet: None,
-            scene: None,
-            clip: ClipChoice::First,
-            time_secs: 0.0,
-            fade: None,
-            playing: true,
-            speed: 1.0,
-            loop_mode: LoopMode::Loop,
-            range: None,
             skinning: SkinningMode::Linear,
-            morph: BTreeMap::new(),
-            pose: BTreeMap::new(),
-            names: BTreeMap::new(),
             show: Show::default(),
-            joint: None,
-            vertex: None,
-            camera: CameraChoice::Auto,
-            fov_degrees: 35.0,
-            follow: false,
-            turntable: 0.0,
-            up: UpAxis::Y,
             exposure: 0.0,
             environment_degrees: 0.0,
             background: Background::Studio,
-            embed: false,
-            unknown: BTreeMap::new(),
         }
     }
+}
+
+/// How any camera behaves; where it is depends on the model and is [`ViewerState::camera`].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct CameraOptions {
+    /// Vertical.
+    pub fov_degrees: f32,
+    /// The camera travels with the character's root.
+    pub follow: bool,
+    /// How fast the camera orbits by itself, degrees per second of the clock.
+    pub turntable: f32,
+}
+
+impl Default for CameraOptions {
+    fn default() -> Self {
+        Self { fov_degrees: 35.0, follow: false, turntable: 0.0 }
+    }
+}
+
+/// What the page does with the view.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct PageOptions {
+    /// Show nothing but the viewport and the transport.
+    pub embed: bool,
+    /// Unknown link keys, preserved when the link is written again.
+    pub unknown: BTreeMap<String, String>,
 }
 
 /// A vertex of one piece of a mesh, where that mesh hangs on a node: all as indices into the asset's lists.
@@ -114,7 +220,7 @@ pub struct VertexChoice {
     pub vertex: usize,
 }
 
-/// What is left of a clip that was changed for another.
+/// The outgoing clip of a crossfade.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Fade {
     pub clip: ClipChoice,
@@ -140,13 +246,10 @@ pub enum ClipChoice {
 pub struct Show {
     pub mesh: bool,
     pub skeleton: bool,
-    pub weights: bool,
     pub bounds: bool,
     pub wireframe: bool,
     pub grid: bool,
     pub shadow: bool,
-    /// The three skinning modes side by side.
-    pub split: bool,
     /// The file that the clip is borrowed from, beside the model.
     pub source: bool,
     /// The same, in the model's own place.
@@ -164,12 +267,10 @@ impl Default for Show {
         Self {
             mesh: true,
             skeleton: false,
-            weights: false,
             bounds: false,
             wireframe: false,
             grid: true,
             shadow: true,
-            split: false,
             source: false,
             over: false,
             error: false,

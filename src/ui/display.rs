@@ -6,7 +6,7 @@ use super::controls::{self, SliderSettings};
 use super::{Output, Shown};
 use crate::library::Model;
 use crate::mesh::{Geometry, SkinningMode, Topology};
-use crate::state::{Command, Show, active_clip};
+use crate::state::{Command, Inspect, Show, active_clip};
 
 const MODES: [(SkinningMode, &str); 3] =
     [(SkinningMode::Linear, "Linear"), (SkinningMode::Rigid, "Rigid"), (SkinningMode::DualQuaternion, "Dual quat.")];
@@ -43,35 +43,36 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
         morphs(ui, shown, model, out);
     }
     controls::section(ui, "SKINNING");
-    if let Some(mode) = controls::segmented(ui, Some(state.skinning), &MODES) {
+    if let Some(mode) = controls::segmented(ui, Some(state.display.skinning), &MODES) {
         out.commands.push(Command::SetSkinning(mode));
     }
     ui.add_space(2.0);
-    controls::hint(ui, explanation(state.skinning));
-    if controls::switch(ui, "Compare all three", state.show.split) {
-        out.commands.push(Command::SetShow(Show { split: !state.show.split, ..state.show }));
+    controls::hint(ui, explanation(state.display.skinning));
+    if controls::switch(ui, "Compare all three", state.inspect.split) {
+        out.commands.push(Command::SetInspect(Inspect { split: !state.inspect.split, ..state.inspect }));
     }
 
     controls::section(ui, "SHOW");
-    let Show { mesh, skeleton, weights, bounds, wireframe, grid, shadow, .. } = state.show;
-    type Flip = fn(&mut Show);
+    let Show { mesh, skeleton, bounds, wireframe, grid, shadow, .. } = state.display.show;
+    type Flip = fn(&mut Show, &mut Inspect);
     let switches: [(&str, bool, Flip); 7] = [
-        ("Mesh", mesh, |show| show.mesh = !show.mesh),
-        ("Skeleton", skeleton, |show| show.skeleton = !show.skeleton),
-        ("Influence of the chosen joint", weights, |show| show.weights = !show.weights),
-        ("Wireframe", wireframe, |show| show.wireframe = !show.wireframe),
-        ("Bounds", bounds, |show| show.bounds = !show.bounds),
-        ("Grid", grid, |show| show.grid = !show.grid),
-        ("Shadow", shadow, |show| show.shadow = !show.shadow),
+        ("Mesh", mesh, |show, _| show.mesh = !show.mesh),
+        ("Skeleton", skeleton, |show, _| show.skeleton = !show.skeleton),
+        ("Influence of the chosen joint", state.inspect.weights, |_, inspect| inspect.weights = !inspect.weights),
+        ("Wireframe", wireframe, |show, _| show.wireframe = !show.wireframe),
+        ("Bounds", bounds, |show, _| show.bounds = !show.bounds),
+        ("Grid", grid, |show, _| show.grid = !show.grid),
+        ("Shadow", shadow, |show, _| show.shadow = !show.shadow),
     ];
     for (label, on, flip) in switches {
         if controls::switch(ui, label, on) {
-            let mut show = state.show;
-            flip(&mut show);
-            out.commands.push(Command::SetShow(show));
+            let (mut show, mut inspect) = (state.display.show, state.inspect);
+            flip(&mut show, &mut inspect);
+            let is_show = show != state.display.show;
+            out.commands.push(if is_show { Command::SetShow(show) } else { Command::SetInspect(inspect) });
         }
         if label.starts_with("Influence") && on {
-            let hint = match state.joint {
+            let hint = match state.selection.joint {
                 None => "Choose a joint in the picture or in the Scene tab to see what it pulls.",
                 Some(_) => {
                     "Grey where it does not pull at all, then from blue through green and yellow to red, where it pulls alone."
@@ -89,7 +90,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
 
 /// What only some models or views have a use for.
 fn more(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
-    let show = shown.state.show;
+    let show = shown.state.display.show;
     if controls::switch(ui, "Skeleton of spheres and boxes", show.boxes) {
         // Who asks for them wants to see them.
         let boxes = !show.boxes;
@@ -107,7 +108,7 @@ fn more(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
 
 /// Where the file is shown that the playing clip is borrowed from.
 fn source(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
-    let show = shown.state.show;
+    let show = shown.state.display.show;
     let Some(model) = shown.library.active().filter(|_| !shown.library.motions().is_empty()) else { return };
     controls::section(ui, "SOURCE OF THE MOTION");
     #[derive(Clone, Copy, PartialEq)]
@@ -165,7 +166,7 @@ fn morphs(ui: &mut Ui, shown: &Shown<'_>, model: &Model, out: &mut Output) {
             titled = true;
             controls::section(ui, "MORPH TARGETS");
             // Always there: it must not push a slider away from under the pointer.
-            let by_hand = !shown.state.morph.is_empty();
+            let by_hand = !shown.state.edits.morph.is_empty();
             if ui.add_enabled(by_hand, egui::Button::new("Let the clip decide")).clicked() {
                 out.commands.push(Command::ClearMorphs);
             }
@@ -174,7 +175,7 @@ fn morphs(ui: &mut Ui, shown: &Shown<'_>, model: &Model, out: &mut Output) {
             let name = mesh.target_names.get(target).filter(|name| !name.is_empty());
             let name = name.cloned().unwrap_or_else(|| format!("Target {target}"));
             let rest = asset.skeleton.rest().morph_weights.get(index).copied().unwrap_or(0.0);
-            let by_hand = shown.state.morph.get(&index).copied();
+            let by_hand = shown.state.edits.morph.get(&index).copied();
             let value = by_hand.or_else(|| now.get(index).copied()).unwrap_or(rest);
             let settings = SliderSettings {
                 range: (0.0, 1.0),

@@ -29,7 +29,7 @@ pub(super) struct Probe {
 
 impl Probe {
     pub fn is_on(&self, shown: &Shown<'_>) -> bool {
-        self.on || shown.state.vertex.is_some()
+        self.on || shown.state.selection.vertex.is_some()
     }
 
     /// Another model has other vertices.
@@ -38,26 +38,26 @@ impl Probe {
     }
 
     fn vertex(&self, shown: &Shown<'_>) -> Option<VertexChoice> {
-        shown.state.vertex.or(self.hovered)
+        shown.state.selection.vertex.or(self.hovered)
     }
 }
 
 /// What the pointer does to the picture while vertices are looked for: true when it is on the mesh.
 pub(super) fn point_at_vertex(response: &Response, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) -> bool {
-    if !local.probe.is_on(shown) || shown.state.embed {
+    if !local.probe.is_on(shown) || shown.state.page.embed {
         return false;
     }
     let clicked = response.clicked();
     let at = if clicked { response.interact_pointer_pos() } else { response.hover_pos() };
     let Some(at) = at.filter(|_| !response.dragged()) else { return false };
     // A vertex that is kept stays; one under a pointer at rest as well, however the model moves.
-    if !clicked && (shown.state.vertex.is_some() || local.probe.looked_at == Some(at)) {
-        return local.probe.is_hit && shown.state.vertex.is_none();
+    if !clicked && (shown.state.selection.vertex.is_some() || local.probe.looked_at == Some(at)) {
+        return local.probe.is_hit && shown.state.selection.vertex.is_none();
     }
     local.probe.looked_at = Some(at);
     let found = vertex_at(shown, response.rect, at, &mut local.probe.scratch);
     local.probe.is_hit = found.is_some();
-    if clicked && found != shown.state.vertex {
+    if clicked && found != shown.state.selection.vertex {
         out.commands.push(Command::SelectVertex(found));
     } else if found.is_some() {
         local.probe.hovered = found;
@@ -79,7 +79,7 @@ fn vertex_at(shown: &Shown<'_>, rect: Rect, at: egui::Pos2, scratch: &mut Deform
 
 /// A dot on the vertex and its number.
 pub(super) fn mark(ui: &Ui, painter: &Painter, pane: Rect, shown: &Shown<'_>, local: &mut UiState) -> Option<()> {
-    let choice = local.probe.vertex(shown).filter(|_| local.probe.is_on(shown) && !shown.state.embed)?;
+    let choice = local.probe.vertex(shown).filter(|_| local.probe.is_on(shown) && !shown.state.page.embed)?;
     let (model, character) = (shown.library.active()?, shown.frame.characters.first()?);
     let formula = &mut local.probe.formula;
     if !vertex_formula(model, character, choice, formula) {
@@ -151,7 +151,7 @@ pub(super) fn vertex(ui: &mut Ui, shown: &Shown<'_>, model: &Model, local: &mut 
     if controls::switch(ui, "Vertex under the pointer", on) {
         local.probe.on = !on;
         local.probe.hovered = None;
-        if on && shown.state.vertex.is_some() {
+        if on && shown.state.selection.vertex.is_some() {
             out.commands.push(Command::SelectVertex(None));
         }
     }
@@ -185,7 +185,7 @@ fn table(
     let palette = style::palette(ui);
     ui.horizontal(|ui| {
         ui.label(RichText::new(vertex_title(model, choice)).strong());
-        if shown.state.vertex.is_some() {
+        if shown.state.selection.vertex.is_some() {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if ui.small_button("Let go").on_hover_text("Look at what is under the pointer again").clicked() {
                     out.commands.push(Command::SelectVertex(None));
@@ -205,7 +205,7 @@ fn table(
         let number = model.asset.skeleton.source_index(part.joint);
         ui.add_space(3.0);
         let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 21.0), Sense::click());
-        let chosen = shown.state.joint == Some(number);
+        let chosen = shown.state.selection.joint == Some(number);
         let label = format!("{name}, weight {:.4}", part.weight);
         let role = egui::accesskit::Role::Button;
         response.widget_info(|| WidgetInfo::selected(role, true, chosen, &label));
@@ -228,7 +228,7 @@ fn table(
     ui.add_space(2.0);
     ui.separator();
     numbers(ui, "p'", "the sum of the shares", formula.sum, digits, true);
-    if shown.state.skinning != SkinningMode::Linear {
+    if shown.state.display.skinning != SkinningMode::Linear {
         numbers(ui, "drawn", "with the skinning that is chosen", formula.drawn, digits, true);
         controls::hint(ui, "The sum is what linear skinning draws; another way is chosen in the Display tab.");
     }

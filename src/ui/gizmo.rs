@@ -47,7 +47,7 @@ pub(super) fn show(
     local: &mut UiState,
     out: &mut Output,
 ) -> bool {
-    let wanted = local.turning && !shown.state.embed;
+    let wanted = local.turning && !shown.state.page.embed;
     let Some(handle) = wanted.then(|| handle(response, shown)).flatten() else {
         local.grab = None;
         return false;
@@ -81,14 +81,14 @@ pub(super) fn show(
 
 fn handle(response: &Response, shown: &Shown<'_>) -> Option<Handle> {
     let model = shown.library.active()?;
-    let joint = shown.state.joint?;
+    let joint = shown.state.selection.joint?;
     let index = model.asset.skeleton.joint_of_source(joint)?;
     let character = shown.frame.characters.first()?;
     let matrix = character.world_from_joint.get(index.get())?;
     // The rings of a mirrored joint would turn it the wrong way round: it has its sliders.
     let world = Some(Transform::from_matrix(&(*matrix).into())).filter(Transform::is_upright)?.rotation;
     let rest = model.asset.skeleton.rest().locals.get(index.get())?.rotation;
-    let local = match shown.state.pose.get(&joint) {
+    let local = match shown.state.edits.pose.get(&joint) {
         Some(&degrees) => rotation_by_hand(rest, degrees),
         None => {
             let mut sampler = PoseSampler::default();

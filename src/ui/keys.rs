@@ -76,7 +76,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
         keys: "C",
         does: "The camera goes along with the character, or stays",
         pressed: &[Key::C],
-        act: |shown, _, _, out| out.commands.push(Command::SetFollow(!shown.state.follow)),
+        act: |shown, _, _, out| out.commands.push(Command::SetFollow(!shown.state.camera_options.follow)),
     },
     KeyHelp {
         keys: "I  O",
@@ -89,7 +89,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
         does: "Next loop mode",
         pressed: &[Key::L],
         act: |shown, _, _, out| {
-            out.commands.push(Command::SetLoopMode(match shown.state.loop_mode {
+            out.commands.push(Command::SetLoopMode(match shown.state.playback.loop_mode {
                 LoopMode::Once => LoopMode::Loop,
                 LoopMode::Loop => LoopMode::PingPong,
                 LoopMode::PingPong => LoopMode::Once,
@@ -101,7 +101,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
         does: "Skeleton, wireframe, grid",
         pressed: &[Key::S, Key::W, Key::G],
         act: |shown, _, which, out| {
-            let mut show: Show = shown.state.show;
+            let mut show: Show = shown.state.display.show;
             match which {
                 0 => show.skeleton = !show.skeleton,
                 1 => show.wireframe = !show.wireframe,
@@ -137,7 +137,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
             } else if local.error.is_some() {
                 local.error = None;
                 local.motion_refused = false;
-            } else if shown.state.joint.is_some() {
+            } else if shown.state.selection.joint.is_some() {
                 out.commands.push(Command::SelectJoint(None));
             }
         },

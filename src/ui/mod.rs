@@ -136,7 +136,7 @@ pub struct UiState {
 impl UiState {
     /// A link about a joint that is turned by hand means the turning.
     pub fn turn_to_link(&mut self, state: &ViewerState) {
-        self.turning = state.joint.is_some_and(|joint| state.pose.contains_key(&joint));
+        self.turning = state.selection.joint.is_some_and(|joint| state.edits.pose.contains_key(&joint));
         if self.turning {
             self.tab = Tab::Scene;
         }
@@ -323,7 +323,7 @@ pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Outp
         .resizable(false)
         .show_separator_line(false)
         .show(ui, |ui| transport::show(ui, &shown, local, narrow, out));
-    if !narrow && !shown.state.embed {
+    if !narrow && !shown.state.page.embed {
         if local.clips_open {
             egui::Panel::left("clips")
                 .frame(side)
@@ -342,7 +342,7 @@ pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Outp
         }
     }
     let free = ui.available_rect_before_wrap();
-    local.sheet_rect = (narrow && !shown.state.embed && local.sheet.is_some()).then(|| overlays::sheet_rect(free));
+    local.sheet_rect = (narrow && !shown.state.page.embed && local.sheet.is_some()).then(|| overlays::sheet_rect(free));
     match local.sheet_rect {
         // Above the sheet, or the character would be behind it.
         Some(sheet) => free.with_max_y(sheet.top() + f32::from(overlays::SHEET_CORNER)),

@@ -13,7 +13,7 @@ pub fn overlays(ui: &mut Ui, picture: Rect, shown: Shown<'_>, local: &mut UiStat
     if local.recording {
         return;
     }
-    if is_narrow(ui) && !shown.state.embed {
+    if is_narrow(ui) && !shown.state.page.embed {
         sheet(ui, &shown, local, out);
     } else {
         local.sheet = None;
@@ -100,7 +100,7 @@ fn notices(ui: &mut Ui, picture: Rect, shown: &Shown<'_>, local: &mut UiState, o
     let palette = style::palette(ui);
     let width = (picture.width() - 28.0).min(520.0);
     // Above the names of what is compared.
-    let bottom = picture.bottom() - if shown.state.show.split { 38.0 } else { 14.0 };
+    let bottom = picture.bottom() - if shown.state.inspect.split { 38.0 } else { 14.0 };
     let area = Area::new(Id::unique("notices"))
         .order(Order::Foreground)
         .pivot(Align2::LEFT_BOTTOM)

@@ -51,7 +51,7 @@ pub fn picture(ui: &mut Ui, rect: Rect, shown: Shown<'_>, local: &mut UiState, o
             joints(ui, &painter, &response, &shown, local, out);
         }
         keys::listen(ui.ctx(), &shown, local, out);
-        if !shown.state.embed {
+        if !shown.state.page.embed {
             buttons(ui, rect, local, out);
         }
     }
@@ -60,7 +60,7 @@ pub fn picture(ui: &mut Ui, rect: Rect, shown: Shown<'_>, local: &mut UiState, o
 
 /// Shows that there is nothing behind a transparent picture.
 fn checkerboard(painter: &Painter, rect: Rect, shown: &Shown<'_>, palette: style::Palette) {
-    if shown.state.background != crate::state::Background::Transparent || shown.state.embed {
+    if shown.state.display.background != crate::state::Background::Transparent || shown.state.page.embed {
         return;
     }
     let size = 12.0;
@@ -141,7 +141,7 @@ fn joints(ui: &Ui, painter: &Painter, response: &Response, shown: &Shown<'_>, lo
             return;
         }
         let clicked = response.interact_pointer_pos().and_then(at).and_then(of_model);
-        if clicked != shown.state.joint {
+        if clicked != shown.state.selection.joint {
             out.commands.push(Command::SelectJoint(clicked));
         }
     }
@@ -162,7 +162,7 @@ pub fn labels(ui: &Ui, rect: Rect, shown: Shown<'_>, local: &mut UiState) {
     let pane = pane_at(&shown, rect, pointer);
     formula::mark(ui, &painter, pane, &shown, local);
     let both = |picked: Option<PickedJoint>| [picked, picked.and_then(|picked| partner(&shown, picked))];
-    let chosen = both(shown.state.joint.map(PickedJoint::Model));
+    let chosen = both(shown.state.selection.joint.map(PickedJoint::Model));
     for picked in chosen.into_iter().flatten() {
         label(ui, &painter, pane, &shown, picked, true);
     }

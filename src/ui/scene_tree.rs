@@ -23,7 +23,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
         local.scrolled_to = None;
         local.probe.forget();
     }
-    let chosen = shown.state.joint.and_then(|joint| model.asset.skeleton.joint_of_source(joint));
+    let chosen = shown.state.selection.joint.and_then(|joint| model.asset.skeleton.joint_of_source(joint));
     let height = ui.available_height();
     // What is above the tree may need more than all of the room.
     ScrollArea::vertical().id_salt("scene").auto_shrink([false, false]).show(ui, |ui| {
@@ -132,13 +132,14 @@ fn tree(ui: &mut Ui, shown: &Shown<'_>, model: &Model, local: &mut UiState, out:
         return;
     }
     let mut area = ScrollArea::vertical().id_salt(("tree", model.id)).auto_shrink([false, false]);
-    if local.scrolled_to != shown.state.joint && local.scroll_next != shown.state.joint {
+    if local.scrolled_to != shown.state.selection.joint && local.scroll_next != shown.state.selection.joint {
         // The card of the joint has just taken its room; egui would spring back from where the tree could be before.
-        local.scroll_next = shown.state.joint;
+        local.scroll_next = shown.state.selection.joint;
         ui.ctx().request_repaint();
-    } else if local.scrolled_to != shown.state.joint {
-        local.scrolled_to = shown.state.joint;
-        let at = rows.iter().position(|row| Some(asset.skeleton.source_index(row.joint)) == shown.state.joint);
+    } else if local.scrolled_to != shown.state.selection.joint {
+        local.scrolled_to = shown.state.selection.joint;
+        let at =
+            rows.iter().position(|row| Some(asset.skeleton.source_index(row.joint)) == shown.state.selection.joint);
         if let Some(at) = at {
             // A few rows above it stay in sight, to show where it hangs.
             let most = rows.len() as f32 * ROW_HEIGHT - ui.available_height();
@@ -151,7 +152,7 @@ fn tree(ui: &mut Ui, shown: &Shown<'_>, model: &Model, local: &mut UiState, out:
         ui.set_max_width(ui.available_width() - controls::BAR);
         for row in rows.get(visible).unwrap_or_default() {
             let source = asset.skeleton.source_index(row.joint);
-            let chosen = shown.state.joint == Some(source);
+            let chosen = shown.state.selection.joint == Some(source);
             match tree_row(
                 ui,
                 row,
@@ -293,16 +294,16 @@ fn joint_card(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, 
     ui.add_space(2.0);
     if controls::switch(ui, "Turn by hand", panel.turning) {
         panel.turning = !panel.turning;
-        if shown.state.turntable != 0.0 {
+        if shown.state.camera_options.turntable != 0.0 {
             out.commands.push(Command::SetTurntable(0.0));
         }
     }
     if panel.turning {
         by_hand(ui, shown, asset, joint, local.rotation, out);
     }
-    if !shown.state.pose.is_empty() {
-        let count = shown.state.pose.len();
-        let is_turned = shown.state.pose.contains_key(&asset.skeleton.source_index(joint));
+    if !shown.state.edits.pose.is_empty() {
+        let count = shown.state.edits.pose.len();
+        let is_turned = shown.state.edits.pose.contains_key(&asset.skeleton.source_index(joint));
         ui.horizontal_wrapped(|ui| {
             if ui.add_enabled(is_turned, egui::Button::new("Reset joint")).clicked() {
                 out.commands.push(Command::SetPose { joint: asset.skeleton.source_index(joint), degrees: None });
@@ -369,7 +370,7 @@ fn name(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, panel:
 fn by_hand(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, rotation: Quat, out: &mut Output) {
     let number = asset.skeleton.source_index(joint);
     let rest = asset.skeleton.rest().locals.get(joint.get()).map_or(Quat::IDENTITY, |local| local.rotation);
-    let now = shown.state.pose.get(&number).copied().unwrap_or_else(|| degrees_by_hand(rest, rotation));
+    let now = shown.state.edits.pose.get(&number).copied().unwrap_or_else(|| degrees_by_hand(rest, rotation));
     // Never minus nothing.
     let now = now.map(|angle| angle + 0.0);
     controls::hint(ui, "From its rest: about its X, then its Y, then its Z. Or drag the rings in the picture.");

@@ -15,7 +15,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, narrow: 
     let clip = shown.clip();
     let time_secs = shown.clip_time_secs();
     let of = (model.map_or(ModelId::default(), |model| model.id), clip_index.unwrap_or(usize::MAX));
-    let bar = Scrub { clip, time_secs, range: shown.state.range };
+    let bar = Scrub { clip, time_secs, range: shown.state.playhead.range };
     let (scrubbed, held) = scrub::show(ui, &bar, of, &mut local.key_marks);
     local.holds_time = held;
     match scrubbed {
@@ -23,7 +23,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, narrow: 
         Some(Scrubbed::Range(range)) => out.commands.push(Command::SetRange(Some(range))),
         None => {}
     }
-    if shown.state.show.source && !shown.state.embed {
+    if shown.state.display.show.source && !shown.state.page.embed {
         feet::show(ui, shown);
     }
     ui.horizontal(|ui| {
@@ -34,7 +34,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, narrow: 
             if icon_button(ui, Icon::StepBack, "Previous frame (,)", false).clicked() {
                 out.commands.push(Command::StepFrames(-1));
             }
-            if play_button(ui, shown.state.playing && moves, 40.0).clicked() {
+            if play_button(ui, shown.state.playback.playing && moves, 40.0).clicked() {
                 out.commands.push(Command::TogglePlaying);
             }
             if icon_button(ui, Icon::StepForward, "Next frame (.)", false).clicked() {
@@ -88,7 +88,7 @@ const LOOP_MODES: [(LoopMode, Icon, &str); 3] = [
 
 fn loop_choice(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     for (mode, icon, label) in LOOP_MODES.into_iter().rev() {
-        if icon_button(ui, icon, label, shown.state.loop_mode == mode).clicked() {
+        if icon_button(ui, icon, label, shown.state.playback.loop_mode == mode).clicked() {
             out.commands.push(Command::SetLoopMode(mode));
         }
     }
@@ -96,7 +96,7 @@ fn loop_choice(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
 
 /// One button that goes through the modes.
 fn loop_cycle(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
-    let at = LOOP_MODES.iter().position(|(mode, ..)| *mode == shown.state.loop_mode).unwrap_or(0);
+    let at = LOOP_MODES.iter().position(|(mode, ..)| *mode == shown.state.playback.loop_mode).unwrap_or(0);
     let (_, icon, label) = LOOP_MODES[at];
     if icon_button(ui, icon, label, false).clicked() {
         out.commands.push(Command::SetLoopMode(LOOP_MODES[(at + 1) % LOOP_MODES.len()].0));
@@ -106,7 +106,7 @@ fn loop_cycle(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
 fn range_buttons(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     // Its place is kept, so that the others stay under the pointer.
     ui.scope(|ui| {
-        if shown.state.range.is_none() {
+        if shown.state.playhead.range.is_none() {
             ui.set_invisible();
         }
         if icon_button(ui, Icon::Close, "Play the whole clip", false).clicked() {
@@ -126,7 +126,7 @@ pub(super) fn range_here(shown: &Shown<'_>, start: bool) -> Option<Command> {
     let duration_secs = f64::from(shown.clip()?.duration_secs());
     let now = shown.clip_time_secs();
     let TimeRange { start_secs, end_secs } =
-        shown.state.range.unwrap_or(TimeRange { start_secs: 0.0, end_secs: duration_secs });
+        shown.state.playhead.range.unwrap_or(TimeRange { start_secs: 0.0, end_secs: duration_secs });
     let range = if start {
         TimeRange { start_secs: now, end_secs: if now < end_secs { end_secs } else { duration_secs } }
     } else {
@@ -138,7 +138,7 @@ pub(super) fn range_here(shown: &Shown<'_>, start: bool) -> Option<Command> {
 const SPEEDS: std::ops::RangeInclusive<f64> = 0.1..=4.0;
 
 fn speed_slider(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
-    let mut speed = shown.state.speed;
+    let mut speed = shown.state.playback.speed;
     let palette = style::palette(ui);
     if ui
         .add(egui::DragValue::new(&mut speed).range(SPEEDS).speed(0.01).fixed_decimals(2).suffix("×"))
@@ -169,10 +169,10 @@ fn speed_slider(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
 }
 
 fn speed_menu(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
-    let label = format!("{}×", (shown.state.speed * 100.0).round() / 100.0);
+    let label = format!("{}×", (shown.state.playback.speed * 100.0).round() / 100.0);
     let button = ui.menu_button(label, |ui| {
         for speed in [0.1, 0.25, 0.5, 1.0, 1.5, 2.0, 4.0] {
-            let chosen = (shown.state.speed - speed).abs() < 1e-6;
+            let chosen = (shown.state.playback.speed - speed).abs() < 1e-6;
             if ui.selectable_label(chosen, format!("{speed}×")).clicked() {
                 out.commands.push(Command::SetSpeed(speed));
                 ui.close();

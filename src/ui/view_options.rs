@@ -38,7 +38,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
         (UpAxis::MinusY, "−Y"),
         (UpAxis::MinusZ, "−Z"),
     ];
-    if let Some(up) = controls::segmented(ui, Some(shown.state.up), &axes) {
+    if let Some(up) = controls::segmented(ui, Some(shown.state.edits.up), &axes) {
         out.commands.push(Command::SetUp(up));
     }
     ui.add_space(2.0);
@@ -116,15 +116,16 @@ fn camera(ui: &mut Ui, shown: &Shown<'_>, aspect: f32, out: &mut Output) {
     }
     let settings =
         SliderSettings { range: (10.0, 100.0), default: 35.0, decimals: 0, suffix: "°", logarithmic: false };
-    if let Some(degrees) = controls::slider(ui, "Field of view", f64::from(state.fov_degrees), settings) {
+    if let Some(degrees) = controls::slider(ui, "Field of view", f64::from(state.camera_options.fov_degrees), settings)
+    {
         out.commands.push(Command::SetFov(degrees as f32));
     }
-    if controls::switch(ui, "Follow the character", state.follow) {
-        out.commands.push(Command::SetFollow(!state.follow));
+    if controls::switch(ui, "Follow the character", state.camera_options.follow) {
+        out.commands.push(Command::SetFollow(!state.camera_options.follow));
     }
     let settings =
         SliderSettings { range: (-90.0, 90.0), default: 0.0, decimals: 0, suffix: "°/s", logarithmic: false };
-    if let Some(speed) = controls::slider(ui, "Turntable", f64::from(state.turntable), settings) {
+    if let Some(speed) = controls::slider(ui, "Turntable", f64::from(state.camera_options.turntable), settings) {
         out.commands.push(Command::SetTurntable(speed as f32));
     }
 }
@@ -145,12 +146,12 @@ fn light(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     controls::section(ui, "LIGHT AND BACKGROUND");
     let settings =
         SliderSettings { range: (-5.0, 5.0), default: 0.0, decimals: 1, suffix: " stops", logarithmic: false };
-    if let Some(stops) = controls::slider(ui, "Exposure", f64::from(state.exposure), settings) {
+    if let Some(stops) = controls::slider(ui, "Exposure", f64::from(state.display.exposure), settings) {
         out.commands.push(Command::SetExposure(stops as f32));
     }
     let settings =
         SliderSettings { range: (-180.0, 180.0), default: 0.0, decimals: 0, suffix: "°", logarithmic: false };
-    if let Some(degrees) = controls::slider(ui, "Environment", f64::from(state.environment_degrees), settings) {
+    if let Some(degrees) = controls::slider(ui, "Environment", f64::from(state.display.environment_degrees), settings) {
         out.commands.push(Command::SetEnvironment(degrees as f32));
     }
     ui.add_space(4.0);
@@ -160,7 +161,7 @@ fn light(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
         Color,
         Transparent,
     }
-    let (kind, mut color) = match state.background {
+    let (kind, mut color) = match state.display.background {
         Background::Studio => (Kind::Studio, [236, 238, 242]),
         Background::Color(color) => (Kind::Color, color),
         Background::Transparent => (Kind::Transparent, [236, 238, 242]),
@@ -187,7 +188,7 @@ fn light(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
 fn scenes(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let Some(model) = shown.library.active().filter(|model| model.asset.scenes.len() > 1) else { return };
     controls::section(ui, "SCENE");
-    let now = model.scene(shown.state.scene);
+    let now = model.scene(shown.state.sources.scene);
     for (index, scene) in model.asset.scenes.iter().enumerate() {
         let name = if scene.name.is_empty() { format!("Scene {index}") } else { scene.name.clone() };
         let default = if model.asset.default_scene == Some(index) { "default" } else { "" };

@@ -32,8 +32,8 @@ pub async fn open(items: Array, role: Option<String>, is_own: bool) -> Result<St
 pub async fn follow_link(link: String, again: bool) -> Result<String, JsError> {
     let page = page().map_err(error)?;
     let mut state = state_of_link(&link, &page.shell);
-    if state.model.is_empty() {
-        state.model.push(format!("sample:{}", sample::WALKER));
+    if state.sources.model.is_empty() {
+        state.sources.model.push(format!("sample:{}", sample::WALKER));
     }
     take_over(&page, state, again, true).await.map_err(error)
 }
@@ -50,8 +50,8 @@ pub async fn apply(partial: String) -> Result<String, JsError> {
         page.inbox.send(Message::Script(ScriptCall::Apply(partial, reply)));
         return settled(promise).await.map(|_| news(&[], &[])).map_err(error);
     }
-    if state.model.is_empty() {
-        state.model.push(format!("sample:{}", sample::WALKER));
+    if state.sources.model.is_empty() {
+        state.sources.model.push(format!("sample:{}", sample::WALKER));
     }
     take_over(&page, state, false, false).await.map_err(error)
 }
@@ -133,7 +133,7 @@ pub fn summary() -> Result<String, JsError> {
         let state = app.state();
         let model = app.library().active();
         let clip = model.and_then(|model| model.clip_titles().get(active_clip(model, state)?));
-        json!({ "model": state.model.join(", "), "clip": clip, "playing": state.playing, "problem": app.problem() })
+        json!({ "model": state.sources.model.join(", "), "clip": clip, "playing": state.playback.playing, "problem": app.problem() })
             .to_string()
     };
     with_app(&page, summary).map_err(error)
@@ -141,8 +141,8 @@ pub fn summary() -> Result<String, JsError> {
 
 /// Whether files have to be read before `state` can be shown instead of `before`.
 fn needs_files(before: &ViewerState, state: &ViewerState) -> bool {
-    let has_map_file = || state.map.iter().any(|map| matches!(map, MotionMap::File(_)));
-    state.model != before.model || state.motion != before.motion || has_map_file()
+    let has_map_file = || state.retarget.map.iter().any(|map| matches!(map, MotionMap::File(_)));
+    state.sources.model != before.sources.model || state.sources.motion != before.sources.motion || has_map_file()
 }
 
 /// Shows a state, with its files where they are others than those shown, or in any case. What a link lacks is for the shell
@@ -155,8 +155,8 @@ async fn take_over(page: &Rc<Page>, state: ViewerState, again: bool, is_link: bo
     }
     let with_model = again || !with_app(page, |app| app.holds(&state))?;
     let held = if again { Vec::new() } else { with_app(page, |app| app.library().motions().to_vec())? };
-    let models = state.model.iter().filter(|_| with_model);
-    let motions = state.motion.iter().filter(|source| !held.iter().any(|motion| motion.origin == **source));
+    let models = state.sources.model.iter().filter(|_| with_model);
+    let motions = state.sources.motion.iter().filter(|source| !held.iter().any(|motion| motion.origin == **source));
     let loaded: Vec<String> = models.chain(motions).cloned().collect();
     let shown = show(page, What::View { state: Box::new(state), with_model, held, is_link }).await?;
     Ok(news(&loaded, &shown.problems))

@@ -85,8 +85,8 @@ async fn first_contents(
     let mut state = state_of_link(link, shell);
     let items = super::calls::items_of(items)?;
     let motion_items = super::calls::items_of(motion_items)?;
-    if state.model.is_empty() {
-        state.model.push(format!("sample:{}", sample::WALKER));
+    if state.sources.model.is_empty() {
+        state.sources.model.push(format!("sample:{}", sample::WALKER));
     }
     let progress = |name: &str, received: u64, total: u64| shell.progress(name, received as f64, total as f64);
     let opened = async {
@@ -116,7 +116,7 @@ async fn first_contents(
         Err(error) => {
             let mut problems = vec![error.to_string()];
             let mut models = Vec::new();
-            for motion in &state.motion {
+            for motion in &state.sources.motion {
                 match open_items(vec![Item::Url(motion.clone())], Role::Model, &progress).await {
                     Ok(found) => models.extend(found.models),
                     Err(error) => problems.push(error.to_string()),
@@ -127,25 +127,9 @@ async fn first_contents(
                 models.extend(sample::load(sample::WALKER).map(OpenedModel::from));
             }
             let model = models.first().ok_or_else(|| problems.join("\n"))?;
-            let state = about_no_model(state, model.model.source.clone());
+            let state = state.for_model(ViewerState::of_model(model.model.source.clone()));
             Ok((Contents { models, motions: Some(Vec::new()), ..Contents::default() }, state, problems))
         }
-    }
-}
-
-/// The view of a model instead of another one: what is about the other goes.
-fn about_no_model(state: ViewerState, model: String) -> ViewerState {
-    ViewerState {
-        model: vec![model],
-        playing: state.playing,
-        speed: state.speed,
-        skinning: state.skinning,
-        show: state.show,
-        exposure: state.exposure,
-        environment_degrees: state.environment_degrees,
-        background: state.background,
-        embed: state.embed,
-        ..ViewerState::default()
     }
 }
 
@@ -161,7 +145,7 @@ fn calm(mut state: ViewerState) -> ViewerState {
     let query =
         web_sys::window().and_then(|window| window.match_media("(prefers-reduced-motion: reduce)").ok()).flatten();
     if query.is_some_and(|query| query.matches()) {
-        (state.playing, state.turntable) = (false, 0.0);
+        (state.playback.playing, state.camera_options.turntable) = (false, 0.0);
     }
     state
 }

@@ -49,7 +49,7 @@ pub fn desk(first: &str) -> Option<Desk> {
     let inbox = inbox.take().expect("given at the start");
     let mut desk = Desk { harness, inbox };
     desk.command(Command::TogglePlaying);
-    assert!(!desk.state().playing);
+    assert!(!desk.state().playback.playing);
     Some(desk)
 }
 

@@ -18,7 +18,7 @@ fn a_second_model_is_shown_and_the_first_waits() {
     assert!(desk.says("Opened Fox"), "it is said");
     desk.press("Pilot");
     assert_eq!(desk.shown(), "sample:pilot");
-    assert_eq!(desk.state().clip, ClipChoice::Named("run".to_owned()), "as it was left");
+    assert_eq!(desk.state().playhead.clip, ClipChoice::Named("run".to_owned()), "as it was left");
 }
 
 #[test]
@@ -67,13 +67,13 @@ fn a_motion_is_borrowed_from_and_goes_and_comes_with_undo() {
     assert_eq!(desk.shown(), "sample:pilot", "a motion does not replace the model");
     assert_eq!(desk.borrowed_clips(), 1);
     assert!(desk.says("A clip is borrowed from Walk"));
-    let clip = desk.state().clip.clone();
+    let clip = desk.state().playhead.clip.clone();
     assert_ne!(clip, ClipChoice::First, "it plays");
     desk.undo();
     assert_eq!((desk.borrowed_clips(), desk.library().motions().len()), (0, 0));
     assert!(desk.says("Nothing is borrowed from Walk any more. Ctrl+Y brings it back."));
     desk.redo();
-    assert_eq!((desk.borrowed_clips(), &desk.state().clip), (1, &clip));
+    assert_eq!((desk.borrowed_clips(), &desk.state().playhead.clip), (1, &clip));
     assert!(desk.says("Borrowed from Walk again."));
     assert!(!desk.says("Search joints of the model"), "the tab stays");
     desk.press("Motion");
@@ -122,14 +122,14 @@ fn a_joint_map_without_a_motion_is_refused_and_with_one_is_a_step() {
     assert!(problem.contains("there is no motion to use it for"), "{problem}");
     assert_eq!(desk.state(), &before);
     desk.open(&["sample:walk".into()]);
-    let proposed = desk.state().map.clone();
+    let proposed = desk.state().retarget.map.clone();
     desk.open(std::slice::from_ref(&map));
     std::fs::remove_file(&map).expect("was there");
     assert_eq!(desk.problem(), None);
-    assert_ne!(desk.state().map, proposed);
+    assert_ne!(desk.state().retarget.map, proposed);
     assert!(desk.says("The joint map is used for Walk"));
     desk.undo();
-    assert_eq!(desk.state().map, proposed);
+    assert_eq!(desk.state().retarget.map, proposed);
 }
 
 #[test]
@@ -161,9 +161,9 @@ fn of_an_archive_a_link_names_the_model_that_is_shown() {
     desk.open(std::slice::from_ref(&archive));
     std::fs::remove_file(&archive).expect("was there");
     let file = archive.file_name().and_then(|name| name.to_str()).expect("has a name").to_owned();
-    assert_eq!(desk.state().model, std::slice::from_ref(&file), "the first one");
+    assert_eq!(desk.state().sources.model, std::slice::from_ref(&file), "the first one");
     desk.press("dwarf.glb");
-    assert_eq!(desk.state().model, [format!("{file}#!/in/dwarf.glb")]);
+    assert_eq!(desk.state().sources.model, [format!("{file}#!/in/dwarf.glb")]);
     assert!(to_link(desk.state()).contains("%23!/in/dwarf.glb"), "{}", to_link(desk.state()));
 }
 

@@ -1,7 +1,7 @@
 //! What the view keeps while settings change that the commands alone could not keep.
 
 use gaitway::frame::travelled;
-use gaitway::state::{CameraChoice, Command, OrbitCamera, Show};
+use gaitway::state::{CameraChoice, Command, Inspect, OrbitCamera, Show};
 use glam::Vec3;
 
 use crate::desk::{Desk, desk};
@@ -16,24 +16,27 @@ fn comparing_keeps_what_is_in_the_middle_and_gives_it_back() {
     let Some(mut desk) = desk("sample:pilot") else { return };
     desk.command(Command::Orbit { yaw_radians: 0.4, pitch_radians: 0.1 });
     let before = orbit(&desk);
-    let show = desk.state().show;
-    desk.command(Command::SetShow(Show { split: true, ..show }));
+    let inspect = desk.state().inspect;
+    desk.command(Command::SetInspect(Inspect { split: true, ..inspect }));
     let compared = orbit(&desk);
     assert!(compared.distance > 1.2 * before.distance, "each pane is narrower than high");
     assert_eq!(compared.target, before.target);
-    desk.command(Command::SetShow(show));
+    desk.command(Command::SetInspect(inspect));
     assert!((orbit(&desk).distance / before.distance - 1.0).abs() < 1e-5);
 }
 
 #[test]
 fn the_next_model_is_seen_whole_and_the_last_one_as_it_was_left() {
     let Some(mut desk) = desk("sample:pilot") else { return };
-    let show = Show { split: true, wireframe: true, ..desk.state().show };
+    let show = Show { wireframe: true, ..desk.state().display.show };
     desk.command(Command::SetShow(show));
+    let inspect = Inspect { split: true, ..desk.state().inspect };
+    desk.command(Command::SetInspect(inspect));
     desk.open(&["sample:creature".into()]);
-    assert_eq!(desk.state().show, Show { split: false, ..show }, "what is not about the model stays");
+    assert_eq!(desk.state().display.show, show, "what is not about the model stays");
+    assert_eq!(desk.state().inspect, Inspect::default());
     desk.press("Pilot");
-    assert_eq!(desk.state().show, show);
+    assert_eq!((desk.state().display.show, desk.state().inspect), (show, inspect));
 }
 
 #[test]

@@ -9,7 +9,7 @@ use gaitway::mesh::{
     palette_entry,
 };
 use gaitway::render::{Renderer, RendererOptions, read_pixels};
-use gaitway::state::{Background, ViewerState};
+use gaitway::state::{Background, Playhead, ViewerState};
 use glam::camera::rh::view::look_at_mat4;
 use glam::{Affine3A, Vec2, Vec3, Vec4};
 
@@ -325,7 +325,7 @@ fn the_walker_looks_as_it_did() {
     let size = [160, 120];
     let mut library = Library::default();
     library.set(sample::load("walker").unwrap());
-    let state = ViewerState { time_secs: 0.3, ..Default::default() };
+    let state = ViewerState { playhead: Playhead { time_secs: 0.3, ..Default::default() }, ..Default::default() };
     let mut frame = Frame::default();
     evaluate(&library, &state, size[0] as f32 / size[1] as f32, &mut frame);
     let mut renderer = Renderer::new(device, queue, RendererOptions { samples: 1 });

@@ -4,7 +4,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use gaitway::frame::{Frame, evaluate};
-use gaitway::state::{Command, ViewerState, apply};
+use gaitway::state::{CameraOptions, Command, Selection, ViewerState, apply};
 
 use crate::data::walker;
 
@@ -43,12 +43,16 @@ static ALLOCATOR: Counting = Counting;
 #[test]
 fn a_second_round_of_the_clip_allocates_nothing() {
     let library = walker();
-    let mut state = ViewerState { follow: true, joint: Some(5), ..ViewerState::default() };
-    state.show.skeleton = true;
-    state.show.bounds = true;
-    state.show.weights = true;
-    state.show.split = true;
-    state.pose.insert(15, [20.0, 0.0, 0.0]);
+    let mut state = ViewerState {
+        camera_options: CameraOptions { follow: true, ..CameraOptions::default() },
+        selection: Selection { joint: Some(5), ..Selection::default() },
+        ..ViewerState::default()
+    };
+    state.display.show.skeleton = true;
+    state.display.show.bounds = true;
+    state.inspect.weights = true;
+    state.inspect.split = true;
+    state.edits.pose.insert(15, [20.0, 0.0, 0.0]);
     let mut frame = Frame::default();
     let mut play = |frames: usize| {
         for _ in 0..frames {

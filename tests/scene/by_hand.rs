@@ -4,7 +4,8 @@ use gaitway::anim::JointIndex;
 use gaitway::frame::{Frame, evaluate};
 use gaitway::library::Library;
 use gaitway::state::{
-    CameraChoice, ClipChoice, Command, History, PoseSampler, ViewerState, apply, degrees_by_hand, rotation_by_hand,
+    CameraChoice, CameraOptions, ClipChoice, Command, History, Playback, Playhead, PoseSampler, ViewerState, apply,
+    degrees_by_hand, rotation_by_hand,
 };
 use glam::{EulerRot, Quat, Vec3};
 
@@ -29,7 +30,8 @@ fn rest_rotation(library: &Library, joint: usize) -> Quat {
 #[test]
 fn a_turn_wins_over_the_clip_and_begins_at_the_rest() {
     let library = walker();
-    let mut state = ViewerState { time_secs: 0.3, ..ViewerState::default() };
+    let mut state =
+        ViewerState { playhead: Playhead { time_secs: 0.3, ..Playhead::default() }, ..ViewerState::default() };
     let before = local_rotation(&library, &state, SHIN);
     let head = local_rotation(&library, &state, HEAD);
     apply(&mut state, &library, Command::SetPose { joint: SHIN, degrees: Some([90.0, 0.0, 0.0]) });
@@ -51,7 +53,10 @@ fn a_turned_joint_takes_along_what_hangs_on_it() {
         let foot: JointIndex = skeleton.children(shin).next().expect("a foot");
         Vec3::from(frame.characters[0].world_from_joint[foot.get()].translation)
     };
-    let rest = ViewerState { clip: ClipChoice::RestPose, ..ViewerState::default() };
+    let rest = ViewerState {
+        playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
+        ..ViewerState::default()
+    };
     let mut turned = rest.clone();
     apply(&mut turned, &library, Command::SetPose { joint: SHIN, degrees: Some([90.0, 0.0, 0.0]) });
     assert!(foot(&rest).distance(foot(&turned)) > 0.2);
@@ -77,7 +82,7 @@ fn joints_that_are_not_there_and_numbers_that_are_none_change_nothing() {
     }
     let mut state = ViewerState::default();
     apply(&mut state, &library, Command::SetPose { joint: HEAD, degrees: Some([190.0, -540.0, 180.0]) });
-    assert_eq!(state.pose[&HEAD], [-170.0, -180.0, 180.0]);
+    assert_eq!(state.edits.pose[&HEAD], [-170.0, -180.0, 180.0]);
 }
 
 #[test]
@@ -89,23 +94,27 @@ fn turns_are_undone_one_gesture_at_a_time() {
     }
     history.end_gesture();
     history.apply(&mut state, &library, Command::ClearPose);
-    assert!(state.pose.is_empty());
+    assert!(state.edits.pose.is_empty());
     assert!(history.undo(&mut state, &mut library));
-    assert_eq!(state.pose[&HEAD], [15.0, 0.0, 0.0]);
+    assert_eq!(state.edits.pose[&HEAD], [15.0, 0.0, 0.0]);
     assert!(history.undo(&mut state, &mut library));
-    assert!(state.pose.is_empty());
+    assert!(state.edits.pose.is_empty());
 }
 
 #[test]
 fn the_turntable_turns_while_paused_and_a_camera_of_the_file_stays() {
     let library = walker();
-    let mut state = ViewerState { playing: false, turntable: 90.0, ..ViewerState::default() };
+    let mut state = ViewerState {
+        playback: Playback { playing: false, ..Playback::default() },
+        camera_options: CameraOptions { turntable: 90.0, ..CameraOptions::default() },
+        ..ViewerState::default()
+    };
     apply(&mut state, &library, Command::Advance(0.5));
     let CameraChoice::Orbit(first) = state.camera else { panic!("an orbit camera") };
     apply(&mut state, &library, Command::Advance(0.5));
     let CameraChoice::Orbit(second) = state.camera else { panic!("an orbit camera") };
     assert!((second.yaw_radians - first.yaw_radians - std::f32::consts::FRAC_PI_4).abs() < 1e-5);
-    assert_eq!(state.time_secs, 0.0);
+    assert_eq!(state.playhead.time_secs, 0.0);
     let mut fixed = ViewerState { camera: CameraChoice::File(0), ..state };
     apply(&mut fixed, &library, Command::Advance(0.5));
     assert_eq!(fixed.camera, CameraChoice::File(0));

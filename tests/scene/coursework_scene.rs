@@ -9,8 +9,8 @@ use gaitway::frame::{Frame, VertexFormula, evaluate, joint_matrices, pick_vertex
 use gaitway::library::Library;
 use gaitway::mesh::{DeformedVertices, Geometry, SkinningMode, Topology, smooth_normals};
 use gaitway::state::{
-    ClipChoice, Command, History, Show, UpAxis, VertexChoice, ViewerState, apply, from_link, title, to_link,
-    written_skeleton,
+    ClipChoice, Command, Display, Edits, History, Playhead, Show, UpAxis, VertexChoice, ViewerState, apply, from_link,
+    title, to_link, written_skeleton,
 };
 use glam::{DQuat, DVec3, EulerRot, Vec2, Vec3};
 use serde_json::Value;
@@ -27,7 +27,8 @@ fn bent() -> ViewerState {
 /// The same turns as the exercise has them.
 fn rotations(state: &ViewerState) -> Vec<DQuat> {
     let of = |joint: usize| {
-        let [x, y, z] = state.pose.get(&joint).copied().unwrap_or_default().map(|angle| f64::from(angle).to_radians());
+        let [x, y, z] =
+            state.edits.pose.get(&joint).copied().unwrap_or_default().map(|angle| f64::from(angle).to_radians());
         DQuat::from_euler(EulerRot::XYZ, x, y, z)
     };
     (0..18).map(of).collect()
@@ -60,7 +61,10 @@ fn sliders_bend_the_models_as_the_formula_says() {
         let found = positions(&pose_document(&library, &state));
         assert!(furthest(&found, &exercise.bent(&rotations(&state))) < 1e-6, "{name}");
         assert!(furthest(&found, &exercise.vertices) > 0.05, "{name} is bent");
-        let rest = ViewerState { clip: ClipChoice::RestPose, ..ViewerState::default() };
+        let rest = ViewerState {
+            playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
+            ..ViewerState::default()
+        };
         assert!(furthest(&positions(&pose_document(&library, &rest)), &exercise.vertices) < 1e-6, "{name}");
     }
 }
@@ -125,7 +129,7 @@ fn the_formula_adds_up_to_what_is_drawn() {
     let (Some(library), Some(exercise)) = (open("mit6837/Model1.obj"), exercise("Model1")) else { return };
     let model = library.active().expect("a model");
     for up in [UpAxis::Y, UpAxis::Z] {
-        let state = ViewerState { up, ..bent() };
+        let state = ViewerState { edits: Edits { up, ..bent().edits }, ..bent() };
         let frame = evaluated(&library, &state);
         let wanted = exercise.bent(&rotations(&state));
         let mut formula = VertexFormula::default();
@@ -157,7 +161,11 @@ fn any_skinned_model_has_a_formula() {
     let library = walker();
     let model = library.active().expect("a model");
     for skinning in [SkinningMode::Linear, SkinningMode::Rigid, SkinningMode::DualQuaternion] {
-        let state = ViewerState { skinning, time_secs: 0.4, ..ViewerState::default() };
+        let state = ViewerState {
+            display: Display { skinning, ..Display::default() },
+            playhead: Playhead { time_secs: 0.4, ..Playhead::default() },
+            ..ViewerState::default()
+        };
         let frame = evaluated(&library, &state);
         let document = pose_document(&library, &state);
         let mut formula = VertexFormula::default();
@@ -221,18 +229,18 @@ fn joints_can_be_renamed() {
         title(Some(state), asset, joint).into_owned()
     };
     assert_eq!(rename(&mut state, "  Crown,\tof: the head \n"), "Crown,of: the head");
-    assert_eq!(from_link(&to_link(&state)).0.names, state.names);
+    assert_eq!(from_link(&to_link(&state)).0.edits.names, state.edits.names);
     assert_eq!(rename(&mut state, &"x".repeat(500)).len(), 80);
     assert_eq!(rename(&mut state, ""), before);
     assert_eq!(rename(&mut state, &before.clone()), before, "as the file says is no name of its own");
-    assert!(state.names.is_empty());
+    assert!(state.edits.names.is_empty());
     assert!(history.undo(&mut state, &mut library));
-    assert_eq!(state.names[&5].len(), 80);
+    assert_eq!(state.edits.names[&5].len(), 80);
     assert!(history.undo(&mut state, &mut library));
-    assert_eq!(state.names[&5], "Crown,of: the head");
+    assert_eq!(state.edits.names[&5], "Crown,of: the head");
     assert_eq!(title(None, asset, joint), before, "other files keep their names");
     apply(&mut state, &library, Command::RenameJoint { joint: 9999, name: "Nobody".to_owned() });
-    assert_eq!(state.names.len(), 1);
+    assert_eq!(state.edits.names.len(), 1);
     let written = written_skeleton(library.active().expect("a model"), &state, false);
     assert_eq!(written.name(joint), "Crown,of: the head");
     assert_eq!(written.rest(), asset.skeleton.rest());
@@ -266,7 +274,10 @@ fn a_surface_is_smooth_from_part_to_part() {
         let obj = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n{between}f 1 3 4\n");
         files.insert("m.obj", obj.into_bytes());
         let library = library_of(gaitway::files::open_bytes(&files, "m.obj".to_owned()).expect("it opens").model);
-        let state = ViewerState { show: Show { smooth: true, ..Show::default() }, ..ViewerState::default() };
+        let state = ViewerState {
+            display: Display { show: Show { smooth: true, ..Show::default() }, ..Display::default() },
+            ..ViewerState::default()
+        };
         let document = pose_document(&library, &state);
         let normals = document["meshes"][0]["normals"].as_array().expect("normals");
         normals.iter().filter_map(Value::as_f64).collect()
@@ -283,7 +294,8 @@ fn a_surface_is_smooth_from_part_to_part() {
 fn normals_are_in_the_pose_where_the_surface_is_smooth() {
     let Some(library) = open("mit6837/Model4.obj") else { return };
     let normals = |smooth: bool| {
-        let state = ViewerState { show: Show { smooth, ..Show::default() }, ..bent() };
+        let state =
+            ViewerState { display: Display { show: Show { smooth, ..Show::default() }, ..bent().display }, ..bent() };
         pose_document(&library, &state)["meshes"][0]["normals"].as_array().map(Vec::len)
     };
     assert_eq!((normals(false), normals(true)), (Some(0), Some(3 * 13336)));

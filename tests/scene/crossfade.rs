@@ -2,7 +2,7 @@
 
 use gaitway::library::{Library, Motion};
 use gaitway::retarget::{JointMap, propose};
-use gaitway::state::{ClipChoice, Command, PoseSampler, ViewerState, apply};
+use gaitway::state::{ClipChoice, Command, Playback, Playhead, PoseSampler, ViewerState, apply};
 
 use crate::data::walker;
 
@@ -27,7 +27,10 @@ fn pose(library: &Library, state: &ViewerState) -> gaitway::anim::Pose {
 fn a_change_of_clip_takes_its_time_and_no_longer() {
     let library = dancing();
     let own = library.active().expect("a model").asset.clips.len();
-    let mut state = ViewerState { clip: ClipChoice::Named("0".to_owned()), ..ViewerState::default() };
+    let mut state = ViewerState {
+        playhead: Playhead { clip: ClipChoice::Named("0".to_owned()), ..Playhead::default() },
+        ..ViewerState::default()
+    };
     apply(&mut state, &library, Command::Advance(0.3));
     let before = pose(&library, &state);
     apply(&mut state, &library, Command::SetClip(ClipChoice::Named(own.to_string())));
@@ -36,12 +39,15 @@ fn a_change_of_clip_takes_its_time_and_no_longer() {
         assert!(now.translation.abs_diff_eq(before.translation, 1e-6), "nothing jumps");
     }
     apply(&mut state, &library, Command::Advance(0.2));
-    assert!(state.fade.is_some());
-    let (mixed, alone) = (pose(&library, &state), pose(&library, &ViewerState { fade: None, ..state.clone() }));
+    assert!(state.playhead.fade.is_some());
+    let (mixed, alone) = (
+        pose(&library, &state),
+        pose(&library, &ViewerState { playhead: Playhead { fade: None, ..state.playhead.clone() }, ..state.clone() }),
+    );
     assert_ne!(mixed, alone);
     assert!(mixed.locals.iter().all(|local| local.rotation.is_normalized()));
     apply(&mut state, &library, Command::Advance(0.21));
-    assert_eq!(state.fade, None);
+    assert_eq!(state.playhead.fade, None);
 }
 
 #[test]
@@ -49,11 +55,12 @@ fn nothing_fades_at_rest_or_between_own_clips() {
     let library = dancing();
     let change = |state: &mut ViewerState, clip: usize| {
         apply(state, &library, Command::SetClip(ClipChoice::Named(clip.to_string())));
-        state.fade.clone()
+        state.playhead.fade.clone()
     };
     let mut playing = ViewerState::default();
     assert_eq!(change(&mut playing, 1), None, "the model's own clips have no map");
     let own = library.active().expect("a model").asset.clips.len();
-    let mut paused = ViewerState { playing: false, ..ViewerState::default() };
+    let mut paused =
+        ViewerState { playback: Playback { playing: false, ..Playback::default() }, ..ViewerState::default() };
     assert_eq!(change(&mut paused, own), None);
 }

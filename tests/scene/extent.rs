@@ -3,7 +3,7 @@
 use gaitway::frame::{Frame, evaluate, pose_document};
 use gaitway::library::Library;
 use gaitway::mesh::{Bounds, SkinningMode};
-use gaitway::state::{ClipChoice, ViewerState};
+use gaitway::state::{ClipChoice, Display, Playhead, ViewerState};
 use glam::Vec3;
 
 use crate::data::{open, walker};
@@ -25,7 +25,10 @@ fn check(library: &Library, clip: usize) {
     // The times that the box is made from.
     for sample in 0..=24 {
         let time_secs = duration_secs * f64::from(sample) / 24.0;
-        let state = ViewerState { clip: ClipChoice::Named(clip.to_string()), time_secs, ..ViewerState::default() };
+        let state = ViewerState {
+            playhead: Playhead { clip: ClipChoice::Named(clip.to_string()), time_secs, ..Playhead::default() },
+            ..ViewerState::default()
+        };
         let exact = exact(library, &state);
         let mut frame = Frame::default();
         evaluate(library, &state, 1.0, &mut frame);
@@ -61,7 +64,11 @@ fn of_real_characters() {
 
 #[test]
 fn rest_bounds_are_exact() {
-    let state = ViewerState { clip: ClipChoice::RestPose, skinning: SkinningMode::Linear, ..ViewerState::default() };
+    let state = ViewerState {
+        playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
+        display: Display { skinning: SkinningMode::Linear, ..Display::default() },
+        ..ViewerState::default()
+    };
     assert_eq!(walker().active().expect("a model").rest_bounds(), exact(&walker(), &state));
     if let Some(library) = open("khronos/CesiumMan/glTF-Binary/CesiumMan.glb") {
         assert_eq!(library.active().expect("a model").rest_bounds(), exact(&library, &state));

@@ -3,7 +3,7 @@
 use gaitway::frame::{Frame, PickedJoint, evaluate, pick_joint};
 use gaitway::library::Library;
 use gaitway::mesh::SkinningMode;
-use gaitway::state::{Background, Show, ViewerState};
+use gaitway::state::{Background, Display, Inspect, Playhead, Selection, Show, ViewerState};
 use glam::{Vec2, Vec3, Vec4Swizzles};
 
 use crate::data::{moving_box, walker};
@@ -16,7 +16,7 @@ fn frame_of(library: &Library, state: &ViewerState) -> Frame {
 
 fn showing(change: impl Fn(&mut Show)) -> ViewerState {
     let mut state = ViewerState::default();
-    change(&mut state.show);
+    change(&mut state.display.show);
     state
 }
 
@@ -25,19 +25,28 @@ const HEAD: usize = 5;
 
 #[test]
 fn without_a_model_there_is_an_empty_picture() {
-    let state = ViewerState { background: Background::Color([1, 2, 3]), ..ViewerState::default() };
+    let state = ViewerState {
+        display: Display { background: Background::Color([1, 2, 3]), ..Display::default() },
+        ..ViewerState::default()
+    };
     let frame = frame_of(&Library::default(), &state);
     assert!(frame.characters.is_empty() && frame.bones.is_empty() && frame.bounds.is_empty());
-    assert_eq!(frame.look.background, state.background);
+    assert_eq!(frame.look.background, state.display.background);
     assert!(frame.view.projection_from_view.is_finite());
 }
 
 #[test]
 fn the_same_state_is_the_same_frame() {
     let library = walker();
-    let state = ViewerState { time_secs: 0.3, ..showing(|show| show.skeleton = true) };
+    let state = ViewerState {
+        playhead: Playhead { time_secs: 0.3, ..showing(|show| show.skeleton = true).playhead },
+        ..showing(|show| show.skeleton = true)
+    };
     let fresh = frame_of(&library, &state);
-    let mut used = frame_of(&library, &ViewerState { time_secs: 0.9, ..ViewerState::default() });
+    let mut used = frame_of(
+        &library,
+        &ViewerState { playhead: Playhead { time_secs: 0.9, ..Playhead::default() }, ..ViewerState::default() },
+    );
     evaluate(&library, &state, 1.5, &mut used);
     assert_eq!(used.characters[0].palette, fresh.characters[0].palette);
     assert_eq!(used.bones, fresh.bones);
@@ -47,7 +56,10 @@ fn the_same_state_is_the_same_frame() {
 #[test]
 fn each_instance_has_its_palette() {
     for skinning in [SkinningMode::Linear, SkinningMode::Rigid, SkinningMode::DualQuaternion] {
-        let frame = frame_of(&walker(), &ViewerState { skinning, ..ViewerState::default() });
+        let frame = frame_of(
+            &walker(),
+            &ViewerState { display: Display { skinning, ..Display::default() }, ..ViewerState::default() },
+        );
         let character = &frame.characters[0];
         let ranges: Vec<_> = character.draws.iter().map(|draw| draw.palette.clone()).collect();
         assert_eq!((ranges, character.palette.len()), (vec![0..22, 22..44], 44));
@@ -62,21 +74,35 @@ fn each_instance_has_its_palette() {
 #[test]
 fn weights_set_by_hand_win_over_the_clip() {
     let mut state = ViewerState::default();
-    state.morph.insert(0, 0.75);
+    state.edits.morph.insert(0, 0.75);
     // Neither a panic nor an effect: the link may be from another model.
-    state.morph.insert(99, 1.0);
+    state.edits.morph.insert(99, 1.0);
     assert_eq!(frame_of(&walker(), &state).characters[0].morph_weights, [0.75]);
 }
 
 #[test]
 fn the_heat_map_is_of_the_chosen_joint() {
-    let state = ViewerState { joint: Some(HEAD), ..showing(|show| show.weights = true) };
+    let selection = Selection { joint: Some(HEAD), ..Selection::default() };
+    let state = ViewerState { selection, inspect: Inspect { weights: true, split: false }, ..ViewerState::default() };
     assert_eq!(frame_of(&walker(), &state).characters[0].draws[0].heat_joint, Some(HEAD as u32));
     let library = moving_box(0.5, &[0.0], &[Vec3::ZERO]);
-    let of_box = |joint| frame_of(&library, &ViewerState { joint, ..state.clone() }).characters[0].draws[0].heat_joint;
+    let of_box = |joint| {
+        frame_of(&library, &ViewerState { selection: Selection { joint, ..state.selection }, ..state.clone() })
+            .characters[0]
+            .draws[0]
+            .heat_joint
+    };
     assert_eq!((of_box(Some(0)), of_box(Some(5)), of_box(None)), (Some(0), None, None));
     assert_eq!(
-        frame_of(&walker(), &ViewerState { joint: Some(HEAD), ..ViewerState::default() }).characters[0].draws[0]
+        frame_of(
+            &walker(),
+            &ViewerState {
+                selection: Selection { joint: Some(HEAD), ..Selection::default() },
+                ..ViewerState::default()
+            }
+        )
+        .characters[0]
+            .draws[0]
             .heat_joint,
         None
     );
@@ -107,7 +133,18 @@ fn a_click_finds_the_nearest_bone() {
 fn overlays_are_drawn_when_asked_for() {
     assert!(frame_of(&walker(), &ViewerState::default()).lines.is_empty());
     assert_eq!(frame_of(&walker(), &showing(|show| show.bounds = true)).lines.len(), 12);
-    assert_eq!(frame_of(&walker(), &ViewerState { joint: Some(HEAD), ..ViewerState::default() }).lines.len(), 3);
+    assert_eq!(
+        frame_of(
+            &walker(),
+            &ViewerState {
+                selection: Selection { joint: Some(HEAD), ..Selection::default() },
+                ..ViewerState::default()
+            }
+        )
+        .lines
+        .len(),
+        3
+    );
     assert_eq!(frame_of(&walker(), &showing(|show| show.grid = false)).look.grid, None);
 }
 

@@ -2,7 +2,8 @@
 
 use gaitway::frame::{Frame, evaluate};
 use gaitway::state::{
-    CameraChoice, Command, OrbitCamera, UpAxis, ViewerState, apply, resolve_camera, resolved_bounds, split_ratio,
+    CameraChoice, CameraOptions, Command, Edits, OrbitCamera, Playback, Playhead, UpAxis, ViewerState, apply,
+    resolve_camera, resolved_bounds, split_ratio,
 };
 use glam::{Vec2, Vec3, Vec4Swizzles};
 
@@ -25,7 +26,11 @@ fn the_whole_clip_is_in_the_picture() {
     for library in [walker(), far] {
         for aspect in [0.4, 1.0, 16.0 / 9.0, 3.0] {
             for up in [UpAxis::Y, UpAxis::Z, UpAxis::MinusX] {
-                let reach = reach(&library, &ViewerState { up, ..ViewerState::default() }, aspect);
+                let reach = reach(
+                    &library,
+                    &ViewerState { edits: Edits { up, ..Edits::default() }, ..ViewerState::default() },
+                    aspect,
+                );
                 assert!((0.85..=1.0).contains(&reach), "aspect {aspect}, {up:?}: {reach}");
             }
         }
@@ -46,7 +51,11 @@ fn framing_keeps_the_direction() {
 #[test]
 fn a_following_camera_stays_with_the_character() {
     let library = moving_box(0.5, &[0.0, 1.0], &[Vec3::ZERO, Vec3::new(10.0, 2.0, -5.0)]);
-    let follow = |time_secs| ViewerState { follow: true, time_secs, ..ViewerState::default() };
+    let follow = |time_secs| ViewerState {
+        camera_options: CameraOptions { follow: true, ..CameraOptions::default() },
+        playhead: Playhead { time_secs, ..Playhead::default() },
+        ..ViewerState::default()
+    };
     let (mut start, mut end) = (Frame::default(), Frame::default());
     evaluate(&library, &follow(0.0), 1.0, &mut start);
     evaluate(&library, &follow(1.0), 1.0, &mut end);
@@ -71,7 +80,12 @@ fn up_axes_end_up() {
         (UpAxis::MinusZ, -3.0),
     ] {
         let mut frame = Frame::default();
-        evaluate(&library, &ViewerState { up, ..ViewerState::default() }, 1.0, &mut frame);
+        evaluate(
+            &library,
+            &ViewerState { edits: Edits { up, ..Edits::default() }, ..ViewerState::default() },
+            1.0,
+            &mut frame,
+        );
         let world_from_joint = frame.characters[0].world_from_joint[0];
         assert!((world_from_joint.translation.y - expected).abs() < 1e-6, "{up:?}");
         assert!((world_from_joint.matrix3.determinant() - 1.0).abs() < 1e-6, "{up:?}");
@@ -83,7 +97,8 @@ fn zooming_keeps_what_is_under_the_pointer() {
     let library = walker();
     // Of the picture's height, right of its middle and above it.
     let (pointer, aspect) = (Vec2::new(0.31, -0.22), 1.6);
-    let mut state = ViewerState { playing: false, ..ViewerState::default() };
+    let mut state =
+        ViewerState { playback: Playback { playing: false, ..Playback::default() }, ..ViewerState::default() };
     state.camera = CameraChoice::Orbit(resolve_camera(&library, &state, aspect));
     let view = |state: &ViewerState| {
         let mut frame = Frame::default();
@@ -105,7 +120,7 @@ fn zooming_keeps_what_is_under_the_pointer() {
         assert!((seen.xy() / seen.w).distance(ndc) < 1e-3, "{factor}: {:?} {ndc:?}", seen.xy() / seen.w);
     }
     // A camera that turns by itself keeps to what it turns about.
-    state.turntable = 6.0;
+    state.camera_options.turntable = 6.0;
     let target = resolve_camera(&library, &state, aspect).target;
     apply(&mut state, &library, Command::Zoom { factor: 0.5, right: pointer.x, up: pointer.y });
     assert_eq!(resolve_camera(&library, &state, aspect).target, target);
@@ -116,7 +131,7 @@ fn a_pane_shows_what_the_middle_of_the_picture_showed() {
     for aspect in [0.5, 1.0, 1.6] {
         let mut state = ViewerState::default();
         let there = split_ratio(&state, aspect);
-        state.show.split = true;
+        state.inspect.split = true;
         let back = split_ratio(&state, aspect);
         assert!(there >= 1.0 && (there * back - 1.0).abs() < 1e-6, "{aspect}: {there} {back}");
     }

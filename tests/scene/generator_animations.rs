@@ -5,7 +5,7 @@ use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 use gaitway::anim::LoopMode;
 use gaitway::frame::{Frame, evaluate, pose_document};
 use gaitway::library::Library;
-use gaitway::state::{ClipChoice, ViewerState};
+use gaitway::state::{ClipChoice, Playback, Playhead, ViewerState};
 use glam::{Affine3A, Quat, Vec3};
 
 use crate::data::open;
@@ -17,7 +17,11 @@ fn file(name: &str) -> Option<Library> {
 
 fn at(clip: usize, time_secs: f64) -> ViewerState {
     let clip = ClipChoice::Named(clip.to_string());
-    ViewerState { clip, time_secs, loop_mode: LoopMode::Once, ..ViewerState::default() }
+    ViewerState {
+        playhead: Playhead { clip, time_secs, ..Playhead::default() },
+        playback: Playback { loop_mode: LoopMode::Once, ..Playback::default() },
+        ..ViewerState::default()
+    }
 }
 
 fn world_from_node(library: &Library, node: usize, state: &ViewerState) -> Affine3A {
@@ -187,14 +191,20 @@ fn sampler_types_are_the_same_motion() {
 #[test]
 fn skin_02_ignores_the_transforms_of_the_skinned_node_and_its_parent() {
     let (Some(plain), Some(moved)) = (file("Animation_Skin_00"), file("Animation_Skin_02")) else { return };
-    let rest = ViewerState { clip: ClipChoice::RestPose, ..ViewerState::default() };
+    let rest = ViewerState {
+        playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
+        ..ViewerState::default()
+    };
     assert!(apart(&positions(&plain, 0, &rest), &positions(&moved, 1, &rest)) < 1e-6);
 }
 
 #[test]
 fn skin_03_without_inverse_bind_matrices_is_placed_by_its_joints_alone() {
     let Some(library) = file("Animation_Skin_03") else { return };
-    let rest = ViewerState { clip: ClipChoice::RestPose, ..ViewerState::default() };
+    let rest = ViewerState {
+        playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
+        ..ViewerState::default()
+    };
     let asset = &library.active().expect("a model").asset;
     let geometry = &asset.meshes[0].primitives[0];
     let joints = [1, 2].map(|node| world_from_node(&library, node, &rest));
@@ -245,7 +255,10 @@ fn draws(library: &Library) -> Vec<usize> {
 #[test]
 fn skin_06_joints_need_no_common_root() {
     let (Some(chain), Some(roots)) = (file("Animation_Skin_00"), file("Animation_Skin_06")) else { return };
-    let rest = ViewerState { clip: ClipChoice::RestPose, ..ViewerState::default() };
+    let rest = ViewerState {
+        playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
+        ..ViewerState::default()
+    };
     // The second joint is at the same place, given in world space instead.
     assert!(apart(&positions(&chain, 0, &rest), &positions(&roots, 0, &rest)) < 1e-5);
 }
@@ -263,7 +276,10 @@ fn skin_09_a_node_that_is_no_joint_carries_the_joint_below_it() {
 #[test]
 fn skin_11_one_mesh_with_two_skins() {
     let Some(library) = file("Animation_Skin_11") else { return };
-    let rest = ViewerState { clip: ClipChoice::RestPose, ..ViewerState::default() };
+    let rest = ViewerState {
+        playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
+        ..ViewerState::default()
+    };
     let (first, second) = (positions(&library, 0, &rest), positions(&library, 3, &rest));
     let moved: Vec<Vec3> = first.iter().map(|position| position + Vec3::X * 0.6).collect();
     assert!(apart(&moved, &second) < 1e-5);

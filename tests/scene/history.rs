@@ -1,7 +1,7 @@
 //! Undo and redo.
 
 use gaitway::library::{Library, Model, ModelId, Motion};
-use gaitway::state::{Command, History, UpAxis, ViewerState};
+use gaitway::state::{Command, Edits, History, Playhead, Sources, UpAxis, ViewerState};
 
 use crate::data::walker;
 
@@ -17,16 +17,16 @@ fn a_gesture_is_one_step() {
     history.end_gesture();
     history.apply(&mut state, &library, Command::SetExposure(1.0));
     assert!(history.undo(&mut state, &mut library));
-    assert_eq!(state.exposure, 0.3);
+    assert_eq!(state.display.exposure, 0.3);
     assert!(history.undo(&mut state, &mut library));
-    assert_eq!(state.exposure, 0.0);
+    assert_eq!(state.display.exposure, 0.0);
     assert!(!history.undo(&mut state, &mut library));
     assert!(
         history.redo(&mut state, &mut library)
             && history.redo(&mut state, &mut library)
             && !history.redo(&mut state, &mut library)
     );
-    assert_eq!(state.exposure, 1.0);
+    assert_eq!(state.display.exposure, 1.0);
 }
 
 #[test]
@@ -38,7 +38,7 @@ fn time_and_camera_stay_where_they_are() {
     history.apply(&mut state, &library, Command::Orbit { yaw_radians: 1.0, pitch_radians: 0.0 });
     let before = state.clone();
     assert!(history.undo(&mut state, &mut library));
-    assert_eq!(state, ViewerState { up: UpAxis::Y, ..before });
+    assert_eq!(state, ViewerState { edits: Edits { up: UpAxis::Y, ..before.edits }, ..before });
     assert!(!history.can_undo());
 }
 
@@ -74,26 +74,30 @@ fn what_was_opened_is_a_step_between_edits() {
     let (mut library, first, second) = two_models();
     let mut history = History::default();
     library.show(first);
-    let mut state = ViewerState { time_secs: 0.7, ..ViewerState::default() };
+    let mut state =
+        ViewerState { playhead: Playhead { time_secs: 0.7, ..Playhead::default() }, ..ViewerState::default() };
     history.apply(&mut state, &library, Command::SetExposure(1.0));
     history.opened(state.clone(), library.loaded());
     library.show(second);
     let asset = library.active().unwrap().asset.clone();
     library.set_motions(vec![Motion::new("dance.glb".to_owned(), asset)]);
-    state = ViewerState { motion: vec!["dance.glb".to_owned()], ..ViewerState::default() };
+    state = ViewerState {
+        sources: Sources { motion: vec!["dance.glb".to_owned()], ..Sources::default() },
+        ..ViewerState::default()
+    };
     history.end_gesture();
     history.apply(&mut state, &library, Command::SetExposure(2.0));
 
     let shown = |library: &Library| library.active().map(|model| model.id);
     assert!(history.undo(&mut state, &mut library));
-    assert_eq!((shown(&library), state.exposure, state.motion.len()), (Some(second), 0.0, 1));
+    assert_eq!((shown(&library), state.display.exposure, state.sources.motion.len()), (Some(second), 0.0, 1));
     assert!(history.undo(&mut state, &mut library));
-    assert_eq!((shown(&library), state.exposure, state.time_secs), (Some(first), 1.0, 0.7));
-    assert!(library.motions().is_empty() && state.motion.is_empty());
+    assert_eq!((shown(&library), state.display.exposure, state.playhead.time_secs), (Some(first), 1.0, 0.7));
+    assert!(library.motions().is_empty() && state.sources.motion.is_empty());
     assert!(history.undo(&mut state, &mut library));
-    assert_eq!(state.exposure, 0.0);
+    assert_eq!(state.display.exposure, 0.0);
     while history.redo(&mut state, &mut library) {}
-    assert_eq!((shown(&library), state.exposure, library.motions().len()), (Some(second), 2.0, 1));
+    assert_eq!((shown(&library), state.display.exposure, library.motions().len()), (Some(second), 2.0, 1));
 }
 
 #[test]
@@ -121,9 +125,9 @@ fn a_closed_model_comes_back_and_the_view_stays() {
     assert_eq!(library.listed(), [first, second], "what is shown stays");
     library.close(first);
     assert_eq!(library.listed(), [second]);
-    state.time_secs = 0.7;
+    state.playhead.time_secs = 0.7;
     assert!(history.undo(&mut state, &mut library));
-    assert_eq!((library.listed(), state.time_secs), (vec![first, second], 0.7));
+    assert_eq!((library.listed(), state.playhead.time_secs), (vec![first, second], 0.7));
     assert!(history.redo(&mut state, &mut library));
     assert_eq!(library.listed(), [second]);
     assert_eq!(library.active().map(|model| model.id), Some(second));

@@ -9,8 +9,9 @@ use gaitway::retarget::{
     Unmapped,
 };
 use gaitway::state::{
-    Background, CameraChoice, ClipChoice, Fade, LinkError, MotionMap, NumberedMap, OrbitCamera, Show, UpAxis,
-    VertexChoice, ViewerState, from_link, from_object, to_link, to_object,
+    Background, CameraChoice, ClipChoice, Display, Fade, LinkError, MotionMap, NumberedMap, OrbitCamera, Playback,
+    Playhead, RetargetEdits, Selection, Show, Sources, UpAxis, VertexChoice, ViewerState, from_link, from_object,
+    to_link, to_object,
 };
 use glam::Vec3;
 
@@ -89,46 +90,54 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
     vec![
         (
             "model",
-            with(&|state| state.model = vec!["https://host/a b.glb?x=1&y=2".to_owned(), "sample:walker".to_owned()]),
+            with(&|state| {
+                state.sources.model = vec!["https://host/a b.glb?x=1&y=2".to_owned(), "sample:walker".to_owned()]
+            }),
         ),
-        ("motion", with(&|state| state.motion = vec!["walk.bvh".to_owned(), "https://host/run.glb?a=1".to_owned()])),
-        ("map", with(&|state| state.map = some_maps())),
+        (
+            "motion",
+            with(&|state| state.sources.motion = vec!["walk.bvh".to_owned(), "https://host/run.glb?a=1".to_owned()]),
+        ),
+        ("map", with(&|state| state.retarget.map = some_maps())),
         (
             "unmapped",
             with(&|state| {
-                state.unmapped = Some(Unmapped::Clip { clip: ClipRef::Name("7".to_owned()), frozen: true });
+                state.retarget.unmapped = Some(Unmapped::Clip { clip: ClipRef::Name("7".to_owned()), frozen: true });
             }),
         ),
         (
             "root",
             with(&|state| {
                 let (horizontal, yaw) = (RootPart::InPlace, RootPart::Freeze);
-                state.root = Some(RootOptions { horizontal, yaw, extract: true, ..RootOptions::default() });
+                state.retarget.root = Some(RootOptions { horizontal, yaw, extract: true, ..RootOptions::default() });
             }),
         ),
-        ("feet", with(&|state| state.feet = Some(Feet::Plant))),
-        ("scene", with(&|state| state.scene = Some(2))),
-        ("clip", with(&|state| state.clip = ClipChoice::Named("Walk & run = 100 %".to_owned()))),
-        ("time_secs", with(&|state| state.time_secs = 1.0 / 3.0)),
+        ("feet", with(&|state| state.retarget.feet = Some(Feet::Plant))),
+        ("scene", with(&|state| state.sources.scene = Some(2))),
+        ("clip", with(&|state| state.playhead.clip = ClipChoice::Named("Walk & run = 100 %".to_owned()))),
+        ("time_secs", with(&|state| state.playhead.time_secs = 1.0 / 3.0)),
         (
             "fade",
             with(&|state| {
                 let clip = ClipChoice::Named("Walk, slow".to_owned());
-                state.fade = Some(Fade { clip, time_secs: 1.0 / 3.0, elapsed_secs: 0.1 });
+                state.playhead.fade = Some(Fade { clip, time_secs: 1.0 / 3.0, elapsed_secs: 0.1 });
             }),
         ),
-        ("playing", with(&|state| state.playing = false)),
-        ("speed", with(&|state| state.speed = 0.1)),
-        ("loop_mode", with(&|state| state.loop_mode = LoopMode::PingPong)),
-        ("range", with(&|state| state.range = Some(TimeRange { start_secs: 0.25, end_secs: 1.1 }))),
-        ("skinning", with(&|state| state.skinning = SkinningMode::DualQuaternion)),
-        ("morph", with(&|state| state.morph = BTreeMap::from([(0, 0.3), (12, -1.0)]))),
-        ("pose", with(&|state| state.pose = BTreeMap::from([(3, [30.5, 0.0, -179.9]), (12, [0.0, 1.0 / 3.0, 0.0])]))),
+        ("playing", with(&|state| state.playback.playing = false)),
+        ("speed", with(&|state| state.playback.speed = 0.1)),
+        ("loop_mode", with(&|state| state.playback.loop_mode = LoopMode::PingPong)),
+        ("range", with(&|state| state.playhead.range = Some(TimeRange { start_secs: 0.25, end_secs: 1.1 }))),
+        ("skinning", with(&|state| state.display.skinning = SkinningMode::DualQuaternion)),
+        ("morph", with(&|state| state.edits.morph = BTreeMap::from([(0, 0.3), (12, -1.0)]))),
+        (
+            "pose",
+            with(&|state| state.edits.pose = BTreeMap::from([(3, [30.5, 0.0, -179.9]), (12, [0.0, 1.0 / 3.0, 0.0])])),
+        ),
         (
             "names",
             with(&|state| {
                 let names = [(0, "Hips"), (3, "left: knee, 100 % & more"), (12, "ümläut 歩")];
-                state.names = names.into_iter().map(|(joint, name)| (joint, name.to_owned())).collect();
+                state.edits.names = names.into_iter().map(|(joint, name)| (joint, name.to_owned())).collect();
             }),
         ),
         (
@@ -136,21 +145,25 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
             with(&|state| {
                 let overlays = Show { skeleton: true, mesh: false, grid: false, ..Show::default() };
                 let overlays = Show { boxes: true, smooth: true, ..overlays };
-                state.show = Show { split: true, source: true, over: true, error: true, ..overlays };
+                state.display.show = Show { source: true, over: true, error: true, ..overlays };
+                state.inspect.split = true;
             }),
         ),
-        ("joint", with(&|state| state.joint = Some(0))),
-        ("vertex", with(&|state| state.vertex = Some(VertexChoice { instance: 0, primitive: 1, vertex: 13335 }))),
+        ("joint", with(&|state| state.selection.joint = Some(0))),
+        (
+            "vertex",
+            with(&|state| state.selection.vertex = Some(VertexChoice { instance: 0, primitive: 1, vertex: 13335 })),
+        ),
         ("camera", with(&|state| state.camera = CameraChoice::Orbit(orbit))),
-        ("fov_degrees", with(&|state| state.fov_degrees = 50.0)),
-        ("follow", with(&|state| state.follow = true)),
-        ("turntable", with(&|state| state.turntable = -12.5)),
-        ("up", with(&|state| state.up = UpAxis::MinusZ)),
-        ("exposure", with(&|state| state.exposure = -0.7)),
-        ("environment_degrees", with(&|state| state.environment_degrees = 123.4)),
-        ("background", with(&|state| state.background = Background::Color([0, 128, 255]))),
-        ("embed", with(&|state| state.embed = true)),
-        ("unknown", with(&|state| state.unknown = BTreeMap::from([("zoo".to_owned(), "3:x\n4:y".to_owned())]))),
+        ("fov_degrees", with(&|state| state.camera_options.fov_degrees = 50.0)),
+        ("follow", with(&|state| state.camera_options.follow = true)),
+        ("turntable", with(&|state| state.camera_options.turntable = -12.5)),
+        ("up", with(&|state| state.edits.up = UpAxis::MinusZ)),
+        ("exposure", with(&|state| state.display.exposure = -0.7)),
+        ("environment_degrees", with(&|state| state.display.environment_degrees = 123.4)),
+        ("background", with(&|state| state.display.background = Background::Color([0, 128, 255]))),
+        ("embed", with(&|state| state.page.embed = true)),
+        ("unknown", with(&|state| state.page.unknown = BTreeMap::from([("zoo".to_owned(), "3:x\n4:y".to_owned())]))),
     ]
 }
 
@@ -191,7 +204,11 @@ fn any_camera_comes_back_exactly() {
             target: Vec3::new(next(10.0), next(1e-4), next(1e4)),
         };
         let time_secs = f64::from(next(100.0)) / 3.0;
-        check_round_trip(&ViewerState { camera: CameraChoice::Orbit(camera), time_secs, ..ViewerState::default() });
+        check_round_trip(&ViewerState {
+            camera: CameraChoice::Orbit(camera),
+            playhead: Playhead { time_secs, ..Playhead::default() },
+            ..ViewerState::default()
+        });
     }
 }
 
@@ -204,14 +221,48 @@ fn defaults_are_left_out() {
 fn links_read_as_written_down() {
     let default = ViewerState::default();
     check_read("", default.clone());
-    check_read("#v=1&clip=", ViewerState { clip: ClipChoice::RestPose, ..default.clone() });
-    check_read("clip=Run", ViewerState { clip: ClipChoice::Named("Run".to_owned()), ..default.clone() });
-    check_read("t=0.5&play=0", ViewerState { time_secs: 0.5, playing: false, ..default.clone() });
+    check_read(
+        "#v=1&clip=",
+        ViewerState {
+            playhead: Playhead { clip: ClipChoice::RestPose, ..default.playhead.clone() },
+            ..default.clone()
+        },
+    );
+    check_read(
+        "clip=Run",
+        ViewerState {
+            playhead: Playhead { clip: ClipChoice::Named("Run".to_owned()), ..default.playhead.clone() },
+            ..default.clone()
+        },
+    );
+    check_read(
+        "t=0.5&play=0",
+        ViewerState {
+            playhead: Playhead { time_secs: 0.5, ..default.playhead.clone() },
+            playback: Playback { playing: false, ..default.playback },
+            ..default.clone()
+        },
+    );
     check_read("camera=gltf:1", ViewerState { camera: CameraChoice::File(1), ..default.clone() });
-    check_read("model=sample%3Awalker", ViewerState { model: vec!["sample:walker".to_owned()], ..default.clone() });
-    check_read("background=%23ff8000", ViewerState { background: Background::Color([255, 128, 0]), ..default.clone() });
+    check_read(
+        "model=sample%3Awalker",
+        ViewerState {
+            sources: Sources { model: vec!["sample:walker".to_owned()], ..default.sources.clone() },
+            ..default.clone()
+        },
+    );
+    check_read(
+        "background=%23ff8000",
+        ViewerState {
+            display: Display { background: Background::Color([255, 128, 0]), ..default.display },
+            ..default.clone()
+        },
+    );
     let skeleton = Show { skeleton: true, grid: false, ..Show::default() };
-    check_read("show=skeleton", ViewerState { show: skeleton, ..default.clone() });
+    check_read(
+        "show=skeleton",
+        ViewerState { display: Display { show: skeleton, ..default.display }, ..default.clone() },
+    );
     let orbit = OrbitCamera {
         yaw_radians: std::f32::consts::FRAC_PI_2,
         pitch_radians: 0.0,
@@ -237,7 +288,10 @@ fn what_is_no_name_and_no_vertex_is_told_of() {
 #[test]
 fn a_plain_map_is_short_and_readable() {
     let maps = some_maps();
-    let state = ViewerState { map: maps[1..2].to_vec(), ..ViewerState::default() };
+    let state = ViewerState {
+        retarget: RetargetEdits { map: maps[1..2].to_vec(), ..RetargetEdits::default() },
+        ..ViewerState::default()
+    };
     assert_eq!(to_link(&state), "v=1&map=1.ffffffff.0-5,1-");
     check_read("map=1.ffffffff.1-,0-5", state);
 }
@@ -245,16 +299,31 @@ fn a_plain_map_is_short_and_readable() {
 #[test]
 fn parts_of_a_map_are_easy_to_write_by_hand() {
     let default = ViewerState::default();
-    let root = |root| ViewerState { root: Some(root), ..default.clone() };
+    let root = |root| ViewerState {
+        retarget: RetargetEdits { root: Some(root), ..default.retarget.clone() },
+        ..default.clone()
+    };
     check_read("root=in-place", root(RootOptions { horizontal: RootPart::InPlace, ..RootOptions::default() }));
     check_read("root=keep", root(RootOptions::default()));
     let both = RootOptions { yaw: RootPart::Freeze, extract: true, ..RootOptions::default() };
     check_read("root=yaw:freeze,extract", root(both));
-    let clip = |clip, frozen| ViewerState { unmapped: Some(Unmapped::Clip { clip, frozen }), ..default.clone() };
+    let clip = |clip, frozen| ViewerState {
+        retarget: RetargetEdits { unmapped: Some(Unmapped::Clip { clip, frozen }), ..default.retarget.clone() },
+        ..default.clone()
+    };
     check_read("unmapped=clip:0", clip(ClipRef::Index(0), false));
     check_read("unmapped=first-key:Idle", clip(ClipRef::Name("Idle".to_owned()), true));
-    check_read("unmapped=rest", ViewerState { unmapped: Some(Unmapped::Rest), ..default.clone() });
-    check_read("feet=off", ViewerState { feet: Some(Feet::Off), ..default });
+    check_read(
+        "unmapped=rest",
+        ViewerState {
+            retarget: RetargetEdits { unmapped: Some(Unmapped::Rest), ..default.retarget.clone() },
+            ..default.clone()
+        },
+    );
+    check_read(
+        "feet=off",
+        ViewerState { retarget: RetargetEdits { feet: Some(Feet::Off), ..default.retarget }, ..default },
+    );
 }
 
 #[test]
@@ -294,24 +363,28 @@ fn keys_of_other_versions_are_kept() {
     let link = "v=1&show=skeleton,fur&crowd=b&crowd=c&zoo=1%262";
     let (state, errors) = from_link(link);
     assert_eq!(errors.len(), 4, "{errors:?}");
-    assert!(state.show.skeleton);
+    assert!(state.display.show.skeleton);
     assert_eq!(to_link(&state), link);
 }
 
 #[test]
 fn an_object_changes_only_its_keys() {
-    let base = ViewerState { time_secs: 2.0, speed: 2.0, joint: Some(4), ..ViewerState::default() };
+    let base = ViewerState {
+        playhead: Playhead { time_secs: 2.0, ..Playhead::default() },
+        playback: Playback { speed: 2.0, ..Playback::default() },
+        selection: Selection { joint: Some(4), ..Selection::default() },
+        ..ViewerState::default()
+    };
     let partial =
         serde_json::json!({ "t": 0.5, "play": false, "camera": [90, 0, 4, 0, 1, 0], "joint": null, "clip": "" });
     let (state, errors) = from_object(&base, &partial);
     assert_eq!(errors, []);
     let (camera, _) = from_link("camera=90,0,4,0,1,0");
     let expected = ViewerState {
-        time_secs: 0.5,
-        playing: false,
         camera: camera.camera,
-        joint: None,
-        clip: ClipChoice::RestPose,
+        playhead: Playhead { time_secs: 0.5, clip: ClipChoice::RestPose, ..base.playhead },
+        playback: Playback { playing: false, ..base.playback },
+        selection: Selection { joint: None, ..base.selection },
         ..base
     };
     assert_eq!(state, expected);
@@ -322,8 +395,8 @@ fn an_object_changes_only_its_keys() {
 #[test]
 fn an_early_link_to_a_model_in_an_archive_keeps_working() {
     let (state, errors) = from_link("v=1&model=https://example.org/two.zip%23/in/fox.glb");
-    assert_eq!(state.model, ["https://example.org/two.zip#!/in/fox.glb"]);
+    assert_eq!(state.sources.model, ["https://example.org/two.zip#!/in/fox.glb"]);
     assert!(errors.is_empty(), "{errors:?}");
     let (state, _) = from_link("v=1&model=https://example.org/two.zip%23!/in/fox.glb&model=fox.glb%23/b");
-    assert_eq!(state.model, ["https://example.org/two.zip#!/in/fox.glb", "fox.glb#/b"]);
+    assert_eq!(state.sources.model, ["https://example.org/two.zip#!/in/fox.glb", "fox.glb#/b"]);
 }

@@ -7,8 +7,8 @@ use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::mesh::SkinningMode;
 use gaitway::retarget::{ClipRef, Feet, JointMap, MapEntry, RootOptions, RootPart, SourceRef, Unmapped};
 use gaitway::state::{
-    Background, CameraChoice, ClipChoice, Fade, LinkError, MotionMap, NumberedMap, OrbitCamera, Show, UpAxis,
-    VertexChoice, ViewerState, from_link, from_object, to_link, to_object,
+    Background, CameraChoice, ClipChoice, Fade, Inspect, LinkError, MotionMap, NumberedMap, OrbitCamera, RetargetEdits,
+    Show, UpAxis, VertexChoice, ViewerState, from_link, from_object, to_link, to_object,
 };
 use glam::{Quat, Vec3};
 use serde_json::Value;
@@ -119,60 +119,64 @@ impl Random {
 
     fn set(&mut self, state: &mut ViewerState, field: usize) {
         match field {
-            0 => state.model = self.texts(),
-            1 => state.motion = self.texts(),
-            2 => state.map = (0..self.below(3)).map(|_| self.map()).collect(),
-            3 => state.unmapped = Some(self.unmapped()),
-            4 => state.root = Some(self.root()),
-            5 => state.feet = Some(self.one(&[Feet::Off, Feet::Plant])),
-            6 => state.scene = Some(self.below(9)),
-            7 => state.clip = if self.often() { ClipChoice::RestPose } else { ClipChoice::Named(self.text()) },
-            8 => state.time_secs = f64::from(self.number()) / 3.0,
+            0 => state.sources.model = self.texts(),
+            1 => state.sources.motion = self.texts(),
+            2 => state.retarget.map = (0..self.below(3)).map(|_| self.map()).collect(),
+            3 => state.retarget.unmapped = Some(self.unmapped()),
+            4 => state.retarget.root = Some(self.root()),
+            5 => state.retarget.feet = Some(self.one(&[Feet::Off, Feet::Plant])),
+            6 => state.sources.scene = Some(self.below(9)),
+            7 => state.playhead.clip = if self.often() { ClipChoice::RestPose } else { ClipChoice::Named(self.text()) },
+            8 => state.playhead.time_secs = f64::from(self.number()) / 3.0,
             9 => {
                 let clip = if self.often() { ClipChoice::RestPose } else { ClipChoice::Named(self.text()) };
                 let (time_secs, elapsed_secs) = (f64::from(self.number()), f64::from(self.number()));
-                state.fade = Some(Fade { clip, time_secs, elapsed_secs });
+                state.playhead.fade = Some(Fade { clip, time_secs, elapsed_secs });
             }
-            10 => state.playing = self.often(),
-            11 => state.speed = f64::from(self.number()),
-            12 => state.loop_mode = self.one(&[LoopMode::Once, LoopMode::Loop, LoopMode::PingPong]),
+            10 => state.playback.playing = self.often(),
+            11 => state.playback.speed = f64::from(self.number()),
+            12 => state.playback.loop_mode = self.one(&[LoopMode::Once, LoopMode::Loop, LoopMode::PingPong]),
             13 => {
                 let (a, b) = (f64::from(self.number()), f64::from(self.number()));
-                state.range = Some(TimeRange { start_secs: a.min(b), end_secs: a.max(b) });
+                state.playhead.range = Some(TimeRange { start_secs: a.min(b), end_secs: a.max(b) });
             }
-            14 => state.skinning = self.one(&[SkinningMode::Linear, SkinningMode::Rigid, SkinningMode::DualQuaternion]),
-            15 => state.morph = (0..self.below(5)).map(|_| (self.below(60), self.number())).collect(),
+            14 => {
+                state.display.skinning =
+                    self.one(&[SkinningMode::Linear, SkinningMode::Rigid, SkinningMode::DualQuaternion])
+            }
+            15 => state.edits.morph = (0..self.below(5)).map(|_| (self.below(60), self.number())).collect(),
             16 => {
                 let (mesh, grid, shadow) = (self.often(), self.often(), self.often());
                 let (split, source) = (self.often(), self.often());
                 let (boxes, smooth) = (self.often(), self.often());
                 let weights = self.often();
-                state.show = Show { mesh, grid, shadow, split, source, weights, boxes, smooth, ..state.show };
+                state.display.show = Show { mesh, grid, shadow, source, boxes, smooth, ..state.display.show };
+                state.inspect = Inspect { weights, split };
             }
-            17 => state.joint = Some(self.below(300)),
+            17 => state.selection.joint = Some(self.below(300)),
             18 => state.camera = self.camera(),
-            19 => state.fov_degrees = self.number(),
-            20 => state.follow = self.often(),
-            21 => state.up = self.one(&[UpAxis::X, UpAxis::Z, UpAxis::MinusX, UpAxis::MinusY, UpAxis::MinusZ]),
-            22 => state.exposure = self.number(),
-            23 => state.environment_degrees = self.number(),
+            19 => state.camera_options.fov_degrees = self.number(),
+            20 => state.camera_options.follow = self.often(),
+            21 => state.edits.up = self.one(&[UpAxis::X, UpAxis::Z, UpAxis::MinusX, UpAxis::MinusY, UpAxis::MinusZ]),
+            22 => state.display.exposure = self.number(),
+            23 => state.display.environment_degrees = self.number(),
             24 => {
                 let [_, red, green, blue] = self.next().to_be_bytes();
-                state.background = self.one(&[Background::Transparent, Background::Color([red, green, blue])]);
+                state.display.background = self.one(&[Background::Transparent, Background::Color([red, green, blue])]);
             }
             25 => {
                 let turns = |random: &mut Self| [random.number(), random.number(), random.number()];
-                state.pose = (0..self.below(5)).map(|_| (self.below(300), turns(self))).collect();
+                state.edits.pose = (0..self.below(5)).map(|_| (self.below(300), turns(self))).collect();
             }
-            26 => state.turntable = self.number(),
+            26 => state.camera_options.turntable = self.number(),
             27 => {
-                state.names = (0..self.below(4)).map(|_| (self.below(300), self.name())).collect();
+                state.edits.names = (0..self.below(4)).map(|_| (self.below(300), self.name())).collect();
             }
             28 => {
                 let (instance, primitive, vertex) = (self.below(3), self.below(9), self.below(99_999));
-                state.vertex = Some(VertexChoice { instance, primitive, vertex });
+                state.selection.vertex = Some(VertexChoice { instance, primitive, vertex });
             }
-            _ => state.embed = self.often(),
+            _ => state.page.embed = self.often(),
         }
     }
 }
@@ -280,6 +284,7 @@ fn a_map_of_sixty_joints_is_short() {
     let joints = (0..60).map(|joint| (format!("#{joint}"), entry(3 * joint + 100))).collect();
     let map = JointMap { joints, ..JointMap::default() };
     let map = vec![MotionMap::Numbers(NumberedMap { checksum: u32::MAX, map })];
-    let link = to_link(&ViewerState { map, ..ViewerState::default() });
+    let link =
+        to_link(&ViewerState { retarget: RetargetEdits { map, ..RetargetEdits::default() }, ..ViewerState::default() });
     assert!(link.len() < 2000, "{} characters", link.len());
 }

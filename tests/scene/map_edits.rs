@@ -12,8 +12,8 @@ use gaitway::retarget::{
     RootPart, SourceRef, Unmapped,
 };
 use gaitway::state::{
-    ClipChoice, Command, History, MapEdit, MotionMap, NumberedMap, ViewerState, apply, from_link, map_in_force,
-    maps_in_force, muted_properties, settled_maps, to_link,
+    ClipChoice, Command, History, MapEdit, MotionMap, NumberedMap, Playback, Playhead, RetargetEdits, ViewerState,
+    apply, from_link, map_in_force, maps_in_force, muted_properties, settled_maps, to_link,
 };
 use glam::{Quat, Vec3};
 
@@ -25,7 +25,11 @@ fn dancing() -> (Library, ViewerState) {
     let asset = library.active().expect("a model").asset.clone();
     library.set_motions(vec![Motion::new("dance.glb".to_owned(), asset)]);
     let clip = ClipChoice::Named("3".to_owned());
-    let mut state = ViewerState { playing: false, time_secs: 0.3, clip, ..ViewerState::default() };
+    let mut state = ViewerState {
+        playback: Playback { playing: false, ..Playback::default() },
+        playhead: Playhead { time_secs: 0.3, clip, ..Playhead::default() },
+        ..ViewerState::default()
+    };
     settle(&mut library, &mut state);
     (library, state)
 }
@@ -200,7 +204,7 @@ fn a_cleared_map_is_a_start_to_go_on_from() {
     assert_eq!(library.borrow_errors(), []);
     let mut again = cleared.clone();
     apply(&mut again, &library, Command::SetMap { motion: 0, map: None });
-    assert_eq!(again.map, state.map);
+    assert_eq!(again.retarget.map, state.retarget.map);
 }
 
 #[test]
@@ -211,7 +215,7 @@ fn all_of_a_loaded_map_counts() {
     let new = JointMap { feet: Feet::Plant, ..map(&library, &state) };
     let state = edited(&library, &state, MapEdit::Load(Box::new(new.clone())));
     assert_eq!(map(&library, &state), new);
-    assert_eq!((state.root, state.feet), (None, None));
+    assert_eq!((state.retarget.root, state.retarget.feet), (None, None));
 }
 
 #[test]
@@ -372,8 +376,11 @@ fn the_map_key_holds_every_member() {
     assert_eq!(tried, all);
     for (name, map) in members {
         let map = MotionMap::Numbers(NumberedMap { checksum: 0x0123_4567, map });
-        let state = ViewerState { map: vec![map], ..ViewerState::default() };
-        assert_ne!(state.map, ViewerState::default().map, "{name}");
+        let state = ViewerState {
+            retarget: RetargetEdits { map: vec![map], ..RetargetEdits::default() },
+            ..ViewerState::default()
+        };
+        assert_ne!(state.retarget.map, ViewerState::default().retarget.map, "{name}");
         let link = to_link(&state);
         let (back, errors) = from_link(&link);
         assert_eq!(errors, [], "{name}: {link}");
@@ -405,7 +412,8 @@ fn a_large_map_stays_short() {
             .push(MutedChannel { source: SourceRef::Number(number), property: Some(MutedProperty::Rotation) });
     }
     let maps = vec![MotionMap::Numbers(NumberedMap { checksum: 7, map })];
-    let state = ViewerState { map: maps, ..ViewerState::default() };
+    let state =
+        ViewerState { retarget: RetargetEdits { map: maps, ..RetargetEdits::default() }, ..ViewerState::default() };
     let link = to_link(&state);
     assert!(link.len() < 2000, "{} characters", link.len());
     assert_eq!(from_link(&link).0, state);

@@ -9,8 +9,8 @@ use gaitway::frame::pose_document;
 use gaitway::library::{Library, Motion};
 use gaitway::retarget::{ClipRef, Feet, JointMap, MapEntry, MutedChannel, RootOptions, RootPart, SourceRef, Unmapped};
 use gaitway::state::{
-    ClipChoice, Command, History, MapProblem, MotionMap, ViewerState, apply, from_link, map_in_force, maps_in_force,
-    named, names_checksum, numbered, settled_maps, to_link,
+    ClipChoice, Command, History, MapProblem, MotionMap, Playback, Playhead, RetargetEdits, ViewerState, apply,
+    from_link, map_in_force, maps_in_force, named, names_checksum, numbered, settled_maps, to_link,
 };
 use glam::{Quat, Vec3};
 
@@ -71,7 +71,7 @@ fn a_map_is_filled_in_for_every_motion() {
     let mut library = dancing();
     let mut state = ViewerState::default();
     assert_eq!(settled(&mut library, &mut state), []);
-    let [MotionMap::Numbers(map)] = &state.map[..] else { panic!("{:?}", state.map) };
+    let [MotionMap::Numbers(map)] = &state.retarget.map[..] else { panic!("{:?}", state.retarget.map) };
     let asset = &library.active().expect("a model").asset;
     assert_eq!(map.checksum, names_checksum(asset, asset));
     let hips = number(&library, "Hips");
@@ -88,15 +88,21 @@ fn a_map_is_filled_in_for_every_motion() {
 fn without_motions_nothing_is_filled_in_and_nothing_lost() {
     let mut library = walker();
     let map = vec![MotionMap::Names(by_name()), MotionMap::File("map.json".to_owned())];
-    let mut state = ViewerState { map: map.clone(), ..ViewerState::default() };
+    let mut state = ViewerState {
+        retarget: RetargetEdits { map: map.clone(), ..RetargetEdits::default() },
+        ..ViewerState::default()
+    };
     assert_eq!(settled(&mut library, &mut state), []);
-    assert_eq!(state.map, map);
+    assert_eq!(state.retarget.map, map);
 }
 
 #[test]
 fn a_map_by_name_becomes_numbers_and_comes_back() {
     let mut library = dancing();
-    let mut state = ViewerState { map: vec![MotionMap::Names(by_name())], ..ViewerState::default() };
+    let mut state = ViewerState {
+        retarget: RetargetEdits { map: vec![MotionMap::Names(by_name())], ..RetargetEdits::default() },
+        ..ViewerState::default()
+    };
     assert_eq!(settled(&mut library, &mut state), []);
     let map = map_in_force(&library, &state, 0).expect("the given map");
     let (neck, head) = (number(&library, "Neck"), number(&library, "Head"));
@@ -114,7 +120,10 @@ fn a_map_that_fits_nothing_is_named_and_replaced() {
     let mut library = dancing();
     let wrong =
         JointMap { joints: BTreeMap::from([("Hips".to_owned(), follows(name("Pelvis")))]), ..JointMap::default() };
-    let mut state = ViewerState { map: vec![MotionMap::Names(wrong)], ..ViewerState::default() };
+    let mut state = ViewerState {
+        retarget: RetargetEdits { map: vec![MotionMap::Names(wrong)], ..RetargetEdits::default() },
+        ..ViewerState::default()
+    };
     let problems = settled(&mut library, &mut state);
     assert!(matches!(&problems[..], [MapProblem::NoFit { motion, .. }] if motion == "dance.glb"), "{problems:?}");
     assert!(problems[0].to_string().contains("Pelvis"), "{}", problems[0]);
@@ -135,7 +144,7 @@ fn numbers_for_other_names_are_not_used() {
     names[3] = "Else";
     library.set_motions(vec![Motion::new("else.bvh".to_owned(), Arc::new(chain(&names)))]);
     assert_eq!(settled(&mut library, &mut other), [MapProblem::OtherFiles]);
-    assert_ne!(other.map, state.map);
+    assert_ne!(other.retarget.map, state.retarget.map);
 }
 
 #[test]
@@ -163,7 +172,7 @@ fn one_source_is_changed_and_taken_back() {
         assert_eq!(state, now, "numbers that are not there change nothing");
     }
     apply(&mut state, &library, Command::SetMap { motion: 0, map: None });
-    assert_eq!(state.map, before.map, "automatic again");
+    assert_eq!(state.retarget.map, before.retarget.map, "automatic again");
 }
 
 #[test]
@@ -199,7 +208,7 @@ fn a_motion_without_anything_in_common_has_no_map() {
     library.set_motions(vec![Motion::new("snake.bvh".to_owned(), Arc::new(chain(&["s1", "s2", "s3"])))]);
     let mut state = ViewerState::default();
     assert_eq!(settled(&mut library, &mut state), []);
-    assert_eq!(state.map, []);
+    assert_eq!(state.retarget.map, []);
     let [error] = library.borrow_errors() else { panic!("{:?}", library.borrow_errors()) };
     assert!(error.to_string().starts_with("snake.bvh: "), "{error}");
     assert!(error.to_string().contains("no joint in common"), "{error}");
@@ -209,19 +218,23 @@ fn a_motion_without_anything_in_common_has_no_map() {
     apply(&mut state, &library, Command::SetSource { motion: 0, target: head, source: Some(1) });
     let map = map_in_force(&library, &state, 0).expect("a map");
     assert_eq!(map.joints.len(), 1);
-    let before = state.map.clone();
+    let before = state.retarget.map.clone();
     settled(&mut library, &mut state);
-    assert_eq!(state.map, before, "what was begun by hand is not filled up");
+    assert_eq!(state.retarget.map, before, "what was begun by hand is not filled up");
 }
 
 /// The link says all: whoever opens it with the same files has the same pose.
 #[test]
 fn a_link_brings_the_same_pose_back() {
     let mut library = dancing();
-    let mut state = ViewerState { playing: false, time_secs: 0.3, ..ViewerState::default() };
+    let mut state = ViewerState {
+        playback: Playback { playing: false, ..Playback::default() },
+        playhead: Playhead { time_secs: 0.3, ..Playhead::default() },
+        ..ViewerState::default()
+    };
     settled(&mut library, &mut state);
     let arm = number(&library, "LeftUpperArm");
-    state.clip = ClipChoice::Named("3".to_owned());
+    state.playhead.clip = ClipChoice::Named("3".to_owned());
     apply(&mut state, &library, Command::SetSource { motion: 0, target: arm, source: None });
     apply(&mut state, &library, Command::SetUnmapped(Some(Unmapped::Clip { clip: ClipRef::Index(2), frozen: false })));
     let root = RootOptions { horizontal: RootPart::InPlace, ..RootOptions::default() };
@@ -236,8 +249,15 @@ fn a_link_brings_the_same_pose_back() {
     assert_eq!(settled(&mut fresh, &mut back), []);
     assert_eq!(back, state);
     assert_eq!(pose_document(&fresh, &back), pose);
-    let plain = ViewerState { clip: ClipChoice::Named("3".to_owned()), ..ViewerState::default() };
-    let mut plain = ViewerState { playing: false, time_secs: 0.3, ..plain };
+    let plain = ViewerState {
+        playhead: Playhead { clip: ClipChoice::Named("3".to_owned()), ..Playhead::default() },
+        ..ViewerState::default()
+    };
+    let mut plain = ViewerState {
+        playback: Playback { playing: false, ..plain.playback },
+        playhead: Playhead { time_secs: 0.3, ..plain.playhead },
+        ..plain
+    };
     settled(&mut fresh, &mut plain);
     assert_ne!(pose_document(&fresh, &plain), pose, "and it is not what comes without them");
 }

@@ -3,7 +3,7 @@
 use gaitway::asset::Asset;
 use gaitway::frame::{Frame, evaluate, pose_document};
 use gaitway::library::{Library, inspect};
-use gaitway::state::{ClipChoice, ViewerState, active_clip, front_yaw_radians};
+use gaitway::state::{ClipChoice, Playhead, ViewerState, active_clip, front_yaw_radians};
 
 use crate::data::open;
 
@@ -70,7 +70,13 @@ fn a_skinned_mesh_ignores_the_node_it_hangs_on() {
     // ArmyPilot's mesh hangs on the joint Pelvis: moved by that node's own transform it would be far above its skeleton.
     let Some(library) = open("cosc422/ArmyPilot.glb") else { return };
     let bounds = library.active().expect("a model").rest_bounds();
-    let (mut frame, rest) = (Frame::default(), ViewerState { clip: ClipChoice::RestPose, ..ViewerState::default() });
+    let (mut frame, rest) = (
+        Frame::default(),
+        ViewerState {
+            playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
+            ..ViewerState::default()
+        },
+    );
     evaluate(&library, &rest, 1.0, &mut frame);
     let slack = 0.02 * bounds.diagonal();
     let skeleton = &asset(&library).skeleton;
@@ -92,7 +98,10 @@ fn frames_of_a_clip_are_found_from_its_keys() {
     {
         let Some(library) = open(path) else { return };
         let model = library.active().expect("a model");
-        let state = ViewerState { clip: ClipChoice::Named(clip.to_owned()), ..ViewerState::default() };
+        let state = ViewerState {
+            playhead: Playhead { clip: ClipChoice::Named(clip.to_owned()), ..Playhead::default() },
+            ..ViewerState::default()
+        };
         let index = active_clip(model, &state).expect("the clip");
         assert_eq!(model.frames_per_sec(index), expected, "{path}");
     }

@@ -17,19 +17,19 @@ fn check(scene: &Value) {
     let link = scene["link"].as_str().expect("a link");
     let (wanted, errors) = from_link(link);
     assert!(errors.is_empty(), "{link}: {errors:?}");
-    let paths = wanted.model.iter().map(Into::into).collect::<Vec<_>>();
+    let paths = wanted.sources.model.iter().map(Into::into).collect::<Vec<_>>();
     let opened = open_paths(&paths).unwrap_or_else(|error| panic!("{link}: {error}"));
-    assert_eq!(opened.model.source, wanted.model[0], "{link}");
+    assert_eq!(opened.model.source, wanted.sources.model[0], "{link}");
     assert!(opened.model.asset.warnings.iter().next().is_none(), "{link}: {:?}", opened.model.asset.warnings);
     let mut library = library_of(opened.model);
-    let motions = wanted.motion.iter().flat_map(|motion| {
+    let motions = wanted.sources.motion.iter().flat_map(|motion| {
         let contents = read_paths(&[motion.into()], Role::Motion).unwrap_or_else(|error| panic!("{link}: {error}"));
         contents.motions.unwrap_or_default()
     });
     library.set_motions(motions.collect());
     library.borrow(None);
     assert!(library.borrow_errors().is_empty(), "{link}: {:?}", library.borrow_errors());
-    let named_clip = match &wanted.clip {
+    let named_clip = match &wanted.playhead.clip {
         ClipChoice::Named(name) => Some(name.clone()),
         _ => None,
     };
@@ -38,7 +38,7 @@ fn check(scene: &Value) {
     let model = library.active().expect("a model");
     let clip = active_clip(model, &state).and_then(|clip| model.clip(clip));
     assert!(named_clip.is_none_or(|name| clip.is_some_and(|clip| clip.name() == name)), "{link}: no such clip");
-    let moves = clip.is_some_and(|clip| clip.duration_secs() > 0.0) || state.turntable != 0.0;
+    let moves = clip.is_some_and(|clip| clip.duration_secs() > 0.0) || state.camera_options.turntable != 0.0;
     assert!(moves, "{link}: nothing moves");
     let camera = resolve_camera(&library, &state, 1.5);
     assert!(camera.distance.is_finite() && camera.distance > 0.0, "{link}: {camera:?}");

@@ -7,7 +7,10 @@ use gaitway::asset::Asset;
 use gaitway::frame::{Frame, PickedJoint, evaluate, pick_joint, pose_document};
 use gaitway::library::{Library, Motion};
 use gaitway::mesh::SkinningMode;
-use gaitway::state::{ClipChoice, Show, ViewerState, choice_of_clip, resolved_bounds, source_on_stage};
+use gaitway::state::{
+    ClipChoice, Display, Inspect, Playhead, Selection, Show, ViewerState, choice_of_clip, resolved_bounds,
+    source_on_stage,
+};
 use glam::{Vec2, Vec3};
 
 use crate::data::walker;
@@ -27,7 +30,10 @@ fn borrowing() -> (Library, ViewerState) {
     assert_eq!(library.borrow_errors(), []);
     let model = library.active().expect("a model");
     let clip = choice_of_clip(model, model.asset.clips.len());
-    (library, ViewerState { clip, time_secs: 0.3, ..ViewerState::default() })
+    (
+        library,
+        ViewerState { playhead: Playhead { clip, time_secs: 0.3, ..Playhead::default() }, ..ViewerState::default() },
+    )
 }
 
 /// The same skeleton with all lengths doubled, and its first clip with the translations doubled too.
@@ -60,14 +66,16 @@ fn twice(asset: &Asset) -> Asset {
 
 fn showing(base: &ViewerState, change: impl Fn(&mut Show)) -> ViewerState {
     let mut state = base.clone();
-    change(&mut state.show);
+    change(&mut state.display.show);
     state
 }
 
 #[test]
 fn compared_modes_have_a_pane_each_and_one_pose() {
     let library = walker();
-    let state = showing(&ViewerState { time_secs: 0.3, ..ViewerState::default() }, |show| show.split = true);
+    let inspect = Inspect { split: true, ..Inspect::default() };
+    let playhead = Playhead { time_secs: 0.3, ..Playhead::default() };
+    let state = ViewerState { inspect, playhead, ..ViewerState::default() };
     let frame = frame_of(&library, &state, 1.5);
     let modes: Vec<_> = frame.characters.iter().map(|character| (character.pane, character.skinning)).collect();
     let expected = [SkinningMode::Linear, SkinningMode::Rigid, SkinningMode::DualQuaternion];
@@ -75,7 +83,8 @@ fn compared_modes_have_a_pane_each_and_one_pose() {
     assert_eq!(frame.panes, [3, 1]);
     assert_eq!(frame_of(&library, &state, 0.5).panes, [1, 3]);
     for mode in expected {
-        let alone = frame_of(&library, &ViewerState { skinning: mode, show: Show::default(), ..state.clone() }, 0.5);
+        let display = Display { skinning: mode, ..state.display };
+        let alone = frame_of(&library, &ViewerState { display, inspect: Inspect::default(), ..state.clone() }, 0.5);
         let compared = frame.characters.iter().find(|character| character.skinning == mode).expect("a pane");
         assert_eq!(compared.palette, alone.characters[0].palette);
         // A pane is as high as a picture of its own shape.
@@ -86,8 +95,12 @@ fn compared_modes_have_a_pane_each_and_one_pose() {
 #[test]
 fn numbers_are_of_the_chosen_mode_alone() {
     let library = walker();
-    let plain = ViewerState { skinning: SkinningMode::Rigid, time_secs: 0.3, ..ViewerState::default() };
-    let compared = showing(&plain, |show| show.split = true);
+    let plain = ViewerState {
+        display: Display { skinning: SkinningMode::Rigid, ..Display::default() },
+        playhead: Playhead { time_secs: 0.3, ..Playhead::default() },
+        ..ViewerState::default()
+    };
+    let compared = ViewerState { inspect: Inspect { split: true, ..plain.inspect }, ..plain.clone() };
     assert_eq!(pose_document(&library, &compared), pose_document(&library, &plain));
 }
 
@@ -120,7 +133,10 @@ fn over_means_in_the_same_place() {
 #[test]
 fn a_clip_of_the_models_own_has_no_source() {
     let (library, state) = borrowing();
-    let own = showing(&ViewerState { clip: ClipChoice::First, ..state }, |show| show.source = true);
+    let own =
+        showing(&ViewerState { playhead: Playhead { clip: ClipChoice::First, ..state.playhead }, ..state }, |show| {
+            show.source = true
+        });
     assert!(source_on_stage(&library, &own).is_none());
     assert_eq!(frame_of(&library, &own, 1.5).characters.len(), 1);
 }
@@ -129,7 +145,10 @@ fn a_clip_of_the_models_own_has_no_source() {
 fn the_chosen_joint_and_its_partner_are_lit_and_both_can_be_clicked() {
     let (library, state) = borrowing();
     let chosen = 15;
-    let state = ViewerState { joint: Some(chosen), ..showing(&state, |show| show.source = true) };
+    let state = ViewerState {
+        selection: Selection { joint: Some(chosen), ..showing(&state, |show| show.source = true).selection },
+        ..showing(&state, |show| show.source = true)
+    };
     let frame = frame_of(&library, &state, 1.5);
     let plain = |of_source| {
         frame.bones.iter().find(|bone| bone.of_source == of_source && bone.joint != 15).map(|bone| bone.color)
@@ -162,7 +181,7 @@ fn errors_colour_the_bones_and_grow_with_a_turn_by_hand() {
     let (red, green) = color(&state);
     assert!(green > 3.0 * red, "a faithful copy is green: {red} {green}");
     let mut wrong = state.clone();
-    wrong.pose.insert(15, [120.0, 0.0, 0.0]);
+    wrong.edits.pose.insert(15, [120.0, 0.0, 0.0]);
     let (red, green) = color(&wrong);
     assert!(red > 3.0 * green, "{red} {green}");
 }
@@ -172,6 +191,7 @@ fn the_source_moves_with_the_time() {
     let (library, state) = borrowing();
     let state = showing(&state, |show| show.source = true);
     let early = frame_of(&library, &state, 1.5);
-    let late = frame_of(&library, &ViewerState { time_secs: 0.6, ..state }, 1.5);
+    let late =
+        frame_of(&library, &ViewerState { playhead: Playhead { time_secs: 0.6, ..state.playhead }, ..state }, 1.5);
     assert_ne!(early.characters[1].world_from_joint, late.characters[1].world_from_joint);
 }

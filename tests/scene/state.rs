@@ -5,8 +5,8 @@ use std::f32::consts::PI;
 use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::library::Library;
 use gaitway::state::{
-    CameraChoice, ClipChoice, Command, OrbitCamera, ViewerState, active_clip, apply, choice_of_clip, clip_secs,
-    resolve_camera,
+    CameraChoice, CameraOptions, ClipChoice, Command, OrbitCamera, Playback, Playhead, ViewerState, active_clip, apply,
+    choice_of_clip, clip_secs, resolve_camera,
 };
 use glam::Vec3;
 
@@ -56,35 +56,41 @@ fn numbers_that_are_not_finite_change_nothing() {
 #[test]
 fn values_out_of_range_are_clamped() {
     let library = one_second();
-    assert_eq!(after(&library, [Command::Seek(7.0)]).time_secs, 1.0);
-    assert_eq!(after(&library, [Command::Seek(-7.0)]).time_secs, 0.0);
-    assert_eq!(after(&library, [Command::SetSpeed(100.0)]).speed, 4.0);
-    assert_eq!(after(&library, [Command::SetFov(0.0)]).fov_degrees, 5.0);
+    assert_eq!(after(&library, [Command::Seek(7.0)]).playhead.time_secs, 1.0);
+    assert_eq!(after(&library, [Command::Seek(-7.0)]).playhead.time_secs, 0.0);
+    assert_eq!(after(&library, [Command::SetSpeed(100.0)]).playback.speed, 4.0);
+    assert_eq!(after(&library, [Command::SetFov(0.0)]).camera_options.fov_degrees, 5.0);
     let range = Some(TimeRange { start_secs: -1.0, end_secs: 9.0 });
     let whole = Some(TimeRange { start_secs: 0.0, end_secs: 1.0 });
-    assert_eq!(after(&library, [Command::SetRange(range)]).range, whole);
+    assert_eq!(after(&library, [Command::SetRange(range)]).playhead.range, whole);
     let bad = ViewerState {
-        time_secs: f64::NAN,
-        speed: f64::INFINITY,
-        fov_degrees: 900.0,
         camera: CameraChoice::Orbit(OrbitCamera {
             yaw_radians: 0.0,
             pitch_radians: 0.0,
             distance: -1.0,
             target: Vec3::ZERO,
         }),
+        playhead: Playhead { time_secs: f64::NAN, ..Playhead::default() },
+        playback: Playback { speed: f64::INFINITY, ..Playback::default() },
+        camera_options: CameraOptions { fov_degrees: 900.0, ..CameraOptions::default() },
         ..ViewerState::default()
     };
-    let expected = ViewerState { fov_degrees: 120.0, ..ViewerState::default() };
+    let expected = ViewerState {
+        camera_options: CameraOptions { fov_degrees: 120.0, ..CameraOptions::default() },
+        ..ViewerState::default()
+    };
     assert_eq!(after(&library, [Command::Replace(Box::new(bad))]), expected);
 }
 
 #[test]
 fn time_goes_by_at_the_chosen_speed() {
     let library = one_second();
-    assert_eq!(after(&library, [Command::SetSpeed(0.5), Command::Advance(0.5)]).time_secs, 0.25);
-    assert_eq!(after(&library, [Command::SetPlaying(false), Command::Advance(0.5)]).time_secs, 0.0);
-    assert_eq!(after(&library, [Command::SetClip(ClipChoice::RestPose), Command::Advance(0.5)]).time_secs, 0.0);
+    assert_eq!(after(&library, [Command::SetSpeed(0.5), Command::Advance(0.5)]).playhead.time_secs, 0.25);
+    assert_eq!(after(&library, [Command::SetPlaying(false), Command::Advance(0.5)]).playhead.time_secs, 0.0);
+    assert_eq!(
+        after(&library, [Command::SetClip(ClipChoice::RestPose), Command::Advance(0.5)]).playhead.time_secs,
+        0.0
+    );
 }
 
 #[test]
@@ -92,9 +98,9 @@ fn once_stops_at_the_end_and_starts_over() {
     let library = one_second();
     let mut state =
         after(&library, [Command::SetLoopMode(LoopMode::Once), Command::Advance(0.75), Command::Advance(0.75)]);
-    assert_eq!((state.time_secs, state.playing), (1.0, false));
+    assert_eq!((state.playhead.time_secs, state.playback.playing), (1.0, false));
     apply(&mut state, &library, Command::TogglePlaying);
-    assert_eq!((state.time_secs, state.playing), (0.0, true));
+    assert_eq!((state.playhead.time_secs, state.playback.playing), (0.0, true));
 }
 
 #[test]
@@ -106,13 +112,13 @@ fn loops_fold_the_playhead_into_the_range() {
         for _ in 0..6 {
             apply(&mut state, &library, Command::Advance(0.1));
         }
-        assert!((shown_secs(&library, &state) - expected).abs() < 1e-9, "{mode:?}: {}", state.time_secs);
+        assert!((shown_secs(&library, &state) - expected).abs() < 1e-9, "{mode:?}: {}", state.playhead.time_secs);
         // However long it plays the playhead stays near the range.
         for _ in 0..1000 {
             apply(&mut state, &library, Command::Advance(0.1));
         }
-        assert!(state.time_secs < 2.0, "{mode:?}");
-        assert!((shown_secs(&library, &state) - expected).abs() < 1e-6, "{mode:?}: {}", state.time_secs);
+        assert!(state.playhead.time_secs < 2.0, "{mode:?}");
+        assert!((shown_secs(&library, &state) - expected).abs() < 1e-6, "{mode:?}: {}", state.playhead.time_secs);
     }
 }
 
@@ -121,11 +127,11 @@ fn steps_are_whole_frames_and_pause() {
     let library = one_second();
     let at_frame = |frames: f64| frames / 30.0;
     let state = after(&library, [Command::Seek(0.49), Command::StepFrames(1)]);
-    assert_eq!((state.time_secs, state.playing), (at_frame(16.0), false));
-    assert_eq!(after(&library, [Command::StepFrames(-1)]).time_secs, 1.0);
-    assert_eq!(after(&library, [Command::Seek(1.0), Command::StepFrames(1)]).time_secs, 0.0);
+    assert_eq!((state.playhead.time_secs, state.playback.playing), (at_frame(16.0), false));
+    assert_eq!(after(&library, [Command::StepFrames(-1)]).playhead.time_secs, 1.0);
+    assert_eq!(after(&library, [Command::Seek(1.0), Command::StepFrames(1)]).playhead.time_secs, 0.0);
     let once = [Command::SetLoopMode(LoopMode::Once), Command::StepFrames(-1)];
-    assert_eq!(after(&library, once).time_secs, 0.0);
+    assert_eq!(after(&library, once).playhead.time_secs, 0.0);
 }
 
 #[test]
@@ -134,7 +140,7 @@ fn another_clip_starts_at_its_beginning() {
     let range = Some(TimeRange { start_secs: 0.25, end_secs: 0.75 });
     let wave = ClipChoice::Named("Wave".to_owned());
     let state = after(&library, [Command::Seek(0.5), Command::SetRange(range), Command::SetClip(wave.clone())]);
-    assert_eq!((state.time_secs, state.range, state.clip), (0.0, None, wave));
+    assert_eq!((state.playhead.time_secs, state.playhead.range, state.playhead.clip), (0.0, None, wave));
 }
 
 #[test]
@@ -142,7 +148,13 @@ fn clips_are_found_by_name_and_by_index() {
     let library = walker();
     let model = library.active().expect("a model");
     let find = |name: &str| {
-        active_clip(model, &ViewerState { clip: ClipChoice::Named(name.to_owned()), ..ViewerState::default() })
+        active_clip(
+            model,
+            &ViewerState {
+                playhead: Playhead { clip: ClipChoice::Named(name.to_owned()), ..Playhead::default() },
+                ..ViewerState::default()
+            },
+        )
     };
     assert_eq!((find("Wave"), find("2"), find("wave"), find("3"), find("")), (Some(2), Some(2), None, None, None));
     assert_eq!(active_clip(model, &ViewerState::default()), Some(0));

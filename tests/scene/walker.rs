@@ -3,13 +3,16 @@
 use gaitway::anim::JointIndex;
 use gaitway::frame::{Frame, evaluate, pose_document};
 use gaitway::library::Library;
-use gaitway::state::{ClipChoice, ViewerState};
+use gaitway::state::{ClipChoice, Playhead, ViewerState};
 use glam::Vec3;
 
 use crate::data::walker;
 
 fn at(clip: &str, time_secs: f64) -> ViewerState {
-    ViewerState { clip: ClipChoice::Named(clip.to_owned()), time_secs, ..ViewerState::default() }
+    ViewerState {
+        playhead: Playhead { clip: ClipChoice::Named(clip.to_owned()), time_secs, ..Playhead::default() },
+        ..ViewerState::default()
+    }
 }
 
 fn joint_place(library: &Library, frame: &Frame, name: &str) -> Vec3 {

@@ -6,7 +6,7 @@ use gaitway::anim::{ClipBuilder, Interpolation, Joint, JointIndex, Keys, Skeleto
 use gaitway::asset::{Asset, Warning};
 use gaitway::frame::{Frame, evaluate};
 use gaitway::library::{Library, Model, Motion, sample};
-use gaitway::state::{Command, History, ViewerState, apply, maps_in_force};
+use gaitway::state::{Command, History, Playback, ViewerState, apply, maps_in_force};
 use gaitway::ui::{self, Output, Shown, UiAction, UiState};
 
 pub struct Bench {
@@ -49,7 +49,7 @@ fn settle(bench: &mut Bench) {
 }
 
 pub fn bench_of(size: [f32; 2], library: Library) -> Harness<'static, Bench> {
-    let state = ViewerState { playing: false, ..ViewerState::default() };
+    let state = ViewerState { playback: Playback { playing: false, ..Playback::default() }, ..ViewerState::default() };
     let mut bench = Bench {
         library,
         state,

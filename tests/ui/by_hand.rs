@@ -3,7 +3,7 @@
 use egui::{PointerButton, Pos2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use gaitway::state::{ClipChoice, Command, Show};
+use gaitway::state::{ClipChoice, Command, Inspect, Show};
 use gaitway::ui::{Saved, UiAction};
 
 use crate::bench::{Bench, NARROW, WIDE, drag, motion_bench, press, press_key, sample_bench};
@@ -13,8 +13,8 @@ const SHIN: usize = 15;
 
 fn turning(size: [f32; 2]) -> Harness<'static, Bench> {
     let mut harness = sample_bench(size);
-    harness.state_mut().state.joint = Some(SHIN);
-    harness.state_mut().state.clip = ClipChoice::RestPose;
+    harness.state_mut().state.selection.joint = Some(SHIN);
+    harness.state_mut().state.playhead.clip = ClipChoice::RestPose;
     harness.state_mut().panels.turning = true;
     harness.run();
     harness
@@ -40,19 +40,19 @@ fn angles(commands: &[Command]) -> [f32; 3] {
 #[test]
 fn sliders_turn_the_chosen_joint_and_it_can_be_given_back() {
     let mut harness = sample_bench(WIDE);
-    harness.state_mut().state.joint = Some(SHIN);
+    harness.state_mut().state.selection.joint = Some(SHIN);
     harness.run();
     assert!(harness.query_by_label("Turn X").is_none());
     assert!(harness.query_by_label_contains("Reset").is_none());
     press(&mut harness, "Turn by hand");
     harness.get_by_label("Turn X").set_value_accesskit(40.0);
     harness.run();
-    assert!((harness.state().state.pose[&SHIN][0] - 40.0).abs() < 0.1);
+    assert!((harness.state().state.edits.pose[&SHIN][0] - 40.0).abs() < 0.1);
     assert_eq!(press(&mut harness, "Reset joint"), [Command::SetPose { joint: SHIN, degrees: None }]);
     harness.get_by_label("Turn Z").set_value_accesskit(-20.0);
     harness.run();
     assert_eq!(press(&mut harness, "Reset all 1"), [Command::ClearPose]);
-    assert!(harness.state().state.pose.is_empty());
+    assert!(harness.state().state.edits.pose.is_empty());
 }
 
 #[test]
@@ -110,11 +110,11 @@ fn a_ring_turns_about_its_own_axis_alone() {
 fn modes_are_compared_by_a_switch() {
     let mut harness = sample_bench(WIDE);
     press(&mut harness, "Display");
-    let split = Show { split: true, ..Show::default() };
-    assert_eq!(press(&mut harness, "Compare all three"), [Command::SetShow(split)]);
+    let split = Inspect { split: true, ..Inspect::default() };
+    assert_eq!(press(&mut harness, "Compare all three"), [Command::SetInspect(split)]);
     assert_eq!(harness.state().frame.panes, [3, 1]);
     // A joint is found in any pane.
-    harness.state_mut().state.show.skeleton = true;
+    harness.state_mut().state.display.show.skeleton = true;
     harness.run();
     let (picture, place) = (harness.state().picture, place_of_joint(harness.state()));
     let part = (place - picture.min) / picture.size();

@@ -2,7 +2,7 @@
 
 use egui_kittest::kittest::{NodeT, Queryable};
 use gaitway::mesh::SkinningMode;
-use gaitway::state::{Background, CameraChoice, Command, Show, UpAxis};
+use gaitway::state::{Background, CameraChoice, Command, Inspect, Show, UpAxis};
 
 use crate::bench::{WIDE, bench, model_with_clips, press, sample_bench};
 
@@ -47,13 +47,13 @@ fn display_sets_skinning_overlays_and_morphs() {
     assert_eq!(press(&mut harness, "Dual quat."), [Command::SetSkinning(SkinningMode::DualQuaternion)]);
     let skeleton = Show { skeleton: true, ..Show::default() };
     assert_eq!(press(&mut harness, "Skeleton"), [Command::SetShow(skeleton)]);
-    let more = Show { weights: true, ..skeleton };
-    assert_eq!(press(&mut harness, "Influence of the chosen joint"), [Command::SetShow(more)]);
+    let weights = Inspect { weights: true, ..Inspect::default() };
+    assert_eq!(press(&mut harness, "Influence of the chosen joint"), [Command::SetInspect(weights)]);
     assert!(harness.query_by_label_contains("Choose a joint in the picture").is_some());
     harness.state_mut().commands.clear();
     harness.get_by_label("Blink").set_value_accesskit(0.75);
     harness.run();
-    let morphs: Vec<_> = harness.state().state.morph.values().copied().collect();
+    let morphs: Vec<_> = harness.state().state.edits.morph.values().copied().collect();
     assert_eq!(morphs, [0.75]);
     assert_eq!(press(&mut harness, "Let the clip decide"), [Command::ClearMorphs]);
 }
@@ -74,7 +74,7 @@ fn view_sets_camera_and_background() {
     assert_eq!(press(&mut harness, "Z"), [Command::SetUp(UpAxis::Z)]);
     harness.get_by_label("Exposure").set_value_accesskit(2.0);
     harness.run();
-    assert_eq!(harness.state().state.exposure, 2.0);
+    assert_eq!(harness.state().state.display.exposure, 2.0);
 }
 
 #[test]

@@ -358,7 +358,7 @@ fn a_joint_chosen_anywhere_opens_in_the_table() {
     let inside = harness.get_by_label("Leave out scale").rect();
     assert!(inside.bottom() < WIDE[1] - 100.0, "{inside:?}");
     // As a click in the picture does; the table scrolls to it.
-    harness.state_mut().state.joint = Some(toes);
+    harness.state_mut().state.selection.joint = Some(toes);
     harness.run();
     let field = harness.get_by_label("Source of RightToes").rect();
     assert!(field.bottom() < WIDE[1] - 80.0, "{field:?}");
@@ -396,7 +396,7 @@ fn a_source_is_typed_in_the_table() {
     harness.run();
     assert_eq!(press_key(&mut harness, egui::Key::Escape), []);
     assert_eq!(harness.get_by_label("Source of Neck").value().unwrap_or_default(), "");
-    assert_eq!(harness.state().state.joint, Some(neck));
+    assert_eq!(harness.state().state.selection.joint, Some(neck));
 }
 
 #[test]
@@ -520,7 +520,7 @@ fn the_joint_is_chosen_by_clicking_it() {
             }
             assert!(harness.query_by_label("Click a joint of the model").is_none());
         }
-        assert_eq!(harness.state().state.joint, Some(hand));
+        assert_eq!(harness.state().state.selection.joint, Some(hand));
     }
 }
 
@@ -530,7 +530,7 @@ fn both_joints_are_clicked_where_both_are_shown() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
     press(&mut harness, "Walk (2)");
     press(&mut harness, "Motion");
-    harness.state_mut().state.show.source = true;
+    harness.state_mut().state.display.show.source = true;
     harness.run();
     let [hand, head, foot] = ["LeftHand", "Head", "RightFoot"].map(|name| number(&harness, name));
     press(&mut harness, "Choose by clicking");
@@ -569,11 +569,11 @@ fn three_hundred_joints_have_their_lines() {
     assert!(harness.query_by_label("300 joints follow the motion's 300.").is_some());
     assert!(harness.query_by_label("Order: Body").is_none(), "it has no body");
     assert!(harness.query_by_label_contains("Tentacle250 follows").is_none(), "far out of sight");
-    harness.state_mut().state.joint = Some(250);
+    harness.state_mut().state.selection.joint = Some(250);
     harness.run();
     let found = harness.get_by_label_contains("Tentacle250 follows");
     assert!(found.rect().top() > 0.0 && found.rect().bottom() < WIDE[1], "{:?}", found.rect());
-    harness.state_mut().state.joint = None;
+    harness.state_mut().state.selection.joint = None;
     harness.run();
     press_row(&mut harness, "Tentacle250 follows");
     assert_eq!(press(&mut harness, "Nothing"), [Command::SetSource { motion: 0, target: 250, source: None }]);
@@ -606,7 +606,7 @@ fn the_chosen_joint_fits_everywhere() {
         }
         press(&mut harness, "Motion");
         let arm = number(&harness, "LeftUpperArm");
-        harness.state_mut().state.joint = Some(arm);
+        harness.state_mut().state.selection.joint = Some(arm);
         harness.run();
         let labels = [
             "Source of LeftUpperArm",

@@ -12,7 +12,7 @@ fn play_becomes_pause() {
     let mut harness = sample_bench(WIDE);
     assert_eq!(press(&mut harness, "Play"), [Command::TogglePlaying]);
     assert_eq!(press(&mut harness, "Pause"), [Command::TogglePlaying]);
-    assert!(!harness.state().state.playing);
+    assert!(!harness.state().state.playback.playing);
 }
 
 #[test]
@@ -51,7 +51,7 @@ fn scrubbing_seeks_and_holds_the_time() {
 #[test]
 fn in_and_out_points_are_set_dragged_and_cleared() {
     let mut harness = sample_bench(WIDE);
-    harness.state_mut().state.time_secs = 0.5;
+    harness.state_mut().state.playhead.time_secs = 0.5;
     harness.run();
     let duration = f64::from(harness.state().library.active().unwrap().asset.clips[0].duration_secs());
     let range = TimeRange { start_secs: 0.5, end_secs: duration };
@@ -71,9 +71,9 @@ fn speed_goes_from_a_tenth_to_four_times() {
     let bar = harness.get_by_role_and_label(egui::accesskit::Role::Slider, "Speed").rect();
     let across = |x: f32| pos2(x, bar.center().y);
     drag(&mut harness, bar.center(), across(bar.right() + 50.0), PointerButton::Primary);
-    assert_eq!(harness.state().state.speed, 4.0);
+    assert_eq!(harness.state().state.playback.speed, 4.0);
     drag(&mut harness, across(bar.right() - 6.0), across(bar.left() - 50.0), PointerButton::Primary);
-    assert_eq!(harness.state().state.speed, 0.1);
+    assert_eq!(harness.state().state.playback.speed, 0.1);
 }
 
 #[test]
@@ -86,7 +86,7 @@ fn speed_is_a_menu_on_a_phone() {
 #[test]
 fn the_rest_pose_has_nothing_to_play() {
     let mut harness = sample_bench(WIDE);
-    harness.state_mut().state.clip = ClipChoice::RestPose;
+    harness.state_mut().state.playhead.clip = ClipChoice::RestPose;
     harness.run();
     assert!(press(&mut harness, "Play").is_empty());
     assert!(harness.query_by_label("Time").is_none());
@@ -95,7 +95,7 @@ fn the_rest_pose_has_nothing_to_play() {
 #[test]
 fn time_is_told_in_seconds_and_frames() {
     let mut harness = sample_bench(WIDE);
-    harness.state_mut().state.time_secs = 0.5;
+    harness.state_mut().state.playhead.time_secs = 0.5;
     harness.run();
     assert!(harness.query_by_label("0.50 / 1.07 s").is_some());
     assert!(harness.query_by_label("Frame 15 / 32").is_some());

@@ -3,16 +3,19 @@
 use std::collections::BTreeMap;
 use std::fmt::Display;
 
-use percent_encoding::percent_decode_str;
+use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_encode};
+use serde_json::Value;
 
-use super::Read;
+use super::{Read, Written};
 use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
 use crate::retarget::{ClipRef, Feet, JointMap, RootOptions, RootPart, Unmapped};
-use crate::state::{Background, CameraChoice, ClipChoice, Fade, MotionMap, OrbitCamera, Show, UpAxis, VertexChoice};
+use crate::state::{
+    Background, CameraChoice, ClipChoice, Fade, Inspect, MotionMap, OrbitCamera, Show, UpAxis, VertexChoice,
+};
 use crate::state::{ViewerState, map_code};
 
-pub(super) const FEET: [(&str, Feet); 2] = [("off", Feet::Off), ("plant", Feet::Plant)];
+const FEET: [(&str, Feet); 2] = [("off", Feet::Off), ("plant", Feet::Plant)];
 
 const ROOT_PARTS: [(&str, RootPart); 3] =
     [("keep", RootPart::Keep), ("in-place", RootPart::InPlace), ("freeze", RootPart::Freeze)];
@@ -35,12 +38,69 @@ pub(super) const UP_AXES: [(&str, UpAxis); 6] = [
     ("-z", UpAxis::MinusZ),
 ];
 
-pub(super) fn word_of<T: PartialEq>(words: &[(&str, T)], value: &T) -> String {
+fn word_of<T: PartialEq>(words: &[(&str, T)], value: &T) -> String {
     words.iter().find(|(_, other)| other == value).map_or(String::new(), |(word, _)| (*word).to_owned())
 }
 
 pub(super) fn from_word<T: Copy>(words: &[(&str, T)], text: &str) -> Option<T> {
     words.iter().find(|(word, _)| *word == text).map(|(_, value)| *value)
+}
+
+/// Separators between names, and the escape character.
+const IN_NAMES: &AsciiSet = &CONTROLS.add(b'%').add(b',').add(b':');
+
+pub(super) fn write_word<T: PartialEq>(words: &[(&str, T)], value: &T) -> Written {
+    Written::Text(word_of(words, value))
+}
+
+/// An optional field whose text is never empty.
+pub(super) fn read_some<T>(read: fn(&str) -> Option<T>) -> impl Fn(&str) -> Option<Option<T>> {
+    move |text| read(text).map(Some)
+}
+
+/// An optional field; empty text unsets it.
+pub(super) fn read_unless_empty<T>(read: fn(&str) -> Option<T>) -> impl Fn(&str) -> Option<Option<T>> {
+    move |text| if text.is_empty() { Some(None) } else { read(text).map(Some) }
+}
+
+pub(super) fn write_some<T>(text: fn(&T) -> String) -> impl Fn(&Option<T>) -> Written {
+    move |value| value.as_ref().map_or(Written::Unset, |value| Written::Text(text(value)))
+}
+
+pub(super) fn write_flag(flag: &bool) -> Written {
+    Written::Flag(*flag)
+}
+
+pub(super) fn write_number<T: Display + Copy + Into<Value>>(number: &T) -> Written {
+    Written::Number(number.to_string(), (*number).into())
+}
+
+pub(super) fn read_index(text: &str) -> Option<Option<usize>> {
+    if text.is_empty() { Some(None) } else { text.parse().ok().map(Some) }
+}
+
+pub(super) fn write_index(index: &Option<usize>) -> Written {
+    index.as_ref().map_or(Written::Unset, write_number)
+}
+
+pub(super) fn read_clip(text: &str) -> Option<ClipChoice> {
+    Some(if text.is_empty() { ClipChoice::RestPose } else { ClipChoice::Named(text.to_owned()) })
+}
+
+pub(super) fn write_clip(clip: &ClipChoice) -> Written {
+    match clip {
+        ClipChoice::First => Written::Unset,
+        ClipChoice::RestPose => Written::Text(String::new()),
+        ClipChoice::Named(name) => Written::Text(name.clone()),
+    }
+}
+
+pub(super) fn read_feet(text: &str) -> Option<Feet> {
+    from_word(&FEET, text)
+}
+
+pub(super) fn feet_text(feet: &Feet) -> String {
+    word_of(&FEET, feet)
 }
 
 pub(super) fn flag_text(flag: bool) -> &'static str {
@@ -55,7 +115,7 @@ pub(super) fn flag(text: &str) -> Option<bool> {
     }
 }
 
-pub(super) fn joined<T: Display>(parts: impl Iterator<Item = T>) -> String {
+fn joined<T: Display>(parts: impl Iterator<Item = T>) -> String {
     parts.map(|part| part.to_string()).collect::<Vec<_>>().join(",")
 }
 
@@ -64,9 +124,14 @@ pub(super) fn finite<T: std::str::FromStr + Copy + Into<f64>>(text: &str) -> Opt
     text.trim().parse::<T>().ok().filter(|&value| Into::<f64>::into(value).is_finite())
 }
 
-/// Empty: not set.
-pub(super) fn optional(text: &str) -> Option<Option<usize>> {
-    if text.is_empty() { Some(None) } else { text.parse().ok().map(Some) }
+/// A model inside an archive is `ARCHIVE#!/MEMBER`; an early version wrote `ARCHIVE#/MEMBER`.
+pub(super) fn read_source(text: &str) -> Option<String> {
+    Some(match text.split_once("#/") {
+        Some((file, member)) if file.contains("://") || file.to_lowercase().ends_with(".zip") => {
+            format!("{file}#!/{member}")
+        }
+        _ => text.to_owned(),
+    })
 }
 
 pub(super) fn map_text(map: &MotionMap) -> String {
@@ -148,10 +213,14 @@ pub(super) fn read_root(text: &str) -> Option<RootOptions> {
     Some(root)
 }
 
-pub(super) fn read_range(text: &str) -> Option<Option<TimeRange>> {
+pub(super) fn range_text(range: &TimeRange) -> String {
+    format!("{},{}", range.start_secs, range.end_secs)
+}
+
+pub(super) fn read_range(text: &str) -> Option<TimeRange> {
     let (start, end) = text.split_once(',')?;
     let (start_secs, end_secs) = (finite(start)?, finite(end)?);
-    (start_secs <= end_secs).then_some(Some(TimeRange { start_secs, end_secs }))
+    (start_secs <= end_secs).then_some(TimeRange { start_secs, end_secs })
 }
 
 /// Since the change, where the clip was, its name: nothing for the rest pose.
@@ -163,19 +232,23 @@ pub(super) fn fade_text(fade: &Fade) -> String {
     format!("{},{},{clip}", fade.elapsed_secs, fade.time_secs)
 }
 
-pub(super) fn read_fade(text: &str) -> Option<Option<Fade>> {
+pub(super) fn read_fade(text: &str) -> Option<Fade> {
     let mut parts = text.splitn(3, ',');
     let (elapsed_secs, time_secs) = (finite(parts.next()?)?, finite(parts.next()?)?);
     let clip = match parts.next()? {
         "" => ClipChoice::RestPose,
         name => ClipChoice::Named(name.to_owned()),
     };
-    Some(Some(Fade { clip, time_secs, elapsed_secs }))
+    Some(Fade { clip, time_secs, elapsed_secs })
 }
 
 /// The entries between commas, each read by itself; nothing where one cannot be read.
 fn each<K: Ord, V>(text: &str, read: impl Fn(&str) -> Option<(K, V)>) -> Option<BTreeMap<K, V>> {
     text.split(',').filter(|part| !part.is_empty()).map(read).collect()
+}
+
+pub(super) fn write_morph(morph: &BTreeMap<usize, f32>) -> Written {
+    Written::Text(joined(morph.iter().map(|(index, weight)| format!("{index}:{weight}"))))
 }
 
 pub(super) fn read_morph(text: &str) -> Option<BTreeMap<usize, f32>> {
@@ -184,6 +257,10 @@ pub(super) fn read_morph(text: &str) -> Option<BTreeMap<usize, f32>> {
         Some((index.trim().parse().ok()?, finite(weight)?))
     };
     each(text, pair)
+}
+
+pub(super) fn write_pose(pose: &BTreeMap<usize, [f32; 3]>) -> Written {
+    Written::Text(joined(pose.iter().map(|(joint, [x, y, z])| format!("{joint}:{x}:{y}:{z}"))))
 }
 
 pub(super) fn read_pose(text: &str) -> Option<BTreeMap<usize, [f32; 3]>> {
@@ -196,7 +273,12 @@ pub(super) fn read_pose(text: &str) -> Option<BTreeMap<usize, [f32; 3]>> {
     each(text, turned)
 }
 
-/// Names are escaped once more for the marks between them.
+pub(super) fn write_names(names: &BTreeMap<usize, String>) -> Written {
+    let name = |(joint, name): (&usize, &String)| format!("{joint}:{}", utf8_percent_encode(name, IN_NAMES));
+    Written::Text(joined(names.iter().map(name)))
+}
+
+/// Names are escaped once more because of the separators between them.
 pub(super) fn read_names(text: &str) -> Option<BTreeMap<usize, String>> {
     let named = |part: &str| {
         let (joint, name) = part.split_once(':')?;
@@ -207,24 +289,28 @@ pub(super) fn read_names(text: &str) -> Option<BTreeMap<usize, String>> {
     each(text, named)
 }
 
+pub(super) fn vertex_text(choice: &VertexChoice) -> String {
+    format!("{}:{}:{}", choice.instance, choice.primitive, choice.vertex)
+}
+
 pub(super) fn read_vertex(text: &str) -> Option<VertexChoice> {
     let mut numbers = text.split(':').map(|part| part.trim().parse().ok());
     let choice = VertexChoice { instance: numbers.next()??, primitive: numbers.next()??, vertex: numbers.next()?? };
     numbers.next().is_none().then_some(choice)
 }
 
-/// The words of `show`, each with its flag, and what the flag is when the word is there. The mesh and its shadow belong to
-/// any picture, so the words for them take them away.
-fn show_flags(show: &mut Show) -> [(&'static str, &mut bool, bool); 13] {
+/// The words of `show`, each with its flag and the flag's value when the word is present. The mesh and its shadow belong to
+/// every picture, so their words hide them.
+fn show_flags<'a>(show: &'a mut Show, inspect: &'a mut Inspect) -> [(&'static str, &'a mut bool, bool); 13] {
     [
         ("no-mesh", &mut show.mesh, false),
         ("skeleton", &mut show.skeleton, true),
-        ("weights", &mut show.weights, true),
+        ("weights", &mut inspect.weights, true),
         ("bounds", &mut show.bounds, true),
         ("wireframe", &mut show.wireframe, true),
         ("grid", &mut show.grid, true),
         ("no-shadow", &mut show.shadow, false),
-        ("split", &mut show.split, true),
+        ("split", &mut inspect.split, true),
         ("source", &mut show.source, true),
         ("over", &mut show.over, true),
         ("error", &mut show.error, true),
@@ -233,35 +319,41 @@ fn show_flags(show: &mut Show) -> [(&'static str, &mut bool, bool); 13] {
     ]
 }
 
-pub(super) fn show_text(state: &ViewerState) -> String {
-    let mut show = state.show;
-    let flags = show_flags(&mut show).into_iter();
+pub(super) fn write_show(state: &ViewerState) -> Written {
+    let (mut show, mut inspect) = (state.display.show, state.inspect);
+    let flags = show_flags(&mut show, &mut inspect).into_iter();
     let words = flags.filter(|(_, flag, when)| **flag == *when).map(|(word, ..)| word.to_owned());
-    joined(words.chain(state.unknown.get("show").cloned()))
+    Written::Text(joined(words.chain(state.page.unknown.get("show").cloned())))
 }
 
 pub(super) fn read_show(state: &mut ViewerState, text: &str) -> Read {
     let mut unknown = Vec::new();
-    show_flags(&mut state.show).into_iter().for_each(|(_, flag, when)| *flag = !when);
-    state.unknown.remove("show");
+    state.page.unknown.remove("show");
+    let mut flags = show_flags(&mut state.display.show, &mut state.inspect);
+    flags.iter_mut().for_each(|(_, flag, when)| **flag = !*when);
     for word in text.split(',').map(str::trim).filter(|word| !word.is_empty()) {
-        match show_flags(&mut state.show).into_iter().find(|(other, ..)| *other == word) {
-            Some((_, flag, when)) => *flag = when,
+        match flags.iter_mut().find(|(other, ..)| *other == word) {
+            Some((_, flag, when)) => **flag = *when,
             None => unknown.push(word.to_owned()),
         }
     }
     if unknown.is_empty() { Read::Done } else { Read::UnknownShow(unknown) }
 }
 
-pub(super) fn camera_text(camera: &CameraChoice) -> String {
-    match camera {
+pub(super) fn reset_show(state: &mut ViewerState) {
+    state.page.unknown.remove("show");
+    (state.display.show, state.inspect) = (Show::default(), Inspect::default());
+}
+
+pub(super) fn write_camera(camera: &CameraChoice) -> Written {
+    Written::Text(match camera {
         CameraChoice::Auto => "auto".to_owned(),
         CameraChoice::File(index) => format!("gltf:{index}"),
         CameraChoice::Orbit(OrbitCamera { yaw_radians, pitch_radians, distance, target }) => {
             let (yaw, pitch) = (degrees_text(*yaw_radians), degrees_text(*pitch_radians));
             format!("{yaw},{pitch},{distance},{},{},{}", target.x, target.y, target.z)
         }
-    }
+    })
 }
 
 /// The shortest decimal that reads back as the same angle.
@@ -291,6 +383,14 @@ pub(super) fn read_camera(text: &str) -> Option<CameraChoice> {
     }))
 }
 
+pub(super) fn write_background(background: &Background) -> Written {
+    Written::Text(match background {
+        Background::Studio => "studio".to_owned(),
+        Background::Transparent => "transparent".to_owned(),
+        Background::Color([red, green, blue]) => format!("{red:02x}{green:02x}{blue:02x}"),
+    })
+}
+
 pub(super) fn read_background(text: &str) -> Option<Background> {
     match text {
         "studio" => Some(Background::Studio),
@@ -302,15 +402,5 @@ pub(super) fn read_background(text: &str) -> Option<Background> {
             let [_, red, green, blue] = number.to_be_bytes();
             Some(Background::Color([red, green, blue]))
         }
-    }
-}
-
-/// An early version wrote `ARCHIVE#/MEMBER` where links now have `ARCHIVE#!/MEMBER`.
-pub(super) fn with_current_member(value: &str) -> String {
-    match value.split_once("#/") {
-        Some((file, member)) if file.contains("://") || file.to_lowercase().ends_with(".zip") => {
-            format!("{file}#!/{member}")
-        }
-        _ => value.to_owned(),
     }
 }

@@ -79,7 +79,7 @@ pub(super) fn show(
     out: &mut Output,
 ) {
     let prefix = common_prefix(pairing);
-    let chosen = shown.state.joint;
+    let chosen = shown.state.selection.joint;
     let wanted = tab.table.search.to_lowercase();
     let rows: Vec<&Row> = rows
         .iter()

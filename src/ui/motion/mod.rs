@@ -80,7 +80,7 @@ impl MotionTab {
 
     /// The table's rows, worked out anew when one of the files, the map or a name given by hand is another.
     fn rows(&mut self, pairing: &Pairing<'_>, map: &JointMap) -> Rc<[Row]> {
-        let (model, motion, names) = (pairing.model.id, &pairing.motion.asset, &pairing.state.names);
+        let (model, motion, names) = (pairing.model.id, &pairing.motion.asset, &pairing.state.edits.names);
         let is_same = |kept: &KeptRows| {
             kept.model == model && Arc::ptr_eq(&kept.motion, motion) && kept.map == *map && kept.names == *names
         };

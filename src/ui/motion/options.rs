@@ -121,7 +121,7 @@ pub(super) fn files(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, out: 
         out.actions.push(UiAction::Save(Saved::Clip { clip }));
     }
     controls::section(ui, "MOTION");
-    let show = shown.state.show;
+    let show = shown.state.display.show;
     if wide(ui, true, if show.source { "Hide it" } else { "Show it beside the model" }) {
         out.commands.push(Command::SetShow(Show { source: !show.source, over: false, ..show }));
     }
