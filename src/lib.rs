@@ -8,6 +8,7 @@
 
 pub mod anim;
 pub mod asset;
+pub mod editor;
 pub mod formats;
 pub mod frame;
 pub mod library;

@@ -2,7 +2,7 @@
 //! everything as it was; what works can be undone.
 
 use super::App;
-use crate::files::Contents;
+use crate::editor::Contents;
 use crate::library::{BorrowError, BorrowedClip, Library, Motion};
 use crate::retarget::{JointMap, MapError, propose};
 use crate::state::{

@@ -4,7 +4,7 @@
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
 
-use crate::files::Contents;
+use crate::editor::Contents;
 use crate::state::{Command, ViewerState};
 
 /// What the loop is told.

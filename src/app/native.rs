@@ -4,7 +4,8 @@ use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use super::{App, Host, Inbox, Message, Opening, native_options};
-use crate::files::{Contents, OpenError, Role, read_paths};
+use crate::editor::Contents;
+use crate::files::{OpenError, Role, read_paths};
 use crate::library::sample;
 use crate::state::ViewerState;
 

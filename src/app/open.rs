@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::App;
 use super::borrow::{BorrowedChoice, borrowed_from};
-use crate::files::{Contents, ModelFiles, OpenedModel};
+use crate::editor::{Contents, ModelFiles, OpenedModel};
 use crate::library::{Library, Loaded, Model, ModelId, Motion};
 use crate::retarget::JointMap;
 use crate::state::{MotionMap, RetargetEdits, Sources, ViewerState};

@@ -2,7 +2,7 @@
 
 use super::{App, encode_png};
 use crate::anim::Clip;
-use crate::files::ModelFiles;
+use crate::editor::ModelFiles;
 use crate::formats::{write_model, write_motion};
 use crate::frame::{Frame, evaluate};
 use crate::library::Model;

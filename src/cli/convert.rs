@@ -4,7 +4,8 @@ use anyhow::{Context, bail};
 
 use super::borrow::{Borrowing, state_of_link};
 use super::{ConvertArguments, open};
-use crate::files::{ModelFiles, read_set};
+use crate::editor::ModelFiles;
+use crate::files::read_set;
 use crate::formats::{LoadOptions, convert, write_model};
 use crate::library::Library;
 use crate::state::written_skeleton;

@@ -3,7 +3,8 @@
 use std::path::{Component, Path, PathBuf};
 
 use super::sort::Origins;
-use super::{Contents, ModelFiles, OpenedModel, Role, SortError, decode_images, sort};
+use super::{Role, SortError, decode_images, sort};
+use crate::editor::{Contents, ModelFiles, OpenedModel};
 use crate::formats::{FileSet, missing_files};
 use crate::library::{Model, Motion, sample};
 use crate::retarget::JointMap;
@@ -83,7 +84,7 @@ fn contents(set: &FileSet, samples: Vec<Model>, origins: &Origins, role: Role) -
     let mut sorted = if set.is_empty() && !samples.is_empty() { Default::default() } else { sort(set, role)? };
     let models = std::mem::take(&mut sorted.models).into_iter().map(|(name, mut asset)| {
         let images = decode_images(&mut asset);
-        OpenedModel::of(set, origins, name, asset, images)
+        origins.model(set, name, asset, images)
     });
     Ok(origins.contents(sorted, models.collect(), samples, role))
 }

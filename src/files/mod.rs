@@ -17,6 +17,6 @@ pub use decode::decode_images;
 #[cfg(not(target_arch = "wasm32"))]
 pub use disk::{OpenError, Opened, open_bytes, open_paths, read_paths, read_set};
 pub use image_limit::set_largest_image;
-pub use sort::{Contents, ModelFiles, OpenedModel, Role, SortError, Sorted, read_map, sort};
+pub use sort::{Role, SortError, Sorted, read_map, sort};
 #[cfg(target_arch = "wasm32")]
 pub use web::{Item, OpenError, open_items, open_view};

@@ -1,6 +1,7 @@
 //! What a set of files is: models, motions to borrow, a joint map. The same on disk and on the page.
 
 use crate::asset::{Asset, Image};
+use crate::editor::{Contents, MEMBER, ModelFiles, OpenedModel, container_of};
 use crate::formats::{FileSet, LoadError, LoadOptions, load, load_noticing_images, main_files};
 use crate::library::{ImageData, Library, Model, Motion};
 use crate::retarget::{JointMap, MapError};
@@ -23,56 +24,6 @@ pub struct Sorted {
     pub models: Vec<(String, Asset)>,
     pub motions: Vec<(String, Asset)>,
     pub map: Option<JointMap>,
-}
-
-/// What was opened, ready for the library.
-#[derive(Debug, Default)]
-pub struct Contents {
-    /// The first is shown, the others are there to turn to.
-    pub models: Vec<OpenedModel>,
-    /// None: those that are there stay.
-    pub motions: Option<Vec<Motion>>,
-    pub map: Option<JointMap>,
-    pub has_own_map: bool,
-    /// What could not be had, though the rest could.
-    pub problems: Vec<String>,
-}
-
-/// A model on its way into the library.
-#[derive(Debug)]
-pub struct OpenedModel {
-    pub model: Model,
-    /// What it was read from, and which of it is the model: for writing it with another clip. None for samples.
-    pub files: Option<ModelFiles>,
-}
-
-/// The set that a model was read from, and the name of its main file.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ModelFiles {
-    pub set: FileSet,
-    pub name: String,
-}
-
-impl OpenedModel {
-    /// A model of a set, as its file `name`.
-    pub(super) fn of(
-        set: &FileSet,
-        origins: &Origins,
-        name: String,
-        asset: Asset,
-        images: Vec<Option<ImageData>>,
-    ) -> Self {
-        let (origin, source) = origins.origin_and_source(&name);
-        let mut model = Model::new(source, asset, images);
-        model.origin = origin;
-        Self { model, files: Some(ModelFiles { set: set.clone(), name }) }
-    }
-}
-
-impl From<Model> for OpenedModel {
-    fn from(model: Model) -> Self {
-        Self { model, files: None }
-    }
 }
 
 /// Why a set of files is of no use.
@@ -173,15 +124,6 @@ pub fn read_map(file: &str, bytes: &[u8]) -> Result<JointMap, SortError> {
         .map_err(|problem| SortError::Map { file: file.to_owned(), problem })
 }
 
-/// Between the folder or archive that a model came out of and its path in there, where that is not its first model. As
-/// between a .jar and what is in it, but in a URL's fragment, which no server sees.
-const MEMBER: &str = "#!/";
-
-/// The folder or archive that one of its models came out of; of anything else, itself.
-pub(super) fn container_of(origin: &str) -> &str {
-    origin.split_once(MEMBER).map_or(origin, |(container, _)| container)
-}
-
 /// Where the files of a set came from: by their names in it, the path or address that a view lists.
 #[derive(Debug, Default)]
 pub(super) struct Origins {
@@ -191,6 +133,14 @@ pub(super) struct Origins {
 }
 
 impl Origins {
+    /// A model of a set, as its file `name`.
+    pub fn model(&self, set: &FileSet, name: String, asset: Asset, images: Vec<Option<ImageData>>) -> OpenedModel {
+        let (origin, source) = self.origin_and_source(&name);
+        let mut model = Model::new(source, asset, images);
+        model.origin = origin;
+        OpenedModel { model, files: Some(ModelFiles { set: set.clone(), name }) }
+    }
+
     /// Where a file came from, and what it is called: as that, or by its own name where it came out of something.
     fn origin_and_source(&self, name: &str) -> (String, String) {
         match self.known.iter().find(|(known, _)| known == name) {
@@ -236,26 +186,5 @@ impl Origins {
         let motions: Vec<Motion> = motions.collect();
         let motions = (!motions.is_empty()).then_some(motions);
         Contents { motions, models, map: sorted.map, problems, ..Contents::default() }
-    }
-}
-
-impl Contents {
-    /// Says that all of it is a person's own.
-    pub fn owned(mut self) -> Self {
-        self.models.iter_mut().for_each(|opened| opened.model.is_own = true);
-        self.motions.iter_mut().flatten().for_each(|motion| motion.is_own = true);
-        self.has_own_map = self.map.is_some();
-        self
-    }
-
-    /// What a view has to list to get motions again: where they came from, but for what comes along with its model.
-    pub fn motion_sources(motions: &[Motion], model: Option<&str>) -> Vec<String> {
-        let mut sources: Vec<String> = Vec::new();
-        for motion in motions {
-            if model.map(container_of) != Some(&motion.origin) && !sources.contains(&motion.origin) {
-                sources.push(motion.origin.clone());
-            }
-        }
-        sources
     }
 }

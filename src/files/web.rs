@@ -8,9 +8,10 @@ use wasm_bindgen::{JsCast, JsValue};
 use wasm_bindgen_futures::JsFuture;
 
 use super::image_limit::{fitted, made_smaller};
-use super::sort::{Origins, container_of, sort_noticing_images};
-use super::{Contents, OpenedModel, Role, SortError, raw_address, read_map};
+use super::sort::{Origins, sort_noticing_images};
+use super::{Role, SortError, raw_address, read_map};
 use crate::asset::{Asset, Image, Warning};
+use crate::editor::{Contents, container_of};
 use crate::formats::{FileSet, missing_files};
 use crate::library::{ImageData, Model, Motion, sample};
 use crate::state::{MotionMap, ViewerState};
@@ -135,7 +136,7 @@ pub async fn open_items(
         let started = decoding.iter_mut().find(|(of, _)| *of == name).map(|(_, started)| std::mem::take(started));
         let started = started.unwrap_or_else(|| start_decoding(&asset.images));
         let images = decoded(&mut asset, started).await;
-        models.push(OpenedModel::of(&set, &origins, name, asset, images));
+        models.push(origins.model(&set, name, asset, images));
     }
     Ok(origins.contents(sorted, models, samples, role))
 }

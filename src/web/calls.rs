@@ -8,7 +8,8 @@ use wasm_bindgen::prelude::*;
 
 use super::page::{Page, page, state_of_link};
 use crate::app::{App, Message, Opening, Reply, ScriptCall};
-use crate::files::{Contents, Item, OpenError, Role, open_items, open_view};
+use crate::editor::Contents;
+use crate::files::{Item, OpenError, Role, open_items, open_view};
 use crate::frame::pose_document;
 use crate::library::{Motion, sample};
 use crate::state::{Command, MotionMap, ViewerState, active_clip, from_object, to_object};

@@ -7,7 +7,8 @@ use wasm_bindgen::prelude::*;
 
 use super::shell::{self, Shell};
 use crate::app::{App, Backend, Host, Inbox, set_fatal_hook, web_options};
-use crate::files::{Contents, Item, OpenError, OpenedModel, Role, open_items, open_view};
+use crate::editor::{Contents, OpenedModel};
+use crate::files::{Item, OpenError, Role, open_items, open_view};
 use crate::library::sample;
 use crate::state::{ViewerState, from_link, to_link};
 

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// A module of the crate uses lower ranks and its own folder only. ARCHITECTURE.md has the same table.
-const RANKS: [(&str, u32); 14] = [
+const RANKS: [(&str, u32); 15] = [
     ("anim", 0),
     ("mesh", 1),
     ("asset", 2),
@@ -14,6 +14,7 @@ const RANKS: [(&str, u32); 14] = [
     ("state", 5),
     ("frame", 6),
     ("render", 7),
+    ("editor", 7),
     ("ui", 8),
     ("files", 8),
     ("app", 9),
@@ -21,8 +22,9 @@ const RANKS: [(&str, u32); 14] = [
     ("web", 10),
 ];
 
-/// Up to here a module knows no disk, network, clock, GPU and user interface.
-const LAST_CORE_RANK: u32 = 6;
+/// Modules up to this rank know nothing of disk, network, clock, GPU and user interface. `render`, which owns the GPU, is the
+/// one exception.
+const LAST_CORE_RANK: u32 = 7;
 
 const OUTSIDE: [&str; 13] = [
     "std::fs",
@@ -117,7 +119,7 @@ fn trouble(path: &str, text: &str) -> Vec<String> {
     if text.contains(&upwards) {
         trouble.push(format!("{path}: `{upwards}` leaves the module; say `crate::`"));
     }
-    if own_rank <= LAST_CORE_RANK {
+    if own_rank <= LAST_CORE_RANK && own != "render" {
         // The library holds a decoded browser image without looking into it.
         let text = if own == "library" { text.replace("web_sys::ImageBitmap", "") } else { text.to_owned() };
         for word in OUTSIDE.iter().filter(|word| names(&text, word)) {
@@ -174,6 +176,10 @@ fn the_reader_sees_what_it_should() {
     check_trouble("state/view.rs", "use eframe::App;", 1);
     check_trouble("state/mod.rs", "Bitmap(web_sys::ImageBitmap)", 1);
     check_trouble("render/mod.rs", "use crate::state::ViewerState;", 1);
+    check_trouble("render/mod.rs", "wgpu::Device", 0);
+    check_trouble("render/mod.rs", "use crate::editor::Contents;", 1);
+    check_trouble("editor/mod.rs", "wgpu::Device, egui::Context, std::fs::read", 3);
+    check_trouble("editor/mod.rs", "use crate::render::Renderer; use crate::frame::Frame;", 1);
     check_trouble("files/mod.rs", "use crate::ui::style;", 1);
     check_trouble("elsewhere.rs", "", 1);
     check_trouble("lib.rs", "use crate::ui;", 0);
