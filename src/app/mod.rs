@@ -1,18 +1,18 @@
 //! The frame loop: owns the state, the library, the renderer and the panels.
 
-mod borrow;
 mod device;
 mod host;
 mod inbox;
 #[cfg(not(target_arch = "wasm32"))]
 mod native;
 mod notices;
-mod open;
 mod png;
 mod record;
 mod run;
 mod save;
 mod scene_texture;
+mod timing;
+mod viewport;
 
 pub use device::{Backend, FatalHook, set_fatal_hook};
 pub use host::Host;

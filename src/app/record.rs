@@ -17,15 +17,15 @@ pub(super) struct Recording {
 impl App {
     /// Clears the canvas for it; the recording begins when nothing but the picture is there.
     pub(super) fn record(&mut self) {
-        let Some(model) = self.library.active() else { return };
-        let Some(clip) = active_clip(model, &self.state) else { return };
-        let range = play_range(model, clip, &self.state);
+        let Some(model) = self.editor.library().active() else { return };
+        let Some(clip) = active_clip(model, self.editor.state()) else { return };
+        let range = play_range(model, clip, self.editor.state());
         self.recording = Some(Recording {
             start_secs: None,
             bare_frames: 0,
-            length_secs: range.length_secs() / self.state.playback.speed,
-            was_playing: self.state.playback.playing,
-            time_secs: self.state.playhead.time_secs,
+            length_secs: range.length_secs() / self.editor.state().playback.speed,
+            was_playing: self.editor.state().playback.playing,
+            time_secs: self.editor.state().playhead.time_secs,
         });
         self.panels.recording = true;
         self.apply(Command::SetPlaying(false));
@@ -45,7 +45,7 @@ impl App {
                     Ok(()) => self.apply(Command::SetPlaying(true)),
                     Err(error) => {
                         self.end_recording();
-                        self.tell(vec![error]);
+                        self.tell(&error);
                     }
                 }
             }

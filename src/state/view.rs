@@ -50,6 +50,26 @@ impl ViewerState {
         Self { sources, ..Self::default() }
     }
 
+    /// The same view, of a sample if it names no model.
+    pub fn or_sample(mut self, name: &str) -> Self {
+        if self.sources.model.is_empty() {
+            self.sources.model.push(format!("sample:{name}"));
+        }
+        self
+    }
+
+    /// Whether the camera orbits by itself. A file's own camera stays where it is.
+    pub fn is_turning(&self) -> bool {
+        self.camera_options.turntable != 0.0 && !matches!(self.camera, CameraChoice::File(_))
+    }
+
+    /// The same view without anything that moves by itself, for users who prefer reduced motion.
+    pub fn calmed(mut self) -> Self {
+        self.playback.playing = false;
+        self.camera_options.turntable = 0.0;
+        self
+    }
+
     /// What undo covers.
     pub fn undoable(&self) -> UndoableEdits<'_> {
         let Self { retarget, edits, inspect, display, .. } = self;

@@ -4,7 +4,8 @@ use egui::{RichText, ScrollArea, Ui};
 
 use super::icons::{Icon, icon_button_sized};
 use super::{Output, Shown, UiAction, UiState, controls, style};
-use crate::library::{Model, sample};
+use crate::editor::{name_and_place, short_name};
+use crate::library::Model;
 use crate::state::{ClipChoice, Command, choice_of_clip};
 
 /// As high as a search field, so that nothing moves when the first letter is typed.
@@ -147,24 +148,6 @@ fn header(ui: &mut Ui, model: &Model, out: &mut Output) {
             out.actions.push(UiAction::ShareLink);
         }
     });
-}
-
-/// The last part of a path or URL, and where it is.
-fn name_and_place(source: &str) -> (String, String) {
-    if let Some(sample) = source.strip_prefix("sample:") {
-        return (sample::title(sample).to_owned(), "Sample".to_owned());
-    }
-    let source = source.split(['?', '#']).next().unwrap_or(source);
-    match source.trim_end_matches('/').rsplit_once(['/', '\\']) {
-        Some((place, name)) => (name.to_owned(), place.to_owned()),
-        None if source.is_empty() => ("Untitled".to_owned(), String::new()),
-        None => (source.to_owned(), "Opened from this computer".to_owned()),
-    }
-}
-
-/// What a file is called without the place where it lies.
-pub fn short_name(source: &str) -> String {
-    name_and_place(source).0
 }
 
 /// What files are called in a list of them: those of the same name are numbered.

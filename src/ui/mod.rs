@@ -25,11 +25,12 @@ use std::collections::HashSet;
 use egui::{Rect, Ui};
 
 use crate::anim::Clip;
+use crate::editor::Export;
 use crate::frame::{Frame, PickedJoint};
 use crate::library::{Library, Model, ModelId};
 use crate::state::{Command, ViewerState, active_clip, clip_secs};
 
-pub use clips::short_name;
+pub use crate::editor::short_name;
 pub use inspector::Tab;
 pub use keys::{KEY_TABLE, KeyHelp};
 pub use overlays::overlays;
@@ -235,19 +236,15 @@ pub enum PathPurpose {
     Save(Saved),
 }
 
-/// A file that can be had.
+/// A file that can be saved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Saved {
-    /// The joint map for a motion.
-    Map { motion: usize },
-    /// The model with one of its borrowed clips.
-    Model { clip: usize },
-    /// The skeleton with one of the clips, without meshes.
-    Clip { clip: usize },
-    /// The whole model as a .glb: as it stands, or at rest.
-    Whole { posed: bool },
+    File(Export),
     /// What is on the screen, at a size of its own in pixels.
-    Picture { size: [u32; 2], transparent: bool },
+    Picture {
+        size: [u32; 2],
+        transparent: bool,
+    },
 }
 
 #[derive(Debug, Clone, PartialEq)]

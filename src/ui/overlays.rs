@@ -7,6 +7,7 @@ use super::{
     KEY_TABLE, Output, PathPrompt, PathPurpose, Saved, Sheet, Shown, UiAction, UiState, clips, inspector, is_narrow,
     motion, style,
 };
+use crate::editor::Export;
 
 /// Call last; `picture` is the rectangle the picture has.
 pub fn overlays(ui: &mut Ui, picture: Rect, shown: Shown<'_>, local: &mut UiState, out: &mut Output) {
@@ -251,11 +252,13 @@ fn path_prompt(context: &Context, local: &mut UiState, out: &mut Output) {
     let (title, hint, button) = match purpose {
         PathPurpose::Open => ("Open a file", "Path of a .glb, .gltf, .bvh, .obj, .zip or folder", "Open"),
         PathPurpose::OpenMotion => ("Borrow motion", "Path of a .bvh, .glb, .vrma or joint map .json", "Open"),
-        PathPurpose::Save(Saved::Map { .. }) => ("Save the joint map", "Path of the file to write", "Save"),
-        PathPurpose::Save(Saved::Model { .. } | Saved::Whole { .. }) => {
+        PathPurpose::Save(Saved::File(Export::Map { .. })) => {
+            ("Save the joint map", "Path of the file to write", "Save")
+        }
+        PathPurpose::Save(Saved::File(Export::Model { .. } | Export::Whole { .. })) => {
             ("Save the model", "Path of the .glb to write", "Save")
         }
-        PathPurpose::Save(Saved::Clip { .. }) => ("Save the clip", "Path of the .glb to write", "Save"),
+        PathPurpose::Save(Saved::File(Export::Clip { .. })) => ("Save the clip", "Path of the .glb to write", "Save"),
         PathPurpose::Save(Saved::Picture { .. }) => ("Save the picture", "Path of the .png to write", "Save"),
     };
     let mut done = false;

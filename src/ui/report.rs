@@ -6,6 +6,7 @@ use egui::{RichText, Ui};
 
 use super::{Output, Saved, Shown, UiAction, controls, style};
 use crate::asset::{Asset, Warning};
+use crate::editor::Export;
 use crate::mesh::{Geometry, Mesh};
 
 /// More are not listed.
@@ -106,7 +107,7 @@ fn save(ui: &mut Ui, asset: &Asset, out: &mut Output) {
     for (label, posed) in [("At rest", false), ("As it stands", true)] {
         let button = egui::Button::new(label).min_size(egui::vec2(ui.available_width(), 32.0));
         if ui.add(button).clicked() {
-            out.actions.push(UiAction::Save(Saved::Whole { posed }));
+            out.actions.push(UiAction::Save(Saved::File(Export::Whole { posed })));
         }
     }
     controls::hint(ui, "With all weights of each vertex, in sets of four. Joints keep the names that you gave them.");

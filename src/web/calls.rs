@@ -32,10 +32,7 @@ pub async fn open(items: Array, role: Option<String>, is_own: bool) -> Result<St
 #[wasm_bindgen]
 pub async fn follow_link(link: String, again: bool) -> Result<String, JsError> {
     let page = page().map_err(error)?;
-    let mut state = state_of_link(&link, &page.shell);
-    if state.sources.model.is_empty() {
-        state.sources.model.push(format!("sample:{}", sample::WALKER));
-    }
+    let state = state_of_link(&link, &page.shell);
     take_over(&page, state, again, true).await.map_err(error)
 }
 
@@ -45,23 +42,20 @@ pub async fn apply(partial: String) -> Result<String, JsError> {
     let page = page().map_err(error)?;
     let partial: Value = serde_json::from_str(&partial).map_err(|problem| error(problem.to_string()))?;
     let before = with_app(&page, |app| app.state().clone()).map_err(error)?;
-    let (mut state, errors) = from_object(&before, &partial);
+    let (state, errors) = from_object(&before, &partial);
     if !errors.is_empty() || !needs_files(&before, &state) {
         let (promise, reply) = promise::<()>(|()| JsValue::UNDEFINED);
         page.inbox.send(Message::Script(ScriptCall::Apply(partial, reply)));
         return settled(promise).await.map(|_| news(&[], &[])).map_err(error);
     }
-    if state.sources.model.is_empty() {
-        state.sources.model.push(format!("sample:{}", sample::WALKER));
-    }
-    take_over(&page, state, false, false).await.map_err(error)
+    take_over(&page, state.or_sample(sample::WALKER), false, false).await.map_err(error)
 }
 
 /// Takes the model off the list that was shown while a link's own files were waited for.
 #[wasm_bindgen]
 pub fn close_stand_in() -> Result<(), JsError> {
     let page = page().map_err(error)?;
-    with_app(&page, App::close_stand_in).map_err(error)
+    with_app(&page, App::close_placeholder).map_err(error)
 }
 
 /// Shows why something that was asked of the shell cannot be had.
@@ -75,7 +69,7 @@ pub fn refuse(problem: String) -> Result<(), JsError> {
 #[wasm_bindgen]
 pub fn is_private() -> Result<bool, JsError> {
     let page = page().map_err(error)?;
-    with_app(&page, |app| app.is_private()).map_err(error)
+    with_app(&page, |app| app.editor().is_private()).map_err(error)
 }
 
 /// The picture of a QR code: a line of `0` and `1` for each row. None for a text too long to be read off a screen.
@@ -154,7 +148,7 @@ async fn take_over(page: &Rc<Page>, state: ViewerState, again: bool, is_link: bo
         page.inbox.send(Message::Commands(vec![Command::Replace(Box::new(state))]));
         return Ok(news(&[], &[]));
     }
-    let with_model = again || !with_app(page, |app| app.holds(&state))?;
+    let with_model = again || !with_app(page, |app| app.editor().holds(&state))?;
     let held = if again { Vec::new() } else { with_app(page, |app| app.library().motions().to_vec())? };
     let models = state.sources.model.iter().filter(|_| with_model);
     let motions = state.sources.motion.iter().filter(|source| !held.iter().any(|motion| motion.origin == **source));

@@ -86,9 +86,6 @@ async fn first_contents(
     let mut state = state_of_link(link, shell);
     let items = super::calls::items_of(items)?;
     let motion_items = super::calls::items_of(motion_items)?;
-    if state.sources.model.is_empty() {
-        state.sources.model.push(format!("sample:{}", sample::WALKER));
-    }
     let progress = |name: &str, received: u64, total: u64| shell.progress(name, received as f64, total as f64);
     let opened = async {
         let (mut models, mut held, mut problem) = (Vec::new(), Vec::new(), None);
@@ -138,17 +135,14 @@ async fn first_contents(
 pub(super) fn state_of_link(link: &str, shell: &Shell) -> ViewerState {
     let (state, errors) = from_link(link);
     errors.iter().for_each(|error| shell.warn(&error.to_string()));
-    calm(state)
+    let state = state.or_sample(sample::WALKER);
+    if prefers_reduced_motion() { state.calmed() } else { state }
 }
 
-/// A wish for less motion overrides `play` and the turntable when a link is opened.
-fn calm(mut state: ViewerState) -> ViewerState {
-    let query =
-        web_sys::window().and_then(|window| window.match_media("(prefers-reduced-motion: reduce)").ok()).flatten();
-    if query.is_some_and(|query| query.matches()) {
-        (state.playback.playing, state.camera_options.turntable) = (false, 0.0);
-    }
-    state
+fn prefers_reduced_motion() -> bool {
+    let query = "(prefers-reduced-motion: reduce)";
+    let query = web_sys::window().and_then(|window| window.match_media(query).ok()).flatten();
+    query.is_some_and(|query| query.matches())
 }
 
 pub(super) fn page() -> Result<std::rc::Rc<Page>, String> {

@@ -28,7 +28,7 @@ fn what_was_opened_can_be_taken_back() {
     desk.open(&["sample:creature".into()]);
     desk.press("Undo");
     assert_eq!((desk.shown(), desk.state()), ("sample:pilot", &before));
-    assert!(desk.says("Pilot is shown again. Ctrl+Y leads back to Fox."));
+    assert!(desk.says("Back to Pilot. Ctrl+Y returns to Fox."));
     desk.redo();
     assert_eq!(desk.shown(), "sample:creature");
 }
@@ -40,7 +40,7 @@ fn the_same_file_again_is_the_model_that_is_there() {
     desk.open(&["sample:pilot".into()]);
     assert_eq!(desk.models(), ["sample:pilot", "sample:creature"]);
     assert_eq!(desk.shown(), "sample:pilot");
-    assert!(desk.says("Opened again: Pilot"));
+    assert!(desk.says("Reopened Pilot."));
 }
 
 #[test]
@@ -66,15 +66,15 @@ fn a_motion_is_borrowed_from_and_goes_and_comes_with_undo() {
     desk.open(&["sample:walk".into()]);
     assert_eq!(desk.shown(), "sample:pilot", "a motion does not replace the model");
     assert_eq!(desk.borrowed_clips(), 1);
-    assert!(desk.says("A clip is borrowed from Walk"));
+    assert!(desk.says("Added 1 clip from Walk."));
     let clip = desk.state().playhead.clip.clone();
     assert_ne!(clip, ClipChoice::First, "it plays");
     desk.undo();
     assert_eq!((desk.borrowed_clips(), desk.library().motions().len()), (0, 0));
-    assert!(desk.says("Nothing is borrowed from Walk any more. Ctrl+Y brings it back."));
+    assert!(desk.says("Removed motion Walk. Ctrl+Y brings it back."));
     desk.redo();
     assert_eq!((desk.borrowed_clips(), &desk.state().playhead.clip), (1, &clip));
-    assert!(desk.says("Borrowed from Walk again."));
+    assert!(desk.says("Added motion Walk again."));
     assert!(!desk.says("Search joints of the model"), "the tab stays");
     desk.press("Motion");
     assert!(desk.says("Search joints of the model"));
@@ -91,7 +91,7 @@ fn a_motion_goes_along_to_a_model_that_it_fits_and_quietly_leaves_another() {
     assert_eq!((desk.shown(), desk.borrowed_clips()), ("sample:mannequin", 1));
     desk.open(&["sample:morphs".into()]);
     assert_eq!((desk.borrowed_clips(), desk.library().motions().len()), (0, 0));
-    assert!(desk.says("it does not fit this model"), "and says so");
+    assert!(desk.says("it doesn't fit this model"), "and says so");
     assert_eq!(desk.problem(), None, "nobody asked for it: no error");
     desk.press("Mannequin");
     assert_eq!(desk.borrowed_clips(), 1);
@@ -119,7 +119,7 @@ fn a_joint_map_without_a_motion_is_refused_and_with_one_is_a_step() {
     let before = desk.state().clone();
     desk.open(std::slice::from_ref(&map));
     let problem = desk.problem().expect("is said").to_owned();
-    assert!(problem.contains("there is no motion to use it for"), "{problem}");
+    assert!(problem.contains("no motion is loaded"), "{problem}");
     assert_eq!(desk.state(), &before);
     desk.open(&["sample:walk".into()]);
     let proposed = desk.state().retarget.map.clone();
@@ -127,7 +127,7 @@ fn a_joint_map_without_a_motion_is_refused_and_with_one_is_a_step() {
     std::fs::remove_file(&map).expect("was there");
     assert_eq!(desk.problem(), None);
     assert_ne!(desk.state().retarget.map, proposed);
-    assert!(desk.says("The joint map is used for Walk"));
+    assert!(desk.says("Applied the joint map to Walk."));
     desk.undo();
     assert_eq!(desk.state().retarget.map, proposed);
 }
@@ -178,7 +178,7 @@ fn real_files_are_put_where_they_belong() {
     // All at once: one is the model, the other its motion.
     desk.open(&[soldier, walk]);
     assert!(desk.shown().ends_with("Soldier.glb") && desk.borrowed_clips() == 1, "{}", desk.shown());
-    assert!(desk.says("Opened Soldier.glb. A clip is borrowed from cmu_01_01.bvh."));
+    assert!(desk.says("Opened Soldier.glb. Added 1 clip from cmu_01_01.bvh."));
     // Where nothing lies beside it, and then does.
     let folder = std::env::temp_dir().join(format!("gaitway-app-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("made");
@@ -189,7 +189,7 @@ fn real_files_are_put_where_they_belong() {
     copied(&copies[0]);
     desk.open(&copies[..1]);
     assert!(desk.library().active().expect("a model").asset.skins.is_empty());
-    assert!(desk.says("Its joints come with it when its .skel and .attach are opened too."));
+    assert!(desk.says("Open its .skel and .attach as well to add its joints."));
     copies[1..].iter().for_each(copied);
     desk.open(&copies);
     std::fs::remove_dir_all(&folder).expect("was there");

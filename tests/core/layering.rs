@@ -199,3 +199,84 @@ fn modules_use_lower_ranks_only() {
     }
     assert!(all.is_empty(), "\n{}", all.join("\n"));
 }
+
+/// The groups of `ViewerState`'s fields.
+const STATE_GROUPS: [&str; 11] = [
+    "sources",
+    "retarget",
+    "edits",
+    "inspect",
+    "playhead",
+    "selection",
+    "camera",
+    "playback",
+    "display",
+    "camera_options",
+    "page",
+];
+
+/// What changes the value in front of it.
+const CHANGES: [&str; 9] = ["+=", "-=", "*=", "|=", "&=", ".push(", ".insert(", ".extend(", ".clear("];
+
+/// Places that change a field of a view state: an assignment to one of its groups, or a mutable borrow of the whole.
+fn state_changes(text: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    if text.contains("&mut ViewerState") {
+        found.push("&mut ViewerState".to_owned());
+    }
+    for (at, _) in text.match_indices("state.") {
+        let path_end =
+            |text: &str| text.find(|c: char| !c.is_alphanumeric() && c != '_' && c != '.').unwrap_or(text.len());
+        let path = &text[at..at + path_end(&text[at..])];
+        let after = &text[at + path.len()..];
+        let is_group = path.split('.').nth(1).is_some_and(|group| STATE_GROUPS.contains(&group));
+        let assigned = after.trim_start().strip_prefix('=').is_some_and(|rest| !rest.starts_with(['=', '>']));
+        // A path that ends in a call has the method's name at its end.
+        let method = path.rsplit_once('.').map(|(_, last)| format!(".{last}{}", &after[..after.len().min(1)]));
+        let called = method.is_some_and(|method| CHANGES.contains(&method.as_str()));
+        if is_group && (assigned || called || CHANGES.iter().any(|change| after.trim_start().starts_with(change))) {
+            found.push(format!("{path}{}", after.lines().next().unwrap_or_default()));
+        }
+    }
+    found
+}
+
+#[test]
+fn only_the_editor_changes_the_view() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files = Vec::new();
+    sources(&root, &mut files);
+    let mut trouble = Vec::new();
+    for file in files {
+        let path = file.strip_prefix(&root).expect("below src").to_string_lossy().replace('\\', "/");
+        let text = fs::read_to_string(&file).expect("a source file");
+        if !path.starts_with("state/") && !path.starts_with("editor/") {
+            let changes = state_changes(&without_comments(&text));
+            trouble.extend(changes.into_iter().map(|change| format!("{path}: {change}")));
+        }
+    }
+    assert!(trouble.is_empty(), "only `state` and `editor` change a ViewerState:\n{}", trouble.join("\n"));
+}
+
+#[test]
+fn changes_of_the_view_are_found() {
+    let changing = [
+        "self.state.playhead.time_secs = 1.0;",
+        "state.camera = choice;",
+        "state.playback.speed += 1.0;",
+        "state.sources.model.push(name);",
+        "fn set(state: &mut ViewerState) {}",
+    ];
+    for text in changing {
+        assert!(!state_changes(text).is_empty(), "{text}");
+    }
+    let reading = [
+        "if state.camera == choice {}",
+        "state.sources.model.iter()",
+        "state.playback.speed => 1",
+        "let x = state.page.embed;",
+    ];
+    for text in reading {
+        assert!(state_changes(text).is_empty(), "{text}");
+    }
+}

@@ -1,6 +1,6 @@
 //! The text form of a view: what is written is read back, whatever is set.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::mesh::SkinningMode;
@@ -89,90 +89,105 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
     };
     vec![
         (
-            "model",
+            "sources.model",
             with(&|state| {
                 state.sources.model = vec!["https://host/a b.glb?x=1&y=2".to_owned(), "sample:walker".to_owned()]
             }),
         ),
         (
-            "motion",
+            "sources.motion",
             with(&|state| state.sources.motion = vec!["walk.bvh".to_owned(), "https://host/run.glb?a=1".to_owned()]),
         ),
-        ("map", with(&|state| state.retarget.map = some_maps())),
+        ("retarget.map", with(&|state| state.retarget.map = some_maps())),
         (
-            "unmapped",
+            "retarget.unmapped",
             with(&|state| {
                 state.retarget.unmapped = Some(Unmapped::Clip { clip: ClipRef::Name("7".to_owned()), frozen: true });
             }),
         ),
         (
-            "root",
+            "retarget.root",
             with(&|state| {
                 let (horizontal, yaw) = (RootPart::InPlace, RootPart::Freeze);
                 state.retarget.root = Some(RootOptions { horizontal, yaw, extract: true, ..RootOptions::default() });
             }),
         ),
-        ("feet", with(&|state| state.retarget.feet = Some(Feet::Plant))),
-        ("scene", with(&|state| state.sources.scene = Some(2))),
-        ("clip", with(&|state| state.playhead.clip = ClipChoice::Named("Walk & run = 100 %".to_owned()))),
-        ("time_secs", with(&|state| state.playhead.time_secs = 1.0 / 3.0)),
+        ("retarget.feet", with(&|state| state.retarget.feet = Some(Feet::Plant))),
+        ("sources.scene", with(&|state| state.sources.scene = Some(2))),
+        ("playhead.clip", with(&|state| state.playhead.clip = ClipChoice::Named("Walk & run = 100 %".to_owned()))),
+        ("playhead.time_secs", with(&|state| state.playhead.time_secs = 1.0 / 3.0)),
         (
-            "fade",
+            "playhead.fade",
             with(&|state| {
                 let clip = ClipChoice::Named("Walk, slow".to_owned());
                 state.playhead.fade = Some(Fade { clip, time_secs: 1.0 / 3.0, elapsed_secs: 0.1 });
             }),
         ),
-        ("playing", with(&|state| state.playback.playing = false)),
-        ("speed", with(&|state| state.playback.speed = 0.1)),
-        ("loop_mode", with(&|state| state.playback.loop_mode = LoopMode::PingPong)),
-        ("range", with(&|state| state.playhead.range = Some(TimeRange { start_secs: 0.25, end_secs: 1.1 }))),
-        ("skinning", with(&|state| state.display.skinning = SkinningMode::DualQuaternion)),
-        ("morph", with(&|state| state.edits.morph = BTreeMap::from([(0, 0.3), (12, -1.0)]))),
+        ("playback.playing", with(&|state| state.playback.playing = false)),
+        ("playback.speed", with(&|state| state.playback.speed = 0.1)),
+        ("playback.loop_mode", with(&|state| state.playback.loop_mode = LoopMode::PingPong)),
+        ("playhead.range", with(&|state| state.playhead.range = Some(TimeRange { start_secs: 0.25, end_secs: 1.1 }))),
+        ("display.skinning", with(&|state| state.display.skinning = SkinningMode::DualQuaternion)),
+        ("edits.morph", with(&|state| state.edits.morph = BTreeMap::from([(0, 0.3), (12, -1.0)]))),
         (
-            "pose",
+            "edits.pose",
             with(&|state| state.edits.pose = BTreeMap::from([(3, [30.5, 0.0, -179.9]), (12, [0.0, 1.0 / 3.0, 0.0])])),
         ),
         (
-            "names",
+            "edits.names",
             with(&|state| {
                 let names = [(0, "Hips"), (3, "left: knee, 100 % & more"), (12, "ümläut 歩")];
                 state.edits.names = names.into_iter().map(|(joint, name)| (joint, name.to_owned())).collect();
             }),
         ),
         (
-            "show",
+            "display.show",
             with(&|state| {
                 let overlays = Show { skeleton: true, mesh: false, grid: false, ..Show::default() };
                 let overlays = Show { boxes: true, smooth: true, ..overlays };
                 state.display.show = Show { source: true, over: true, error: true, ..overlays };
-                state.inspect.split = true;
             }),
         ),
-        ("joint", with(&|state| state.selection.joint = Some(0))),
+        ("inspect.weights", with(&|state| state.inspect.weights = true)),
+        ("inspect.split", with(&|state| state.inspect.split = true)),
+        ("selection.joint", with(&|state| state.selection.joint = Some(0))),
         (
-            "vertex",
+            "selection.vertex",
             with(&|state| state.selection.vertex = Some(VertexChoice { instance: 0, primitive: 1, vertex: 13335 })),
         ),
         ("camera", with(&|state| state.camera = CameraChoice::Orbit(orbit))),
-        ("fov_degrees", with(&|state| state.camera_options.fov_degrees = 50.0)),
-        ("follow", with(&|state| state.camera_options.follow = true)),
-        ("turntable", with(&|state| state.camera_options.turntable = -12.5)),
-        ("up", with(&|state| state.edits.up = UpAxis::MinusZ)),
-        ("exposure", with(&|state| state.display.exposure = -0.7)),
-        ("environment_degrees", with(&|state| state.display.environment_degrees = 123.4)),
-        ("background", with(&|state| state.display.background = Background::Color([0, 128, 255]))),
-        ("embed", with(&|state| state.page.embed = true)),
-        ("unknown", with(&|state| state.page.unknown = BTreeMap::from([("zoo".to_owned(), "3:x\n4:y".to_owned())]))),
+        ("camera_options.fov_degrees", with(&|state| state.camera_options.fov_degrees = 50.0)),
+        ("camera_options.follow", with(&|state| state.camera_options.follow = true)),
+        ("camera_options.turntable", with(&|state| state.camera_options.turntable = -12.5)),
+        ("edits.up", with(&|state| state.edits.up = UpAxis::MinusZ)),
+        ("display.exposure", with(&|state| state.display.exposure = -0.7)),
+        ("display.environment_degrees", with(&|state| state.display.environment_degrees = 123.4)),
+        ("display.background", with(&|state| state.display.background = Background::Color([0, 128, 255]))),
+        ("page.embed", with(&|state| state.page.embed = true)),
+        (
+            "page.unknown",
+            with(&|state| state.page.unknown = BTreeMap::from([("zoo".to_owned(), "3:x\n4:y".to_owned())])),
+        ),
     ]
+}
+
+/// Where each field of the state is: its group, and its name in there. The camera is a group and a field at once.
+fn fields() -> Vec<Vec<String>> {
+    let state = serde_json::to_value(ViewerState::default()).expect("plain data");
+    let of_group = |(group, value): (&String, &serde_json::Value)| -> Vec<Vec<String>> {
+        match value.as_object() {
+            Some(fields) => fields.keys().map(|field| vec![group.clone(), field.clone()]).collect(),
+            None => vec![vec![group.clone()]],
+        }
+    };
+    state.as_object().expect("a struct").iter().flat_map(of_group).collect()
 }
 
 #[test]
 fn every_field_of_the_state_has_a_key() {
-    let fields = serde_json::to_value(ViewerState::default()).expect("plain data");
-    let fields: Vec<&str> = fields.as_object().expect("a struct").keys().map(String::as_str).collect();
     let changed = one_field_each();
-    assert_eq!(changed.iter().map(|(field, _)| *field).collect::<Vec<_>>(), fields);
+    let fields: BTreeSet<String> = fields().into_iter().map(|path| path.join(".")).collect();
+    assert_eq!(changed.iter().map(|(field, _)| (*field).to_owned()).collect::<BTreeSet<_>>(), fields);
     for (field, state) in &changed {
         assert_ne!(to_link(state), to_link(&ViewerState::default()), "{field} is not in the link");
         check_round_trip(state);
@@ -183,7 +198,9 @@ fn every_field_of_the_state_has_a_key() {
 fn all_fields_at_once_come_back() {
     let mut all = serde_json::to_value(ViewerState::default()).expect("plain data");
     for (field, state) in one_field_each() {
-        all[field] = serde_json::to_value(&state).expect("plain data")[field].clone();
+        let pointer = format!("/{}", field.replace('.', "/"));
+        let changed = serde_json::to_value(&state).expect("plain data");
+        *all.pointer_mut(&pointer).expect("the same fields") = changed.pointer(&pointer).expect("there").clone();
     }
     check_round_trip(&serde_json::from_value(all).expect("the same fields"));
 }

@@ -11,6 +11,7 @@ mod coursework_scene;
 mod crossfade;
 mod data;
 mod decode;
+mod editor;
 mod extent;
 mod frame;
 mod framing;

@@ -4,15 +4,14 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use gaitway::anim::{ClipBuilder, Interpolation, Joint, JointIndex, Keys, Skeleton};
 use gaitway::asset::{Asset, Warning};
+use gaitway::editor::Editor;
 use gaitway::frame::{Frame, evaluate};
 use gaitway::library::{Library, Model, Motion, sample};
-use gaitway::state::{Command, History, Playback, ViewerState, apply, maps_in_force};
+use gaitway::state::{Command, Playback, ViewerState};
 use gaitway::ui::{self, Output, Shown, UiAction, UiState};
 
 pub struct Bench {
-    pub library: Library,
-    pub state: ViewerState,
-    pub history: History,
+    pub editor: Editor,
     pub frame: Frame,
     pub panels: UiState,
     pub commands: Vec<Command>,
@@ -43,24 +42,33 @@ pub fn bench(size: [f32; 2], model: Model) -> Harness<'static, Bench> {
     bench_of(size, library)
 }
 
-fn settle(bench: &mut Bench) {
-    apply(&mut bench.state, &bench.library, Command::SettleMaps);
-    bench.library.borrow_each(maps_in_force(&bench.library, &bench.state));
+impl Bench {
+    pub fn state(&self) -> &ViewerState {
+        self.editor.state()
+    }
+
+    pub fn library(&self) -> &Library {
+        self.editor.library()
+    }
+
+    /// Sets something without any control.
+    pub fn change(&mut self, change: impl FnOnce(&mut ViewerState)) {
+        let mut state = self.state().clone();
+        change(&mut state);
+        self.editor.apply(Command::Replace(Box::new(state)));
+    }
 }
 
 pub fn bench_of(size: [f32; 2], library: Library) -> Harness<'static, Bench> {
-    let state = ViewerState { playback: Playback { playing: false, ..Playback::default() }, ..ViewerState::default() };
-    let mut bench = Bench {
-        library,
-        state,
-        history: History::default(),
+    let playback = Playback { playing: false, ..Playback::default() };
+    let bench = Bench {
+        editor: Editor::new(library, ViewerState { playback, ..ViewerState::default() }),
         frame: Frame::default(),
         panels: UiState::default(),
         commands: Vec::new(),
         actions: Vec::new(),
         picture: egui::Rect::NOTHING,
     };
-    settle(&mut bench);
     let mut harness = Harness::builder()
         .with_size(size)
         .with_step_dt(1.0 / 60.0)
@@ -73,32 +81,33 @@ pub fn bench_of(size: [f32; 2], library: Library) -> Harness<'static, Bench> {
                 let mut ui = ui.new_child(egui::UiBuilder::new().max_rect(whole));
                 ui.set_clip_rect(whole);
                 let ui = &mut ui;
-                evaluate(&bench.library, &bench.state, bench.panels.aspect, &mut bench.frame);
-                (bench.panels.can_undo, bench.panels.can_redo) = (bench.history.can_undo(), bench.history.can_redo());
+                let Bench { editor, frame, panels, commands, actions, picture } = bench;
+                evaluate(editor.library(), editor.state(), panels.aspect, frame);
+                (panels.can_undo, panels.can_redo) = (editor.can_undo(), editor.can_redo());
                 let mut output = Output::default();
-                let shown = Shown { library: &bench.library, state: &bench.state, frame: &bench.frame };
-                bench.picture = ui::panels(ui, shown, &mut bench.panels, &mut output);
-                ui::picture(ui, bench.picture, shown, &mut bench.panels, &mut output);
-                ui::labels(ui, bench.picture, shown, &mut bench.panels);
-                ui::overlays(ui, bench.picture, shown, &mut bench.panels, &mut output);
-                for command in output.commands {
-                    bench.commands.push(command.clone());
-                    bench.history.apply(&mut bench.state, &bench.library, command);
-                    settle(bench);
+                let shown = Shown { library: editor.library(), state: editor.state(), frame: &*frame };
+                *picture = ui::panels(ui, shown, panels, &mut output);
+                ui::picture(ui, *picture, shown, panels, &mut output);
+                ui::labels(ui, *picture, shown, panels);
+                ui::overlays(ui, *picture, shown, panels, &mut output);
+                editor.set_aspect(panels.aspect);
+                if !output.commands.is_empty() || !output.actions.is_empty() {
                     ui.ctx().request_repaint();
+                }
+                for command in output.commands {
+                    commands.push(command.clone());
+                    editor.apply(command);
                 }
                 for action in &output.actions {
                     match action {
-                        UiAction::Undo => bench.history.undo(&mut bench.state, &mut bench.library),
-                        UiAction::Redo => bench.history.redo(&mut bench.state, &mut bench.library),
+                        UiAction::Undo => editor.undo(),
+                        UiAction::Redo => editor.redo(),
                         _ => continue,
                     };
-                    settle(bench);
-                    ui.ctx().request_repaint();
                 }
-                bench.actions.extend(output.actions);
+                actions.extend(output.actions);
                 if ui.input(|input| !input.pointer.any_down() && input.keys_down.is_empty()) {
-                    bench.history.end_gesture();
+                    editor.end_gesture();
                 }
             },
             bench,

@@ -13,15 +13,19 @@ const SHIN: usize = 15;
 
 fn turning(size: [f32; 2]) -> Harness<'static, Bench> {
     let mut harness = sample_bench(size);
-    harness.state_mut().state.selection.joint = Some(SHIN);
-    harness.state_mut().state.playhead.clip = ClipChoice::RestPose;
+    harness.state_mut().change(|state| {
+        state.selection.joint = Some(SHIN);
+    });
+    harness.state_mut().change(|state| {
+        state.playhead.clip = ClipChoice::RestPose;
+    });
     harness.state_mut().panels.turning = true;
     harness.run();
     harness
 }
 
 fn place_of_joint(bench: &Bench) -> Pos2 {
-    let asset = &bench.library.active().expect("a model").asset;
+    let asset = &bench.library().active().expect("a model").asset;
     let joint = asset.skeleton.joint_of_source(SHIN).expect("a joint");
     let world = bench.frame.characters[0].world_from_joint[joint.get()].translation;
     let view = &bench.frame.view;
@@ -40,19 +44,21 @@ fn angles(commands: &[Command]) -> [f32; 3] {
 #[test]
 fn sliders_turn_the_chosen_joint_and_it_can_be_given_back() {
     let mut harness = sample_bench(WIDE);
-    harness.state_mut().state.selection.joint = Some(SHIN);
+    harness.state_mut().change(|state| {
+        state.selection.joint = Some(SHIN);
+    });
     harness.run();
     assert!(harness.query_by_label("Turn X").is_none());
     assert!(harness.query_by_label_contains("Reset").is_none());
     press(&mut harness, "Turn by hand");
     harness.get_by_label("Turn X").set_value_accesskit(40.0);
     harness.run();
-    assert!((harness.state().state.edits.pose[&SHIN][0] - 40.0).abs() < 0.1);
+    assert!((harness.state().state().edits.pose[&SHIN][0] - 40.0).abs() < 0.1);
     assert_eq!(press(&mut harness, "Reset joint"), [Command::SetPose { joint: SHIN, degrees: None }]);
     harness.get_by_label("Turn Z").set_value_accesskit(-20.0);
     harness.run();
     assert_eq!(press(&mut harness, "Reset all 1"), [Command::ClearPose]);
-    assert!(harness.state().state.edits.pose.is_empty());
+    assert!(harness.state().state().edits.pose.is_empty());
 }
 
 #[test]
@@ -114,7 +120,9 @@ fn modes_are_compared_by_a_switch() {
     assert_eq!(press(&mut harness, "Compare all three"), [Command::SetInspect(split)]);
     assert_eq!(harness.state().frame.panes, [3, 1]);
     // A joint is found in any pane.
-    harness.state_mut().state.display.show.skeleton = true;
+    harness.state_mut().change(|state| {
+        state.display.show.skeleton = true;
+    });
     harness.run();
     let (picture, place) = (harness.state().picture, place_of_joint(harness.state()));
     let part = (place - picture.min) / picture.size();

@@ -27,7 +27,9 @@ fn the_chosen_clip_is_in_sight() {
         screen.contains_rect(row)
     };
     assert!(!is_in_sight(&harness));
-    harness.state_mut().state.playhead.clip = ClipChoice::Named("Move 50".to_owned());
+    harness.state_mut().change(|state| {
+        state.playhead.clip = ClipChoice::Named("Move 50".to_owned());
+    });
     harness.run_steps(30);
     assert!(is_in_sight(&harness));
     harness.set_size(egui::vec2(WIDE[0], 0.6 * WIDE[1]));

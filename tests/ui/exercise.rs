@@ -2,9 +2,10 @@
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use gaitway::editor::{Editor, Export};
 use gaitway::formats::{FileSet, load};
-use gaitway::library::Model;
-use gaitway::state::{Command, Show, VertexChoice};
+use gaitway::library::{Library, Model};
+use gaitway::state::{Command, Show, VertexChoice, ViewerState};
 use gaitway::ui::{Saved, Tab, UiAction};
 
 use crate::bench::{Bench, NARROW, WIDE, bench, model_with_clips, press, sample_bench};
@@ -44,7 +45,9 @@ fn the_sliders_say_their_order_and_bend_the_model() {
 fn the_three_matrices_of_the_chosen_joint_are_shown() {
     let mut harness = strip(WIDE);
     press(&mut harness, "joint 2");
-    harness.state_mut().state.edits.pose.insert(2, [0.0, 0.0, 90.0]);
+    harness.state_mut().change(|state| {
+        state.edits.pose.insert(2, [0.0, 0.0, 90.0]);
+    });
     harness.run();
     assert_eq!(harness.query_all_by_label("Scale 1.000 1.000 1.000").count(), 2, "local and in the world");
     press(&mut harness, "Matrices");
@@ -68,7 +71,9 @@ fn the_three_matrices_of_the_chosen_joint_are_shown() {
 fn a_model_without_meshes_has_no_vertices_to_look_at() {
     let mut harness = strip(WIDE);
     press(&mut harness, "Vertex under the pointer");
-    harness.state_mut().library.set(model_with_clips(2));
+    let mut library = Library::default();
+    library.set(model_with_clips(2));
+    harness.state_mut().editor = Editor::new(library, ViewerState::default());
     harness.run();
     assert!(harness.query_by_label("Vertex under the pointer").is_none());
 }
@@ -83,8 +88,12 @@ fn a_vertex_shows_shares_that_add_up() {
         press(&mut harness, "Vertex under the pointer");
         assert!(harness.query_by_label_contains("Point at the mesh").is_some());
         // Turned by a quarter about Z, joint 2 alone would put (1, 1) to (0, 0).
-        harness.state_mut().state.edits.pose.insert(2, [0.0, 0.0, 90.0]);
-        harness.state_mut().state.selection.vertex = Some(VertexChoice { instance: 0, primitive: 0, vertex: 3 });
+        harness.state_mut().change(|state| {
+            state.edits.pose.insert(2, [0.0, 0.0, 90.0]);
+        });
+        harness.state_mut().change(|state| {
+            state.selection.vertex = Some(VertexChoice { instance: 0, primitive: 0, vertex: 3 });
+        });
         harness.run();
         for label in [
             "Vertex 3",
@@ -98,7 +107,9 @@ fn a_vertex_shows_shares_that_add_up() {
             assert!(has(&harness, label), "{label} at {size:?}");
         }
         assert!(harness.query_by_label_contains("drawn").is_none(), "linear skinning draws the sum");
-        harness.state_mut().state.display.skinning = gaitway::mesh::SkinningMode::Rigid;
+        harness.state_mut().change(|state| {
+            state.display.skinning = gaitway::mesh::SkinningMode::Rigid;
+        });
         harness.run();
         assert!(harness.query_by_label_contains("drawn, with the skinning").is_some());
         assert_eq!(press(&mut harness, "joint 2, weight 0.5000"), [Command::SelectJoint(Some(2))]);
@@ -116,7 +127,9 @@ fn a_copy_has_the_number_of_its_vertex() {
         let asset = load(&files).expect("a small model");
         let mut harness = bench(WIDE, Model::new("m.obj".to_owned(), asset, Vec::new()));
         press(&mut harness, "Vertex under the pointer");
-        harness.state_mut().state.selection.vertex = Some(VertexChoice { instance: 0, primitive: piece, vertex });
+        harness.state_mut().change(|state| {
+            state.selection.vertex = Some(VertexChoice { instance: 0, primitive: piece, vertex });
+        });
         harness.run();
         assert!(has(&harness, "Vertex 2"), "{between:?}");
     }
@@ -161,7 +174,7 @@ fn a_joint_is_renamed_in_its_card() {
     harness.run();
     harness.key_press(egui::Key::Escape);
     harness.run();
-    assert_eq!(harness.state().state.edits.names[&2], name);
+    assert_eq!(harness.state().state().edits.names[&2], name);
 }
 
 #[test]
@@ -171,7 +184,7 @@ fn the_model_can_be_saved_at_rest_and_as_it_stands() {
     harness.run();
     press(&mut harness, "At rest");
     press(&mut harness, "As it stands");
-    let whole = |posed| UiAction::Save(Saved::Whole { posed });
+    let whole = |posed| UiAction::Save(Saved::File(Export::Whole { posed }));
     assert_eq!(harness.state().actions, [whole(false), whole(true)]);
     let mut harness = sample_bench(WIDE);
     harness.state_mut().panels.tab = Tab::File;

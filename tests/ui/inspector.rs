@@ -10,7 +10,7 @@ use crate::bench::{WIDE, bench, model_with_clips, press, sample_bench};
 fn the_tree_shows_all_joints_and_chooses_one() {
     let mut harness = sample_bench(WIDE);
     let commands = press(&mut harness, "LeftHand");
-    let skeleton = &harness.state().library.active().unwrap().asset.skeleton;
+    let skeleton = &harness.state().library().active().unwrap().asset.skeleton;
     let hand = skeleton.source_index(skeleton.find("LeftHand").unwrap());
     assert_eq!(commands, [Command::SelectJoint(Some(hand))]);
     assert!(harness.query_by_label_contains("Local, in LeftLowerArm").is_some());
@@ -53,7 +53,7 @@ fn display_sets_skinning_overlays_and_morphs() {
     harness.state_mut().commands.clear();
     harness.get_by_label("Blink").set_value_accesskit(0.75);
     harness.run();
-    let morphs: Vec<_> = harness.state().state.edits.morph.values().copied().collect();
+    let morphs: Vec<_> = harness.state().state().edits.morph.values().copied().collect();
     assert_eq!(morphs, [0.75]);
     assert_eq!(press(&mut harness, "Let the clip decide"), [Command::ClearMorphs]);
 }
@@ -74,7 +74,7 @@ fn view_sets_camera_and_background() {
     assert_eq!(press(&mut harness, "Z"), [Command::SetUp(UpAxis::Z)]);
     harness.get_by_label("Exposure").set_value_accesskit(2.0);
     harness.run();
-    assert_eq!(harness.state().state.display.exposure, 2.0);
+    assert_eq!(harness.state().state().display.exposure, 2.0);
 }
 
 #[test]

@@ -98,7 +98,9 @@ fn everything_stays_on_the_screen() {
 #[test]
 fn embedded_there_is_only_picture_and_transport() {
     let mut harness = sample_bench(WIDE);
-    harness.state_mut().state.page.embed = true;
+    harness.state_mut().change(|state| {
+        state.page.embed = true;
+    });
     harness.run();
     assert_eq!(harness.state().picture.width(), WIDE[0]);
     assert!(harness.query_by_label("Play").is_some());

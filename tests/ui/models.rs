@@ -22,7 +22,7 @@ fn models_are_listed_when_there_are_several() {
         if size == NARROW {
             press(&mut harness, "Clips");
         }
-        let first = harness.state().library.models()[0].id;
+        let first = harness.state().library().models()[0].id;
         press(&mut harness, "Walker");
         assert_eq!(harness.state().actions, [UiAction::ShowModel(first)], "{size:?}");
         assert!(harness.query_by_label("Close other.glb").is_some(), "what is shown can be closed too");

@@ -4,6 +4,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use gaitway::anim::{Joint, Skeleton};
 use gaitway::asset::Asset;
+use gaitway::editor::Export;
 use gaitway::library::{Library, Model, Motion};
 use gaitway::retarget::{
     ClipRef, Feet, JointMap, Keep, MutedProperty, RestChoice, RootOptions, RootPart, SourceRef, Unmapped,
@@ -15,11 +16,11 @@ use crate::bench::{Bench, NARROW, WIDE, bench_of, drag, motion_bench, press, pre
 
 fn map(harness: &Harness<'_, Bench>, motion: usize) -> JointMap {
     let bench = harness.state();
-    map_in_force(&bench.library, &bench.state, motion).expect("a map for the motion")
+    map_in_force(bench.library(), bench.state(), motion).expect("a map for the motion")
 }
 
 fn number(harness: &Harness<'_, Bench>, name: &str) -> usize {
-    let skeleton = &harness.state().library.active().expect("a model").asset.skeleton;
+    let skeleton = &harness.state().library().active().expect("a model").asset.skeleton;
     skeleton.source_index(skeleton.find(name).expect("a joint of the walker"))
 }
 
@@ -191,9 +192,9 @@ fn files_are_asked_of_the_host() {
     reach(&mut harness, "Open it instead of the model");
     reach(&mut harness, "Remove motion");
     let expected = [
-        UiAction::Save(Saved::Map { motion: 0 }),
+        UiAction::Save(Saved::File(Export::Map { motion: 0 })),
         UiAction::ChooseMotion,
-        UiAction::Save(Saved::Model { clip: 3 }),
+        UiAction::Save(Saved::File(Export::Model { clip: 3 })),
         UiAction::ShowMotionAlone(0),
         UiAction::RemoveMotion(0),
     ];
@@ -203,7 +204,7 @@ fn files_are_asked_of_the_host() {
 #[test]
 fn a_path_to_save_at_can_be_typed() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    let purpose = PathPurpose::Save(Saved::Map { motion: 0 });
+    let purpose = PathPurpose::Save(Saved::File(Export::Map { motion: 0 }));
     harness.state_mut().panels.path_prompt = Some(PathPrompt { purpose, path: "map.json".to_owned() });
     harness.run();
     press(&mut harness, "Save");
@@ -220,7 +221,7 @@ fn one_of_several_motions_is_chosen() {
     assert_eq!(commands, [Command::SetClip(ClipChoice::Named("6".to_owned()))]);
     press(&mut harness, "Files");
     press(&mut harness, "Save map");
-    assert_eq!(harness.state().actions, [UiAction::Save(Saved::Map { motion: 1 })]);
+    assert_eq!(harness.state().actions, [UiAction::Save(Saved::File(Export::Map { motion: 1 }))]);
 }
 
 #[test]
@@ -303,7 +304,7 @@ fn the_table_is_filtered_by_how_it_stands() {
 fn whole_maps_are_swapped_cleared_and_taken_back() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
     press(&mut harness, "Motion");
-    let before = harness.state().state.clone();
+    let before = harness.state().state().clone();
     let [left, right] = ["LeftHand", "RightHand"].map(|name| number(&harness, name));
     assert_eq!(press(&mut harness, "Swap sides"), [edit(MapEdit::SwapSides)]);
     let swapped = format!("LeftHand follows {right}  RightHand (sure");
@@ -320,7 +321,7 @@ fn whole_maps_are_swapped_cleared_and_taken_back() {
         harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
         harness.run();
     }
-    assert_eq!(harness.state().state, before);
+    assert_eq!(harness.state().state(), &before);
 }
 
 /// A button that was reached with the tab key keeps the keyboard; edits made with it can be undone all the same.
@@ -358,7 +359,9 @@ fn a_joint_chosen_anywhere_opens_in_the_table() {
     let inside = harness.get_by_label("Leave out scale").rect();
     assert!(inside.bottom() < WIDE[1] - 100.0, "{inside:?}");
     // As a click in the picture does; the table scrolls to it.
-    harness.state_mut().state.selection.joint = Some(toes);
+    harness.state_mut().change(|state| {
+        state.selection.joint = Some(toes);
+    });
     harness.run();
     let field = harness.get_by_label("Source of RightToes").rect();
     assert!(field.bottom() < WIDE[1] - 80.0, "{field:?}");
@@ -396,7 +399,7 @@ fn a_source_is_typed_in_the_table() {
     harness.run();
     assert_eq!(press_key(&mut harness, egui::Key::Escape), []);
     assert_eq!(harness.get_by_label("Source of Neck").value().unwrap_or_default(), "");
-    assert_eq!(harness.state().state.selection.joint, Some(neck));
+    assert_eq!(harness.state().state().selection.joint, Some(neck));
 }
 
 #[test]
@@ -419,7 +422,7 @@ fn a_joint_is_turned_further_and_back() {
     assert_eq!(map(&harness, 0).joints[&format!("#{neck}")].correction, turned);
     press(&mut harness, "Undo (Ctrl+Z)");
     assert_eq!(map(&harness, 0).joints[&format!("#{neck}")].correction, glam::Quat::IDENTITY);
-    assert!(!harness.state().history.can_undo());
+    assert!(!harness.state().editor.can_undo());
 }
 
 #[test]
@@ -475,7 +478,7 @@ fn translations_scales_and_the_crossfade_are_options() {
 /// Where a joint of the walker is in the picture: of the model, or of the motion beside it.
 fn place(harness: &Harness<'_, Bench>, character: usize, name: &str) -> egui::Pos2 {
     let bench = harness.state();
-    let joint = bench.library.active().expect("a model").asset.skeleton.find(name).expect("a joint");
+    let joint = bench.library().active().expect("a model").asset.skeleton.find(name).expect("a joint");
     let view = &bench.frame.view;
     let world = bench.frame.characters[character].world_from_joint[joint.get()].translation;
     let at = (view.projection_from_view * view.view_from_world).project_point3(world.into());
@@ -520,7 +523,7 @@ fn the_joint_is_chosen_by_clicking_it() {
             }
             assert!(harness.query_by_label("Click a joint of the model").is_none());
         }
-        assert_eq!(harness.state().state.selection.joint, Some(hand));
+        assert_eq!(harness.state().state().selection.joint, Some(hand));
     }
 }
 
@@ -530,7 +533,9 @@ fn both_joints_are_clicked_where_both_are_shown() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
     press(&mut harness, "Walk (2)");
     press(&mut harness, "Motion");
-    harness.state_mut().state.display.show.source = true;
+    harness.state_mut().change(|state| {
+        state.display.show.source = true;
+    });
     harness.run();
     let [hand, head, foot] = ["LeftHand", "Head", "RightFoot"].map(|name| number(&harness, name));
     press(&mut harness, "Choose by clicking");
@@ -569,11 +574,15 @@ fn three_hundred_joints_have_their_lines() {
     assert!(harness.query_by_label("300 joints follow the motion's 300.").is_some());
     assert!(harness.query_by_label("Order: Body").is_none(), "it has no body");
     assert!(harness.query_by_label_contains("Tentacle250 follows").is_none(), "far out of sight");
-    harness.state_mut().state.selection.joint = Some(250);
+    harness.state_mut().change(|state| {
+        state.selection.joint = Some(250);
+    });
     harness.run();
     let found = harness.get_by_label_contains("Tentacle250 follows");
     assert!(found.rect().top() > 0.0 && found.rect().bottom() < WIDE[1], "{:?}", found.rect());
-    harness.state_mut().state.selection.joint = None;
+    harness.state_mut().change(|state| {
+        state.selection.joint = None;
+    });
     harness.run();
     press_row(&mut harness, "Tentacle250 follows");
     assert_eq!(press(&mut harness, "Nothing"), [Command::SetSource { motion: 0, target: 250, source: None }]);
@@ -606,7 +615,9 @@ fn the_chosen_joint_fits_everywhere() {
         }
         press(&mut harness, "Motion");
         let arm = number(&harness, "LeftUpperArm");
-        harness.state_mut().state.selection.joint = Some(arm);
+        harness.state_mut().change(|state| {
+            state.selection.joint = Some(arm);
+        });
         harness.run();
         let labels = [
             "Source of LeftUpperArm",

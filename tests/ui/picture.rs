@@ -89,7 +89,9 @@ fn two_fingers_pinch_and_move_but_do_not_turn() {
 #[test]
 fn a_click_on_a_bone_chooses_its_joint_and_one_beside_it_none() {
     let mut harness = sample_bench(WIDE);
-    harness.state_mut().state.display.show = Show { skeleton: true, ..Show::default() };
+    harness.state_mut().change(|state| {
+        state.display.show = Show { skeleton: true, ..Show::default() };
+    });
     harness.run();
     let rect = harness.state().picture;
     let (bone, point) = {
@@ -102,11 +104,11 @@ fn a_click_on_a_bone_chooses_its_joint_and_one_beside_it_none() {
     let on_screen =
         pos2(rect.left() + rect.width() * (0.5 + 0.5 * point.x), rect.top() + rect.height() * (0.5 - 0.5 * point.y));
     drag(&mut harness, on_screen, on_screen, PointerButton::Primary);
-    assert_eq!(harness.state().state.selection.joint, Some(bone.joint as usize));
+    assert_eq!(harness.state().state().selection.joint, Some(bone.joint as usize));
     assert_eq!(harness.state().panels.hovered_joint, Some(bone.joint as usize));
     let beside = rect.left_bottom() + vec2(12.0, -12.0);
     drag(&mut harness, beside, beside, PointerButton::Primary);
-    assert_eq!(harness.state().state.selection.joint, None);
+    assert_eq!(harness.state().state().selection.joint, None);
 }
 
 #[test]

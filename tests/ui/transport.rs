@@ -12,7 +12,7 @@ fn play_becomes_pause() {
     let mut harness = sample_bench(WIDE);
     assert_eq!(press(&mut harness, "Play"), [Command::TogglePlaying]);
     assert_eq!(press(&mut harness, "Pause"), [Command::TogglePlaying]);
-    assert!(!harness.state().state.playback.playing);
+    assert!(!harness.state().state().playback.playing);
 }
 
 #[test]
@@ -43,7 +43,7 @@ fn scrubbing_seeks_and_holds_the_time() {
     let y = bar.top() + 8.0;
     let commands = drag(&mut harness, pos2(bar.left() + 20.0, y), pos2(bar.center().x, y), PointerButton::Primary);
     let Some(Command::Seek(secs)) = commands.last() else { panic!("{commands:?}") };
-    let half = f64::from(harness.state().library.active().unwrap().asset.clips[0].duration_secs()) / 2.0;
+    let half = f64::from(harness.state().library().active().unwrap().asset.clips[0].duration_secs()) / 2.0;
     assert!((secs - half).abs() < 0.01, "{secs} is not about {half}");
     assert!(!harness.state().panels.holds_time, "let go");
 }
@@ -51,9 +51,11 @@ fn scrubbing_seeks_and_holds_the_time() {
 #[test]
 fn in_and_out_points_are_set_dragged_and_cleared() {
     let mut harness = sample_bench(WIDE);
-    harness.state_mut().state.playhead.time_secs = 0.5;
+    harness.state_mut().change(|state| {
+        state.playhead.time_secs = 0.5;
+    });
     harness.run();
-    let duration = f64::from(harness.state().library.active().unwrap().asset.clips[0].duration_secs());
+    let duration = f64::from(harness.state().library().active().unwrap().asset.clips[0].duration_secs());
     let range = TimeRange { start_secs: 0.5, end_secs: duration };
     assert_eq!(press(&mut harness, "Set the in point here (I)"), [Command::SetRange(Some(range))]);
     let (handle, bar) = (harness.get_by_label("Out point").rect().center(), harness.get_by_label("Time").rect());
@@ -71,9 +73,9 @@ fn speed_goes_from_a_tenth_to_four_times() {
     let bar = harness.get_by_role_and_label(egui::accesskit::Role::Slider, "Speed").rect();
     let across = |x: f32| pos2(x, bar.center().y);
     drag(&mut harness, bar.center(), across(bar.right() + 50.0), PointerButton::Primary);
-    assert_eq!(harness.state().state.playback.speed, 4.0);
+    assert_eq!(harness.state().state().playback.speed, 4.0);
     drag(&mut harness, across(bar.right() - 6.0), across(bar.left() - 50.0), PointerButton::Primary);
-    assert_eq!(harness.state().state.playback.speed, 0.1);
+    assert_eq!(harness.state().state().playback.speed, 0.1);
 }
 
 #[test]
@@ -86,7 +88,9 @@ fn speed_is_a_menu_on_a_phone() {
 #[test]
 fn the_rest_pose_has_nothing_to_play() {
     let mut harness = sample_bench(WIDE);
-    harness.state_mut().state.playhead.clip = ClipChoice::RestPose;
+    harness.state_mut().change(|state| {
+        state.playhead.clip = ClipChoice::RestPose;
+    });
     harness.run();
     assert!(press(&mut harness, "Play").is_empty());
     assert!(harness.query_by_label("Time").is_none());
@@ -95,7 +99,9 @@ fn the_rest_pose_has_nothing_to_play() {
 #[test]
 fn time_is_told_in_seconds_and_frames() {
     let mut harness = sample_bench(WIDE);
-    harness.state_mut().state.playhead.time_secs = 0.5;
+    harness.state_mut().change(|state| {
+        state.playhead.time_secs = 0.5;
+    });
     harness.run();
     assert!(harness.query_by_label("0.50 / 1.07 s").is_some());
     assert!(harness.query_by_label("Frame 15 / 32").is_some());

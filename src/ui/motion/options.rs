@@ -3,6 +3,7 @@
 use egui::{RichText, Ui};
 
 use super::Pairing;
+use crate::editor::Export;
 use crate::retarget::{ClipRef, Feet, JointMap, Keep, RestChoice, RestChoices, RootOptions, RootPart, Unmapped};
 use crate::state::{Command, MapEdit, Show, active_clip};
 use crate::ui::{Output, Saved, Shown, UiAction, controls, style};
@@ -101,7 +102,7 @@ pub(super) fn files(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, out: 
     controls::hint(ui, "Which joint follows which and how, as JSON. A map can also be dropped anywhere.");
     ui.add_space(2.0);
     if wide(ui, true, "Save map") {
-        out.actions.push(UiAction::Save(Saved::Map { motion: pairing.index }));
+        out.actions.push(UiAction::Save(Saved::File(Export::Map { motion: pairing.index })));
     }
     if wide(ui, true, "Load map") {
         out.actions.push(UiAction::ChooseMotion);
@@ -113,12 +114,12 @@ pub(super) fn files(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, out: 
     if wide(ui, clip.is_some(), "Save GLB")
         && let Some(clip) = clip
     {
-        out.actions.push(UiAction::Save(Saved::Model { clip }));
+        out.actions.push(UiAction::Save(Saved::File(Export::Model { clip })));
     }
     if wide(ui, clip.is_some(), "Save the clip alone")
         && let Some(clip) = clip
     {
-        out.actions.push(UiAction::Save(Saved::Clip { clip }));
+        out.actions.push(UiAction::Save(Saved::File(Export::Clip { clip })));
     }
     controls::section(ui, "MOTION");
     let show = shown.state.display.show;

@@ -1,0 +1,139 @@
+//! Files for the user: the active joint map, the model with a retargeted clip, a clip alone. Pictures are the shell's, which has
+//! the graphics device.
+
+use super::names::stem;
+use super::{Editor, ModelFiles};
+use crate::anim::Clip;
+use crate::formats::{write_model, write_motion};
+use crate::library::Model;
+use crate::retarget::{bake_layers, baking};
+use crate::state::{active_clip, map_in_force, named, written_skeleton};
+
+/// What to write.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Export {
+    /// The joint map of a motion.
+    Map { motion: usize },
+    /// The model with one of its retargeted clips.
+    Model { clip: usize },
+    /// The skeleton with one of the clips, without meshes.
+    Clip { clip: usize },
+    /// The whole model as a .glb: in its current pose, or at rest.
+    Whole { posed: bool },
+}
+
+/// A file for the user, and what to say about it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ExportedFile {
+    pub name: String,
+    pub bytes: Vec<u8>,
+    pub remark: Option<String>,
+}
+
+impl ExportedFile {
+    fn new(name: String, bytes: Vec<u8>) -> Self {
+        Self { name, bytes, remark: None }
+    }
+}
+
+/// A clip with its layers baked in, where it has any.
+struct BakedClip {
+    clip: Option<Clip>,
+    remark: Option<String>,
+}
+
+impl Editor {
+    /// Writes a file.
+    ///
+    /// # Errors
+    /// What the user sees when there is nothing to write, or when it cannot be written.
+    pub fn export(&self, what: Export) -> Result<ExportedFile, String> {
+        match what {
+            Export::Map { motion } => self.export_map(motion),
+            Export::Model { clip } => self.export_model(clip),
+            Export::Clip { clip } => self.export_clip(clip),
+            Export::Whole { posed } => self.export_whole(posed),
+        }
+    }
+
+    /// A name for a file of the current view: the model's, and the clip's when one plays. Without extension.
+    pub fn file_stem(&self) -> String {
+        let model = self.library.active();
+        let clip = model.and_then(|model| model.clip_titles().get(active_clip(model, &self.state)?));
+        let parts = [model.map(|model| stem(&model.source)), clip.cloned()];
+        let name = parts.into_iter().flatten().collect::<Vec<_>>().join("-");
+        let is_plain = |letter: char| letter.is_alphanumeric() || "-_. ".contains(letter);
+        name.chars().map(|letter| if is_plain(letter) { letter } else { '-' }).collect()
+    }
+
+    fn model(&self) -> Result<&Model, String> {
+        self.library.active().ok_or_else(|| "there is no model".to_owned())
+    }
+
+    /// With names instead of numbers, for people to read.
+    fn export_map(&self, motion: usize) -> Result<ExportedFile, String> {
+        let model = self.model()?;
+        let about = self.library.motions().get(motion).ok_or("this motion was removed")?;
+        let map = map_in_force(&self.library, &self.state, motion).unwrap_or_default();
+        let json = named(&map, &model.asset, &about.asset).to_json().map_err(|error| error.to_string())?;
+        Ok(ExportedFile::new(format!("{}-{}.json", stem(&model.source), stem(&about.source)), json.into_bytes()))
+    }
+
+    fn files_of(&self, model: &Model) -> Option<&ModelFiles> {
+        self.shelf.get(&model.id)?.files.as_ref()
+    }
+
+    /// A model in another format as glTF.
+    fn export_whole(&self, posed: bool) -> Result<ExportedFile, String> {
+        let model = self.model()?;
+        let ModelFiles { set, name } = self.files_of(model).ok_or("this model has no file")?;
+        let skeleton = written_skeleton(model, &self.state, posed);
+        let bytes = write_model(set, name, &skeleton, &[]).map_err(|error| error.to_string())?;
+        Ok(ExportedFile::new(format!("{}.glb", stem(&model.source)), bytes))
+    }
+
+    /// One clip with the skeleton it moves.
+    fn export_clip(&self, clip: usize) -> Result<ExportedFile, String> {
+        let model = self.model()?;
+        let baked = self.baked_clip(clip)?;
+        let clip = baked.clip.as_ref().or_else(|| model.clip(clip)).ok_or("there is no such clip")?;
+        let bytes = write_motion(&model.asset, &written_skeleton(model, &self.state, false), &[clip])
+            .map_err(|error| error.to_string())?;
+        Ok(ExportedFile { remark: baked.remark, ..ExportedFile::new(format!("{}.glb", self.file_stem()), bytes) })
+    }
+
+    /// The model's own file with the clip appended; skeleton and clip alone where there is no file.
+    fn export_model(&self, clip: usize) -> Result<ExportedFile, String> {
+        let model = self.model()?;
+        let borrowed = model.borrowed(clip).ok_or("this clip is one of the model's own")?;
+        let baked = self.baked_clip(clip)?;
+        let clips = [baked.clip.as_ref().unwrap_or(&borrowed.clip)];
+        let mut remark = None;
+        let skeleton = written_skeleton(model, &self.state, false);
+        let bytes = match self.files_of(model) {
+            Some(ModelFiles { set, name }) if !name.to_lowercase().ends_with(".bvh") => {
+                write_model(set, name, &skeleton, &clips)
+            }
+            _ => {
+                remark = Some("Skeleton and clip only: this model has no file to add a clip to.".to_owned());
+                write_motion(&model.asset, &skeleton, &clips)
+            }
+        };
+        let motion = self.library.motions().get(borrowed.motion).map_or("motion", |motion| &motion.source);
+        let name = format!("{}-{}.glb", stem(&model.source), stem(motion));
+        let bytes = bytes.map_err(|error| error.to_string())?;
+        Ok(ExportedFile { name, bytes, remark: baked.remark.or(remark) })
+    }
+
+    fn baked_clip(&self, clip: usize) -> Result<BakedClip, String> {
+        let model = self.model()?;
+        let Some(borrowed) = model.borrowed(clip).filter(|borrowed| !borrowed.layers.is_empty()) else {
+            return Ok(BakedClip { clip: None, remark: None });
+        };
+        let baking = baking(&borrowed.clip, &borrowed.layers, None);
+        let clip = bake_layers(&model.asset, &borrowed.clip, &borrowed.layers, &baking);
+        let seam =
+            "The loop has a seam: the lengths of the model's own clip and the retargeted one don't divide evenly.";
+        Ok(BakedClip { clip: Some(clip), remark: (!baking.seamless).then(|| seam.to_owned()) })
+    }
+}

@@ -1,0 +1,31 @@
+//! What files are called where there is no room for their whole path.
+
+use crate::library::sample;
+
+/// The last part of a path or URL, and where it is.
+pub fn name_and_place(source: &str) -> (String, String) {
+    if let Some(sample) = source.strip_prefix("sample:") {
+        return (sample::title(sample).to_owned(), "Sample".to_owned());
+    }
+    let source = source.split(['?', '#']).next().unwrap_or(source);
+    match source.trim_end_matches('/').rsplit_once(['/', '\\']) {
+        Some((place, name)) => (name.to_owned(), place.to_owned()),
+        None if source.is_empty() => ("Untitled".to_owned(), String::new()),
+        None => (source.to_owned(), "Opened from this computer".to_owned()),
+    }
+}
+
+/// The last part of a path or URL.
+pub fn short_name(source: &str) -> String {
+    name_and_place(source).0
+}
+
+/// A file's short name without its extension.
+pub(super) fn stem(source: &str) -> String {
+    let name = short_name(source);
+    name.rsplit_once('.').map_or(name.clone(), |(stem, _)| stem.to_owned())
+}
+
+pub(super) fn is_obj(name: &str) -> bool {
+    name.to_lowercase().ends_with(".obj")
+}

@@ -1,0 +1,154 @@
+//! The editor without any shell: what opening, activating, closing and undoing do, and what is said about it.
+
+use std::path::PathBuf;
+
+use gaitway::editor::{Contents, Editor, Event};
+use gaitway::files::{Role, read_paths};
+use gaitway::library::Model;
+use gaitway::state::{CameraChoice, ClipChoice, Command, Inspect, OrbitCamera, RetargetEdits, Show, UpAxis};
+
+fn contents(files: &[&str]) -> Contents {
+    let files: Vec<PathBuf> = files.iter().map(PathBuf::from).collect();
+    read_paths(&files, Role::Any).expect("samples can be read")
+}
+
+fn any(_: &Model) -> Result<(), String> {
+    Ok(())
+}
+
+fn editor(first: &str) -> Editor {
+    let mut editor = Editor::default();
+    open(&mut editor, first);
+    editor
+}
+
+/// Returns what was said.
+fn open(editor: &mut Editor, file: &str) -> Vec<Event> {
+    editor.open(contents(&[file]), None, &mut any).expect("fits");
+    editor.take_events()
+}
+
+fn active(editor: &Editor) -> &str {
+    &editor.library().active().expect("a model").source
+}
+
+fn notices(events: &[Event]) -> Vec<&str> {
+    let text = |event| match event {
+        &Event::Notice { ref text, .. } => Some(text.as_str()),
+        _ => None,
+    };
+    events.iter().filter_map(text).collect()
+}
+
+fn orbit(editor: &Editor) -> OrbitCamera {
+    let CameraChoice::Orbit(orbit) = editor.state().camera else { panic!("{:?}", editor.state().camera) };
+    orbit
+}
+
+#[test]
+fn a_model_that_is_not_admitted_changes_nothing() {
+    let mut editor = editor("sample:pilot");
+    let before = editor.state().clone();
+    let refuse = &mut |model: &Model| Err(format!("{} is too large", model.source));
+    let error = editor.open(contents(&["sample:creature"]), None, refuse).expect_err("is refused");
+    assert_eq!(error, "sample:creature is too large");
+    assert_eq!((active(&editor), editor.state(), editor.can_undo()), ("sample:pilot", &before, false));
+    assert_eq!(editor.library().models().len(), 1);
+    // Nor does one that is loaded already.
+    open(&mut editor, "sample:creature");
+    let pilot = editor.library().models()[0].id;
+    let before = editor.state().clone();
+    editor.activate(pilot, refuse).expect_err("is refused");
+    assert_eq!((active(&editor), editor.state()), ("sample:creature", &before));
+}
+
+#[test]
+fn another_model_resets_what_is_about_the_model_and_keeps_the_rest() {
+    let mut editor = editor("sample:pilot");
+    let show = Show { wireframe: true, ..Show::default() };
+    let commands = [
+        Command::SetShow(show),
+        Command::SetInspect(Inspect { split: true, weights: true }),
+        Command::SetUp(UpAxis::Z),
+        Command::SetSpeed(2.0),
+        Command::SetFov(50.0),
+        Command::SelectJoint(Some(3)),
+        Command::SetClip(ClipChoice::RestPose),
+    ];
+    commands.into_iter().for_each(|command| editor.apply(command));
+    let pilot = editor.state().clone();
+    open(&mut editor, "sample:creature");
+    let now = editor.state();
+    assert_eq!((now.inspect, now.edits.up, now.selection.joint), (Inspect::default(), UpAxis::Y, None));
+    assert_eq!((&now.playhead.clip, &now.retarget), (&ClipChoice::First, &RetargetEdits::default()));
+    assert_eq!((now.display.show, now.playback.speed, now.camera_options.fov_degrees), (show, 2.0, 50.0));
+    editor.undo();
+    assert_eq!(editor.state(), &pilot);
+}
+
+#[test]
+fn notices_name_the_way_back() {
+    let mut editor = editor("sample:pilot");
+    assert_eq!(notices(&open(&mut editor, "sample:creature")), ["Opened Fox."]);
+    assert_eq!(notices(&open(&mut editor, "sample:pilot")), ["Reopened Pilot."]);
+    editor.undo();
+    assert_eq!(notices(&editor.take_events()), ["Back to Fox. Ctrl+Y returns to Pilot."]);
+    editor.redo();
+    editor.take_events();
+    let added = open(&mut editor, "sample:walk");
+    assert_eq!(notices(&added), ["Added 1 clip from Walk."]);
+    assert!(matches!(added.last(), Some(Event::Notice { undoable: true, .. })));
+    editor.undo();
+    let undone = editor.take_events();
+    assert_eq!(notices(&undone), ["Removed motion Walk. Ctrl+Y brings it back."]);
+    assert_eq!(undone[0], Event::Stepped, "earlier notices no longer hold");
+}
+
+#[test]
+fn motions_without_a_joint_in_common_are_refused_until_the_user_maps_them() {
+    let mut editor = editor("sample:morphs");
+    let before = editor.state().clone();
+    let error = editor.open(contents(&["sample:walk"]), None, &mut any).expect_err("does not fit");
+    assert!(error.contains("no joint in common with Goblin"), "{error}");
+    assert_eq!((editor.take_events().last(), editor.state()), (Some(&Event::MotionsRefused), &before));
+    editor.map_refused_manually();
+    assert_eq!(editor.take_events(), [Event::MapStarted], "an empty map is a start, not a problem");
+    assert_eq!(editor.library().motions().len(), 1);
+    editor.undo();
+    assert!(editor.library().motions().is_empty());
+}
+
+#[test]
+fn the_camera_knows_the_viewport() {
+    let mut editor = editor("sample:pilot");
+    let framed = |editor: &mut Editor, aspect: f32| {
+        editor.set_aspect(aspect);
+        editor.apply(Command::Orbit { yaw_radians: 0.1, pitch_radians: 0.0 });
+        editor.apply(Command::FrameAll);
+        orbit(editor).distance
+    };
+    let (wide, narrow) = (framed(&mut editor, 2.0), framed(&mut editor, 0.4));
+    assert!(narrow > 1.3 * wide, "a narrow viewport needs more distance: {wide} and {narrow}");
+    // Grabbing the scene stops the turntable.
+    editor.apply(Command::SetTurntable(12.0));
+    editor.apply(Command::Pan { right: 0.1, up: 0.0 });
+    assert_eq!(editor.state().camera_options.turntable, 0.0);
+}
+
+#[test]
+fn a_state_about_other_files_is_ignored() {
+    let mut editor = editor("sample:pilot");
+    let mut other = editor.state().clone();
+    other.sources.model = vec!["sample:dwarf".to_owned()];
+    other.playback.speed = 3.0;
+    let before = editor.state().clone();
+    editor.apply(Command::Replace(Box::new(other)));
+    assert_eq!(editor.state(), &before);
+    let error = editor.apply_partial(&serde_json::json!({ "model": ["x.glb"], "speed": 3 })).expect_err("other files");
+    assert!(error.contains("something else was opened"), "{error}");
+    assert_eq!(editor.state(), &before);
+    editor.apply_partial(&serde_json::json!({ "speed": 3 })).expect("is valid");
+    assert_eq!(editor.state().playback.speed, 3.0);
+    editor.apply_partial(&serde_json::json!({ "speed": 2, "fov": "wide" })).expect_err("all or none");
+    assert_eq!(editor.state().playback.speed, 3.0);
+}
