@@ -6,7 +6,7 @@ use super::{Frame, evaluate};
 use crate::anim::Clip;
 use crate::library::{Library, Model, warning_documents};
 use crate::mesh::{DeformedVertices, Geometry, Mesh, deform, smooth_normals};
-use crate::state::{ViewerState, active_clip, clip_secs};
+use crate::state::{Display, Inspect, Show, ViewerState, active_clip, clip_secs};
 
 /// What `gaitway pose --json` prints. World-space positions and normals of every mesh of the shown scene.
 pub fn pose_document(library: &Library, state: &ViewerState) -> Value {
@@ -15,9 +15,9 @@ pub fn pose_document(library: &Library, state: &ViewerState) -> Value {
     };
     let mut frame = Frame::default();
     // One model, bent in the way that is chosen, also where the picture compares.
-    let mut state = state.clone();
-    (state.inspect.split, state.display.show.source) = (false, false);
-    let state = &state;
+    let show = Show { source: false, ..state.display.show };
+    let (inspect, display) = (Inspect { split: false, ..state.inspect }, Display { show, ..state.display });
+    let state = &ViewerState { inspect, display, ..state.clone() };
     evaluate(library, state, 1.0, &mut frame);
     let clip = active_clip(model, state);
     json!({

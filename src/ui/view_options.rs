@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 use super::controls::{self, SliderSettings};
 use super::{Output, Saved, Shown, UiAction, UiState, style};
 use crate::state::{
-    Background, CameraChoice, Command, OrbitCamera, UpAxis, frame_all, front_yaw_radians, resolve_camera,
+    Background, CameraChoice, Command, OrbitCamera, UpAxis, ViewerState, frame_all, front_yaw_radians, resolve_camera,
 };
 
 /// Of the picture that is saved.
@@ -132,12 +132,12 @@ fn camera(ui: &mut Ui, shown: &Shown<'_>, aspect: f32, out: &mut Output) {
 
 /// An orbit camera that looks from a fixed side and sees everything.
 fn look_from(shown: &Shown<'_>, aspect: f32, yaw_degrees: f32, pitch_degrees: f32) -> Command {
-    let mut state = shown.state.clone();
-    state.camera = CameraChoice::Orbit(OrbitCamera {
+    let camera = CameraChoice::Orbit(OrbitCamera {
         yaw_radians: front_yaw_radians(shown.library, shown.state) + yaw_degrees.to_radians(),
         pitch_radians: pitch_degrees.to_radians(),
         ..resolve_camera(shown.library, shown.state, aspect)
     });
+    let state = ViewerState { camera, ..shown.state.clone() };
     Command::SetCamera(CameraChoice::Orbit(frame_all(shown.library, &state, aspect)))
 }
 
