@@ -3,10 +3,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::recognize::{Name, Reason, Recognized, recognize};
 use super::{JointMap, MapEntry, SourceRef};
 use crate::anim::{JointIndex, Keys, Skeleton};
 use crate::asset::{Asset, Slot};
+use crate::retarget::recognize::{Name, Reason, Recognized, recognize};
 
 /// Which joints could follow which, and why.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -4,15 +4,15 @@
 use glam::{DQuat, DVec3};
 use serde::Serialize;
 
-use super::align::{compared_segments, degrees_between};
-use super::bake::{Retargeted, Retargeting};
-use super::contacts::contacts;
-use super::resample::union;
-use super::rest::{Local, Reference, unit};
-use super::root::{Removed, lowest_leg_joint};
-use super::track::angle_between;
 use crate::anim::{Clip, JointIndex, Pose, SampleCursor};
 use crate::asset::Slot;
+use crate::retarget::align::rest::{Local, Reference, unit};
+use crate::retarget::align::swing::{compared_segments, degrees_between};
+use crate::retarget::feet::contacts::contacts;
+use crate::retarget::keys::resample::union;
+use crate::retarget::keys::track::angle_between;
+use crate::retarget::retargeting::{Retargeted, Retargeting};
+use crate::retarget::transfer::root::{Removed, lowest_leg_joint};
 
 /// What cannot be measured is `None`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
@@ -70,14 +70,14 @@ impl Spread {
 }
 
 /// One foot over time: the joints that touch the ground.
-pub(super) struct Foot {
+pub struct Foot {
     pub source: JointIndex,
     pub target: JointIndex,
 }
 
 impl Retargeting<'_> {
     /// The source's keys, and halfway between them.
-    pub(super) fn measured_times(&self) -> Vec<f32> {
+    pub fn measured_times(&self) -> Vec<f32> {
         let keys = union(self.source_clip.timelines().iter().map(Vec::as_slice));
         let mut times: Vec<f32> = Vec::with_capacity(2 * keys.len());
         for &key in &keys {
@@ -93,20 +93,14 @@ impl Retargeting<'_> {
     }
 
     /// The source in the common frame at a time, muted channels left out.
-    pub(super) fn source_at(&self, time_secs: f32) -> Reference {
+    pub fn source_at(&self, time_secs: f32) -> Reference {
         let skeleton = &self.source.asset.skeleton;
         let locals = skeleton.joints().map(|joint| self.motion.local(joint, time_secs)).collect();
         Reference::new(skeleton, locals, self.alignment.source_turn)
     }
 
     /// The model with a clip in the common frame at a time, as the player would have it.
-    pub(super) fn target_at(
-        &self,
-        clip: &Clip,
-        time_secs: f32,
-        cursor: &mut SampleCursor,
-        pose: &mut Pose,
-    ) -> Reference {
+    pub fn target_at(&self, clip: &Clip, time_secs: f32, cursor: &mut SampleCursor, pose: &mut Pose) -> Reference {
         let skeleton = &self.model.asset.skeleton;
         pose.copy_from(skeleton.rest());
         clip.sample(skeleton, time_secs, cursor, pose);
@@ -119,7 +113,7 @@ impl Retargeting<'_> {
     }
 
     /// Feet that both sides have: toes where both have those, else ankles.
-    pub(super) fn feet(&self) -> Vec<Foot> {
+    pub fn feet(&self) -> Vec<Foot> {
         let pair = |slot: Slot| self.alignment.pair_of_slot.get(&slot).map(|&pair| &self.map.pairs[pair]);
         [(Slot::LeftFoot, Slot::LeftToes), (Slot::RightFoot, Slot::RightToes)]
             .into_iter()
@@ -131,7 +125,7 @@ impl Retargeting<'_> {
     }
 
     /// Height of the source's head (or its highest mapped joint) above its ground at the aligned rest, source units.
-    pub(super) fn source_height(&self) -> f64 {
+    pub fn source_height(&self) -> f64 {
         let heights = self.map.pairs.iter().map(|pair| self.alignment.source.positions[pair.source.get()].y);
         let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), y| (low.min(y), high.max(y)));
         (high - low).max(1e-9)

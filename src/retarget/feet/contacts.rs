@@ -9,7 +9,7 @@ const HEIGHT: [f64; 2] = [0.022, 0.039];
 
 /// Whether the foot stands at each time. `positions` are of a toe (or ankle) in a frame with +Y up, `body_height` in the
 /// same unit.
-pub(super) fn contacts(times: &[f32], positions: &[DVec3], body_height: f64) -> Vec<bool> {
+pub fn contacts(times: &[f32], positions: &[DVec3], body_height: f64) -> Vec<bool> {
     let speed = |at: usize| {
         let (from, to) = (at.saturating_sub(1), (at + 1).min(positions.len() - 1));
         let secs = f64::from(times[to] - times[from]);

@@ -5,12 +5,12 @@ use std::cell::RefCell;
 
 use glam::{DAffine3, DVec3};
 
-use super::bake::Retargeting;
-use super::law::NewChannel;
-use super::resample::{Resampled, resample, union};
-use super::rest::{Reference, ancestry};
 use crate::anim::{Clip, Interpolation, JointIndex, Keys, Pose, SampleCursor};
 use crate::asset::Slot;
+use crate::retarget::align::rest::{Reference, ancestry};
+use crate::retarget::keys::resample::{Resampled, resample, union};
+use crate::retarget::retargeting::Retargeting;
+use crate::retarget::transfer::rotation::NewChannel;
 
 /// A limb's end, and the joint that it should hang on.
 const ENDS: [(Slot, Slot); 8] = [
@@ -36,12 +36,12 @@ impl Retargeting<'_> {
         mapped.filter(|&(end, limb)| !ancestry(skeleton, end).any(|joint| joint == limb)).collect()
     }
 
-    pub(super) fn has_detached_ends(&self) -> bool {
+    pub fn has_detached_ends(&self) -> bool {
         !self.detached_ends().is_empty()
     }
 
     /// Translations of the mapped ends that do not hang on their limbs, for a clip that has all else. Empty for most rigs.
-    pub(super) fn detached_channels(&self, clip: &Clip) -> Vec<NewChannel> {
+    pub fn detached_channels(&self, clip: &Clip) -> Vec<NewChannel> {
         let times = union(clip.timelines().iter().map(Vec::as_slice));
         let scratch = RefCell::new((SampleCursor::default(), Pose::default()));
         let at = |time: f32| {
@@ -76,7 +76,7 @@ impl Retargeting<'_> {
     }
 
     /// The frame that a target joint hangs in, common frame.
-    pub(super) fn frame_above(&self, joint: JointIndex, now: &Reference) -> DAffine3 {
+    pub fn frame_above(&self, joint: JointIndex, now: &Reference) -> DAffine3 {
         let skeleton = &self.model.asset.skeleton;
         let frame = ancestry(skeleton, joint)
             .skip(1)

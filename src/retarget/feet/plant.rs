@@ -6,13 +6,13 @@ use std::ops::Range;
 
 use glam::{DMat3, DQuat, DVec3};
 
-use super::bake::{RetargetError, Retargeted, Retargeting};
-use super::contacts::contacts;
-use super::law::NewChannel;
-use super::rest::{Reference, ancestry, unit};
-use super::root::Removed;
 use crate::anim::{Interpolation, JointIndex, Keys, Pose, Property, SampleCursor};
 use crate::asset::Slot;
+use crate::retarget::align::rest::{Reference, ancestry, unit};
+use crate::retarget::feet::contacts::contacts;
+use crate::retarget::retargeting::{RetargetError, Retargeted, Retargeting};
+use crate::retarget::transfer::root::Removed;
+use crate::retarget::transfer::rotation::NewChannel;
 
 /// Into and out of a stand, seconds.
 const EASE_SECS: f64 = 0.12;
@@ -52,7 +52,7 @@ impl Retargeting<'_> {
     ///
     /// # Errors
     /// As [`Retargeting::bake`].
-    pub(super) fn plant(&self, unplanted: Retargeted) -> Result<Retargeted, RetargetError> {
+    pub fn plant(&self, unplanted: Retargeted) -> Result<Retargeted, RetargetError> {
         let times = self.planted_times();
         let mut cursor = SampleCursor::default();
         let mut pose = Pose::default();
@@ -109,7 +109,7 @@ impl Retargeting<'_> {
 
     /// The source's keys, and more where these are far apart.
     fn planted_times(&self) -> Vec<f32> {
-        let keys = super::resample::union(self.source_clip.timelines().iter().map(Vec::as_slice));
+        let keys = crate::retarget::keys::resample::union(self.source_clip.timelines().iter().map(Vec::as_slice));
         let mut times: Vec<f32> = Vec::with_capacity(keys.len());
         for &key in &keys {
             if let Some(&before) = times.last() {

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashSet};
 
 use glam::Quat;
 
-use super::map::{ClipRef, JointMap, MutedProperty, SourceRef, Unmapped};
+use super::file::{ClipRef, JointMap, MutedProperty, SourceRef, Unmapped};
 use super::resolved::{Layer, Pair, ResolvedMap};
 use crate::anim::{JointIndex, Property, Skeleton};
 use crate::asset::Asset;

@@ -2,7 +2,7 @@
 
 use glam::Quat;
 
-use super::map::{Feet, Keep, RestChoices, RootOptions};
+use super::{Feet, Keep, RestChoices, RootOptions};
 use crate::anim::{JointIndex, Property};
 
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -5,14 +5,14 @@ use std::collections::BTreeMap;
 
 use glam::{DQuat, DVec3};
 
-use super::resolved::ResolvedMap;
-use super::rest::{Local, Reference, unit};
 use crate::anim::{JointIndex, Skeleton};
 use crate::asset::{Humanoid, Slot};
+use crate::retarget::align::rest::{Local, Reference, unit};
+use crate::retarget::map::ResolvedMap;
 
 /// Both aligned rests in one common frame: +Y up, facing +Z. Positions in each side's own units.
 #[derive(Debug)]
-pub(super) struct Alignment {
+pub struct Alignment {
     /// Turns the source's world into the common frame; and the target's.
     pub source_turn: DQuat,
     pub target_turn: DQuat,
@@ -64,7 +64,7 @@ const FINGERS: [(Slot, Slot); 22] = [
 ];
 
 /// Segments that are compared in the figures: the limbs and the torso.
-pub(super) fn compared_segments() -> impl Iterator<Item = (Slot, Slot)> {
+pub fn compared_segments() -> impl Iterator<Item = (Slot, Slot)> {
     LIMBS.into_iter().chain([(Slot::Hips, Slot::Head)])
 }
 
@@ -80,7 +80,7 @@ const LEAST_BEND_DEGREES: f64 = 10.0;
 const AXIS_DEGREES: f64 = 2.0;
 
 /// `source_locals` and `target_locals` are the chosen rests; `target_nodes` the rest that the player holds.
-pub(super) fn align(
+pub fn align(
     map: &ResolvedMap,
     [source_skeleton, target_skeleton]: [&Skeleton; 2],
     [source_slots, target_slots]: [&Humanoid; 2],
@@ -122,9 +122,10 @@ pub(super) fn align(
 /// The slot of each pair is its target's; where that has none, its source's.
 fn pairs_of_slots(map: &ResolvedMap, source_slots: &Humanoid, target_slots: &Humanoid) -> BTreeMap<Slot, usize> {
     let mut pair_of_slot = BTreeMap::new();
-    for (slots, joint_of) in
-        [(target_slots, (|pair| pair.target) as fn(&super::Pair) -> JointIndex), (source_slots, |pair| pair.source)]
-    {
+    for (slots, joint_of) in [
+        (target_slots, (|pair| pair.target) as fn(&crate::retarget::Pair) -> JointIndex),
+        (source_slots, |pair| pair.source),
+    ] {
         for (index, pair) in map.pairs.iter().enumerate() {
             if !pair_of_slot.values().any(|&taken| taken == index)
                 && let Some(slot) = slots.slot(joint_of(pair))
@@ -198,7 +199,9 @@ fn swings(
     let mut swings: Vec<DQuat> = Vec::with_capacity(map.pairs.len());
     let mut swing_of_joint: Vec<Option<DQuat>> = vec![None; skeleton.len()];
     for (index, pair) in map.pairs.iter().enumerate() {
-        let above = super::rest::ancestry(skeleton, pair.target).skip(1).find_map(|joint| swing_of_joint[joint.get()]);
+        let above = crate::retarget::align::rest::ancestry(skeleton, pair.target)
+            .skip(1)
+            .find_map(|joint| swing_of_joint[joint.get()]);
         let above = above.unwrap_or(DQuat::IDENTITY);
         let slot = slot_of_pair.get(&index).copied();
         let limb = slot.and_then(|slot| LIMBS.iter().chain(&FINGERS).find(|(from, _)| *from == slot));
@@ -233,7 +236,11 @@ fn foot_swing(directions: Option<[DVec3; 2]>, above: DQuat) -> DQuat {
     match directions {
         Some([source, target]) if degrees_between(source, target) > LEAST_FOOT_TURN_DEGREES => arc(target, source),
         Some(_) => DQuat::IDENTITY,
-        None if super::track::angle_between(above, DQuat::IDENTITY).to_degrees() > LEAST_FOOT_TURN_DEGREES => above,
+        None if crate::retarget::keys::track::angle_between(above, DQuat::IDENTITY).to_degrees()
+            > LEAST_FOOT_TURN_DEGREES =>
+        {
+            above
+        }
         None => DQuat::IDENTITY,
     }
 }
@@ -258,12 +265,12 @@ fn arc(from: DVec3, to: DVec3) -> DQuat {
     DQuat::from_rotation_arc(from.normalize_or(DVec3::Y), to.normalize_or(DVec3::Y))
 }
 
-pub(super) fn degrees_between(a: DVec3, b: DVec3) -> f64 {
+pub fn degrees_between(a: DVec3, b: DVec3) -> f64 {
     a.cross(b).length().atan2(a.dot(b)).to_degrees()
 }
 
 /// The turn about +Y that is in a rotation (its twist), radians from −π to π.
-pub(super) fn yaw_of(rotation: DQuat) -> f64 {
+pub fn yaw_of(rotation: DQuat) -> f64 {
     let side = if rotation.w < 0.0 { -1.0 } else { 1.0 };
     2.0 * (side * rotation.y).atan2(side * rotation.w)
 }

@@ -2,8 +2,8 @@
 
 use glam::{Affine3A, DAffine3, Quat};
 
-use super::bake::Retargeting;
 use crate::anim::{JointIndex, Transform};
+use crate::retarget::retargeting::Retargeting;
 
 /// A joint that follows another. `target_rest` and `source_rest` are rotations of the aligned rests in the model's space:
 /// both joints turn away from theirs alike.

@@ -3,12 +3,12 @@
 
 use glam::{DQuat, DVec3, DVec4};
 
-use super::rest::{Local, node_locals, unit};
 use crate::anim::{Channel, Clip, Interpolation, JointIndex, Keys, Property, Skeleton};
+use crate::retarget::align::rest::{Local, node_locals, unit};
 
 /// A property of one joint over time.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Track<'a, T> {
+pub enum Track<'a, T> {
     /// The same at every time.
     Still(T),
     Keys {
@@ -32,7 +32,7 @@ impl<T> Track<'_, T> {
 
 /// A clip without its muted channels, over its skeleton.
 #[derive(Debug)]
-pub(super) struct Motion<'a> {
+pub struct Motion<'a> {
     pub skeleton: &'a Skeleton,
     pub translations: Vec<Track<'a, DVec3>>,
     pub rotations: Vec<Track<'a, DQuat>>,
@@ -137,7 +137,7 @@ fn hermite(place: &Place) -> [f64; 4] {
     [2.0 * t3 - 3.0 * t2 + 1.0, length * (t3 - 2.0 * t2 + t), -2.0 * t3 + 3.0 * t2, length * (t3 - t2)]
 }
 
-pub(super) fn vector_at(track: &Track<'_, DVec3>, time_secs: f32) -> DVec3 {
+pub fn vector_at(track: &Track<'_, DVec3>, time_secs: f32) -> DVec3 {
     let Track::Keys { times, channel } = track else {
         let Track::Still(value) = track else { return DVec3::ZERO };
         return *value;
@@ -158,7 +158,7 @@ pub(super) fn vector_at(track: &Track<'_, DVec3>, time_secs: f32) -> DVec3 {
     }
 }
 
-pub(super) fn rotation_at(track: &Track<'_, DQuat>, time_secs: f32) -> DQuat {
+pub fn rotation_at(track: &Track<'_, DQuat>, time_secs: f32) -> DQuat {
     let Track::Keys { times, channel } = track else {
         let Track::Still(value) = track else { return DQuat::IDENTITY };
         return *value;
@@ -182,7 +182,7 @@ pub(super) fn rotation_at(track: &Track<'_, DQuat>, time_secs: f32) -> DQuat {
 }
 
 /// The shorter arc, at constant speed (appendix C.3).
-pub(super) fn slerp(from: DQuat, to: DQuat, factor: f64) -> DQuat {
+pub fn slerp(from: DQuat, to: DQuat, factor: f64) -> DQuat {
     let cos = from.dot(to);
     let to = if cos < 0.0 { -to } else { to };
     let angle = cos.abs().min(1.0).acos();
@@ -193,7 +193,7 @@ pub(super) fn slerp(from: DQuat, to: DQuat, factor: f64) -> DQuat {
 }
 
 /// The angle of the rotation between two, radians. Better than an arc cosine near zero.
-pub(super) fn angle_between(from: DQuat, to: DQuat) -> f64 {
+pub fn angle_between(from: DQuat, to: DQuat) -> f64 {
     let turn = from.conjugate() * to;
     2.0 * turn.xyz().length().atan2(turn.w.abs())
 }

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::recognize::{Name, Recognized, Side};
 use crate::anim::{JointIndex, Skeleton};
+use crate::retarget::recognize::{Name, Recognized, Side};
 
 /// For each joint the one on the other side of the body; none for joints in the middle and where there is doubt.
 pub fn opposite_joints(skeleton: &Skeleton, recognized: &Recognized) -> Vec<Option<JointIndex>> {

@@ -3,14 +3,14 @@
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
-use super::map::RestChoice;
 use crate::anim::{Clip, JointIndex, Pose, SampleCursor, Skeleton};
 use crate::asset::{Humanoid, Slot};
 use crate::mesh::Skin;
+use crate::retarget::map::RestChoice;
 
 /// A local transform in f64.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Local {
+pub struct Local {
     pub translation: DVec3,
     pub rotation: DQuat,
     pub scale: DVec3,
@@ -24,7 +24,7 @@ impl Local {
 
 /// A reference pose in model space, one entry for each joint.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Reference {
+pub struct Reference {
     pub locals: Vec<Local>,
     /// Unit rotations.
     pub rotations: Vec<DQuat>,
@@ -52,12 +52,12 @@ impl Reference {
 }
 
 /// The rest pose's locals.
-pub(super) fn node_locals(skeleton: &Skeleton) -> Vec<Local> {
+pub fn node_locals(skeleton: &Skeleton) -> Vec<Local> {
     locals_of(skeleton.rest())
 }
 
 /// The locals of a clip at a time.
-pub(super) fn clip_locals(skeleton: &Skeleton, clip: &Clip, time_secs: f32) -> Vec<Local> {
+pub fn clip_locals(skeleton: &Skeleton, clip: &Clip, time_secs: f32) -> Vec<Local> {
     let mut pose = skeleton.rest().clone();
     clip.sample(skeleton, time_secs, &mut SampleCursor::default(), &mut pose);
     locals_of(&pose)
@@ -76,12 +76,7 @@ fn locals_of(pose: &Pose) -> Vec<Local> {
 
 /// The locals of the chosen rest. `Auto` is the bind pose where a skin covers a joint. Without a clip, the first frame is the
 /// nodes' rest.
-pub(super) fn chosen_locals(
-    skeleton: &Skeleton,
-    skins: &[Skin],
-    clip: Option<&Clip>,
-    choice: RestChoice,
-) -> Vec<Local> {
+pub fn chosen_locals(skeleton: &Skeleton, skins: &[Skin], clip: Option<&Clip>, choice: RestChoice) -> Vec<Local> {
     match (choice, clip) {
         (RestChoice::Auto | RestChoice::Bind, _) => bind_locals(skeleton, skins),
         (RestChoice::FirstFrame, Some(clip)) => clip_locals(skeleton, clip, first_key_secs(clip)),
@@ -90,7 +85,7 @@ pub(super) fn chosen_locals(
 }
 
 /// Time of the first key of any channel; 0 without channels.
-pub(super) fn first_key_secs(clip: &Clip) -> f32 {
+pub fn first_key_secs(clip: &Clip) -> f32 {
     let first = clip.timelines().iter().map(|times| times[0]).fold(f32::INFINITY, f32::min);
     if first.is_finite() { first } else { 0.0 }
 }
@@ -98,7 +93,7 @@ pub(super) fn first_key_secs(clip: &Clip) -> f32 {
 /// A rest that no body stands in (all bones along one axis, say, as some motion capture writes them) says nothing on how
 /// parts correspond: then the pose of the clip that stands best takes its place. Returned is its time, none when the rest
 /// will do or nothing is better.
-pub(super) fn better_rest_secs(skeleton: &Skeleton, slots: &Humanoid, rest: &[Local], clip: &Clip) -> Option<f32> {
+pub fn better_rest_secs(skeleton: &Skeleton, slots: &Humanoid, rest: &[Local], clip: &Clip) -> Option<f32> {
     let stands = |locals: Vec<Local>| standing(&Reference::new(skeleton, locals, DQuat::IDENTITY), slots);
     let at_rest = stands(rest.to_vec())?;
     if at_rest > LEAST_STANDING {
@@ -202,12 +197,12 @@ fn orthonormalized(matrix: &DMat3) -> Option<DQuat> {
     rotation.is_finite().then(|| unit(rotation))
 }
 
-pub(super) fn unit(rotation: DQuat) -> DQuat {
+pub fn unit(rotation: DQuat) -> DQuat {
     let length = rotation.length();
     if length.is_finite() && length > 0.0 { rotation / length } else { DQuat::IDENTITY }
 }
 
 /// Joints from `joint` up to its root.
-pub(super) fn ancestry(skeleton: &Skeleton, joint: JointIndex) -> impl Iterator<Item = JointIndex> + '_ {
+pub fn ancestry(skeleton: &Skeleton, joint: JointIndex) -> impl Iterator<Item = JointIndex> + '_ {
     std::iter::successors(Some(joint), |&joint| skeleton.parent(joint))
 }

@@ -3,18 +3,18 @@
 
 use glam::{DQuat, DVec3, Vec3};
 
-use super::align::Alignment;
-use super::law::NewChannel;
-use super::resolved::{Pair, ResolvedMap};
-use super::rest::{Local, ancestry, node_locals};
-use super::track::angle_between;
 use crate::anim::{Channel, Clip, Interpolation, JointIndex, Keys, Skeleton};
+use crate::retarget::align::rest::{Local, ancestry, node_locals};
+use crate::retarget::align::swing::Alignment;
+use crate::retarget::keys::track::angle_between;
+use crate::retarget::map::{Pair, ResolvedMap};
+use crate::retarget::transfer::rotation::NewChannel;
 
 /// Two rests that are nearer than this, as a share of the skeleton's size and in radians, are the same.
 const SAME: f64 = 1e-4;
 
 /// Whether every mapped pair has one name, one parent's name and one rest.
-pub(super) fn same_skeleton(map: &ResolvedMap, target: &Skeleton, source: &Skeleton) -> bool {
+pub fn same_skeleton(map: &ResolvedMap, target: &Skeleton, source: &Skeleton) -> bool {
     let (targets, sources) = (node_locals(target), node_locals(source));
     let size = targets.iter().map(|local| local.translation.length()).fold(0.0, f64::max).max(1e-12);
     let parent_name =
@@ -32,7 +32,7 @@ pub(super) fn same_skeleton(map: &ResolvedMap, target: &Skeleton, source: &Skele
 }
 
 /// How a source joint's displacement from its rest becomes the target's: turned into the target's parent, in its units.
-pub(super) struct Carry<'a> {
+pub struct Carry<'a> {
     pair: &'a Pair,
     turn: DQuat,
     factor: f64,

@@ -10,15 +10,15 @@
 
 use glam::{DQuat, DVec4, Quat, Vec3};
 
-use super::align::Alignment;
-use super::resample::{Resampled, resample, union};
-use super::resolved::ResolvedMap;
-use super::rest::{ancestry, unit};
-use super::track::{Motion, Track, angle_between, rotation_at, slerp};
 use crate::anim::{Interpolation, JointIndex, Keys, Skeleton};
+use crate::retarget::align::rest::{ancestry, unit};
+use crate::retarget::align::swing::Alignment;
+use crate::retarget::keys::resample::{Resampled, resample, union};
+use crate::retarget::keys::track::{Motion, Track, angle_between, rotation_at, slerp};
+use crate::retarget::map::ResolvedMap;
 
 /// Where keys had to be put anew, straight interpolation is nearer than this.
-pub(super) const TOLERANCE_RADIANS: f64 = 0.05 * std::f64::consts::PI / 180.0;
+pub const TOLERANCE_RADIANS: f64 = 0.05 * std::f64::consts::PI / 180.0;
 
 /// One local rotation of the source in the product.
 #[derive(Debug, Clone, Copy)]
@@ -29,7 +29,7 @@ struct Factor {
 
 /// The local rotation of one target joint, as a function of time.
 #[derive(Debug)]
-pub(super) struct RotationLaw<'a> {
+pub struct RotationLaw<'a> {
     motion: &'a Motion<'a>,
     left: DQuat,
     factors: Vec<Factor>,
@@ -42,7 +42,7 @@ pub(super) struct RotationLaw<'a> {
 
 /// What is taken out of a turn about +Y.
 #[derive(Debug, Clone)]
-pub(super) struct Yaw {
+pub struct Yaw {
     /// Times and angles, straight in between; angles are not wrapped.
     pub times: Vec<f32>,
     pub radians: Vec<f64>,
@@ -63,7 +63,7 @@ impl Yaw {
 
 /// A channel to be written: values for the target joint at times of its own.
 #[derive(Debug, Clone)]
-pub(super) struct NewChannel {
+pub struct NewChannel {
     pub joint: JointIndex,
     pub interpolation: Interpolation,
     pub times: Vec<f32>,

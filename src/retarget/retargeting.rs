@@ -1,13 +1,13 @@
 //! A clip of one skeleton, a joint map, and out comes a clip of the other skeleton: the parts put together.
 
-use super::align::{Alignment, align};
-use super::law::{NewChannel, RotationLaw, Yaw};
-use super::locals::{Carry, same_skeleton};
+use super::align::rest::{ancestry, better_rest_secs, chosen_locals, clip_locals, node_locals};
+use super::align::swing::{Alignment, align};
+use super::keys::track::Motion;
 use super::map::{Feet, Keep, RestChoice};
-use super::resolved::{Pair, ResolvedMap};
-use super::rest::{ancestry, better_rest_secs, chosen_locals, clip_locals, node_locals};
-use super::root::{Hips, RootMotion};
-use super::track::Motion;
+use super::map::{Pair, ResolvedMap};
+use super::transfer::copy::{Carry, same_skeleton};
+use super::transfer::root::{Hips, RootMotion};
+use super::transfer::rotation::{NewChannel, RotationLaw, Yaw};
 use crate::anim::{ChannelError, Clip, ClipBuilder, JointIndex, Property};
 use crate::asset::{Asset, Humanoid};
 

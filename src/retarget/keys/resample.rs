@@ -6,13 +6,13 @@ const MOST_HALVINGS: u32 = 8;
 
 /// Keys of one value over time, to be interpolated linearly.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Resampled<T> {
+pub struct Resampled<T> {
     pub times: Vec<f32>,
     pub values: Vec<T>,
 }
 
 /// Ascending times without doubles.
-pub(super) fn union<'a>(timelines: impl IntoIterator<Item = &'a [f32]>) -> Vec<f32> {
+pub fn union<'a>(timelines: impl IntoIterator<Item = &'a [f32]>) -> Vec<f32> {
     let mut times: Vec<f32> = timelines.into_iter().flatten().copied().collect();
     times.sort_by(f32::total_cmp);
     times.dedup();
@@ -21,7 +21,7 @@ pub(super) fn union<'a>(timelines: impl IntoIterator<Item = &'a [f32]>) -> Vec<f
 
 /// `times` ascending, without doubles. At `jumps` the value may change at once, so a key is put right before each.
 /// `error` measures how far a value is from another in the unit of `tolerance`.
-pub(super) fn resample<T: Copy>(
+pub fn resample<T: Copy>(
     times: &[f32],
     jumps: &[f32],
     tolerance: f64,

@@ -6,15 +6,15 @@ use std::f64::consts::TAU;
 
 use glam::{DAffine3, DQuat, DVec3, Vec3};
 
-use super::align::{Alignment, yaw_of};
-use super::law::{NewChannel, RotationLaw, TOLERANCE_RADIANS, Yaw};
-use super::map::RootPart;
-use super::resample::{Resampled, resample, union};
-use super::resolved::ResolvedMap;
-use super::rest::{Local, ancestry};
-use super::track::{Motion, Track, vector_at};
 use crate::anim::{Interpolation, JointIndex, Keys, Skeleton};
 use crate::asset::{Humanoid, Slot};
+use crate::retarget::align::rest::{Local, ancestry};
+use crate::retarget::align::swing::{Alignment, yaw_of};
+use crate::retarget::keys::resample::{Resampled, resample, union};
+use crate::retarget::keys::track::{Motion, Track, vector_at};
+use crate::retarget::map::ResolvedMap;
+use crate::retarget::map::RootPart;
+use crate::retarget::transfer::rotation::{NewChannel, RotationLaw, TOLERANCE_RADIANS, Yaw};
 
 /// Where keys had to be put anew, straight interpolation is nearer than this share of the hips' height.
 const TOLERANCE_OF_HEIGHT: f64 = 1e-4;
@@ -22,7 +22,7 @@ const TOLERANCE_OF_HEIGHT: f64 = 1e-4;
 /// Less turn than this from first to last key is sway, not travel, when travel is moved to the root joint.
 const LEAST_YAW_TRAVEL_DEGREES: f64 = 5.0;
 
-pub(super) const LEGS: [Slot; 8] = [
+pub const LEGS: [Slot; 8] = [
     Slot::LeftUpperLeg,
     Slot::LeftLowerLeg,
     Slot::LeftFoot,
@@ -35,7 +35,7 @@ pub(super) const LEGS: [Slot; 8] = [
 
 /// How the two hips correspond.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Hips {
+pub struct Hips {
     /// Index into [`ResolvedMap::pairs`].
     pub pair: usize,
     /// Target units per source unit.
@@ -53,7 +53,7 @@ pub(super) struct Hips {
 
 /// Travel that the clip has been freed of, in target units and the common frame: what the figures add back.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Removed {
+pub struct Removed {
     pub horizontal: Vec<(f32, DVec3)>,
     pub yaw: Option<Yaw>,
 }
@@ -142,7 +142,7 @@ impl Hips {
 }
 
 /// Where a source joint is, common frame, source units.
-pub(super) fn world_position(motion: &Motion, turn: DQuat, joint: JointIndex, time_secs: f32) -> DVec3 {
+pub fn world_position(motion: &Motion, turn: DQuat, joint: JointIndex, time_secs: f32) -> DVec3 {
     let above = above(motion, turn, joint, time_secs);
     above.transform_point3(vector_at(&motion.translations[joint.get()], time_secs))
 }
@@ -167,7 +167,7 @@ fn path_timelines<'a>(motion: &'a Motion, joint: JointIndex) -> Vec<&'a [f32]> {
 }
 
 /// What is asked of the root, and what it is made of.
-pub(super) struct RootMotion<'a> {
+pub struct RootMotion<'a> {
     pub map: &'a ResolvedMap,
     pub hips: Hips,
     pub alignment: &'a Alignment,
@@ -456,7 +456,7 @@ impl RootMotion<'_> {
         let mut channels = vec![linear(root, end_times, Keys::Translation(positions), false)];
         if let Some(turn) = turn {
             let turned = |&radians: &f64| {
-                let frame = super::rest::unit(DQuat::from_mat3(&orthonormal(&world_from_above)));
+                let frame = crate::retarget::align::rest::unit(DQuat::from_mat3(&orthonormal(&world_from_above)));
                 (frame.conjugate() * DQuat::from_rotation_y(radians) * frame * local.rotation).as_quat()
             };
             let rotations = turn.radians.iter().map(turned).collect();
@@ -488,7 +488,7 @@ fn orthonormal(frame: &DAffine3) -> glam::DMat3 {
 }
 
 /// Heights of the ground under both figures, for those who look at feet.
-pub(super) fn lowest_leg_joint(slots: &Humanoid, positions: &[DVec3]) -> Option<f64> {
+pub fn lowest_leg_joint(slots: &Humanoid, positions: &[DVec3]) -> Option<f64> {
     let heights: BTreeMap<Slot, f64> =
         LEGS.iter().filter_map(|&slot| Some((slot, positions[slots.joint(slot)?.get()].y))).collect();
     heights.into_values().reduce(f64::min)
