@@ -1,113 +1,75 @@
-//! The rest that motion is measured from, for every joint of a skeleton: of the nodes, of a skin's bind pose, or of a clip's
-//! first key. Rotations are products of orthonormalised locals, so scaled or rotated ancestors do no harm.
+//! The rest pose that motion is measured from: a skeleton's nodes, a skin's bind pose, or a frame of a clip. Rotations come
+//! from orthonormalized matrices, so scaled or rotated ancestors do no harm.
 
-use glam::{DAffine3, DMat3, DQuat, DVec3};
+use glam::{Affine3A, DAffine3, DQuat, DVec3};
 
-use crate::anim::{Clip, JointIndex, Pose, SampleCursor, Skeleton};
-use crate::asset::{Humanoid, Slot};
+use crate::anim::{Clip, JointIndex, Skeleton, nearest_rotation};
+use crate::asset::{Asset, Humanoid, Slot};
 use crate::mesh::Skin;
 use crate::retarget::map::RestChoice;
+use crate::retarget::pose::{Local, Scratch, WorldPose, ancestry, clip_locals, node_locals};
 
-/// A local transform in f64.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Local {
-    pub translation: DVec3,
-    pub rotation: DQuat,
-    pub scale: DVec3,
-}
-
-impl Local {
-    pub fn to_affine(self) -> DAffine3 {
-        DAffine3::from_scale_rotation_translation(self.scale, self.rotation, self.translation)
+/// Returns the source's rest. `Auto` takes a pose from the clip if the body does not stand upright at rest.
+pub fn source_rest(source: &Asset, slots: &Humanoid, clip: &Clip, choice: RestChoice) -> Vec<Local> {
+    let locals = chosen_locals(source, Some(clip), choice);
+    if choice != RestChoice::Auto {
+        return locals;
+    }
+    match upright_moment(&source.skeleton, slots, &locals, clip) {
+        Some(time_secs) => clip_locals(&source.skeleton, clip, time_secs, &mut Scratch::default()),
+        None => locals,
     }
 }
 
-/// A reference pose in model space, one entry for each joint.
-#[derive(Debug, Clone, Default)]
-pub struct Reference {
-    pub locals: Vec<Local>,
-    /// Unit rotations.
-    pub rotations: Vec<DQuat>,
-    pub positions: Vec<DVec3>,
-}
-
-impl Reference {
-    /// Walks down from the roots, which are placed by `world_from_model`.
-    pub fn new(skeleton: &Skeleton, locals: Vec<Local>, world_from_model: DQuat) -> Self {
-        let mut rotations = Vec::with_capacity(locals.len());
-        let mut positions = Vec::with_capacity(locals.len());
-        let mut affines: Vec<DAffine3> = Vec::with_capacity(locals.len());
-        for (local, parent) in locals.iter().zip(skeleton.parents()) {
-            let (above, turn) = match parent {
-                Some(parent) => (affines[parent.get()], rotations[parent.get()]),
-                None => (DAffine3::from_quat(world_from_model), world_from_model),
-            };
-            let affine = above * local.to_affine();
-            positions.push(affine.translation);
-            affines.push(affine);
-            rotations.push(unit(turn * local.rotation));
-        }
-        Self { locals, rotations, positions }
+/// Returns the target's rest. Only its rotations are a choice: translations and scales are the nodes', from which the
+/// player moves the joints.
+pub fn target_rest(target: &Asset, nodes: &[Local], choice: RestChoice) -> Vec<Local> {
+    let mut locals = chosen_locals(target, target.clips.first(), choice);
+    for (local, node) in locals.iter_mut().zip(nodes) {
+        (local.translation, local.scale) = (node.translation, node.scale);
     }
+    locals
 }
 
-/// The rest pose's locals.
-pub fn node_locals(skeleton: &Skeleton) -> Vec<Local> {
-    locals_of(skeleton.rest())
-}
-
-/// The locals of a clip at a time.
-pub fn clip_locals(skeleton: &Skeleton, clip: &Clip, time_secs: f32) -> Vec<Local> {
-    let mut pose = skeleton.rest().clone();
-    clip.sample(skeleton, time_secs, &mut SampleCursor::default(), &mut pose);
-    locals_of(&pose)
-}
-
-fn locals_of(pose: &Pose) -> Vec<Local> {
-    pose.locals
-        .iter()
-        .map(|local| Local {
-            translation: local.translation.as_dvec3(),
-            rotation: unit(local.rotation.as_dquat()),
-            scale: local.scale.as_dvec3(),
-        })
-        .collect()
-}
-
-/// The locals of the chosen rest. `Auto` is the bind pose where a skin covers a joint. Without a clip, the first frame is the
-/// nodes' rest.
-pub fn chosen_locals(skeleton: &Skeleton, skins: &[Skin], clip: Option<&Clip>, choice: RestChoice) -> Vec<Local> {
+/// `Auto` is the bind pose where a skin covers a joint. Without a clip, the first frame is the nodes' rest.
+fn chosen_locals(asset: &Asset, clip: Option<&Clip>, choice: RestChoice) -> Vec<Local> {
+    let skeleton = &asset.skeleton;
     match (choice, clip) {
-        (RestChoice::Auto | RestChoice::Bind, _) => bind_locals(skeleton, skins),
-        (RestChoice::FirstFrame, Some(clip)) => clip_locals(skeleton, clip, first_key_secs(clip)),
+        (RestChoice::Auto | RestChoice::Bind, _) => bind_locals(skeleton, &asset.skins),
+        (RestChoice::FirstFrame, Some(clip)) => {
+            clip_locals(skeleton, clip, first_key_secs(clip), &mut Scratch::default())
+        }
         (RestChoice::Node | RestChoice::FirstFrame, _) => node_locals(skeleton),
     }
 }
 
 /// Time of the first key of any channel; 0 without channels.
-pub fn first_key_secs(clip: &Clip) -> f32 {
+fn first_key_secs(clip: &Clip) -> f32 {
     let first = clip.timelines().iter().map(|times| times[0]).fold(f32::INFINITY, f32::min);
     if first.is_finite() { first } else { 0.0 }
 }
 
-/// A rest that no body stands in (all bones along one axis, say, as some motion capture writes them) says nothing on how
-/// parts correspond: then the pose of the clip that stands best takes its place. Returned is its time, none when the rest
-/// will do or nothing is better.
-pub fn better_rest_secs(skeleton: &Skeleton, slots: &Humanoid, rest: &[Local], clip: &Clip) -> Option<f32> {
-    let stands = |locals: Vec<Local>| standing(&Reference::new(skeleton, locals, DQuat::IDENTITY), slots);
-    let at_rest = stands(rest.to_vec())?;
-    if at_rest > LEAST_STANDING {
+/// A rest below this [`uprightness`] is not a standing pose.
+const MIN_UPRIGHTNESS: f64 = 0.75;
+
+/// Moments of the clip to compare.
+const REST_SAMPLES: usize = 64;
+
+/// Returns the time at which the body stands most upright, or None if its rest is good enough or no frame is better. Some
+/// motion capture rests with all bones along one axis, which says nothing about how two bodies correspond.
+fn upright_moment(skeleton: &Skeleton, slots: &Humanoid, rest: &[Local], clip: &Clip) -> Option<f32> {
+    let uprightness_of = |locals| uprightness(&WorldPose::new(skeleton, locals, DQuat::IDENTITY), slots);
+    let at_rest = uprightness_of(rest.to_vec())?;
+    if at_rest > MIN_UPRIGHTNESS {
         return None;
     }
     let (first_secs, last_secs) = (first_key_secs(clip), clip.duration_secs());
-    let mut cursor = SampleCursor::default();
+    let mut scratch = Scratch::default();
     let mut best = (at_rest, None);
     for sample in 0..=REST_SAMPLES {
         let time_secs = first_secs + (last_secs - first_secs) * sample as f32 / REST_SAMPLES as f32;
-        let mut pose = skeleton.rest().clone();
-        clip.sample(skeleton, time_secs, &mut cursor, &mut pose);
-        let found = stands(locals_of(&pose)).unwrap_or(-1.0);
-        // Clearly better, or the first of much alike.
+        let found = uprightness_of(clip_locals(skeleton, clip, time_secs, &mut scratch)).unwrap_or(-1.0);
+        // Of similar poses, the first wins.
         if found > best.0 + 0.01 {
             best = (found, Some(time_secs));
         }
@@ -115,16 +77,10 @@ pub fn better_rest_secs(skeleton: &Skeleton, slots: &Humanoid, rest: &[Local], c
     best.1
 }
 
-/// A body stands when its head is on the other side of the hips than its feet, with the legs stretched: the mean cosine of
-/// those angles.
-const LEAST_STANDING: f64 = 0.75;
-
-/// How many moments of a clip are looked at.
-const REST_SAMPLES: usize = 64;
-
-/// From −1 to 1; none without hips, head and legs.
-fn standing(pose: &Reference, slots: &Humanoid) -> Option<f64> {
-    let at = |slot| slots.joint(slot).map(|joint| pose.positions[joint.get()]);
+/// Mean cosine between the torso and the four leg segments, from −1 to 1: 1 for straight legs in line with the torso. None
+/// without hips, head and legs.
+fn uprightness(pose: &WorldPose, slots: &Humanoid) -> Option<f64> {
+    let at = |slot| slots.joint(slot).map(|joint| pose.position(joint));
     let (hips, head) = (at(Slot::Hips)?, at(Slot::Head)?);
     let up = (head - hips).try_normalize()?;
     let leg = |upper, lower, foot| {
@@ -136,13 +92,13 @@ fn standing(pose: &Reference, slots: &Humanoid) -> Option<f64> {
     Some((left[0] + left[1] + right[0] + right[1]) / 4.0)
 }
 
-/// Bind poses are taken relative to the nearest ancestor in the same skin: bind space may be in other units and have another
-/// axis up. Joints without such an ancestor keep their node's rest, and so does what a broken matrix belongs to. Only
-/// rotations are taken: the translations that are played are the nodes'.
+/// The nodes' rest with the rotations of the bind pose. A bind rotation is taken relative to the nearest ancestor in the
+/// same skin, because bind space may have other units and another up axis. Joints without such an ancestor, and those whose
+/// matrix is singular, keep their node's rotation.
 fn bind_locals(skeleton: &Skeleton, skins: &[Skin]) -> Vec<Local> {
-    let mut locals = node_locals(skeleton);
-    let nodes = locals.clone();
-    let mut done = vec![false; locals.len()];
+    let nodes = node_locals(skeleton);
+    let mut locals = nodes.clone();
+    let mut is_bound = vec![false; locals.len()];
     let mut bind_from_joint: Vec<Option<DAffine3>> = vec![None; locals.len()];
     for skin in skins {
         bind_from_joint.fill(None);
@@ -150,59 +106,39 @@ fn bind_locals(skeleton: &Skeleton, skins: &[Skin]) -> Vec<Local> {
             bind_from_joint[joint.get()] = inverse(joint_from_bind);
         }
         for &joint in skin.joints() {
-            let Some(bind) = bind_from_joint[joint.get()].filter(|_| !done[joint.get()]) else { continue };
-            let mut between = DAffine3::IDENTITY;
-            let mut ancestor = skeleton.parent(joint);
-            let parent_bind = loop {
-                let Some(at) = ancestor else { break None };
-                if let Some(parent_bind) = bind_from_joint[at.get()] {
-                    break Some(parent_bind);
-                }
-                between = nodes[at.get()].to_affine() * between;
-                ancestor = skeleton.parent(at);
-            };
-            let Some(parent_bind) = parent_bind else { continue };
-            if let Some(rotation) = orthonormalized(&((parent_bind * between).inverse() * bind).matrix3) {
+            if is_bound[joint.get()] {
+                continue;
+            }
+            if let Some(rotation) = bind_rotation(skeleton, &nodes, &bind_from_joint, joint) {
                 locals[joint.get()].rotation = rotation;
-                done[joint.get()] = true;
+                is_bound[joint.get()] = true;
             }
         }
     }
     locals
 }
 
-fn inverse(joint_from_bind: &glam::Affine3A) -> Option<DAffine3> {
+/// Local rotation of a joint in the bind pose; the nodes between it and its nearest bound ancestor are at rest.
+fn bind_rotation(
+    skeleton: &Skeleton,
+    nodes: &[Local],
+    bind_from_joint: &[Option<DAffine3>],
+    joint: JointIndex,
+) -> Option<DQuat> {
+    let bind = bind_from_joint[joint.get()]?;
+    let mut bound_from_parent = DAffine3::IDENTITY;
+    for ancestor in ancestry(skeleton, joint).skip(1) {
+        if let Some(ancestor_bind) = bind_from_joint[ancestor.get()] {
+            return nearest_rotation(&((ancestor_bind * bound_from_parent).inverse() * bind).matrix3);
+        }
+        bound_from_parent = nodes[ancestor.get()].to_affine() * bound_from_parent;
+    }
+    None
+}
+
+fn inverse(joint_from_bind: &Affine3A) -> Option<DAffine3> {
     let columns = joint_from_bind.to_cols_array().map(f64::from);
     let matrix = DAffine3::from_cols_array(&columns);
     let inverse = matrix.inverse();
     (matrix.matrix3.determinant().abs() > 1e-30 && inverse.is_finite()).then_some(inverse)
-}
-
-/// The rotation nearest to a matrix without its scale, by the polar iteration of Higham 1986. None when it is singular.
-fn orthonormalized(matrix: &DMat3) -> Option<DQuat> {
-    let mirrored = if matrix.determinant() < 0.0 { -1.0 } else { 1.0 };
-    let axis = |axis: DVec3| axis.try_normalize();
-    let mut turned = DMat3::from_cols(axis(matrix.x_axis * mirrored)?, axis(matrix.y_axis)?, axis(matrix.z_axis)?);
-    if turned.determinant().is_nan() || turned.determinant() < 1e-6 {
-        return None;
-    }
-    for _ in 0..20 {
-        let next = (turned + turned.inverse().transpose()) * 0.5;
-        if next.abs_diff_eq(turned, 1e-15) {
-            break;
-        }
-        turned = next;
-    }
-    let rotation = DQuat::from_mat3(&turned);
-    rotation.is_finite().then(|| unit(rotation))
-}
-
-pub fn unit(rotation: DQuat) -> DQuat {
-    let length = rotation.length();
-    if length.is_finite() && length > 0.0 { rotation / length } else { DQuat::IDENTITY }
-}
-
-/// Joints from `joint` up to its root.
-pub fn ancestry(skeleton: &Skeleton, joint: JointIndex) -> impl Iterator<Item = JointIndex> + '_ {
-    std::iter::successors(Some(joint), |&joint| skeleton.parent(joint))
 }

@@ -1,4 +1,5 @@
-//! Keyframes: reading the source's channels and adding keys where the source has none.
+//! Keyframes: the source's channels as functions of time, resampling, and the channels to be written.
 
+pub mod channel;
 pub mod resample;
-pub mod track;
+pub mod tracks;

@@ -41,6 +41,11 @@ pub struct Layer {
 }
 
 impl ResolvedMap {
+    /// Index of the pair with this target.
+    pub fn pair_index(&self, target: JointIndex) -> Option<usize> {
+        self.pairs.iter().position(|pair| pair.target == target)
+    }
+
     pub fn source_of(&self, target: JointIndex) -> Option<JointIndex> {
         self.pairs.iter().find(|pair| pair.target == target).map(|pair| pair.source)
     }
