@@ -1,23 +1,26 @@
-//! A joint map to start from: by the names that both skeletons share where most are shared, else by parts of the body, and
-//! what is left by names again where it hangs in the same place.
+//! Proposes a joint map: by the names that both skeletons share if most are shared, else by humanoid slots; what is left, by
+//! names again if it hangs in the same place.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{JointMap, MapEntry, SourceRef};
+use glam::Quat;
+
+use super::file::{JointMap, MapEntry, SourceRef};
+use super::shared_names::{joints_by_name, shared_names};
 use crate::anim::{JointIndex, Keys, Skeleton};
 use crate::asset::{Asset, Slot};
-use crate::retarget::recognize::{Name, Reason, Recognized, recognize};
+use crate::retarget::recognize::{Reason, Recognized, recognize};
 
 /// Which joints could follow which, and why.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Proposal {
-    /// By target joint, ascending; a target and a source stand here once.
+    /// Ascending by target; each target and each source appears once.
     pub pairs: Vec<ProposedPair>,
-    /// Joints of the model's skins (of a model without: all) that follow nothing.
+    /// Joints of the model's skins (all joints if it has none) that follow nothing.
     pub unmapped_targets: Vec<JointIndex>,
     /// Joints that the motion's clips move and that nothing follows.
     pub unused_sources: Vec<JointIndex>,
-    /// What was recognised in the model, contradictions in it included.
+    /// What was recognized in the model, including contradictions.
     pub model: Recognized,
     pub motion: Recognized,
 }
@@ -26,37 +29,47 @@ pub struct Proposal {
 pub struct ProposedPair {
     pub target: JointIndex,
     pub source: JointIndex,
-    /// What the target is.
+    /// The target's slot.
     pub slot: Option<Slot>,
     pub reason: Reason,
     /// 0 (a guess) to 1 (the files say so).
     pub confidence: f32,
 }
 
-/// So much of what a motion moves must be named alike in the model for names to decide.
-const MOST: f32 = 0.8;
+/// Minimum share of the joints a motion moves that must have their name in the model for names to decide.
+const MIN_SHARED_NAMES: f32 = 0.8;
 
-/// Names of joints that are no part of a known body.
-const SURE_LEFT_OVER: f32 = 0.9;
+/// Confidence in a shared name outside the humanoid slots.
+const NAME_CONFIDENCE: f32 = 0.9;
 
-/// Fewer parts in common are no body.
-const FEWEST_PARTS: usize = 3;
+/// Fewer slots in common do not make a body.
+const MIN_SHARED_SLOTS: usize = 3;
 
-/// The same two assets always give the same answer. It has no pairs when neither names nor parts of the body agree.
+const TRUNK: [Slot; 3] = [Slot::Spine, Slot::Chest, Slot::UpperChest];
+
+/// Proposes a map; deterministic. It has no pairs if neither names nor slots agree.
 pub fn propose(model: &Asset, motion: &Asset) -> Proposal {
     let (targets, sources) = (recognize(model), recognize(motion));
-    let moved = moved(motion);
-    let alike = alike(&model.skeleton, &motion.skeleton);
+    let moved = moved_joints(motion);
+    let shared = shared_names(&model.skeleton, &motion.skeleton);
     let mut pairs = Pairs::default();
-    if names_decide(&alike, &moved, &targets, &sources) {
-        for (&target, &source) in &alike {
+    if names_decide(&shared, &moved, &targets, &sources) {
+        for (&target, &source) in &shared {
             pairs.add(target, source, targets.slot(target), Reason::SameName, 1.0);
         }
     } else {
-        pair_parts(&mut pairs, &targets, &sources);
+        pair_by_slots(&mut pairs, &targets, &sources);
     }
-    pair_left_over(&mut pairs, model, motion, &alike, &moved, [&targets, &sources]);
-    let unmapped_targets = covered(model).into_iter().filter(|joint| !pairs.by_target.contains_key(joint)).collect();
+    let leftovers = Leftovers {
+        model: &model.skeleton,
+        motion: &motion.skeleton,
+        moved: &moved,
+        targets: &targets,
+        sources: &sources,
+    };
+    pair_leftovers(&mut pairs, &shared, &leftovers);
+    let skinned = skinned_joints(model);
+    let unmapped_targets = skinned.into_iter().filter(|joint| !pairs.by_target.contains_key(joint)).collect();
     let unused_sources = moved.into_iter().filter(|joint| !pairs.sources.contains(joint)).collect();
     let pairs = pairs.by_target.into_values().collect();
     Proposal { pairs, unmapped_targets, unused_sources, model: targets, motion: sources }
@@ -69,6 +82,7 @@ struct Pairs {
 }
 
 impl Pairs {
+    /// Does nothing if either joint is taken.
     fn add(&mut self, target: JointIndex, source: JointIndex, slot: Option<Slot>, reason: Reason, confidence: f32) {
         if !self.by_target.contains_key(&target) && self.sources.insert(source) {
             self.by_target.insert(target, ProposedPair { target, source, slot, reason, confidence });
@@ -76,8 +90,8 @@ impl Pairs {
     }
 }
 
-/// Joints that any clip moves; all where there is no clip.
-fn moved(motion: &Asset) -> Vec<JointIndex> {
+/// Joints that any clip moves, ascending; all joints if there is no clip.
+fn moved_joints(motion: &Asset) -> Vec<JointIndex> {
     let mut moved: BTreeSet<JointIndex> = BTreeSet::new();
     for channel in motion.clips.iter().flat_map(|clip| clip.channels()) {
         if !matches!(channel.keys, Keys::MorphWeights { .. }) {
@@ -87,100 +101,42 @@ fn moved(motion: &Asset) -> Vec<JointIndex> {
     if moved.is_empty() { motion.skeleton.joints().collect() } else { moved.into_iter().collect() }
 }
 
-/// Joints that a mesh is bound to; all where none is.
-fn covered(model: &Asset) -> BTreeSet<JointIndex> {
-    let covered: BTreeSet<JointIndex> = model.skins.iter().flat_map(|skin| skin.joints().iter().copied()).collect();
-    if covered.is_empty() { model.skeleton.joints().collect() } else { covered }
+/// Joints of the skins; all joints if there is no skin.
+fn skinned_joints(model: &Asset) -> BTreeSet<JointIndex> {
+    let skinned: BTreeSet<JointIndex> = model.skins.iter().flat_map(|skin| skin.joints().iter().copied()).collect();
+    if skinned.is_empty() { model.skeleton.joints().collect() } else { skinned }
 }
 
-/// Joints of two skeletons with the same name, target to source. Names that several joints share count where their parents
-/// are the same; what exporters did to names makes no difference where it leaves no doubt.
-fn alike(model: &Skeleton, motion: &Skeleton) -> BTreeMap<JointIndex, JointIndex> {
-    let is_same = |joint: JointIndex| model.name(joint) == motion.name(joint);
-    if model.parents() == motion.parents() && model.joints().all(is_same) {
-        return model.joints().map(|joint| (joint, joint)).collect();
-    }
-    let mut found = BTreeMap::new();
-    let mut taken = BTreeSet::new();
-    let readings: [fn(&str) -> String; 2] = [str::to_owned, reading];
-    for read in readings {
-        let (targets, sources) = (by_name(model, read), by_name(motion, read));
-        for (name, targets) in &targets {
-            if let ([target], Some([source])) = (targets.as_slice(), sources.get(name).map(Vec::as_slice))
-                && !found.contains_key(target)
-                && !taken.contains(source)
-            {
-                found.insert(*target, *source);
-                taken.insert(*source);
-            }
-        }
-    }
-    let mut children: Vec<BTreeMap<&str, Vec<JointIndex>>> = vec![BTreeMap::new(); motion.len()];
-    for source in motion.joints().filter(|source| !taken.contains(source)).rev() {
-        if let Some(parent) = motion.parent(source) {
-            children[parent.get()].entry(motion.name(source)).or_default().push(source);
-        }
-    }
-    // Parents come first, so that children of joints found here are found as well.
-    for target in model.joints() {
-        let Some(&source_parent) = model.parent(target).and_then(|parent| found.get(&parent)) else { continue };
-        if found.contains_key(&target) || model.name(target).is_empty() {
-            continue;
-        }
-        // The list runs backwards: its last is the first of that name.
-        let twin = children[source_parent.get()].get_mut(model.name(target)).and_then(Vec::pop);
-        if let Some(source) = twin {
-            found.insert(target, source);
-        }
-    }
-    found
-}
-
-fn by_name(skeleton: &Skeleton, read: fn(&str) -> String) -> BTreeMap<String, Vec<JointIndex>> {
-    let mut joints: BTreeMap<String, Vec<JointIndex>> = BTreeMap::new();
-    for joint in skeleton.joints().filter(|&joint| !skeleton.name(joint).is_empty()) {
-        joints.entry(read(skeleton.name(joint))).or_default().push(joint);
-    }
-    joints
-}
-
-fn reading(name: &str) -> String {
-    let name = Name::read(name);
-    format!("{:?} {}", name.side, name.words.join(" "))
-}
-
-/// Whether the skeletons are named alike, and mean the same by it.
+/// Whether the skeletons share enough names, and mean the same joints by them.
 fn names_decide(
-    alike: &BTreeMap<JointIndex, JointIndex>,
+    shared: &BTreeMap<JointIndex, JointIndex>,
     moved: &[JointIndex],
     targets: &Recognized,
     sources: &Recognized,
 ) -> bool {
-    let named: BTreeSet<JointIndex> = alike.values().copied().collect();
+    let named: BTreeSet<JointIndex> = shared.values().copied().collect();
     let count = moved.iter().filter(|joint| named.contains(joint)).count();
     let means_same = |(&target, &source): (&JointIndex, &JointIndex)| match (targets.slot(target), sources.slot(source))
     {
-        // A trunk of two joints spreads over other slots than one of three; its ends are looked at below.
+        // A trunk of two joints spreads over other slots than one of three; its ends are compared below.
         (Some(a), Some(b)) => a == b || TRUNK.contains(&a) && TRUNK.contains(&b),
         _ => true,
     };
     let tops_agree = match (trunk(targets).last(), trunk(sources).last()) {
-        (Some((_, target)), Some((_, source))) => alike.get(target) == Some(source),
+        (Some((_, target)), Some((_, source))) => shared.get(target) == Some(source),
         _ => true,
     };
-    count > 0 && count as f32 >= MOST * moved.len() as f32 && alike.iter().all(means_same) && tops_agree
+    count > 0 && count as f32 >= MIN_SHARED_NAMES * moved.len() as f32 && shared.iter().all(means_same) && tops_agree
 }
 
-const TRUNK: [Slot; 3] = [Slot::Spine, Slot::Chest, Slot::UpperChest];
-
-/// The joints between hips and neck that are parts, the lowest first.
+/// The recognized joints between hips and neck, lowest first.
 fn trunk(recognized: &Recognized) -> Vec<(Slot, JointIndex)> {
     TRUNK.into_iter().filter_map(|slot| Some((slot, recognized.joint(slot)?))).collect()
 }
 
-fn pair_parts(pairs: &mut Pairs, targets: &Recognized, sources: &Recognized) {
-    let common = targets.parts.keys().filter(|slot| sources.parts.contains_key(slot)).count();
-    if common < FEWEST_PARTS {
+fn pair_by_slots(pairs: &mut Pairs, targets: &Recognized, sources: &Recognized) {
+    let shared = targets.parts.keys().filter(|slot| sources.parts.contains_key(slot)).count();
+    if shared < MIN_SHARED_SLOTS {
         return;
     }
     let mut pair = |target_slot: Slot, source_slot: Slot| {
@@ -190,7 +146,7 @@ fn pair_parts(pairs: &mut Pairs, targets: &Recognized, sources: &Recognized) {
         }
     };
     let (target_trunk, source_trunk) = (trunk(targets), trunk(sources));
-    for (target, source) in matched(target_trunk.len(), source_trunk.len()) {
+    for (target, source) in match_chains(target_trunk.len(), source_trunk.len()) {
         pair(target_trunk[target].0, source_trunk[source].0);
     }
     for &slot in targets.parts.keys().filter(|slot| !TRUNK.contains(slot)) {
@@ -198,10 +154,10 @@ fn pair_parts(pairs: &mut Pairs, targets: &Recognized, sources: &Recognized) {
     }
 }
 
-/// Which of the joints of one trunk follows which of another: lowest to lowest, highest to highest, the others evenly. A
-/// trunk of one joint follows the highest, which has all turns below in it; where there is one to follow, the lowest
-/// follows and carries those above along.
-fn matched(targets: usize, sources: usize) -> Vec<(usize, usize)> {
+/// Matches the joints of two chains, target to source: lowest to lowest, highest to highest, the others evenly. A single
+/// target follows the highest source, which has accumulated all turns below it; a single source moves the lowest target,
+/// which carries those above along.
+fn match_chains(targets: usize, sources: usize) -> Vec<(usize, usize)> {
     let spread = |at: usize, count: usize, over: usize| (at * (over - 1) + (count - 1) / 2) / (count - 1);
     match (targets, sources) {
         (0, _) | (_, 0) => Vec::new(),
@@ -212,32 +168,35 @@ fn matched(targets: usize, sources: usize) -> Vec<(usize, usize)> {
     }
 }
 
-/// Names that agree, of joints that are no part of a body and hang in the same place.
-fn pair_left_over(
-    pairs: &mut Pairs,
-    model: &Asset,
-    motion: &Asset,
-    alike: &BTreeMap<JointIndex, JointIndex>,
-    moved: &[JointIndex],
-    [targets, sources]: [&Recognized; 2],
-) {
-    // The source that the nearest paired ancestor of each target follows, and the nearest paired ancestor of each source.
-    let target_above = nearest(&model.skeleton, |joint| pairs.by_target.get(&joint).map(|pair| pair.source));
-    let source_above = nearest(&motion.skeleton, |joint| pairs.sources.contains(&joint).then_some(joint));
-    for (&target, &source) in alike {
-        let is_part = targets.slot(target).is_some() || sources.slot(source).is_some();
-        if is_part || moved.binary_search(&source).is_err() {
+/// Where joints outside the slots are paired.
+struct Leftovers<'a> {
+    model: &'a Skeleton,
+    motion: &'a Skeleton,
+    /// Ascending.
+    moved: &'a [JointIndex],
+    targets: &'a Recognized,
+    sources: &'a Recognized,
+}
+
+/// Pairs joints that share a name, have no slot and hang in the same place.
+fn pair_leftovers(pairs: &mut Pairs, shared: &BTreeMap<JointIndex, JointIndex>, input: &Leftovers) {
+    // The source of each target's nearest paired ancestor, and the nearest paired ancestor of each source.
+    let above_target = nearest_above(input.model, |joint| pairs.by_target.get(&joint).map(|pair| pair.source));
+    let above_source = nearest_above(input.motion, |joint| pairs.sources.contains(&joint).then_some(joint));
+    for (&target, &source) in shared {
+        let has_slot = input.targets.slot(target).is_some() || input.sources.slot(source).is_some();
+        if has_slot || input.moved.binary_search(&source).is_err() {
             continue;
         }
-        let (target_above, source_above) = (target_above[target.get()], source_above[source.get()]);
-        if target_above.is_some() && target_above == source_above {
-            pairs.add(target, source, None, Reason::SameName, SURE_LEFT_OVER);
+        let (above_target, above_source) = (above_target[target.get()], above_source[source.get()]);
+        if above_target.is_some() && above_target == above_source {
+            pairs.add(target, source, None, Reason::SameName, NAME_CONFIDENCE);
         }
     }
 }
 
-/// For each joint what its nearest ancestor has that has anything.
-fn nearest<T: Copy>(skeleton: &Skeleton, of: impl Fn(JointIndex) -> Option<T>) -> Vec<Option<T>> {
+/// For each joint, what `of` returns for its nearest ancestor that has anything.
+fn nearest_above<T: Copy>(skeleton: &Skeleton, of: impl Fn(JointIndex) -> Option<T>) -> Vec<Option<T>> {
     let mut found: Vec<Option<T>> = Vec::with_capacity(skeleton.len());
     for joint in skeleton.joints() {
         found.push(skeleton.parent(joint).and_then(|parent| of(parent).or(found[parent.get()])));
@@ -246,27 +205,27 @@ fn nearest<T: Copy>(skeleton: &Skeleton, of: impl Fn(JointIndex) -> Option<T>) -
 }
 
 impl Proposal {
-    /// The map in the form of files, with names where they say which joint is meant.
+    /// Returns the map as files have it, by name where a name is unambiguous.
     pub fn to_map(&self, model: &Asset, motion: &Asset) -> JointMap {
-        let (targets, sources) = (by_name(&model.skeleton, str::to_owned), by_name(&motion.skeleton, str::to_owned));
-        let is_clear = |names: &BTreeMap<String, Vec<JointIndex>>, name: &str| {
+        let (targets, sources) =
+            (joints_by_name(&model.skeleton, str::to_owned), joints_by_name(&motion.skeleton, str::to_owned));
+        let is_unambiguous = |names: &BTreeMap<String, Vec<JointIndex>>, name: &str| {
             !name.starts_with('#') && names.get(name).is_some_and(|joints| joints.len() == 1)
         };
         let mut map = JointMap::default();
         for pair in &self.pairs {
             let (target, source) = (model.skeleton.name(pair.target), motion.skeleton.name(pair.source));
-            let key = if is_clear(&targets, target) {
+            let key = if is_unambiguous(&targets, target) {
                 target.to_owned()
             } else {
                 format!("#{}", model.skeleton.source_index(pair.target))
             };
-            let source = if is_clear(&sources, source) {
+            let source = if is_unambiguous(&sources, source) {
                 SourceRef::Name(source.to_owned())
             } else {
                 SourceRef::Number(motion.skeleton.source_index(pair.source))
             };
-            let entry = MapEntry { source: Some(source), correction: glam::Quat::IDENTITY, unmapped: None };
-            map.joints.insert(key, entry);
+            map.joints.insert(key, MapEntry { source: Some(source), correction: Quat::IDENTITY, unmapped: None });
         }
         map
     }

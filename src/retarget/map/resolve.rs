@@ -1,71 +1,26 @@
-//! Looks the names of a joint map up in two skeletons.
+//! Resolves a joint map: looks its names up in two skeletons.
 
 use std::collections::{BTreeMap, HashSet};
 
-use glam::Quat;
+use glam::{DQuat, Quat};
 
-use super::file::{ClipRef, JointMap, MutedProperty, SourceRef, Unmapped};
+use super::error::MapError;
+use super::file::{ClipRef, JointMap, MutedChannel, MutedProperty, SourceRef, Unmapped};
 use super::resolved::{Layer, Pair, ResolvedMap};
 use crate::anim::{JointIndex, Property, Skeleton};
 use crate::asset::Asset;
 
-/// Why a joint map does not fit a model and a motion. `path` is the place in the map's JSON.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum MapError {
-    #[error("not JSON: {message}")]
-    NoJson { message: String },
-    #[error("not a joint map: it has no “gaitway_map”")]
-    NoMap,
-    #[error("gaitway_map is {found}; this program reads version 1")]
-    Version { found: String },
-    #[error("{path}: {message}")]
-    Json { path: String, message: String },
-    #[error("{path}: the model has no joint “{name}”{}", nearest_text(.nearest))]
-    NoTarget { path: String, name: String, nearest: Vec<String> },
-    #[error("{path}: the motion has no joint “{name}”{}", nearest_text(.nearest))]
-    NoSource { path: String, name: String, nearest: Vec<String> },
-    #[error("{path}: the model has no node {number}: it has {count}, numbered from 0")]
-    TargetOutOfRange { path: String, number: String, count: usize },
-    #[error("{path}: the motion has no channel {number}: it has {count} joints, 0 to {}", .count.saturating_sub(1))]
-    SourceOutOfRange { path: String, number: usize, count: usize },
-    #[error("{path}: {} joints of the model are called “{name}”: write one of {}", .numbers.len(), numbers_text(.numbers, "#"))]
-    AmbiguousTarget { path: String, name: String, numbers: Vec<usize> },
-    #[error("{path}: {} joints of the motion are called “{name}”: write one of their numbers, {}", .numbers.len(), numbers_text(.numbers, ""))]
-    AmbiguousSource { path: String, name: String, numbers: Vec<usize> },
-    #[error("{path}: “{first}” and “{second}” are the same joint of the model; keep one of them")]
-    SameTarget { path: String, first: String, second: String },
-    #[error("{path}: the model has no clip {clip}; it has {}", clips_text(.clips))]
-    NoClip { path: String, clip: String, clips: Vec<String> },
-    #[error("{path}: [{}, {}, {}, {}] is no rotation; it must be finite and not all zero", .found[0], .found[1], .found[2], .found[3])]
-    Correction { path: String, found: [f32; 4] },
-    #[error("crossfade_secs is {found}; it must be 0 or more")]
-    Crossfade { found: f64 },
-    #[error("no joint of the model follows the motion: the map names no source")]
-    NothingMapped,
-    #[error(
-        "the model and the motion have no joint in common: neither names nor body parts agree. Write a map by hand, as docs/joint-maps.md says"
-    )]
-    NothingInCommon,
-}
+/// Maximum number of similar names to suggest for one that is not found.
+const MAX_SUGGESTIONS: usize = 3;
 
-fn nearest_text(nearest: &[String]) -> String {
-    if nearest.is_empty() { String::new() } else { format!("; nearest: {}", nearest.join(", ")) }
-}
-
-fn numbers_text(numbers: &[usize], mark: &str) -> String {
-    numbers.iter().map(|number| format!("{mark}{number}")).collect::<Vec<_>>().join(", ")
-}
-
-fn clips_text(clips: &[String]) -> String {
-    if clips.is_empty() {
-        return "none".to_owned();
-    }
-    let named = clips.iter().enumerate().map(|(index, name)| format!("{index} “{name}”"));
-    named.collect::<Vec<_>>().join(", ")
-}
+/// Minimum similarity of a suggested name, from 0 to 1.
+const MIN_SIMILARITY: f64 = 0.6;
 
 impl JointMap {
-    /// Finds every joint and clip that the map names: targets and clips in `model`, sources in `motion`.
+    /// Looks up every joint and clip of the map: targets and clips in `model`, sources in `motion`.
+    ///
+    /// # Errors
+    /// If a name is missing or ambiguous, an option is out of range, or no joint has a source.
     pub fn resolve(&self, model: &Asset, motion: &Asset) -> Result<ResolvedMap, MapError> {
         if self.gaitway_map != 1 {
             return Err(MapError::Version { found: self.gaitway_map.to_string() });
@@ -73,67 +28,112 @@ impl JointMap {
         if !(self.crossfade_secs >= 0.0 && self.crossfade_secs.is_finite()) {
             return Err(MapError::Crossfade { found: self.crossfade_secs });
         }
-        let (target_names, source_names) = (Names::new(&model.skeleton), Names::new(&motion.skeleton));
-        let mut targets: Vec<Option<&str>> = vec![None; model.skeleton.len()];
-        let mut pairs = Vec::new();
-        let mut own = vec![None; model.skeleton.len()];
-        for (name, entry) in &self.joints {
-            let path = format!("joints.{name}");
-            let target = target_names.find_target(name, &path)?;
-            if let Some(first) = targets[target.get()].replace(name) {
-                return Err(MapError::SameTarget { path, first: first.to_owned(), second: name.clone() });
-            }
-            let correction = unit(entry.correction, &path)?;
-            if let Some(source) = &entry.source {
-                let source = source_names.find_source(source, &format!("{path}.source"))?;
-                pairs.push(Pair { target, source, correction });
-            }
-            own[target.get()] = match &entry.unmapped {
-                Some(unmapped) => Some(find_layer(model, unmapped, &format!("{path}.unmapped"))?),
-                None => None,
-            };
-        }
-        if pairs.is_empty() {
+        let source_names = Names::new(&motion.skeleton);
+        let joints = resolve_joints(self, model, &source_names)?;
+        if joints.pairs.is_empty() {
             return Err(MapError::NothingMapped);
         }
-        pairs.sort_by_key(|pair: &Pair| pair.target);
-        let common = find_layer(model, &self.unmapped, "unmapped")?;
+        let default_layer = resolve_layer(model, &self.unmapped, "unmapped")?;
         let mut layers = Vec::new();
         for joint in model.skeleton.joints() {
-            if pairs.binary_search_by_key(&joint, |pair| pair.target).is_ok() {
+            if joints.pairs.binary_search_by_key(&joint, |pair| pair.target).is_ok() {
                 continue;
             }
-            if let Some((clip, frozen)) = own[joint.get()].unwrap_or(common) {
+            if let Some((clip, frozen)) = joints.layers[joint.get()].unwrap_or(default_layer) {
                 layers.push(Layer { joint, clip, frozen });
             }
         }
-        let (mut muted, mut seen) = (Vec::new(), HashSet::new());
-        for (index, channel) in self.muted_channels.iter().enumerate() {
-            let joint = source_names.find_source(&channel.source, &format!("muted_channels[{index}].source"))?;
-            let properties: &[Property] = match channel.property {
-                Some(MutedProperty::Translation) => &[Property::Translation],
-                Some(MutedProperty::Rotation) => &[Property::Rotation],
-                Some(MutedProperty::Scale) => &[Property::Scale],
-                None => &[Property::Translation, Property::Rotation, Property::Scale],
-            };
-            for &property in properties {
-                if seen.insert((joint, property)) {
-                    muted.push((joint, property));
-                }
-            }
-        }
         Ok(ResolvedMap {
-            pairs,
+            pairs: joints.pairs,
             layers,
             rest: self.rest,
             root: self.root,
             translations: self.translations,
             scales: self.scales,
-            muted,
+            muted: resolve_muted(&self.muted_channels, &source_names)?,
             feet: self.feet,
             crossfade_secs: self.crossfade_secs,
         })
     }
+}
+
+/// A clip by its index, and whether it is frozen; None for the rest pose.
+type LayerChoice = Option<(usize, bool)>;
+
+/// What the map's entries say.
+struct ResolvedJoints {
+    /// Ascending by target.
+    pairs: Vec<Pair>,
+    /// By target joint; None where the map's default applies.
+    layers: Vec<Option<LayerChoice>>,
+}
+
+fn resolve_joints(map: &JointMap, model: &Asset, source_names: &Names) -> Result<ResolvedJoints, MapError> {
+    let target_names = Names::new(&model.skeleton);
+    let mut name_of_target: Vec<Option<&str>> = vec![None; model.skeleton.len()];
+    let mut pairs = Vec::new();
+    let mut layers = vec![None; model.skeleton.len()];
+    for (name, entry) in &map.joints {
+        let path = format!("joints.{name}");
+        let target = target_names.find_target(name, &path)?;
+        if let Some(first) = name_of_target[target.get()].replace(name) {
+            return Err(MapError::SameTarget { path, first: first.to_owned(), second: name.clone() });
+        }
+        let correction = normalize_correction(entry.correction, &path)?;
+        if let Some(source) = &entry.source {
+            let source = source_names.find_source(source, &format!("{path}.source"))?;
+            pairs.push(Pair { target, source, correction });
+        }
+        layers[target.get()] = match &entry.unmapped {
+            Some(unmapped) => Some(resolve_layer(model, unmapped, &format!("{path}.unmapped"))?),
+            None => None,
+        };
+    }
+    pairs.sort_by_key(|pair: &Pair| pair.target);
+    Ok(ResolvedJoints { pairs, layers })
+}
+
+fn resolve_layer(model: &Asset, unmapped: &Unmapped, path: &str) -> Result<LayerChoice, MapError> {
+    let Unmapped::Clip { clip, frozen } = unmapped else { return Ok(None) };
+    let found = match clip {
+        ClipRef::Index(index) => (*index < model.clips.len()).then_some(*index),
+        ClipRef::Name(name) => model.clips.iter().position(|clip| clip.name() == name),
+    };
+    let index = found.ok_or_else(|| MapError::NoClip {
+        path: format!("{path}.clip"),
+        clip: match clip {
+            ClipRef::Index(index) => index.to_string(),
+            ClipRef::Name(name) => format!("“{name}”"),
+        },
+        clips: model.clips.iter().map(|clip| clip.name().to_owned()).collect(),
+    })?;
+    Ok(Some((index, *frozen)))
+}
+
+/// Channels in the order of the map, without duplicates.
+fn resolve_muted(channels: &[MutedChannel], names: &Names) -> Result<Vec<(JointIndex, Property)>, MapError> {
+    let (mut muted, mut seen) = (Vec::new(), HashSet::new());
+    for (index, channel) in channels.iter().enumerate() {
+        let joint = names.find_source(&channel.source, &format!("muted_channels[{index}].source"))?;
+        let properties: &[Property] = match channel.property {
+            Some(MutedProperty::Translation) => &[Property::Translation],
+            Some(MutedProperty::Rotation) => &[Property::Rotation],
+            Some(MutedProperty::Scale) => &[Property::Scale],
+            None => &[Property::Translation, Property::Rotation, Property::Scale],
+        };
+        muted.extend(properties.iter().map(|&property| (joint, property)).filter(|&channel| seen.insert(channel)));
+    }
+    Ok(muted)
+}
+
+/// A quaternion that is nearly zero or not finite is not a rotation.
+fn normalize_correction(correction: Quat, path: &str) -> Result<Quat, MapError> {
+    let double = correction.as_dquat();
+    let length = double.length();
+    if !length.is_finite() || length < 1e-6 {
+        return Err(MapError::Correction { path: format!("{path}.correction"), found: correction.to_array() });
+    }
+    Ok(DQuat::from_xyzw(double.x / length, double.y / length, double.z / length, double.w / length).as_quat())
 }
 
 /// The joints of a skeleton by name.
@@ -151,14 +151,14 @@ impl<'a> Names<'a> {
         Self { skeleton, joints }
     }
 
-    fn called(&self, name: &str) -> &[JointIndex] {
+    fn named(&self, name: &str) -> &[JointIndex] {
         self.joints.get(name).map(Vec::as_slice).unwrap_or_default()
     }
 
-    /// A name, or `#NODE`. A joint that is really called `#3` is found by that name first.
+    /// Finds a name, or `#NODE`. A joint that is really called `#3` wins over node 3.
     fn find_target(&self, name: &str, path: &str) -> Result<JointIndex, MapError> {
         let (path, name) = (path.to_owned(), name.to_owned());
-        match (self.called(&name), name.strip_prefix('#')) {
+        match (self.named(&name), name.strip_prefix('#')) {
             ([joint], _) => Ok(*joint),
             ([], Some(number)) => {
                 let found = number.parse().ok().and_then(|number| self.skeleton.joint_of_source(number));
@@ -166,10 +166,7 @@ impl<'a> Names<'a> {
                 found.ok_or(MapError::TargetOutOfRange { path, number, count: self.skeleton.len() })
             }
             ([], None) => Err(MapError::NoTarget { path, nearest: self.nearest(&name), name }),
-            (same, _) => {
-                let numbers = numbers_of(self.skeleton, same);
-                Err(MapError::AmbiguousTarget { path, name, numbers })
-            }
+            (same, _) => Err(MapError::AmbiguousTarget { path, name, numbers: self.numbers(same) }),
         }
     }
 
@@ -180,18 +177,15 @@ impl<'a> Names<'a> {
                 let found = self.skeleton.joint_of_source(*number);
                 found.ok_or(MapError::SourceOutOfRange { path, number: *number, count: self.skeleton.len() })
             }
-            SourceRef::Name(name) => match self.called(name) {
+            SourceRef::Name(name) => match self.named(name) {
                 [joint] => Ok(*joint),
                 [] => Err(MapError::NoSource { path, nearest: self.nearest(name), name: name.clone() }),
-                same => {
-                    let numbers = numbers_of(self.skeleton, same);
-                    Err(MapError::AmbiguousSource { path, name: name.clone(), numbers })
-                }
+                same => Err(MapError::AmbiguousSource { path, name: name.clone(), numbers: self.numbers(same) }),
             },
         }
     }
 
-    /// The names most alike, best first; none when nothing is alike.
+    /// The most similar names, best first; empty if none is similar enough.
     fn nearest(&self, name: &str) -> Vec<String> {
         let wanted = name.to_lowercase();
         let mut scored: Vec<(f64, &str)> = self
@@ -199,49 +193,16 @@ impl<'a> Names<'a> {
             .keys()
             .filter(|other| !other.is_empty())
             .map(|&other| (strsim::jaro_winkler(&wanted, &other.to_lowercase()), other))
-            .filter(|(score, _)| *score >= ALIKE)
+            .filter(|(score, _)| *score >= MIN_SIMILARITY)
             .collect();
         scored.sort_by(|a, b| b.0.total_cmp(&a.0).then_with(|| a.1.cmp(b.1)));
-        scored.into_iter().take(OFFERED).map(|(_, other)| other.to_owned()).collect()
+        scored.into_iter().take(MAX_SUGGESTIONS).map(|(_, other)| other.to_owned()).collect()
+    }
+
+    /// The joints' numbers in the file.
+    fn numbers(&self, joints: &[JointIndex]) -> Vec<usize> {
+        let mut numbers: Vec<usize> = joints.iter().map(|&joint| self.skeleton.source_index(joint)).collect();
+        numbers.sort_unstable();
+        numbers
     }
 }
-
-fn numbers_of(skeleton: &Skeleton, joints: &[JointIndex]) -> Vec<usize> {
-    let mut numbers: Vec<usize> = joints.iter().map(|&joint| skeleton.source_index(joint)).collect();
-    numbers.sort_unstable();
-    numbers
-}
-
-/// The clip and whether it is frozen; none for rest.
-fn find_layer(model: &Asset, unmapped: &Unmapped, path: &str) -> Result<Option<(usize, bool)>, MapError> {
-    let Unmapped::Clip { clip, frozen } = unmapped else { return Ok(None) };
-    let found = match clip {
-        ClipRef::Index(index) => (*index < model.clips.len()).then_some(*index),
-        ClipRef::Name(name) => model.clips.iter().position(|clip| clip.name() == name),
-    };
-    let index = found.ok_or_else(|| MapError::NoClip {
-        path: format!("{path}.clip"),
-        clip: match clip {
-            ClipRef::Index(index) => index.to_string(),
-            ClipRef::Name(name) => format!("“{name}”"),
-        },
-        clips: model.clips.iter().map(|clip| clip.name().to_owned()).collect(),
-    })?;
-    Ok(Some((index, *frozen)))
-}
-
-/// As long as 1. Nearly zero or not finite says nothing of a rotation.
-fn unit(correction: Quat, path: &str) -> Result<Quat, MapError> {
-    let length = correction.as_dquat().length();
-    if !length.is_finite() || length < 1e-6 {
-        return Err(MapError::Correction { path: format!("{path}.correction"), found: correction.to_array() });
-    }
-    let double = correction.as_dquat();
-    Ok(glam::DQuat::from_xyzw(double.x / length, double.y / length, double.z / length, double.w / length).as_quat())
-}
-
-/// How many names are offered for one that is not there.
-const OFFERED: usize = 3;
-
-/// So much alike (0 nothing, 1 the same) a name must be to be offered.
-const ALIKE: f64 = 0.6;
