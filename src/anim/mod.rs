@@ -2,6 +2,7 @@
 
 mod clip;
 mod playback;
+mod polar;
 mod pose;
 mod sampler;
 mod skeleton;
@@ -9,6 +10,7 @@ mod transform;
 
 pub use clip::{Channel, ChannelError, Clip, ClipBuilder, Interpolation, Keys, Property, SampleCursor};
 pub use playback::{LoopMode, TimeRange, clip_time};
+pub use polar::nearest_rotation;
 pub use pose::{Pose, model_from_joint};
 pub use skeleton::{Joint, JointIndex, Skeleton, SkeletonError};
 pub use transform::Transform;

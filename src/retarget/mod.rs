@@ -2,36 +2,23 @@
 
 mod align;
 mod bake;
-mod contacts;
-mod detached;
 mod feet;
-mod figures;
-mod law;
-mod layers;
-mod locals;
+mod keys;
 mod map;
-mod propose;
+mod math;
+mod measure;
+mod pose;
 mod recognize;
-mod resample;
-mod resolve;
-mod resolved;
-mod rest;
-mod root;
-mod sides;
-mod stage;
-mod track;
-mod vocabulary;
+mod retargeting;
+mod transfer;
 
-pub use bake::{Body, RetargetError, Retargeted, Retargeting};
-pub use figures::{Figures, FootTrack};
-pub use layers::{Baking, LayerClip, bake_layers, baking, layer_clips};
+pub use bake::{RetargetError, Retargeted};
 pub use map::{
-    ClipRef, Feet, JointMap, Keep, MapEntry, MutedChannel, MutedProperty, RestChoice, RestChoices, RootOptions,
-    RootPart, SourceRef, Unmapped,
+    ClipRef, Feet, JointMap, Keep, Layer, MapEntry, MapError, MutedChannel, MutedProperty, Pair, Proposal,
+    ProposedPair, ResolvedMap, RestChoice, RestChoices, RootOptions, RootPart, SourceRef, Unmapped, opposite_joints,
+    propose,
 };
-pub use propose::{Proposal, ProposedPair, propose};
+pub use measure::{Figures, FootTrack, StagePair};
 pub use recognize::{Contradiction, Facing, Part, Reason, Recognized, recognize};
-pub use resolve::MapError;
-pub use resolved::{Layer, Pair, ResolvedMap};
-pub use sides::opposite_joints;
-pub use stage::StagePair;
+pub use retargeting::{Body, Retargeting};
+pub use transfer::{Baking, LayerClip, bake_layers, baking, layer_clips};

@@ -56,7 +56,7 @@ fn says_where_a_member_is_wrong() {
     );
     check_refused(
         r#"{"gaitway_map": 1, "joints": {"head": {"source": 1}, "head": {"source": 2}}}"#,
-        "“head” stands here twice",
+        "“head” appears twice",
     );
 }
 

@@ -298,7 +298,7 @@ fn figures_find_no_error_where_there_is_none_and_one_where_there_is() {
     assert!(figures.limb_direction_error_degrees_max.unwrap() < 0.1, "{figures:?}");
     assert_eq!(figures.coverage, Some(1.0));
     let wrong = rest_of(&model);
-    let figures = retargeting.figures_of(&wrong, None);
+    let figures = retargeting.measure(&wrong, None).0;
     assert!(figures.orientation_error_degrees_mean.unwrap() > 10.0, "{figures:?}");
     assert!(figures.limb_direction_error_degrees_mean.unwrap() > 10.0, "{figures:?}");
 }

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use super::names::{Name, Side};
 use super::tree::Tree;
+use super::vocabulary::{FINGERS, VOCABULARIES, Vocabulary};
 use super::words::Word;
 use crate::anim::JointIndex;
 use crate::asset::Slot;
-use crate::retarget::vocabulary::{FINGERS, VOCABULARIES, Vocabulary};
 
 /// What one vocabulary says.
 #[derive(Debug, Default)]

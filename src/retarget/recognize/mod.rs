@@ -1,12 +1,13 @@
 //! Which joint of an asset is which part of a human body: the file's own word first, then known vocabularies, then what
 //! names and hierarchy suggest, then shape. Says of each joint how it was found.
 
-mod body;
+mod assemble;
 mod facing;
 mod known;
 mod names;
 mod shape;
 mod tree;
+mod vocabulary;
 mod words;
 
 use std::collections::BTreeMap;
@@ -18,7 +19,7 @@ use crate::anim::{JointIndex, Pose, SampleCursor};
 use crate::asset::{Asset, Humanoid, Slot};
 use tree::Tree;
 
-pub(super) use names::{Name, Side};
+pub use names::{Name, Side};
 
 /// What [`recognize`] found. Empty for what is not a human body.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -168,7 +169,7 @@ fn with_fingers(tree: &Tree, mut parts: BTreeMap<Slot, Part>) -> BTreeMap<Slot, 
 /// None when the names are not those of a body, or of too little of it.
 fn by_names(tree: &Tree) -> Option<BTreeMap<Slot, Part>> {
     let known = known::find(tree);
-    let mut parts = body::find(tree, known.as_ref());
+    let mut parts = assemble::find(tree, known.as_ref());
     if is_whole(&parts) {
         return Some(parts);
     }

@@ -3,14 +3,14 @@
 
 /// Left and right are the character's own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(in crate::retarget) enum Side {
+pub enum Side {
     Left,
     Right,
 }
 
 /// A name cut into words.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(in crate::retarget) struct Name {
+pub struct Name {
     pub side: Option<Side>,
     /// In lower case, numbers apart, without the side and without the prefix of the rig.
     pub words: Vec<String>,
@@ -183,7 +183,7 @@ fn drop_prefix(words: &mut Vec<String>) {
     }
 }
 
-pub(in crate::retarget) fn is_number(word: &str) -> bool {
+pub fn is_number(word: &str) -> bool {
     word.bytes().all(|byte| byte.is_ascii_digit())
 }
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 
-use super::body::spread;
+use super::assemble::spread;
 use super::tree::Tree;
 use super::{Part, Reason};
 use crate::anim::JointIndex;

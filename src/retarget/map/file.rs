@@ -1,5 +1,5 @@
-//! The joint map: which target joint follows which source joint, and how, in the form that files have it
-//! (`{"gaitway_map": 1, …}`). Names are looked up when it is resolved against two skeletons.
+//! The joint map as it is written in files (`{"gaitway_map": 1, …}`): which target joint follows which source joint, and
+//! how. Its names are looked up in two skeletons by `resolve`.
 
 use std::collections::BTreeMap;
 
@@ -7,16 +7,17 @@ use glam::Quat;
 use serde::de::{Error, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::resolve::MapError;
+use super::error::MapError;
+use super::options::{Feet, Keep, RestChoices, RootOptions};
 
-/// A whole map, as written. Joints that are not named in it have no source.
+/// A whole map, as written. Joints that it does not name have no source.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct JointMap {
-    /// 1: the version of this form.
+    /// Version of the format: 1.
     pub gaitway_map: u32,
-    /// By target joint: its name, or `#NODE` where it has none or shares it.
-    #[serde(default, deserialize_with = "once_each")]
+    /// By target joint: its name, or `#NODE` if it has none or shares it.
+    #[serde(default, deserialize_with = "unique_entries")]
     pub joints: BTreeMap<String, MapEntry>,
     #[serde(default)]
     pub unmapped: Unmapped,
@@ -41,10 +42,10 @@ pub struct JointMap {
 pub struct MapEntry {
     /// None (`null`): deliberately without a source.
     pub source: Option<SourceRef>,
-    /// Turns the joint further, in its own space: x y z w.
+    /// Rotation offset in the joint's own space, as x y z w.
     #[serde(default, skip_serializing_if = "is_identity")]
     pub correction: Quat,
-    /// What the joint does when it has no source; absent: what the map says for all.
+    /// What the joint does without a source; by default what the map says for all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unmapped: Option<Unmapped>,
 }
@@ -77,7 +78,7 @@ pub enum Unmapped {
     Rest,
     Clip {
         clip: ClipRef,
-        /// The clip's first key for all time.
+        /// Holds the clip's first key.
         frozen: bool,
     },
 }
@@ -85,7 +86,7 @@ pub enum Unmapped {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(
     untagged,
-    expecting = "expected \"rest\" or {\"clip\": NAME or INDEX}, with \"hold\": \"first-key\" if it is to stand still"
+    expecting = "expected \"rest\" or {\"clip\": NAME or INDEX}, with \"hold\": \"first-key\" to freeze it"
 )]
 enum UnmappedForm {
     Word(String),
@@ -127,22 +128,22 @@ impl From<Unmapped> for UnmappedForm {
     }
 }
 
-/// A joint that stands in the file twice would silently lose one of its entries.
-fn once_each<'de, D: Deserializer<'de>>(deserializer: D) -> Result<BTreeMap<String, MapEntry>, D::Error> {
+/// Refuses a joint that appears twice, which would silently lose one of its entries.
+fn unique_entries<'de, D: Deserializer<'de>>(deserializer: D) -> Result<BTreeMap<String, MapEntry>, D::Error> {
     struct Entries;
 
     impl<'de> Visitor<'de> for Entries {
         type Value = BTreeMap<String, MapEntry>;
 
         fn expecting(&self, formatter: &mut std::fmt::Formatter) -> std::fmt::Result {
-            formatter.write_str("an object: target joints and what they follow")
+            formatter.write_str("an object of target joints and what they follow")
         }
 
         fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
             let mut entries = BTreeMap::new();
             while let Some((name, entry)) = map.next_entry::<String, MapEntry>()? {
                 if entries.contains_key(&name) {
-                    return Err(A::Error::custom(format!("“{name}” stands here twice; keep one of the two")));
+                    return Err(A::Error::custom(format!("“{name}” appears twice; keep one of the two")));
                 }
                 entries.insert(name, entry);
             }
@@ -153,65 +154,12 @@ fn once_each<'de, D: Deserializer<'de>>(deserializer: D) -> Result<BTreeMap<Stri
     deserializer.deserialize_map(Entries)
 }
 
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct RestChoices {
-    pub model: RestChoice,
-    pub motion: RestChoice,
-}
-
-/// Which pose counts as a skeleton's rest.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum RestChoice {
-    #[default]
-    Auto,
-    /// The nodes' own transforms.
-    Node,
-    /// Where the mesh was bound, for joints that a skin covers.
-    Bind,
-    /// The first key of the clip.
-    FirstFrame,
-}
-
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct RootOptions {
-    pub horizontal: RootPart,
-    pub vertical: RootPart,
-    pub yaw: RootPart,
-    /// Moves what is kept of the travel to the model's root joint.
-    pub extract: bool,
-}
-
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum RootPart {
-    #[default]
-    Keep,
-    /// Without travel (the line from the first to the last key); the sway stays.
-    InPlace,
-    /// The first key's value for all time.
-    Freeze,
-}
-
-/// What becomes of translations or scales of joints other than the hips.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Keep {
-    /// Kept when the two skeletons are the same.
-    #[default]
-    Auto,
-    Keep,
-    Drop,
-}
-
-/// A channel of the motion that is left out.
+/// A channel of the motion to ignore.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MutedChannel {
     pub source: SourceRef,
-    /// Absent: all of the joint's channels.
+    /// By default all of the joint's channels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub property: Option<MutedProperty>,
 }
@@ -224,44 +172,41 @@ pub enum MutedProperty {
     Scale,
 }
 
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Feet {
-    #[default]
-    Off,
-    /// Feet stay where they touch the ground.
-    Plant,
-}
-
 impl JointMap {
-    /// Reads the form that files have. Members that are not known are errors: a misspelt one would do nothing.
+    /// Reads a map's JSON.
+    ///
+    /// # Errors
+    /// If it is not a map of version 1. Unknown members are errors: a misspelt one would have no effect.
     pub fn from_json(text: &str) -> Result<Self, MapError> {
         let text = text.trim_start_matches('\u{feff}');
-        // The version first: what another one may have in it is not to be judged by this one's rules.
+        // The version comes first: another one has other rules.
         let version = serde_json::from_str(text).map(|form: serde_json::Value| form.get("gaitway_map").cloned());
         match version {
             Ok(Some(version)) if version == 1 => {}
             Ok(Some(version)) => return Err(MapError::Version { found: version.to_string() }),
-            Ok(None) => return Err(MapError::NoMap),
-            Err(error) => return Err(MapError::NoJson { message: error.to_string() }),
+            Ok(None) => return Err(MapError::NotAMap),
+            Err(error) => return Err(MapError::NotJson { message: error.to_string() }),
         }
-        let explained = without_explanations(text);
-        let text = explained.as_deref().unwrap_or(text);
+        let stripped = without_explanations(text);
+        let text = stripped.as_deref().unwrap_or(text);
         serde_path_to_error::deserialize(&mut serde_json::Deserializer::from_str(text)).map_err(|error| {
             let path = error.path().to_string();
             MapError::Json { path, message: error.into_inner().to_string() }
         })
     }
 
-    /// The form that files have, with a final newline. Reading it gives the same map again.
+    /// Writes the map as JSON with a final newline. Reading it gives the same map again.
+    ///
+    /// # Errors
+    /// Never in practice: a map is plain data.
     pub fn to_json(&self) -> Result<String, MapError> {
         let text = serde_json::to_string_pretty(self);
-        text.map(|text| text + "\n").map_err(|error| MapError::NoJson { message: error.to_string() })
+        text.map(|text| text + "\n").map_err(|error| MapError::NotJson { message: error.to_string() })
     }
 }
 
-/// `gaitway map --json` says more than a map has, and its "unused_sources" tell; what it says can be used as a map all the
-/// same. None for other text, which is read to the letter.
+/// Removes what `gaitway map --json` adds to a map, so that its output can be used as one. That output is recognised by its
+/// "unused_sources"; None for any other text, which is read strictly.
 fn without_explanations(text: &str) -> Option<String> {
     let mut form: serde_json::Value = serde_json::from_str(text).ok()?;
     let map = form.as_object_mut()?;

@@ -2,8 +2,8 @@
 
 use crate::anim::{Channel, Clip, ClipBuilder, JointIndex, Keys, Pose, SampleCursor, Skeleton};
 
-use super::resolved::ResolvedMap;
 use crate::asset::Asset;
+use crate::retarget::map::ResolvedMap;
 
 /// One of the model's own clips, cut down to the joints that play it.
 #[derive(Debug, Clone)]

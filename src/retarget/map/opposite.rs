@@ -1,16 +1,16 @@
-//! Which joint of a skeleton lies opposite which: by parts of the body, else by names that differ in their side alone.
+//! Which joint of a skeleton mirrors which: by slot, else by names that differ only in their side.
 
 use std::collections::BTreeMap;
 
-use super::recognize::{Name, Recognized, Side};
 use crate::anim::{JointIndex, Skeleton};
+use crate::retarget::recognize::{Name, Recognized, Side};
 
-/// For each joint the one on the other side of the body; none for joints in the middle and where there is doubt.
+/// Returns for each joint its counterpart on the other side of the body; None for joints in the middle and ambiguous ones.
 pub fn opposite_joints(skeleton: &Skeleton, recognized: &Recognized) -> Vec<Option<JointIndex>> {
     let mut opposite = vec![None; skeleton.len()];
-    for (slot, part) in &recognized.parts {
-        let other = recognized.joint(slot.mirrored()).filter(|&other| other != part.joint);
-        opposite[part.joint.get()] = other;
+    for (slot, found) in &recognized.parts {
+        let other = recognized.joint(slot.mirrored()).filter(|&other| other != found.joint);
+        opposite[found.joint.get()] = other;
     }
     let mut by_words: BTreeMap<Vec<String>, [Vec<JointIndex>; 2]> = BTreeMap::new();
     for joint in skeleton.joints().filter(|&joint| recognized.slot(joint).is_none()) {

@@ -1,0 +1,55 @@
+//! A channel of the retargeted clip before it is built.
+
+use glam::{DVec3, Quat, Vec3};
+
+use super::resample::Resampled;
+use crate::anim::{Interpolation, JointIndex, Keys};
+
+/// Keys for one property of a target joint.
+#[derive(Debug, Clone)]
+pub struct NewChannel {
+    pub joint: JointIndex,
+    pub interpolation: Interpolation,
+    pub times: Vec<f32>,
+    pub keys: Keys,
+    /// The keys are not the source's own.
+    pub resampled: bool,
+}
+
+impl NewChannel {
+    /// One value for all time.
+    pub fn constant(joint: JointIndex, keys: Keys) -> Self {
+        Self { joint, interpolation: Interpolation::Step, times: vec![0.0], keys, resampled: false }
+    }
+
+    /// Linear keys that are not the source's own.
+    pub fn resampled(joint: JointIndex, times: Vec<f32>, keys: Keys) -> Self {
+        Self { joint, interpolation: Interpolation::Linear, times, keys, resampled: true }
+    }
+
+    pub fn resampled_translation(joint: JointIndex, positions: Resampled<DVec3>) -> Self {
+        let values = positions.values.into_iter().map(DVec3::as_vec3).collect();
+        Self::resampled(joint, positions.times, Keys::Translation(values))
+    }
+
+    /// Repeats the last value at a later time.
+    pub fn hold_until(&mut self, time_secs: f32) {
+        let is_spline = self.interpolation == Interpolation::CubicSpline;
+        match &mut self.keys {
+            Keys::Translation(values) | Keys::Scale(values) => hold(values, is_spline, Vec3::ZERO),
+            Keys::Rotation(values) => hold(values, is_spline, Quat::from_xyzw(0.0, 0.0, 0.0, 0.0)),
+            Keys::MorphWeights { .. } => return,
+        }
+        self.times.push(time_secs);
+    }
+}
+
+fn hold<T: Copy>(values: &mut Vec<T>, is_spline: bool, zero: T) {
+    let Some(&value) = (if is_spline { values.iter().nth_back(1) } else { values.last() }) else { return };
+    if let Some(out_tangent) = values.last_mut().filter(|_| is_spline) {
+        *out_tangent = zero;
+        values.extend([zero, value, zero]);
+    } else {
+        values.push(value);
+    }
+}

@@ -1,0 +1,9 @@
+//! How well a retargeted clip follows its source, and the source beside it.
+
+mod figures;
+mod foot_track;
+mod stage;
+
+pub use figures::{Figures, MeasuredClip, measure};
+pub use foot_track::FootTrack;
+pub use stage::{StagePair, model_from_source, stage_pairs};

@@ -1,0 +1,97 @@
+//! Where the hips face over time, and the turning that the root options remove.
+
+use std::f64::consts::TAU;
+
+use glam::DQuat;
+
+use super::rotation::TOLERANCE_RADIANS;
+use super::{Hips, RootPolicy, RotationLaw, Transfer};
+use crate::retarget::keys::resample::{Curve, Resampled, resample, union};
+use crate::retarget::map::RootPart;
+use crate::retarget::math::yaw_of;
+use crate::retarget::pose::ancestry;
+
+/// Less turning than this from first to last key is sway and stays with the hips when travel moves to the root joint.
+const MIN_EXTRACTED_DEGREES: f64 = 5.0;
+
+/// An angle about +Y over time, linear between its keys. Angles are not wrapped.
+#[derive(Debug, Clone)]
+pub struct Yaw {
+    pub times: Vec<f32>,
+    pub radians: Vec<f64>,
+}
+
+impl Yaw {
+    pub fn at(&self, time_secs: f32) -> f64 {
+        let from = self.times.partition_point(|&start| start <= time_secs).saturating_sub(1);
+        match self.times.get(from + 1) {
+            Some(&end) if time_secs > self.times[from] => {
+                let factor = f64::from(time_secs - self.times[from]) / f64::from(end - self.times[from]);
+                self.radians[from] + factor * (self.radians[from + 1] - self.radians[from])
+            }
+            _ => self.radians.get(from).copied().unwrap_or(0.0),
+        }
+    }
+}
+
+/// Sets the yaw that the law of the topmost mapped joint takes out. Returns the yaw that goes to the root joint, if any.
+pub fn remove_turning(transfer: &Transfer, hips: &Hips, policy: &RootPolicy, laws: &mut [RotationLaw]) -> Option<Yaw> {
+    let root_options = &transfer.map.root;
+    if root_options.yaw == RootPart::Keep && policy.extraction_joint.is_none() {
+        return None;
+    }
+    let top = hips.top_pair(transfer.map, transfer.target_skeleton);
+    let Yaw { times, radians: headings } = heading(transfer, hips, top, laws)?;
+    let (first_secs, last_secs) = (*times.first()?, *times.last()?);
+    let secs = f64::from(last_secs - first_secs);
+    let slope = if secs > 0.0 { (headings[headings.len() - 1] - headings[0]) / secs } else { 0.0 };
+    let line = |time: f32| slope * f64::from(time - first_secs);
+    let is_extracted = root_options.yaw == RootPart::Keep
+        && policy.extraction_joint.is_some()
+        && (slope * secs).to_degrees().abs() > MIN_EXTRACTED_DEGREES;
+    let removed: Vec<f64> = match root_options.yaw {
+        RootPart::Keep if !is_extracted => return None,
+        RootPart::Keep | RootPart::InPlace => times.iter().map(|&time| -line(time)).collect(),
+        RootPart::Freeze => headings.iter().map(|heading| headings[0] - heading).collect(),
+    };
+    laws[top].yaw = Some(Yaw { times: times.clone(), radians: removed });
+    is_extracted.then(|| Yaw { radians: times.iter().map(|&time| line(time)).collect(), times })
+}
+
+/// Yaw of the target's hips away from their aligned rest, before any of it is removed. None without keys.
+fn heading(transfer: &Transfer, hips: &Hips, top: usize, laws: &[RotationLaw]) -> Option<Yaw> {
+    let Transfer { map, target_skeleton, alignment, .. } = *transfer;
+    let joint = map.pairs[hips.pair].target;
+    let rest = alignment.target.rotation(joint);
+    let value = |time: f32| {
+        let model_from_hips = ancestry(target_skeleton, joint).fold(DQuat::IDENTITY, |below, ancestor| {
+            let pair = map.pair_index(ancestor);
+            let local = pair.map_or(alignment.target.locals[ancestor.get()].rotation, |pair| laws[pair].at(time));
+            local * below
+        });
+        yaw_of(alignment.target.world_from_model * model_from_hips * rest.conjugate())
+    };
+    let (top_times, top_jumps) = laws[top].times();
+    let (hips_times, hips_jumps) = laws[hips.pair].times();
+    let (times, jumps) = (union([&top_times[..], &hips_times]), union([&top_jumps[..], &hips_jumps]));
+    if times.is_empty() {
+        return None;
+    }
+    let curve = Curve {
+        value,
+        interpolate: |from: f64, to: f64, factor: f64| from + factor * wrapped(to - from),
+        error: |a: f64, b: f64| wrapped(a - b).abs(),
+        tolerance: TOLERANCE_RADIANS,
+    };
+    let Resampled { times, values: mut radians } = resample(&times, &jumps, &curve);
+    // Unwrap, so that several turns count as several.
+    for at in 1..radians.len() {
+        radians[at] = radians[at - 1] + wrapped(radians[at] - radians[at - 1]);
+    }
+    Some(Yaw { times, radians })
+}
+
+/// The equivalent angle from −π to π.
+fn wrapped(radians: f64) -> f64 {
+    radians - (radians / TAU).round() * TAU
+}
