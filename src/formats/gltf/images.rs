@@ -22,8 +22,8 @@ pub fn images(
     warnings: &mut Warnings,
 ) -> Result<Vec<Image>, Problem> {
     let mut budget = MAX_IMAGE_PIXELS;
-    let mut images = Vec::with_capacity(accessors.root.images.len());
-    for (index, image) in accessors.root.images.iter().enumerate() {
+    let mut images = Vec::with_capacity(accessors.document.root.images.len());
+    for (index, image) in accessors.document.root.images.iter().enumerate() {
         let place = format!("images[{index}]");
         let bytes: Option<Arc<[u8]>> = match (&image.uri, image.buffer_view) {
             (Some(uri), _) if data::is_data_uri(uri) => Some(data::data_uri(&place, uri)?.into()),
@@ -35,7 +35,7 @@ pub fn images(
                 found
             }
             (None, Some(view)) => {
-                let (bytes, _) = accessors.view(view, &format!("{place}.bufferView"))?;
+                let (bytes, _) = accessors.view(view.value(), &format!("{place}.bufferView"))?;
                 accessors.charge(1, bytes.len(), &place)?;
                 Some(bytes.into())
             }
@@ -45,7 +45,7 @@ pub fn images(
                 None
             }
         };
-        let name = match (image.name.as_str(), &image.uri) {
+        let name = match (image.name.as_deref().unwrap_or_default(), &image.uri) {
             ("", Some(uri)) if !data::is_data_uri(uri) => data::decode_uri(uri).into_owned(),
             (name, _) => name.to_owned(),
         };
