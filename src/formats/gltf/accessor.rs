@@ -1,5 +1,5 @@
-//! Typed views of buffer bytes (glTF 2.0 §3.6). Every range is checked before it is read, and all that is decoded counts
-//! towards a budget, so that a small file cannot ask for a large memory.
+//! Typed views of buffer bytes (glTF 2.0 §3.6). Every range is checked before it is read, and all decoded data counts towards
+//! a budget, so that a small file cannot make us allocate a lot of memory.
 
 use std::cell::Cell;
 use std::fmt::Display;
@@ -12,13 +12,13 @@ use gltf::json::validation::Checked;
 use super::document::{Document, size};
 use crate::formats::error::Problem;
 
-/// How much one file may decode to, in bytes. A page has 4 GiB for everything.
+/// Limit on the decoded data of one file. A page has 4 GiB for everything.
 const BUDGET_BYTES: usize = if cfg!(target_pointer_width = "32") { 512 << 20 } else { 1 << 30 };
 
 /// The buffers of one file and the views into them.
 pub struct Accessors<'a> {
     pub document: &'a Document<'a>,
-    /// One per buffer; none where there is no data (allowed as long as nobody reads it).
+    /// One per buffer; None for a buffer without data (valid as long as nothing reads it).
     buffers: Vec<Option<Bytes<'a>>>,
     spent_bytes: Cell<usize>,
 }
@@ -39,7 +39,7 @@ impl Bytes<'_> {
     }
 }
 
-/// Where the elements of an accessor lie.
+/// Where the elements of an accessor are.
 struct Layout<'a> {
     /// None: zeros.
     bytes: Option<&'a [u8]>,
@@ -81,7 +81,7 @@ impl<'a> Accessors<'a> {
         Self { document, buffers, spent_bytes: Cell::new(0) }
     }
 
-    /// Counts `count` items of `size` bytes towards the budget, before they take any memory.
+    /// Counts `count` items of `size` bytes towards the budget, before they are allocated.
     pub fn charge(&self, count: usize, size: usize, place: &dyn Display) -> Result<(), Problem> {
         let spent = count
             .checked_mul(size)
@@ -95,12 +95,12 @@ impl<'a> Accessors<'a> {
         Ok(())
     }
 
-    /// What is left of the budget.
+    /// The rest of the budget.
     pub fn bytes_left(&self) -> usize {
         BUDGET_BYTES.saturating_sub(self.spent_bytes.get())
     }
 
-    /// The bytes of a buffer view, and its stride.
+    /// Returns the bytes of a buffer view, and its stride.
     pub fn view(&self, index: usize, place: &dyn Display) -> Result<(&[u8], Option<usize>), Problem> {
         let root = &self.document.root;
         let view = get(&root.buffer_views, index, place, "bufferViews")?;
@@ -124,12 +124,12 @@ impl<'a> Accessors<'a> {
         get(&self.document.root.accessors, index, place, "accessors")
     }
 
-    /// How many elements an accessor has.
+    /// Returns the number of elements of an accessor.
     pub fn count(&self, index: usize, place: &dyn Display) -> Result<usize, Problem> {
         Ok(size(self.accessor(index, place)?.count))
     }
 
-    /// How many components an element has, and of which type they are.
+    /// Returns the number of components of an element, and their type.
     fn kind(&self, index: usize, place: &dyn Display) -> Result<(usize, ComponentType), Problem> {
         let accessor = self.accessor(index, place)?;
         let unknown = |expected: &str, key: &str| {
@@ -202,7 +202,7 @@ impl<'a> Accessors<'a> {
         Ok(())
     }
 
-    /// Elements of `N` numbers. `what` says in words what is expected, for the error.
+    /// Decodes elements of `N` numbers. `what` describes the expected accessor in an error.
     pub fn floats<const N: usize>(
         &self,
         index: usize,
@@ -214,7 +214,7 @@ impl<'a> Accessors<'a> {
         let read = |bytes: &[u8]| std::array::from_fn(|at| to_f32(component, &bytes[at * size..], normalized));
         let mut out = match layout.bytes {
             None => vec![[0.0; N]; layout.count],
-            // By far the most, and fast when its kind is not asked for again and again.
+            // By far the most common, and fast without a match on the type for each component.
             Some(bytes) if component == ComponentType::F32 => decoded(bytes, &layout, f32::from_le_bytes),
             Some(bytes) => elements(bytes, &layout).map(read).collect(),
         };
@@ -222,7 +222,7 @@ impl<'a> Accessors<'a> {
         Ok(out)
     }
 
-    /// As [`Self::floats`], refusing numbers that are not finite.
+    /// Like [`Self::floats`], but rejects numbers that are not finite.
     pub fn finite<const N: usize>(
         &self,
         index: usize,
@@ -230,7 +230,7 @@ impl<'a> Accessors<'a> {
         what: &str,
     ) -> Result<Vec<[f32; N]>, Problem> {
         let values = self.floats::<N>(index, place, what)?;
-        // Without stopping at the first, so that several are looked at at once.
+        // Without early exit, so that the loop is vectorized.
         if values.as_flattened().iter().fold(true, |finite, number| finite & number.is_finite()) {
             return Ok(values);
         }
@@ -242,7 +242,7 @@ impl<'a> Accessors<'a> {
         }
     }
 
-    /// Elements of `N` unsigned integers.
+    /// Decodes elements of `N` unsigned integers.
     pub fn integers<const N: usize>(
         &self,
         index: usize,
@@ -269,7 +269,7 @@ impl<'a> Accessors<'a> {
     }
 }
 
-/// Elements of `N` components of `SIZE` bytes, which is what the layout says they have.
+/// Decodes elements of `N` components of `SIZE` bytes, which has to match the layout.
 fn decoded<T: Copy + Default, const N: usize, const SIZE: usize>(
     bytes: &[u8],
     layout: &Layout,
@@ -287,7 +287,7 @@ fn elements<'a>(bytes: &'a [u8], layout: &Layout) -> impl Iterator<Item = &'a [u
     (0..layout.count).map(move |element| &bytes[element * stride..element * stride + size])
 }
 
-/// Whether `count` elements fit; if not, how many bytes they would need.
+/// Checks that `count` elements fit; fails with the number of bytes needed.
 fn check_range(available: usize, stride: usize, size: usize, count: usize) -> Result<(), usize> {
     if count == 0 {
         return Ok(());
@@ -296,7 +296,7 @@ fn check_range(available: usize, stride: usize, size: usize, count: usize) -> Re
     if needed <= available { Ok(()) } else { Err(needed) }
 }
 
-/// `list[index]`, or an error at `place` that says how many there are.
+/// Returns `list[index]`, or an error at `place` that says how many there are.
 pub fn get<'a, T>(list: &'a [T], index: usize, place: &dyn Display, name: &str) -> Result<&'a T, Problem> {
     list.get(index)
         .ok_or_else(|| Problem::new(place.to_string(), format!("an index into the {} {name}", list.len()), index))

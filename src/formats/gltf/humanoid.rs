@@ -1,5 +1,5 @@
-//! The file's own word on which node is which part of a body: `VRM` (0.x), `VRMC_vrm` (1.0) and `VRMC_vrm_animation`.
-//! Models of VRM 0.x face −Z, those of 1.0 face +Z; which way a body faces is told by its joints, not here.
+//! The humanoid bones that a file declares: `VRM` (0.x), `VRMC_vrm` (1.0) and `VRMC_vrm_animation`. VRM 0.x models face −Z and
+//! 1.0 models +Z; the facing is found from the joints, not here.
 
 use gltf::json::Root;
 use serde_json::Value;
@@ -7,7 +7,7 @@ use serde_json::Value;
 use crate::anim::Skeleton;
 use crate::asset::{Humanoid, Slot, Warning, Warnings};
 
-/// None when the file says nothing. A bone that is not known or has no node costs a warning and nothing more.
+/// None if the file declares no bones. A bone that is unknown or has no node is skipped with a warning.
 pub fn humanoid(root: &Root, skeleton: &Skeleton, warnings: &mut Warnings) -> Option<Humanoid> {
     let mut humanoid = Humanoid::default();
     let mut add = |place: String, slot: Option<Slot>, bone: &str, node: Option<&Value>| {
@@ -50,7 +50,7 @@ fn human_bones<'a>(root: &'a Root, name: &str) -> Option<&'a Value> {
     root.extensions.as_ref()?.others.get(name)?.get("humanoid")?.get("humanBones")
 }
 
-/// VRM 0.x counts the bones of a thumb from Proximal, 1.0 from Metacarpal.
+/// In VRM 0.x the first bone of a thumb is Proximal, in 1.0 it is Metacarpal.
 fn slot_of_vrm0(bone: &str) -> Option<Slot> {
     Slot::from_name(match bone {
         "leftThumbProximal" => "leftThumbMetacarpal",

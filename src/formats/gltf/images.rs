@@ -1,5 +1,5 @@
-//! Images stay encoded; only their headers are read, so that absurd sizes are refused before anything is decoded. An
-//! image that cannot be had costs its texture, not the model.
+//! Images stay encoded; only their headers are read, so that absurd sizes are rejected before anything is decoded. An
+//! unavailable image leaves its texture empty; the model still loads.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::formats::FileSet;
 use crate::formats::error::Problem;
 
 const MAX_SIDE_PIXELS: usize = 16_384;
-/// Of all images of a file together.
+/// Limit for all images of a file together.
 pub const MAX_IMAGE_PIXELS: usize = 256 << 20;
 
 pub fn images(
@@ -49,7 +49,7 @@ pub fn images(
             ("", Some(uri)) if !data::is_data_uri(uri) => data::decode_uri(uri).into_owned(),
             (name, _) => name.to_owned(),
         };
-        // An image without bytes keeps its place, so that indices stay as they are in the file.
+        // An image without bytes stays in the list, so that indices are those of the file.
         let missing = Image { name: name.clone(), mime: "", bytes: Arc::from([]), width: 0, height: 0 };
         images.push(match bytes {
             None => missing,
@@ -65,7 +65,7 @@ pub fn images(
     Ok(images)
 }
 
-/// Kind by content (the file's own word for it is often wrong), and size.
+/// Returns the MIME type by content (what the file declares is often wrong), width and height.
 pub fn image_header(bytes: &[u8], budget: &mut usize) -> Result<(&'static str, u32, u32), String> {
     let mime = match imagesize::image_type(bytes) {
         Ok(ImageType::Png) => "image/png",

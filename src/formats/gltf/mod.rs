@@ -18,7 +18,7 @@ mod nodes;
 mod skins;
 mod write;
 
-use crate::asset::{Asset, Image, Warnings};
+use crate::asset::{Asset, AssetParts, Image, Warnings};
 use crate::formats::error::Problem;
 use crate::formats::{FileSet, LoadError};
 use accessor::{Accessors, Bytes};
@@ -30,7 +30,7 @@ pub(super) use images::{MAX_IMAGE_PIXELS, image_header};
 pub use write::WriteError;
 pub(super) use write::{asset as write_asset, model as write_model, motion as write_motion};
 
-/// URIs of the files that a model names besides itself, decoded, which are not in the set. Empty when it cannot be read.
+/// Returns the decoded URIs of the files that a model refers to and that are not in the set. Empty if it cannot be read.
 pub(super) fn missing_files(files: &FileSet, file: &str, bytes: &[u8]) -> Vec<String> {
     let Ok(document) = container::open(file, bytes).and_then(|container| Document::read(file, container.json)) else {
         return Vec::new();
@@ -83,13 +83,13 @@ fn build(
     let meshes = meshes::meshes(&accessors, &materials, &mut warnings)?;
     let skeleton = nodes::skeleton(root, &meshes, &mut warnings)?;
     let skins = skins::skins(&accessors, &skeleton, &mut warnings)?;
-    let instances = nodes::instances(root, &skeleton, &skins, &meshes)?;
+    let instances = nodes::instances(root, &skeleton, &skins)?;
     let clips = animations::clips(&accessors, &skeleton, &mut warnings)?;
     let (scenes, default_scene) = nodes::scenes(root, &skeleton)?;
     let cameras = nodes::cameras(root, &skeleton)?;
     let lights = nodes::lights(document, &skeleton, &mut warnings)?;
     let humanoid = humanoid::humanoid(root, &skeleton, &mut warnings);
-    Ok(Asset {
+    let parts = AssetParts {
         format: format(container, root),
         generator: root.asset.generator.clone().unwrap_or_default(),
         skeleton,
@@ -107,8 +107,10 @@ fn build(
         humanoid,
         extensions_used: root.extensions_used.clone(),
         extensions_required: root.extensions_required.clone(),
-        warnings,
-    })
+    };
+    let mut asset = Asset::new(parts)?;
+    asset.warnings = warnings;
+    Ok(asset)
 }
 
 fn format(container: &Container, root: &Root) -> &'static str {

@@ -1,4 +1,4 @@
-//! Nodes, scenes and what hangs on nodes (§3.5, §3.10).
+//! Nodes, scenes, and the meshes, cameras and lights of nodes (§3.5, §3.10).
 
 use std::f32::consts::FRAC_PI_4;
 
@@ -12,28 +12,28 @@ use super::document::Document;
 use crate::anim::{Joint, Skeleton, SkeletonError, Transform};
 use crate::asset::{Camera, CameraProjection, Light, LightKind, MeshInstance, Scene, Warning, Warnings};
 use crate::formats::error::Problem;
-use crate::mesh::{Influences, Mesh, Skin};
+use crate::mesh::{Mesh, Skin};
 
-/// Nodes that share a mesh each have a weight for each of its targets: a short file could ask for billions.
+/// Each node of a mesh has a weight for each of its targets: a short file could ask for billions.
 const MAX_MORPH_WEIGHTS: usize = 1 << 22;
 
-/// Names that many nodes can share are cut at this length, in characters.
+/// Length in characters to which names are cut that many nodes can share.
 const MAX_SHARED_NAME: usize = 256;
 
-/// All nodes as one skeleton; its source indices are the file's node indices.
+/// Builds one skeleton from all nodes. Its source indices are the file's node indices.
 pub fn skeleton(root: &Root, meshes: &[Mesh], warnings: &mut Warnings) -> Result<Skeleton, Problem> {
     let mut joints: Vec<Joint> = Vec::with_capacity(root.nodes.len());
-    let mut weights_in_all = 0;
+    let mut weight_count = 0;
     for (index, node) in root.nodes.iter().enumerate() {
         let place = format!("nodes[{index}]");
         let morph_weights = match node.mesh {
             None => Vec::new(),
             Some(mesh) => rest_weights(root, meshes, node, mesh.value(), &place)?,
         };
-        weights_in_all += morph_weights.len();
-        if weights_in_all > MAX_MORPH_WEIGHTS {
+        weight_count += morph_weights.len();
+        if weight_count > MAX_MORPH_WEIGHTS {
             let expected = format!("at most {MAX_MORPH_WEIGHTS} morph weights in all");
-            return Err(Problem::new(place, expected, weights_in_all));
+            return Err(Problem::new(place, expected, weight_count));
         }
         joints.push(Joint {
             name: node.name.clone().unwrap_or_default(),
@@ -79,16 +79,16 @@ fn rest(node: &Node, place: &str, warnings: &mut Warnings) -> Result<Transform, 
         Some(columns) => {
             let matrix = Mat4::from_cols_array(&columns);
             let transform = Transform::from_matrix(&matrix);
-            let again = Mat4::from(transform.to_affine());
-            let size = columns.iter().fold(1.0_f32, |most, number| most.max(number.abs()));
-            if matrix.is_finite() && !matrix.abs_diff_eq(again, 1e-4 * size) {
+            let recomposed = Mat4::from(transform.to_affine());
+            let largest = columns.iter().fold(1.0_f32, |largest, number| largest.max(number.abs()));
+            if matrix.is_finite() && !matrix.abs_diff_eq(recomposed, 1e-4 * largest) {
                 warnings.push(Warning::MatrixNotDecomposable { node: place.to_owned() });
             }
             transform
         }
         None => {
             let rotation = node.rotation.map_or(Quat::IDENTITY, |rotation| Quat::from_array(rotation.0));
-            // Not only zero: squares of very large numbers overflow.
+            // The length may be zero, or overflow.
             let length = rotation.length();
             let rotation = if length > 0.0 && length.is_finite() { rotation / length } else { Quat::IDENTITY };
             Transform {
@@ -105,49 +105,18 @@ fn rest(node: &Node, place: &str, warnings: &mut Warnings) -> Result<Transform, 
     }
 }
 
-/// Which mesh hangs where. Influences are checked against every skin they are used with; a mesh that is used without a
-/// skin keeps its influences, which are then not read.
-pub fn instances(
-    root: &Root,
-    skeleton: &Skeleton,
-    skins: &[Skin],
-    meshes: &[Mesh],
-) -> Result<Vec<MeshInstance>, Problem> {
-    // The largest joint of each primitive and where it stands: many nodes may share one large mesh.
-    let largest: Vec<Vec<Option<(u16, usize)>>> = meshes
-        .iter()
-        .map(|mesh| mesh.primitives.iter().map(|geometry| largest_joint(&geometry.influences)).collect())
-        .collect();
+/// Returns which joint draws which mesh. Without a skin, the influences of a mesh are not used.
+pub fn instances(root: &Root, skeleton: &Skeleton, skins: &[Skin]) -> Result<Vec<MeshInstance>, Problem> {
     let mut instances = Vec::new();
     for (index, node) in root.nodes.iter().enumerate() {
         let (Some(mesh), Some(joint)) = (node.mesh, skeleton.joint_of_source(index)) else { continue };
-        let (mesh, skin) = (mesh.value(), node.skin.map(|skin| skin.value()));
+        let skin = node.skin.map(|skin| skin.value());
         if let Some(skin) = skin {
-            let joints = get(skins, skin, &format!("nodes[{index}].skin"), "skins")?.joints().len();
-            for (at, largest) in largest[mesh].iter().enumerate() {
-                if let Some((joint, vertex)) = *largest
-                    && usize::from(joint) >= joints
-                {
-                    let place = format!("meshes[{mesh}].primitives[{at}].attributes.JOINTS_n, vertex {vertex}");
-                    return Err(Problem::new(place, format!("a joint below {joints}, the size of the skin"), joint));
-                }
-            }
+            get(skins, skin, &format_args!("nodes[{index}].skin"), "skins")?;
         }
-        instances.push(MeshInstance { joint, mesh, skin });
+        instances.push(MeshInstance { joint, mesh: mesh.value(), skin });
     }
     Ok(instances)
-}
-
-/// The largest joint index and the first vertex that has it.
-fn largest_joint(influences: &Influences) -> Option<(u16, usize)> {
-    let (mut largest, mut found) = (None, None);
-    for (at, &joint) in influences.joints.iter().enumerate() {
-        if largest < Some(joint) {
-            largest = Some(joint);
-            found = Some((joint, at / influences.stride.max(1)));
-        }
-    }
-    found
 }
 
 fn shared_name(name: &str) -> String {

@@ -42,17 +42,17 @@ pub fn skins(accessors: &Accessors, skeleton: &Skeleton, warnings: &mut Warnings
 }
 
 fn read_matrices(matrices: &[[f32; 16]], place: &str, warnings: &mut Warnings) -> Vec<Affine3A> {
-    let mut odd = 0;
+    let mut projective = 0;
     let affine = matrices
         .iter()
         .map(|columns| {
             let matrix = Mat4::from_cols_array(columns);
-            odd += usize::from(!matrix.row(3).abs_diff_eq(glam::Vec4::W, 1e-4));
+            projective += usize::from(!matrix.row(3).abs_diff_eq(glam::Vec4::W, 1e-4));
             Affine3A::from_mat4(matrix)
         })
         .collect();
-    if odd > 0 {
-        let problem = format!("the fourth row of {odd} matrices is not 0 0 0 1; it is taken as such");
+    if projective > 0 {
+        let problem = format!("the fourth row of {projective} matrices is not 0 0 0 1; it is taken as such");
         warnings.push(Warning::Other { code: "bind-matrix-row", place: place.to_owned(), problem });
     }
     affine

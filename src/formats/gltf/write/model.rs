@@ -1,4 +1,4 @@
-//! A model's own file as one GLB, with clips added behind its own.
+//! Writes a glTF model as one GLB, with clips added after its own.
 
 use std::borrow::Cow;
 
@@ -18,10 +18,10 @@ use crate::formats::gltf::document::{Document, json_error, size};
 use crate::formats::gltf::{container, data, resolve_buffers};
 use crate::formats::{FileSet, LoadError};
 
-/// The file `file` of the set as a GLB that needs no other file, with `clips` (of `skeleton`, which was read from the same
-/// file) behind its own. The bytes of its first buffer are the beginning of the new one; indices, numbers and everything
-/// unknown stay as they are. Only a node that a clip moves and that has a matrix gets the parts of it instead, because
-/// the specification forbids moving a matrix. A GLB that needs nothing done comes back as it is.
+/// Writes the file `file` of the set as a self-contained GLB, with `clips` (of `skeleton`, which was loaded from the same file)
+/// after its own. Its first buffer is the beginning of the new one; indices, numbers and everything unknown are preserved. Only
+/// a node with a matrix that a clip animates gets translation, rotation and scale instead, because the specification forbids
+/// animating a matrix. A GLB without anything to add or embed is returned unchanged.
 pub fn model(files: &FileSet, file: &str, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
     let bytes =
         files.get(file).ok_or_else(|| LoadError::NoModel { found: files.names().map(str::to_owned).collect() })?;
@@ -54,8 +54,8 @@ pub fn model(files: &FileSet, file: &str, skeleton: &Skeleton, clips: &[&Clip]) 
     for clip in clips {
         split_matrices(&mut json, clip, skeleton);
     }
-    // A GLB's chunk is up to three bytes longer than its buffer; files may have more in them than a buffer says, and
-    // views reach there that work all the same.
+    // A GLB's chunk is up to three bytes longer than its buffer. Other files may be longer than their buffer says, and
+    // views may reach beyond it.
     let byte_length = match root.buffers.first() {
         Some(first) if container.is_glb && binary.len() == chunk => size(first.byte_length),
         _ => binary.len(),
@@ -65,7 +65,7 @@ pub fn model(files: &FileSet, file: &str, skeleton: &Skeleton, clips: &[&Clip]) 
     glb::glb(json, binary)
 }
 
-/// What lies outside the file, and is brought in. In a .gltf data URIs count too: text takes a third more room.
+/// Data outside the binary chunk, which is embedded. In a .gltf that includes data URIs: base64 is a third larger.
 struct Outside {
     buffers: bool,
     images: Vec<usize>,
@@ -81,8 +81,8 @@ impl Outside {
     }
 }
 
-/// Puts the other buffers behind the first. Where that cannot be done (one has no data, or an extension names buffers by
-/// number) they stay, as data URIs.
+/// Appends the other buffers to the first. If that is impossible (one has no data, or an extension refers to buffers by
+/// number) they become data URIs.
 fn join_buffers(json: &mut Object, root: &Root, buffers: &[Option<Bytes>], outside: &Outside, binary: &mut Vec<u8>) {
     if !outside.buffers || buffers.len() < 2 {
         return;
@@ -130,7 +130,7 @@ fn keep_as_data(json: &mut Object, root: &Root, buffers: &[Option<Bytes>]) {
     json.set("buffers", &written);
 }
 
-/// Images that are not among the files stay as they are named.
+/// Embeds images. Those that are not among the files keep their URI.
 fn embed_images(files: &FileSet, file: &str, json: &mut Object, root: &Root, outside: &Outside, binary: &mut Vec<u8>) {
     if outside.images.is_empty() {
         return;
@@ -159,7 +159,7 @@ fn embed_images(files: &FileSet, file: &str, json: &mut Object, root: &Root, out
     json.set("images", &images);
 }
 
-/// What kind of image it is: by content, else by what the file says.
+/// Returns the MIME type of an image by its content, else as the file declares it.
 fn mime(bytes: &[u8], uri: &str, said: Option<String>) -> Option<String> {
     let by_content = match imagesize::image_type(bytes) {
         Ok(ImageType::Png) => Some("image/png"),
@@ -175,7 +175,7 @@ fn mime(bytes: &[u8], uri: &str, said: Option<String>) -> Option<String> {
     by_content.map(str::to_owned).or(said).or_else(in_uri)
 }
 
-/// The first buffer is what the GLB's binary chunk holds.
+/// Makes the GLB's binary chunk the first buffer.
 fn set_first_buffer(json: &mut Object, byte_length: usize) {
     let mut buffers: Array = json.read("buffers").unwrap_or_default();
     let mut first: Object =
@@ -192,7 +192,7 @@ fn set_first_buffer(json: &mut Object, byte_length: usize) {
     json.set("buffers", &buffers);
 }
 
-/// Nodes that the clip moves get translation, rotation and scale in place of a matrix.
+/// Replaces the matrix of nodes that the clip animates by translation, rotation and scale.
 fn split_matrices(json: &mut Object, clip: &Clip, skeleton: &Skeleton) {
     let mut nodes: Array = json.read("nodes").unwrap_or_default();
     let mut changed = false;
@@ -215,7 +215,7 @@ fn split_matrices(json: &mut Object, clip: &Clip, skeleton: &Skeleton) {
 
 fn parts(skeleton: &Skeleton, joint: JointIndex) -> Vec<(&'static str, Box<RawValue>)> {
     let rest = skeleton.rest().locals[joint.get()];
-    // With all digits: the shortest form of 32 bits may be read as its neighbour by way of 64.
+    // As f64: the shortest decimal form of an f32 may be parsed as its neighbour by readers that go through f64.
     vec![
         ("translation", raw(&rest.translation.as_dvec3().to_array())),
         ("rotation", raw(&rest.rotation.as_dquat().to_array())),
