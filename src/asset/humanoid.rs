@@ -1,4 +1,4 @@
-//! The parts of a human body that characters share, under the names of VRM 1.0 (`VRMC_vrm-1.0`, humanoid.md).
+//! The humanoid bones of VRM 1.0 (`VRMC_vrm-1.0`, humanoid.md).
 
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ macro_rules! slots {
             /// From the hips outwards; parents before children.
             pub const ALL: &[Self] = &[$(Self::$slot,)*];
 
-            /// The name that VRM 1.0 gives it.
+            /// Its name in VRM 1.0.
             pub fn name(self) -> &'static str {
                 match self {
                     $(Self::$slot => $name,)*
@@ -60,7 +60,7 @@ impl Slot {
         Self::ALL.iter().copied().find(|slot| slot.name() == name)
     }
 
-    /// The same part on the other side; parts in the middle are their own.
+    /// Returns the slot on the other side; a slot in the middle is its own.
     pub fn mirrored(self) -> Self {
         let name = self.name();
         let other = match (name.strip_prefix("left"), name.strip_prefix("right")) {
@@ -72,7 +72,7 @@ impl Slot {
     }
 }
 
-/// Which joint is which part of the body, as a file says or as its names and shape suggest.
+/// Maps humanoid slots to joints, as a file declares or as its names and shape suggest.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Humanoid(pub BTreeMap<Slot, JointIndex>);
 

@@ -1,8 +1,8 @@
-//! Trouble that costs nothing, or little: the load goes on and the person is told.
+//! Problems that do not prevent loading, but that the user is told.
 
 use std::fmt;
 
-/// What was odd, and what was done about it. `code` is stable and kebab-case: scripts and the page group by it.
+/// A problem and how it was handled. `code` is stable and in kebab case: scripts and the page group by it.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Warning {
     WeightsNormalized { mesh: String, vertices: usize },
@@ -78,16 +78,16 @@ impl fmt::Display for Warning {
     }
 }
 
-/// Warnings in the order they came.
+/// Warnings in the order in which they occurred.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Warnings(pub Vec<Warning>);
 
 impl Warnings {
-    /// How many are kept of any one code: a broken file must not fill the memory with words.
-    const MOST_PER_CODE: usize = 100;
+    /// Limit per code, so that a broken file does not fill the memory.
+    const MAX_PER_CODE: usize = 100;
 
     pub fn push(&mut self, warning: Warning) {
-        if self.0.iter().filter(|other| other.code() == warning.code()).count() < Self::MOST_PER_CODE {
+        if self.0.iter().filter(|other| other.code() == warning.code()).count() < Self::MAX_PER_CODE {
             self.0.push(warning);
         }
     }

@@ -16,23 +16,25 @@ const MOST_BYTES: u64 = 1 << 30;
 pub fn decode_images(asset: &mut Asset) -> Vec<Option<ImageData>> {
     let mut left = MOST_BYTES;
     let mut decoded = Vec::with_capacity(asset.images.len());
+    let mut warnings = std::mem::take(&mut asset.warnings);
     for (index, image) in asset.images.iter().enumerate() {
         let name = if image.name.is_empty() { index.to_string() } else { image.name.clone() };
         match decode(image, left) {
             Ok((data, whole)) => {
                 if whole != data.size() {
-                    asset.warnings.push(made_smaller(&name, whole.into(), data.size().into()));
+                    warnings.push(made_smaller(&name, whole.into(), data.size().into()));
                 }
                 let (width, height) = data.size();
                 left = left.saturating_sub(4 * u64::from(width) * u64::from(height));
                 decoded.push(Some(data));
             }
             Err(problem) => {
-                asset.warnings.push(Warning::ImageUnreadable { image: name, problem });
+                warnings.push(Warning::ImageUnreadable { image: name, problem });
                 decoded.push(None);
             }
         }
     }
+    asset.warnings = warnings;
     decoded
 }
 

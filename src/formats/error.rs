@@ -1,6 +1,9 @@
-//! Why a load failed: the file, the place in it, what was expected, what was found and, when known, what to do.
+//! Why a load failed: the file, the place in it, what was expected, what was found and, if known, what to do.
 
-/// Everything that makes a set of files unreadable. The texts are what a person sees.
+use crate::asset::AssetError;
+use crate::mesh::GeometryError;
+
+/// Everything that makes a set of files unreadable. The user sees these texts.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LoadError {
     #[error(
@@ -31,18 +34,18 @@ pub enum LoadError {
 }
 
 fn listed(names: &[String]) -> String {
-    const MOST: usize = 8;
+    const MAX_NAMES: usize = 8;
     if names.is_empty() {
         return "there are none".to_owned();
     }
-    let mut text = names.iter().take(MOST).cloned().collect::<Vec<_>>().join(", ");
-    if names.len() > MOST {
-        text.push_str(&format!(" and {} more", names.len() - MOST));
+    let mut text = names.iter().take(MAX_NAMES).cloned().collect::<Vec<_>>().join(", ");
+    if names.len() > MAX_NAMES {
+        text.push_str(&format!(" and {} more", names.len() - MAX_NAMES));
     }
     text
 }
 
-/// What is wrong at one place of a file; the loader adds the file's name.
+/// An error at one place of a file. The loader adds the file name.
 #[derive(Debug)]
 pub(super) enum Problem {
     Invalid { place: String, expected: String, found: String },
@@ -59,6 +62,26 @@ impl Problem {
         match self {
             Self::Invalid { place, expected, found } => LoadError::Invalid { file, place, expected, found },
             Self::MissingFile { place, uri } => LoadError::MissingFile { file, place, uri },
+        }
+    }
+}
+
+/// Places are those of a glTF, the only format whose files can lead here: the other readers check as they go.
+impl From<AssetError> for Problem {
+    fn from(problem: AssetError) -> Self {
+        match problem {
+            AssetError::Index { list, index, count } => Self::new(list, format!("an index below {count}"), index),
+            AssetError::Geometry { mesh, primitive, problem } => {
+                let place = format!("meshes[{mesh}].primitives[{primitive}]");
+                match problem {
+                    GeometryError::JointOutOfRange { vertex, joint, joints } => Self::new(
+                        format!("{place}.attributes.JOINTS_n, vertex {vertex}"),
+                        format!("a joint below {joints}, the size of the skin"),
+                        joint,
+                    ),
+                    other => Self::new(place, "consistent geometry", other),
+                }
+            }
         }
     }
 }

@@ -1,13 +1,13 @@
-//! Text files as words with the lines they stand on. The text need not be UTF-8: names come from many code pages.
+//! Splits text files into words and lines, with line numbers. The text need not be UTF-8: names come from many code pages.
 
 use std::borrow::Cow;
 
 pub const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 
-/// How much of a strange word is quoted in a message.
-const MOST_QUOTED: usize = 40;
+/// Characters of an unexpected word that a message quotes.
+const MAX_QUOTED: usize = 40;
 
-/// Where reading has come to. Lines end with LF, CR LF or CR; numbers of lines start at 1.
+/// The reading position. Lines end with LF, CR LF or CR; line numbers start at 1.
 pub struct Lines<'a> {
     rest: &'a [u8],
     pub line: usize,
@@ -18,7 +18,7 @@ impl<'a> Lines<'a> {
         Self { rest: bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes), line: 1 }
     }
 
-    /// The next word on this line or a later one. Braces are words of their own.
+    /// Reads the next word on this line or a later one. Braces are words of their own.
     pub fn word(&mut self) -> Option<&'a [u8]> {
         while let Some((&byte, rest)) = self.rest.split_first() {
             if !is_space(byte) {
@@ -38,12 +38,12 @@ impl<'a> Lines<'a> {
         None
     }
 
-    /// The next word, without going past it.
+    /// Returns the next word without consuming it.
     pub fn peek(&self) -> Option<&'a [u8]> {
         Self { rest: self.rest, line: self.line }.word()
     }
 
-    /// What is left of this line up to a brace, without white space around it. Stays on the line.
+    /// Reads the rest of this line up to a brace, trimmed. Stays on the line.
     pub fn rest_of_line(&mut self) -> &'a [u8] {
         let length = self.rest.iter().take_while(|byte| !matches!(byte, b'\n' | b'\r' | b'{' | b'}')).count();
         let (text, rest) = self.rest.split_at(length);
@@ -51,7 +51,7 @@ impl<'a> Lines<'a> {
         text.trim_ascii()
     }
 
-    /// The words of the next line that has any, and the line's number.
+    /// Reads the next line that is not blank. Returns its number and its trimmed text.
     pub fn next_full_line(&mut self) -> Option<(usize, &'a [u8])> {
         loop {
             let length = self.rest.iter().take_while(|byte| !matches!(byte, b'\n' | b'\r')).count();
@@ -72,12 +72,12 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// For messages: which line this is.
+    /// The current line, for messages.
     pub fn place(&self) -> String {
         format!("line {}", self.line)
     }
 
-    /// For messages: which line the next word is on.
+    /// The line of the next word, for messages.
     pub fn next_place(&self) -> String {
         let mut ahead = Self { rest: self.rest, line: self.line };
         ahead.word();
@@ -93,20 +93,20 @@ pub fn text(word: &[u8]) -> Cow<'_, str> {
     String::from_utf8_lossy(word)
 }
 
-/// A word as messages quote it.
+/// Quotes a word for a message.
 pub fn quoted(word: Option<&[u8]>) -> String {
     match word {
         None => "the end of the file".to_owned(),
         Some(word) => {
             let text = text(word);
-            let cut: String = text.chars().take(MOST_QUOTED).collect();
+            let cut: String = text.chars().take(MAX_QUOTED).collect();
             let dots = if cut.len() < text.len() { "…" } else { "" };
             format!("“{cut}{dots}”")
         }
     }
 }
 
-/// A finite number.
+/// Parses a finite number.
 pub fn number(word: &[u8]) -> Option<f64> {
     let number: f64 = std::str::from_utf8(word).ok()?.parse().ok()?;
     number.is_finite().then_some(number)

@@ -1,5 +1,5 @@
-//! From files in memory to an [`Asset`]. Knows no disk and no network: whoever has one asks [`missing_files`] what else a
-//! file names, adds it to the [`FileSet`], and then calls [`load`].
+//! Loads files in memory as an [`Asset`], and writes GLB. Knows neither disk nor network: callers ask [`missing_files`] what
+//! else a file refers to, add it to the [`FileSet`], then call [`load`].
 
 mod bvh;
 mod error;
@@ -19,12 +19,13 @@ use crate::anim::{Clip, Skeleton};
 use crate::asset::{Asset, Image};
 use file_set::bare_name;
 
-/// Of .obj, .skel and .attach together. With more, which nobody can have open at once, nothing is looked for beside them: each
-/// takes a walk through the set.
-const MOST_OBJ_FILES: usize = 256;
+/// Limit on .obj, .skel and .attach files together. Beyond it, which no real scene reaches, companions are not looked up:
+/// each lookup walks the set.
+const MAX_OBJ_FILES: usize = 256;
 
-/// Relative URIs (percent-decoded) that the models and motions in this set refer to and that are not in the set, not even
-/// by their bare names; for an .obj also the .skel and .attach of the same stem, which need not exist. Empty when the set is complete or cannot be read at all ([`load`] will say why).
+/// Returns the relative URIs (percent-decoded) that the models and motions in this set refer to and that are not in the set,
+/// not even by their bare names; for an .obj also the .skel and .attach of the same stem, which need not exist. Empty if the
+/// set is complete, or if it cannot be read at all ([`load`] will say why).
 pub fn missing_files(files: &FileSet) -> Vec<String> {
     let Ok(files) = files.unpacked() else { return Vec::new() };
     let (mut missing, mut known) = (Vec::new(), BTreeSet::new());
@@ -33,22 +34,22 @@ pub fn missing_files(files: &FileSet) -> Vec<String> {
         add(gltf::missing_files(&files, name, bytes));
     }
     let of_obj = || files.iter().filter(|(name, bytes)| is_obj(name, bytes) || obj::is_companion(name));
-    if of_obj().count() <= MOST_OBJ_FILES {
+    if of_obj().count() <= MAX_OBJ_FILES {
         of_obj().for_each(|(name, bytes)| add(obj::missing_files(&files, name, bytes)));
     }
     missing
 }
 
-/// What a file leaves open and a person may know better.
+/// What a file does not state and the user may know.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct LoadOptions {
-    /// Metres in one unit of a .bvh; none: guessed by the skeleton's size.
+    /// Metres per unit of a .bvh. None: guessed from the skeleton's size.
     pub bvh_unit_metres: Option<f32>,
-    /// Whether Z points up in a .bvh (else Y); none: guessed by how the skeleton stands.
+    /// Whether Z is up in a .bvh (else Y). None: guessed from the rest pose and the motion.
     pub bvh_z_up: Option<bool>,
 }
 
-/// Reads the one model in a set of files. A set with none, or with several, is an error that lists what was found.
+/// Loads the only model in a set of files. A set with none, or with several, is an error that lists what was found.
 pub fn load(files: &FileSet) -> Result<Asset, LoadError> {
     load_with(files, &LoadOptions::default())
 }
@@ -59,19 +60,19 @@ pub fn load_with(files: &FileSet, options: &LoadOptions) -> Result<Asset, LoadEr
     read(&files, name, bytes, options, &mut |_| ())
 }
 
-/// Names of the files in the set that are models or motions, each of which can be loaded: [`load`] wants exactly one.
+/// Returns the names of the files in the set that are models or motions. [`load`] expects exactly one.
 pub fn main_files(files: &FileSet) -> Result<Vec<String>, LoadError> {
     let files = files.unpacked()?;
     Ok(files.iter().filter(|(name, bytes)| is_model(name, bytes)).map(|(name, _)| name.to_owned()).collect())
 }
 
-/// Reads one of the set's [`main_files`]; the others may hold its parts.
+/// Loads one of the set's [`main_files`]. The others may contain its buffers and images.
 pub fn load_named(files: &FileSet, name: &str, options: &LoadOptions) -> Result<Asset, LoadError> {
     load_noticing_images(files, name, options, &mut |_| ())
 }
 
-/// As [`load_named`]; `on_images` gets the asset's images as soon as they are known, before the rest is read, for a platform
-/// that decodes them meanwhile.
+/// Like [`load_named`]. Calls `on_images` with the asset's images as soon as they are known, before the rest is read, so
+/// that a platform can decode them meanwhile.
 pub fn load_noticing_images(
     files: &FileSet,
     name: &str,
@@ -85,10 +86,10 @@ pub fn load_noticing_images(
     }
 }
 
-/// The set's model `name` (one of its [`main_files`]) as a GLB that needs no other file, with `clips` behind its own; they
-/// are for `skeleton`, which was loaded from the same file. Of a glTF, what the file had before is kept to the letter: the
-/// bytes of its first buffer are the beginning of the new one, and its JSON only grows. Of an .obj, joints are called and
-/// stand as `skeleton` says.
+/// Writes the set's model `name` (one of its [`main_files`]) as a self-contained GLB, with `clips` added after its own. The
+/// clips are for `skeleton`, which was loaded from the same file. The contents of a glTF are preserved to the letter: its
+/// first buffer is the beginning of the new one, and its JSON only grows. An .obj takes joint names and rest pose from
+/// `skeleton`.
 pub fn write_model(files: &FileSet, name: &str, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
     let files = files.unpacked()?;
     if let Some(bytes) = files.get(name).filter(|bytes| is_obj(name, bytes)) {
@@ -112,14 +113,14 @@ fn write_obj(
     gltf::write_asset(&asset, skeleton, clips)
 }
 
-/// The skeleton of an asset with `clips` (which are for it) and nothing else, as a GLB. Joints keep their numbers and are called
-/// and stand as `skeleton` says, which is the asset's own but for that.
+/// Writes a GLB with nothing but the skeleton of an asset and `clips` for it. `skeleton` has the asset's joints; names and rest
+/// pose may differ.
 pub fn write_motion(asset: &Asset, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
     gltf::write_motion(asset, skeleton, clips)
 }
 
-/// The one model or motion of a set as a GLB: a glTF with all that is in it, a .bvh as its skeleton and its clip, an .obj at
-/// rest.
+/// Converts the only model or motion of a set to GLB: a glTF with everything in it, a .bvh as skeleton and clip, an .obj in its
+/// rest pose.
 pub fn convert(files: &FileSet, options: &LoadOptions) -> Result<Vec<u8>, WriteError> {
     let files = files.unpacked()?;
     let (name, bytes) = find_model(&files)?;
@@ -177,26 +178,26 @@ fn is_model(name: &str, bytes: &[u8]) -> bool {
     is_bvh(name, bytes) || is_gltf(name, bytes) || is_obj(name, bytes)
 }
 
-/// By the name alone: nothing in the text tells it from others.
+/// Decided by the name alone: nothing in the text is distinctive.
 fn is_obj(name: &str, bytes: &[u8]) -> bool {
     obj::is_obj(name) && !is_bvh(name, bytes) && !is_gltf(name, bytes)
 }
 
 fn is_bvh(name: &str, bytes: &[u8]) -> bool {
-    bvh::is_bvh(bytes) || (ending(name) == "bvh" && !bytes.starts_with(b"glTF"))
+    bvh::is_bvh(bytes) || (extension(name) == "bvh" && !bytes.starts_with(b"glTF"))
 }
 
-/// By content where it can be told (addresses often have no ending), else by the name's ending.
+/// Decided by the content if possible (URLs often have no file extension), else by the extension.
 fn is_gltf(name: &str, bytes: &[u8]) -> bool {
     if bytes.starts_with(b"glTF") {
         return true;
     }
-    let ending = ending(name);
-    if matches!(ending.as_str(), "glb" | "gltf" | "vrm" | "vrma") {
+    let extension = extension(name);
+    if matches!(extension.as_str(), "glb" | "gltf" | "vrm" | "vrma") {
         return true;
     }
-    // An address without a telling name: JSON that speaks of an asset.
-    ending != "json"
+    // A URL without a telling name: JSON that mentions an asset.
+    extension != "json"
         && bytes.iter().find(|byte| !byte.is_ascii_whitespace()) == Some(&b'{')
         && bytes.windows(7).take(4096).any(|window| window == b"\"asset\"")
 }
@@ -208,7 +209,7 @@ fn foreign_format(name: &str, bytes: &[u8]) -> Option<&'static str> {
     if bytes.starts_with(b"xof ") {
         return Some("DirectX .x");
     }
-    match ending(name).as_str() {
+    match extension(name).as_str() {
         "fbx" => Some("FBX"),
         "x" => Some("DirectX .x"),
         "dae" => Some("COLLADA"),
@@ -217,8 +218,9 @@ fn foreign_format(name: &str, bytes: &[u8]) -> Option<&'static str> {
     }
 }
 
-fn ending(name: &str) -> String {
+/// The file extension in lower case, also of a URL with a query.
+fn extension(name: &str) -> String {
     let bare = bare_name(name);
     let bare = bare.split(['?', '#']).next().unwrap_or(bare);
-    bare.rsplit_once('.').map_or_else(String::new, |(_, ending)| ending.to_lowercase())
+    bare.rsplit_once('.').map_or_else(String::new, |(_, extension)| extension.to_lowercase())
 }

@@ -9,8 +9,8 @@ use glam::{Affine3A, Vec3, Vec4};
 
 use super::{ImageData, Model};
 use crate::anim::{Joint, JointIndex, Skeleton, SkeletonError, Transform};
-use crate::asset::{Asset, MeshInstance, Scene};
-use crate::mesh::{Geometry, Material, Mesh, Skin, SkinError};
+use crate::asset::{Asset, AssetError, AssetParts, MeshInstance, Scene};
+use crate::mesh::{Material, Mesh, Skin, SkinError};
 
 /// The name after `sample:` of the one that is made in code.
 pub const WALKER: &str = "walker";
@@ -122,7 +122,7 @@ enum SampleError {
     #[error(transparent)]
     Skin(#[from] SkinError),
     #[error(transparent)]
-    Geometry(#[from] crate::mesh::GeometryError),
+    Asset(#[from] AssetError),
     #[error(transparent)]
     Channel(#[from] crate::anim::ChannelError),
 }
@@ -139,16 +139,12 @@ fn build() -> Result<Asset, SampleError> {
             ..Mesh::default()
         },
     ];
-    meshes
-        .iter()
-        .flat_map(|mesh| &mesh.primitives)
-        .try_for_each(|part: &Geometry| part.validate(Some(joint::COUNT)))?;
     let of_source = |source: usize| skeleton.joint_of_source(source).unwrap_or(JointIndex(0));
     let instances = vec![
         MeshInstance { joint: of_source(BODY_NODE), mesh: 0, skin: Some(0) },
         MeshInstance { joint: of_source(EYES_NODE), mesh: 1, skin: Some(0) },
     ];
-    Ok(Asset {
+    Ok(Asset::new(AssetParts {
         format: "sample",
         generator: "Gaitway".to_owned(),
         clips: motion::clips(&skeleton)?,
@@ -162,8 +158,8 @@ fn build() -> Result<Asset, SampleError> {
         instances,
         materials: materials(),
         skeleton,
-        ..Asset::default()
-    })
+        ..AssetParts::default()
+    })?)
 }
 
 fn skeleton() -> Result<Skeleton, SkeletonError> {

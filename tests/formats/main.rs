@@ -7,6 +7,7 @@ mod file_sets;
 mod humanoid;
 mod influences;
 mod invalid;
+mod lenient;
 mod mutation;
 mod obj;
 mod sweep;

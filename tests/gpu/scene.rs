@@ -1,6 +1,8 @@
 //! A few surfaces in front of a camera, and what of them is seen.
 
-use gaitway::asset::Asset;
+use std::sync::Arc;
+
+use gaitway::asset::{Asset, AssetParts, Image};
 use gaitway::frame::{Character, Draw, Frame, View};
 use gaitway::library::{ImageData, Model, ModelId};
 use gaitway::mesh::{Bounds, Geometry, Material, Mesh, SkinningMode, Texture, palette_entry};
@@ -52,7 +54,11 @@ impl Scene {
         let count = geometries.len();
         let meshes =
             geometries.into_iter().map(|geometry| Mesh { primitives: vec![geometry], ..Default::default() }).collect();
-        let asset = Asset { meshes, materials, textures, ..Default::default() };
+        // The pixels are given; of the files only their number counts.
+        let file = Image { name: String::new(), mime: "image/png", bytes: Arc::from([]), width: 1, height: 1 };
+        let files = vec![file; images.len()];
+        let parts = AssetParts { meshes, materials, textures, images: files, ..AssetParts::default() };
+        let asset = Asset::new(parts).expect("indices in range");
         let eye = Vec3::new(0.0, 0.0, 5.0);
         let mut frame = Frame::default();
         frame.view = View {

@@ -36,7 +36,7 @@ fn figure(left: f32, toes: bool) -> Asset {
             at = place(&format!("{side}{name}"), Some(at), Vec3::new(step * out, 0.0, 0.0));
         }
     }
-    Asset { skeleton: Skeleton::new(joints).expect("a tree"), ..Asset::default() }
+    Asset::from(Skeleton::new(joints).expect("a tree"))
 }
 
 #[test]

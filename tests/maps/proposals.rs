@@ -167,7 +167,7 @@ fn large_scenes_are_quick() {
             ..Joint::default()
         });
         let unnamed = joints.clone().map(|joint| Joint { name: String::new(), ..joint });
-        let asset = |joints| Asset { skeleton: Skeleton::new(joints).expect("a tree"), ..Asset::default() };
+        let asset = |joints| Asset::from(Skeleton::new(joints).expect("a tree"));
         let (named, unnamed) = (asset(joints.collect()), asset(unnamed.collect()));
         let start = std::time::Instant::now();
         propose(&named, &unnamed);

@@ -1,7 +1,7 @@
 //! Looking a map's names up in two skeletons.
 
 use gaitway::anim::{ClipBuilder, Joint, Property, Skeleton};
-use gaitway::asset::Asset;
+use gaitway::asset::{Asset, AssetParts};
 use gaitway::retarget::{
     ClipRef, JointMap, Layer, MapEntry, MapError, MutedChannel, MutedProperty, Pair, ResolvedMap, SourceRef, Unmapped,
 };
@@ -16,7 +16,7 @@ fn chain(names: &[&str], clips: &[&str]) -> Asset {
     });
     let skeleton = Skeleton::new(joints.collect()).expect("a chain");
     let clips = clips.iter().map(|name| ClipBuilder::new(*name, &skeleton).build()).collect();
-    Asset { skeleton, clips, ..Asset::default() }
+    Asset::new(AssetParts { skeleton, clips, ..AssetParts::default() }).expect("indices in range")
 }
 
 fn model() -> Asset {

@@ -34,7 +34,7 @@ fn rig(text: &str) -> Asset {
             }
         }
     }
-    Asset { skeleton: Skeleton::new(joints).expect("a tree"), ..Asset::default() }
+    Asset::from(Skeleton::new(joints).expect("a tree"))
 }
 
 /// The text of the right side from that of the left.

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use gaitway::anim::JointIndex;
-use gaitway::asset::{Asset, Slot, Slot::*};
+use gaitway::asset::{Asset, AssetParts, Slot, Slot::*};
 use gaitway::retarget::{ProposedPair, Reason, Recognized, propose, recognize};
 
 use crate::data::open;
@@ -507,12 +507,15 @@ fn is_called(asset: &Asset, joint: JointIndex, name: &str) -> bool {
     asset.skeleton.name(joint) == name || format!("#{}", asset.skeleton.source_index(joint)) == name
 }
 
+fn without_humanoid(asset: Asset) -> Asset {
+    Asset::new(AssetParts { humanoid: None, ..asset.into_parts() }).expect("indices in range")
+}
+
 /// All files by names and shape alone, also those that say themselves what is what.
 fn each_file(mut visit: impl FnMut(&str, &Asset, &BTreeMap<Slot, String>)) {
     for rig in RIGS {
         for path in rig.files {
-            let Some(mut asset) = open(path) else { return };
-            asset.humanoid = None;
+            let Some(asset) = open(path).map(without_humanoid) else { return };
             let truth = rig.truth();
             for (slot, name) in &truth {
                 let count = asset.skeleton.joints().filter(|&joint| is_called(&asset, joint, name)).count();
@@ -598,8 +601,7 @@ fn recognising_twice_gives_the_same() {
 fn no_proposal_crosses_sides() {
     let mut files: Vec<(String, Asset, BTreeMap<JointIndex, Slot>)> = Vec::new();
     for rig in RIGS {
-        let Some(mut asset) = rig.files.first().and_then(|path| open(path)) else { return };
-        asset.humanoid = None;
+        let Some(asset) = rig.files.first().and_then(|path| open(path)).map(without_humanoid) else { return };
         let slots = rig.truth().into_iter().map(|(slot, name)| {
             let joint = asset.skeleton.joints().find(|&joint| is_called(&asset, joint, &name));
             (joint.unwrap_or_else(|| panic!("{name}")), slot)

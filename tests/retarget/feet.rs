@@ -59,7 +59,8 @@ fn walker(lift: f32) -> Figure {
         add(knee, &bend);
         add(foot, &|time| angle(time, phase) - bend(time));
     }
-    figure.asset.clips = vec![clip.build()];
+    let clip = clip.build();
+    figure.set_clip(clip);
     figure
 }
 

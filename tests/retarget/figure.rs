@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use gaitway::anim::{
     Clip, ClipBuilder, Interpolation, Joint, JointIndex, Keys, Pose, SampleCursor, Skeleton, Transform,
 };
-use gaitway::asset::{Asset, Humanoid, Slot};
+use gaitway::asset::{Asset, AssetParts, Humanoid, Slot};
 use glam::{DQuat, DVec3, EulerRot, Quat, Vec3};
 
 /// Slot, parent slot, place in the world at the T-pose, metres; faces +Z.
@@ -200,7 +200,7 @@ pub fn build(rig: &Rig) -> Figure {
     }
     let skeleton = Skeleton::new(joints).unwrap();
     let slots = Humanoid(made.iter().map(|(&slot, made)| (slot, skeleton.joint_of_source(made.0).unwrap())).collect());
-    Figure { asset: Asset { format: "code", skeleton, ..Asset::default() }, slots, t_pose }
+    Figure { asset: Asset::from(skeleton), slots, t_pose }
 }
 
 impl Figure {
@@ -264,6 +264,13 @@ impl Figure {
                 clip.channel(joint, interpolation, &times, Keys::Translation(places)).unwrap();
             }
         }
-        self.asset.clips = vec![clip.build()];
+        let clip = clip.build();
+        self.set_clip(clip);
+    }
+
+    /// Replaces the clips by this one.
+    pub fn set_clip(&mut self, clip: Clip) {
+        let parts = std::mem::take(&mut self.asset).into_parts();
+        self.asset = Asset::new(AssetParts { clips: vec![clip], ..parts }).unwrap();
     }
 }

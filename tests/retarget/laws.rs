@@ -147,7 +147,7 @@ fn there_and_back_is_where_it_was() {
     let mut second =
         build(&Rig { axes: 4, size: 0.6, leg_length: 1.2, armature: true, prefix: "other_", ..Rig::default() });
     let there = carry(&second, &first, &map(&second, &first));
-    second.asset.clips = vec![there.clip];
+    second.set_clip(there.clip);
     let back = carry(&first, &second, &map(&first, &second));
     for step in 0..=30 {
         let time = step as f32 * 1.5 / 30.0;
@@ -272,7 +272,8 @@ fn the_first_frame_can_be_the_rest() {
             clip.channel(channel.joint, channel.interpolation, times, Keys::Rotation(values)).unwrap();
         }
     }
-    motion.asset.clips = vec![clip.build()];
+    let clip = clip.build();
+    motion.set_clip(clip);
     let model = build(&Rig { axes: 6, ..Rig::default() });
     let mut first = map(&model, &motion);
     first.rest.motion = RestChoice::FirstFrame;

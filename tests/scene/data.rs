@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use gaitway::anim::{ClipBuilder, Interpolation, Joint, Keys, Skeleton, Transform};
-use gaitway::asset::{Asset, MeshInstance};
+use gaitway::asset::{Asset, AssetParts, MeshInstance};
 use gaitway::files::open_paths;
 use gaitway::library::{Library, Model, sample};
 use gaitway::mesh::{Geometry, Mesh};
@@ -30,14 +30,15 @@ pub fn moving_box(half: f32, times_secs: &[f32], places: &[Vec3]) -> Library {
     let positions: Vec<Vec3> =
         gaitway::mesh::Bounds { min: Vec3::splat(-half), max: Vec3::splat(half) }.corners().into();
     let geometry = Geometry { file_vertices: 8, positions, indices: (0..6).collect(), ..Geometry::default() };
-    let asset = Asset {
+    let parts = AssetParts {
         format: "test",
         clips,
         meshes: vec![Mesh { primitives: vec![geometry], ..Mesh::default() }],
         instances: vec![MeshInstance { joint, mesh: 0, skin: None }],
         skeleton,
-        ..Asset::default()
+        ..AssetParts::default()
     };
+    let asset = Asset::new(parts).expect("indices in range");
     library_of(Model::new("box".to_owned(), asset, Vec::new()))
 }
 

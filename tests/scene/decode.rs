@@ -3,7 +3,7 @@
 use std::io::Cursor;
 use std::sync::Arc;
 
-use gaitway::asset::{Asset, Image};
+use gaitway::asset::{Asset, AssetParts, Image};
 use gaitway::files::decode_images;
 use gaitway::library::ImageData;
 
@@ -16,7 +16,8 @@ fn png(width: u32, height: u32, pixels: &[u8]) -> Vec<u8> {
 
 fn decode(bytes: Vec<u8>) -> (Option<ImageData>, Asset) {
     let image = Image { name: "skin".to_owned(), mime: "image/png", bytes: Arc::from(bytes), width: 2, height: 1 };
-    let mut asset = Asset { images: vec![image], ..Asset::default() };
+    let parts = AssetParts { images: vec![image], ..AssetParts::default() };
+    let mut asset = Asset::new(parts).expect("indices in range");
     let mut images = decode_images(&mut asset);
     assert_eq!(images.len(), 1);
     (images.remove(0), asset)

@@ -112,7 +112,7 @@ fn beast(names: &[&str]) -> Arc<Asset> {
         ..Joint::default()
     };
     let skeleton = Skeleton::new(names.iter().enumerate().map(joint).collect()).expect("one root");
-    Arc::new(Asset { format: "test", skeleton, ..Asset::default() })
+    Arc::new(Asset::from(skeleton))
 }
 
 /// Which source each target follows, both by their numbers in the file, after the sides were swapped.

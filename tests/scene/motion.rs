@@ -33,7 +33,7 @@ fn chain(names: &[&str]) -> Asset {
         morph_weights: Vec::new(),
     };
     let skeleton = Skeleton::new(names.iter().enumerate().map(joint).collect()).expect("a chain");
-    Asset { format: "test", skeleton, ..Asset::default() }
+    Asset::from(skeleton)
 }
 
 fn settled(library: &mut Library, state: &mut ViewerState) -> Vec<MapProblem> {

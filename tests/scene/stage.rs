@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use gaitway::anim::{Clip, ClipBuilder, Joint, Keys, Skeleton, Transform};
-use gaitway::asset::Asset;
+use gaitway::asset::{Asset, AssetParts};
 use gaitway::frame::{Frame, PickedJoint, evaluate, pick_joint, pose_document};
 use gaitway::library::{Library, Motion};
 use gaitway::mesh::SkinningMode;
@@ -61,7 +61,7 @@ fn twice(asset: &Asset) -> Asset {
         builder.channel(channel.joint, channel.interpolation, times, keys).expect("a channel of that joint");
     }
     let clips = vec![builder.build()];
-    Asset { format: "test", skeleton: doubled, clips, ..Asset::default() }
+    Asset::new(AssetParts { skeleton: doubled, clips, ..AssetParts::default() }).expect("indices in range")
 }
 
 fn showing(base: &ViewerState, change: impl Fn(&mut Show)) -> ViewerState {

@@ -3,7 +3,7 @@
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use gaitway::anim::{ClipBuilder, Interpolation, Joint, JointIndex, Keys, Skeleton};
-use gaitway::asset::{Asset, Warning};
+use gaitway::asset::{Asset, AssetParts, Warning};
 use gaitway::editor::Editor;
 use gaitway::frame::{Frame, evaluate};
 use gaitway::library::{Library, Model, Motion, sample};
@@ -120,16 +120,17 @@ pub fn bench_of(size: [f32; 2], library: Library) -> Harness<'static, Bench> {
 pub fn model_with_clips(count: usize) -> Model {
     let joint = Joint { name: "Only".to_owned(), ..Joint::default() };
     let skeleton = Skeleton::new(vec![joint]).expect("one joint");
-    let mut asset = Asset { format: "glb", ..Asset::default() };
+    let mut clips = Vec::new();
     for index in 0..count {
         let mut clip = ClipBuilder::new(format!("Move {index}"), &skeleton);
         let keys = Keys::Translation(vec![glam::Vec3::ZERO, glam::Vec3::X]);
         let end_secs = 1.0 + index as f32;
         clip.channel(JointIndex(0), Interpolation::Linear, &[0.0, end_secs], keys).expect("two keys");
-        asset.clips.push(clip.build());
+        clips.push(clip.build());
     }
-    asset.skeleton = skeleton;
-    asset.extensions_used = vec!["KHR_texture_transform".to_owned()];
+    let extensions_used = vec!["KHR_texture_transform".to_owned()];
+    let parts = AssetParts { format: "glb", skeleton, clips, extensions_used, ..AssetParts::default() };
+    let mut asset = Asset::new(parts).expect("indices in range");
     for node in ["A", "B"] {
         asset.warnings.push(Warning::MatrixNotDecomposable { node: node.to_owned() });
     }

@@ -3,6 +3,7 @@
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use gaitway::anim::ClipBuilder;
+use gaitway::asset::Asset;
 use gaitway::state::{ClipChoice, Command};
 use gaitway::ui::UiAction;
 
@@ -87,7 +88,9 @@ fn a_name_that_is_cut_is_told_in_full_under_the_pointer() {
     let mut model = model_with_clips(2);
     let long = "One_Handed_Melee_Attack_Slice_Horizontal";
     let asset = std::sync::Arc::get_mut(&mut model.asset).expect("nobody else has it");
-    asset.clips[1] = ClipBuilder::new(long.to_owned(), &asset.skeleton).build();
+    let mut parts = std::mem::take(asset).into_parts();
+    parts.clips[1] = ClipBuilder::new(long.to_owned(), &parts.skeleton).build();
+    *asset = Asset::new(parts).expect("indices in range");
     let mut harness = bench(WIDE, model);
     for (name, told) in [("Move 0", 1), (long, 2)] {
         harness.get_by_label(name).hover();

@@ -564,7 +564,7 @@ fn three_hundred_joints_have_their_lines() {
         ..Joint::default()
     };
     let skeleton = Skeleton::new((0..300).map(joint).collect()).expect("a chain");
-    let asset = Asset { format: "test", skeleton, ..Asset::default() };
+    let asset = Asset::from(skeleton);
     let mut library = Library::default();
     library.set(Model::new("squid.glb".to_owned(), asset, Vec::new()));
     let asset = library.active().expect("just set").asset.clone();

@@ -1,10 +1,10 @@
-//! From a file's own unit and axes to metres and Y up. A BVH says neither; both are guessed from its skeleton, a warning
-//! names the guess, and [`LoadOptions`] overrules it.
+//! Conversion from a file's own unit and axes to metres and Y up. A BVH states neither; both are guessed from its skeleton, a
+//! warning names the guess, and [`LoadOptions`] overrides it.
 //!
-//! Unit: the way from fingertip to toe along the bones is about one and a half times a person's height, whatever the pose.
-//! Of the units that are in use the one counts that comes nearest to 1.7 m (as a ratio); the rarer ones have to come
-//! nearer. Up: Z counts when the rest pose is half as tall again along Z as along Y, and the first, middle and last frames
-//! are taller along Z too. Rest poses alone do not tell: some lay all bones along one axis.
+//! Unit: the distance from fingertip to toe along the bones is about one and a half times a person's height, in any pose. The
+//! unit in common use that brings the height closest to 1.7 m (as a ratio) wins; rarer units have to come closer. Up axis: Z if
+//! the rest pose is at least half as tall again along Z as along Y, and the first, middle and last frames are taller along Z
+//! too. The rest pose alone is not enough: some lay all bones along one axis.
 
 use glam::{DQuat, DVec3, Quat, Vec3};
 
@@ -13,14 +13,15 @@ use super::motion::{Motion, position, rotation};
 use crate::asset::{Warning, Warnings};
 use crate::formats::LoadOptions;
 
-const WAY_PER_HEIGHT: f64 = 1.5;
+/// From fingertip to toe along the bones.
+const PATH_PER_HEIGHT: f64 = 1.5;
 const LIKELY_HEIGHT_METRES: f64 = 1.7;
 const REST_RATIO_OF_Z_UP: f64 = 1.5;
 
 struct Unit {
     name: &'static str,
     metres: f64,
-    /// A handicap for the rarer ones.
+    /// Handicap of a rarer unit.
     rarity: f64,
 }
 
@@ -29,11 +30,11 @@ const UNITS: [Unit; 5] = [
     Unit { name: "metres", metres: 1.0, rarity: 1.0 },
     Unit { name: "millimetres", metres: 0.001, rarity: 1.1 },
     Unit { name: "inches", metres: 0.0254, rarity: 1.25 },
-    // The Carnegie Mellon database: inches divided by 0.45.
+    // The Carnegie Mellon motion capture database: inches divided by 0.45.
     Unit { name: "units of 5.64 cm (as the CMU database has them)", metres: 0.0254 / 0.45, rarity: 1.6 },
 ];
 
-/// Turns what the file says into the viewer's metres and axes.
+/// Converts the file's values to the viewer's units and axes.
 pub struct FrameOfReference {
     unit_metres: f64,
     z_up: bool,
@@ -51,7 +52,7 @@ impl FrameOfReference {
         };
         let given = options.bvh_unit_metres.map(f64::from).filter(|unit| unit.is_finite() && *unit > 0.0);
         let unit_metres = given.unwrap_or_else(|| {
-            let height = hierarchy.longest_way() / WAY_PER_HEIGHT;
+            let height = hierarchy.longest_path() / PATH_PER_HEIGHT;
             let Some(unit) = likely_unit(height) else { return 1.0 };
             let metres = height * unit.metres;
             let name = unit.name;
@@ -74,20 +75,20 @@ impl FrameOfReference {
         Self { unit_metres, z_up }
     }
 
-    /// A position or an offset, in metres.
+    /// Converts a position or an offset to metres.
     pub fn point(&self, point: DVec3) -> Vec3 {
         let point = point * self.unit_metres;
         (if self.z_up { DVec3::new(point.x, point.z, -point.y) } else { point }).as_vec3()
     }
 
-    /// The same rotation seen in the viewer's axes.
+    /// Converts a rotation to the viewer's axes.
     pub fn rotation(&self, rotation: DQuat) -> Quat {
         let DQuat { x, y, z, w } = rotation;
         (if self.z_up { DQuat::from_xyzw(x, z, -y, w) } else { rotation }).as_quat().normalize()
     }
 }
 
-/// None when there is nothing to measure.
+/// None if there is nothing to measure.
 fn likely_unit(height: f64) -> Option<&'static Unit> {
     if !(height > 0.0 && height.is_finite()) {
         return None;
@@ -109,12 +110,12 @@ fn is_z_up(hierarchy: &Hierarchy, motion: Option<&Motion>) -> bool {
     })
 }
 
-/// Size of the box around all joints and End Sites, at rest or in one frame.
+/// Size of the bounding box of all joints and End Sites, at rest or in one frame.
 fn extent(hierarchy: &Hierarchy, numbers: Option<&[f64]>) -> DVec3 {
-    let (mut least, mut most) = (DVec3::MAX, DVec3::MIN);
+    let (mut min, mut max) = (DVec3::MAX, DVec3::MIN);
     let mut include = |point: DVec3| {
-        least = least.min(point);
-        most = most.max(point);
+        min = min.min(point);
+        max = max.max(point);
     };
     let mut placed: Vec<(DVec3, DQuat)> = Vec::with_capacity(hierarchy.joints.len());
     let mut first = 0;
@@ -133,5 +134,5 @@ fn extent(hierarchy: &Hierarchy, numbers: Option<&[f64]>) -> DVec3 {
     for &(joint, offset) in &hierarchy.ends {
         include(placed[joint].0 + placed[joint].1 * offset);
     }
-    most - least
+    max - min
 }

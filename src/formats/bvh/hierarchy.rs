@@ -1,5 +1,5 @@
-//! HIERARCHY: joints with their offsets and channels, in file order. Read without recursion: files nest as deep as they
-//! like.
+//! HIERARCHY: joints with their offsets and channels, in file order. Read without recursion, so that files may nest to any
+//! depth.
 
 use glam::DVec3;
 
@@ -7,8 +7,8 @@ use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
 use crate::formats::lines::{Lines, number, quoted, text};
 
-/// More channels than a joint can have a use for; some programs write scales too.
-const MOST_CHANNELS_OF_A_JOINT: usize = 16;
+/// Generous: six are usual, and some programs also write scales.
+const MAX_CHANNELS_PER_JOINT: usize = 16;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Axis {
@@ -21,7 +21,7 @@ pub enum Axis {
 pub enum Channel {
     Position(Axis),
     Rotation(Axis),
-    /// Of a kind that is not read; its numbers are skipped.
+    /// A known kind that is not read; its numbers are skipped.
     Unknown,
 }
 
@@ -36,9 +36,9 @@ pub struct BvhJoint {
 #[derive(Debug, Default)]
 pub struct Hierarchy {
     pub joints: Vec<BvhJoint>,
-    /// End Sites: whose, and how far from it.
+    /// End Sites: the joint, and the offset from it.
     pub ends: Vec<(usize, DVec3)>,
-    /// Of all joints together: the numbers of one frame.
+    /// Channels of all joints, and thus numbers per frame.
     pub channel_count: usize,
 }
 
@@ -58,40 +58,8 @@ impl Hierarchy {
         }
         let mut hierarchy = Self::default();
         let mut open: Vec<Open> = Vec::new();
-        loop {
-            // MOTION must stay where it is.
-            if lines.peek().is_none_or(|word| is(word, "MOTION")) {
-                break;
-            }
-            let word = lines.word().unwrap_or_default();
-            let place = lines.place();
-            let unexpected = |expected: &str| Problem::new(place.as_str(), expected, quoted(Some(word)));
-            match open.last().copied() {
-                None if is(word, "ROOT") => open.push(Open::Joint(hierarchy.joint(lines, None)?)),
-                None => return Err(unexpected("ROOT or MOTION")),
-                Some(Open::Joint(joint)) => match word {
-                    b"}" => {
-                        open.pop();
-                    }
-                    _ if is(word, "OFFSET") => hierarchy.joints[joint].offset = offset(lines)?,
-                    _ if is(word, "CHANNELS") => hierarchy.channels(lines, joint, warnings)?,
-                    _ if is(word, "JOINT") => open.push(Open::Joint(hierarchy.joint(lines, Some(joint))?)),
-                    _ if is(word, "End") || is(word, "EndSite") => {
-                        lines.rest_of_line();
-                        open_brace(lines)?;
-                        hierarchy.ends.push((joint, DVec3::ZERO));
-                        open.push(Open::End(hierarchy.ends.len() - 1));
-                    }
-                    _ => return Err(unexpected("OFFSET, CHANNELS, JOINT, End Site or }")),
-                },
-                Some(Open::End(end)) => match word {
-                    b"}" => {
-                        open.pop();
-                    }
-                    _ if is(word, "OFFSET") => hierarchy.ends[end].1 = offset(lines)?,
-                    _ => return Err(unexpected("OFFSET or } of an End Site")),
-                },
-            }
+        while lines.peek().is_some_and(|word| !is(word, "MOTION")) {
+            hierarchy.statement(lines, &mut open, warnings)?;
         }
         if let Some(open) = open.last() {
             let joint = match *open {
@@ -107,7 +75,32 @@ impl Hierarchy {
         Ok(hierarchy)
     }
 
-    /// After the word ROOT or JOINT. Names may have spaces in them, or be missing.
+    /// Reads one statement inside the innermost open brace.
+    fn statement(&mut self, lines: &mut Lines, open: &mut Vec<Open>, warnings: &mut Warnings) -> Result<(), Problem> {
+        let word = lines.word().unwrap_or_default();
+        let place = lines.place();
+        let unexpected = |expected: &str| Err(Problem::new(place.as_str(), expected, quoted(Some(word))));
+        match open.last().copied() {
+            Some(_) if word == b"}" => drop(open.pop()),
+            None if is(word, "ROOT") => open.push(Open::Joint(self.joint(lines, None)?)),
+            None => return unexpected("ROOT or MOTION"),
+            Some(Open::Joint(joint)) if is(word, "OFFSET") => self.joints[joint].offset = offset(lines)?,
+            Some(Open::Joint(joint)) if is(word, "CHANNELS") => self.channels(lines, joint, warnings)?,
+            Some(Open::Joint(joint)) if is(word, "JOINT") => open.push(Open::Joint(self.joint(lines, Some(joint))?)),
+            Some(Open::Joint(joint)) if is(word, "End") || is(word, "EndSite") => {
+                lines.rest_of_line();
+                open_brace(lines)?;
+                self.ends.push((joint, DVec3::ZERO));
+                open.push(Open::End(self.ends.len() - 1));
+            }
+            Some(Open::Joint(_)) => return unexpected("OFFSET, CHANNELS, JOINT, End Site or }"),
+            Some(Open::End(end)) if is(word, "OFFSET") => self.ends[end].1 = offset(lines)?,
+            Some(Open::End(_)) => return unexpected("OFFSET or } of an End Site"),
+        }
+        Ok(())
+    }
+
+    /// Reads what follows ROOT or JOINT. Names may contain spaces, or be missing.
     fn joint(&mut self, lines: &mut Lines, parent: Option<usize>) -> Result<usize, Problem> {
         let name = text(lines.rest_of_line()).into_owned();
         open_brace(lines)?;
@@ -123,9 +116,9 @@ impl Hierarchy {
         let word = lines.word();
         let count = word
             .and_then(|word| std::str::from_utf8(word).ok()?.parse::<usize>().ok())
-            .filter(|&count| count <= MOST_CHANNELS_OF_A_JOINT)
+            .filter(|&count| count <= MAX_CHANNELS_PER_JOINT)
             .ok_or_else(|| {
-                let expected = format!("a number of channels, at most {MOST_CHANNELS_OF_A_JOINT}");
+                let expected = format!("a number of channels, at most {MAX_CHANNELS_PER_JOINT}");
                 Problem::new(place.as_str(), expected, quoted(word))
             })?;
         for _ in 0..count {
@@ -144,8 +137,8 @@ impl Hierarchy {
         Ok(())
     }
 
-    /// The longest way from one end of the skeleton to another along its bones, in the file's units.
-    pub fn longest_way(&self) -> f64 {
+    /// Returns the longest path along the bones from one end of the skeleton to another, in the file's units.
+    pub fn longest_path(&self) -> f64 {
         let mut below = vec![0.0_f64; self.joints.len()];
         let mut longest = 0.0_f64;
         let mut reach = |below: &mut [f64], joint: usize, length: f64| {
@@ -188,7 +181,7 @@ fn offset(lines: &mut Lines) -> Result<DVec3, Problem> {
     Ok(DVec3::from_array(numbers))
 }
 
-/// None when it cannot be a channel at all.
+/// Parses the name of a channel.
 fn channel(word: &[u8]) -> Option<Channel> {
     let (&first, kind) = word.split_first()?;
     let axis = match first.to_ascii_uppercase() {

@@ -6,13 +6,13 @@
 //! MOTION
 //! Frames: 14
 //! Frame Time: 0.066667
-//! one line of numbers for each frame, the channels in file order
+//! one line of numbers per frame, channels in file order
 //! ```
 //!
-//! Nobody owns the format. What programs agree on: keywords in any case and any white space; angles are degrees; a joint's
-//! rotation is the product of its rotation channels in the order in which they are listed (the first is the outermost);
-//! position channels replace the OFFSET. There is no unit and no up axis: see [`frame_of_reference`]. End Sites say only how
-//! long the last bones are; they are no joints, have no number, and serve for guessing the size.
+//! The format has no owner. Programs agree on the following: keywords in any case, any white space; angles in degrees; a
+//! joint's rotation is the product of its rotation channels in the order listed (the first is the outermost); position channels
+//! replace the OFFSET. Units and up axis are not stated: see [`frame_of_reference`]. End Sites give the length of the last bones
+//! and serve for guessing the size; they are not joints and have no number.
 
 mod frame_of_reference;
 mod hierarchy;
@@ -20,7 +20,7 @@ mod motion;
 
 use super::{LoadError, LoadOptions};
 use crate::anim::{Clip, Joint, Skeleton, Transform};
-use crate::asset::{Asset, Warnings};
+use crate::asset::{Asset, AssetParts, Warnings};
 use crate::formats::error::Problem;
 use crate::formats::file_set::bare_name;
 use crate::formats::lines::{self, Lines};
@@ -32,7 +32,7 @@ pub(super) fn is_bvh(bytes: &[u8]) -> bool {
     text.get(..9).is_some_and(|word| word.eq_ignore_ascii_case(b"HIERARCHY"))
 }
 
-/// Reads a file's skeleton (rest pose: the OFFSETs, unrotated) and its motion, one key a frame, in metres and Y up.
+/// Reads a file's skeleton (rest pose: the OFFSETs, unrotated) and its motion, one key per frame, in metres and Y up.
 pub(super) fn load(file: &str, bytes: &[u8], options: &LoadOptions) -> Result<Asset, LoadError> {
     read(file, bytes, options).map_err(|problem| problem.in_file(file))
 }
@@ -50,7 +50,9 @@ fn read(file: &str, bytes: &[u8], options: &LoadOptions) -> Result<Asset, Proble
         }
         None => Vec::new(),
     };
-    Ok(Asset { format: "bvh", skeleton, clips, warnings, ..Asset::default() })
+    let mut asset = Asset::new(AssetParts { format: "bvh", skeleton, clips, ..AssetParts::default() })?;
+    asset.warnings = warnings;
+    Ok(asset)
 }
 
 fn skeleton(hierarchy: &Hierarchy, frame: &FrameOfReference) -> Result<Skeleton, Problem> {
@@ -71,7 +73,7 @@ fn skeleton(hierarchy: &Hierarchy, frame: &FrameOfReference) -> Result<Skeleton,
     Skeleton::new(joints).map_err(|problem| Problem::new("HIERARCHY", "a tree of joints", problem))
 }
 
-/// What the clip is called: the file says nothing.
+/// Names the clip after the file, which has no name for it.
 fn stem(file: &str) -> &str {
     let bare = bare_name(file);
     let bare = bare.split(['?', '#']).next().unwrap_or(bare);

@@ -1,4 +1,6 @@
-//! MOTION: one key of every channel for each frame.
+//! MOTION: one key per channel and frame.
+
+use std::ops::Range;
 
 use glam::{DQuat, DVec3, Quat, Vec3};
 
@@ -9,19 +11,19 @@ use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
 use crate::formats::lines::{Lines, number, quoted, text};
 
-/// Numbers in all frames together: a quarter of a gigabyte of them, some forty minutes of a body at 120 frames a second.
-const MOST_NUMBERS: usize = 1 << 25;
+/// Limit on the numbers of all frames: 256 MiB, or some forty minutes of a body at 120 frames per second.
+const MAX_NUMBERS: usize = 1 << 25;
 
 pub struct Motion {
     pub frame_count: usize,
     frame_secs: f64,
-    /// Frame after frame, each with all channels in file order.
+    /// Frame by frame, all channels in file order.
     numbers: Vec<f64>,
-    /// Where "Frame Time" stands.
+    /// Line of "Frame Time".
     line: usize,
 }
 
-/// None when the file ends after its skeleton, or has no frame.
+/// Returns None if the file ends after its skeleton, or has no frame.
 pub fn read(lines: &mut Lines, hierarchy: &Hierarchy, warnings: &mut Warnings) -> Result<Option<Motion>, Problem> {
     let mut warn = |line: usize, problem: String| {
         warnings.push(Warning::Other { code: "bvh-motion", place: format!("line {line}"), problem });
@@ -30,21 +32,7 @@ pub fn read(lines: &mut Lines, hierarchy: &Hierarchy, warnings: &mut Warnings) -
         warn(lines.line, "there is no MOTION: the skeleton stands still".to_owned());
         return Ok(None);
     }
-    let mut announced = None;
-    let (frame_secs, line) = loop {
-        let (line, text) = lines.next_full_line().ok_or_else(|| missing_time(lines.line, "the end of the file"))?;
-        if let Some(value) = value_of(text, "Frames") {
-            let count = std::str::from_utf8(value).ok().and_then(|value| value.parse::<u64>().ok());
-            match count {
-                Some(count) => announced = Some(count),
-                None => warn(line, format!("the number of frames is {}; the frames are counted", quoted(Some(value)))),
-            }
-        } else if let Some(value) = value_of(text, "Frame Time") {
-            break (number(value).ok_or_else(|| missing_time(line, &quoted(Some(value))))?, line);
-        } else {
-            return Err(missing_time(line, &quoted(Some(text))));
-        }
-    };
+    let Header { frame_secs, line, announced } = header(lines, &mut warn)?;
     let numbers = frames(lines, hierarchy.channel_count, &mut warn)?;
     let frame_count = numbers.len().checked_div(hierarchy.channel_count).unwrap_or(0);
     match announced {
@@ -62,11 +50,35 @@ pub fn read(lines: &mut Lines, hierarchy: &Hierarchy, warnings: &mut Warnings) -
     Ok(Some(Motion { frame_count, frame_secs, numbers, line }))
 }
 
+struct Header {
+    frame_secs: f64,
+    /// Line of "Frame Time".
+    line: usize,
+    /// Value of "Frames".
+    announced: Option<u64>,
+}
+
+fn header(lines: &mut Lines, warn: &mut impl FnMut(usize, String)) -> Result<Header, Problem> {
+    let mut announced = None;
+    loop {
+        let (line, text) = lines.next_full_line().ok_or_else(|| missing_time(lines.line, "the end of the file"))?;
+        if let Some(value) = value_of(text, "Frame Time") {
+            let frame_secs = number(value).ok_or_else(|| missing_time(line, &quoted(Some(value))))?;
+            return Ok(Header { frame_secs, line, announced });
+        }
+        let Some(value) = value_of(text, "Frames") else { return Err(missing_time(line, &quoted(Some(text)))) };
+        match std::str::from_utf8(value).ok().and_then(|value| value.parse::<u64>().ok()) {
+            Some(count) => announced = Some(count),
+            None => warn(line, format!("the number of frames is {}; the frames are counted", quoted(Some(value)))),
+        }
+    }
+}
+
 fn missing_time(line: usize, found: &str) -> Problem {
     Problem::new(format!("line {line}"), "“Frame Time:” and a number of seconds above 0", found)
 }
 
-/// What follows `key` and a colon, if the line is about that key.
+/// Returns the value of a line `key: value`.
 fn value_of<'a>(line: &'a [u8], key: &str) -> Option<&'a [u8]> {
     let colon = line.iter().position(|&byte| byte == b':')?;
     let mut words = line[..colon].split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
@@ -75,8 +87,8 @@ fn value_of<'a>(line: &'a [u8], key: &str) -> Option<&'a [u8]> {
     (same && words.next().is_none()).then(|| line[colon + 1..].trim_ascii())
 }
 
-/// All numbers of all frames. A frame begins on a line of its own and may go on over several; so a number too many or too
-/// few is noticed where it is. A last frame that is cut short is left out.
+/// Reads all numbers of all frames. A frame starts on a new line and may span several, so that a missing or surplus number is
+/// noticed where it occurs. An incomplete last frame is dropped.
 fn frames(lines: &mut Lines, channels: usize, warn: &mut impl FnMut(usize, String)) -> Result<Vec<f64>, Problem> {
     let mut numbers = Vec::new();
     let mut in_frame = 0;
@@ -98,8 +110,8 @@ fn frames(lines: &mut Lines, channels: usize, warn: &mut impl FnMut(usize, Strin
                 let place = format!("line {line}, number {}", in_frame + 1);
                 Problem::new(place, "a finite number", quoted(Some(word)))
             })?;
-            if numbers.len() == MOST_NUMBERS {
-                return Err(Problem::new(format!("line {line}"), format!("at most {MOST_NUMBERS} numbers"), "more"));
+            if numbers.len() == MAX_NUMBERS {
+                return Err(Problem::new(format!("line {line}"), format!("at most {MAX_NUMBERS} numbers"), "more"));
             }
             numbers.push(value);
             in_frame += 1;
@@ -116,13 +128,13 @@ fn frames(lines: &mut Lines, channels: usize, warn: &mut impl FnMut(usize, Strin
 }
 
 impl Motion {
-    /// The numbers of one frame.
+    /// Returns the numbers of one frame.
     pub fn frame(&self, frame: usize) -> &[f64] {
         let channels = self.numbers.len() / self.frame_count;
         self.numbers.get(frame * channels..(frame + 1) * channels).unwrap_or_default()
     }
 
-    /// One rotation channel for each joint that has any, one translation channel likewise.
+    /// Builds a clip with one rotation channel and one translation channel for each joint that has any of the kind.
     pub fn into_clip(
         self,
         name: &str,
@@ -131,7 +143,6 @@ impl Motion {
         skeleton: &Skeleton,
         warnings: &mut Warnings,
     ) -> Result<Option<Clip>, Problem> {
-        let unusable = |problem: String| Problem::new(format!("line {}", self.line), "usable key times", problem);
         let times_secs: Vec<f32> = (0..self.frame_count).map(|frame| (frame as f64 * self.frame_secs) as f32).collect();
         let mut builder = ClipBuilder::new(name, skeleton);
         let mut first = 0;
@@ -139,45 +150,70 @@ impl Motion {
             let channels = first..first + joint.channels.len();
             first = channels.end;
             let Some(target) = skeleton.joint_of_source(index) else { continue };
-            let of_frame = |frame| self.frame(frame).get(channels.clone()).unwrap_or_default();
-            if joint.channels.iter().any(|channel| matches!(channel, Channel::Rotation(_))) {
-                let mut keys: Vec<Quat> = Vec::with_capacity(self.frame_count);
-                for frame in 0..self.frame_count {
-                    let key = reference.rotation(rotation(joint, of_frame(frame)));
-                    // The sign that lies nearer to the key before: no reader has to turn it.
-                    keys.push(if keys.last().is_some_and(|before| before.dot(key) < 0.0) { -key } else { key });
-                }
-                builder
-                    .channel(target, Interpolation::Linear, &times_secs, Keys::Rotation(keys))
-                    .map_err(|problem| unusable(problem.to_string()))?;
+            let has = |kind: fn(&Channel) -> bool| joint.channels.iter().any(kind);
+            let mut add = |keys: Keys| {
+                builder.channel(target, Interpolation::Linear, &times_secs, keys).map_err(|problem| {
+                    Problem::new(format!("line {}", self.line), "usable key times", problem.to_string())
+                })
+            };
+            if has(|channel| matches!(channel, Channel::Rotation(_))) {
+                add(Keys::Rotation(self.rotations(joint, &channels, reference)))?;
             }
-            if joint.channels.iter().any(|channel| matches!(channel, Channel::Position(_))) {
-                let positions = (0..self.frame_count).map(|frame| position(joint, of_frame(frame)));
-                if joint.parent.is_some()
-                    && joint.offset != DVec3::ZERO
-                    && positions.clone().all(|at| at == DVec3::ZERO)
-                {
-                    let problem =
-                        "its positions are all zero, which would fold it into its parent; its OFFSET holds".to_owned();
-                    let place = format!("joint {index} “{}”", text(joint.name.as_bytes()));
-                    warnings.push(Warning::ChannelIgnored { clip: name.to_owned(), place, problem });
-                    continue;
+            if has(|channel| matches!(channel, Channel::Position(_))) {
+                match self.translations(index, joint, &channels, reference)? {
+                    Some(keys) => add(Keys::Translation(keys))?,
+                    None => {
+                        let problem =
+                            "its positions are all zero, which would fold it into its parent; its OFFSET holds"
+                                .to_owned();
+                        let place = format!("joint {index} “{}”", text(joint.name.as_bytes()));
+                        warnings.push(Warning::ChannelIgnored { clip: name.to_owned(), place, problem });
+                    }
                 }
-                let keys: Vec<Vec3> = positions.map(|at| reference.point(at)).collect();
-                if let Some(frame) = keys.iter().position(|key| !key.is_finite()) {
-                    let place = format!("frame {frame}, position of joint {index}");
-                    return Err(Problem::new(place, "numbers that fit into 32 bits", keys[frame]));
-                }
-                builder
-                    .channel(target, Interpolation::Linear, &times_secs, Keys::Translation(keys))
-                    .map_err(|problem| unusable(problem.to_string()))?;
             }
         }
         Ok(Some(builder.build()))
     }
+
+    /// The numbers of some channels, frame by frame.
+    fn values(&self, channels: &Range<usize>) -> impl Iterator<Item = &[f64]> + Clone {
+        (0..self.frame_count).map(|frame| self.frame(frame).get(channels.clone()).unwrap_or_default())
+    }
+
+    /// Rotation keys, each with the sign that is closer to the previous key.
+    fn rotations(&self, joint: &BvhJoint, channels: &Range<usize>, reference: &FrameOfReference) -> Vec<Quat> {
+        let mut keys: Vec<Quat> = Vec::with_capacity(self.frame_count);
+        for values in self.values(channels) {
+            let key = reference.rotation(rotation(joint, values));
+            keys.push(if keys.last().is_some_and(|before| before.dot(key) < 0.0) { -key } else { key });
+        }
+        keys
+    }
+
+    /// Translation keys. None if all are zero although the joint has an OFFSET.
+    fn translations(
+        &self,
+        index: usize,
+        joint: &BvhJoint,
+        channels: &Range<usize>,
+        reference: &FrameOfReference,
+    ) -> Result<Option<Vec<Vec3>>, Problem> {
+        let positions = self.values(channels).map(|values| position(joint, values));
+        if joint.parent.is_some() && joint.offset != DVec3::ZERO && positions.clone().all(|at| at == DVec3::ZERO) {
+            return Ok(None);
+        }
+        let keys: Vec<Vec3> = positions.map(|at| reference.point(at)).collect();
+        match keys.iter().position(|key| !key.is_finite()) {
+            None => Ok(Some(keys)),
+            Some(frame) => {
+                let place = format!("frame {frame}, position of joint {index}");
+                Err(Problem::new(place, "numbers that fit into 32 bits", keys[frame]))
+            }
+        }
+    }
 }
 
-/// The product of a joint's rotation channels, the first listed outermost.
+/// Multiplies a joint's rotation channels, the first listed being the outermost.
 pub fn rotation(joint: &BvhJoint, numbers: &[f64]) -> DQuat {
     joint.channels.iter().zip(numbers).fold(DQuat::IDENTITY, |product, (channel, degrees)| match channel {
         // The remainder is exact and keeps large angles precise.
@@ -194,7 +230,7 @@ fn about(axis: Axis, radians: f64) -> DQuat {
     }
 }
 
-/// Where the joint is below its parent: its OFFSET, with the axes replaced that have a channel.
+/// Returns the joint's position relative to its parent: its OFFSET, except on axes that have a channel.
 pub fn position(joint: &BvhJoint, numbers: &[f64]) -> DVec3 {
     let mut at = joint.offset;
     for (channel, &number) in joint.channels.iter().zip(numbers) {

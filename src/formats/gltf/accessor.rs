@@ -1,20 +1,24 @@
-//! Typed views of buffer bytes (glTF 2.0 §3.6). Every range is checked before it is read, and all that is decoded counts
-//! towards a budget, so that a small file cannot ask for a large memory.
+//! Typed views of buffer bytes (glTF 2.0 §3.6). Every range is checked before it is read, and all decoded data counts towards
+//! a budget, so that a small file cannot make us allocate a lot of memory.
 
 use std::cell::Cell;
 use std::fmt::Display;
 use std::sync::Arc;
 
-use super::schema;
+use gltf::json::Accessor;
+use gltf::json::accessor::{ComponentType, IndexComponentType};
+use gltf::json::validation::Checked;
+
+use super::document::{Document, size};
 use crate::formats::error::Problem;
 
-/// How much one file may decode to, in bytes. A page has 4 GiB for everything.
+/// Limit on the decoded data of one file. A page has 4 GiB for everything.
 const BUDGET_BYTES: usize = if cfg!(target_pointer_width = "32") { 512 << 20 } else { 1 << 30 };
 
 /// The buffers of one file and the views into them.
 pub struct Accessors<'a> {
-    pub root: &'a schema::Root,
-    /// One per buffer; none where there is no data (allowed as long as nobody reads it).
+    pub document: &'a Document<'a>,
+    /// One per buffer; None for a buffer without data (valid as long as nothing reads it).
     buffers: Vec<Option<Bytes<'a>>>,
     spent_bytes: Cell<usize>,
 }
@@ -35,81 +39,49 @@ impl Bytes<'_> {
     }
 }
 
-/// Where the elements of an accessor lie.
+/// Where the elements of an accessor are.
 struct Layout<'a> {
     /// None: zeros.
     bytes: Option<&'a [u8]>,
     stride: usize,
     count: usize,
     components: usize,
-    component: Component,
+    component: ComponentType,
     normalized: bool,
 }
 
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-enum Component {
-    I8,
-    U8,
-    I16,
-    U16,
-    U32,
-    F32,
+/// The component at the start of `bytes`, normalized as §3.6.2.2 says.
+#[inline]
+fn to_f32(component: ComponentType, bytes: &[u8], normalized: bool) -> f32 {
+    match (component, normalized) {
+        (ComponentType::F32, _) => f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]),
+        (ComponentType::U8, false) => f32::from(bytes[0]),
+        (ComponentType::U8, true) => f32::from(bytes[0]) / 255.0,
+        (ComponentType::I8, false) => f32::from(bytes[0] as i8),
+        (ComponentType::I8, true) => (f32::from(bytes[0] as i8) / 127.0).max(-1.0),
+        (ComponentType::U16, false) => f32::from(u16::from_le_bytes([bytes[0], bytes[1]])),
+        (ComponentType::U16, true) => f32::from(u16::from_le_bytes([bytes[0], bytes[1]])) / 65535.0,
+        (ComponentType::I16, false) => f32::from(i16::from_le_bytes([bytes[0], bytes[1]])),
+        (ComponentType::I16, true) => (f32::from(i16::from_le_bytes([bytes[0], bytes[1]])) / 32767.0).max(-1.0),
+        (ComponentType::U32, _) => u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]) as f32,
+    }
 }
 
-impl Component {
-    fn new(code: u32) -> Option<Self> {
-        Some(match code {
-            5120 => Self::I8,
-            5121 => Self::U8,
-            5122 => Self::I16,
-            5123 => Self::U16,
-            5125 => Self::U32,
-            5126 => Self::F32,
-            _ => return None,
-        })
-    }
-
-    fn size(self) -> usize {
-        match self {
-            Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::U32 | Self::F32 => 4,
-        }
-    }
-
-    /// The value at the start of `bytes`, normalised as §3.6.2.2 says.
-    #[inline]
-    fn to_f32(self, bytes: &[u8], normalized: bool) -> f32 {
-        match (self, normalized) {
-            (Self::F32, _) => f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]),
-            (Self::U8, false) => f32::from(bytes[0]),
-            (Self::U8, true) => f32::from(bytes[0]) / 255.0,
-            (Self::I8, false) => f32::from(bytes[0] as i8),
-            (Self::I8, true) => (f32::from(bytes[0] as i8) / 127.0).max(-1.0),
-            (Self::U16, false) => f32::from(u16::from_le_bytes([bytes[0], bytes[1]])),
-            (Self::U16, true) => f32::from(u16::from_le_bytes([bytes[0], bytes[1]])) / 65535.0,
-            (Self::I16, false) => f32::from(i16::from_le_bytes([bytes[0], bytes[1]])),
-            (Self::I16, true) => (f32::from(i16::from_le_bytes([bytes[0], bytes[1]])) / 32767.0).max(-1.0),
-            (Self::U32, _) => u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]) as f32,
-        }
-    }
-
-    #[inline]
-    fn to_u32(self, bytes: &[u8]) -> u32 {
-        match self {
-            Self::U8 | Self::I8 => u32::from(bytes[0]),
-            Self::U16 | Self::I16 => u32::from(u16::from_le_bytes([bytes[0], bytes[1]])),
-            Self::U32 | Self::F32 => u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]),
-        }
+#[inline]
+fn to_u32(component: ComponentType, bytes: &[u8]) -> u32 {
+    match component.size() {
+        1 => u32::from(bytes[0]),
+        2 => u32::from(u16::from_le_bytes([bytes[0], bytes[1]])),
+        _ => u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]),
     }
 }
 
 impl<'a> Accessors<'a> {
-    pub fn new(root: &'a schema::Root, buffers: Vec<Option<Bytes<'a>>>) -> Self {
-        Self { root, buffers, spent_bytes: Cell::new(0) }
+    pub fn new(document: &'a Document<'a>, buffers: Vec<Option<Bytes<'a>>>) -> Self {
+        Self { document, buffers, spent_bytes: Cell::new(0) }
     }
 
-    /// Counts `count` items of `size` bytes towards the budget, before they take any memory.
+    /// Counts `count` items of `size` bytes towards the budget, before they are allocated.
     pub fn charge(&self, count: usize, size: usize, place: &dyn Display) -> Result<(), Problem> {
         let spent = count
             .checked_mul(size)
@@ -123,103 +95,114 @@ impl<'a> Accessors<'a> {
         Ok(())
     }
 
-    /// What is left of the budget.
+    /// The rest of the budget.
     pub fn bytes_left(&self) -> usize {
         BUDGET_BYTES.saturating_sub(self.spent_bytes.get())
     }
 
-    /// Bytes of a buffer view, and its stride.
+    /// Returns the bytes of a buffer view, and its stride.
     pub fn view(&self, index: usize, place: &dyn Display) -> Result<(&[u8], Option<usize>), Problem> {
-        let view = get(&self.root.buffer_views, index, place, "bufferViews")?;
+        let root = &self.document.root;
+        let view = get(&root.buffer_views, index, place, "bufferViews")?;
         let here = format_args!("bufferViews[{index}]");
-        get(&self.root.buffers, view.buffer, &format_args!("{here}.buffer"), "buffers")?;
-        let Some(Some(buffer)) = self.buffers.get(view.buffer) else {
-            return Err(Problem::new(format!("buffers[{}]", view.buffer), "a URI or a binary chunk", "neither"));
+        let buffer = view.buffer.value();
+        get(&root.buffers, buffer, &format_args!("{here}.buffer"), "buffers")?;
+        let Some(Some(bytes)) = self.buffers.get(buffer) else {
+            return Err(Problem::new(format!("buffers[{buffer}]"), "a URI or a binary chunk", "neither"));
         };
-        let buffer = buffer.as_slice();
-        let range = view.byte_offset..view.byte_offset.saturating_add(view.byte_length);
-        let bytes = buffer.get(range.clone()).ok_or_else(|| {
-            let expected = format!("bytes {}..{} of buffer {}", range.start, range.end, view.buffer);
-            Problem::new(here.to_string(), expected, format!("only {} bytes", buffer.len()))
+        let bytes = bytes.as_slice();
+        let start = view.byte_offset.map_or(0, size);
+        let range = start..start.saturating_add(size(view.byte_length));
+        let viewed = bytes.get(range.clone()).ok_or_else(|| {
+            let expected = format!("bytes {}..{} of buffer {buffer}", range.start, range.end);
+            Problem::new(here.to_string(), expected, format!("only {} bytes", bytes.len()))
         })?;
-        Ok((bytes, view.byte_stride))
+        Ok((viewed, view.byte_stride.map(|stride| stride.0)))
     }
 
-    /// How many elements an accessor has.
+    fn accessor(&self, index: usize, place: &dyn Display) -> Result<&Accessor, Problem> {
+        get(&self.document.root.accessors, index, place, "accessors")
+    }
+
+    /// Returns the number of elements of an accessor.
     pub fn count(&self, index: usize, place: &dyn Display) -> Result<usize, Problem> {
-        Ok(get(&self.root.accessors, index, place, "accessors")?.count)
+        Ok(size(self.accessor(index, place)?.count))
+    }
+
+    /// Returns the number of components of an element, and their type.
+    fn kind(&self, index: usize, place: &dyn Display) -> Result<(usize, ComponentType), Problem> {
+        let accessor = self.accessor(index, place)?;
+        let unknown = |expected: &str, key: &str| {
+            let here = format!("accessors[{index}]");
+            let found = self.document.quoted_at(&format!("{here}.{key}"));
+            Problem::new(here, expected, found)
+        };
+        match (accessor.type_, accessor.component_type) {
+            (Checked::Valid(shape), Checked::Valid(component)) => Ok((shape.multiplicity(), component.0)),
+            (Checked::Invalid, _) => Err(unknown("a known type such as VEC3", "type")),
+            (_, Checked::Invalid) => Err(unknown("a known componentType", "componentType")),
+        }
     }
 
     fn layout(&self, index: usize, place: &dyn Display, components: usize, what: &str) -> Result<Layout<'_>, Problem> {
-        let accessor = get(&self.root.accessors, index, place, "accessors")?;
+        let accessor = self.accessor(index, place)?;
         let place_here = format_args!("accessors[{index}]");
         let here = || place_here.to_string();
-        let found = match accessor.shape.as_str() {
-            "SCALAR" => 1,
-            "VEC2" => 2,
-            "VEC3" => 3,
-            "VEC4" | "MAT2" => 4,
-            "MAT3" => 9,
-            "MAT4" => 16,
-            other => return Err(Problem::new(here(), "a known type such as VEC3", format!("“{other}”"))),
-        };
+        let (found, component) = self.kind(index, place)?;
         if found != components {
-            return Err(Problem::new(format!("{place} (accessor {index})"), what, &accessor.shape));
+            let found = self.document.text_at(&format!("{place_here}.type"));
+            return Err(Problem::new(format!("{place} (accessor {index})"), what, found));
         }
-        let component = Component::new(accessor.component_type)
-            .ok_or_else(|| Problem::new(here(), "a known componentType", accessor.component_type))?;
-        let size = component.size() * components;
-        self.charge(accessor.count, components * 4, &place_here)?;
-        let (bytes, stride) = match accessor.buffer_view {
-            None => (None, size),
-            Some(view) => {
-                let (bytes, stride) = self.view(view, &place_here)?;
-                let stride = stride.unwrap_or(size);
-                if stride < size && accessor.count > 1 {
-                    return Err(Problem::new(here(), format!("a byteStride of at least {size}"), stride));
-                }
-                let bytes = bytes.get(accessor.byte_offset..).unwrap_or(&[]);
-                check_range(bytes.len(), stride, size, accessor.count).map_err(|needed| {
-                    Problem::new(here(), format!("{needed} bytes in its buffer view"), bytes.len())
-                })?;
-                (Some(bytes), stride)
-            }
-        };
-        Ok(Layout { bytes, stride, count: accessor.count, components, component, normalized: accessor.normalized })
+        let element_size = component.size() * components;
+        let count = size(accessor.count);
+        self.charge(count, components * 4, &place_here)?;
+        let layout =
+            |bytes, stride| Layout { bytes, stride, count, components, component, normalized: accessor.normalized };
+        let Some(view) = accessor.buffer_view else { return Ok(layout(None, element_size)) };
+        let (bytes, stride) = self.view(view.value(), &place_here)?;
+        let stride = stride.unwrap_or(element_size);
+        if stride < element_size && count > 1 {
+            return Err(Problem::new(here(), format!("a byteStride of at least {element_size}"), stride));
+        }
+        let bytes = bytes.get(accessor.byte_offset.map_or(0, size)..).unwrap_or(&[]);
+        check_range(bytes.len(), stride, element_size, count)
+            .map_err(|needed| Problem::new(here(), format!("{needed} bytes in its buffer view"), bytes.len()))?;
+        Ok(layout(Some(bytes), stride))
     }
 
     /// Calls `put(element, bytes)` for the elements that a sparse accessor replaces.
     fn sparse(&self, index: usize, layout: &Layout, mut put: impl FnMut(usize, &[u8])) -> Result<(), Problem> {
-        let Some(sparse) = self.root.accessors.get(index).and_then(|accessor| accessor.sparse.as_ref()) else {
-            return Ok(());
-        };
+        let accessor = self.document.root.accessors.get(index);
+        let Some(sparse) = accessor.and_then(|accessor| accessor.sparse.as_ref()) else { return Ok(()) };
         let here = format!("accessors[{index}].sparse");
-        if sparse.count > layout.count {
-            return Err(Problem::new(here, format!("at most {} entries", layout.count), sparse.count));
+        let count = size(sparse.count);
+        if count > layout.count {
+            return Err(Problem::new(here, format!("at most {} entries", layout.count), count));
         }
-        let index_type = Component::new(sparse.indices.component_type)
-            .filter(|component| matches!(component, Component::U8 | Component::U16 | Component::U32))
-            .ok_or_else(|| Problem::new(here.as_str(), "unsigned indices", sparse.indices.component_type))?;
-        let size = layout.component.size() * layout.components;
-        let (indices, _) = self.view(sparse.indices.buffer_view, &here)?;
-        let (values, _) = self.view(sparse.values.buffer_view, &here)?;
-        let indices = indices.get(sparse.indices.byte_offset..).unwrap_or(&[]);
-        let values = values.get(sparse.values.byte_offset..).unwrap_or(&[]);
-        for (bytes, size, what) in [(indices, index_type.size(), "indices"), (values, size, "values")] {
-            check_range(bytes.len(), size, size, sparse.count)
+        let Checked::Valid(IndexComponentType(index_type)) = sparse.indices.component_type else {
+            let found = self.document.quoted_at(&format!("{here}.indices.componentType"));
+            return Err(Problem::new(here, "unsigned indices", found));
+        };
+        let value_size = layout.component.size() * layout.components;
+        let (indices, _) = self.view(sparse.indices.buffer_view.value(), &here)?;
+        let (values, _) = self.view(sparse.values.buffer_view.value(), &here)?;
+        let indices = indices.get(size(sparse.indices.byte_offset)..).unwrap_or(&[]);
+        let values = values.get(size(sparse.values.byte_offset)..).unwrap_or(&[]);
+        for (bytes, size, what) in [(indices, index_type.size(), "indices"), (values, value_size, "values")] {
+            check_range(bytes.len(), size, size, count)
                 .map_err(|needed| Problem::new(format!("{here}.{what}"), format!("{needed} bytes"), bytes.len()))?;
         }
-        for entry in 0..sparse.count {
-            let element = index_type.to_u32(&indices[entry * index_type.size()..]) as usize;
+        for entry in 0..count {
+            let element = to_u32(index_type, &indices[entry * index_type.size()..]) as usize;
             if element >= layout.count {
                 return Err(Problem::new(here, format!("indices below {}", layout.count), element));
             }
-            put(element, &values[entry * size..(entry + 1) * size]);
+            put(element, &values[entry * value_size..(entry + 1) * value_size]);
         }
         Ok(())
     }
 
-    /// Elements of `N` numbers. `what` says in words what is expected, for the error.
+    /// Decodes elements of `N` numbers. `what` describes the expected accessor in an error.
     pub fn floats<const N: usize>(
         &self,
         index: usize,
@@ -228,18 +211,18 @@ impl<'a> Accessors<'a> {
     ) -> Result<Vec<[f32; N]>, Problem> {
         let layout = self.layout(index, place, N, what)?;
         let (component, normalized, size) = (layout.component, layout.normalized, layout.component.size());
-        let read = |bytes: &[u8]| std::array::from_fn(|at| component.to_f32(&bytes[at * size..], normalized));
+        let read = |bytes: &[u8]| std::array::from_fn(|at| to_f32(component, &bytes[at * size..], normalized));
         let mut out = match layout.bytes {
             None => vec![[0.0; N]; layout.count],
-            // By far the most, and fast when its kind is not asked for again and again.
-            Some(bytes) if component == Component::F32 => decoded(bytes, &layout, f32::from_le_bytes),
+            // By far the most common, and fast without a match on the type for each component.
+            Some(bytes) if component == ComponentType::F32 => decoded(bytes, &layout, f32::from_le_bytes),
             Some(bytes) => elements(bytes, &layout).map(read).collect(),
         };
         self.sparse(index, &layout, |element, bytes| out[element] = read(bytes))?;
         Ok(out)
     }
 
-    /// As [`Self::floats`], refusing numbers that are not finite.
+    /// Like [`Self::floats`], but rejects numbers that are not finite.
     pub fn finite<const N: usize>(
         &self,
         index: usize,
@@ -247,7 +230,7 @@ impl<'a> Accessors<'a> {
         what: &str,
     ) -> Result<Vec<[f32; N]>, Problem> {
         let values = self.floats::<N>(index, place, what)?;
-        // Without stopping at the first, so that several are looked at at once.
+        // Without early exit, so that the loop is vectorized.
         if values.as_flattened().iter().fold(true, |finite, number| finite & number.is_finite()) {
             return Ok(values);
         }
@@ -259,7 +242,7 @@ impl<'a> Accessors<'a> {
         }
     }
 
-    /// Elements of `N` unsigned integers.
+    /// Decodes elements of `N` unsigned integers.
     pub fn integers<const N: usize>(
         &self,
         index: usize,
@@ -268,16 +251,16 @@ impl<'a> Accessors<'a> {
     ) -> Result<Vec<[u32; N]>, Problem> {
         let layout = self.layout(index, place, N, what)?;
         let (component, size) = (layout.component, layout.component.size());
-        if !matches!(component, Component::U8 | Component::U16 | Component::U32) {
+        if !matches!(component, ComponentType::U8 | ComponentType::U16 | ComponentType::U32) {
             let place = format!("{place} (accessor {index})");
             return Err(Problem::new(place, "unsigned integers", format!("{component:?}")));
         }
-        let read = |bytes: &[u8]| std::array::from_fn(|at| component.to_u32(&bytes[at * size..]));
+        let read = |bytes: &[u8]| std::array::from_fn(|at| to_u32(component, &bytes[at * size..]));
         let mut out = match layout.bytes {
             None => vec![[0; N]; layout.count],
             Some(bytes) => match component {
-                Component::U8 => decoded(bytes, &layout, |[byte]: [u8; 1]| u32::from(byte)),
-                Component::U16 => decoded(bytes, &layout, |bytes: [u8; 2]| u32::from(u16::from_le_bytes(bytes))),
+                ComponentType::U8 => decoded(bytes, &layout, |[byte]: [u8; 1]| u32::from(byte)),
+                ComponentType::U16 => decoded(bytes, &layout, |bytes: [u8; 2]| u32::from(u16::from_le_bytes(bytes))),
                 _ => decoded(bytes, &layout, u32::from_le_bytes),
             },
         };
@@ -286,7 +269,7 @@ impl<'a> Accessors<'a> {
     }
 }
 
-/// Elements of `N` components of `SIZE` bytes, which is what the layout says they have.
+/// Decodes elements of `N` components of `SIZE` bytes, which has to match the layout.
 fn decoded<T: Copy + Default, const N: usize, const SIZE: usize>(
     bytes: &[u8],
     layout: &Layout,
@@ -304,7 +287,7 @@ fn elements<'a>(bytes: &'a [u8], layout: &Layout) -> impl Iterator<Item = &'a [u
     (0..layout.count).map(move |element| &bytes[element * stride..element * stride + size])
 }
 
-/// Whether `count` elements fit; if not, how many bytes they would need.
+/// Checks that `count` elements fit; fails with the number of bytes needed.
 fn check_range(available: usize, stride: usize, size: usize, count: usize) -> Result<(), usize> {
     if count == 0 {
         return Ok(());
@@ -313,7 +296,7 @@ fn check_range(available: usize, stride: usize, size: usize, count: usize) -> Re
     if needed <= available { Ok(()) } else { Err(needed) }
 }
 
-/// `list[index]`, or an error at `place` that says how many there are.
+/// Returns `list[index]`, or an error at `place` that says how many there are.
 pub fn get<'a, T>(list: &'a [T], index: usize, place: &dyn Display, name: &str) -> Result<&'a T, Problem> {
     list.get(index)
         .ok_or_else(|| Problem::new(place.to_string(), format!("an index into the {} {name}", list.len()), index))

@@ -4,17 +4,21 @@ use std::collections::BTreeMap;
 use std::fmt::Display;
 
 use glam::{Quat, Vec3};
+use gltf::json;
+use gltf::json::animation::{Interpolation as JsonInterpolation, Property};
+use gltf::json::validation::Checked;
 
 use super::accessor::{Accessors, get};
-use super::schema;
+use super::document::target_node;
 use crate::anim::{Clip, ClipBuilder, Interpolation, Keys, Skeleton};
 use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
 
 pub fn clips(accessors: &Accessors, skeleton: &Skeleton, warnings: &mut Warnings) -> Result<Vec<Clip>, Problem> {
+    let animations = &accessors.document.root.animations;
     let mut times = Times { accessors, read: BTreeMap::new() };
-    let mut clips = Vec::with_capacity(accessors.root.animations.len());
-    for (index, animation) in accessors.root.animations.iter().enumerate() {
+    let mut clips = Vec::with_capacity(animations.len());
+    for (index, animation) in animations.iter().enumerate() {
         clips.push(read_clip(accessors, skeleton, index, animation, &mut times, warnings)?);
     }
     Ok(clips)
@@ -40,63 +44,80 @@ fn read_clip(
     accessors: &Accessors,
     skeleton: &Skeleton,
     index: usize,
-    animation: &schema::Animation,
+    animation: &json::Animation,
     times: &mut Times,
     warnings: &mut Warnings,
 ) -> Result<Clip, Problem> {
-    let mut builder = ClipBuilder::new(animation.name.as_str(), skeleton);
+    let document = accessors.document;
+    let name = animation.name.as_deref().unwrap_or_default();
+    let mut builder = ClipBuilder::new(name, skeleton);
     for (at, channel) in animation.channels.iter().enumerate() {
-        // Written out only where there is something to say: a file may have thousands of channels.
+        // Formatted only for a message: a file may have thousands of channels.
         let place = format_args!("animations[{index}].channels[{at}]");
         let mut ignore = |problem: String| {
-            warnings.push(Warning::ChannelIgnored { clip: animation.name.clone(), place: place.to_string(), problem });
+            warnings.push(Warning::ChannelIgnored { clip: name.to_owned(), place: place.to_string(), problem });
         };
-        let sampler = get(&animation.samplers, channel.sampler, &format_args!("{place}.sampler"), "samplers")?;
+        let sampler_index = channel.sampler.value();
+        let sampler = get(&animation.samplers, sampler_index, &format_args!("{place}.sampler"), "samplers")?;
+        let path = || document.quoted_at(&format!("{place}.target.path"));
         // A channel without a node belongs to an extension; none of those is supported.
-        let Some(node) = channel.target.node else {
-            ignore(format!("its target “{}” is not a node's property", channel.target.path));
+        let Some(node) = target_node(channel.target.node) else {
+            ignore(format!("its target {} is not a node's property", path()));
             continue;
         };
-        get(&accessors.root.nodes, node, &format_args!("{place}.target.node"), "nodes")?;
+        get(&document.root.nodes, node, &format_args!("{place}.target.node"), "nodes")?;
         let Some(joint) = skeleton.joint_of_source(node) else { continue };
-        let here = format_args!("animations[{index}].samplers[{}]", channel.sampler);
-        let interpolation = match sampler.interpolation.as_deref() {
-            None | Some("LINEAR") => Interpolation::Linear,
-            Some("STEP") => Interpolation::Step,
-            Some("CUBICSPLINE") => Interpolation::CubicSpline,
-            Some(other) => {
-                let expected = "LINEAR, STEP or CUBICSPLINE";
-                return Err(Problem::new(format!("{here}.interpolation"), expected, format!("“{other}”")));
-            }
+        let here = format_args!("animations[{index}].samplers[{sampler_index}]");
+        let Checked::Valid(interpolation) = sampler.interpolation else {
+            let here = format!("{here}.interpolation");
+            let found = document.quoted_at(&here);
+            return Err(Problem::new(here, "LINEAR, STEP or CUBICSPLINE", found));
         };
-        let output = format_args!("{here}.output");
-        let keys = match channel.target.path.as_str() {
-            "translation" => Keys::Translation(vec3(accessors, sampler.output, &output)?),
-            "scale" => Keys::Scale(vec3(accessors, sampler.output, &output)?),
-            "rotation" => {
-                let read = accessors.finite::<4>(sampler.output, &output, "VEC4 of rotations")?;
-                Keys::Rotation(read.into_iter().map(Quat::from_array).collect())
-            }
-            "weights" => match skeleton.morph_range(joint).len() {
-                0 => {
-                    ignore("the node has no morph targets".to_owned());
-                    continue;
-                }
-                targets => {
-                    Keys::MorphWeights { values: weights(accessors, sampler.output, &output, targets)?, targets }
-                }
-            },
-            other => {
-                ignore(format!("its path “{other}” is not known"));
-                continue;
-            }
+        let Checked::Valid(property) = channel.target.path else {
+            ignore(format!("its path {} is not known", path()));
+            continue;
         };
-        let key_times = times.get(sampler.input, &format_args!("{here}.input"))?;
+        let targets = skeleton.morph_range(joint).len();
+        if property == Property::MorphTargetWeights && targets == 0 {
+            ignore("the node has no morph targets".to_owned());
+            continue;
+        }
+        let keys = keys(accessors, property, sampler.output.value(), &format_args!("{here}.output"), targets)?;
+        let key_times = times.get(sampler.input.value(), &format_args!("{here}.input"))?;
         builder
-            .channel(joint, interpolation, key_times, keys)
+            .channel(joint, interpolation_mode(interpolation), key_times, keys)
             .map_err(|problem| Problem::new(here.to_string(), "usable keys", problem))?;
     }
     Ok(builder.build())
+}
+
+fn interpolation_mode(interpolation: JsonInterpolation) -> Interpolation {
+    match interpolation {
+        JsonInterpolation::Linear => Interpolation::Linear,
+        JsonInterpolation::Step => Interpolation::Step,
+        JsonInterpolation::CubicSpline => Interpolation::CubicSpline,
+    }
+}
+
+/// `targets`: the number of morph targets of the node's mesh.
+fn keys(
+    accessors: &Accessors,
+    property: Property,
+    accessor: usize,
+    place: &dyn Display,
+    targets: usize,
+) -> Result<Keys, Problem> {
+    Ok(match property {
+        Property::Translation => Keys::Translation(vec3(accessors, accessor, place)?),
+        Property::Scale => Keys::Scale(vec3(accessors, accessor, place)?),
+        Property::Rotation => {
+            let read = accessors.finite::<4>(accessor, place, "VEC4 of rotations")?;
+            Keys::Rotation(read.into_iter().map(Quat::from_array).collect())
+        }
+        Property::MorphTargetWeights => {
+            Keys::MorphWeights { values: weights(accessors, accessor, place, targets)?, targets }
+        }
+    })
 }
 
 fn vec3(accessors: &Accessors, accessor: usize, place: &dyn Display) -> Result<Vec<Vec3>, Problem> {

@@ -1,9 +1,9 @@
-//! The GLB container: 12 bytes of header ("glTF", version, length), then chunks of (length, type, data). The first is JSON,
+//! The GLB container: a header of 12 bytes ("glTF", version, length), then chunks of (length, type, data). The first is JSON,
 //! an optional second is the binary buffer (glTF 2.0 §4.4).
 
 use crate::formats::LoadError;
 
-/// JSON text and binary chunk of a file that is either a GLB or plain JSON.
+/// JSON text and binary chunk of a file, which is a GLB or plain JSON.
 pub struct Container<'a> {
     pub json: &'a [u8],
     pub binary: Option<&'a [u8]>,

@@ -1,4 +1,4 @@
-//! Bytes behind URIs: buffers and images from data URIs or the files at hand.
+//! Resolves URIs of buffers and images: data URIs, or files in the set.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -15,7 +15,7 @@ pub fn is_data_uri(uri: &str) -> bool {
     uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:"))
 }
 
-/// Percent-decoded; what is not UTF-8 afterwards is taken as it stands.
+/// Percent-decodes a URI, unless the result is not UTF-8.
 pub fn decode_uri(uri: &str) -> Cow<'_, str> {
     percent_decode_str(uri).decode_utf8().unwrap_or(Cow::Borrowed(uri))
 }
@@ -36,12 +36,12 @@ pub fn data_uri(place: &str, uri: &str) -> Result<Vec<u8>, Problem> {
     engine.decode(decode_uri(body).trim().as_bytes()).map_err(|problem| Problem::new(place, "base64", problem))
 }
 
-/// Some exporters leave a bare `%` in names: the decoded form is tried, then the text itself.
+/// Tries the decoded URI, then the text itself: some exporters leave a bare `%` in names.
 pub fn find<'a>(files: &'a FileSet, base: &str, uri: &str) -> Option<Found<'a>> {
     files.resolve(base, &decode_uri(uri)).or_else(|| files.resolve(base, uri))
 }
 
-/// The bytes of a file that `uri` names, as seen from the file `base`.
+/// Returns the bytes of the file that `uri` refers to, relative to the file `base`.
 pub fn file(files: &FileSet, base: &str, uri: &str, warnings: &mut Warnings) -> Option<Arc<[u8]>> {
     let found = find(files, base, uri)?;
     if found.by_bare_name {

@@ -1,6 +1,7 @@
-//! Which extensions are understood, and what to say about the others.
+//! Supported extensions, and what to tell the user about the others.
 
-use super::schema;
+use gltf::json::Root;
+
 use crate::asset::{Warning, Warnings};
 use crate::formats::LoadError;
 
@@ -11,14 +12,14 @@ const SUPPORTED: &[&str] = &[
     "KHR_materials_emissive_strength",
     "KHR_lights_punctual",
     "EXT_texture_webp",
-    // Of these the map of humanoid bones is read.
+    // Only their map of humanoid bones is used.
     "VRM",
     "VRMC_vrm",
     "VRMC_vrm_animation",
 ];
 
-/// Refuses required extensions that are not supported; optional ones are warned about, once each.
-pub fn check(file: &str, root: &schema::Root, warnings: &mut Warnings) -> Result<(), LoadError> {
+/// Rejects required extensions that are not supported, and warns about each optional one.
+pub fn check(file: &str, root: &Root, warnings: &mut Warnings) -> Result<(), LoadError> {
     let unsupported = |name: &&String| !SUPPORTED.contains(&name.as_str());
     if let Some(name) = root.extensions_required.iter().find(unsupported) {
         return Err(LoadError::RequiredExtension { file: file.to_owned(), name: name.clone(), advice: advice(name) });

@@ -1,14 +1,14 @@
-//! The file's own word on which node is which part of a body: `VRM` (0.x), `VRMC_vrm` (1.0) and `VRMC_vrm_animation`.
-//! Models of VRM 0.x face −Z, those of 1.0 face +Z; which way a body faces is told by its joints, not here.
+//! The humanoid bones that a file declares: `VRM` (0.x), `VRMC_vrm` (1.0) and `VRMC_vrm_animation`. VRM 0.x models face −Z and
+//! 1.0 models +Z; the facing is found from the joints, not here.
 
-use serde_json::{Map, Value};
+use gltf::json::Root;
+use serde_json::Value;
 
-use super::schema;
 use crate::anim::Skeleton;
 use crate::asset::{Humanoid, Slot, Warning, Warnings};
 
-/// None when the file says nothing. A bone that is not known or has no node costs a warning and nothing more.
-pub fn humanoid(root: &schema::Root, skeleton: &Skeleton, warnings: &mut Warnings) -> Option<Humanoid> {
+/// None if the file declares no bones. A bone that is unknown or has no node is skipped with a warning.
+pub fn humanoid(root: &Root, skeleton: &Skeleton, warnings: &mut Warnings) -> Option<Humanoid> {
     let mut humanoid = Humanoid::default();
     let mut add = |place: String, slot: Option<Slot>, bone: &str, node: Option<&Value>| {
         let joint = node.and_then(Value::as_u64).and_then(|node| skeleton.joint_of_source(usize::try_from(node).ok()?));
@@ -26,13 +26,13 @@ pub fn humanoid(root: &schema::Root, skeleton: &Skeleton, warnings: &mut Warning
         warnings.push(Warning::Other { code: "humanoid-bone-ignored", place, problem });
     };
     for extension in ["VRMC_vrm", "VRMC_vrm_animation"] {
-        let Some(bones) = human_bones(&root.extensions, extension).and_then(Value::as_object) else { continue };
+        let Some(bones) = human_bones(root, extension).and_then(Value::as_object) else { continue };
         for (bone, value) in bones {
             let place = format!("extensions.{extension}.humanoid.humanBones.{bone}");
             add(place, Slot::from_name(bone), bone, value.get("node"));
         }
     }
-    if let Some(bones) = human_bones(&root.extensions, "VRM").and_then(Value::as_array) {
+    if let Some(bones) = human_bones(root, "VRM").and_then(Value::as_array) {
         for (index, value) in bones.iter().enumerate() {
             let bone = value.get("bone").and_then(Value::as_str).unwrap_or_default();
             // Exporters write −1 for a bone that the model does not have.
@@ -46,11 +46,11 @@ pub fn humanoid(root: &schema::Root, skeleton: &Skeleton, warnings: &mut Warning
     (!humanoid.0.is_empty()).then_some(humanoid)
 }
 
-fn human_bones<'a>(extensions: &'a Map<String, Value>, name: &str) -> Option<&'a Value> {
-    extensions.get(name)?.get("humanoid")?.get("humanBones")
+fn human_bones<'a>(root: &'a Root, name: &str) -> Option<&'a Value> {
+    root.extensions.as_ref()?.others.get(name)?.get("humanoid")?.get("humanBones")
 }
 
-/// VRM 0.x counts the bones of a thumb from Proximal, 1.0 from Metacarpal.
+/// In VRM 0.x the first bone of a thumb is Proximal, in 1.0 it is Metacarpal.
 fn slot_of_vrm0(bone: &str) -> Option<Slot> {
     Slot::from_name(match bone {
         "leftThumbProximal" => "leftThumbMetacarpal",

@@ -1,5 +1,5 @@
-//! Images stay encoded; only their headers are read, so that absurd sizes are refused before anything is decoded. An
-//! image that cannot be had costs its texture, not the model.
+//! Images stay encoded; only their headers are read, so that absurd sizes are rejected before anything is decoded. An
+//! unavailable image leaves its texture empty; the model still loads.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::formats::FileSet;
 use crate::formats::error::Problem;
 
 const MAX_SIDE_PIXELS: usize = 16_384;
-/// Of all images of a file together.
+/// Limit for all images of a file together.
 pub const MAX_IMAGE_PIXELS: usize = 256 << 20;
 
 pub fn images(
@@ -22,8 +22,8 @@ pub fn images(
     warnings: &mut Warnings,
 ) -> Result<Vec<Image>, Problem> {
     let mut budget = MAX_IMAGE_PIXELS;
-    let mut images = Vec::with_capacity(accessors.root.images.len());
-    for (index, image) in accessors.root.images.iter().enumerate() {
+    let mut images = Vec::with_capacity(accessors.document.root.images.len());
+    for (index, image) in accessors.document.root.images.iter().enumerate() {
         let place = format!("images[{index}]");
         let bytes: Option<Arc<[u8]>> = match (&image.uri, image.buffer_view) {
             (Some(uri), _) if data::is_data_uri(uri) => Some(data::data_uri(&place, uri)?.into()),
@@ -35,7 +35,7 @@ pub fn images(
                 found
             }
             (None, Some(view)) => {
-                let (bytes, _) = accessors.view(view, &format!("{place}.bufferView"))?;
+                let (bytes, _) = accessors.view(view.value(), &format!("{place}.bufferView"))?;
                 accessors.charge(1, bytes.len(), &place)?;
                 Some(bytes.into())
             }
@@ -45,11 +45,11 @@ pub fn images(
                 None
             }
         };
-        let name = match (image.name.as_str(), &image.uri) {
+        let name = match (image.name.as_deref().unwrap_or_default(), &image.uri) {
             ("", Some(uri)) if !data::is_data_uri(uri) => data::decode_uri(uri).into_owned(),
             (name, _) => name.to_owned(),
         };
-        // An image without bytes keeps its place, so that indices stay as they are in the file.
+        // An image without bytes stays in the list, so that indices are those of the file.
         let missing = Image { name: name.clone(), mime: "", bytes: Arc::from([]), width: 0, height: 0 };
         images.push(match bytes {
             None => missing,
@@ -65,7 +65,7 @@ pub fn images(
     Ok(images)
 }
 
-/// Kind by content (the file's own word for it is often wrong), and size.
+/// Returns the MIME type by content (what the file declares is often wrong), width and height.
 pub fn image_header(bytes: &[u8], budget: &mut usize) -> Result<(&'static str, u32, u32), String> {
     let mime = match imagesize::image_type(bytes) {
         Ok(ImageType::Png) => "image/png",

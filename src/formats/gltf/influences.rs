@@ -1,13 +1,13 @@
-//! JOINTS_n and WEIGHTS_n of a primitive, merged into one list per vertex, strongest first (§3.7.3.3).
+//! Merges JOINTS_n and WEIGHTS_n of a primitive into one list per vertex, strongest first (§3.7.3.3).
 
 use crate::asset::{Warning, Warnings};
 use crate::mesh::{Influences, MAX_INFLUENCES};
 
-/// Sums further off 1 than this are worth a word; smaller errors are rounding.
+/// A sum of weights that is farther from 1 is reported; a smaller error is rounding.
 const SUM_TOLERANCE: f32 = 1e-3;
 
-/// Weights past this are taken as broken, like NaN; below it no sum overflows.
-const LARGEST_WEIGHT: f32 = 1e30;
+/// Larger weights are ignored, like NaN. Below it no sum overflows.
+const MAX_WEIGHT: f32 = 1e30;
 
 /// One JOINTS_n with its WEIGHTS_n.
 pub struct InfluenceSet {
@@ -25,21 +25,21 @@ pub fn merge(mesh: &str, vertices: usize, sets: &[InfluenceSet], warnings: &mut 
         pairs.clear();
         for set in sets {
             for (&joint, &weight) in set.joints[vertex].iter().zip(&set.weights[vertex]) {
-                if weight > 0.0 && weight < LARGEST_WEIGHT {
+                if weight > 0.0 && weight < MAX_WEIGHT {
                     pairs.push((joint.min(u32::from(u16::MAX)) as u16, weight));
                 }
             }
         }
-        // Stable: of equal weights, the one that comes first in the file stays first.
+        // Stable: equal weights keep the file's order.
         pairs.sort_by(|a, b| b.1.total_cmp(&a.1));
     };
     let mut pairs = Vec::with_capacity(4 * sets.len());
-    let mut most = 1;
+    let mut max_count = 1;
     for vertex in 0..vertices {
         of_vertex(vertex, &mut pairs);
-        most = most.max(pairs.len());
+        max_count = max_count.max(pairs.len());
     }
-    let stride = most.min(MAX_INFLUENCES).next_multiple_of(4);
+    let stride = max_count.min(MAX_INFLUENCES).next_multiple_of(4);
     let mut influences =
         Influences { stride, joints: vec![0; stride * vertices], weights: vec![0.0; stride * vertices] };
     let (mut normalized, mut missing, mut largest_lost_weight) = (0, 0, 0.0_f32);
@@ -62,15 +62,15 @@ pub fn merge(mesh: &str, vertices: usize, sets: &[InfluenceSet], warnings: &mut 
             influences.weights[vertex * stride + at] = weight / kept;
         }
     }
-    if most > MAX_INFLUENCES {
-        let (found, kept) = (most, MAX_INFLUENCES);
+    if max_count > MAX_INFLUENCES {
+        let (found, kept) = (max_count, MAX_INFLUENCES);
         warnings.push(Warning::InfluencesDropped { mesh: mesh.to_owned(), found, kept, largest_lost_weight });
     }
     warn(mesh, missing, normalized, warnings);
     influences
 }
 
-/// The usual case, without lists that grow: at most four influences a vertex.
+/// The common case, at most four influences per vertex, without growing lists.
 fn single_set(mesh: &str, set: &InfluenceSet, warnings: &mut Warnings) -> Influences {
     let vertices = set.joints.len();
     let mut influences =
@@ -79,9 +79,9 @@ fn single_set(mesh: &str, set: &InfluenceSet, warnings: &mut Warnings) -> Influe
     for (joints, weights) in set.joints.iter().zip(&set.weights) {
         let mut pairs: [(u16, f32); 4] = std::array::from_fn(|at| {
             let (joint, weight) = (joints[at].min(u32::from(u16::MAX)) as u16, weights[at]);
-            if weight > 0.0 && weight < LARGEST_WEIGHT { (joint, weight) } else { (0, 0.0) }
+            if weight > 0.0 && weight < MAX_WEIGHT { (joint, weight) } else { (0, 0.0) }
         });
-        // Neighbours change places only when the second is heavier: equal weights keep the file's order.
+        // Swaps neighbours only if the second is heavier: equal weights keep the file's order.
         for (a, b) in [(0, 1), (1, 2), (2, 3), (0, 1), (1, 2), (0, 1)] {
             if pairs[a].1 < pairs[b].1 {
                 pairs.swap(a, b);

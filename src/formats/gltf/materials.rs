@@ -1,73 +1,72 @@
 //! Materials, textures and samplers (§3.9, §3.8.4), with the extensions that change them.
 
 use glam::{Vec2, Vec3, Vec4};
+use gltf::json::extensions::texture::TextureTransform;
+use gltf::json::material::AlphaMode as JsonAlphaMode;
+use gltf::json::texture::{MagFilter, MinFilter, Sampler as JsonSampler, WrappingMode};
+use gltf::json::validation::Checked;
+use gltf::json::{self, Root};
 use serde::de::DeserializeOwned;
+use serde_json::{Map, Value};
 
 use super::accessor::get;
-use super::schema::{self, Extensions};
+use super::document::{Document, without_nulls};
 use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
 use crate::mesh::{AlphaMode, Filter, Material, MipFilter, Sampler, Texture, TextureRef, UvTransform, Wrap};
 
-/// An extension's object, read as `T`; a malformed one is an error at `place`.
-pub fn extension<T: DeserializeOwned>(map: &Extensions, name: &str, place: &str) -> Result<Option<T>, Problem> {
-    match map.get(name) {
-        None => Ok(None),
-        Some(value) => T::deserialize(value).map(Some).map_err(|problem| {
-            Problem::new(format!("{place}.extensions.{name}"), "what its specification says", problem)
-        }),
-    }
+/// Reads the object of an extension that the crate has no type for at this place.
+fn extension<T: DeserializeOwned>(
+    extensions: &Map<String, Value>,
+    name: &str,
+    place: &str,
+) -> Result<Option<T>, Problem> {
+    let Some(value) = extensions.get(name) else { return Ok(None) };
+    T::deserialize(without_nulls(value)).map(Some).map_err(|problem| {
+        Problem::new(format!("{place}.extensions.{name}"), "what the extension's specification says", problem)
+    })
 }
 
-pub fn materials(root: &schema::Root, warnings: &mut Warnings) -> Result<Vec<Material>, Problem> {
-    root.materials.iter().enumerate().map(|(index, material)| read(root, index, material, warnings)).collect()
+pub fn materials(document: &Document, warnings: &mut Warnings) -> Result<Vec<Material>, Problem> {
+    let materials = document.root.materials.iter().enumerate();
+    materials.map(|(index, material)| read(document, index, material, warnings)).collect()
 }
 
 fn read(
-    root: &schema::Root,
+    document: &Document,
     index: usize,
-    material: &schema::Material,
+    material: &json::Material,
     warnings: &mut Warnings,
 ) -> Result<Material, Problem> {
-    #[derive(serde::Deserialize)]
-    #[serde(rename_all = "camelCase")]
-    struct EmissiveStrength {
-        emissive_strength: Option<f32>,
-    }
     let here = format!("materials[{index}]");
     let pbr = &material.pbr_metallic_roughness;
-    let mut texture = |info: &Option<schema::TextureInfo>, name: &str| {
-        info.as_ref().map(|info| texture_ref(root, info, &format!("{here}.{name}"), warnings)).transpose()
-    };
-    let base_color_texture = texture(&pbr.base_color_texture, "pbrMetallicRoughness.baseColorTexture")?;
+    let mut reader = TextureReader { root: &document.root, material: &here, warnings };
+    let base_color_texture = reader.color(&pbr.base_color_texture, "pbrMetallicRoughness.baseColorTexture")?;
     let metallic_roughness_texture =
-        texture(&pbr.metallic_roughness_texture, "pbrMetallicRoughness.metallicRoughnessTexture")?;
-    let normal_texture = texture(&material.normal_texture, "normalTexture")?;
-    let occlusion_texture = texture(&material.occlusion_texture, "occlusionTexture")?;
-    let emissive_texture = texture(&material.emissive_texture, "emissiveTexture")?;
-    let strength: Option<EmissiveStrength> = extension(&material.extensions, "KHR_materials_emissive_strength", &here)?;
-    let strength = strength.and_then(|strength| strength.emissive_strength).unwrap_or(1.0);
-    let alpha_mode = match material.alpha_mode.as_str() {
-        "" | "OPAQUE" => AlphaMode::Opaque,
-        "MASK" => AlphaMode::Mask { cutoff: material.alpha_cutoff.unwrap_or(0.5) },
-        "BLEND" => AlphaMode::Blend,
-        other => {
-            let problem = format!("alpha mode “{other}” is not known; it is drawn opaque");
-            warnings.push(Warning::Other { code: "alpha-mode", place: here, problem });
-            AlphaMode::Opaque
-        }
-    };
+        reader.color(&pbr.metallic_roughness_texture, "pbrMetallicRoughness.metallicRoughnessTexture")?;
+    let normal = material.normal_texture.as_ref().map(|info| {
+        (info.index.value(), info.tex_coord, info.extensions.as_ref().map(|extensions| &extensions.others))
+    });
+    let normal_texture = reader.data(normal, "normalTexture")?;
+    let occlusion = material.occlusion_texture.as_ref().map(|info| {
+        (info.index.value(), info.tex_coord, info.extensions.as_ref().map(|extensions| &extensions.others))
+    });
+    let occlusion_texture = reader.data(occlusion, "occlusionTexture")?;
+    let emissive_texture = reader.color(&material.emissive_texture, "emissiveTexture")?;
+    let extensions = material.extensions.as_ref();
+    let emissive_strength = extensions.and_then(|extensions| extensions.emissive_strength.as_ref());
     Ok(Material {
-        name: material.name.clone(),
-        base_color: Vec4::from(pbr.base_color_factor),
-        metallic: pbr.metallic_factor,
-        roughness: pbr.roughness_factor,
-        emissive: Vec3::from(material.emissive_factor) * strength,
-        normal_scale: material.normal_texture.as_ref().and_then(|info| info.scale).unwrap_or(1.0),
-        occlusion_strength: material.occlusion_texture.as_ref().and_then(|info| info.strength).unwrap_or(1.0),
-        alpha_mode,
+        name: material.name.clone().unwrap_or_default(),
+        base_color: Vec4::from(pbr.base_color_factor.0),
+        metallic: pbr.metallic_factor.0,
+        roughness: pbr.roughness_factor.0,
+        emissive: Vec3::from(material.emissive_factor.0)
+            * emissive_strength.map_or(1.0, |strength| strength.emissive_strength.0),
+        normal_scale: material.normal_texture.as_ref().map_or(1.0, |info| info.scale),
+        occlusion_strength: material.occlusion_texture.as_ref().map_or(1.0, |info| info.strength.0),
+        alpha_mode: alpha_mode(document, material, &here, warnings),
         double_sided: material.double_sided,
-        unlit: material.extensions.contains_key("KHR_materials_unlit"),
+        unlit: extensions.is_some_and(|extensions| extensions.unlit.is_some()),
         base_color_texture,
         metallic_roughness_texture,
         normal_texture,
@@ -76,30 +75,77 @@ fn read(
     })
 }
 
-fn texture_ref(
-    root: &schema::Root,
-    info: &schema::TextureInfo,
-    place: &str,
-    warnings: &mut Warnings,
-) -> Result<TextureRef, Problem> {
-    get(&root.textures, info.index, &format!("{place}.index"), "textures")?;
-    let transform: Option<schema::TextureTransform> = extension(&info.extensions, "KHR_texture_transform", place)?;
-    let transform = transform.unwrap_or_default();
-    let mut uv_set = transform.tex_coord.unwrap_or(info.tex_coord);
-    if uv_set > 1 {
-        let problem = format!("TEXCOORD_{uv_set} is asked for; only sets 0 and 1 are read, so set 0 is used");
-        warnings.push(Warning::Other { code: "texcoord-set", place: place.to_owned(), problem });
-        uv_set = 0;
+fn alpha_mode(document: &Document, material: &json::Material, here: &str, warnings: &mut Warnings) -> AlphaMode {
+    match material.alpha_mode {
+        Checked::Valid(JsonAlphaMode::Opaque) => AlphaMode::Opaque,
+        Checked::Valid(JsonAlphaMode::Mask) => AlphaMode::Mask { cutoff: material.alpha_cutoff.unwrap_or_default().0 },
+        Checked::Valid(JsonAlphaMode::Blend) => AlphaMode::Blend,
+        Checked::Invalid => {
+            let found = document.text_at(&format!("{here}.alphaMode"));
+            // An empty one is taken for a missing one.
+            if !found.is_empty() {
+                let problem = format!("alpha mode “{found}” is not known; it is drawn opaque");
+                warnings.push(Warning::Other { code: "alpha-mode", place: here.to_owned(), problem });
+            }
+            AlphaMode::Opaque
+        }
     }
-    let uv_transform = UvTransform {
-        offset: transform.offset.map_or(Vec2::ZERO, Vec2::from),
-        rotation_radians: transform.rotation.unwrap_or(0.0),
-        scale: transform.scale.map_or(Vec2::ONE, Vec2::from),
-    };
-    Ok(TextureRef { texture: info.index, uv_set, uv_transform })
 }
 
-pub fn textures(root: &schema::Root) -> Result<Vec<Texture>, Problem> {
+/// Reads the textures of one material. The crate has a type for KHR_texture_transform in textures of colours, but not in
+/// those of normals and occlusion.
+struct TextureReader<'a> {
+    root: &'a Root,
+    material: &'a str,
+    warnings: &'a mut Warnings,
+}
+
+/// Texture, set of texture coordinates, extensions.
+type DataTexture<'a> = (usize, u32, Option<&'a Map<String, Value>>);
+
+impl TextureReader<'_> {
+    fn color(&mut self, info: &Option<json::texture::Info>, name: &str) -> Result<Option<TextureRef>, Problem> {
+        let Some(info) = info else { return Ok(None) };
+        let transform = info.extensions.as_ref().and_then(|extensions| extensions.texture_transform.clone());
+        let place = format!("{}.{name}", self.material);
+        self.texture(info.index.value(), info.tex_coord, transform, place).map(Some)
+    }
+
+    fn data(&mut self, info: Option<DataTexture>, name: &str) -> Result<Option<TextureRef>, Problem> {
+        let Some((index, uv_set, extensions)) = info else { return Ok(None) };
+        let place = format!("{}.{name}", self.material);
+        let transform = match extensions {
+            Some(extensions) => extension(extensions, "KHR_texture_transform", &place)?,
+            None => None,
+        };
+        self.texture(index, uv_set, transform, place).map(Some)
+    }
+
+    fn texture(
+        &mut self,
+        index: usize,
+        uv_set: u32,
+        transform: Option<TextureTransform>,
+        place: String,
+    ) -> Result<TextureRef, Problem> {
+        get(&self.root.textures, index, &format_args!("{place}.index"), "textures")?;
+        let transform = transform.unwrap_or_default();
+        let mut uv_set = transform.tex_coord.unwrap_or(uv_set) as usize;
+        if uv_set > 1 {
+            let problem = format!("TEXCOORD_{uv_set} is asked for; only sets 0 and 1 are read, so set 0 is used");
+            self.warnings.push(Warning::Other { code: "texcoord-set", place, problem });
+            uv_set = 0;
+        }
+        let uv_transform = UvTransform {
+            offset: Vec2::from(transform.offset.0),
+            rotation_radians: transform.rotation.0,
+            scale: Vec2::from(transform.scale.0),
+        };
+        Ok(TextureRef { texture: index, uv_set, uv_transform })
+    }
+}
+
+pub fn textures(root: &Root) -> Result<Vec<Texture>, Problem> {
     #[derive(serde::Deserialize)]
     struct Webp {
         source: Option<usize>,
@@ -107,35 +153,45 @@ pub fn textures(root: &schema::Root) -> Result<Vec<Texture>, Problem> {
     let mut textures = Vec::with_capacity(root.textures.len());
     for (index, texture) in root.textures.iter().enumerate() {
         let here = format!("textures[{index}]");
-        let webp: Option<Webp> = extension(&texture.extensions, "EXT_texture_webp", &here)?;
-        let image = webp.and_then(|webp| webp.source).or(texture.source);
+        let webp: Option<Webp> = match &texture.extensions {
+            Some(extensions) => extension(&extensions.others, "EXT_texture_webp", &here)?,
+            None => None,
+        };
+        // The crate's way to say that there is no source.
+        let source = Some(texture.source.value()).filter(|&source| source != u32::MAX as usize);
+        let image = webp.and_then(|webp| webp.source).or(source);
         if let Some(image) = image {
             get(&root.images, image, &format!("{here}.source"), "images")?;
         }
         let sampler = match texture.sampler {
             None => Sampler::default(),
-            Some(sampler) => read_sampler(get(&root.samplers, sampler, &format!("{here}.sampler"), "samplers")?),
+            Some(sampler) => {
+                read_sampler(get(&root.samplers, sampler.value(), &format!("{here}.sampler"), "samplers")?)
+            }
         };
         textures.push(Texture { image, sampler });
     }
     Ok(textures)
 }
 
-/// Codes as in OpenGL; unknown ones get the default.
-fn read_sampler(sampler: &schema::Sampler) -> Sampler {
-    let wrap = |code: Option<u32>| match code {
-        Some(33071) => Wrap::ClampToEdge,
-        Some(33648) => Wrap::MirroredRepeat,
+/// Unknown codes get the default.
+fn read_sampler(sampler: &JsonSampler) -> Sampler {
+    let wrap = |mode: Checked<WrappingMode>| match mode {
+        Checked::Valid(WrappingMode::ClampToEdge) => Wrap::ClampToEdge,
+        Checked::Valid(WrappingMode::MirroredRepeat) => Wrap::MirroredRepeat,
         _ => Wrap::Repeat,
     };
     let (min, mip) = match sampler.min_filter {
-        Some(9728) => (Filter::Nearest, MipFilter::None),
-        Some(9729) => (Filter::Linear, MipFilter::None),
-        Some(9984) => (Filter::Nearest, MipFilter::Nearest),
-        Some(9985) => (Filter::Linear, MipFilter::Nearest),
-        Some(9986) => (Filter::Nearest, MipFilter::Linear),
+        Some(Checked::Valid(MinFilter::Nearest)) => (Filter::Nearest, MipFilter::None),
+        Some(Checked::Valid(MinFilter::Linear)) => (Filter::Linear, MipFilter::None),
+        Some(Checked::Valid(MinFilter::NearestMipmapNearest)) => (Filter::Nearest, MipFilter::Nearest),
+        Some(Checked::Valid(MinFilter::LinearMipmapNearest)) => (Filter::Linear, MipFilter::Nearest),
+        Some(Checked::Valid(MinFilter::NearestMipmapLinear)) => (Filter::Nearest, MipFilter::Linear),
         _ => (Filter::Linear, MipFilter::Linear),
     };
-    let mag = if sampler.mag_filter == Some(9728) { Filter::Nearest } else { Filter::Linear };
+    let mag = match sampler.mag_filter {
+        Some(Checked::Valid(MagFilter::Nearest)) => Filter::Nearest,
+        _ => Filter::Linear,
+    };
     Sampler { mag, min, mip, wrap_u: wrap(sampler.wrap_s), wrap_v: wrap(sampler.wrap_t) }
 }

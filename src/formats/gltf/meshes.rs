@@ -1,17 +1,21 @@
 //! Meshes and their primitives (§3.7).
 
 use glam::{Vec2, Vec3, Vec4};
-use serde_json::{Map, Value};
+use gltf::json::accessor::Type;
+use gltf::json::mesh::{MorphTarget as JsonMorphTarget, Primitive, Semantic};
+use gltf::json::validation::Checked;
+use gltf::json::{self, Accessor, Index};
+use serde_json::Value;
 
 use super::accessor::{Accessors, get};
+use super::indices;
 use super::influences::{self, InfluenceSet};
-use super::{indices, schema};
 use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
 use crate::mesh::{Geometry, Influences, Material, Mesh, MorphTarget, Topology, add_tangents};
 
 pub fn meshes(accessors: &Accessors, materials: &[Material], warnings: &mut Warnings) -> Result<Vec<Mesh>, Problem> {
-    let meshes = accessors.root.meshes.iter().enumerate();
+    let meshes = accessors.document.root.meshes.iter().enumerate();
     meshes.map(|(index, mesh)| read_mesh(accessors, materials, index, mesh, warnings)).collect()
 }
 
@@ -19,77 +23,76 @@ fn read_mesh(
     accessors: &Accessors,
     materials: &[Material],
     index: usize,
-    mesh: &schema::Mesh,
+    mesh: &json::Mesh,
     warnings: &mut Warnings,
 ) -> Result<Mesh, Problem> {
     let here = format!("meshes[{index}]");
-    let targets = mesh.primitives.first().map_or(0, |primitive| primitive.targets.len());
+    let targets = mesh.primitives.first().map_or(0, |primitive| targets(primitive).len());
     let mut primitives = Vec::with_capacity(mesh.primitives.len());
     for (at, primitive) in mesh.primitives.iter().enumerate() {
         let place = format!("{here}.primitives[{at}]");
-        if primitive.targets.len() != targets {
-            return Err(Problem::new(
-                format!("{place}.targets"),
-                format!("{targets} morph targets, as the first primitive has"),
-                primitive.targets.len(),
-            ));
+        let found = self::targets(primitive).len();
+        if found != targets {
+            let expected = format!("{targets} morph targets, as the first primitive has");
+            return Err(Problem::new(format!("{place}.targets"), expected, found));
         }
         primitives.push(read_primitive(accessors, materials, &place, primitive, warnings)?);
     }
-    if !mesh.weights.is_empty() && mesh.weights.len() != targets {
-        return Err(Problem::new(format!("{here}.weights"), format!("{targets} weights"), mesh.weights.len()));
+    let weights = mesh.weights.as_ref().map_or(0, Vec::len);
+    if weights > 0 && weights != targets {
+        return Err(Problem::new(format!("{here}.weights"), format!("{targets} weights"), weights));
     }
-    let names = mesh.extras.get("targetNames").and_then(Value::as_array);
-    let target_names = (0..targets)
-        .map(|target| names.and_then(|names| names.get(target)?.as_str()).unwrap_or_default().to_owned())
-        .collect();
-    Ok(Mesh { name: mesh.name.clone(), primitives, target_names, ..Mesh::default() })
+    let name = mesh.name.clone().unwrap_or_default();
+    Ok(Mesh { name, primitives, target_names: target_names(mesh, targets), ..Mesh::default() })
 }
 
-/// Attributes of one primitive or morph target, looked up by semantic.
+fn targets(primitive: &Primitive) -> &[JsonMorphTarget] {
+    primitive.targets.as_deref().unwrap_or_default()
+}
+
+/// Names of morph targets are not in the specification, but most exporters write them to the mesh's extras.
+fn target_names(mesh: &json::Mesh, targets: usize) -> Vec<String> {
+    let extras = mesh.extras.as_ref().filter(|_| targets > 0);
+    let extras: Value = extras.and_then(|extras| serde_json::from_str(extras.get()).ok()).unwrap_or_default();
+    let name = |target: usize| extras.get("targetNames")?.as_array()?.get(target)?.as_str();
+    (0..targets).map(|target| name(target).unwrap_or_default().to_owned()).collect()
+}
+
+/// The attributes of one primitive or morph target.
 struct Attributes<'a> {
     accessors: &'a Accessors<'a>,
-    map: &'a Map<String, Value>,
+    find: &'a dyn Fn(&Semantic) -> Option<Index<Accessor>>,
     place: String,
     vertices: usize,
 }
 
 impl Attributes<'_> {
-    fn index(&self, semantic: &str) -> Result<Option<usize>, Problem> {
-        match self.map.get(semantic) {
-            None => Ok(None),
-            Some(value) => match value.as_u64().and_then(|index| usize::try_from(index).ok()) {
-                Some(index) => Ok(Some(index)),
-                None => Err(Problem::new(format!("{}.{semantic}", self.place), "an accessor's index", value)),
-            },
-        }
-    }
-
-    /// Accessor and place of an attribute; its count is checked before anything is decoded.
-    fn located(&self, semantic: &str) -> Result<Option<(usize, String)>, Problem> {
-        let Some(index) = self.index(semantic)? else { return Ok(None) };
-        let place = format!("{}.{semantic}", self.place);
-        let found = self.accessors.count(index, &place)?;
+    /// Returns an attribute's accessor and its place; checks the count before anything is decoded.
+    fn located(&self, semantic: Semantic) -> Result<Option<(usize, String)>, Problem> {
+        let Some(index) = (self.find)(&semantic) else { return Ok(None) };
+        let place = format!("{}.{}", self.place, semantic.to_string());
+        let found = self.accessors.count(index.value(), &place)?;
         if found != self.vertices {
             return Err(Problem::new(place, format!("{} elements, as POSITION has", self.vertices), found));
         }
-        Ok(Some((index, place)))
+        Ok(Some((index.value(), place)))
     }
 
-    fn floats<const N: usize>(&self, semantic: &str, what: &str) -> Result<Vec<[f32; N]>, Problem> {
+    fn floats<const N: usize>(&self, semantic: Semantic, what: &str) -> Result<Vec<[f32; N]>, Problem> {
         match self.located(semantic)? {
             None => Ok(Vec::new()),
             Some((index, place)) => self.accessors.finite::<N>(index, &place, what),
         }
     }
 
-    fn vec3(&self, semantic: &str) -> Result<Vec<Vec3>, Problem> {
+    fn vec3(&self, semantic: Semantic) -> Result<Vec<Vec3>, Problem> {
         Ok(self.floats::<3>(semantic, "VEC3")?.into_iter().map(Vec3::from).collect())
     }
 
     fn colors(&self) -> Result<Vec<Vec4>, Problem> {
-        let Some((index, place)) = self.located("COLOR_0")? else { return Ok(Vec::new()) };
-        if get(&self.accessors.root.accessors, index, &place, "accessors")?.shape == "VEC3" {
+        let Some((index, place)) = self.located(Semantic::Colors(0))? else { return Ok(Vec::new()) };
+        let accessor = get(&self.accessors.document.root.accessors, index, &place, "accessors")?;
+        if accessor.type_ == Checked::Valid(Type::Vec3) {
             let colors = self.accessors.finite::<3>(index, &place, "VEC3 or VEC4")?;
             return Ok(colors.into_iter().map(|color| Vec3::from(color).extend(1.0)).collect());
         }
@@ -100,15 +103,18 @@ impl Attributes<'_> {
     fn influences(&self, mesh: &str, warnings: &mut Warnings) -> Result<Influences, Problem> {
         let mut sets = Vec::new();
         for set in 0.. {
-            let (joints, weights) = (format!("JOINTS_{set}"), format!("WEIGHTS_{set}"));
-            match (self.located(&joints)?, self.located(&weights)?) {
+            let only = |missing: Semantic, found: Semantic| {
+                let found = format!("only {}", found.to_string());
+                Problem::new(self.place.as_str(), missing.to_string(), found)
+            };
+            match (self.located(Semantic::Joints(set))?, self.located(Semantic::Weights(set))?) {
                 (None, None) => break,
                 (Some((joint_index, joint_place)), Some((weight_index, weight_place))) => sets.push(InfluenceSet {
                     joints: self.accessors.integers::<4>(joint_index, &joint_place, "VEC4 of joints")?,
                     weights: self.accessors.floats::<4>(weight_index, &weight_place, "VEC4 of weights")?,
                 }),
-                (Some(_), None) => return Err(Problem::new(self.place.as_str(), &weights, format!("only {joints}"))),
-                (None, Some(_)) => return Err(Problem::new(self.place.as_str(), &joints, format!("only {weights}"))),
+                (Some(_), None) => return Err(only(Semantic::Weights(set), Semantic::Joints(set))),
+                (None, Some(_)) => return Err(only(Semantic::Joints(set), Semantic::Weights(set))),
             }
         }
         Ok(influences::merge(mesh, self.vertices, &sets, warnings))
@@ -119,61 +125,50 @@ fn read_primitive(
     accessors: &Accessors,
     materials: &[Material],
     place: &str,
-    primitive: &schema::Primitive,
+    primitive: &Primitive,
     warnings: &mut Warnings,
 ) -> Result<Geometry, Problem> {
-    let mut attributes =
-        Attributes { accessors, map: &primitive.attributes, place: format!("{place}.attributes"), vertices: 0 };
-    let Some(position) = attributes.index("POSITION")? else {
+    let find = |semantic: &Semantic| primitive.attributes.get(&Checked::Valid(semantic.clone())).copied();
+    let Some(position) = find(&Semantic::Positions) else {
         let problem = "it has no POSITION and cannot be drawn".to_owned();
         warnings.push(Warning::Other { code: "no-positions", place: place.to_owned(), problem });
-        let morph_targets = vec![MorphTarget::default(); primitive.targets.len()];
+        let morph_targets = vec![MorphTarget::default(); targets(primitive).len()];
         return Ok(Geometry { morph_targets, ..Geometry::default() });
     };
-    attributes.vertices = accessors.count(position, &format!("{place}.attributes.POSITION"))?;
-    let vertices = attributes.vertices;
-    let positions = attributes.vec3("POSITION")?;
-    let normals: Vec<Vec3> =
-        attributes.vec3("NORMAL")?.into_iter().map(|normal| normal.normalize_or(Vec3::Y)).collect();
+    let vertices = accessors.count(position.value(), &format!("{place}.attributes.POSITION"))?;
+    let attributes = Attributes { accessors, find: &find, place: format!("{place}.attributes"), vertices };
+    let positions = attributes.vec3(Semantic::Positions)?;
+    let normals = attributes.vec3(Semantic::Normals)?;
+    let normals: Vec<Vec3> = normals.into_iter().map(|normal| normal.normalize_or(Vec3::Y)).collect();
     let mut uvs = [Vec::new(), Vec::new()];
-    for (set, uv) in uvs.iter_mut().enumerate() {
-        let read = attributes.floats::<2>(&format!("TEXCOORD_{set}"), "VEC2")?;
-        *uv = read.into_iter().map(Vec2::from).collect();
+    for (set, uv) in (0..).zip(&mut uvs) {
+        *uv = attributes.floats::<2>(Semantic::TexCoords(set), "VEC2")?.into_iter().map(Vec2::from).collect();
     }
-    // Without normals, given tangents are to be ignored (§3.7.2.1).
-    let tangents = if normals.is_empty() { Vec::new() } else { attributes.floats::<4>("TANGENT", "VEC4")? };
-    let tangents = tangents.into_iter().map(Vec4::from).collect();
+    // Tangents without normals have to be ignored (§3.7.2.1).
+    let tangents = if normals.is_empty() { Vec::new() } else { attributes.floats::<4>(Semantic::Tangents, "VEC4")? };
     let colors = attributes.colors()?;
     let influences = attributes.influences(place, warnings)?;
-    let (topology, index_list) = read_indices(accessors, place, primitive, vertices)?;
-
-    let mut morph_targets = Vec::with_capacity(primitive.targets.len());
-    for (at, map) in primitive.targets.iter().enumerate() {
-        let target = Attributes { accessors, map, place: format!("{place}.targets[{at}]"), vertices };
-        morph_targets.push(MorphTarget {
-            positions: target.vec3("POSITION")?,
-            normals: if normals.is_empty() { Vec::new() } else { target.vec3("NORMAL")? },
-            tangents: target.vec3("TANGENT")?,
-        });
-    }
-    if let Some(material) = primitive.material {
+    let (topology, indices) = read_indices(accessors, place, primitive, vertices)?;
+    let morph_targets = read_targets(accessors, place, primitive, vertices, !normals.is_empty())?;
+    let material = primitive.material.map(|material| material.value());
+    if let Some(material) = material {
         get(materials, material, &format!("{place}.material"), "materials")?;
     }
     let mut geometry = Geometry {
         topology,
         positions,
         normals,
-        tangents,
+        tangents: tangents.into_iter().map(Vec4::from).collect(),
         uvs,
         colors,
-        indices: index_list,
+        indices,
         influences,
         morph_targets,
-        material: primitive.material,
+        material,
         file_vertices: vertices,
         file_vertex: Vec::new(),
     };
-    let normal_texture = primitive.material.and_then(|material| materials[material].normal_texture);
+    let normal_texture = material.and_then(|material| materials[material].normal_texture);
     if let Some(texture) = normal_texture
         && topology == Topology::Triangles
         && geometry.tangents.is_empty()
@@ -184,23 +179,51 @@ fn read_primitive(
     Ok(geometry)
 }
 
+fn read_targets(
+    accessors: &Accessors,
+    place: &str,
+    primitive: &Primitive,
+    vertices: usize,
+    has_normals: bool,
+) -> Result<Vec<MorphTarget>, Problem> {
+    let read = |(at, target): (usize, &JsonMorphTarget)| {
+        let find = |semantic: &Semantic| match semantic {
+            Semantic::Positions => target.positions,
+            Semantic::Normals => target.normals.filter(|_| has_normals),
+            Semantic::Tangents => target.tangents,
+            _ => None,
+        };
+        let target = Attributes { accessors, find: &find, place: format!("{place}.targets[{at}]"), vertices };
+        Ok(MorphTarget {
+            positions: target.vec3(Semantic::Positions)?,
+            normals: target.vec3(Semantic::Normals)?,
+            tangents: target.vec3(Semantic::Tangents)?,
+        })
+    };
+    targets(primitive).iter().enumerate().map(read).collect()
+}
+
 fn read_indices(
     accessors: &Accessors,
     place: &str,
-    primitive: &schema::Primitive,
+    primitive: &Primitive,
     vertices: usize,
 ) -> Result<(Topology, Vec<u32>), Problem> {
     let list = match primitive.indices {
         None => (0..u32::try_from(vertices).unwrap_or(u32::MAX)).collect(),
         Some(index) => {
             let place = format!("{place}.indices");
-            let read = accessors.integers::<1>(index, &place, "SCALAR")?;
+            let read = accessors.integers::<1>(index.value(), &place, "SCALAR")?;
             if let Some(at) = read.iter().position(|[index]| *index as usize >= vertices) {
                 return Err(Problem::new(format!("{place}[{at}]"), format!("an index below {vertices}"), read[at][0]));
             }
             read.into_iter().map(|[index]| index).collect()
         }
     };
-    indices::to_list(primitive.mode, list)
-        .ok_or_else(|| Problem::new(format!("{place}.mode"), "0 to 6", primitive.mode))
+    let Checked::Valid(mode) = primitive.mode else {
+        let place = format!("{place}.mode");
+        let found = accessors.document.quoted_at(&place);
+        return Err(Problem::new(place, "0 to 6", found));
+    };
+    Ok(indices::to_list(mode, list))
 }

@@ -1,10 +1,12 @@
 //! glTF 2.0 (ISO/IEC 12113): .glb, .gltf and what is built on them (.vrm, .vrma). Section numbers refer to the
-//! specification. The readers of the `gltf` crate are not used: they refuse fine files and trust broken ones.
+//! specification. The `gltf` crate has the types of the JSON ([`document`]); its own readers and its validation are not used:
+//! they reject good files and trust broken ones.
 
 mod accessor;
 mod animations;
 mod container;
 mod data;
+mod document;
 mod extensions;
 mod humanoid;
 mod images;
@@ -13,25 +15,27 @@ mod influences;
 mod materials;
 mod meshes;
 mod nodes;
-mod schema;
 mod skins;
 mod write;
 
-use crate::asset::{Asset, Image, Warnings};
+use crate::asset::{Asset, AssetParts, Image, Warnings};
 use crate::formats::error::Problem;
 use crate::formats::{FileSet, LoadError};
 use accessor::{Accessors, Bytes};
 use container::Container;
+use document::{Document, size};
+use gltf::json::Root;
 
 pub(super) use images::{MAX_IMAGE_PIXELS, image_header};
 pub use write::WriteError;
 pub(super) use write::{asset as write_asset, model as write_model, motion as write_motion};
 
-/// URIs of the files that a model names besides itself, decoded, which are not in the set. Empty when it cannot be read.
+/// Returns the decoded URIs of the files that a model refers to and that are not in the set. Empty if it cannot be read.
 pub(super) fn missing_files(files: &FileSet, file: &str, bytes: &[u8]) -> Vec<String> {
-    let Ok(root) = container::open(file, bytes).and_then(|container| parse(file, container.json)) else {
+    let Ok(document) = container::open(file, bytes).and_then(|container| Document::read(file, container.json)) else {
         return Vec::new();
     };
+    let root = &document.root;
     let buffers = root.buffers.iter().filter_map(|buffer| buffer.uri.as_deref());
     let images = root.images.iter().filter_map(|image| image.uri.as_deref());
     let mut seen = std::collections::BTreeSet::new();
@@ -55,77 +59,39 @@ pub(super) fn load(
     on_images: &mut dyn FnMut(&[Image]),
 ) -> Result<Asset, LoadError> {
     let container = container::open(file, bytes)?;
-    let root = parse(file, container.json)?;
+    let document = Document::read(file, container.json)?;
     let mut warnings = Warnings::default();
-    extensions::check(file, &root, &mut warnings)?;
-    build(files, file, &container, &root, warnings, on_images).map_err(|problem| problem.in_file(file))
-}
-
-fn parse(file: &str, json: &[u8]) -> Result<schema::Root, LoadError> {
-    let error = |problem| json_error(file, &problem);
-    // Most files are read once; one that does not fit may be of another version.
-    let root = serde_json::from_slice::<schema::Root>(json);
-    let version = match &root {
-        Ok(root) => root.asset.version.clone(),
-        Err(_) => serde_json::from_slice::<schema::Versions>(json).map_err(error)?.asset,
-    };
-    check_version(file, &version)?;
-    root.map_err(error)
-}
-
-fn json_error(file: &str, problem: &serde_json::Error) -> LoadError {
-    let (line, column) = (problem.line(), problem.column());
-    let text = problem.to_string();
-    // It ends with the place, which is said apart.
-    let problem = text.strip_suffix(&format!(" at line {line} column {column}")).unwrap_or(&text).to_owned();
-    LoadError::Json { file: file.to_owned(), line, column, problem }
-}
-
-fn check_version(file: &str, found: &schema::Version) -> Result<(), LoadError> {
-    let text = |value: &Option<serde_json::Value>| match value {
-        Some(serde_json::Value::String(text)) => Some(text.clone()),
-        Some(other) => Some(other.to_string()),
-        None => None,
-    };
-    let unsupported = |found: String| LoadError::UnsupportedVersion { file: file.to_owned(), found };
-    match text(&found.version) {
-        // glTF 1.0 allowed an asset without a version.
-        None => return Err(unsupported("of no stated version (asset.version is missing)".to_owned())),
-        Some(version) if !version.starts_with("2.") => return Err(unsupported(version)),
-        Some(_) => {}
-    }
-    match text(&found.min_version) {
-        Some(least) if least != "2.0" => Err(unsupported(format!("{least} at least (asset.minVersion)"))),
-        _ => Ok(()),
-    }
+    extensions::check(file, &document.root, &mut warnings)?;
+    build(files, file, &container, &document, warnings, on_images).map_err(|problem| problem.in_file(file))
 }
 
 fn build(
     files: &FileSet,
     file: &str,
     container: &Container,
-    root: &schema::Root,
+    document: &Document,
     mut warnings: Warnings,
     on_images: &mut dyn FnMut(&[Image]),
 ) -> Result<Asset, Problem> {
+    let root = &document.root;
     let buffers = resolve_buffers(files, file, container, root, &mut warnings)?;
-    let accessors = Accessors::new(root, buffers);
-    let materials = materials::materials(root, &mut warnings)?;
+    let accessors = Accessors::new(document, buffers);
+    let materials = materials::materials(document, &mut warnings)?;
     let textures = materials::textures(root)?;
     let images = images::images(files, file, &accessors, &mut warnings)?;
     on_images(&images);
     let meshes = meshes::meshes(&accessors, &materials, &mut warnings)?;
     let skeleton = nodes::skeleton(root, &meshes, &mut warnings)?;
     let skins = skins::skins(&accessors, &skeleton, &mut warnings)?;
-    let instances = nodes::instances(root, &skeleton, &skins, &meshes)?;
+    let instances = nodes::instances(root, &skeleton, &skins)?;
     let clips = animations::clips(&accessors, &skeleton, &mut warnings)?;
     let (scenes, default_scene) = nodes::scenes(root, &skeleton)?;
     let cameras = nodes::cameras(root, &skeleton)?;
-    let lights = nodes::lights(root, &skeleton, &mut warnings)?;
+    let lights = nodes::lights(document, &skeleton, &mut warnings)?;
     let humanoid = humanoid::humanoid(root, &skeleton, &mut warnings);
-    Ok(Asset {
+    let parts = AssetParts {
         format: format(container, root),
-        generator: root.asset.generator.clone(),
+        generator: root.asset.generator.clone().unwrap_or_default(),
         skeleton,
         scenes,
         default_scene,
@@ -141,12 +107,14 @@ fn build(
         humanoid,
         extensions_used: root.extensions_used.clone(),
         extensions_required: root.extensions_required.clone(),
-        warnings,
-    })
+    };
+    let mut asset = Asset::new(parts)?;
+    asset.warnings = warnings;
+    Ok(asset)
 }
 
-fn format(container: &Container, root: &schema::Root) -> &'static str {
-    let has = |name| root.extensions.contains_key(name);
+fn format(container: &Container, root: &Root) -> &'static str {
+    let has = |name| root.extensions.as_ref().is_some_and(|extensions| extensions.others.contains_key(name));
     if has("VRMC_vrm_animation") {
         "vrma"
     } else if has("VRM") || has("VRMC_vrm") {
@@ -162,7 +130,7 @@ fn resolve_buffers<'a>(
     files: &FileSet,
     file: &str,
     container: &Container<'a>,
-    root: &schema::Root,
+    root: &Root,
     warnings: &mut Warnings,
 ) -> Result<Vec<Option<Bytes<'a>>>, Problem> {
     let mut buffers = Vec::with_capacity(root.buffers.len());
@@ -184,8 +152,9 @@ fn resolve_buffers<'a>(
             }
         };
         let found = bytes.as_slice().len();
-        if found < buffer.byte_length {
-            return Err(Problem::new(place, format!("{} bytes (byteLength)", buffer.byte_length), found));
+        let byte_length = size(buffer.byte_length);
+        if found < byte_length {
+            return Err(Problem::new(place, format!("{byte_length} bytes (byteLength)"), found));
         }
         buffers.push(Some(bytes));
     }

@@ -1,45 +1,49 @@
-//! Nodes, scenes and what hangs on nodes (§3.5, §3.10).
+//! Nodes, scenes, and the meshes, cameras and lights of nodes (§3.5, §3.10).
+
+use std::f32::consts::FRAC_PI_4;
 
 use glam::{Mat4, Quat, Vec3};
+use gltf::json::extensions::scene::khr_lights_punctual::{self, Type as LightType};
+use gltf::json::validation::Checked;
+use gltf::json::{Index, Node, Root};
 
 use super::accessor::get;
-use super::materials::extension;
-use super::schema;
+use super::document::Document;
 use crate::anim::{Joint, Skeleton, SkeletonError, Transform};
 use crate::asset::{Camera, CameraProjection, Light, LightKind, MeshInstance, Scene, Warning, Warnings};
 use crate::formats::error::Problem;
-use crate::mesh::{Influences, Mesh, Skin};
+use crate::mesh::{Mesh, Skin};
 
-/// Nodes that share a mesh each have a weight for each of its targets: a short file could ask for billions.
+/// Each node of a mesh has a weight for each of its targets: a short file could ask for billions.
 const MAX_MORPH_WEIGHTS: usize = 1 << 22;
 
-/// Names that many nodes can share are cut at this length, in characters.
+/// Length in characters to which names are cut that many nodes can share.
 const MAX_SHARED_NAME: usize = 256;
 
-/// All nodes as one skeleton; its source indices are the file's node indices.
-pub fn skeleton(root: &schema::Root, meshes: &[Mesh], warnings: &mut Warnings) -> Result<Skeleton, Problem> {
+/// Builds one skeleton from all nodes. Its source indices are the file's node indices.
+pub fn skeleton(root: &Root, meshes: &[Mesh], warnings: &mut Warnings) -> Result<Skeleton, Problem> {
     let mut joints: Vec<Joint> = Vec::with_capacity(root.nodes.len());
-    let mut weights_in_all = 0;
+    let mut weight_count = 0;
     for (index, node) in root.nodes.iter().enumerate() {
         let place = format!("nodes[{index}]");
         let morph_weights = match node.mesh {
             None => Vec::new(),
-            Some(mesh) => rest_weights(root, meshes, node, mesh, &place)?,
+            Some(mesh) => rest_weights(root, meshes, node, mesh.value(), &place)?,
         };
-        weights_in_all += morph_weights.len();
-        if weights_in_all > MAX_MORPH_WEIGHTS {
+        weight_count += morph_weights.len();
+        if weight_count > MAX_MORPH_WEIGHTS {
             let expected = format!("at most {MAX_MORPH_WEIGHTS} morph weights in all");
-            return Err(Problem::new(place, expected, weights_in_all));
+            return Err(Problem::new(place, expected, weight_count));
         }
         joints.push(Joint {
-            name: node.name.clone(),
+            name: node.name.clone().unwrap_or_default(),
             parent: None,
             rest: rest(node, &place, warnings)?,
             morph_weights,
         });
     }
     for (index, node) in root.nodes.iter().enumerate() {
-        for (at, &child) in node.children.iter().enumerate() {
+        for (at, child) in node.children.iter().flatten().map(Index::value).enumerate() {
             let place = format!("nodes[{index}].children[{at}]");
             get(&root.nodes, child, &place, "nodes")?;
             if let Some(parent) = joints[child].parent.replace(index) {
@@ -56,39 +60,35 @@ pub fn skeleton(root: &schema::Root, meshes: &[Mesh], warnings: &mut Warnings) -
     })
 }
 
-fn rest_weights(
-    root: &schema::Root,
-    meshes: &[Mesh],
-    node: &schema::Node,
-    mesh: usize,
-    place: &str,
-) -> Result<Vec<f32>, Problem> {
+fn rest_weights(root: &Root, meshes: &[Mesh], node: &Node, mesh: usize, place: &str) -> Result<Vec<f32>, Problem> {
     let targets = get(meshes, mesh, &format!("{place}.mesh"), "meshes")?.target_names.len();
     match &node.weights {
         Some(weights) if weights.len() != targets => {
             Err(Problem::new(format!("{place}.weights"), format!("{targets} weights"), weights.len()))
         }
         Some(weights) => Ok(weights.clone()),
-        None if root.meshes[mesh].weights.is_empty() => Ok(vec![0.0; targets]),
-        None => Ok(root.meshes[mesh].weights.clone()),
+        None => match &root.meshes[mesh].weights {
+            Some(weights) if !weights.is_empty() => Ok(weights.clone()),
+            _ => Ok(vec![0.0; targets]),
+        },
     }
 }
 
-fn rest(node: &schema::Node, place: &str, warnings: &mut Warnings) -> Result<Transform, Problem> {
+fn rest(node: &Node, place: &str, warnings: &mut Warnings) -> Result<Transform, Problem> {
     let transform = match node.matrix {
         Some(columns) => {
             let matrix = Mat4::from_cols_array(&columns);
             let transform = Transform::from_matrix(&matrix);
-            let again = Mat4::from(transform.to_affine());
-            let size = columns.iter().fold(1.0_f32, |most, number| most.max(number.abs()));
-            if matrix.is_finite() && !matrix.abs_diff_eq(again, 1e-4 * size) {
+            let recomposed = Mat4::from(transform.to_affine());
+            let largest = columns.iter().fold(1.0_f32, |largest, number| largest.max(number.abs()));
+            if matrix.is_finite() && !matrix.abs_diff_eq(recomposed, 1e-4 * largest) {
                 warnings.push(Warning::MatrixNotDecomposable { node: place.to_owned() });
             }
             transform
         }
         None => {
-            let rotation = node.rotation.map_or(Quat::IDENTITY, Quat::from_array);
-            // Not only zero: squares of very large numbers overflow.
+            let rotation = node.rotation.map_or(Quat::IDENTITY, |rotation| Quat::from_array(rotation.0));
+            // The length may be zero, or overflow.
             let length = rotation.length();
             let rotation = if length > 0.0 && length.is_finite() { rotation / length } else { Quat::IDENTITY };
             Transform {
@@ -105,77 +105,48 @@ fn rest(node: &schema::Node, place: &str, warnings: &mut Warnings) -> Result<Tra
     }
 }
 
-/// Which mesh hangs where. Influences are checked against every skin they are used with; a mesh that is used without a
-/// skin keeps its influences, which are then not read.
-pub fn instances(
-    root: &schema::Root,
-    skeleton: &Skeleton,
-    skins: &[Skin],
-    meshes: &[Mesh],
-) -> Result<Vec<MeshInstance>, Problem> {
-    // The largest joint of each primitive and where it stands: many nodes may share one large mesh.
-    let largest: Vec<Vec<Option<(u16, usize)>>> = meshes
-        .iter()
-        .map(|mesh| mesh.primitives.iter().map(|geometry| largest_joint(&geometry.influences)).collect())
-        .collect();
+/// Returns which joint draws which mesh. Without a skin, the influences of a mesh are not used.
+pub fn instances(root: &Root, skeleton: &Skeleton, skins: &[Skin]) -> Result<Vec<MeshInstance>, Problem> {
     let mut instances = Vec::new();
     for (index, node) in root.nodes.iter().enumerate() {
         let (Some(mesh), Some(joint)) = (node.mesh, skeleton.joint_of_source(index)) else { continue };
-        if let Some(skin) = node.skin {
-            let joints = get(skins, skin, &format!("nodes[{index}].skin"), "skins")?.joints().len();
-            for (at, largest) in largest[mesh].iter().enumerate() {
-                if let Some((joint, vertex)) = *largest
-                    && usize::from(joint) >= joints
-                {
-                    let place = format!("meshes[{mesh}].primitives[{at}].attributes.JOINTS_n, vertex {vertex}");
-                    return Err(Problem::new(place, format!("a joint below {joints}, the size of the skin"), joint));
-                }
-            }
+        let skin = node.skin.map(|skin| skin.value());
+        if let Some(skin) = skin {
+            get(skins, skin, &format_args!("nodes[{index}].skin"), "skins")?;
         }
-        instances.push(MeshInstance { joint, mesh, skin: node.skin });
+        instances.push(MeshInstance { joint, mesh: mesh.value(), skin });
     }
     Ok(instances)
-}
-
-/// The largest joint index and the first vertex that has it.
-fn largest_joint(influences: &Influences) -> Option<(u16, usize)> {
-    let (mut largest, mut found) = (None, None);
-    for (at, &joint) in influences.joints.iter().enumerate() {
-        if largest < Some(joint) {
-            largest = Some(joint);
-            found = Some((joint, at / influences.stride.max(1)));
-        }
-    }
-    found
 }
 
 fn shared_name(name: &str) -> String {
     name.chars().take(MAX_SHARED_NAME).collect()
 }
 
-pub fn scenes(root: &schema::Root, skeleton: &Skeleton) -> Result<(Vec<Scene>, Option<usize>), Problem> {
+pub fn scenes(root: &Root, skeleton: &Skeleton) -> Result<(Vec<Scene>, Option<usize>), Problem> {
     let mut scenes = Vec::with_capacity(root.scenes.len());
     for (index, scene) in root.scenes.iter().enumerate() {
         let mut roots = Vec::with_capacity(scene.nodes.len());
-        for (at, &node) in scene.nodes.iter().enumerate() {
+        for (at, node) in scene.nodes.iter().map(Index::value).enumerate() {
             get(&root.nodes, node, &format!("scenes[{index}].nodes[{at}]"), "nodes")?;
             roots.extend(skeleton.joint_of_source(node));
         }
-        scenes.push(Scene { name: scene.name.clone(), roots });
+        scenes.push(Scene { name: scene.name.clone().unwrap_or_default(), roots });
     }
-    if let Some(scene) = root.scene {
+    let default_scene = root.scene.map(|scene| scene.value());
+    if let Some(scene) = default_scene {
         get(&root.scenes, scene, &"scene", "scenes")?;
     }
-    let default_scene = root.scene.or(if scenes.is_empty() { None } else { Some(0) });
-    Ok((scenes, default_scene))
+    let first = if scenes.is_empty() { None } else { Some(0) };
+    Ok((scenes, default_scene.or(first)))
 }
 
-pub fn cameras(root: &schema::Root, skeleton: &Skeleton) -> Result<Vec<Camera>, Problem> {
+pub fn cameras(root: &Root, skeleton: &Skeleton) -> Result<Vec<Camera>, Problem> {
     let mut cameras = Vec::new();
     for (index, node) in root.nodes.iter().enumerate() {
         let (Some(camera), Some(joint)) = (node.camera, skeleton.joint_of_source(index)) else { continue };
         let place = format!("nodes[{index}].camera");
-        let camera = get(&root.cameras, camera, &place, "cameras")?;
+        let camera = get(&root.cameras, camera.value(), &place, "cameras")?;
         let projection = match (&camera.perspective, &camera.orthographic) {
             (Some(lens), _) => CameraProjection::Perspective {
                 y_fov_radians: lens.yfov,
@@ -188,57 +159,51 @@ pub fn cameras(root: &schema::Root, skeleton: &Skeleton) -> Result<Vec<Camera>, 
             }
             (None, None) => return Err(Problem::new(place, "a perspective or orthographic camera", "neither")),
         };
-        let name = if camera.name.is_empty() { node.name.clone() } else { shared_name(&camera.name) };
+        let name = match camera.name.as_deref().unwrap_or_default() {
+            "" => node.name.clone().unwrap_or_default(),
+            name => shared_name(name),
+        };
         cameras.push(Camera { name, joint, projection });
     }
     Ok(cameras)
 }
 
 /// KHR_lights_punctual.
-pub fn lights(root: &schema::Root, skeleton: &Skeleton, warnings: &mut Warnings) -> Result<Vec<Light>, Problem> {
-    const NAME: &str = "KHR_lights_punctual";
-    #[derive(serde::Deserialize, Default)]
-    struct List {
-        #[serde(default)]
-        lights: Vec<schema::Light>,
-    }
-    #[derive(serde::Deserialize)]
-    struct Use {
-        light: usize,
-    }
-    let list: List = extension(&root.extensions, NAME, "glTF")?.unwrap_or_default();
+pub fn lights(document: &Document, skeleton: &Skeleton, warnings: &mut Warnings) -> Result<Vec<Light>, Problem> {
+    let root = &document.root;
+    let list: &[khr_lights_punctual::Light] = root.as_ref();
     let mut lights = Vec::new();
     for (index, node) in root.nodes.iter().enumerate() {
+        let extension = node.extensions.as_ref().and_then(|extensions| extensions.khr_lights_punctual.as_ref());
+        let Some(light_index) = extension.map(|extension| extension.light.value()) else { continue };
         let place = format!("nodes[{index}]");
-        let Some(used) = extension::<Use>(&node.extensions, NAME, &place)? else { continue };
-        let light = get(&list.lights, used.light, &format!("{place}.extensions.{NAME}.light"), "lights")?;
+        let light = get(list, light_index, &format!("{place}.extensions.KHR_lights_punctual.light"), "lights")?;
         let Some(joint) = skeleton.joint_of_source(index) else { continue };
-        let kind = match light.kind.as_str() {
-            "directional" => LightKind::Directional,
-            "point" => LightKind::Point,
-            "spot" => {
-                let spot = light.spot.as_ref();
-                LightKind::Spot {
-                    inner_cone_radians: spot.and_then(|spot| spot.inner_cone_angle).unwrap_or(0.0),
-                    outer_cone_radians: spot
-                        .and_then(|spot| spot.outer_cone_angle)
-                        .unwrap_or(std::f32::consts::FRAC_PI_4),
-                }
-            }
-            other => {
-                let problem = format!("light type “{other}” is not known; the light is left out");
-                warnings.push(Warning::Other { code: "light-type", place, problem });
-                continue;
-            }
+        let Some(kind) = light_kind(light) else {
+            let found = document.quoted_at(&format!("extensions.KHR_lights_punctual.lights[{light_index}].type"));
+            let problem = format!("light type {found} is not known; the light is left out");
+            warnings.push(Warning::Other { code: "light-type", place, problem });
+            continue;
         };
         lights.push(Light {
-            name: shared_name(&light.name),
+            name: shared_name(light.name.as_deref().unwrap_or_default()),
             joint,
-            color: light.color.map_or(Vec3::ONE, Vec3::from),
-            intensity: light.intensity.unwrap_or(1.0),
+            color: Vec3::from(light.color),
+            intensity: light.intensity,
             range: light.range,
             kind,
         });
     }
     Ok(lights)
+}
+
+fn light_kind(light: &khr_lights_punctual::Light) -> Option<LightKind> {
+    let Checked::Valid(kind) = light.type_ else { return None };
+    let (inner_cone_radians, outer_cone_radians) =
+        light.spot.as_ref().map_or((0.0, FRAC_PI_4), |spot| (spot.inner_cone_angle, spot.outer_cone_angle));
+    Some(match kind {
+        LightType::Directional => LightKind::Directional,
+        LightType::Point => LightKind::Point,
+        LightType::Spot => LightKind::Spot { inner_cone_radians, outer_cone_radians },
+    })
 }

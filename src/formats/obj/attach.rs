@@ -1,16 +1,16 @@
-//! `.attach`: how hard each joint pulls each vertex. One row a vertex, in the order of the .obj; one column for every joint
-//! but the first, whose weight is 0 and is not written.
+//! `.attach`: skin weights. One row per vertex, in the order of the .obj; one column for every joint but the first, whose
+//! weight is 0 and is not written.
 
 use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
 use crate::formats::lines::{Lines, number, quoted};
 use crate::mesh::{Influences, MAX_INFLUENCES};
 
-/// Sums further off 1 than this are worth a word; smaller errors are rounding.
+/// A sum of weights that is farther from 1 is reported; a smaller error is rounding.
 const SUM_TOLERANCE: f64 = 1e-3;
 
-/// `file` is what warnings call it. Rows are divided by their sum; a row of zeros follows the first joint. Of more than
-/// [`MAX_INFLUENCES`] weights the largest are kept.
+/// Reads the influences of all vertices, normalized. A row of zeros follows the first joint. Of more than [`MAX_INFLUENCES`]
+/// weights the largest are kept. `file` is the name for warnings.
 pub fn read(
     file: &str,
     bytes: &[u8],
@@ -50,7 +50,7 @@ pub fn read(
         pairs.extend(row.iter().map(|&(joint, weight)| (joint, (weight / kept) as f32)));
         ends.push(pairs.len());
     }
-    // A skeleton of one joint has rows without a column, which are not there to be counted.
+    // With a single joint, rows have no columns, so there is nothing to count.
     if ends.len() < vertices && joints > 1 {
         let expected = format!("{vertices} rows, one for each vertex of the .obj");
         return Err(Problem::new(lines.place(), expected, format!("{} and the end of the file", ends.len())));
@@ -84,7 +84,7 @@ pub fn read(
     Ok(influences)
 }
 
-/// The joints of one row that pull, in the file's order, and the sum of their weights.
+/// Reads the influences of one row, in the file's order, and returns the sum of their weights.
 fn read_row(line: usize, content: &[u8], joints: usize, row: &mut Vec<(u16, f64)>) -> Result<f64, Problem> {
     row.clear();
     let mut columns = 0;

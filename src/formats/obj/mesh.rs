@@ -1,5 +1,5 @@
-//! Statements of an .obj made into one mesh. A corner may pair a vertex with any texture coordinate and normal, so a
-//! vertex is copied where it has several; each part has vertices of its own.
+//! Builds one mesh from the statements of an .obj. A corner may pair a vertex with any texture coordinate and normal, so a
+//! vertex is copied where it has several of them; each group of faces has vertices of its own.
 
 use std::collections::HashMap;
 
@@ -9,84 +9,105 @@ use super::polygon::Cutter;
 use super::text::{Corner, NONE, ObjText};
 use crate::mesh::{Geometry, Influences, Mesh};
 
-/// A mesh, and for each of its pieces the part of the text it is.
+/// A mesh, and the group of faces that each of its primitives was built from.
 pub struct Built {
     pub mesh: Mesh,
-    pub parts: Vec<usize>,
+    pub groups: Vec<usize>,
 }
 
+/// One group of faces on its way to a primitive.
 #[derive(Default)]
-struct PieceBuilder {
+struct PrimitiveBuilder {
     corners: Vec<Corner>,
     indices: Vec<u32>,
-    uvs: usize,
-    normals: usize,
+    /// Corners with texture coordinates, with normals, and in all.
+    uv_count: usize,
+    normal_count: usize,
     corner_count: usize,
 }
 
-/// With one part, its first vertices are those of the file in the file's order. With several, vertices of no face are with
-/// the first part. [`Geometry::file_vertex`] leads back.
+impl PrimitiveBuilder {
+    fn has_uvs(&self) -> bool {
+        self.uv_count > 0
+    }
+
+    /// A group in which some corner lacks a normal is drawn flat.
+    fn has_normals(&self) -> bool {
+        self.normal_count == self.corner_count
+    }
+}
+
+/// A single group begins with the file's vertices in the file's order. With several groups, vertices that no face uses go to
+/// the first. [`Geometry::file_vertex`] leads back.
 pub fn build(obj: &ObjText, name: &str) -> Built {
-    let mut pieces: Vec<PieceBuilder> = Vec::new();
-    pieces.resize_with(obj.parts.len().max(1), PieceBuilder::default);
+    let mut builders = count_corners(obj);
+    let single = builders.len() == 1;
+    if single {
+        // Without texture coordinate and normal: the first use of a vertex adds them.
+        builders[0].corners = (0..obj.positions.len() as u32).map(|vertex| [vertex, NONE, NONE]).collect();
+    }
+    add_faces(obj, &mut builders);
+    let groups: Vec<usize> = (0..builders.len()).filter(|&group| !builders[group].indices.is_empty()).collect();
+    let part_names = match &groups[..] {
+        [group] if obj.groups[*group].name().is_empty() => Vec::new(),
+        groups => groups.iter().map(|&group| obj.groups[group].name()).collect(),
+    };
+    let primitives = groups.iter().map(|&group| geometry(obj, &builders[group], single)).collect();
+    let file_vertices = if single { 0 } else { obj.positions.len() };
+    let mesh = Mesh { name: name.to_owned(), primitives, part_names, file_vertices, ..Mesh::default() };
+    Built { mesh, groups }
+}
+
+fn count_corners(obj: &ObjText) -> Vec<PrimitiveBuilder> {
+    let mut builders: Vec<PrimitiveBuilder> = Vec::new();
+    builders.resize_with(obj.groups.len().max(1), PrimitiveBuilder::default);
     for (face, corners) in obj.faces() {
-        let piece = &mut pieces[face.part as usize];
-        piece.corner_count += corners.len();
-        piece.uvs += corners.iter().filter(|corner| corner[1] != NONE).count();
-        piece.normals += corners.iter().filter(|corner| corner[2] != NONE).count();
+        let builder = &mut builders[face.group as usize];
+        builder.corner_count += corners.len();
+        builder.uv_count += corners.iter().filter(|corner| corner[1] != NONE).count();
+        builder.normal_count += corners.iter().filter(|corner| corner[2] != NONE).count();
     }
-    let one = pieces.len() == 1;
-    if one {
-        // What nothing was paired with yet: the first use of a vertex fills it in.
-        pieces[0].corners = (0..obj.positions.len() as u32).map(|vertex| [vertex, NONE, NONE]).collect();
-    }
+    builders
+}
+
+/// Triangulates all faces, copying vertices as needed.
+fn add_faces(obj: &ObjText, builders: &mut [PrimitiveBuilder]) {
+    let single = builders.len() == 1;
     let mut used = vec![false; obj.positions.len()];
     let mut copies: HashMap<(u32, Corner), u32> = HashMap::new();
     let mut cutter = Cutter::default();
     let (mut points, mut vertices) = (Vec::new(), Vec::new());
     for (face, corners) in obj.faces() {
-        let piece = &mut pieces[face.part as usize];
-        // What only some corners of a part have cannot be drawn: without normals it is flat.
-        let (has_uvs, has_normals) = (piece.uvs > 0, piece.normals == piece.corner_count);
+        let builder = &mut builders[face.group as usize];
+        let (has_uvs, has_normals) = (builder.has_uvs(), builder.has_normals());
         points.clear();
         vertices.clear();
         for corner in corners {
             let point = corner[0] as usize;
             let kept = [corner[0], if has_uvs { corner[1] } else { NONE }, if has_normals { corner[2] } else { NONE }];
             points.push(obj.point(corner));
-            vertices.push(*copies.entry((face.part, kept)).or_insert_with(|| {
+            vertices.push(*copies.entry((face.group, kept)).or_insert_with(|| {
                 let first_use = !std::mem::replace(&mut used[point], true);
-                if one && first_use {
-                    piece.corners[point] = kept;
+                if single && first_use {
+                    builder.corners[point] = kept;
                     return corner[0];
                 }
-                let vertex = piece.corners.len() as u32;
-                piece.corners.push(kept);
+                let vertex = builder.corners.len() as u32;
+                builder.corners.push(kept);
                 vertex
             }));
         }
-        let indices = &mut piece.indices;
+        let indices = &mut builder.indices;
         cutter.cut(&points, |triangle| indices.extend(triangle.map(|at| vertices[at])));
     }
-    if !one {
-        for (point, _) in used.iter().enumerate().filter(|(_, used)| !**used) {
-            pieces[0].corners.push([point as u32, NONE, NONE]);
-        }
+    if !single {
+        let unused = used.iter().enumerate().filter(|(_, used)| !**used);
+        builders[0].corners.extend(unused.map(|(point, _)| [point as u32, NONE, NONE]));
     }
-    let parts: Vec<usize> = (0..pieces.len()).filter(|&part| !pieces[part].indices.is_empty()).collect();
-    let part_names = match &parts[..] {
-        [part] if obj.parts[*part].name().is_empty() => Vec::new(),
-        parts => parts.iter().map(|&part| obj.parts[part].name()).collect(),
-    };
-    let primitives = parts.iter().map(|&part| geometry(obj, &pieces[part], one)).collect();
-    let file_vertices = if one { 0 } else { obj.positions.len() };
-    let mesh = Mesh { name: name.to_owned(), primitives, part_names, file_vertices, ..Mesh::default() };
-    Built { mesh, parts }
 }
 
-fn geometry(obj: &ObjText, piece: &PieceBuilder, one: bool) -> Geometry {
-    let corners = &piece.corners;
-    let has_normals = piece.normals == piece.corner_count;
+fn geometry(obj: &ObjText, builder: &PrimitiveBuilder, single: bool) -> Geometry {
+    let corners = &builder.corners;
     let positions = corners.iter().map(|corner| obj.positions[corner[0] as usize]).collect();
     let normal = |corner: &Corner| obj.normals.get(corner[2] as usize).copied().unwrap_or(Vec3::Y);
     let uv = |corner: &Corner| obj.uvs.get(corner[1] as usize).copied().unwrap_or(Vec2::ZERO);
@@ -94,26 +115,26 @@ fn geometry(obj: &ObjText, piece: &PieceBuilder, one: bool) -> Geometry {
         |corner: &Corner| obj.colors.get(corner[0] as usize).map_or(Vec4::ONE, |color| linear(*color).extend(1.0));
     Geometry {
         positions,
-        normals: if has_normals { corners.iter().map(normal).collect() } else { Vec::new() },
-        uvs: [if piece.uvs > 0 { corners.iter().map(uv).collect() } else { Vec::new() }, Vec::new()],
+        normals: if builder.has_normals() { corners.iter().map(normal).collect() } else { Vec::new() },
+        uvs: [if builder.has_uvs() { corners.iter().map(uv).collect() } else { Vec::new() }, Vec::new()],
         colors: if obj.colors.is_empty() { Vec::new() } else { corners.iter().map(color).collect() },
-        indices: piece.indices.clone(),
-        file_vertices: if one { obj.positions.len() } else { corners.len() },
+        indices: builder.indices.clone(),
+        file_vertices: if single { obj.positions.len() } else { corners.len() },
         file_vertex: corners.iter().map(|corner| corner[0]).collect(),
         ..Geometry::default()
     }
 }
 
-/// Colours are given as a screen shows them (sRGB).
+/// Converts from sRGB, in which the files have their colours.
 pub fn linear(color: Vec3) -> Vec3 {
-    let part = |part: f32| {
-        let part = part.clamp(0.0, 1.0);
-        if part <= 0.04045 { part / 12.92 } else { ((part + 0.055) / 1.055).powf(2.4) }
+    let channel = |value: f32| {
+        let value = value.clamp(0.0, 1.0);
+        if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
     };
-    Vec3::new(part(color.x), part(color.y), part(color.z))
+    Vec3::new(channel(color.x), channel(color.y), channel(color.z))
 }
 
-/// The influences of the file's vertices, for a piece whose vertices are copies of these.
+/// Returns the influences of a primitive whose vertices are copies of the file's.
 pub fn copied(influences: &Influences, file_vertex: &[u32]) -> Influences {
     let stride = influences.stride;
     let mut copy = Influences {

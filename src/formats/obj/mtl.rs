@@ -1,6 +1,6 @@
-//! Material libraries (.mtl): a colour, how see-through and how rough, and a picture. Of the old lighting model `Kd` is the
-//! base colour, `d` (or 1 − `Tr`) its alpha, `Ke` what is emitted, and the exponent `Ns` of a highlight becomes a roughness,
-//! `√(2 / (Ns + 2))`, if there is a highlight (`Ks`). Colours are as a screen shows them. `Ka` and the rest are left out.
+//! Material libraries (.mtl): colour, alpha, roughness and a texture. Of the Phong model, `Kd` is the base colour, `d` (or
+//! 1 − `Tr`) its alpha, `Ke` the emission, and the specular exponent `Ns` becomes a roughness, `√(2 / (Ns + 2))`, if there is
+//! a highlight (`Ks`). Colours are sRGB. `Ka` and the rest are ignored.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use crate::asset::{Warning, Warnings};
 use crate::formats::lines::{Lines, number, quoted, text};
 use crate::mesh::{AlphaMode, Material};
 
-/// What is drawn without a material: light grey, matt. Nobody says which side of a face is its front.
+/// The material of faces without one: light grey, matt. Double-sided, since an .obj does not define front faces.
 pub fn plain(name: &str) -> Material {
     Material {
         name: name.to_owned(),
@@ -26,11 +26,11 @@ pub fn plain(name: &str) -> Material {
 
 pub struct MtlMaterial {
     pub material: Material,
-    /// The picture of its base colour.
-    pub picture: Option<String>,
+    /// The URI of its base colour texture.
+    pub image: Option<String>,
 }
 
-/// Adds a library's materials by name; those that are there already stay. Trouble costs the statement, not the library.
+/// Adds a library's materials by name; the first of a name wins. A bad statement is skipped, the rest of the library is kept.
 pub fn read(file: &str, bytes: &[u8], found: &mut BTreeMap<String, MtlMaterial>, warnings: &mut Warnings) {
     let mut open: Option<Statements> = None;
     let mut lines = Lines::new(bytes);
@@ -59,7 +59,7 @@ fn close(statements: Option<Statements>, found: &mut BTreeMap<String, MtlMateria
     }
 }
 
-/// What a material says.
+/// The statements of one material.
 #[derive(Default)]
 struct Statements {
     name: String,
@@ -68,11 +68,11 @@ struct Statements {
     emissive: Option<Vec3>,
     exponent: Option<f32>,
     alpha: Option<f32>,
-    picture: Option<String>,
+    image: Option<String>,
 }
 
 impl Statements {
-    /// The part of the line that cannot be read, if there is one.
+    /// Fails with the part of the line that cannot be read.
     fn read<'a>(&mut self, keyword: &[u8], rest: &'a [u8]) -> Result<(), &'a [u8]> {
         match keyword {
             b"Kd" => self.diffuse = Some(color(rest)?),
@@ -81,7 +81,7 @@ impl Statements {
             b"Ns" => self.exponent = Some(value(rest)?),
             b"d" => self.alpha = Some(value(rest.strip_prefix(b"-halo").unwrap_or(rest).trim_ascii())?),
             b"Tr" => self.alpha = Some(1.0 - value(rest)?),
-            b"map_Kd" => self.picture = picture(rest),
+            b"map_Kd" => self.image = image(rest),
             _ => {}
         }
         Ok(())
@@ -89,10 +89,10 @@ impl Statements {
 
     fn material(self) -> MtlMaterial {
         let plain = plain(&self.name);
-        let has_picture = self.picture.is_some();
-        // Many exporters write black beside a picture and mean the picture.
-        let diffuse = self.diffuse.map(linear).filter(|color| !has_picture || *color != Vec3::ZERO);
-        let usual = if has_picture { Vec3::ONE } else { plain.base_color.truncate() };
+        let has_image = self.image.is_some();
+        // Many exporters write black beside a texture and mean the texture alone.
+        let diffuse = self.diffuse.map(linear).filter(|color| !has_image || *color != Vec3::ZERO);
+        let usual = if has_image { Vec3::ONE } else { plain.base_color.truncate() };
         let alpha = self.alpha.unwrap_or(1.0).clamp(0.0, 1.0);
         let shines = self.specular.is_none_or(|color| color.max_element() > 0.0);
         let exponent = self.exponent.filter(|_| shines).map(|exponent| exponent.max(0.0));
@@ -108,11 +108,11 @@ impl Statements {
             alpha_mode: if alpha < 1.0 { AlphaMode::Blend } else { AlphaMode::Opaque },
             ..plain
         };
-        MtlMaterial { material, picture: self.picture }
+        MtlMaterial { material, image: self.image }
     }
 }
 
-/// One number counts for all three.
+/// A single number is a grey.
 fn color(rest: &[u8]) -> Result<Vec3, &[u8]> {
     let words = rest.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
     let numbers: Option<Vec<f32>> = words.take(3).map(|word| value(word).ok()).collect();
@@ -127,8 +127,8 @@ fn value(word: &[u8]) -> Result<f32, &[u8]> {
     number(word).map(|value| value as f32).filter(|value| value.is_finite()).ok_or(word)
 }
 
-/// The file's name, which may have spaces, without the options before it.
-fn picture(rest: &[u8]) -> Option<String> {
+/// Returns the file name, which may have spaces, without the options before it.
+fn image(rest: &[u8]) -> Option<String> {
     let rest = text(rest);
     let mut rest = rest.trim();
     while rest.starts_with('-') {
@@ -147,6 +147,6 @@ fn picture(rest: &[u8]) -> Option<String> {
             rest = rest.split_once(char::is_whitespace)?.1.trim_start();
         }
     }
-    // Paths of other systems are paths all the same.
+    // Paths may come from Windows.
     (!rest.is_empty()).then(|| rest.replace('\\', "/"))
 }

@@ -1,11 +1,11 @@
-//! Polygons cut into triangles: a fan where the polygon is convex, ear clipping where it is not.
+//! Triangulates polygons: as a fan if the polygon is convex, else by ear clipping.
 
 use glam::{DVec2, DVec3};
 
-/// Corners of a polygon that ears are looked for in; larger ones are cut as a fan.
-const MOST_CLIPPED_CORNERS: usize = 1024;
+/// Polygons with more corners are always cut as a fan.
+const MAX_CLIPPED_CORNERS: usize = 1024;
 
-/// Cuts polygons, within a bound on the work for all of a file together: clipping ears takes time by the cube of corners.
+/// Triangulates the polygons of one file within a total budget: ear clipping is cubic in the number of corners.
 pub struct Cutter {
     steps_left: usize,
     flat: Vec<DVec2>,
@@ -19,11 +19,11 @@ impl Default for Cutter {
 }
 
 impl Cutter {
-    /// Calls `triangle` with the positions in the list of each triangle's corners, in the polygon's own winding. A polygon
-    /// without an area, or one that crosses itself, is cut in some way; corners − 2 triangles always come out.
+    /// Calls `triangle` with the positions in the list of each triangle's corners, keeping the polygon's winding. Always
+    /// produces corners − 2 triangles, also for degenerate and self-intersecting polygons.
     pub fn cut(&mut self, corners: &[DVec3], mut triangle: impl FnMut([usize; 3])) {
         let count = corners.len();
-        if count > 3 && count <= MOST_CLIPPED_CORNERS {
+        if count > 3 && count <= MAX_CLIPPED_CORNERS {
             self.flatten(corners);
             if !is_convex(&self.flat) {
                 return self.clip_ears(triangle);
@@ -34,7 +34,7 @@ impl Cutter {
         }
     }
 
-    /// Seen along the polygon's normal (Newell's, which needs no three corners in general position), counter-clockwise.
+    /// Projects the polygon along its normal (Newell's method, which tolerates collinear corners), counter-clockwise.
     fn flatten(&mut self, corners: &[DVec3]) {
         let next = corners.iter().cycle().skip(1);
         let normal: DVec3 = corners.iter().zip(next).map(|(a, b)| (*a - corners[0]).cross(*b - corners[0])).sum();
@@ -55,7 +55,7 @@ impl Cutter {
                 *steps_left = steps_left.saturating_sub(ring.len());
                 *steps_left > 0 && is_ear(flat, ring, at)
             });
-            // Of a polygon that crosses itself something is cut off all the same.
+            // A self-intersecting polygon may have no ear; any corner will do.
             let at = ear.unwrap_or(0);
             triangle(around(ring, at));
             ring.remove(at);
@@ -78,7 +78,7 @@ fn area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
 
 fn is_convex(flat: &[DVec2]) -> bool {
     let count = flat.len();
-    // All corners turn left, and from the first one all triangles of the fan do: else it winds around more than once.
+    // Every corner turns left, and so does every triangle of the fan: otherwise it winds around more than once.
     (0..count).all(|at| area(flat[at], flat[(at + 1) % count], flat[(at + 2) % count]) >= 0.0)
         && (1..count - 1).all(|at| area(flat[0], flat[at], flat[at + 1]) >= 0.0)
 }
@@ -86,7 +86,7 @@ fn is_convex(flat: &[DVec2]) -> bool {
 fn is_ear(flat: &[DVec2], ring: &[usize], at: usize) -> bool {
     let [a, b, c] = around(ring, at);
     let (a, b, c) = (flat[a], flat[b], flat[c]);
-    // A corner without an area is no ear: its neighbours would be left without one to cut them off by.
+    // A corner without area is not an ear: cutting it off would leave its neighbours without one.
     area(a, b, c) > 0.0
         && ring
             .iter()

@@ -1,5 +1,5 @@
-//! `.skel`: one joint a line, `x y z parent`: where it is from its parent, and the parent's number, −1 for a root. Parents
-//! come first. Joints have no names, no rotations, and nothing says how long the last bones are.
+//! `.skel`: one joint per line, `x y z parent`: the offset from its parent and the parent's number, −1 for a root. Parents come
+//! first. Joints have neither names nor rotations, and the length of the last bones is unknown.
 
 use glam::Vec3;
 
@@ -7,8 +7,8 @@ use crate::anim::{Joint, Skeleton, Transform};
 use crate::formats::error::Problem;
 use crate::formats::lines::{Lines, number, quoted, text};
 
-/// As many as influences can name.
-const MOST_JOINTS: usize = u16::MAX as usize;
+/// The most that influences can refer to.
+const MAX_JOINTS: usize = u16::MAX as usize;
 
 pub fn read(bytes: &[u8]) -> Result<Skeleton, Problem> {
     let mut joints: Vec<Joint> = Vec::new();
@@ -18,8 +18,8 @@ pub fn read(bytes: &[u8]) -> Result<Skeleton, Problem> {
             continue;
         }
         let place = format!("line {line}");
-        if joints.len() == MOST_JOINTS {
-            return Err(Problem::new(place, format!("at most {MOST_JOINTS} joints"), "more"));
+        if joints.len() == MAX_JOINTS {
+            return Err(Problem::new(place, format!("at most {MAX_JOINTS} joints"), "more"));
         }
         let words: Vec<&[u8]> =
             content.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).take(5).collect();
@@ -28,9 +28,9 @@ pub fn read(bytes: &[u8]) -> Result<Skeleton, Problem> {
             return Err(Problem::new(place, "4 numbers: x y z and the parent's number", found));
         };
         let mut offset = [0.0; 3];
-        for (part, word) in offset.iter_mut().zip([x, y, z]) {
+        for (coordinate, word) in offset.iter_mut().zip([x, y, z]) {
             let value = number(word).map(|value| value as f32).filter(|value| value.is_finite());
-            *part = value.ok_or_else(|| Problem::new(&*place, "a finite number", quoted(Some(word))))?;
+            *coordinate = value.ok_or_else(|| Problem::new(&*place, "a finite number", quoted(Some(word))))?;
         }
         let parent = parent_of(parent, joints.len())
             .map_err(|expected| Problem::new(&*place, expected, quoted(Some(parent))))?;
@@ -47,7 +47,7 @@ pub fn read(bytes: &[u8]) -> Result<Skeleton, Problem> {
     Skeleton::new(joints).map_err(|problem| Problem::new("joints", "a tree", problem))
 }
 
-/// The parent of joint `joint`; else what was expected.
+/// Parses the parent of joint `joint`; fails with what was expected.
 fn parent_of(word: &[u8], joint: usize) -> Result<Option<usize>, String> {
     let parent: Option<i64> = text(word).parse().ok();
     match parent {

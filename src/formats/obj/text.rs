@@ -1,15 +1,15 @@
 //! The statements of a Wavefront .obj: vertices, faces, and the names of groups and materials.
 //!
 //! ```text
-//! v x y z [w | r g b]     a vertex, with a weight for curves (ignored) or a colour
-//! vt u [v [w]]            a texture coordinate, v upwards
-//! vn x y z                a normal
-//! f 1 2 3                 corners: v, v/vt, v//vn or v/vt/vn; from 1, or backwards from −1, the last one so far
+//! v x y z [w | r g b]     vertex, with a weight for curves (ignored) or a colour
+//! vt u [v [w]]            texture coordinate, v upwards
+//! vn x y z                normal
+//! f 1 2 3                 face with corners v, v/vt, v//vn or v/vt/vn; from 1, or backwards from −1, the last so far
 //! o, g, usemtl, mtllib    object, groups, material, material libraries
 //! ```
 //!
-//! A `\` at the end of a line continues it; `#` begins a comment. Numbers of vertices may point forward. Lines, points,
-//! curves and surfaces are not read, which a warning says.
+//! A `\` at the end of a line continues it; `#` begins a comment. Vertex numbers may point forward. Lines, points, curves and
+//! surfaces are skipped with a warning.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -20,47 +20,47 @@ use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
 use crate::formats::lines::{Lines, number, quoted, text};
 
-/// Groups and materials make parts, each with a draw of its own.
-const MOST_PARTS: usize = 4096;
+/// Each group is a draw of its own.
+const MAX_GROUPS: usize = 4096;
 
-/// Bytes of a name that are kept, since each part has its own.
-const MOST_NAME_BYTES: usize = 256;
+/// Longer names are cut: each group has its own copy.
+const MAX_NAME_BYTES: usize = 256;
 
-/// Each is looked for among the files, or fetched.
-const MOST_LIBRARIES: usize = 64;
+/// Limit on libraries, each of which is looked up among the files or fetched.
+const MAX_LIBRARIES: usize = 64;
 
-/// No texture coordinate or no normal.
+/// Stands for a missing texture coordinate or normal.
 pub const NONE: u32 = u32::MAX;
 
-/// Vertex, texture coordinate and normal, from 0. The latter two may be [`NONE`].
+/// Indices of vertex, texture coordinate and normal, from 0. The latter two may be [`NONE`].
 pub type Corner = [u32; 3];
 
 #[derive(Debug, Default)]
 pub struct ObjText {
     pub positions: Vec<Vec3>,
-    /// One per vertex as the file has them (as a screen shows them), or empty: some vertex has none.
+    /// One per vertex, in sRGB; empty if any vertex has none.
     pub colors: Vec<Vec3>,
     pub uvs: Vec<Vec2>,
     pub normals: Vec<Vec3>,
-    /// Corners of all faces, one after the other.
+    /// The corners of all faces, in order.
     pub corners: Vec<Corner>,
     pub faces: Vec<Face>,
-    pub parts: Vec<Part>,
+    pub groups: Vec<Group>,
     /// Names of material libraries.
     pub libraries: Vec<String>,
 }
 
 #[derive(Debug, Clone, Copy)]
 pub struct Face {
-    /// Its corners end here; they begin where the face before ends.
+    /// End of its corners, which begin where those of the previous face end.
     pub end: u32,
-    pub part: u32,
+    pub group: u32,
     line: u32,
 }
 
-/// What has the same object, group and material.
+/// Faces with the same object, group and material.
 #[derive(Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Part {
+pub struct Group {
     pub object: String,
     pub group: String,
     pub material: String,
@@ -68,18 +68,18 @@ pub struct Part {
 
 struct Reader<'a> {
     obj: ObjText,
-    part: Part,
-    part_index: Option<u32>,
-    known_parts: BTreeMap<Part, u32>,
+    group: Group,
+    group_index: Option<u32>,
+    known_groups: BTreeMap<Group, u32>,
     warnings: &'a mut Warnings,
 }
 
 pub fn read(bytes: &[u8], warnings: &mut Warnings) -> Result<ObjText, Problem> {
     let mut reader = Reader {
         obj: ObjText::default(),
-        part: Part::default(),
-        part_index: None,
-        known_parts: BTreeMap::new(),
+        group: Group::default(),
+        group_index: None,
+        known_groups: BTreeMap::new(),
         warnings,
     };
     let mut lines = Lines::new(bytes);
@@ -95,7 +95,7 @@ pub fn read(bytes: &[u8], warnings: &mut Warnings) -> Result<ObjText, Problem> {
     Ok(obj)
 }
 
-/// The material libraries that a file names, without reading the rest.
+/// Returns the material libraries that a file names, without reading the rest.
 pub fn libraries(bytes: &[u8]) -> Vec<String> {
     let mut found = Vec::new();
     let mut lines = Lines::new(bytes);
@@ -109,11 +109,11 @@ pub fn libraries(bytes: &[u8]) -> Vec<String> {
     found
 }
 
-/// Adds what a statement names, up to [`MOST_LIBRARIES`]; false if that is too few.
+/// Adds the libraries of a statement. Returns false if that would exceed [`MAX_LIBRARIES`].
 fn add_libraries(names: &[u8], found: &mut Vec<String>) -> bool {
     for library in library_names(&text(names)) {
         if !found.contains(&library) {
-            if found.len() == MOST_LIBRARIES {
+            if found.len() == MAX_LIBRARIES {
                 return false;
             }
             found.push(library);
@@ -122,27 +122,27 @@ fn add_libraries(names: &[u8], found: &mut Vec<String>) -> bool {
     true
 }
 
-/// A name, cut where it is longer than anyone reads.
+/// Truncates a name to [`MAX_NAME_BYTES`].
 pub fn cut_name(name: &[u8]) -> String {
-    let mut cut = text(&name[..name.len().min(MOST_NAME_BYTES)]).into_owned();
-    cut.truncate(cut.floor_char_boundary(MOST_NAME_BYTES));
+    let mut cut = text(&name[..name.len().min(MAX_NAME_BYTES)]).into_owned();
+    cut.truncate(cut.floor_char_boundary(MAX_NAME_BYTES));
     cut
 }
 
-/// The line with those that continue it.
+/// Joins a line with those that continue it.
 fn continued<'a>(line: &'a [u8], lines: &mut Lines<'a>) -> Cow<'a, [u8]> {
-    let mut whole = Cow::Borrowed(line);
-    while let Some(kept) = whole.strip_suffix(b"\\") {
+    let mut joined = Cow::Borrowed(line);
+    while let Some(kept) = joined.strip_suffix(b"\\") {
         let kept = kept.len();
-        let whole = whole.to_mut();
-        whole.truncate(kept);
-        whole.push(b' ');
+        let joined = joined.to_mut();
+        joined.truncate(kept);
+        joined.push(b' ');
         match lines.next_full_line() {
-            Some((_, more)) => whole.extend_from_slice(more),
+            Some((_, more)) => joined.extend_from_slice(more),
             None => break,
         }
     }
-    whole
+    joined
 }
 
 fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
@@ -161,7 +161,7 @@ impl Reader<'_> {
                 if found == 0 {
                     return Err(Problem::new(place(line), "1 to 3 numbers after “vt”", "none"));
                 }
-                // A texture's rows are counted from the top here.
+                // Texture rows count from the top, as in glTF.
                 self.obj.uvs.push(Vec2::new(uv[0], 1.0 - uv[1]));
                 Ok(())
             }
@@ -176,27 +176,29 @@ impl Reader<'_> {
             b"f" | b"fo" => self.face(line, rest),
             b"o" | b"g" | b"usemtl" => {
                 let name = statement[keyword.len()..].trim_ascii();
-                if name.len() > MOST_NAME_BYTES {
-                    let problem = format!("the name is cut after {MOST_NAME_BYTES} bytes");
+                if name.len() > MAX_NAME_BYTES {
+                    let problem = format!("the name is cut after {MAX_NAME_BYTES} bytes");
                     self.warnings.push(Warning::Other { code: "obj-name", place: place(line), problem });
                 }
                 let name = cut_name(name);
-                self.part_index = None;
+                self.group_index = None;
                 match keyword {
-                    b"o" => self.part = Part { object: name, group: String::new(), ..std::mem::take(&mut self.part) },
-                    b"g" => self.part.group = name,
-                    _ => self.part.material = name,
+                    b"o" => {
+                        self.group = Group { object: name, group: String::new(), ..std::mem::take(&mut self.group) };
+                    }
+                    b"g" => self.group.group = name,
+                    _ => self.group.material = name,
                 }
                 Ok(())
             }
             b"mtllib" => {
                 if !add_libraries(&statement[keyword.len()..], &mut self.obj.libraries) {
-                    let problem = format!("more than {MOST_LIBRARIES} material libraries; the first ones are read");
+                    let problem = format!("more than {MAX_LIBRARIES} material libraries; the first ones are read");
                     self.warnings.push(Warning::Other { code: "obj-libraries", place: place(line), problem });
                 }
                 Ok(())
             }
-            // Smoothing groups: without normals a model is flat, or smooth where the person wants it.
+            // Smoothing groups: a model without normals is flat, or smooth if the user chooses so.
             b"s" => Ok(()),
             other => {
                 let problem = format!("{} is not read; vertices and faces are", quoted(Some(other)));
@@ -230,18 +232,18 @@ impl Reader<'_> {
     fn face<'a>(&mut self, line: usize, words: impl Iterator<Item = &'a [u8]>) -> Result<(), Problem> {
         let first = self.obj.corners.len();
         for word in words {
-            let mut parts = word.split(|&byte| byte == b'/');
+            let mut indices = word.split(|&byte| byte == b'/');
             let mut corner = [NONE; 3];
             let so_far = [self.obj.positions.len(), self.obj.uvs.len(), self.obj.normals.len()];
             for (slot, so_far) in corner.iter_mut().zip(so_far) {
-                if let Some(part) = parts.next().filter(|part| !part.is_empty()) {
-                    *slot = index(part, so_far).ok_or_else(|| {
+                if let Some(digits) = indices.next().filter(|digits| !digits.is_empty()) {
+                    *slot = index(digits, so_far).ok_or_else(|| {
                         let expected = "corners such as 1, 1/1, 1//1 or 1/1/1, counted from 1 or backwards from -1";
                         Problem::new(place(line), expected, quoted(Some(word)))
                     })?;
                 }
             }
-            if corner[0] == NONE || parts.next().is_some() {
+            if corner[0] == NONE || indices.next().is_some() {
                 let expected = "corners such as 1, 1/1, 1//1 or 1/1/1";
                 return Err(Problem::new(place(line), expected, quoted(Some(word))));
             }
@@ -253,30 +255,30 @@ impl Reader<'_> {
         }
         let end = u32::try_from(end)
             .map_err(|_| Problem::new(place(line), "fewer corners than 32 bits can count", "more"))?;
-        let part = self.part_of_next_face(line);
-        self.obj.faces.push(Face { end, part, line: u32::try_from(line).unwrap_or(u32::MAX) });
+        let group = self.group_of_next_face(line);
+        self.obj.faces.push(Face { end, group, line: u32::try_from(line).unwrap_or(u32::MAX) });
         Ok(())
     }
 
-    fn part_of_next_face(&mut self, line: usize) -> u32 {
-        if let Some(part) = self.part_index {
-            return part;
+    fn group_of_next_face(&mut self, line: usize) -> u32 {
+        if let Some(group) = self.group_index {
+            return group;
         }
-        let next = self.obj.parts.len() as u32;
-        let index = match self.known_parts.get(&self.part) {
+        let next = self.obj.groups.len() as u32;
+        let index = match self.known_groups.get(&self.group) {
             Some(&index) => index,
-            None if self.obj.parts.len() == MOST_PARTS => {
-                let problem = format!("more than {MOST_PARTS} parts; what follows is put into the last of them");
+            None if self.obj.groups.len() == MAX_GROUPS => {
+                let problem = format!("more than {MAX_GROUPS} parts; what follows is put into the last of them");
                 self.warnings.push(Warning::Other { code: "obj-parts", place: place(line), problem });
                 next - 1
             }
             None => {
-                self.known_parts.insert(self.part.clone(), next);
-                self.obj.parts.push(self.part.clone());
+                self.known_groups.insert(self.group.clone(), next);
+                self.obj.groups.push(self.group.clone());
                 next
             }
         };
-        self.part_index = Some(index);
+        self.group_index = Some(index);
         index
     }
 }
@@ -285,7 +287,7 @@ fn place(line: usize) -> String {
     format!("line {line}")
 }
 
-/// Up to `N` numbers that fit into 32 bits, and how many there are.
+/// Parses up to `N` numbers that fit into 32 bits. Returns how many there are, and the numbers.
 fn numbers<'a, const N: usize>(
     line: usize,
     words: impl Iterator<Item = &'a [u8]>,
@@ -303,14 +305,14 @@ fn numbers<'a, const N: usize>(
     Ok((found, read))
 }
 
-/// From 0; what points backwards is worked out from how many there are so far.
+/// Parses a number, resolves it against the count so far if it is negative, and returns it from 0.
 fn index(word: &[u8], so_far: usize) -> Option<u32> {
     let number: i64 = std::str::from_utf8(word).ok()?.parse().ok()?;
     let index = if number < 0 { (so_far as i64).checked_add(number)? } else { number - 1 };
     u32::try_from(index).ok().filter(|&index| index != NONE)
 }
 
-/// Names may have spaces in them, and several may stand on one line.
+/// Splits a list of names, which may contain spaces.
 fn library_names(names: &str) -> Vec<String> {
     let mut found = Vec::new();
     let mut name = String::new();
@@ -335,10 +337,10 @@ fn check_corners(obj: &ObjText) -> Result<(), Problem> {
     let mut start = 0;
     for face in &obj.faces {
         for corner in &obj.corners[start..face.end as usize] {
-            for (at, (&index, (what, count))) in corner.iter().zip(counts).enumerate() {
+            for (at, (&index, (name, count))) in corner.iter().zip(counts).enumerate() {
                 if index as usize >= count && (index != NONE || at == 0) {
                     let found = u64::from(index) + 1;
-                    return Err(Problem::new(place(face.line as usize), format!("one of the {count} {what}"), found));
+                    return Err(Problem::new(place(face.line as usize), format!("one of the {count} {name}"), found));
                 }
             }
         }
@@ -348,7 +350,7 @@ fn check_corners(obj: &ObjText) -> Result<(), Problem> {
 }
 
 impl ObjText {
-    /// Each face with its corners.
+    /// Iterates over the faces with their corners.
     pub fn faces(&self) -> impl Iterator<Item = (&Face, &[Corner])> {
         let mut start = 0;
         self.faces.iter().map(move |face| {
@@ -358,14 +360,14 @@ impl ObjText {
         })
     }
 
-    /// Where a corner is.
+    /// The position of a corner.
     pub fn point(&self, corner: &Corner) -> DVec3 {
         self.positions[corner[0] as usize].as_dvec3()
     }
 }
 
-impl Part {
-    /// How it is called: what the file names, most general first.
+impl Group {
+    /// Joins the names that the file gives, most general first.
     pub fn name(&self) -> String {
         let names = [&self.object, &self.group, &self.material];
         names.into_iter().filter(|name| !name.is_empty()).map(String::as_str).collect::<Vec<_>>().join(" / ")

@@ -1,5 +1,5 @@
-//! A model that came from another format as a GLB of its own: nodes, meshes, skins, materials, pictures and clips.
-//! What only glTF files have (morph targets, cameras, lights) is not written.
+//! Writes a model that came from another format as GLB: nodes, meshes, skins, materials, images and clips. What only glTF files
+//! have (morph targets, cameras, lights) is not written.
 
 use glam::{Mat4, Vec3};
 use serde_json::{Value, json};
@@ -20,15 +20,15 @@ const UNSIGNED_SHORT: u32 = 5123;
 const UNSIGNED_INT: u32 = 5125;
 const FLOAT: u32 = 5126;
 
-/// `skeleton` has the asset's joints, perhaps with other names and bent into another pose; the mesh stays bound as it is.
-/// Nodes are numbered as in the file the asset came from; a skinned mesh gets a node of its own behind them, since a node
-/// that holds one must not move it. Influences are written in sets of four.
+/// Writes `asset` with the joints of `skeleton`, which may have other names and another rest pose; the bind pose stays. Nodes
+/// are numbered as in the source file. Skinned meshes get nodes of their own after these, since the transform of such a node
+/// has no effect. Influences are written in sets of four.
 pub fn asset(asset: &Asset, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
     let mut root = nodes_and_scenes(asset, skeleton);
     let mut data = Data::default();
     let meshes: Vec<Value> = asset.meshes.iter().map(|written| mesh(written, &mut data)).collect();
     let skins: Vec<Value> = asset.skins.iter().map(|written| skin(written, skeleton, &mut data)).collect();
-    hang_meshes(asset, skeleton, &mut root);
+    place_meshes(asset, skeleton, &mut root);
     let images: Vec<Value> = asset.images.iter().map(|image| data.image(image)).collect();
     let is_webp = |texture: &Texture| texture.image.is_some_and(|image| asset.images[image].mime == WEBP);
     let texture = |texture: &Texture| match is_webp(texture) {
@@ -66,7 +66,7 @@ pub fn asset(asset: &Asset, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<
     glb::glb(root.to_string().into_bytes(), binary)
 }
 
-fn hang_meshes(asset: &Asset, skeleton: &Skeleton, root: &mut Value) {
+fn place_meshes(asset: &Asset, skeleton: &Skeleton, root: &mut Value) {
     for instance in &asset.instances {
         match instance.skin {
             None => root["nodes"][skeleton.source_index(instance.joint)]["mesh"] = json!(instance.mesh),
@@ -86,7 +86,7 @@ fn hang_meshes(asset: &Asset, skeleton: &Skeleton, root: &mut Value) {
     }
 }
 
-/// The buffer as it grows, with what points into it.
+/// The buffer as it grows, with its views and accessors.
 #[derive(Default)]
 struct Data {
     binary: Vec<u8>,
@@ -129,14 +129,14 @@ impl Data {
 }
 
 fn mesh(mesh: &Mesh, data: &mut Data) -> Value {
-    let pieces = mesh.primitives.iter().enumerate();
-    let primitives: Vec<Value> = pieces
+    let primitives = mesh.primitives.iter().enumerate();
+    let primitives: Vec<Value> = primitives
         .map(|(index, geometry)| {
-            let mut piece = primitive(geometry, data);
+            let mut written = primitive(geometry, data);
             if let Some(name) = mesh.part_names.get(index).filter(|name| !name.is_empty()) {
-                piece["extras"] = json!({ "name": name });
+                written["extras"] = json!({ "name": name });
             }
-            piece
+            written
         })
         .collect();
     json!({ "name": mesh.name, "primitives": primitives })
@@ -145,11 +145,11 @@ fn mesh(mesh: &Mesh, data: &mut Data) -> Value {
 fn primitive(geometry: &Geometry, data: &mut Data) -> Value {
     let mut attributes = json!({});
     let positions = data.attribute("VEC3", geometry.positions.iter().map(|at| at.to_array()));
-    let least = geometry.positions.iter().copied().fold(Vec3::INFINITY, Vec3::min);
-    let most = geometry.positions.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
-    // All digits: readers compare them with the data.
-    data.accessors[positions]["min"] = json!(least.as_dvec3().to_array());
-    data.accessors[positions]["max"] = json!(most.as_dvec3().to_array());
+    let min = geometry.positions.iter().copied().fold(Vec3::INFINITY, Vec3::min);
+    let max = geometry.positions.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
+    // With all digits: validators compare them with the data.
+    data.accessors[positions]["min"] = json!(min.as_dvec3().to_array());
+    data.accessors[positions]["max"] = json!(max.as_dvec3().to_array());
     attributes["POSITION"] = json!(positions);
     if !geometry.normals.is_empty() {
         attributes["NORMAL"] = json!(data.attribute("VEC3", geometry.normals.iter().map(|normal| normal.to_array())));
@@ -193,7 +193,7 @@ fn skin(skin: &Skin, skeleton: &Skeleton, data: &mut Data) -> Value {
     json!({ "name": skin.name(), "joints": joints, "inverseBindMatrices": matrices })
 }
 
-/// Colours, alpha, the picture; what else a material has is not in the formats this is for.
+/// Writes colours, alpha and the base colour texture; the formats that this is for have nothing else.
 fn material(material: &Material) -> Value {
     let mut surface = json!({
         "baseColorFactor": material.base_color.to_array(),

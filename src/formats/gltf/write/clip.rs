@@ -1,4 +1,4 @@
-//! A clip as an animation with its accessors (§3.11): the clip's own keys, nothing resampled. Channels that share their key
+//! Writes a clip as an animation with its accessors (§3.11), with the clip's own keys, not resampled. Channels with the same key
 //! times share an accessor.
 
 use std::collections::BTreeMap;
@@ -12,11 +12,11 @@ use super::glb::pad;
 use super::json::{Array, raw};
 use crate::anim::{Channel, Clip, Interpolation, Keys, Property, Skeleton};
 
-/// How far the square of a rotation's length may be from 1 before the rotation is made shorter or longer. Rounding alone
-/// stays far below; so a clip that was read comes back to the bit.
+/// A rotation whose squared length is farther from 1 is normalized. Rounding stays far below, so a clip that was loaded is
+/// written back bit by bit.
 const UNIT_TOLERANCE: f32 = 1e-5;
 
-/// What clips add to a file: elements for its arrays, and bytes for its first buffer.
+/// The elements that clips add to the arrays of a file.
 #[derive(Default)]
 pub struct Added {
     pub animations: Array,
@@ -24,14 +24,14 @@ pub struct Added {
     pub buffer_views: Array,
 }
 
-/// Where the arrays that are added to end already.
+/// Lengths of the arrays before anything is added.
 #[derive(Clone, Copy, Default)]
 pub struct Counts {
     pub accessors: usize,
     pub buffer_views: usize,
 }
 
-/// Writes the keys of `clips` behind `binary`, which is the beginning of the buffer. `weights`: morph weights too.
+/// Appends the keys of `clips` to `binary`, the beginning of the buffer. `weights`: morph weights too.
 pub fn add(
     clips: &[&Clip],
     skeleton: &Skeleton,
@@ -62,13 +62,13 @@ struct Data<'a> {
     start: usize,
     binary: &'a mut Vec<u8>,
     view: usize,
-    /// Accessors that the file has already.
+    /// Number of accessors that the file already has.
     first: usize,
     accessors: &'a mut Array,
 }
 
 impl Data<'_> {
-    /// Index of a new accessor over `numbers`, `width` of which make an element.
+    /// Adds an accessor over `numbers`, `width` per element, and returns its index.
     fn accessor(&mut self, shape: &str, width: usize, numbers: &[f32], with_bounds: bool) -> usize {
         let mut accessor = json!({
             "bufferView": self.view,
@@ -78,11 +78,11 @@ impl Data<'_> {
             "type": shape,
         });
         if with_bounds {
-            let least = numbers.iter().copied().fold(f32::INFINITY, f32::min);
-            let most = numbers.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-            // All digits: readers compare them with the data.
-            accessor["min"] = json!([f64::from(least)]);
-            accessor["max"] = json!([f64::from(most)]);
+            let min = numbers.iter().copied().fold(f32::INFINITY, f32::min);
+            let max = numbers.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+            // With all digits: validators compare them with the data.
+            accessor["min"] = json!([f64::from(min)]);
+            accessor["max"] = json!([f64::from(max)]);
         }
         self.binary.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
         self.accessors.push(raw(&accessor));
@@ -129,7 +129,7 @@ fn animation(clip: &Clip, skeleton: &Skeleton, weights: bool, data: &mut Data) -
     Ok(raw(&animation))
 }
 
-/// The channels that count: of several for one property the last, as the player has it. A file may have only one.
+/// Returns the channels to write. A file may have only one per property: the last, which is the one that the player uses.
 pub fn written<'a>(clip: &'a Clip, skeleton: &Skeleton, weights: bool) -> Vec<&'a Channel> {
     let mut last: BTreeMap<(u32, u8), usize> = BTreeMap::new();
     let key = |channel: &Channel| (channel.joint.0, channel.keys.property() as u8);
@@ -144,7 +144,7 @@ pub fn written<'a>(clip: &'a Clip, skeleton: &Skeleton, weights: bool) -> Vec<&'
     clip.channels().iter().enumerate().filter(counts).map(|(_, channel)| channel).collect()
 }
 
-/// A channel's path, the shape of its accessor, and its numbers.
+/// Returns a channel's path, the type of its accessor with its number of components, and its numbers.
 fn numbers(channel: &Channel) -> (&'static str, &'static str, usize, Vec<f32>) {
     let vectors = |values: &[Vec3]| values.iter().flat_map(|value| value.to_array()).collect();
     match &channel.keys {
@@ -158,7 +158,7 @@ fn numbers(channel: &Channel) -> (&'static str, &'static str, usize, Vec<f32>) {
     }
 }
 
-/// A rotation as files must have it. One without a length turns nothing.
+/// Normalizes a rotation, as the specification demands. A zero quaternion becomes the identity.
 fn unit(rotation: Quat) -> [f32; 4] {
     if (rotation.length_squared() - 1.0).abs() <= UNIT_TOLERANCE || !rotation.is_finite() {
         return rotation.to_array();

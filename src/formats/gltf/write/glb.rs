@@ -1,4 +1,4 @@
-//! The GLB container (§4.4), as it is written: see `container` for reading.
+//! Writes the GLB container (§4.4). See `container` for reading.
 
 use super::WriteError;
 
@@ -10,7 +10,7 @@ pub fn pad(bytes: &mut Vec<u8>, byte: u8) {
     bytes.resize(bytes.len().next_multiple_of(4), byte);
 }
 
-/// `binary` is left out when it is empty.
+/// Omits the binary chunk if `binary` is empty.
 pub fn glb(mut json: Vec<u8>, mut binary: Vec<u8>) -> Result<Vec<u8>, WriteError> {
     pad(&mut json, b' ');
     pad(&mut binary, 0);

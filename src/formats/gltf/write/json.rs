@@ -1,4 +1,4 @@
-//! JSON of which only some members are looked at: the rest stays the text that it was.
+//! JSON of which only some members are parsed: the rest keeps its text.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use serde::ser::SerializeMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::value::{RawValue, to_raw_value};
 
-/// An object's members in their order, values as text.
+/// An object's members in order, values as text. Of several members with one name the last counts, as in the reader.
 #[derive(Debug, Default, Clone)]
 pub struct Object(Vec<(String, Box<RawValue>)>);
 
@@ -15,21 +15,21 @@ pub struct Object(Vec<(String, Box<RawValue>)>);
 pub type Array = Vec<Box<RawValue>>;
 
 impl Object {
-    /// The member read as something; none when it is missing or something else.
+    /// Parses a member. None if it is missing or of another type.
     pub fn read<'a, T: Deserialize<'a>>(&'a self, key: &str) -> Option<T> {
-        let (_, value) = self.0.iter().find(|(other, _)| other == key)?;
+        let (_, value) = self.0.iter().rfind(|(other, _)| other == key)?;
         serde_json::from_str(value.get()).ok()
     }
 
-    /// All members that can be read so.
+    /// Parses all members of one type, skipping the others.
     pub fn values<'a, T: Deserialize<'a>>(&'a self) -> impl Iterator<Item = T> {
         self.0.iter().filter_map(|(_, value)| serde_json::from_str(value.get()).ok())
     }
 
-    /// Replaces a member where it stands, or adds it at the end.
+    /// Replaces a member in place, or appends it.
     pub fn set(&mut self, key: &str, value: &impl Serialize) {
         let Ok(value) = to_raw_value(value) else { return };
-        match self.0.iter_mut().find(|(other, _)| other == key) {
+        match self.0.iter_mut().rfind(|(other, _)| other == key) {
             Some((_, old)) => *old = value,
             None => self.0.push((key.to_owned(), value)),
         }
@@ -39,14 +39,14 @@ impl Object {
         self.0.retain(|(other, _)| other != key);
     }
 
-    /// Puts other members where `key` stands.
+    /// Replaces the member `key` by others.
     pub fn replace(&mut self, key: &str, members: Vec<(&str, Box<RawValue>)>) {
-        if let Some(at) = self.0.iter().position(|(other, _)| other == key) {
+        if let Some(at) = self.0.iter().rposition(|(other, _)| other == key) {
             self.0.splice(at..=at, members.into_iter().map(|(key, value)| (key.to_owned(), value)));
         }
     }
 
-    /// Adds elements to the array `key`, which is made if there is none.
+    /// Appends to the array `key`, creating it if needed.
     pub fn extend(&mut self, key: &str, elements: Array) {
         if !elements.is_empty() {
             let mut array: Array = self.read(key).unwrap_or_default();
@@ -61,7 +61,7 @@ impl Object {
     }
 }
 
-/// Any value that serde can write as text. None of what is written here can fail: no maps with odd keys, no streams.
+/// Serializes a value. Cannot fail for the values that are written here: no maps with keys other than strings, no streams.
 pub fn raw(value: &impl Serialize) -> Box<RawValue> {
     to_raw_value(value).unwrap_or_else(|_| RawValue::NULL.to_owned())
 }

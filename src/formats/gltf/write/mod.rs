@@ -1,7 +1,7 @@
-//! Writing GLB: a model's own file with clips added, a model of another format, or a skeleton with clips and nothing else.
+//! Writes GLB: a glTF model with clips added, a model of another format, or a skeleton with clips and nothing else.
 //!
-//! What a model's file says is not understood and said again: its JSON is kept as text, member by member, and only grows
-//! where clips need it. So extensions and extras that are not known here survive, and so does every digit.
+//! A glTF model is not re-exported: its JSON is kept as text, member by member, and only grows where clips need it. So unknown
+//! extensions and extras survive, and so does every digit.
 
 mod asset;
 mod clip;

@@ -1,8 +1,9 @@
-//! A model's own file as one GLB, with clips added behind its own.
+//! Writes a glTF model as one GLB, with clips added after its own.
 
 use std::borrow::Cow;
 
 use base64::Engine;
+use gltf::json::Root;
 use imagesize::ImageType;
 use serde_json::json;
 use serde_json::value::RawValue;
@@ -13,37 +14,38 @@ use super::{WriteError, glb};
 use crate::anim::{Clip, JointIndex, Skeleton};
 use crate::asset::Warnings;
 use crate::formats::gltf::accessor::Bytes;
-use crate::formats::gltf::{container, data, json_error, parse, resolve_buffers, schema};
+use crate::formats::gltf::document::{Document, json_error, size};
+use crate::formats::gltf::{container, data, resolve_buffers};
 use crate::formats::{FileSet, LoadError};
 
-/// The file `file` of the set as a GLB that needs no other file, with `clips` (of `skeleton`, which was read from the same
-/// file) behind its own. The bytes of its first buffer are the beginning of the new one; indices, numbers and everything
-/// unknown stay as they are. Only a node that a clip moves and that has a matrix gets the parts of it instead, because
-/// the specification forbids moving a matrix. A GLB that needs nothing done comes back as it is.
+/// Writes the file `file` of the set as a self-contained GLB, with `clips` (of `skeleton`, which was loaded from the same file)
+/// after its own. Its first buffer is the beginning of the new one; indices, numbers and everything unknown are preserved. Only
+/// a node with a matrix that a clip animates gets translation, rotation and scale instead, because the specification forbids
+/// animating a matrix. A GLB without anything to add or embed is returned unchanged.
 pub fn model(files: &FileSet, file: &str, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
     let bytes =
         files.get(file).ok_or_else(|| LoadError::NoModel { found: files.names().map(str::to_owned).collect() })?;
     let container = container::open(file, bytes)?;
-    let schema = parse(file, container.json)?;
+    let root = Document::read(file, container.json)?.root;
     let mut json: Object = serde_json::from_slice(container.json).map_err(|problem| json_error(file, &problem))?;
-    if schema.nodes.len() != skeleton.len() {
-        let (nodes, joints) = (schema.nodes.len(), skeleton.len());
+    if root.nodes.len() != skeleton.len() {
+        let (nodes, joints) = (root.nodes.len(), skeleton.len());
         return Err(WriteError::OtherSkeleton { file: file.to_owned(), nodes, joints });
     }
-    let outside = Outside::new(&schema, container.is_glb);
+    let outside = Outside::new(&root, container.is_glb);
     if container.is_glb && clips.is_empty() && !outside.buffers && outside.images.is_empty() {
         return Ok(bytes.to_vec());
     }
     let mut warnings = Warnings::default();
-    let buffers = resolve_buffers(files, file, &container, &schema, &mut warnings).map_err(|p| p.in_file(file))?;
+    let buffers = resolve_buffers(files, file, &container, &root, &mut warnings).map_err(|p| p.in_file(file))?;
     let mut binary = match buffers.first() {
         Some(Some(first)) => first.as_slice().to_vec(),
         None => Vec::new(),
         Some(None) => return Err(WriteError::NoBuffer { file: file.to_owned() }),
     };
     let chunk = binary.len();
-    join_buffers(&mut json, &schema, &buffers, &outside, &mut binary);
-    embed_images(files, file, &mut json, &schema, &outside, &mut binary);
+    join_buffers(&mut json, &root, &buffers, &outside, &mut binary);
+    embed_images(files, file, &mut json, &root, &outside, &mut binary);
     let counts = Counts { accessors: json.count("accessors"), buffer_views: json.count("bufferViews") };
     let added = clip::add(clips, skeleton, true, counts, &mut binary)?;
     json.extend("accessors", added.accessors);
@@ -52,10 +54,10 @@ pub fn model(files: &FileSet, file: &str, skeleton: &Skeleton, clips: &[&Clip]) 
     for clip in clips {
         split_matrices(&mut json, clip, skeleton);
     }
-    // A GLB's chunk is up to three bytes longer than its buffer; files may have more in them than a buffer says, and
-    // views reach there that work all the same.
-    let byte_length = match schema.buffers.first() {
-        Some(first) if container.is_glb && binary.len() == chunk => first.byte_length,
+    // A GLB's chunk is up to three bytes longer than its buffer. Other files may be longer than their buffer says, and
+    // views may reach beyond it.
+    let byte_length = match root.buffers.first() {
+        Some(first) if container.is_glb && binary.len() == chunk => size(first.byte_length),
         _ => binary.len(),
     };
     set_first_buffer(&mut json, byte_length);
@@ -63,31 +65,25 @@ pub fn model(files: &FileSet, file: &str, skeleton: &Skeleton, clips: &[&Clip]) 
     glb::glb(json, binary)
 }
 
-/// What lies outside the file, and is brought in. In a .gltf data URIs count too: text takes a third more room.
+/// Data outside the binary chunk, which is embedded. In a .gltf that includes data URIs: base64 is a third larger.
 struct Outside {
     buffers: bool,
     images: Vec<usize>,
 }
 
 impl Outside {
-    fn new(schema: &schema::Root, is_glb: bool) -> Self {
+    fn new(root: &Root, is_glb: bool) -> Self {
         let outside = |uri: &Option<String>| uri.as_deref().is_some_and(|uri| !is_glb || !data::is_data_uri(uri));
         Self {
-            buffers: schema.buffers.iter().any(|buffer| outside(&buffer.uri)),
-            images: (0..schema.images.len()).filter(|&index| outside(&schema.images[index].uri)).collect(),
+            buffers: root.buffers.iter().any(|buffer| outside(&buffer.uri)),
+            images: (0..root.images.len()).filter(|&index| outside(&root.images[index].uri)).collect(),
         }
     }
 }
 
-/// Puts the other buffers behind the first. Where that cannot be done (one has no data, or an extension names buffers by
-/// number) they stay, as data URIs.
-fn join_buffers(
-    json: &mut Object,
-    schema: &schema::Root,
-    buffers: &[Option<Bytes>],
-    outside: &Outside,
-    binary: &mut Vec<u8>,
-) {
+/// Appends the other buffers to the first. If that is impossible (one has no data, or an extension refers to buffers by
+/// number) they become data URIs.
+fn join_buffers(json: &mut Object, root: &Root, buffers: &[Option<Bytes>], outside: &Outside, binary: &mut Vec<u8>) {
     if !outside.buffers || buffers.len() < 2 {
         return;
     }
@@ -98,7 +94,7 @@ fn join_buffers(
     });
     let Some(all) = buffers.iter().map(Option::as_ref).collect::<Option<Vec<&Bytes>>>().filter(|_| !named_elsewhere)
     else {
-        keep_as_data(json, schema, buffers);
+        keep_as_data(json, root, buffers);
         return;
     };
     let mut starts = vec![0];
@@ -107,10 +103,10 @@ fn join_buffers(
         starts.push(binary.len());
         binary.extend_from_slice(bytes.as_slice());
     }
-    for (view, read) in views.iter_mut().zip(&schema.buffer_views) {
-        if let Some(&start) = starts.get(read.buffer).filter(|_| read.buffer > 0) {
+    for (view, read) in views.iter_mut().zip(&root.buffer_views) {
+        if let Some(&start) = starts.get(read.buffer.value()).filter(|_| read.buffer.value() > 0) {
             view.set("buffer", &0);
-            view.set("byteOffset", &(start + read.byte_offset));
+            view.set("byteOffset", &(start + read.byte_offset.map_or(0, size)));
         }
     }
     let first: Array = json.read::<Array>("buffers").unwrap_or_default().into_iter().take(1).collect();
@@ -121,9 +117,9 @@ fn join_buffers(
     }
 }
 
-fn keep_as_data(json: &mut Object, schema: &schema::Root, buffers: &[Option<Bytes>]) {
+fn keep_as_data(json: &mut Object, root: &Root, buffers: &[Option<Bytes>]) {
     let mut written: Vec<Object> = json.read("buffers").unwrap_or_default();
-    for ((buffer, read), bytes) in written.iter_mut().zip(&schema.buffers).zip(buffers).skip(1) {
+    for ((buffer, read), bytes) in written.iter_mut().zip(&root.buffers).zip(buffers).skip(1) {
         if let (Some(uri), Some(bytes)) = (&read.uri, bytes)
             && !data::is_data_uri(uri)
         {
@@ -134,15 +130,8 @@ fn keep_as_data(json: &mut Object, schema: &schema::Root, buffers: &[Option<Byte
     json.set("buffers", &written);
 }
 
-/// Images that are not among the files stay as they are named.
-fn embed_images(
-    files: &FileSet,
-    file: &str,
-    json: &mut Object,
-    schema: &schema::Root,
-    outside: &Outside,
-    binary: &mut Vec<u8>,
-) {
+/// Embeds images. Those that are not among the files keep their URI.
+fn embed_images(files: &FileSet, file: &str, json: &mut Object, root: &Root, outside: &Outside, binary: &mut Vec<u8>) {
     if outside.images.is_empty() {
         return;
     }
@@ -150,7 +139,7 @@ fn embed_images(
     let mut views: Array = Vec::new();
     let first_view = json.count("bufferViews");
     for &index in &outside.images {
-        let Some(uri) = schema.images[index].uri.as_deref() else { continue };
+        let Some(uri) = root.images[index].uri.as_deref() else { continue };
         let bytes: Option<Cow<[u8]>> = match data::is_data_uri(uri) {
             true => data::data_uri("", uri).ok().map(Cow::Owned),
             false => data::find(files, file, uri).map(|found| Cow::Borrowed(&found.bytes[..])),
@@ -170,7 +159,7 @@ fn embed_images(
     json.set("images", &images);
 }
 
-/// What kind of image it is: by content, else by what the file says.
+/// Returns the MIME type of an image by its content, else as the file declares it.
 fn mime(bytes: &[u8], uri: &str, said: Option<String>) -> Option<String> {
     let by_content = match imagesize::image_type(bytes) {
         Ok(ImageType::Png) => Some("image/png"),
@@ -186,7 +175,7 @@ fn mime(bytes: &[u8], uri: &str, said: Option<String>) -> Option<String> {
     by_content.map(str::to_owned).or(said).or_else(in_uri)
 }
 
-/// The first buffer is what the GLB's binary chunk holds.
+/// Makes the GLB's binary chunk the first buffer.
 fn set_first_buffer(json: &mut Object, byte_length: usize) {
     let mut buffers: Array = json.read("buffers").unwrap_or_default();
     let mut first: Object =
@@ -203,7 +192,7 @@ fn set_first_buffer(json: &mut Object, byte_length: usize) {
     json.set("buffers", &buffers);
 }
 
-/// Nodes that the clip moves get translation, rotation and scale in place of a matrix.
+/// Replaces the matrix of nodes that the clip animates by translation, rotation and scale.
 fn split_matrices(json: &mut Object, clip: &Clip, skeleton: &Skeleton) {
     let mut nodes: Array = json.read("nodes").unwrap_or_default();
     let mut changed = false;
@@ -226,7 +215,7 @@ fn split_matrices(json: &mut Object, clip: &Clip, skeleton: &Skeleton) {
 
 fn parts(skeleton: &Skeleton, joint: JointIndex) -> Vec<(&'static str, Box<RawValue>)> {
     let rest = skeleton.rest().locals[joint.get()];
-    // With all digits: the shortest form of 32 bits may be read as its neighbour by way of 64.
+    // As f64: the shortest decimal form of an f32 may be parsed as its neighbour by readers that go through f64.
     vec![
         ("translation", raw(&rest.translation.as_dvec3().to_array())),
         ("rotation", raw(&rest.rotation.as_dquat().to_array())),

@@ -1,4 +1,4 @@
-//! A skeleton with clips and nothing else: what other programs read as an animation file.
+//! Writes a skeleton with clips and nothing else, which other programs read as an animation file.
 
 use serde_json::{Value, json};
 
@@ -6,9 +6,8 @@ use super::{WriteError, clip, glb};
 use crate::anim::{Clip, JointIndex, Skeleton};
 use crate::asset::Asset;
 
-/// A GLB with `skeleton`'s joints (those of the asset, perhaps with other names) as nodes, numbered as in the file it came
-/// from, its scenes, and `clips` (of this skeleton).
-/// Meshes are left out, and with them channels of morph weights.
+/// Writes a GLB with `skeleton`'s joints (those of the asset, perhaps renamed) as nodes, numbered as in the source file, the
+/// asset's scenes, and `clips` of this skeleton. Meshes are left out, and with them channels of morph weights.
 pub fn motion(asset: &Asset, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
     let mut root = nodes_and_scenes(asset, skeleton);
     let mut binary = Vec::new();
@@ -22,8 +21,8 @@ pub fn motion(asset: &Asset, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec
     glb::glb(root.to_string().into_bytes(), binary)
 }
 
-/// The beginning of a file's JSON: `skeleton`'s joints (those of the asset, perhaps with other names and another rest) in
-/// the asset's scenes.
+/// Returns the beginning of a file's JSON: the joints of `skeleton` (those of the asset, perhaps with other names and another
+/// rest pose) in the asset's scenes.
 pub(super) fn nodes_and_scenes(asset: &Asset, skeleton: &Skeleton) -> Value {
     let nodes: Vec<Value> = (0..skeleton.len())
         .filter_map(|source| skeleton.joint_of_source(source))
@@ -65,15 +64,15 @@ fn node(skeleton: &Skeleton, joint: JointIndex) -> Value {
         node["name"] = json!(skeleton.name(joint));
     }
     let rest = skeleton.rest().locals[joint.get()];
-    let mut part = |key: &str, numbers: &[f32], usual: f32, last: f32| {
+    let mut set_unless = |key: &str, numbers: &[f32], default: f32, last: f32| {
         let (end, others) = numbers.split_last().unwrap_or((&last, &[]));
-        if *end != last || others.iter().any(|number| *number != usual) {
+        if *end != last || others.iter().any(|number| *number != default) {
             node[key] = json!(numbers);
         }
     };
-    part("translation", &rest.translation.to_array(), 0.0, 0.0);
-    part("rotation", &rest.rotation.to_array(), 0.0, 1.0);
-    part("scale", &rest.scale.to_array(), 1.0, 1.0);
+    set_unless("translation", &rest.translation.to_array(), 0.0, 0.0);
+    set_unless("rotation", &rest.rotation.to_array(), 0.0, 1.0);
+    set_unless("scale", &rest.scale.to_array(), 1.0, 1.0);
     let mut children: Vec<usize> = skeleton.children(joint).map(|child| skeleton.source_index(child)).collect();
     if !children.is_empty() {
         children.sort_unstable();

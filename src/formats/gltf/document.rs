@@ -1,0 +1,314 @@
+//! The JSON of a glTF file in the types of the `gltf` crate.
+//!
+//! Those types are stricter than the specification in a few places (an animation channel need not name a node) and stricter
+//! than a viewer has to be in many. So the text is read typed first, which is enough for nearly every file. Only if that
+//! fails it is read again as a plain value, [`loosen`]ed, and converted.
+
+use std::cell::OnceCell;
+use std::collections::BTreeMap;
+
+use gltf::json::validation::USize64;
+use gltf::json::{Index, Root, scene};
+use serde_json::value::RawValue;
+use serde_json::{Map, Value};
+use serde_path_to_error::{Path, Segment};
+
+use crate::formats::LoadError;
+
+/// The `target.node` of an animation channel that has none: an extension defines what it animates.
+const NO_NODE: u32 = u32::MAX;
+
+/// Members with an index or a code, of which the crate keeps the lowest 32 bits.
+const NARROW_MEMBERS: [&str; 23] = [
+    "buffer",
+    "bufferView",
+    "camera",
+    "children",
+    "componentType",
+    "index",
+    "indices",
+    "input",
+    "inverseBindMatrices",
+    "joints",
+    "light",
+    "material",
+    "mesh",
+    "mode",
+    "node",
+    "nodes",
+    "output",
+    "sampler",
+    "scene",
+    "skeleton",
+    "skin",
+    "source",
+    "targets",
+];
+
+/// Extensions with types in the crate. The contents of all others are left as they are.
+const TYPED_EXTENSIONS: [&str; 4] =
+    ["KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_unlit", "KHR_texture_transform"];
+
+/// The parsed JSON of a file. No index in it has been checked.
+pub struct Document<'a> {
+    pub root: Root,
+    text: &'a [u8],
+    /// The text as a plain value, parsed when a message has to quote it.
+    value: OnceCell<Value>,
+}
+
+impl<'a> Document<'a> {
+    pub fn read(file: &str, text: &'a [u8]) -> Result<Self, LoadError> {
+        let root = match serde_json::from_slice::<Root>(text) {
+            Ok(root) if !has_long_integer(text) => {
+                check_version(file, Some(&root.asset.version), root.asset.min_version.as_deref())?;
+                root
+            }
+            _ => read_loosened(file, text)?,
+        };
+        Ok(Self { root, text, value: OnceCell::new() })
+    }
+
+    /// Returns the text of the value at `place`, such as `meshes[0].primitives[1].mode`: what the file has where the crate
+    /// only says that a code is unknown.
+    pub fn text_at(&self, place: &str) -> String {
+        self.value_at(place).map_or_else(String::new, text)
+    }
+
+    /// Like [`Self::text_at`], with quotation marks around a string.
+    pub fn quoted_at(&self, place: &str) -> String {
+        let text = self.text_at(place);
+        if self.value_at(place).is_some_and(Value::is_string) { format!("“{text}”") } else { text }
+    }
+
+    fn value_at(&self, place: &str) -> Option<&Value> {
+        let value = self.value.get_or_init(|| serde_json::from_slice(self.text).unwrap_or_default());
+        let pointer = place.replace("].", "/").replace(['.', '['], "/").replace(']', "");
+        value.pointer(&format!("/{pointer}"))
+    }
+}
+
+/// A byte count or offset. One that is too large for this machine is out of range of any buffer.
+pub fn size(bytes: USize64) -> usize {
+    usize::try_from(bytes.0).unwrap_or(usize::MAX)
+}
+
+/// The node that an animation channel targets.
+pub fn target_node(node: Index<scene::Node>) -> Option<usize> {
+    Some(node.value()).filter(|&node| node != NO_NODE as usize)
+}
+
+/// Wraps an error of the JSON parser.
+pub fn json_error(file: &str, problem: &serde_json::Error) -> LoadError {
+    let (line, column) = (problem.line(), problem.column());
+    let text = problem.to_string();
+    // The message ends with the position, which has fields of its own.
+    let problem = text.strip_suffix(&format!(" at line {line} column {column}")).unwrap_or(&text).to_owned();
+    LoadError::Json { file: file.to_owned(), line, column, problem }
+}
+
+/// Reads a file that the crate's types refuse, or whose integers they may truncate.
+fn read_loosened(file: &str, text: &[u8]) -> Result<Root, LoadError> {
+    let mut value: Value = serde_json::from_slice(text).map_err(|problem| json_error(file, &problem))?;
+    // A file of another version has another structure: its version is what matters.
+    let asset = |key: &str| value.pointer(&format!("/asset/{key}")).filter(|value| !value.is_null()).map(self::text);
+    check_version(file, asset("version").as_deref(), asset("minVersion").as_deref())?;
+    loosen(&mut value);
+    serde_path_to_error::deserialize(value).map_err(|problem| {
+        let (line, column) = position(text, problem.path());
+        let place = problem.path().to_string();
+        let problem = format!("{place}: {}", problem.into_inner());
+        LoadError::Json { file: file.to_owned(), line, column, problem }
+    })
+}
+
+fn check_version(file: &str, version: Option<&str>, min_version: Option<&str>) -> Result<(), LoadError> {
+    let unsupported = |found: String| LoadError::UnsupportedVersion { file: file.to_owned(), found };
+    match version {
+        // glTF 1.0 allowed an asset without a version.
+        None => return Err(unsupported("of no stated version (asset.version is missing)".to_owned())),
+        Some(version) if !version.starts_with("2.") => return Err(unsupported(version.to_owned())),
+        Some(_) => {}
+    }
+    match min_version {
+        Some(version) if version != "2.0" => Err(unsupported(format!("{version} at least (asset.minVersion)"))),
+        _ => Ok(()),
+    }
+}
+
+fn text(value: &Value) -> String {
+    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
+}
+
+/// Whether the text has an integer of ten digits or more, which may not fit into 32 bits. Looks at every tenth byte.
+fn has_long_integer(text: &[u8]) -> bool {
+    const DIGITS: usize = 10;
+    let mut at = DIGITS - 1;
+    while let Some(byte) = text.get(at) {
+        if !byte.is_ascii_digit() {
+            at += DIGITS;
+            continue;
+        }
+        let is_digit = |byte: &&u8| byte.is_ascii_digit();
+        let start = at - text[..at].iter().rev().take_while(is_digit).count();
+        let end = at + text[at..].iter().take_while(is_digit).count();
+        // Neither part of a fraction nor of a name.
+        let before = start.checked_sub(1).and_then(|before| text.get(before));
+        let is_integer = before.is_none_or(|byte| b":,[ \t\r\n".contains(byte))
+            && text.get(end).is_none_or(|byte| b",]} \t\r\n".contains(byte));
+        if is_integer && end - start >= DIGITS {
+            return true;
+        }
+        at = end + DIGITS;
+    }
+    false
+}
+
+/// Line and column, from 1, of the value at `path`, or of the innermost value around it that exists.
+fn position(text: &[u8], path: &Path) -> (usize, usize) {
+    let text = str::from_utf8(text).unwrap_or_default();
+    let Ok(mut value) = serde_json::from_str::<&RawValue>(text) else { return (1, 1) };
+    for segment in path {
+        let inner = match segment {
+            Segment::Seq { index } => {
+                serde_json::from_str::<Vec<&RawValue>>(value.get()).ok().and_then(|list| list.get(*index).copied())
+            }
+            Segment::Map { key } => serde_json::from_str::<BTreeMap<String, &RawValue>>(value.get())
+                .ok()
+                .and_then(|members| members.get(key).copied()),
+            _ => None,
+        };
+        let Some(inner) = inner else { break };
+        value = inner;
+    }
+    let before = &text[..value.get().as_ptr() as usize - text.as_ptr() as usize];
+    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+    (1 + before.matches('\n').count(), 1 + before.len() - line_start)
+}
+
+/// Removes or completes what the crate's types refuse although the reader can do without it.
+fn loosen(root: &mut Value) {
+    clean(root, None);
+    let asset = root.get_mut("asset").and_then(Value::as_object_mut);
+    if let Some(asset) = asset {
+        for key in ["version", "minVersion"] {
+            if let Some(version) = asset.get_mut(key) {
+                *version = Value::from(text(version));
+            }
+        }
+        remove_unless(asset, "copyright", Value::is_string);
+    }
+    objects(root, "bufferViews").for_each(|view| remove_unless(view, "target", Value::is_u64));
+    objects(root, "images").for_each(|image| remove_unless(image, "mimeType", Value::is_string));
+    objects(root, "scenes").for_each(|scene| set_default(scene, "nodes", empty_list()));
+    objects(root, "skins").for_each(|skin| set_default(skin, "joints", empty_list()));
+    for camera in objects(root, "cameras") {
+        // The kind of a camera is told by its members.
+        remove_unless(camera, "type", Value::is_string);
+        set_default(camera, "type", Value::from("perspective"));
+    }
+    for mesh in objects(root, "meshes") {
+        set_default(mesh, "primitives", empty_list());
+        objects_of(mesh, "primitives").for_each(loosen_attributes);
+    }
+    for animation in objects(root, "animations") {
+        set_default(animation, "channels", empty_list());
+        set_default(animation, "samplers", empty_list());
+        let channels = objects_of(animation, "channels");
+        for target in channels.filter_map(|channel| channel.get_mut("target")?.as_object_mut()) {
+            set_default(target, "node", Value::from(NO_NODE));
+        }
+    }
+    if let Some(lights) = root.pointer_mut("/extensions/KHR_lights_punctual").and_then(Value::as_object_mut) {
+        set_default(lights, "lights", empty_list());
+    }
+}
+
+/// What holds everywhere: null is the same as nothing, a name that is no text is none, and so is an extension that is no
+/// object. Integers that the crate would truncate become fractions, which it refuses. `key`: the member that has the value.
+fn clean(value: &mut Value, key: Option<&str>) {
+    match value {
+        Value::Array(list) => list.iter_mut().for_each(|value| clean(value, key)),
+        Value::Number(number) => {
+            if key.is_some_and(|key| NARROW_MEMBERS.contains(&key))
+                && let Some(wide) = number.as_u64().filter(|&number| number >= u64::from(u32::MAX))
+            {
+                *value = Value::from(wide as f64);
+            }
+        }
+        Value::Object(members) => {
+            members.retain(|_, value| !value.is_null());
+            remove_unless(members, "name", Value::is_string);
+            remove_unless(members, "extensions", Value::is_object);
+            let indices_inside = key.filter(|&key| matches!(key, "attributes" | "targets")).map(|_| "index");
+            for (key, value) in members {
+                match key.as_str() {
+                    "extras" => {}
+                    "extensions" => clean_extensions(value),
+                    key => clean(value, indices_inside.or(Some(key))),
+                }
+            }
+        }
+        _ => {}
+    }
+}
+
+fn clean_extensions(extensions: &mut Value) {
+    let Some(extensions) = extensions.as_object_mut() else { return };
+    for name in TYPED_EXTENSIONS {
+        if let Some(extension) = extensions.get_mut(name) {
+            clean(extension, None);
+        }
+    }
+    // Being there is all that it says.
+    if let Some(unlit) = extensions.get_mut("KHR_materials_unlit").filter(|unlit| !unlit.is_object()) {
+        *unlit = Value::Object(Map::new());
+    }
+}
+
+/// Removes null members, which mean the same as missing ones.
+pub fn without_nulls(value: &Value) -> Value {
+    let mut value = value.clone();
+    clean(&mut value, None);
+    value
+}
+
+/// Attributes that are never read may be anything.
+fn loosen_attributes(primitive: &mut Map<String, Value>) {
+    set_default(primitive, "attributes", Value::Object(Map::new()));
+    let is_read = |semantic: &str| {
+        matches!(semantic, "POSITION" | "NORMAL" | "TANGENT" | "TEXCOORD_0" | "TEXCOORD_1" | "COLOR_0")
+            || semantic.starts_with("JOINTS_")
+            || semantic.starts_with("WEIGHTS_")
+    };
+    if let Some(attributes) = primitive.get_mut("attributes").and_then(Value::as_object_mut) {
+        attributes.retain(|semantic, index| index.is_u64() || is_read(semantic));
+    }
+}
+
+fn empty_list() -> Value {
+    Value::Array(Vec::new())
+}
+
+/// The objects in the list `key`.
+fn objects<'v>(value: &'v mut Value, key: &str) -> impl Iterator<Item = &'v mut Map<String, Value>> + use<'v> {
+    value.get_mut(key).and_then(Value::as_array_mut).into_iter().flatten().filter_map(Value::as_object_mut)
+}
+
+fn objects_of<'v>(
+    members: &'v mut Map<String, Value>,
+    key: &str,
+) -> impl Iterator<Item = &'v mut Map<String, Value>> + use<'v> {
+    members.get_mut(key).and_then(Value::as_array_mut).into_iter().flatten().filter_map(Value::as_object_mut)
+}
+
+fn set_default(members: &mut Map<String, Value>, key: &str, value: Value) {
+    members.entry(key).or_insert(value);
+}
+
+fn remove_unless(members: &mut Map<String, Value>, key: &str, is_kept: fn(&Value) -> bool) {
+    if members.get(key).is_some_and(|value| !is_kept(value)) {
+        // Keeps the order of the others.
+        members.shift_remove(key);
+    }
+}
