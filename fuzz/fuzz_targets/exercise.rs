@@ -1,7 +1,7 @@
-//! Any bytes as the files of a skinning exercise: four texts with a byte 0xFF between them are the .obj, .skel, .attach and
-//! .mtl of one model. Whatever is made of them must be consistent, and nothing may panic, hang or take unbounded memory.
+//! Reads any bytes as the files of a skinning exercise: four texts separated by 0xFF are the .obj, .skel, .attach and .mtl of
+//! one model. What the loader returns must be consistent, and it must not panic, hang or use unbounded memory.
 //!
-//! `cargo fuzz run exercise -- -max_len=20000 -rss_limit_mb=4096`
+//! `cargo +nightly fuzz run exercise -- -max_len=20000 -rss_limit_mb=4096`
 
 #![no_main]
 
@@ -17,12 +17,12 @@ libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     let skin_joints = asset.skins.first().map(|skin| skin.joints().len());
     for mesh in &asset.meshes {
         for geometry in &mesh.primitives {
-            geometry.validate(skin_joints).expect("what is read is consistent");
+            geometry.validate(skin_joints).expect("a loaded model is consistent");
             assert!(geometry.file_vertex.iter().all(|&vertex| (vertex as usize) < mesh.file_vertex_count()));
         }
     }
-    let written = convert(&files, &LoadOptions::default()).expect("what is read can be written");
+    let written = convert(&files, &LoadOptions::default()).expect("a loaded model can be written");
     let mut files = FileSet::default();
     files.insert("written.glb", written);
-    load(&files).expect("what is written can be read");
+    load(&files).expect("a written model can be loaded");
 });

@@ -1,7 +1,7 @@
-//! Any bytes, dropped as one file: whatever the loader makes of them must be consistent, and it must not panic, hang or
-//! take unbounded memory.
+//! Loads any bytes as one dropped file. What the loader returns must be consistent, and it must not panic, hang or use
+//! unbounded memory.
 //!
-//! `cargo fuzz run load -- -max_len=300000 -rss_limit_mb=4096`, with real files in `corpus/load` to begin from.
+//! `cargo +nightly fuzz run load -- -max_len=300000 -rss_limit_mb=4096`, with real files in `corpus/load` as seeds.
 
 #![no_main]
 
@@ -9,7 +9,7 @@ use gaitway::formats::{FileSet, LoadOptions, convert, load, missing_files};
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     let mut files = FileSet::default();
-    // No ending: what the bytes are must be found out from the bytes, so that archives are tried too.
+    // Without an extension the format is detected from the content, so that archives are tried, too.
     files.insert("model", bytes.to_vec());
     let _ = missing_files(&files);
     let Ok(asset) = load(&files) else { return };
@@ -17,13 +17,13 @@ libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
         let uses = asset.instances.iter().filter(|instance| instance.mesh == index);
         let smallest_skin = uses.filter_map(|instance| Some(asset.skins[instance.skin?].joints().len())).min();
         for geometry in &mesh.primitives {
-            geometry.validate(smallest_skin).expect("what is read is consistent");
+            geometry.validate(smallest_skin).expect("a loaded model is consistent");
         }
     }
-    // What is written must be readable again; that a file cannot be written is an answer too.
+    // A file may be impossible to write, but what is written must be readable.
     if let Ok(written) = convert(&files, &LoadOptions::default()) {
         let mut files = FileSet::default();
         files.insert("written.glb", written);
-        load(&files).expect("what is written can be read");
+        load(&files).expect("a written model can be loaded");
     }
 });

@@ -7,6 +7,7 @@ mod coursework;
 #[path = "../support/data_folder.rs"]
 mod data_folder;
 mod device;
+mod golden;
 mod layouts;
 mod lights;
 mod maps;

@@ -1,4 +1,4 @@
-//! The real characters and motions that borrow from one another, and what becomes of each pair.
+//! The real characters and motions that are retargeted to one another, and the figures of each pair.
 
 use std::path::Path;
 
@@ -93,6 +93,15 @@ fn load_person(folder: &Path, person: &'static Person) -> Loaded {
     Loaded { person, name, asset, slots, clip }
 }
 
+/// Every character with every motion of another file.
+pub fn each_pair(people: &[Loaded]) -> impl Iterator<Item = (&Loaded, &Loaded)> {
+    let models = people.iter().filter(|model| model.person.has_mesh);
+    models.flat_map(|model| {
+        let motions = people.iter().filter(move |motion| motion.clip.is_some() && !std::ptr::eq(model, *motion));
+        motions.map(move |motion| (model, motion))
+    })
+}
+
 impl Loaded {
     pub fn body(&self) -> Body<'_> {
         Body { asset: &self.asset, slots: &self.slots }
@@ -106,6 +115,52 @@ pub struct Outcome {
     pub figures: Figures,
     pub planted: Option<Figures>,
     pub hips_scale: Option<f64>,
+}
+
+/// The columns of `docs/retargeting-pairs.tsv` after model and motion, with their decimal places.
+#[allow(dead_code)]
+pub const COLUMNS: [(&str, usize); 11] = [
+    ("joints", 0),
+    ("coverage", 2),
+    ("hips_scale", 3),
+    ("orientation_error_mean_deg", 3),
+    ("orientation_error_max_deg", 2),
+    ("limb_direction_error_mean_deg", 2),
+    ("limb_direction_error_max_deg", 1),
+    ("foot_slide_m_per_s", 3),
+    ("foot_slide_source_m_per_s", 3),
+    ("foot_slide_planted_m_per_s", 3),
+    ("ground_penetration_max_m", 3),
+];
+
+#[allow(dead_code)]
+impl Outcome {
+    /// One value per column; none where there is nothing to measure.
+    pub fn values(&self) -> [Option<f64>; COLUMNS.len()] {
+        let figures = &self.figures;
+        [
+            Some(self.mapped as f64),
+            figures.coverage,
+            self.hips_scale,
+            figures.orientation_error_degrees_mean,
+            figures.orientation_error_degrees_max,
+            figures.limb_direction_error_degrees_mean,
+            figures.limb_direction_error_degrees_max,
+            figures.foot_slide_metres_per_sec,
+            figures.foot_slide_source_metres_per_sec,
+            self.planted.as_ref().and_then(|planted| planted.foot_slide_metres_per_sec),
+            figures.ground_penetration_metres_max,
+        ]
+    }
+
+    /// The values as the file has them.
+    pub fn cells(&self) -> [String; COLUMNS.len()] {
+        let values = self.values();
+        std::array::from_fn(|column| {
+            let digits = COLUMNS[column].1;
+            values[column].map_or(String::new(), |value| format!("{value:.digits$}"))
+        })
+    }
 }
 
 /// The motion's clip on the model, by the map that is proposed.

@@ -1,5 +1,6 @@
-//! Work on the repository: `cargo xtask serve`, `build`, `pictures`, `test`, `setup`. Each sets up what it needs first.
+//! Tasks for working on the repository, run as `cargo xtask TASK`. Each task sets up what it needs first.
 
+mod data;
 mod page;
 mod process;
 mod serve;
@@ -13,11 +14,12 @@ use anyhow::{Context, bail};
 
 const USAGE: &str = "\
 cargo xtask serve [--port N]   builds the page and serves it on 127.0.0.1 (port 8080)
-cargo xtask build [--url URL]  builds the page into dist/, for any host; URL is where it will be, for previews of links
-cargo xtask build --bench      the same with what benches/web measures
-cargo xtask pictures           draws the pictures in README and docs anew
-cargo xtask test               runs every check and test, cheap ones first
-cargo xtask setup              installs what the others need and is missing";
+cargo xtask build [--url URL]  builds the page into dist/, for any host; link previews need the URL it will have
+cargo xtask build --bench      the same, with the hooks that benches/web measures through
+cargo xtask test               runs every check and test, the cheap ones first
+cargo xtask data               downloads the public test models into ../shared/data (or $GAITWAY_DATA)
+cargo xtask pictures           redraws the pictures in README.md and docs/
+cargo xtask setup              installs whatever the other tasks need";
 
 fn main() -> ExitCode {
     match run() {
@@ -40,13 +42,14 @@ fn run() -> anyhow::Result<()> {
         ["build", "--bench"] => build_page(&["bench"], None),
         ["pictures"] => setup::page().and_then(|()| process::run("node", &["xtask/site/docs.mjs"])),
         ["test"] => test::run(),
+        ["data"] => data::run(),
         ["setup"] => setup::page().and_then(|()| setup::tests()),
         ["help" | "--help" | "-h"] => {
             println!("{USAGE}");
             Ok(())
         }
-        [] => bail!("what is to be done?\n{USAGE}"),
-        other => bail!("cargo xtask {}: there is no such command\n{USAGE}", other.join(" ")),
+        [] => bail!("missing subcommand\n{USAGE}"),
+        other => bail!("cargo xtask {}: unknown subcommand\n{USAGE}", other.join(" ")),
     }
 }
 
@@ -56,10 +59,10 @@ fn build_page(features: &[&str], url: Option<&str>) -> anyhow::Result<()> {
     sizes::compress_and_print(features.is_empty())
 }
 
-/// The folder that an address means, with the slash at its end that relative addresses need.
+/// The site's base URL, with the trailing slash that relative URLs need.
 fn site_url(url: &str) -> anyhow::Result<String> {
     let is_web = url.starts_with("https://") || url.starts_with("http://");
-    anyhow::ensure!(is_web, "--url {url}: expected an address such as https://example.org/gaitway/");
+    anyhow::ensure!(is_web, "--url {url}: expected a URL such as https://example.org/gaitway/");
     Ok(format!("{}/", url.trim_end_matches('/')))
 }
 

@@ -1,33 +1,38 @@
-//! Running other programs, from the repository's root, with everything they need on the path.
+//! Runs other programs from the repository's root, with the repository's own tools on the path, and keeps their times.
 
 use std::ffi::OsStr;
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::time::Instant;
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail};
 
-/// The checkout that `cargo xtask` was called in. Asked for when running: two checkouts that share a target folder also
-/// share this program, and what was compiled in would be the other one's path.
+/// The checkout that `cargo xtask` was called in. Looked up at run time: checkouts that share a target folder also share
+/// this program, so the path compiled into it may belong to another one.
 pub fn repository() -> PathBuf {
     let package =
         std::env::var_os("CARGO_MANIFEST_DIR").map_or_else(|| env!("CARGO_MANIFEST_DIR").into(), PathBuf::from);
     package.parent().unwrap_or(Path::new(".")).to_owned()
 }
 
-/// Where cargo builds. On a CI machine the checkout is fresh each time, so builds are kept outside of it.
+pub fn is_ci() -> bool {
+    std::env::var("CI").is_ok_and(|ci| ci == "true" || ci == "1")
+}
+
+/// Where cargo builds. CI checks out afresh each time, so its builds are kept outside of the checkout.
 pub fn target_folder() -> PathBuf {
     if let Some(folder) = std::env::var_os("CARGO_TARGET_DIR") {
         return repository().join(folder);
     }
-    let in_ci = std::env::var("CI").is_ok_and(|ci| ci == "true" || ci == "1");
     match std::env::var_os("HOME") {
-        Some(home) if in_ci => Path::new(&home).join(".cache/gaitway/target"),
+        Some(home) if is_ci() => Path::new(&home).join(".cache/gaitway/target"),
         _ => repository().join("target"),
     }
 }
 
-/// Programs that were installed for this repository alone, so that nobody's own versions are replaced.
+/// Programs installed for this repository alone, so that nobody's own versions are replaced.
 pub fn tools_folder() -> PathBuf {
     target_folder().join("tools")
 }
@@ -39,36 +44,96 @@ pub fn command(program: impl AsRef<OsStr>) -> Command {
     if let Ok(path) = std::env::join_paths(folders) {
         command.env("PATH", path);
     }
-    // trunk takes NO_COLOR=1 for an option with a wrong value.
+    // trunk rejects NO_COLOR=1 as an invalid option value.
     command.env_remove("NO_COLOR").env("CARGO_TARGET_DIR", target_folder()).current_dir(repository());
     command
 }
 
-/// Says what is run, runs it, and fails when it does.
+/// Prints a command, runs it, and fails if it does.
 pub fn run(program: &str, arguments: &[&str]) -> anyhow::Result<()> {
     run_with(program, arguments, &[])
 }
 
-/// As [`run`], with environment variables.
+/// Like [`run`], with environment variables.
 pub fn run_with(program: &str, arguments: &[&str], variables: &[(&str, &str)]) -> anyhow::Result<()> {
-    let set: String = variables.iter().map(|(name, value)| format!("{name}=\"{value}\" ")).collect();
-    let shown = format!("{set}{program} {}", arguments.join(" "));
-    eprintln!("\n> {shown}");
-    let start = Instant::now();
-    let status = command(program)
-        .args(arguments)
-        .envs(variables.iter().copied())
-        .status()
-        .with_context(|| format!("{program} could not be started"))?;
-    eprintln!("  {:.1} s", start.elapsed().as_secs_f32());
-    if !status.success() {
-        bail!("{shown}: {status}");
-    }
-    Ok(())
+    let step = Step::start(program, arguments, variables);
+    let status = command(program).args(arguments).envs(variables.iter().copied()).status();
+    step.end(status)
 }
 
-/// What a program prints; none when it is not there or fails.
+/// A command that is running, for those who need more of it than [`run_with`] gives.
+pub struct Step {
+    shown: String,
+    start: Instant,
+}
+
+impl Step {
+    pub fn start(program: &str, arguments: &[&str], variables: &[(&str, &str)]) -> Self {
+        let set: String = variables.iter().map(|(name, value)| format!("{name}=\"{value}\" ")).collect();
+        let shown = format!("{set}{program} {}", arguments.join(" "));
+        eprintln!("\n> {shown}");
+        Self { shown, start: Instant::now() }
+    }
+
+    /// Records the time and turns a failure into an error that names the command.
+    pub fn end(self, status: std::io::Result<std::process::ExitStatus>) -> anyhow::Result<()> {
+        let took = self.start.elapsed();
+        let status = status.with_context(|| format!("couldn't run {}", self.shown))?;
+        eprintln!("  {:.1} s", took.as_secs_f32());
+        if !status.success() {
+            bail!("{}: {status}", self.shown);
+        }
+        if let Ok(mut times) = TIMES.lock() {
+            times.push((self.shown, took));
+        }
+        Ok(())
+    }
+}
+
+static TIMES: Mutex<Vec<(String, Duration)>> = Mutex::new(Vec::new());
+
+/// Where the time went: every command so far that took a second or more, in order, and the sum of all.
+pub fn time_table() -> String {
+    TIMES.lock().map(|times| format_times(&times)).unwrap_or_default()
+}
+
+fn format_times(times: &[(String, Duration)]) -> String {
+    const MAX_CHARS: usize = 90;
+    let mut table = "\nWhere the time went:\n".to_owned();
+    let mut row = |took: Duration, name: &str| {
+        let name: String = name.chars().take(MAX_CHARS).collect();
+        // Writing to a string cannot fail.
+        let _ = writeln!(table, "{:8.1} s  {name}", took.as_secs_f32());
+    };
+    let (long, short): (Vec<_>, Vec<_>) = times.iter().partition(|(_, took)| *took >= Duration::from_secs(1));
+    for (name, took) in &long {
+        row(*took, name);
+    }
+    if !short.is_empty() {
+        row(short.iter().map(|(_, took)| *took).sum(), &format!("{} shorter steps", short.len()));
+    }
+    row(times.iter().map(|(_, took)| *took).sum(), "in total");
+    table
+}
+
+/// What a program prints; none if it is missing or fails.
 pub fn output(program: &str, arguments: &[&str]) -> Option<String> {
     let output = command(program).args(arguments).stdin(Stdio::null()).stderr(Stdio::null()).output().ok()?;
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_time_table_lists_long_steps_and_sums_short_ones() {
+        let step = |name: &str, millis| (name.to_owned(), Duration::from_millis(millis));
+        let table = format_times(&[step("cargo test", 61_250), step("terser a", 400), step("terser b", 450)]);
+        let lines: Vec<&str> = table.trim().lines().collect();
+        assert_eq!(
+            lines,
+            ["Where the time went:", "    61.2 s  cargo test", "     0.9 s  2 shorter steps", "    62.1 s  in total"]
+        );
+    }
 }

@@ -1,4 +1,4 @@
-//! A server for the built page: files of one folder over HTTP/1.1, for the own machine only.
+//! A static file server for the built page: one folder over HTTP/1.1, on the loopback interface only.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -12,23 +12,29 @@ use crate::page::dist;
 
 pub fn run(port: u16) -> anyhow::Result<()> {
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))
-        .with_context(|| format!("port {port} is not to be had; choose another with --port"))?;
-    println!("\nGaitway is on http://{}/ (Ctrl+C ends it)", listener.local_addr()?);
-    for stream in listener.incoming().flatten() {
-        std::thread::spawn(move || {
-            // Whoever has gone away needs no answer.
-            let _ = answer(stream);
-        });
-    }
+        .with_context(|| format!("port {port} is unavailable; choose another one with --port"))?;
+    println!("\nGaitway is running at http://{}/ (press Ctrl+C to stop)", listener.local_addr()?);
+    folder(&listener, &dist());
     Ok(())
 }
 
-fn answer(mut stream: TcpStream) -> std::io::Result<()> {
-    const MOST_HEADER_BYTES: u64 = 64 << 10;
+/// Serves the files of one folder until the process ends.
+pub fn folder(listener: &TcpListener, root: &Path) {
+    for stream in listener.incoming().flatten() {
+        let root = root.to_owned();
+        std::thread::spawn(move || {
+            // A client that disconnects is not an error of ours.
+            let _ = answer(stream, &root);
+        });
+    }
+}
+
+fn answer(mut stream: TcpStream, root: &Path) -> std::io::Result<()> {
+    const MAX_HEADER_BYTES: u64 = 64 << 10;
     stream.set_read_timeout(Some(Duration::from_secs(10)))?;
-    let mut lines = BufReader::new(stream.try_clone()?.take(MOST_HEADER_BYTES)).lines();
+    let mut lines = BufReader::new(stream.try_clone()?.take(MAX_HEADER_BYTES)).lines();
     let request = lines.next().transpose()?.unwrap_or_default();
-    // The rest of the header says nothing that matters here, but has to be read before the answer.
+    // The header fields don't matter here, but must be read before answering.
     for line in lines {
         if line?.is_empty() {
             break;
@@ -36,7 +42,7 @@ fn answer(mut stream: TcpStream) -> std::io::Result<()> {
     }
     let mut words = request.split(' ');
     let (method, target) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
-    let file = file_of(target).and_then(|path| Some((fs::read(&path).ok()?, path)));
+    let file = file_of(root, target).and_then(|path| Some((fs::read(&path).ok()?, path)));
     let (status, content_type, body) = match (method, file) {
         ("GET" | "HEAD", Some((body, path))) => ("200 OK", content_type(&path), body),
         ("GET" | "HEAD", None) => ("404 Not Found", "text/plain", b"not found\n".to_vec()),
@@ -54,14 +60,14 @@ fn answer(mut stream: TcpStream) -> std::io::Result<()> {
     stream.flush()
 }
 
-/// The file in dist/ that a request is for; none for what leads out of it.
-fn file_of(target: &str) -> Option<PathBuf> {
-    let path = target.split(['?', '#']).next()?.strip_prefix('/')?;
-    let relative = Path::new(path);
+/// The file that a request names; none if the path leads out of the folder.
+fn file_of(root: &Path, target: &str) -> Option<PathBuf> {
+    let path = target.split(['?', '#']).next()?.strip_prefix('/')?.replace("%20", " ");
+    let relative = Path::new(&path);
     if !relative.components().all(|part| matches!(part, Component::Normal(_))) {
         return None;
     }
-    let file = dist().join(relative);
+    let file = root.join(relative);
     Some(if file.is_dir() { file.join("index.html") } else { file })
 }
 

@@ -1,30 +1,49 @@
-//! Installs what is missing; what is there costs a glance.
+//! Installs missing tools; a no-op when everything is present.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 
-use crate::process::{output, repository, run, tools_folder};
+use crate::process::{is_ci, output, repository, run, tools_folder};
 
 const TRUNK: &str = "0.21.14";
 const WASM: &str = "wasm32-unknown-unknown";
 
-/// What building the page takes.
+/// Everything needed to build the page.
 pub fn page() -> anyhow::Result<()> {
-    if !wasm_target_is_there() {
+    if !has_wasm_target() {
         run("rustup", &["target", "add", WASM])
-            .context("Rust's wasm32-unknown-unknown target is missing and rustup could not add it")?;
+            .context("Rust's wasm32-unknown-unknown target is missing and rustup couldn't add it")?;
     }
     cargo_tool("trunk", TRUNK, "trunk", &["--locked"])?;
-    // Its version has to be that of the library, and its own lock file knows nothing of that.
+    // Must match the library's version. Its own lock file is older than that, so it is installed without it.
     let version = locked_version("wasm-bindgen")?;
     cargo_tool("wasm-bindgen", &version, "wasm-bindgen-cli", &[])?;
     npm_packages()
 }
 
-/// What the tests take besides: a browser and a graphics driver in software.
+/// What the tests need on top of [`page`]: a browser and a software Vulkan driver. These are system packages, so they
+/// are installed only on a CI machine; anyone else is told the command.
 pub fn tests() -> anyhow::Result<()> {
+    let missing = missing_packages();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let names = missing.join(" ");
+    if !cfg!(target_os = "linux") || output("apt-get", &["--version"]).is_none() {
+        bail!("missing: {names}. Install the equivalents for this system, and set CHROMIUM to the browser's path");
+    }
+    if !is_ci() {
+        bail!("missing: {names}. Install with: sudo apt-get install --no-install-recommends {names}");
+    }
+    let is_root = output("id", &["-u"]).as_deref() == Some("0");
+    let (program, first): (&str, &[&str]) = if is_root { ("apt-get", &[]) } else { ("sudo", &["-n", "apt-get"]) };
+    run(program, &[first, &["update"]].concat())?;
+    run(program, &[first, &["install", "--yes", "--no-install-recommends"], &missing].concat())
+}
+
+fn missing_packages() -> Vec<&'static str> {
     let mut missing = Vec::new();
     if chromium().is_none() {
         missing.push("chromium");
@@ -37,31 +56,12 @@ pub fn tests() -> anyhow::Result<()> {
             missing.push("libvulkan1");
         }
     }
-    if missing.is_empty() {
-        return Ok(());
-    }
-    let names = missing.join(" ");
-    if !cfg!(target_os = "linux") || output("apt-get", &["--version"]).is_none() {
-        bail!(
-            "missing: {names}. Only apt-get is known here; install them yourself and set CHROMIUM to the browser's path"
-        );
-    }
-    let install = |program: &str, first: &[&str]| -> anyhow::Result<()> {
-        run(program, &[first, &["update"]].concat())?;
-        run(program, &[first, &["install", "--yes", "--no-install-recommends"], &missing].concat())
-    };
-    if output("id", &["-u"]).as_deref() == Some("0") {
-        install("apt-get", &[])
-    } else if output("sudo", &["-n", "true"]).is_some() {
-        install("sudo", &["apt-get"])
-    } else {
-        bail!("missing: {names}. Install them as root: apt-get install {names}")
-    }
+    missing
 }
 
 /// The browser that the tests drive.
 pub fn chromium() -> Option<PathBuf> {
-    const USUAL: [&str; 6] = [
+    const COMMON_PATHS: [&str; 6] = [
         "/usr/bin/chromium",
         "/usr/bin/chromium-browser",
         "/usr/bin/google-chrome",
@@ -70,22 +70,40 @@ pub fn chromium() -> Option<PathBuf> {
         "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
     ];
     let named = std::env::var_os("CHROMIUM").map(PathBuf::from);
-    named.into_iter().chain(USUAL.map(PathBuf::from)).find(|path| path.exists())
+    named.into_iter().chain(COMMON_PATHS.map(PathBuf::from)).find(|path| path.exists())
 }
 
-fn wasm_target_is_there() -> bool {
+fn has_wasm_target() -> bool {
     output("rustc", &["--print", "target-libdir", "--target", WASM]).is_some_and(|folder| Path::new(&folder).exists())
 }
 
-fn cargo_tool(program: &str, version: &str, package: &str, options: &[&str]) -> anyhow::Result<()> {
-    // `trunk 0.21.14`, `wasm-bindgen 0.2.130 (…)`.
-    let found = output(program, &["--version"]);
-    if found.is_some_and(|found| found.split_whitespace().nth(1) == Some(version)) {
+/// Makes sure that `program` has exactly this version: uses one that is on the path, else downloads a binary if
+/// cargo-binstall is installed, else compiles it, which takes minutes.
+fn cargo_tool(program: &str, version: &str, package: &str, compile_options: &[&str]) -> anyhow::Result<()> {
+    if has_version(program, version) {
         return Ok(());
     }
     let tools = tools_folder();
-    let root = tools.to_str().context("the target folder's path is not UTF-8")?;
-    run("cargo", &[&["install", package, "--version", version, "--root", root], options].concat())
+    let tools = tools.to_str().context("the target folder's path is not UTF-8")?;
+    let options = ["--version", version, "--root", tools];
+    if output("cargo", &["binstall", "-V"]).is_some() {
+        let binstall = [&["binstall", "--no-confirm"], &options[..], &[package]].concat();
+        match run("cargo", &binstall) {
+            Ok(()) if has_version(program, version) => return Ok(()),
+            Ok(()) => eprintln!("cargo binstall left no {program} {version}; compiling it"),
+            Err(error) => eprintln!("{error:#}; compiling {program} instead"),
+        }
+    }
+    run("cargo", &[&["install", package], &options[..], compile_options].concat())
+}
+
+fn has_version(program: &str, version: &str) -> bool {
+    output(program, &["--version"]).is_some_and(|printed| reports_version(&printed, version))
+}
+
+/// `trunk 0.21.14`, `wasm-bindgen 0.2.130 (…)`.
+fn reports_version(printed: &str, version: &str) -> bool {
+    printed.split_whitespace().nth(1) == Some(version)
 }
 
 fn locked_version(package: &str) -> anyhow::Result<String> {
@@ -97,12 +115,12 @@ fn locked_version(package: &str) -> anyhow::Result<String> {
 
 fn npm_packages() -> anyhow::Result<()> {
     let installed = repository().join("node_modules/.package-lock.json");
-    let changed = |path: &Path| fs::metadata(path).and_then(|metadata| metadata.modified()).ok();
-    if changed(&installed).is_some_and(|then| Some(then) >= changed(&repository().join("package-lock.json"))) {
+    let modified = |path: &Path| fs::metadata(path).and_then(|metadata| metadata.modified()).ok();
+    if modified(&installed).is_some_and(|then| Some(then) >= modified(&repository().join("package-lock.json"))) {
         return Ok(());
     }
     let npm = if cfg!(windows) { "npm.cmd" } else { "npm" };
-    run(npm, &["ci", "--no-audit", "--no-fund"]).context("Node.js with npm is needed (nodejs and npm, 20 or later)")
+    run(npm, &["ci", "--no-audit", "--no-fund"]).context("Node.js 20 or later with npm is required")
 }
 
 fn has_vulkan_driver() -> bool {
@@ -115,4 +133,17 @@ fn has_library(name: &str) -> bool {
     let folders =
         ["/usr/lib", "/lib", "/usr/lib64", "/usr/local/lib", "/usr/lib/x86_64-linux-gnu", "/usr/lib/aarch64-linux-gnu"];
     folders.iter().any(|folder| Path::new(folder).join(name).exists())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tool_of_another_version_does_not_count() {
+        assert!(reports_version("trunk 0.21.14", "0.21.14"));
+        assert!(reports_version("wasm-bindgen 0.2.130 (0123abc 2026-01-01)", "0.2.130"));
+        assert!(!reports_version("trunk 0.21.1", "0.21.14"));
+        assert!(!reports_version("trunk", "0.21.14"));
+    }
 }

@@ -1,31 +1,24 @@
-//! Every check and test, cheap ones first. Node's tests come last: their summary is the end of the output.
+//! Every check and test, the cheap ones first. Node's tests come last: their summary ends the output.
 
 use std::fs;
+use std::io::{BufRead, BufReader, IsTerminal, Read};
+use std::process::Stdio;
 
 use anyhow::Context;
 
-use crate::process::{self, repository, run_with, target_folder};
+use crate::process::{self, Step, command, repository, run_with, target_folder, time_table};
 use crate::{page, setup, sizes};
 
 pub fn run() -> anyhow::Result<()> {
     setup::page()?;
     setup::tests()?;
-    run_cargo()?;
+    cargo_checks()?;
     page::build(&[], None)?;
     sizes::compress_and_print(true)?;
-    let files = node_tests()?;
-    let files: Vec<&str> = files.iter().map(String::as_str).collect();
-    let target = target_folder();
-    let program = target.join("release").join(format!("gaitway{}", std::env::consts::EXE_SUFFIX));
-    let program = program.to_str().context("the target folder's path is not UTF-8")?;
-    let chromium = setup::chromium().context("there is no browser: set CHROMIUM")?;
-    let chromium = chromium.to_str().context("the browser's path is not UTF-8")?;
-    // One file at a time: each drives a browser that draws on the processor. A file takes minutes; one that hangs is ended.
-    let arguments = [&["--test", "--test-concurrency=1", "--test-timeout=1200000"], files.as_slice()].concat();
-    run_with("node", &arguments, &[("GAITWAY_CLI", program), ("CHROMIUM", chromium)])
+    node_tests()
 }
 
-fn run_cargo() -> anyhow::Result<()> {
+fn cargo_checks() -> anyhow::Result<()> {
     process::run("cargo", &["fmt", "--all", "--check"])?;
     let clippy = ["clippy", "--workspace", "--all-targets"];
     process::run("cargo", &[&clippy[..], &["--", "-D", "warnings"]].concat())?;
@@ -37,7 +30,57 @@ fn run_cargo() -> anyhow::Result<()> {
     process::run("cargo", &["build", "--release"])
 }
 
-fn node_tests() -> anyhow::Result<Vec<String>> {
+/// Runs the tests in tests/three and tests/browser, and prints the time table before their summary.
+fn node_tests() -> anyhow::Result<()> {
+    let files = node_test_files()?;
+    let files: Vec<&str> = files.iter().map(String::as_str).collect();
+    let target = target_folder();
+    let program = target.join("release").join(format!("gaitway{}", std::env::consts::EXE_SUFFIX));
+    let program = program.to_str().context("the target folder's path is not UTF-8")?;
+    let chromium = setup::chromium().context("there is no browser: set CHROMIUM to its path")?;
+    let chromium = chromium.to_str().context("the browser's path is not UTF-8")?;
+    // One file at a time, since each drives a browser that renders on the CPU. A file takes minutes; one that hangs is killed.
+    let mut arguments = vec!["--test", "--test-concurrency=1", "--test-timeout=1200000"];
+    let mut variables = vec![("GAITWAY_CLI", program), ("CHROMIUM", chromium)];
+    // Node sees a pipe and would choose the form for programs.
+    if std::io::stdout().is_terminal() {
+        arguments.push("--test-reporter=spec");
+        variables.push(("FORCE_COLOR", "1"));
+    }
+    arguments.extend(files);
+    let step = Step::start("node", &arguments, &variables);
+    let mut node = command("node").args(&arguments).envs(variables).stdout(Stdio::piped()).spawn()?;
+    let summary = node.stdout.take().map(print_up_to_summary).transpose()?;
+    let outcome = step.end(node.wait());
+    println!("{}", time_table());
+    print!("{}", summary.unwrap_or_default());
+    outcome
+}
+
+/// Passes the test runner's output on as it comes, up to its summary, which is returned.
+fn print_up_to_summary(output: impl Read) -> anyhow::Result<String> {
+    let mut output = BufReader::new(output);
+    let (mut line, mut summary) = (Vec::new(), String::new());
+    while output.read_until(b'\n', &mut line)? > 0 {
+        let text = String::from_utf8_lossy(&line);
+        if summary.is_empty() && !is_start_of_summary(&text) {
+            print!("{text}");
+        } else {
+            summary += &text;
+        }
+        line.clear();
+    }
+    Ok(summary)
+}
+
+/// `# tests 12` or `ℹ tests 12`, in colour or not.
+fn is_start_of_summary(line: &str) -> bool {
+    let line = line.trim_start_matches("\u{1b}[34m");
+    let rest = line.strip_prefix("# tests ").or_else(|| line.strip_prefix("ℹ tests "));
+    rest.is_some_and(|rest| rest.starts_with(|first: char| first.is_ascii_digit()))
+}
+
+fn node_test_files() -> anyhow::Result<Vec<String>> {
     let mut files = Vec::new();
     for folder in ["tests/three", "tests/browser"] {
         for entry in fs::read_dir(repository().join(folder)).context(folder)? {
@@ -49,4 +92,20 @@ fn node_tests() -> anyhow::Result<Vec<String>> {
     }
     files.sort_by_key(|file| (file.starts_with("tests/browser"), file.clone()));
     Ok(files)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_summary_is_held_back_in_each_form_node_prints() {
+        let tap = "ok 1 - a test\n# tests 12\n# pass 11\n# fail 1\n";
+        let spec = "✔ a test (5ms)\n\u{1b}[34mℹ tests 12\u{1b}[39m\nℹ pass 11\n✖ failing tests:\n";
+        let plain = "✔ # tests of mine\nℹ tests 12\nℹ pass 11\n";
+        for output in [tap, spec, plain] {
+            let summary = print_up_to_summary(output.as_bytes()).unwrap();
+            assert_eq!(summary, output.split_once('\n').unwrap().1);
+        }
+    }
 }

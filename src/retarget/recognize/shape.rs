@@ -1,6 +1,7 @@
 //! Finds a body by its shape alone, for skeletons whose joints have no names: two legs that reach the ground from one joint,
 //! a way up from there, two arms and a head at its end. Only for +Y up.
 
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
 use glam::Vec3;
@@ -145,7 +146,8 @@ fn chain(shape: &Shape, first: JointIndex) -> Vec<JointIndex> {
     std::iter::successors(Some(first), longest).take(MOST).collect()
 }
 
-/// All pairs of chains from the children of a joint that lie side by side all the way, of at least `shortest` joints.
+/// All pairs of chains from the children of a joint that lie side by side all the way, of at least `shortest` joints. The
+/// longest pair comes first whatever the order of the children: a short neck can lie beside an arm as well.
 fn twins(shape: &Shape, joint: JointIndex, shortest: usize) -> Vec<Twins> {
     let (tree, children) = (shape.tree, shape.tree.children(joint));
     // Two limbs and what goes on between them.
@@ -168,6 +170,7 @@ fn twins(shape: &Shape, joint: JointIndex, shortest: usize) -> Vec<Twins> {
             }
         }
     }
+    found.sort_by_key(|twins| Reverse(twins.chains.each_ref().map(Vec::len).into_iter().min()));
     found
 }
 

@@ -1,0 +1,44 @@
+//! Skins a character on the CPU with each of the three methods and prints the size of its bounding box:
+//!
+//! `cargo run --no-default-features --example deform -- assets/samples/dwarf.glb 0.5`
+
+use anyhow::Context;
+use gaitway::anim::{SampleCursor, model_from_joint};
+use gaitway::formats::{FileSet, load};
+use gaitway::mesh::{DeformedVertices, SkinningMode, deform, palette_entry, write_palette};
+use glam::{Affine3A, Vec3};
+
+fn main() -> anyhow::Result<()> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [path, time_secs] = arguments.as_slice() else { anyhow::bail!("usage: MODEL SECONDS") };
+    let mut files = FileSet::default();
+    files.insert(path.as_str(), std::fs::read(path).with_context(|| path.clone())?);
+    let asset = load(&files)?;
+
+    let mut pose = asset.skeleton.rest().clone();
+    if let Some(clip) = asset.clips.first() {
+        clip.sample(&asset.skeleton, time_secs.parse()?, &mut SampleCursor::default(), &mut pose);
+    }
+    let mut world_from_joint = Vec::new();
+    model_from_joint(&asset.skeleton, &pose.locals, Affine3A::IDENTITY, &mut world_from_joint);
+
+    for mode in [SkinningMode::Linear, SkinningMode::Rigid, SkinningMode::DualQuaternion] {
+        let (mut min, mut max) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        let mut deformed = DeformedVertices::default();
+        for instance in &asset.instances {
+            let mut palette = Vec::new();
+            match instance.skin {
+                Some(skin) => write_palette(&asset.skins[skin], &world_from_joint, mode, &mut palette),
+                None => palette.push(palette_entry(&world_from_joint[instance.joint.get()], mode)),
+            }
+            let morph_weights = &pose.morph_weights[asset.skeleton.morph_range(instance.joint)];
+            for geometry in &asset.meshes[instance.mesh].primitives {
+                deform(geometry, morph_weights, &palette, mode, &mut deformed);
+                min = deformed.positions.iter().copied().fold(min, Vec3::min);
+                max = deformed.positions.iter().copied().fold(max, Vec3::max);
+            }
+        }
+        println!("{mode:?}: {:.3} m", max - min);
+    }
+    Ok(())
+}

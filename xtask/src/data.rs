@@ -1,0 +1,233 @@
+//! Downloads the models that tests read. They are other people's work and not part of the repository: `tests/data.tsv`
+//! names the public repository of each file, its path there, and the SHA-256 of the version that the tests know.
+//! Files made by conversion, or whose origin is not on record, cannot be listed there.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::Stdio;
+
+use anyhow::{Context, bail, ensure};
+use sha2::{Digest, Sha256};
+
+use crate::process::{command, repository};
+
+const MANIFEST: &str = "tests/data.tsv";
+const RAW_FILES: &str = "https://raw.githubusercontent.com";
+
+/// One line of the manifest.
+struct Entry<'a> {
+    /// Relative to the data folder.
+    file: &'a str,
+    /// `OWNER/NAME` on GitHub.
+    repository: &'a str,
+    /// Relative to the repository's root.
+    path: &'a str,
+    /// In hexadecimal.
+    sha256: &'a str,
+}
+
+pub fn run() -> anyhow::Result<()> {
+    let manifest = fs::read_to_string(repository().join(MANIFEST)).context(MANIFEST)?;
+    fetch(&entries(&manifest)?, &folder(), RAW_FILES)
+}
+
+/// Where the tests look for their models.
+fn folder() -> PathBuf {
+    std::env::var_os("GAITWAY_DATA").map_or_else(|| repository().join("../shared/data"), PathBuf::from)
+}
+
+fn entries(manifest: &str) -> anyhow::Result<Vec<Entry<'_>>> {
+    let mut lines = manifest.lines().zip(1..);
+    let header = lines.next().map(|(line, _)| line);
+    ensure!(header == Some("file\trepository\tpath\tsha256"), "{MANIFEST}:1: unexpected header {header:?}");
+    lines.map(|(line, number)| entry(line).with_context(|| format!("{MANIFEST}:{number}"))).collect()
+}
+
+fn entry(line: &str) -> anyhow::Result<Entry<'_>> {
+    match line.split('\t').collect::<Vec<_>>()[..] {
+        [file, repository, path, sha256] if sha256.len() == 64 => Ok(Entry { file, repository, path, sha256 }),
+        _ => bail!("expected four columns, the last one a SHA-256"),
+    }
+}
+
+/// Downloads every entry that `folder` lacks and checks the hashes of all. `host` serves raw files the way GitHub does.
+fn fetch(entries: &[Entry], folder: &Path, host: &str) -> anyhow::Result<()> {
+    let mut problems = Vec::new();
+    let (present, missing): (Vec<&Entry>, Vec<&Entry>) =
+        entries.iter().partition(|entry| folder.join(entry.file).exists());
+    for entry in &present {
+        if sha256(&folder.join(entry.file))? != entry.sha256 {
+            problems.push(format!("{}: differs from {MANIFEST}; delete it to download it again", entry.file));
+        }
+    }
+    eprintln!("{} files are in {}, {} are missing", present.len(), folder.display(), missing.len());
+    download(&missing, folder, host)?;
+    for entry in &missing {
+        let partial = partial(folder, entry);
+        let origin = format!("{}/{}", entry.repository, entry.path);
+        if !partial.exists() {
+            problems.push(format!("{}: couldn't download {origin}", entry.file));
+        } else if sha256(&partial)? == entry.sha256 {
+            fs::rename(&partial, folder.join(entry.file))?;
+        } else {
+            fs::remove_file(&partial)?;
+            problems.push(format!("{}: {origin} has changed since {MANIFEST} was written", entry.file));
+        }
+    }
+    ensure!(problems.is_empty(), "{} of {} files:\n{}", problems.len(), entries.len(), problems.join("\n"));
+    eprintln!("all {} files of {MANIFEST} are in place", entries.len());
+    Ok(())
+}
+
+/// Runs one curl for all files, each into its partial file. Which of them arrived is for the caller to check.
+fn download(entries: &[&Entry], folder: &Path, host: &str) -> anyhow::Result<()> {
+    if entries.is_empty() {
+        return Ok(());
+    }
+    let mut config = String::new();
+    for entry in entries {
+        let output = partial(folder, entry);
+        let output = output.to_str().context("the data folder's path is not UTF-8")?.replace('\\', "/");
+        let path = entry.path.replace('%', "%25").replace(' ', "%20").replace('#', "%23");
+        writeln!(config, "url = \"{host}/{}/HEAD/{path}\"\noutput = \"{output}\"", entry.repository)?;
+    }
+    let mut curl = command("curl")
+        .args(["--parallel", "--parallel-max", "8", "--fail", "--location", "--retry", "3", "--create-dirs"])
+        .args(["--config", "-"])
+        .stdin(Stdio::piped())
+        .spawn()
+        .context("couldn't run curl, which does the downloading")?;
+    let mut stdin = curl.stdin.take().context("curl's standard input is closed")?;
+    stdin.write_all(config.as_bytes())?;
+    drop(stdin);
+    curl.wait()?;
+    Ok(())
+}
+
+/// Beside the final place, so that an interrupted download is never mistaken for the file.
+fn partial(folder: &Path, entry: &Entry) -> PathBuf {
+    folder.join(format!("{}.part", entry.file))
+}
+
+fn sha256(path: &Path) -> anyhow::Result<String> {
+    let bytes = fs::read(path).with_context(|| path.display().to_string())?;
+    Ok(hex_sha256(&bytes))
+}
+
+fn hex_sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::net::{Ipv4Addr, TcpListener};
+
+    use super::*;
+    use crate::serve;
+
+    const LICENCE: &str = "anyone may have it";
+
+    /// An empty folder of this test's own.
+    fn empty_folder(name: &str) -> PathBuf {
+        let folder = std::env::temp_dir().join(format!("gaitway-xtask-{}-{name}", std::process::id()));
+        fs::remove_dir_all(&folder).ok();
+        fs::create_dir_all(&folder).unwrap();
+        folder
+    }
+
+    fn hash(text: &str) -> String {
+        hex_sha256(text.as_bytes())
+    }
+
+    fn manifest(rows: &[[&str; 4]]) -> String {
+        let rows = rows.iter().map(|row| row.join("\t") + "\n");
+        std::iter::once("file\trepository\tpath\tsha256\n".to_owned()).chain(rows).collect()
+    }
+
+    /// A local stand-in for GitHub with one repository, `owner/name`.
+    fn host(name: &str, files: &[(&str, &str)]) -> String {
+        let folder = empty_folder(name);
+        for (path, text) in files {
+            let path = folder.join("owner/name/HEAD").join(path);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, text).unwrap();
+        }
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
+        let address = listener.local_addr().unwrap();
+        std::thread::spawn(move || serve::folder(&listener, &folder));
+        format!("http://{address}")
+    }
+
+    #[test]
+    fn fetches_only_missing_files_and_leaves_them_in_place() {
+        let host = host("origin", &[("models/a 1.glb", "first"), ("b.glb", "second")]);
+        let folder = empty_folder("fetched");
+        fs::write(folder.join("here.glb"), LICENCE).unwrap();
+        let text = manifest(&[
+            // Not on the host: it has to be left alone.
+            ["here.glb", "owner/name", "gone.glb", &hash(LICENCE)],
+            ["deep/er/a.glb", "owner/name", "models/a 1.glb", &hash("first")],
+            ["b.glb", "owner/name", "b.glb", &hash("second")],
+        ]);
+        let entries = entries(&text).unwrap();
+        fetch(&entries, &folder, &host).unwrap();
+        assert_eq!(fs::read_to_string(folder.join("deep/er/a.glb")).unwrap(), "first");
+        assert_eq!(fs::read_to_string(folder.join("b.glb")).unwrap(), "second");
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 3, "no partial file is left behind");
+        // With everything in place the host is not asked again.
+        fetch(&entries, &folder, "http://127.0.0.1:9").unwrap();
+    }
+
+    #[test]
+    fn names_every_file_that_is_missing_changed_or_damaged() {
+        let host = host("changed-origin", &[("changed.glb", "other bytes"), ("good.glb", "good")]);
+        let folder = empty_folder("changed");
+        fs::write(folder.join("damaged.glb"), "half of i").unwrap();
+        let text = manifest(&[
+            ["changed.glb", "owner/name", "changed.glb", &hash("bytes")],
+            ["gone.glb", "owner/name", "gone.glb", &hash("gone")],
+            ["damaged.glb", "owner/name", "damaged.glb", &hash("half of it")],
+            ["good.glb", "owner/name", "good.glb", &hash("good")],
+        ]);
+        let error = fetch(&entries(&text).unwrap(), &folder, &host).unwrap_err().to_string();
+        for expected in [
+            "3 of 4 files",
+            "changed.glb: owner/name/changed.glb has changed",
+            "gone.glb: couldn't download owner/name/gone.glb",
+            "damaged.glb: differs",
+        ] {
+            assert!(error.contains(expected), "{expected:?} is not in {error:?}");
+        }
+        let mut left: Vec<_> = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        left.sort();
+        assert_eq!(left, ["damaged.glb", "good.glb"]);
+    }
+
+    #[test]
+    fn a_malformed_manifest_is_refused_with_its_line() {
+        let error = |text: &str| entries(text).err().map(|error| format!("{error:#}")).unwrap_or_default();
+        assert!(error("path\tsha256\n").contains("tests/data.tsv:1"));
+        let short = manifest(&[["a", "owner/name", "a", &hash("a")], ["b", "owner/name", "b", "12"]]);
+        assert!(error(&short).contains("tests/data.tsv:3"));
+    }
+
+    /// The hashes are those of the very files that the tests read.
+    #[test]
+    fn the_manifest_agrees_with_the_data_folder() {
+        let folder = folder();
+        if !folder.is_dir() {
+            assert!(std::env::var("GAITWAY_REQUIRE_DATA").as_deref() != Ok("1"), "no folder {}", folder.display());
+            println!("skipped: no folder {}", folder.display());
+            return;
+        }
+        let text = fs::read_to_string(repository().join(MANIFEST)).unwrap();
+        let entries = entries(&text).unwrap();
+        assert!(entries.windows(2).all(|pair| pair[0].file < pair[1].file), "sorted, each file once");
+        let differing =
+            entries.iter().filter(|entry| sha256(&folder.join(entry.file)).ok().as_deref() != Some(entry.sha256));
+        let differing: Vec<&str> = differing.map(|entry| entry.file).collect();
+        assert_eq!(differing, [""; 0]);
+    }
+}
