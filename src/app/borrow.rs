@@ -93,7 +93,7 @@ impl App {
         let is_new = |known: &Motion| motions.iter().any(|motion| motion.origin == known.origin);
         let mut all: Vec<Motion> = self.library.motions().iter().filter(|known| !is_new(known)).cloned().collect();
         all.extend(motions);
-        let (together, most) = (all.len(), Library::MOST_MOTIONS);
+        let (together, most) = (all.len(), Library::MAX_MOTIONS);
         if together > most {
             return Err(format!("{together} motions together; at most {most} are borrowed from, remove some first"));
         }

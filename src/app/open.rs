@@ -234,7 +234,7 @@ impl App {
         // What has been read since wins.
         motions.retain(|known| !present.iter().any(|motion| motion.origin == known.origin));
         motions.extend(present);
-        motions.truncate(Library::MOST_MOTIONS);
+        motions.truncate(Library::MAX_MOTIONS);
         let motion = Contents::motion_sources(&motions, Some(&origin));
         let old = std::mem::take(&mut self.state);
         self.state = about_model(ViewerState { motion, ..left }, old);
@@ -251,7 +251,7 @@ impl App {
     /// Takes the walker off the list: shown while a link's own files are waited for, it is nothing that anybody asked for.
     #[cfg(target_arch = "wasm32")]
     pub fn close_stand_in(&mut self) {
-        let is_walker = |model: &&Model| model.origin.strip_prefix("sample:") == Some(crate::library::sample::WALKER);
+        let is_walker = |model: &&Model| model.origin.strip_prefix("sample:") == Some(crate::samples::WALKER);
         if let Some(walker) = self.library.models().iter().find(is_walker).map(|model| model.id) {
             self.library.close(walker);
             self.context.request_repaint();

@@ -4,7 +4,8 @@ use egui::{RichText, ScrollArea, Ui};
 
 use super::icons::{Icon, icon_button_sized};
 use super::{Output, Shown, UiAction, UiState, controls, style};
-use crate::library::{Model, sample};
+use crate::library::Model;
+use crate::samples;
 use crate::state::{ClipChoice, Command, choice_of_clip};
 
 /// As high as a search field, so that nothing moves when the first letter is typed.
@@ -152,7 +153,7 @@ fn header(ui: &mut Ui, model: &Model, out: &mut Output) {
 /// The last part of a path or URL, and where it is.
 fn name_and_place(source: &str) -> (String, String) {
     if let Some(sample) = source.strip_prefix("sample:") {
-        return (sample::title(sample).to_owned(), "Sample".to_owned());
+        return (samples::title(sample).to_owned(), "Sample".to_owned());
     }
     let source = source.split(['?', '#']).next().unwrap_or(source);
     match source.trim_end_matches('/').rsplit_once(['/', '\\']) {

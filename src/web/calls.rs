@@ -10,7 +10,8 @@ use super::page::{Page, page, state_of_link};
 use crate::app::{App, Message, Opening, Reply, ScriptCall};
 use crate::files::{Contents, Item, OpenError, Role, open_items, open_view};
 use crate::frame::pose_document;
-use crate::library::{Motion, sample};
+use crate::library::Motion;
+use crate::samples;
 use crate::state::{Command, MotionMap, ViewerState, active_clip, from_object, to_object};
 
 /// Opens one set: an array of addresses and of `[name, Uint8Array]`. A model takes the place of what is shown; motions and
@@ -33,7 +34,7 @@ pub async fn follow_link(link: String, again: bool) -> Result<String, JsError> {
     let page = page().map_err(error)?;
     let mut state = state_of_link(&link, &page.shell);
     if state.model.is_empty() {
-        state.model.push(format!("sample:{}", sample::WALKER));
+        state.model.push(format!("sample:{}", samples::WALKER));
     }
     take_over(&page, state, again, true).await.map_err(error)
 }
@@ -51,7 +52,7 @@ pub async fn apply(partial: String) -> Result<String, JsError> {
         return settled(promise).await.map(|_| news(&[], &[])).map_err(error);
     }
     if state.model.is_empty() {
-        state.model.push(format!("sample:{}", sample::WALKER));
+        state.model.push(format!("sample:{}", samples::WALKER));
     }
     take_over(&page, state, false, false).await.map_err(error)
 }

@@ -8,7 +8,7 @@ use wasm_bindgen::prelude::*;
 use super::shell::{self, Shell};
 use crate::app::{App, Backend, Host, Inbox, set_fatal_hook, web_options};
 use crate::files::{Contents, Item, OpenError, OpenedModel, Role, open_items, open_view};
-use crate::library::sample;
+use crate::samples;
 use crate::state::{ViewerState, from_link, to_link};
 
 /// One instance draws on one canvas.
@@ -86,7 +86,7 @@ async fn first_contents(
     let items = super::calls::items_of(items)?;
     let motion_items = super::calls::items_of(motion_items)?;
     if state.model.is_empty() {
-        state.model.push(format!("sample:{}", sample::WALKER));
+        state.model.push(format!("sample:{}", samples::WALKER));
     }
     let progress = |name: &str, received: u64, total: u64| shell.progress(name, received as f64, total as f64);
     let opened = async {
@@ -124,7 +124,7 @@ async fn first_contents(
             }
             models.truncate(1);
             if models.is_empty() {
-                models.extend(sample::load(sample::WALKER).map(OpenedModel::from));
+                models.extend(samples::load(samples::WALKER).map(OpenedModel::from));
             }
             let model = models.first().ok_or_else(|| problems.join("\n"))?;
             let state = about_no_model(state, model.model.source.clone());

@@ -4,13 +4,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// A module of the crate uses lower ranks and its own folder only. ARCHITECTURE.md has the same table.
-const RANKS: [(&str, u32); 14] = [
+const RANKS: [(&str, u32); 15] = [
     ("anim", 0),
     ("mesh", 1),
     ("asset", 2),
     ("formats", 3),
     ("retarget", 3),
     ("library", 4),
+    ("samples", 5),
     ("state", 5),
     ("frame", 6),
     ("render", 7),

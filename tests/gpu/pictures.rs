@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use gaitway::frame::{Bone, Frame, Line, evaluate};
-use gaitway::library::{ImageData, Library, sample};
+use gaitway::library::{ImageData, Library};
 use gaitway::mesh::{
     AlphaMode, Bounds, Geometry, Influences, Material, SkinningMode, Texture, TextureRef, Topology, UvTransform,
     palette_entry,
 };
 use gaitway::render::{Renderer, RendererOptions, read_pixels};
+use gaitway::samples;
 use gaitway::state::{Background, ViewerState};
 use glam::camera::rh::view::look_at_mat4;
 use glam::{Affine3A, Vec2, Vec3, Vec4};
@@ -324,7 +325,7 @@ fn the_walker_looks_as_it_did() {
     let Gpu { device, queue } = &gpu;
     let size = [160, 120];
     let mut library = Library::default();
-    library.set(sample::load("walker").unwrap());
+    library.set(samples::load("walker").unwrap());
     let state = ViewerState { time_secs: 0.3, ..Default::default() };
     let mut frame = Frame::default();
     evaluate(&library, &state, size[0] as f32 / size[1] as f32, &mut frame);

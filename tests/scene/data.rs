@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use gaitway::anim::{ClipBuilder, Interpolation, Joint, Keys, Skeleton, Transform};
 use gaitway::asset::{Asset, MeshInstance};
 use gaitway::files::open_paths;
-use gaitway::library::{Library, Model, sample};
+use gaitway::library::{Library, Model};
 use gaitway::mesh::{Geometry, Mesh};
+use gaitway::samples;
 use glam::Vec3;
 
 pub fn library_of(model: Model) -> Library {
@@ -16,7 +17,7 @@ pub fn library_of(model: Model) -> Library {
 }
 
 pub fn walker() -> Library {
-    library_of(sample::load("walker").expect("the walker is built in"))
+    library_of(samples::load("walker").expect("the walker is built in"))
 }
 
 /// A box of the given half size on one node, with these keys of its translation as the clip "Move".
