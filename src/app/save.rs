@@ -82,7 +82,7 @@ impl App {
         let model = self.library.active().ok_or("there is no model")?;
         let made = self.baked_clip(clip)?;
         let clip = made.clip.as_ref().or_else(|| model.clip(clip)).ok_or("there is no such clip")?;
-        let bytes = write_motion(&model.asset, &written_skeleton(model, &self.state, false), &[clip])
+        let bytes = write_motion(&model.asset, &written_skeleton(model, &self.state, None), &[clip])
             .map_err(|error| error.to_string())?;
         Ok(FileToSave { name: format!("{}.glb", self.file_stem()), bytes, remark: made.remark })
     }
@@ -106,7 +106,9 @@ impl App {
     fn whole_file(&self, posed: bool) -> Result<FileToSave, String> {
         let model = self.library.active().ok_or("there is no model")?;
         let ModelFiles { set, name } = self.model_files(model).ok_or("this model has no file")?;
-        let skeleton = written_skeleton(model, &self.state, posed);
+        let mut frame = Frame::default();
+        evaluate(&self.library, &self.state, 1.0, &mut frame);
+        let skeleton = written_skeleton(model, &self.state, posed.then_some(frame.pose()));
         let bytes = write_model(set, name, &skeleton, &[]).map_err(|error| error.to_string())?;
         Ok(FileToSave { name: format!("{}.glb", stem(&model.source)), bytes, remark: None })
     }
@@ -129,7 +131,7 @@ impl App {
         let baked = self.baked_clip(clip)?;
         let clips = [baked.clip.as_ref().unwrap_or(&borrowed.clip)];
         let mut remark = None;
-        let skeleton = written_skeleton(model, &self.state, false);
+        let skeleton = written_skeleton(model, &self.state, None);
         let bytes = match self.model_files(model) {
             Some(ModelFiles { set, name }) if !name.to_lowercase().ends_with(".bvh") => {
                 write_model(set, name, &skeleton, &clips)

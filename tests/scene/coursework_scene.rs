@@ -133,13 +133,13 @@ fn the_formula_adds_up_to_what_is_drawn() {
         for vertex in (0..13336).step_by(37) {
             let choice = VertexChoice { instance: 0, primitive: 0, vertex };
             assert!(vertex_formula(model, &frame.characters[0], choice, &mut formula));
-            most = most.max(formula.parts.len());
+            most = most.max(formula.terms.len());
             assert!(formula.sum.distance(formula.drawn) < 1e-6);
             if up == UpAxis::Y {
                 assert!(formula.sum.as_dvec3().distance(wanted[vertex]) < 1e-6);
             }
-            assert!((formula.parts.iter().map(|part| part.weight).sum::<f32>() - 1.0).abs() < 1e-6);
-            for part in &formula.parts {
+            assert!((formula.terms.iter().map(|part| part.weight).sum::<f32>() - 1.0).abs() < 1e-6);
+            for part in &formula.terms {
                 let matrices = joint_matrices(model, &frame.characters[0], part.joint).expect("of the skin");
                 let alone = matrices.world_from_bind().transform_point3(formula.bound);
                 assert!(alone.distance(part.alone) < 1e-6 && part.share == part.weight * part.alone);
@@ -233,7 +233,7 @@ fn joints_can_be_renamed() {
     assert_eq!(title(None, asset, joint), before, "other files keep their names");
     apply(&mut state, &library, Command::RenameJoint { joint: 9999, name: "Nobody".to_owned() });
     assert_eq!(state.names.len(), 1);
-    let written = written_skeleton(library.active().expect("a model"), &state, false);
+    let written = written_skeleton(library.active().expect("a model"), &state, None);
     assert_eq!(written.name(joint), "Crown,of: the head");
     assert_eq!(written.rest(), asset.skeleton.rest());
 }
