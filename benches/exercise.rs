@@ -1,5 +1,5 @@
-//! What a step costs the CPU while a slider of a skinning-exercise model is turned: pose, matrices, palette and all else that
-//! makes a frame; and what bending every vertex there would cost, which the GPU does.
+//! What a step costs the CPU while a slider of a skinning-exercise model is turned: pose, matrices, palette and all
+//! else that makes a frame; and what bending every vertex there would cost, which the GPU does.
 
 mod support;
 

@@ -1,5 +1,5 @@
-//! Reading real files that are already in memory: time per file, images left as they are. The slowest first. A word on the
-//! command line picks the files whose paths have it.
+//! Reading real files that are already in memory: time per file, images left as they are. The slowest first. A word on
+//! the command line picks the files whose paths have it.
 
 mod support;
 

@@ -45,8 +45,9 @@ impl<'a> ClipBuilder<'a> {
         }
     }
 
-    /// Adds a channel. `times_secs` must be non-negative and strictly increasing; `keys` has one entry per key, three for
-    /// CUBICSPLINE. Rotations are normalized when sampled. If a property of a joint has several channels, the last one wins.
+    /// Adds a channel. `times_secs` must be non-negative and strictly increasing; `keys` has one entry per key, three
+    /// for CUBICSPLINE. Rotations are normalized when sampled. If a property of a joint has several channels, the last
+    /// one wins.
     pub fn channel(
         &mut self,
         joint: JointIndex,

@@ -24,8 +24,8 @@ impl TimeRange {
     }
 }
 
-/// Returns the clip time of an unbounded playhead, which may be negative or many loops ahead. Both are in clip seconds and
-/// equal inside the range. `Once` clamps; an empty range gives its start.
+/// Returns the clip time of an unbounded playhead, which may be negative or many loops ahead. Both are in clip seconds
+/// and equal inside the range. `Once` clamps; an empty range gives its start.
 pub fn clip_time(playhead_secs: f64, range: TimeRange, mode: LoopMode) -> f64 {
     let length = range.length_secs();
     if !playhead_secs.is_finite() || length <= 0.0 {

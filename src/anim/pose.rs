@@ -19,8 +19,8 @@ impl Pose {
         self.morph_weights.clone_from(&other.morph_weights);
     }
 
-    /// Blends towards another pose of the same skeleton: weight 1 keeps `self`, 0 gives `other`. Rotations take the shorter
-    /// arc at nearly constant speed.
+    /// Blends towards another pose of the same skeleton: weight 1 keeps `self`, 0 gives `other`. Rotations take the
+    /// shorter arc at nearly constant speed.
     pub fn blend(&mut self, other: &Pose, weight: f32) {
         for (local, other) in self.locals.iter_mut().zip(&other.locals) {
             local.translation = other.translation.lerp(local.translation, weight);
@@ -34,8 +34,8 @@ impl Pose {
     }
 }
 
-/// Computes the transform of every joint. `locals` and `out` have one entry per joint. `world_from_model` is applied to root
-/// joints; identity gives model space.
+/// Computes the transform of every joint. `locals` and `out` have one entry per joint. `world_from_model` is applied to
+/// root joints; identity gives model space.
 pub fn model_from_joint(
     skeleton: &Skeleton,
     locals: &[Transform],

@@ -1,9 +1,9 @@
 //! Samples clips as defined in glTF 2.0 §3.11 and appendix C, optimized for playback.
 //!
-//! Most channels of real clips are LINEAR, and many share their key times. Their values are stored here a second time, key by
-//! key: a row holds the values of all channels of a timeline at one key, so one search and two adjacent rows serve them all.
-//! Rotations in rows are normalized and in a consistent hemisphere. Constant channels are kept apart. Everything else (STEP,
-//! CUBICSPLINE, morph weights) is read from the clip's own keys.
+//! Most channels of real clips are LINEAR, and many share their key times. Their values are stored here a second time,
+//! key by key: a row holds the values of all channels of a timeline at one key, so one search and two adjacent rows
+//! serve them all. Rotations in rows are normalized and in a consistent hemisphere. Constant channels are kept apart.
+//! Everything else (STEP, CUBICSPLINE, morph weights) is read from the clip's own keys.
 
 use glam::{Quat, Vec3, Vec3A, Vec4};
 
@@ -42,8 +42,8 @@ struct VectorTracks {
     rows: Vec<Vec3A>,
 }
 
-/// LINEAR channels in groups of four. Adjacent rows are at most a right angle apart (as 4-vectors), so the shortest arc is
-/// the direct one.
+/// LINEAR channels in groups of four. Adjacent rows are at most a right angle apart (as 4-vectors), so the shortest arc
+/// is the direct one.
 #[derive(Debug, Clone, Default)]
 struct RotationTracks {
     joints: Vec<JointIndex>,

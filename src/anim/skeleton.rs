@@ -1,5 +1,5 @@
-//! Skeletons: joint names, hierarchy and rest pose. Every node of a file is a joint of one skeleton, so all ancestors of a joint
-//! are included, and meshes, cameras and lights are attached to joints.
+//! Skeletons: joint names, hierarchy and rest pose. Every node of a file is a joint of one skeleton, so all ancestors
+//! of a joint are included, and meshes, cameras and lights are attached to joints.
 
 use std::ops::Range;
 

@@ -22,8 +22,8 @@ impl Transform {
         Self { rotation, ..Self::IDENTITY }
     }
 
-    /// Decomposes a matrix as required by glTF 2.0 §3.5.3; a mirroring one gets a negative X scale. Sheared and singular matrices
-    /// have no exact decomposition: the result keeps their column lengths.
+    /// Decomposes a matrix as required by glTF 2.0 §3.5.3; a mirroring one gets a negative X scale. Sheared and
+    /// singular matrices have no exact decomposition: the result keeps their column lengths.
     pub fn from_matrix(matrix: &Mat4) -> Self {
         let (x, y, z) = (matrix.x_axis.truncate(), matrix.y_axis.truncate(), matrix.z_axis.truncate());
         let mirrored = if matrix.determinant() < 0.0 { -1.0 } else { 1.0 };
@@ -45,8 +45,8 @@ impl Transform {
         Affine3A::from_scale_rotation_translation(self.scale, self.rotation, self.translation)
     }
 
-    /// Fused `to_from_parent * self.to_affine()`. Computes the rotation matrix four entries at a time and consumes them in place,
-    /// without assembling its columns.
+    /// Fused `to_from_parent * self.to_affine()`. Computes the rotation matrix four entries at a time and consumes them
+    /// in place, without assembling its columns.
     #[inline]
     pub(super) fn below(&self, to_from_parent: &Affine3A) -> Affine3A {
         let quat = Vec4::from(self.rotation);

@@ -1,8 +1,8 @@
 //! Files that the person gets: the joint map in force, the model with a borrowed clip, the clip alone, a picture.
 
-use super::{App, encode_png};
+use super::App;
 use crate::anim::Clip;
-use crate::files::ModelFiles;
+use crate::files::{ModelFiles, encode_png};
 use crate::formats::{write_model, write_motion};
 use crate::frame::{Frame, evaluate};
 use crate::library::Model;

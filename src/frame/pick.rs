@@ -12,8 +12,8 @@ pub enum PickedJoint {
     Source(usize),
 }
 
-/// Returns the head joint of the bone nearest to a point of the viewport, x and y from −1 (left, bottom) to 1. `tolerance` is
-/// the maximum distance in the units of y. Hidden bones count too.
+/// Returns the head joint of the bone nearest to a point of the viewport, x and y from −1 (left, bottom) to 1.
+/// `tolerance` is the maximum distance in the units of y. Hidden bones count too.
 pub fn pick_joint(frame: &Frame, point: Vec2, tolerance: f32) -> Option<PickedJoint> {
     let projection = frame.view.projection_from_view;
     let projection_from_world = projection * frame.view.view_from_world;

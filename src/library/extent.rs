@@ -1,7 +1,7 @@
 //! Bounds of a model: exact at rest, and a close estimate in any pose without skinning every vertex.
 //!
-//! Each joint keeps the extreme points of the vertices it influences, in joint space. A skinned vertex is a weighted mean of
-//! its positions by each joint, so the bounds of the kept points enclose it.
+//! Each joint keeps the extreme points of the vertices it influences, in joint space. A skinned vertex is a weighted
+//! mean of its positions by each joint, so the bounds of the kept points enclose it.
 
 use glam::{Affine3A, Vec3};
 

@@ -82,7 +82,8 @@ impl Library {
         ModelId(self.next_id)
     }
 
-    /// Evicts closed models, then the oldest others, down to [`Library::MAX_MODELS`]. Returns the evicted models that were listed.
+    /// Evicts closed models, then the oldest others, down to [`Library::MAX_MODELS`]. Returns the evicted models that
+    /// were listed.
     pub fn trim(&mut self) -> Vec<Model> {
         let spare = (self.models.len() + self.closed.len()).saturating_sub(Self::MAX_MODELS);
         self.closed.drain(..spare.min(self.closed.len()));
@@ -174,8 +175,9 @@ impl Library {
         Some(slot.get_or_init(|| propose(&model.asset, &motion.asset)))
     }
 
-    /// Bakes the active model's borrowed clips if their inputs have changed; returns whether they had. Without a map, each
-    /// motion gets the proposed one. Motions that fail are reported by [`Library::borrow_errors`]; the others still work.
+    /// Bakes the active model's borrowed clips if their inputs have changed; returns whether they had. Without a map,
+    /// each motion gets the proposed one. Motions that fail are reported by [`Library::borrow_errors`]; the others
+    /// still work.
     pub fn borrow(&mut self, map: Option<&JointMap>) -> bool {
         let maps = vec![map.cloned(); self.motions.len()];
         self.borrow_each(maps)

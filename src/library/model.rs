@@ -158,12 +158,14 @@ impl Model {
         choice.filter(|&scene| scene < self.asset.scenes.len()).or(self.asset.default_scene)
     }
 
-    /// World-space bounds of the default scene at rest, with every vertex skinned. Without a mesh, the bounds of the joints.
+    /// World-space bounds of the default scene at rest, with every vertex skinned. Without a mesh, the bounds of the
+    /// joints.
     pub fn rest_bounds(&self) -> Bounds {
         self.extent.rest()
     }
 
-    /// Conservative bounds of a pose: encloses every vertex (nearly, for dual quaternions), a little loose where joints bend.
+    /// Conservative bounds of a pose: encloses every vertex (nearly, for dual quaternions), a little loose where joints
+    /// bend.
     /// `world_from_joint` and `visible` have one entry per joint.
     pub fn pose_bounds(&self, world_from_joint: &[Affine3A], morph_weights: &[f32], visible: &[bool]) -> Bounds {
         self.extent.of_pose(&self.asset, &self.rig, world_from_joint, morph_weights, visible)
@@ -174,8 +176,8 @@ impl Model {
         self.extent.instance_center(&self.asset, instance, world_from_joint)
     }
 
-    /// World-space bounds of a whole clip (without one, of the rest pose) in a scene, cached. `in_place` removes the root's
-    /// ground-plane travel.
+    /// World-space bounds of a whole clip (without one, of the rest pose) in a scene, cached. `in_place` removes the
+    /// root's ground-plane travel.
     pub fn clip_bounds(&self, scene: Option<usize>, clip: Option<usize>, in_place: bool) -> Bounds {
         let scene = self.scene(scene);
         let clip = clip.filter(|&clip| clip < self.clip_count());

@@ -47,8 +47,8 @@ impl Mesh {
     }
 }
 
-/// A primitive. Positions are in mesh space (bind space for a skinned mesh), metres. Optional attributes are empty or have one
-/// entry per vertex, which [`Geometry::validate`] checks.
+/// A primitive. Positions are in mesh space (bind space for a skinned mesh), metres. Optional attributes are empty or
+/// have one entry per vertex, which [`Geometry::validate`] checks.
 #[derive(Debug, Clone, Default)]
 pub struct Geometry {
     pub topology: Topology,
@@ -65,8 +65,8 @@ pub struct Geometry {
     pub influences: Influences,
     pub morph_targets: Vec<MorphTarget>,
     pub material: Option<usize>,
-    /// Number of vertices in the file, which come first and in the file's order. The rest are copies, made where a vertex has
-    /// several tangents, texture coordinates or normals.
+    /// Number of vertices in the file, which come first and in the file's order. The rest are copies, made where a
+    /// vertex has several tangents, texture coordinates or normals.
     pub file_vertices: usize,
     /// Each vertex's index in the file; empty if there are no copies and the indices are equal.
     pub file_vertex: Vec<u32>,
@@ -80,8 +80,8 @@ pub struct MorphTarget {
     pub tangents: Vec<Vec3>,
 }
 
-/// Joints and weights that influence each vertex: `stride` pairs per vertex, strongest first, weights summing to 1, unused
-/// pairs (0, 0.0). `stride` is 0 (not skinned) or a multiple of 4 up to [`MAX_INFLUENCES`].
+/// Joints and weights that influence each vertex: `stride` pairs per vertex, strongest first, weights summing to 1,
+/// unused pairs (0, 0.0). `stride` is 0 (not skinned) or a multiple of 4 up to [`MAX_INFLUENCES`].
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Influences {
     pub stride: usize,
@@ -112,8 +112,8 @@ pub enum GeometryError {
 }
 
 impl Geometry {
-    /// Checks that array lengths match and indices are in range. `skin_joints` is the joint count of the smallest skin that this
-    /// geometry is used with, if any.
+    /// Checks that array lengths match and indices are in range. `skin_joints` is the joint count of the smallest skin
+    /// that this geometry is used with, if any.
     pub fn validate(&self, skin_joints: Option<usize>) -> Result<(), GeometryError> {
         let vertices = self.positions.len();
         let check = |attribute: &'static str, found: usize, optional: bool| {

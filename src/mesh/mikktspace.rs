@@ -35,8 +35,9 @@ struct Group {
     end: usize,
 }
 
-/// Returns the tangent of every corner of a triangle list, w being the bitangent's sign in mikktspace.c's convention; none if
-/// neither the corner nor its vertex has one. The attributes have one entry per vertex, and `indices` are in range.
+/// Returns the tangent of every corner of a triangle list, w being the bitangent's sign in mikktspace.c's convention;
+/// none if neither the corner nor its vertex has one. The attributes have one entry per vertex, and `indices` are in
+/// range.
 pub(super) fn corner_tangents(
     positions: &[Vec3],
     normals: &[Vec3],

@@ -1,5 +1,5 @@
-//! Geometry, skins and materials, and CPU skinning, the reference for the GPU. Independent of files, GPU, user interface and
-//! clock.
+//! Geometry, skins and materials, and CPU skinning, the reference for the GPU. Independent of files, GPU, user
+//! interface and clock.
 
 mod bounds;
 mod geometry;

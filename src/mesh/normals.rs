@@ -6,10 +6,10 @@ use glam::Vec3;
 
 use super::{Geometry, Topology};
 
-/// Computes unit vertex normals at the bind pose for each primitive without normals: the mean normal of the adjacent triangles
-/// of all primitives, weighted by their angles at the vertex (Thürmer and Wüthrich 1998), which makes it independent of the
-/// triangulation. Vertices at the same position share a normal, so that seams do not show. Empty for primitives with normals
-/// and for points and lines.
+/// Computes unit vertex normals at the bind pose for each primitive without normals: the mean normal of the adjacent
+/// triangles of all primitives, weighted by their angles at the vertex (Thürmer and Wüthrich 1998), which makes it
+/// independent of the triangulation. Vertices at the same position share a normal, so that seams do not show. Empty for
+/// primitives with normals and for points and lines.
 pub fn smooth_normals(primitives: &[Geometry]) -> Vec<Vec<Vec3>> {
     let is_surface = |geometry: &Geometry| geometry.topology == Topology::Triangles;
     let wanted = |geometry: &Geometry| is_surface(geometry) && geometry.normals.is_empty();

@@ -14,9 +14,10 @@ pub enum SkinningMode {
     Linear,
     /// Each vertex follows its strongest influence only, which shows what blending is for.
     Rigid,
-    /// Rigid transforms are blended as unit dual quaternions (Kavan, Collins, Žára, O'Sullivan 2008, "Geometric Skinning with
-    /// Approximate Dual Quaternion Blending"). Scale and shear are factored out of each joint's matrix
-    /// (`M = T·R·S`), blended linearly and applied first, as §4.2 of the paper suggests. With one influence the result equals
+    /// Rigid transforms are blended as unit dual quaternions (Kavan, Collins, Žára, O'Sullivan 2008, "Geometric
+    /// Skinning with Approximate Dual Quaternion Blending"). Scale and shear are factored out of each joint's matrix
+    /// (`M = T·R·S`), blended linearly and applied first, as §4.2 of the paper suggests. With one influence the result
+    /// equals
     /// `Linear` exactly.
     DualQuaternion,
 }
@@ -52,8 +53,8 @@ pub fn palette_entry(world_from_bind: &Affine3A, mode: SkinningMode) -> PaletteE
     }
 }
 
-/// Extracts the rotation by orthonormalizing the columns. A mirroring matrix is negated first, which leaves the reflection in
-/// the remainder.
+/// Extracts the rotation by orthonormalizing the columns. A mirroring matrix is negated first, which leaves the
+/// reflection in the remainder.
 fn rotation_of(matrix: Mat3) -> Quat {
     let matrix = if matrix.determinant() < 0.0 { -matrix } else { matrix };
     let x = matrix.x_axis.normalize_or(Vec3::X);

@@ -12,8 +12,8 @@ pub struct DeformedVertices {
     pub normals: Vec<Vec3>,
 }
 
-/// Morphs, then skins all vertices of a primitive into the palette's target space. Missing `morph_weights` count as 0. Without
-/// influences, every vertex follows the first palette entry.
+/// Morphs, then skins all vertices of a primitive into the palette's target space. Missing `morph_weights` count as 0.
+/// Without influences, every vertex follows the first palette entry.
 ///
 /// Normals are transformed by the inverse transpose of the blended matrix (for dual quaternions: of the blended rotation
 /// times the blended stretch).
@@ -54,7 +54,8 @@ pub fn deform(
     }
 }
 
-/// Like [`deform`] for a single vertex. Returns its morphed bind position and its skinned position. `scratch` is a buffer.
+/// Like [`deform`] for a single vertex. Returns its morphed bind position and its skinned position. `scratch` is a
+/// buffer.
 pub fn deform_vertex(
     geometry: &Geometry,
     vertex: usize,
@@ -176,8 +177,8 @@ fn matrix_of_dual(&[real, dual, x, y, z]: &PaletteEntry) -> Rows {
     [row(rotation.x_axis, translation.x), row(rotation.y_axis, translation.y), row(rotation.z_axis, translation.z)]
 }
 
-/// Transforms all vertices by their matrices, four at a time. Lanes are written out because mapping arrays with closures would
-/// spill them to memory.
+/// Transforms all vertices by their matrices, four at a time. Lanes are written out because mapping arrays with
+/// closures would spill them to memory.
 #[inline(always)]
 fn transform(out: &mut DeformedVertices, matrix: impl Fn(usize) -> Rows) {
     let (positions, last_positions) = out.positions.as_chunks_mut::<4>();
@@ -233,8 +234,8 @@ impl Four {
         Lanes { x: moved(&self.x), y: moved(&self.y), z: moved(&self.z) }.vectors()
     }
 
-    /// Uses the cofactor matrix, which is the inverse transpose times the determinant: it needs no division and handles zero
-    /// scales.
+    /// Uses the cofactor matrix, which is the inverse transpose times the determinant: it needs no division and handles
+    /// zero scales.
     #[inline(always)]
     fn normals(&self, normals: [Vec3; 4]) -> [Vec3; 4] {
         let (x, y, z) = (linear(&self.x), linear(&self.y), linear(&self.z));

@@ -4,8 +4,8 @@ use glam::{Vec2, Vec3, Vec4};
 
 use super::{Geometry, mikktspace};
 
-/// Copies of a vertex searched for a matching tangent. Corners that share a tangent are close to each other; only hostile files
-/// have thousands of copies.
+/// Copies of a vertex searched for a matching tangent. Corners that share a tangent are close to each other; only
+/// hostile files have thousands of copies.
 const MAX_COPIES_COMPARED: usize = 64;
 
 /// Returns the tangent of every corner of a triangle list, which must have normals and these texture coordinates.
@@ -19,8 +19,9 @@ pub fn corner_tangents(geometry: &Geometry, uv_set: usize) -> Vec<Vec4> {
         .collect()
 }
 
-/// Adds tangents to a triangle list. Does nothing without normals or the given texture coordinates. A vertex whose corners need
-/// different tangents is duplicated; copies are appended, so the first `file_vertices` stay in place. Copies take at most
+/// Adds tangents to a triangle list. Does nothing without normals or the given texture coordinates. A vertex whose
+/// corners need different tangents is duplicated; copies are appended, so the first `file_vertices` stay in place.
+/// Copies take at most
 /// `max_copied_bytes`; beyond that, corners keep their vertex's tangent. Returns the bytes taken.
 pub fn add_tangents(geometry: &mut Geometry, uv_set: usize, max_copied_bytes: usize) -> usize {
     if geometry.normals.is_empty() || geometry.uvs.get(uv_set).is_none_or(Vec::is_empty) {

@@ -1,5 +1,5 @@
-//! The studio environment: procedural soft boxes, prefiltered by roughness into a small cube map, with diffuse light as nine
-//! spherical harmonics. Computed on the CPU in a few milliseconds, so nothing is downloaded.
+//! The studio environment: procedural soft boxes, prefiltered by roughness into a small cube map, with diffuse light as
+//! nine spherical harmonics. Computed on the CPU in a few milliseconds, so nothing is downloaded.
 
 use glam::{Vec2, Vec3};
 

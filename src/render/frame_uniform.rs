@@ -61,8 +61,8 @@ pub(super) fn frame_uniform(
     let look = &frame.look;
     let (sin, cos) = look.environment_radians.sin_cos();
     let key_direction = Mat3::from_rotation_y(look.environment_radians) * KEY_DIRECTION.normalize_or_zero();
-    // The file's first directional light from above casts the shadow. With other lights only, the key light casts one on the
-    // ground but not on meshes.
+    // The file's first directional light from above casts the shadow. With other lights only, the key light casts one
+    // on the ground but not on meshes.
     let sun = frame
         .lights
         .iter()

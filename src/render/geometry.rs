@@ -218,8 +218,8 @@ fn influences_by_four(joints: &[u16], weights: &[f32]) -> Vec<FourInfluences> {
     joints.iter().zip(weights).map(|(&joints, &weights)| FourInfluences { joints, weights }).collect()
 }
 
-/// The joints of all influences. Unused influences get the vertex's first joint, so the vertex stage need not skip them: a
-/// joint without weight never affects a vertex, not even one with an infinite matrix.
+/// The joints of all influences. Unused influences get the vertex's first joint, so the vertex stage need not skip
+/// them: a joint without weight never affects a vertex, not even one with an infinite matrix.
 fn used_joints(influences: &Influences) -> Vec<u16> {
     let mut joints = influences.joints.clone();
     let stride = influences.stride.max(1);

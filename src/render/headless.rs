@@ -32,8 +32,8 @@ pub fn headless_device() -> Result<(wgpu::Device, wgpu::Queue, wgpu::AdapterInfo
     Ok((device, queue, adapter.get_info()))
 }
 
-/// Reads an Rgba8Unorm texture with `COPY_SRC` usage, such as [`super::Renderer::output`], into RGBA rows from the top. Converts
-/// premultiplied to straight alpha. Empty if the device was lost.
+/// Reads an Rgba8Unorm texture with `COPY_SRC` usage, such as [`super::Renderer::output`], into RGBA rows from the top.
+/// Converts premultiplied to straight alpha. Empty if the device was lost.
 pub async fn read_pixels(device: &wgpu::Device, queue: &wgpu::Queue, texture: &wgpu::Texture) -> Vec<u8> {
     let (width, height) = (texture.width(), texture.height());
     let row_bytes = 4 * width;
@@ -77,8 +77,8 @@ pub async fn read_pixels(device: &wgpu::Device, queue: &wgpu::Queue, texture: &w
     pixels
 }
 
-/// Waits until the buffer is mapped. Native code blocks; a page polls once per turn of the event loop, because WebGL2 calls back
-/// only when polled.
+/// Waits until the buffer is mapped. Native code blocks; a page polls once per turn of the event loop, because WebGL2
+/// calls back only when polled.
 async fn map(device: &wgpu::Device, buffer: &wgpu::Buffer) -> bool {
     const WAITING: u8 = 0;
     const MAPPED: u8 = 1;

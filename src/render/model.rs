@@ -255,8 +255,8 @@ fn primitive_bind_group(
     })
 }
 
-/// KHR_texture_transform: `offset · rotation · scale`. The rotation is counter-clockwise on the image, whose v axis points
-/// down, hence its sign.
+/// KHR_texture_transform: `offset · rotation · scale`. The rotation is counter-clockwise on the image, whose v axis
+/// points down, hence its sign.
 fn uv_transform(reference: TextureRef) -> UvTransformUniform {
     let transform = reference.uv_transform;
     let (sin, cos) = transform.rotation_radians.sin_cos();

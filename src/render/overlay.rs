@@ -240,8 +240,8 @@ impl Overlay {
     }
 }
 
-/// Builds the triangles of the flat-shaded octahedron from head (y 0) to tail (y 1), the smooth ball around the head, and the box
-/// that can replace the octahedron.
+/// Builds the triangles of the flat-shaded octahedron from head (y 0) to tail (y 1), the smooth ball around the head,
+/// and the box that can replace the octahedron.
 fn bone_shape() -> (Vec<BoneVertex>, BoneRanges) {
     /// Position along the bone of its widest cross-section.
     const WAIST: f32 = 0.12;

@@ -55,7 +55,8 @@ pub(super) struct ShadowView {
 }
 
 impl ShadowView {
-    /// Projects the view along the light onto a horizontal plane through `ground`. Returns x and z of its center, relative to
+    /// Projects the view along the light onto a horizontal plane through `ground`. Returns x and z of its center,
+    /// relative to
     /// `ground`, and of half its two edges. The light must come from above.
     pub fn on_ground(&self, to_light: Vec3, ground: Vec3) -> [[f32; 2]; 3] {
         let project = |vector: Vec3| {
@@ -66,8 +67,8 @@ impl ShadowView {
     }
 }
 
-/// Fits an orthographic view along the light to the bounds, with a small margin. `to_light` has unit length. None for empty
-/// bounds.
+/// Fits an orthographic view along the light to the bounds, with a small margin. `to_light` has unit length. None for
+/// empty bounds.
 pub(super) fn shadow_view(bounds: &Bounds, to_light: Vec3) -> Option<ShadowView> {
     let diagonal = bounds.diagonal();
     if bounds.is_empty() || !diagonal.is_finite() || diagonal <= 0.0 {

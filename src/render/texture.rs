@@ -75,9 +75,9 @@ impl MipMaker {
         queue.submit([encoder.finish()]);
     }
 
-    /// Uploads an image and its mip levels; none if it has no pixels, or if it is a browser's bitmap larger than the device
-    /// supports. Other oversized images are halved until they fit. Each image is a submission of its own, because a
-    /// browser's graphics process serves other clients only between submissions.
+    /// Uploads an image and its mip levels; none if it has no pixels, or if it is a browser's bitmap larger than the
+    /// device supports. Other oversized images are halved until they fit. Each image is a submission of its own,
+    /// because a browser's graphics process serves other clients only between submissions.
     pub fn upload(
         &mut self,
         device: &wgpu::Device,

@@ -18,7 +18,8 @@ pub fn title<'a>(state: Option<&'a ViewerState>, asset: &'a Asset, joint: JointI
     }
 }
 
-/// Returns the skeleton to write into a file: with the names given by the user and, if `pose` is set, with that as its rest pose.
+/// Returns the skeleton to write into a file: with the names given by the user and, if `pose` is set, with that as its
+/// rest pose.
 pub fn written_skeleton(model: &Model, state: &ViewerState, pose: Option<&Pose>) -> Skeleton {
     let names = state.names.iter().map(|(&number, name)| (number, name.as_str()));
     let named = model.asset.skeleton.with_names(names);

@@ -16,7 +16,8 @@ use glam::{DQuat, DVec3, EulerRot, Vec2, Vec3};
 use serde_json::Value;
 
 use crate::coursework::Exercise;
-use crate::data::{folder, library_of, open, walker};
+use crate::data::{library_of, open, walker};
+use crate::data_folder::data_folder;
 
 const BENT: &str = "v=1&clip=&pose=0:10:-20:5,2:0:0:15,5:-60:0:10,6:70:0:0,12:0:30:-20,13:0:0:45,16:-30:20:0";
 
@@ -34,7 +35,7 @@ fn rotations(state: &ViewerState) -> Vec<DQuat> {
 }
 
 fn exercise(name: &str) -> Option<Exercise> {
-    let folder = folder()?.join("mit6837");
+    let folder = data_folder()?.join("mit6837");
     let text = |kind: &str| std::fs::read_to_string(folder.join(format!("{name}.{kind}"))).expect("a real file");
     Some(Exercise::read(&text("obj"), &text("skel"), &text("attach")))
 }
@@ -67,7 +68,7 @@ fn sliders_bend_the_models_as_the_formula_says() {
 
 #[test]
 fn a_set_is_opened_by_any_of_its_names() {
-    let Some(folder) = folder() else { return };
+    let Some(folder) = data_folder() else { return };
     let folder = folder.join("mit6837");
     for name in ["Model2.obj", "Model2.skel", "Model2.attach", "Model2"] {
         let opened = open_paths(&[folder.join(name)]).unwrap_or_else(|problem| panic!("{name}: {problem}"));
@@ -89,7 +90,7 @@ fn run(arguments: &[&str]) -> Vec<u8> {
 
 #[test]
 fn the_command_line_reads_bends_and_writes_them() {
-    let (Some(folder), Some(exercise)) = (folder(), exercise("Model1")) else { return };
+    let (Some(folder), Some(exercise)) = (data_folder(), exercise("Model1")) else { return };
     let model = folder.join("mit6837/Model1.obj");
     let model = model.to_str().expect("a plain path");
     let inspected: Value = serde_json::from_slice(&run(&["inspect", model, "--json"])).expect("JSON");
@@ -308,7 +309,7 @@ fn several_parts_are_one_mesh_in_the_order_of_the_file() {
 /// The joints have no names, so the map is written by hand.
 #[test]
 fn a_motion_can_be_lent_to_them() {
-    let Some(folder) = folder() else { return };
+    let Some(folder) = data_folder() else { return };
     let (model, motion) = (folder.join("mit6837/Model1.obj"), folder.join("cosc422/original/Dwarf/avatar_walk.bvh"));
     let scratch = |name: &str| std::env::temp_dir().join(format!("gaitway-lent-{}-{name}", std::process::id()));
     let (map, out) = (scratch("map.json"), scratch("out.glb"));

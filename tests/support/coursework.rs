@@ -3,6 +3,8 @@
 
 use glam::{DMat4, DQuat, DVec3, Quat};
 
+use crate::random::Random;
+
 pub struct Exercise {
     pub vertices: Vec<DVec3>,
     joints: Vec<(DVec3, Option<usize>)>,
@@ -45,18 +47,13 @@ impl Exercise {
     }
 }
 
-/// Any angles for all joints, the same on every run: exact, and rounded as the real thing has them.
+/// Random rotations of all joints: in double precision, and rounded to single.
 #[allow(dead_code)] // Not every test program turns joints at random.
 pub fn pose(joints: usize, seed: u64) -> (Vec<DQuat>, Vec<Quat>) {
-    let mut random = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15);
-    let mut part = || {
-        random ^= random << 13;
-        random ^= random >> 7;
-        random ^= random << 17;
-        (random % 20_001) as f64 / 10_000.0 - 1.0
-    };
+    let mut random = Random(seed);
+    let mut angle = || 3.0 * random.f64() - 1.5;
     let rounded: Vec<Quat> = (0..joints)
-        .map(|_| DQuat::from_euler(glam::EulerRot::XYZ, 1.5 * part(), 1.5 * part(), 1.5 * part()).as_quat().normalize())
+        .map(|_| DQuat::from_euler(glam::EulerRot::XYZ, angle(), angle(), angle()).as_quat().normalize())
         .collect();
     (rounded.iter().map(|rotation| rotation.as_dquat().normalize()).collect(), rounded)
 }

@@ -17,7 +17,8 @@ struct Stance {
     eyes_closed: f32,
 }
 
-/// A foot: ankle position, in metres from the point on the ground between the feet, and pitch, positive with the toes down.
+/// A foot: ankle position, in metres from the point on the ground between the feet, and pitch, positive with the toes
+/// down.
 struct Foot {
     ankle: Vec3,
     pitch: f32,
@@ -31,7 +32,8 @@ pub fn all(skeleton: &Skeleton) -> Result<Vec<Clip>, WalkerError> {
     ])
 }
 
-/// Bakes a function of the clip's phase, 0 to 1, into a clip with a key at every frame. Phases 0 and 1 give the same stance.
+/// Bakes a function of the clip's phase, 0 to 1, into a clip with a key at every frame. Phases 0 and 1 give the same
+/// stance.
 fn record(
     name: &str,
     skeleton: &Skeleton,

@@ -1,5 +1,5 @@
-//! The walker: a small robot with 22 joints in a T-pose facing +Z, smooth weights at every bend, three clips and one morph
-//! target (closing eyes).
+//! The walker: a small robot with 22 joints in a T-pose facing +Z, smooth weights at every bend, three clips and one
+//! morph target (closing eyes).
 
 mod clips;
 mod shape;
