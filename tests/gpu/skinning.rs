@@ -349,8 +349,8 @@ fn the_exercise_models_match_the_formula() {
         model_from_joint(&asset.skeleton, &locals, Affine3A::IDENTITY, &mut world);
         write_palette(&asset.skins[0], &world, SkinningMode::Linear, &mut palette);
         let [positions, _] = on_gpu(&gpu, &geometry, &palette, &[], SkinningMode::Linear);
-        let bent = Exercise::read(&text("obj"), &text("skel"), &text("attach")).bent(&exact);
-        let expected: Vec<DVec3> = kept.iter().map(|&vertex| bent[vertex]).collect();
+        let skinned = Exercise::read(&text("obj"), &text("skel"), &text("attach")).skinned(&exact);
+        let expected: Vec<DVec3> = kept.iter().map(|&vertex| skinned[vertex]).collect();
         compare(name, &positions, &expected, 2e-6);
     }
 }

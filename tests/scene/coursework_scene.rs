@@ -59,7 +59,7 @@ fn sliders_bend_the_models_as_the_formula_says() {
         let (Some(exercise), Some(library)) = (exercise(name), open(&format!("mit6837/{name}.obj"))) else { return };
         let state = bent();
         let found = positions(&pose_document(&library, &state));
-        assert!(furthest(&found, &exercise.bent(&rotations(&state))) < 1e-6, "{name}");
+        assert!(furthest(&found, &exercise.skinned(&rotations(&state))) < 1e-6, "{name}");
         assert!(furthest(&found, &exercise.vertices) > 0.05, "{name} is bent");
         let rest = ViewerState { clip: ClipChoice::RestPose, ..ViewerState::default() };
         assert!(furthest(&positions(&pose_document(&library, &rest)), &exercise.vertices) < 1e-6, "{name}");
@@ -100,7 +100,7 @@ fn the_command_line_reads_bends_and_writes_them() {
     assert_eq!((inspected["format"].as_str(), inspected["warnings"].as_array().map(Vec::len)), (Some("obj"), Some(0)));
     let posed = |arguments: &[&str]| positions(&serde_json::from_slice(&run(arguments)).expect("JSON"));
     assert!(furthest(&posed(&["pose", model, "--json"]), &exercise.vertices) < 1e-6);
-    let wanted = exercise.bent(&rotations(&bent()));
+    let wanted = exercise.skinned(&rotations(&bent()));
     assert!(furthest(&posed(&["pose", model, "--view", BENT, "--json"]), &wanted) < 1e-6);
 
     let out = std::env::temp_dir().join(format!("gaitway-coursework-{}.glb", std::process::id()));
@@ -128,7 +128,7 @@ fn the_formula_adds_up_to_what_is_drawn() {
     for up in [UpAxis::Y, UpAxis::Z] {
         let state = ViewerState { up, ..bent() };
         let frame = evaluated(&library, &state);
-        let wanted = exercise.bent(&rotations(&state));
+        let wanted = exercise.skinned(&rotations(&state));
         let mut formula = VertexFormula::default();
         let mut most = 0;
         for vertex in (0..13336).step_by(37) {
