@@ -48,7 +48,10 @@ fn find_models(folder: &Path, models: &mut Vec<PathBuf>) {
         let path = entry.path();
         if path.is_dir() {
             find_models(&path, models);
-        } else if path.extension().is_some_and(|extension| ["glb", "gltf", "vrm"].iter().any(|known| extension == *known)) {
+        } else if path
+            .extension()
+            .is_some_and(|extension| ["glb", "gltf", "vrm"].iter().any(|known| extension == *known))
+        {
             models.push(path);
         }
     }

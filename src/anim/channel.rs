@@ -66,14 +66,14 @@ pub struct Channel {
 pub enum ChannelError {
     #[error("there are no keys")]
     NoKeys,
-    #[error("key {key} is at {time_secs} s, which is not after the key before it ({before_secs} s)")]
+    #[error("key {key} at {time_secs} s does not come after the previous key at {before_secs} s")]
     TimesNotIncreasing { key: usize, time_secs: f32, before_secs: f32 },
-    #[error("key {key} has a time that is not a number of seconds from 0 up: {time_secs}")]
+    #[error("key {key}: expected a non-negative time in seconds, found {time_secs}")]
     BadTime { key: usize, time_secs: f32 },
-    #[error("{expected} values were expected for {keys} keys, found {found}")]
+    #[error("expected {expected} values for {keys} keys, found {found}")]
     ValueCount { keys: usize, expected: usize, found: usize },
-    #[error("joint {joint} is not one of the {count} joints")]
+    #[error("joint {joint} is out of range, the skeleton has {count} joints")]
     NoSuchJoint { joint: usize, count: usize },
-    #[error("the mesh on this joint has {expected} morph targets, the keys have {found}")]
+    #[error("the keys have {found} morph targets, but the mesh on this joint has {expected}")]
     MorphTargetCount { expected: usize, found: usize },
 }

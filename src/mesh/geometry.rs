@@ -105,9 +105,9 @@ impl Influences {
 pub enum GeometryError {
     #[error("{attribute} has {found} entries, expected {expected}")]
     Count { attribute: &'static str, expected: usize, found: usize },
-    #[error("index {index} points at a vertex, but there are only {vertices}")]
+    #[error("index {index} is out of range, there are {vertices} vertices")]
     IndexOutOfRange { index: u32, vertices: usize },
-    #[error("vertex {vertex} follows joint {joint}, but the skin has only {joints}")]
+    #[error("vertex {vertex} references joint {joint}, but the skin has only {joints} joints")]
     JointOutOfRange { vertex: usize, joint: u16, joints: usize },
 }
 
@@ -128,7 +128,7 @@ impl Geometry {
         check("texture coordinates 0", self.uvs[0].len(), true)?;
         check("texture coordinates 1", self.uvs[1].len(), true)?;
         check("colours", self.colors.len(), true)?;
-        check("vertices of the file", self.file_vertex.len(), true)?;
+        check("file vertices", self.file_vertex.len(), true)?;
         for target in &self.morph_targets {
             check("morph target positions", target.positions.len(), true)?;
             check("morph target normals", target.normals.len(), true)?;

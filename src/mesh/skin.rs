@@ -18,7 +18,7 @@ pub struct Skin {
 pub enum SkinError {
     #[error("{joints} joints but {matrices} inverse bind matrices")]
     MatrixCount { joints: usize, matrices: usize },
-    #[error("joint {joint} is not one of the {count} joints of the skeleton")]
+    #[error("joint {joint} is out of range, the skeleton has {count} joints")]
     NoSuchJoint { joint: usize, count: usize },
     #[error("the inverse bind matrix of joint {joint} is not finite")]
     NotFinite { joint: usize },

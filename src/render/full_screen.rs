@@ -1,4 +1,4 @@
-//! What passes that read one texture into a whole target have in common: their layout, bind group and pipeline.
+//! Layout, bind group and pipeline of passes that draw one texture over a whole target.
 
 /// Creates the layout of one filtered texture and its sampler, both for the fragment stage.
 pub(super) fn sampled_texture_layout(device: &wgpu::Device, label: &str) -> wgpu::BindGroupLayout {

@@ -39,7 +39,8 @@ impl Exercise {
             bind.push(bind_parent * DMat4::from_translation(offset));
             world.push(world_parent * DMat4::from_rotation_translation(rotation, offset));
         }
-        let world_from_bind: Vec<DMat4> = world.iter().zip(&bind).map(|(world, bind)| *world * bind.inverse()).collect();
+        let world_from_bind: Vec<DMat4> =
+            world.iter().zip(&bind).map(|(world, bind)| *world * bind.inverse()).collect();
         let skin = |(vertex, row): (&DVec3, &Vec<f64>)| {
             row.iter().zip(&world_from_bind).map(|(&weight, matrix)| weight * matrix.transform_point3(*vertex)).sum()
         };
