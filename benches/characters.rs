@@ -1,5 +1,5 @@
-//! One character-frame: sampling a clip, local to model space, skin palette. For 1, 100 and 1,000 characters, each at its
-//! own phase, playing forward at 60 frames per second.
+//! One character-frame: sampling a clip, local to model space, skin palette. For 1, 100 and 1,000 characters at different
+//! phases, playing forward at 60 frames per second.
 
 mod support;
 
@@ -29,31 +29,31 @@ fn main() {
     let rig = walker();
     println!("{:40} {:>10} {:>12} {:>10} {:>10}", "", "characters", "µs/character", "ns/joint", "(fastest)");
     for count in [1, 100, 1000] {
-        print("made in code: 67 joints, 30 keys, T R S", &rig, count, Part::All);
+        print("synthetic: 67 joints, 30 keys, T R S", &rig, count, Stage::All);
     }
-    print("  sampling alone", &rig, 100, Part::Sample);
-    print("  local to model space alone", &rig, 100, Part::Model);
-    print("  palette alone", &rig, 100, Part::Palette);
+    print("  sampling only", &rig, 100, Stage::Sample);
+    print("  local to model space only", &rig, 100, Stage::Model);
+    print("  palette only", &rig, 100, Stage::Palette);
     for (path, clip) in
         [("khronos/Fox/glTF-Binary/Fox.glb", "Run"), ("threejs/Soldier.glb", "Walk"), ("threejs/Xbot.glb", "walk")]
     {
         if let Some(rig) = real(path, clip) {
             for count in [1, 100, 1000] {
-                print(&format!("{path} {clip}"), &rig, count, Part::All);
+                print(&format!("{path} {clip}"), &rig, count, Stage::All);
             }
         }
     }
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Part {
+enum Stage {
     All,
     Sample,
     Model,
     Palette,
 }
 
-fn print(name: &str, rig: &Rig, count: usize, part: Part) {
+fn print(name: &str, rig: &Rig, count: usize, stage: Stage) {
     let length = rig.clip.duration_secs();
     let mut characters: Vec<Character> = (0..count)
         .map(|at| Character { time_secs: length * at as f32 / count as f32, cursor: SampleCursor::default() })
@@ -68,14 +68,14 @@ fn print(name: &str, rig: &Rig, count: usize, part: Part) {
             if character.time_secs > length {
                 character.time_secs -= length;
             }
-            if part == Part::All || part == Part::Sample {
+            if stage == Stage::All || stage == Stage::Sample {
                 pose.copy_from(rig.skeleton.rest());
                 rig.clip.sample(&rig.skeleton, character.time_secs, &mut character.cursor, &mut pose);
             }
-            if part == Part::All || part == Part::Model {
+            if stage == Stage::All || stage == Stage::Model {
                 model_from_joint(&rig.skeleton, &black_box(&pose).locals, Affine3A::IDENTITY, &mut world);
             }
-            if part == Part::All || part == Part::Palette {
+            if stage == Stage::All || stage == Stage::Palette {
                 write_palette(&rig.skin, black_box(&world), SkinningMode::Linear, &mut palette);
             }
         }
@@ -90,29 +90,29 @@ fn print(name: &str, rig: &Rig, count: usize, part: Part) {
     );
 }
 
-/// The first skin of a real file with one of its clips, where the files are at hand.
+/// The first skin of a real file with one of its clips; none without the data folder.
 fn real(path: &str, clip: &str) -> Option<Rig> {
     let files = files_of(&data_folder()?.join(path))?;
-    let asset = gaitway::formats::load(&files).expect("a file that is known to be fine");
+    let asset = gaitway::formats::load(&files).expect("a file known to load");
     let clip = asset.clips.iter().find(|found| found.name() == clip)?.clone();
     Some(Rig { skin: asset.skins.first()?.clone(), skeleton: asset.skeleton, clip })
 }
 
-/// As many joints, keys and channels as a common character's walk has: translation, rotation and scale on every joint,
-/// none of them quite still.
+/// A synthetic walk with the joints, keys and channels of a typical character: translation, rotation and scale on every
+/// joint, none of them constant.
 fn walker() -> Rig {
     const JOINTS: usize = 67;
     const KEYS: usize = 30;
     let joints = (0..JOINTS)
         .map(|at| Joint {
             name: format!("joint {at}"),
-            // Four chains from the hips, some of them forked: hands.
+            // Five chains from the hips.
             parent: at.checked_sub(if at % 15 == 1 { at } else { 1 }),
             rest: Transform::from_translation(Vec3::Y * 0.1),
             morph_weights: Vec::new(),
         })
         .collect();
-    let skeleton = Skeleton::new(joints).expect("the parents are there");
+    let skeleton = Skeleton::new(joints).expect("the parents exist");
     let times: Vec<f32> = (0..KEYS).map(|key| key as f32 / 30.0).collect();
     let phases = || times.iter().map(|time| TAU * time);
     let mut builder = ClipBuilder::new("walk", &skeleton);
@@ -127,6 +127,6 @@ fn walker() -> Rig {
     }
     let clip = builder.build();
     let bind = vec![Affine3A::from_translation(Vec3::Y); JOINTS];
-    let skin = Skin::new("skin".into(), skeleton.joints().collect(), bind, JOINTS).expect("the joints are there");
+    let skin = Skin::new("skin".into(), skeleton.joints().collect(), bind, JOINTS).expect("the joints exist");
     Rig { skeleton, skin, clip }
 }

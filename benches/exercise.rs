@@ -1,5 +1,5 @@
-//! What a step costs the CPU while a slider of a skinning-exercise model is turned: pose, matrices, palette and all else that
-//! makes a frame; and what bending every vertex there would cost, which the GPU does.
+//! CPU cost of a step while a joint of a skinning-exercise model is rotated with a slider: pose, matrices, palette and the
+//! rest of the frame. Also the cost of CPU skinning, which the GPU does instead.
 
 mod support;
 
@@ -23,7 +23,7 @@ fn main() {
     let print = |name: &str, nanos: support::Nanos| {
         println!("{name:44} {:>10.1} {:>10.1}", nanos.median / 1e3, nanos.fastest / 1e3);
     };
-    for (name, split) in [("a turned slider", false), ("a turned slider, three modes side by side", true)] {
+    for (name, split) in [("slider step", false), ("slider step, three modes side by side", true)] {
         let show = Show { skeleton: true, ..Show::default() };
         let display = Display { show, ..Display::default() };
         let inspect = Inspect { split, weights: false };

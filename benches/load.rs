@@ -1,5 +1,5 @@
-//! Reading real files that are already in memory: time per file, images left as they are. The slowest first. A word on the
-//! command line picks the files whose paths have it.
+//! Loading real files from memory: time per file, without decoding images, slowest first. An argument selects the files whose
+//! paths contain it.
 
 mod support;
 
@@ -19,11 +19,11 @@ fn main() {
         models.retain(|path| path.to_string_lossy().contains(&word));
     }
     let mut rows = Vec::new();
-    let mut refused = 0;
+    let mut rejected = 0;
     for path in models {
         let Some(files) = files_of(&path) else { continue };
         if load(&files).is_err() {
-            refused += 1;
+            rejected += 1;
             continue;
         }
         let bytes: usize = files.names().filter_map(|name| files.get(name)).map(|bytes| bytes.len()).sum();
@@ -40,7 +40,7 @@ fn main() {
         let rate = size / (1 << 20) as f64 / (median * 1e-9);
         println!("{:>10.3} {:>10.3} {:>10.0} {rate:>10.0}  {name}", median / 1e6, fastest / 1e6, size / 1024.0);
     }
-    println!("{} files; {refused} more cannot be read and are not timed", rows.len());
+    println!("{} files; {rejected} more fail to load and are not timed", rows.len());
 }
 
 fn find_models(folder: &Path, models: &mut Vec<PathBuf>) {
@@ -48,7 +48,10 @@ fn find_models(folder: &Path, models: &mut Vec<PathBuf>) {
         let path = entry.path();
         if path.is_dir() {
             find_models(&path, models);
-        } else if path.extension().is_some_and(|ending| ["glb", "gltf", "vrm"].iter().any(|known| ending == *known)) {
+        } else if path
+            .extension()
+            .is_some_and(|extension| ["glb", "gltf", "vrm"].iter().any(|known| extension == *known))
+        {
             models.push(path);
         }
     }

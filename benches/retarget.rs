@@ -1,5 +1,5 @@
-//! Making a clip over for another skeleton, and what comes before and after: recognising, proposing, measuring.
-//! `-- over`, `-- proposed`, `-- figures`: only these.
+//! Retargeting a clip, and the steps around it: recognizing, proposing a map, measuring. `-- retarget`, `-- propose`,
+//! `-- measure` select one.
 
 mod support;
 
@@ -34,18 +34,18 @@ fn main() {
             let nanos = measure(work);
             println!("{:<36} {:>12.1} {:>12.1}", format!("{name}, {what}"), nanos.median / 1e3, nanos.fastest / 1e3);
         };
-        row("made over", &mut || {
+        row("retarget", &mut || {
             let (model, motion) = bodies();
             black_box(Retargeting::new(model, motion, clip, &map).and_then(|pair| pair.bake())).ok();
         });
-        row("map proposed", &mut || {
+        row("propose", &mut || {
             black_box(propose(black_box(model), motion));
         });
         let (model, motion) = bodies();
         let Ok(pair) = Retargeting::new(model, motion, clip, &map) else { continue };
-        let Ok(made) = pair.bake() else { continue };
-        row("figures", &mut || {
-            black_box(pair.figures(&made));
+        let Ok(baked) = pair.bake() else { continue };
+        row("measure", &mut || {
+            black_box(pair.figures(&baked));
         });
     }
 }

@@ -1,4 +1,4 @@
-//! Skinning on the CPU, positions and normals, per vertex: each mode, with 4 and with 16 influences.
+//! CPU skinning of positions and normals, per vertex: each mode with 4 and with 16 influences.
 
 mod support;
 
@@ -37,7 +37,7 @@ fn main() {
     }
 }
 
-/// Neighbouring vertices follow neighbouring joints, as on a body.
+/// Adjacent vertices follow adjacent joints, as on a character.
 fn geometry(influences: usize) -> Geometry {
     let joint = |vertex: usize, at: usize| ((vertex * JOINTS / VERTICES + at) % JOINTS) as u16;
     let weight = |at: usize| 2.0 * (influences - at) as f32 / (influences * (influences + 1)) as f32;

@@ -1,8 +1,8 @@
-// The studio's backdrop: a soft gradient, already in the picture's sRGB.
+// The studio backdrop: a soft gradient, already encoded as sRGB.
 
 struct BackdropOut {
     @builtin(position) position: vec4f,
-    // From the brightest place.
+    // From the brightest point.
     @location(0) offset: vec2f,
 }
 
@@ -13,7 +13,7 @@ fn full_screen(@builtin(vertex_index) vertex: u32) -> BackdropOut {
     return BackdropOut(vec4f(at * 4.0 - 1.0, 1.0, 1.0), offset);
 }
 
-// A little noise hides the steps of the gradient in eight bits (Jimenez 2014, "interleaved gradient noise").
+// Hides 8-bit banding (Jimenez 2014, "interleaved gradient noise").
 fn dither(pixel: vec2f) -> f32 {
     return (fract(52.9829189 * fract(dot(pixel, vec2f(0.06711056, 0.00583715)))) - 0.5) / 255.0;
 }

@@ -1,9 +1,9 @@
-// Puts the finished picture on the screen, pixel for pixel.
+// Copies the finished picture to the screen, pixel for pixel.
 
 @group(0) @binding(0) var picture: texture_2d<f32>;
 @group(0) @binding(1) var picture_sampler: sampler;
 
-// The screen's format encodes what is written to it, and the picture is encoded already.
+// Whether the target format encodes sRGB on write; the picture is already encoded, so it is decoded first.
 override ENCODING_TARGET: bool = false;
 
 struct BlitOut {

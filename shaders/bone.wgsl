@@ -1,7 +1,7 @@
-// Bones as tapered octahedra with a ball at the joint, one instance each.
+// Bones: instanced tapered octahedra with a ball at the joint.
 
 struct BoneIn {
-    // xyz of the unit shape; for octahedra y runs from head (0) to tail (1).
+    // Position on the unit shape; an octahedron's y runs from head (0) to tail (1).
     @location(0) position: vec3f,
     // w: 0 octahedron, 1 ball.
     @location(1) normal: vec4f,
@@ -30,7 +30,7 @@ fn bone_vertex(in: BoneIn) -> BoneOut {
     let size = select(vec3f(in.radius, bone_length, in.radius), vec3f(in.radius), ball);
     let offset = in.position * size;
     let world = in.head + x * offset.x + y * offset.y + z * offset.z;
-    // Normals of a stretched shape go by the inverse of its size.
+    // Normals scale by the inverse of the shape's size.
     let unit = in.normal.xyz / max(size, vec3f(1e-30));
     var out: BoneOut;
     out.position = frame.projection_from_world * vec4f(world, 1.0);

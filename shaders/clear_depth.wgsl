@@ -1,4 +1,4 @@
-// Puts the depth back to far, so that what follows is drawn through everything before it.
+// Resets the depth buffer to far, so that everything drawn afterwards is on top.
 
 @vertex
 fn full_screen(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4f {

@@ -1,4 +1,4 @@
-// What is the same for all of a picture. Mirrored by src/render/uniforms.rs; a test compares the layouts.
+// Uniforms of a frame. Mirrored by src/render/uniforms.rs; a test compares the layouts.
 
 const MAX_LIGHTS: u32 = 8u;
 
@@ -9,7 +9,7 @@ struct Light {
     color: vec3f,
     // 0 directional, 1 point, 2 spot.
     kind: u32,
-    // The way the light travels.
+    // Direction in which the light travels.
     direction: vec3f,
     spot_scale: f32,
     spot_offset: f32,
@@ -23,22 +23,22 @@ struct Frame {
     viewport_pixels: vec2f,
     light_count: u32,
     padding: u32,
-    // Cosine and sine of the environment's turn about Y.
+    // Cosine and sine of the environment's rotation about Y.
     environment: vec2f,
-    // Edge of a texel of the shadow map, in metres.
+    // Size of a shadow-map texel in metres.
     shadow_texel: f32,
-    // Index into `lights` of the light that casts the shadow; 0xffffffff: none of them.
+    // Index into `lights` of the light that casts the shadow; 0xffffffff for none.
     shadow_light: u32,
-    // Towards the key light.
+    // Direction to the key light.
     key_direction: vec3f,
-    // 0 to 1, on the ground.
+    // Opacity of the shadow on the ground.
     ground_shadow: f32,
     key_color: vec3f,
     grid_spacing: f32,
-    // Centre on the ground plane, w: where the grid has faded out (0: no grid).
+    // Center on the ground plane; w is the radius at which the grid has faded out (0: no ground).
     ground: vec4f,
-    // What the shadow map sees of the ground plane is a parallelogram: its middle, from the middle of the ground, and half
-    // of its two edges. x and z.
+    // The shadow map covers a parallelogram of the ground plane: x and z of its center, relative to the ground's, and
+    // of half its two edges.
     shadow_center: vec2f,
     shadow_x: vec2f,
     shadow_y: vec2f,

@@ -1,12 +1,12 @@
-// The ground: it only shows the grid and catches the shadow; everything else of it is clear.
+// The ground: transparent except for the grid and the shadow.
 
 struct GroundOut {
     @builtin(position) position: vec4f,
-    // From the middle of the ground, metres.
+    // From the center of the ground, metres.
     @location(0) offset: vec2f,
 }
 
-// Few where pixels are drawn by the CPU.
+// Fewer on software adapters.
 override SHADOW_TAPS: u32 = 12u;
 
 fn ground_out(offset: vec2f) -> GroundOut {
@@ -20,19 +20,19 @@ fn ground_fade(offset: vec2f) -> f32 {
 
 @vertex
 fn grid_vertex(@builtin(vertex_index) vertex: u32) -> GroundOut {
-    // An octagon as a fan of six triangles around its first corner.
+    // An octagon as a fan of six triangles.
     let corner = select(vertex / 3u + vertex % 3u, 0u, vertex % 3u == 0u);
     let angle = f32(corner) * 0.78539816 + 0.39269908;
     return ground_out(frame.ground.w * 1.0824 * vec2f(cos(angle), -sin(angle)));
 }
 
-// How much of a pixel the lines of a grid cover; lines are `width` pixels wide.
+// Coverage of a pixel by grid lines `width` pixels wide.
 fn grid_lines(at: vec2f, per_pixel: vec2f, spacing: f32, width: f32) -> f32 {
     let cells = at / spacing;
     let cells_per_pixel = per_pixel / spacing;
     let distance = abs(fract(cells - 0.5) - 0.5) / max(cells_per_pixel, vec2f(1e-9));
     let coverage = clamp(0.5 * width + 0.5 - distance, vec2f(0.0), vec2f(1.0));
-    // Lines closer than a few pixels turn to nothing rather than to noise.
+    // Fades out lines only a few pixels apart, which would alias.
     let fade = clamp(1.5 - 4.0 * cells_per_pixel, vec2f(0.0), vec2f(1.0));
     return max(coverage.x * fade.x, coverage.y * fade.y);
 }
@@ -55,7 +55,7 @@ fn grid_fragment(in: GroundOut) -> @location(0) vec4f {
     return vec4f(color * alpha, alpha);
 }
 
-// Only the part of the ground that the shadow map sees.
+// Covers only the part of the ground inside the shadow map.
 @vertex
 fn shadow_vertex(@builtin(vertex_index) vertex: u32) -> GroundOut {
     let right = vertex == 1u || vertex == 2u || vertex == 4u;
@@ -64,7 +64,7 @@ fn shadow_vertex(@builtin(vertex_index) vertex: u32) -> GroundOut {
         + frame.shadow_center);
 }
 
-// Taps in a spiral, each of four texels.
+// A spiral of taps, each filtering four texels.
 fn soft_shadow(world: vec3f, pixel: vec2f) -> f32 {
     let at = shadow_coordinates(world);
     let texel = 1.0 / vec2f(textureDimensions(shadow_map));

@@ -1,4 +1,4 @@
-// Light that reaches a surface: the studio environment, the key light with its shadow, the file's own lights.
+// Lighting: the studio environment, the key light with its shadow, and the file's own lights.
 
 @group(1) @binding(0) var environment: texture_cube<f32>;
 @group(1) @binding(1) var environment_sampler: sampler;
@@ -15,7 +15,7 @@ fn environment_from_world(direction: vec3f) -> vec3f {
     return vec3f(c * direction.x - s * direction.z, direction.y, s * direction.x + c * direction.z);
 }
 
-// What a white matte surface gives back under the environment.
+// Radiance reflected by a white diffuse surface.
 fn environment_diffuse(normal: vec3f) -> vec3f {
     let n = environment_from_world(normal);
     let sum = frame.irradiance[0].rgb
@@ -35,7 +35,7 @@ fn environment_specular(reflected: vec3f, roughness: f32) -> vec3f {
     return textureSampleLevel(environment, environment_sampler, direction, roughness * ENVIRONMENT_LAST_LEVEL).rgb;
 }
 
-// Factor and offset for the reflectance at normal incidence (Karis 2014, "Physically Based Shading on Mobile").
+// Scale and bias of the reflectance at normal incidence (Karis 2014, "Physically Based Shading on Mobile").
 fn environment_brdf(roughness: f32, normal_view: f32) -> vec2f {
     let r = roughness * vec4f(-1.0, -0.0275, -0.572, 0.022) + vec4f(1.0, 0.0425, 1.04, -0.04);
     let a = min(r.x * r.x, exp2(-9.28 * normal_view)) * r.x + r.y;
@@ -52,7 +52,7 @@ fn shadow_coordinates(world: vec3f) -> vec3f {
     return vec3f(0.5 + 0.5 * at.x, 0.5 - 0.5 * at.y, min(at.z, 1.0));
 }
 
-// Share of the shadow-casting light that reaches a point of a mesh.
+// Fraction of the shadow-casting light that reaches a point on a mesh.
 fn mesh_shadow(world: vec3f, normal: vec3f) -> f32 {
     let at = shadow_coordinates(world + 1.5 * frame.shadow_texel * normal);
     let texel = 1.0 / vec2f(textureDimensions(shadow_map));
@@ -71,8 +71,8 @@ struct Surface {
     normal_view: f32,
 }
 
-// Light given back towards the eye for light of colour 1 from a direction, times the cosine (GGX, height-correlated
-// Smith by Hammon's approximation, Schlick).
+// BRDF times the cosine for a light direction: GGX distribution, height-correlated Smith visibility (Hammon's
+// approximation), Schlick Fresnel.
 fn reflect_light(surface: Surface, to_light: vec3f) -> vec3f {
     let normal_light = dot(surface.normal, to_light);
     if normal_light <= 0.0 {
@@ -93,7 +93,7 @@ fn reflect_light(surface: Surface, to_light: vec3f) -> vec3f {
     return normal_light * (diffuse + min(distribution * visibility, 64.0) * fresnel);
 }
 
-// Colour of one of the file's lights at a point; `to_light` is set to where it comes from.
+// Radiance from one of the file's lights at a point; sets `to_light` to the direction to it.
 fn light_at(light: Light, world: vec3f, to_light: ptr<function, vec3f>) -> vec3f {
     if light.kind == 0u {
         *to_light = -light.direction;

@@ -1,4 +1,4 @@
-// Overlay lines: a screen-space quad for each, its width in pixels.
+// Overlay lines: one screen-space quad each, its width in pixels.
 
 struct LineIn {
     @location(0) from_world: vec3f,
@@ -10,11 +10,11 @@ struct LineIn {
 struct LineOut {
     @builtin(position) position: vec4f,
     @location(0) color: vec4f,
-    // Across the line in pixels, and half its width.
+    // Distance across the line and half its width, in pixels.
     @location(1) across: vec2f,
 }
 
-// The end, moved along the line until it is not behind the near plane.
+// Clips an end point to the near plane.
 fn before_near(end: vec4f, other: vec4f) -> vec4f {
     if end.z >= 0.0 || other.z <= end.z {
         return end;
@@ -32,7 +32,7 @@ fn line_vertex(@builtin(vertex_index) vertex: u32, in: LineIn) -> LineOut {
     let along = (b.xy / max(b.w, 1e-9) - a.xy / max(a.w, 1e-9)) * half_viewport;
     let length_pixels = length(along);
     let direction = select(vec2f(1.0, 0.0), along / max(length_pixels, 1e-9), length_pixels > 1e-6);
-    // Corners of two triangles: end 0 or 1, side −1 or 1. Half a pixel more on each side smooths the edge.
+    // Two triangles; half a pixel extra on each side for antialiasing.
     let at_end = vertex == 1u || vertex == 2u || vertex == 4u;
     let side = select(-1.0, 1.0, vertex == 2u || vertex == 4u || vertex == 5u);
     let half_width = 0.5 * in.width_pixels + 0.5;

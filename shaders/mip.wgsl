@@ -1,4 +1,4 @@
-// One mip level from the one above it. The hardware converts sRGB, so that averages are of light.
+// Downsamples a mip level. The hardware decodes sRGB, so averages are linear.
 
 @group(0) @binding(0) var above: texture_2d<f32>;
 @group(0) @binding(1) var above_sampler: sampler;

@@ -1,4 +1,4 @@
-// Morphing and skinning, the same as src/mesh/skinning.rs does on the CPU.
+// Morphing and skinning, equivalent to src/mesh/skinning.rs on the CPU.
 
 struct Draw {
     // First palette entry.
@@ -6,14 +6,14 @@ struct Draw {
     // First texel of the morph weights in the palette texture.
     morph_weights: u32,
     morph_count: u32,
-    // Texels per vertex and target: 1 positions, 2 and normals, 3 and tangents.
+    // Texels per vertex and target: 1 position, 2 also normal, 3 also tangent.
     morph_attributes: u32,
     vertices: u32,
-    // Pairs per vertex of the influence texture.
+    // Influences per vertex in the influence texture.
     influence_stride: u32,
-    // The joint whose weight is shown; 0xffffffff: none.
+    // Joint of the heat map; 0xffffffff for none.
     heat_joint: u32,
-    // sRGB, of the wireframe.
+    // Wireframe colour, sRGB.
     color: vec4f,
 }
 
@@ -42,7 +42,7 @@ struct Blend {
     translation: vec3f,
 }
 
-// A weighted sum of palette entries, texel by texel.
+// Weighted sum of palette entries, per texel.
 struct Sum {
     a: vec4f,
     b: vec4f,
@@ -55,7 +55,7 @@ fn load_vertex_texel(source: texture_2d<f32>, index: u32) -> vec4f {
     return textureLoad(source, vec2i(i32(index & (VERTEX_TEXTURE_WIDTH - 1u)), i32(index >> VERTEX_TEXTURE_SHIFT)), 0);
 }
 
-// Rotation of the first entry: q and −q are the same rotation, and all are brought to its hemisphere.
+// Rotation of the first joint. q and −q are the same rotation, so all are flipped into its hemisphere.
 fn pivot_of(joint: u32) -> vec4f {
     if SKINNING == MODE_DUAL_QUATERNION {
         return palette_row(draw.palette + joint, 0u);
@@ -63,7 +63,7 @@ fn pivot_of(joint: u32) -> vec4f {
     return vec4f();
 }
 
-// Without branches, all sides of which software renderers run: influences that are not used name the first joint again.
+// Branch-free, because software renderers execute both sides of a branch: unused influences repeat the first joint.
 fn add_influence(sum: Sum, pivot: vec4f, joint: u32, weight: f32) -> Sum {
     let entry = draw.palette + joint;
     let first = palette_row(entry, 0u);
@@ -127,7 +127,7 @@ fn normalize_or_zero(vector: vec3f) -> vec3f {
 }
 
 fn blend_normal(blend: Blend, normal: vec3f) -> vec3f {
-    // The cofactor matrix is the inverse transpose times the determinant: no division, and right for flat scales.
+    // The cofactor matrix is the inverse transpose times the determinant: it needs no division and handles zero scales.
     let m = blend.linear;
     let cofactor = mat3x3f(cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1]));
     let side = select(1.0, -1.0, dot(m[0], cofactor[0]) < 0.0);
@@ -150,7 +150,7 @@ fn morph(vertex: u32, base: Shape) -> Shape {
     return shape;
 }
 
-// From mesh space to the space the palette was made for.
+// From mesh space to the palette's target space.
 fn deform(vertex: u32, base: Shape, blend: Blend) -> Shape {
     let shape = morph(vertex, base);
     return Shape(
@@ -175,7 +175,7 @@ fn blend_8(joints_0: vec4u, weights_0: vec4f, joints_1: vec4u, weights_1: vec4f)
     return blend_from_sum(add_4(add_4(Sum(), pivot, joints_0, weights_0), pivot, joints_1, weights_1));
 }
 
-// Two influences to a texel: joint, weight, joint, weight.
+// Two influences per texel: joint, weight, joint, weight.
 fn influence_pair(vertex: u32, pair: u32) -> vec4f {
     return load_vertex_texel(influences, vertex * (draw.influence_stride / 2u) + pair);
 }
@@ -195,7 +195,7 @@ fn blend_texture(vertex: u32) -> Blend {
     return blend_from_sum(sum);
 }
 
-// How hard the chosen joint pulls.
+// Weight of the heat map's joint.
 fn heat_4(joints: vec4u, weights: vec4f) -> f32 {
     return dot(weights, select(vec4f(0.0), vec4f(1.0), joints == vec4u(draw.heat_joint)));
 }

@@ -1,5 +1,4 @@
-// Fragment stages of meshes: metallic-roughness, unlit, weights, wireframe. The overrides leave out what a material
-// does not have.
+// Fragment stages of meshes: metallic-roughness, unlit, heat map, wireframe, shadow. Overrides remove unused features.
 
 override BASE_COLOR_MAP: bool = false;
 override METALLIC_ROUGHNESS_MAP: bool = false;
@@ -7,17 +6,17 @@ override NORMAL_MAP: bool = false;
 override OCCLUSION_MAP: bool = false;
 override EMISSIVE_MAP: bool = false;
 override VERTEX_COLORS: bool = false;
-// No normals: they come from the drawn triangles.
+// Derives normals from the drawn triangles.
 override FLAT: bool = false;
 override TANGENTS: bool = false;
 override MASK: bool = false;
 override BLEND: bool = false;
 override SHADOW: bool = false;
-// The file's own lights instead of the key light.
+// Uses the file's lights instead of the key light.
 override FILE_LIGHTS: bool = false;
 
 struct UvTransform {
-    // Columns of the 2×2 part.
+    // Columns of the 2×2 matrix.
     matrix: vec4f,
     offset: vec2f,
     // 0 or 1.
@@ -72,7 +71,7 @@ fn emissive(in: VertexOut) -> vec3f {
     return material.emissive;
 }
 
-// From linear to the picture's colours, premultiplied. Masked parts are cut out here, after every texture has been read.
+// Encodes and premultiplies. The alpha test comes last, because textures must be sampled in uniform control flow.
 fn finish(display: vec3f, alpha: f32) -> vec4f {
     let color = srgb_from_linear(display);
     if MASK && alpha < material.alpha_cutoff {
@@ -109,8 +108,8 @@ fn surface_normal(in: VertexOut, front: bool) -> vec3f {
             tangent = side * normalize_or_zero(in.tangent.xyz);
             bitangent = in.tangent.w * cross(normal, tangent);
         } else {
-            // The directions in which the texture coordinates grow, turned around: the screen's y points down (Schüler,
-            // "Followup: Normal Mapping Without Precomputed Tangents").
+            // Cotangent frame from screen-space derivatives (Schüler, "Followup: Normal Mapping Without Precomputed
+            // Tangents"), negated because the screen's y axis points down.
             let across = -dpdx(in.to_eye);
             let down = -dpdy(in.to_eye);
             let uv_across = dpdx(uv);
@@ -118,7 +117,7 @@ fn surface_normal(in: VertexOut, front: bool) -> vec3f {
             let a = cross(down, normal);
             let b = cross(normal, across);
             tangent = -(a * uv_across.x + b * uv_down.x);
-            // glTF's v points down as well, its bitangent up.
+            // glTF's v axis points down, its bitangent up.
             bitangent = a * uv_across.y + b * uv_down.y;
             let scale = inverseSqrt(max(max(dot(tangent, tangent), dot(bitangent, bitangent)), 1e-38));
             tangent *= scale;
@@ -188,7 +187,7 @@ fn unlit(in: VertexOut) -> @location(0) vec4f {
     return finish(base.rgb + emissive(in), base.a);
 }
 
-// Grey-blue where the joint does not pull at all, then blue, green, yellow, red.
+// Grey-blue for no weight, then blue, green, yellow, red.
 fn heat_color(weight: f32) -> vec3f {
     let blue = vec3f(0.03, 0.16, 0.75);
     let green = vec3f(0.04, 0.55, 0.16);
@@ -204,7 +203,7 @@ fn heat_color(weight: f32) -> vec3f {
 fn heat(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let alpha = base_color(in).a;
     let normal = surface_normal(in, front);
-    // Just enough shading to read the shape.
+    // Just enough shading to convey the shape.
     let shade = 0.45 + 0.55 * clamp(dot(normal, normalize(in.to_eye)), 0.0, 1.0);
     return finish(shade * heat_color(in.heat), alpha);
 }
@@ -214,7 +213,7 @@ fn wireframe(in: VertexOut) -> @location(0) vec4f {
     return vec4f(draw.color.rgb * draw.color.a, draw.color.a);
 }
 
-// Into the shadow map: only the holes of masked materials.
+// Shadow pass: cuts out the holes of masked and blended materials.
 @fragment
 fn shadow_mask(in: VertexOut) {
     if base_color(in).a < material.alpha_cutoff {

@@ -1,5 +1,5 @@
-// Khronos PBR Neutral tone mapping and the sRGB curve, both applied where a surface is drawn: colours mix as they are
-// shown (as in three.js), edges are smooth beside bright light, and no pass over the whole picture is needed.
+// Khronos PBR Neutral tone mapping and sRGB encoding. Both run in the surface shaders, so blending happens on encoded
+// values (as in three.js), edges next to bright light stay smooth, and no full-screen pass is needed.
 
 const TONE_START: f32 = 0.76;
 const TONE_DESATURATION: f32 = 0.15;

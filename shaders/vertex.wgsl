@@ -1,4 +1,4 @@
-// Vertex stages of meshes: one for each way a vertex has its influences, for the picture and for the shadow map.
+// Vertex stages of meshes: one per source of influences, for the scene pass and for the shadow pass.
 
 struct VertexIn {
     @builtin(vertex_index) vertex: u32,
@@ -24,7 +24,8 @@ struct Influences8 {
 
 struct VertexOut {
     @builtin(position) position: vec4f,
-    // From the surface to the eye, in world space: small numbers keep derivatives exact far from the origin.
+    // World-space vector to the eye. Unlike positions it stays small far from the origin, which keeps derivatives
+    // precise.
     @location(0) to_eye: vec3f,
     @location(1) normal: vec3f,
     @location(2) tangent: vec4f,
@@ -33,7 +34,7 @@ struct VertexOut {
     @location(5) heat: f32,
 }
 
-// Of depth, towards the viewer: wireframe lies on the surface.
+// Depth offset towards the viewer, which keeps the wireframe in front of its surface.
 override DEPTH_OFFSET: f32 = 0.0;
 
 fn vertex_out(in: VertexIn, blend: Blend, heat: f32) -> VertexOut {
@@ -50,7 +51,7 @@ fn vertex_out(in: VertexIn, blend: Blend, heat: f32) -> VertexOut {
     return out;
 }
 
-// Into the shadow map, where nothing but the place matters.
+// For the shadow pass, which needs only positions.
 fn position_out(in: VertexIn, blend: Blend) -> vec4f {
     let position = morph(in.vertex, Shape(in.position, in.normal, in.tangent.xyz)).position;
     let moved = rotate(blend.rotation, blend.linear * position) + blend.translation;

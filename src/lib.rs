@@ -14,6 +14,7 @@ pub mod frame;
 pub mod library;
 pub mod mesh;
 pub mod retarget;
+pub mod samples;
 pub mod state;
 
 #[cfg(feature = "render")]

@@ -1,5 +1,5 @@
-//! Timing for the benches: many short rounds. No statistics beyond that; compare figures of one run on one machine, the
-//! fastest rounds on a busy one.
+//! Timing for the benches: median and minimum of many short rounds. Compare only figures of one run on one machine; on a busy
+//! machine, the minimum.
 
 #[path = "../../tests/support/data_folder.rs"]
 pub mod data_folder;
@@ -12,14 +12,13 @@ use gaitway::formats::{FileSet, missing_files};
 const ROUNDS: usize = 41;
 const ROUND: Duration = Duration::from_millis(12);
 
-/// Nanoseconds that one call took.
+/// Nanoseconds per call.
 pub struct Nanos {
     pub median: f64,
     pub fastest: f64,
 }
 
-/// Runs `work` often. `cargo test --benches` and the like pass
-/// `--test`: then it runs once, to see that it works.
+/// Times `work`. With `--test`, which `cargo test --benches` passes, it runs once to check that it works.
 pub fn measure(mut work: impl FnMut()) -> Nanos {
     let once = Instant::now();
     work();
@@ -38,7 +37,7 @@ pub fn measure(mut work: impl FnMut()) -> Nanos {
         calls =
             (f64::from(calls) * (ROUND.as_secs_f64() / spent.as_secs_f64().max(1e-9)).clamp(1.2, 50.0)).ceil() as u32;
     }
-    // What takes long by itself is not repeated as often.
+    // Slow work gets fewer rounds.
     let start = Instant::now();
     let mut nanos = Vec::new();
     while nanos.len() < ROUNDS && (nanos.len() < 5 || start.elapsed() < Duration::from_secs(2)) {
@@ -50,7 +49,7 @@ pub fn measure(mut work: impl FnMut()) -> Nanos {
     Nanos { median: nanos[nanos.len() / 2], fastest: nanos[0] }
 }
 
-/// A model on disk and the files it names beside itself.
+/// Reads a model and the files it references.
 #[allow(dead_code)]
 pub fn files_of(path: &Path) -> Option<FileSet> {
     let mut files = FileSet::default();

@@ -1,88 +1,12 @@
-//! Animation clips: channels of keys as they were given, over one skeleton. Nothing is resampled. How they are read at a
-//! time is `sampler`'s matter.
+//! Animation clips: keyframe channels for one skeleton, stored exactly as loaded. Sampling lives in `sampler`.
 
 use std::collections::HashMap;
 
-use glam::{Quat, Vec3};
-
+use super::channel::{Channel, ChannelError, Interpolation, Keys};
 use super::sampler::Sampler;
 use super::{JointIndex, Pose, Skeleton};
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Interpolation {
-    Step,
-    Linear,
-    /// Hermite splines: three values per key (in-tangent, value, out-tangent), tangents per second.
-    CubicSpline,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Property {
-    Translation,
-    Rotation,
-    Scale,
-    MorphWeights,
-}
-
-/// Key values of one channel. CUBICSPLINE has three entries per key: in-tangent, value, out-tangent.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Keys {
-    Translation(Vec<Vec3>),
-    Rotation(Vec<Quat>),
-    Scale(Vec<Vec3>),
-    /// Per entry one weight for each morph target, targets fastest.
-    MorphWeights {
-        values: Vec<f32>,
-        targets: usize,
-    },
-}
-
-impl Keys {
-    pub fn property(&self) -> Property {
-        match self {
-            Self::Translation(_) => Property::Translation,
-            Self::Rotation(_) => Property::Rotation,
-            Self::Scale(_) => Property::Scale,
-            Self::MorphWeights { .. } => Property::MorphWeights,
-        }
-    }
-
-    /// How many values there are, and how many of them make one entry.
-    fn count(&self) -> (usize, usize) {
-        match self {
-            Self::Translation(values) | Self::Scale(values) => (values.len(), 1),
-            Self::Rotation(values) => (values.len(), 1),
-            Self::MorphWeights { values, targets } => (values.len(), *targets),
-        }
-    }
-}
-
-#[derive(Debug, Clone, PartialEq)]
-pub struct Channel {
-    pub joint: JointIndex,
-    pub interpolation: Interpolation,
-    /// Index into [`Clip::timelines`].
-    pub timeline: u32,
-    pub keys: Keys,
-}
-
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum ChannelError {
-    #[error("there are no keys")]
-    NoKeys,
-    #[error("key {key} is at {time_secs} s, which is not after the key before it ({before_secs} s)")]
-    TimesNotIncreasing { key: usize, time_secs: f32, before_secs: f32 },
-    #[error("key {key} has a time that is not a number of seconds from 0 up: {time_secs}")]
-    BadTime { key: usize, time_secs: f32 },
-    #[error("{expected} values were expected for {keys} keys, found {found}")]
-    ValueCount { keys: usize, expected: usize, found: usize },
-    #[error("joint {joint} is not one of the {count} joints")]
-    NoSuchJoint { joint: usize, count: usize },
-    #[error("the mesh on this joint has {expected} morph targets, the keys have {found}")]
-    MorphTargetCount { expected: usize, found: usize },
-}
-
-/// A named set of channels over one skeleton. Immutable once built.
+/// A named set of channels for one skeleton. Immutable once built.
 #[derive(Debug, Clone)]
 pub struct Clip {
     name: String,
@@ -92,7 +16,7 @@ pub struct Clip {
     sampler: Sampler,
 }
 
-/// Where the last sample was found in each timeline: makes forward playback cheap. Any cursor gives the same result.
+/// Caches the last segment of each timeline to make forward playback cheap. It never affects the result.
 #[derive(Debug, Clone, Default)]
 pub struct SampleCursor {
     pub(super) segments: Vec<u32>,
@@ -104,7 +28,7 @@ pub struct ClipBuilder<'a> {
     name: String,
     duration_secs: f32,
     timelines: Vec<Vec<f32>>,
-    /// The timeline with these times, as bits.
+    /// Timelines by the bit patterns of their times.
     timeline_of: HashMap<Vec<u32>, u32>,
     channels: Vec<Channel>,
 }
@@ -121,9 +45,9 @@ impl<'a> ClipBuilder<'a> {
         }
     }
 
-    /// Adds a channel. `times_secs` are strictly increasing and not negative; `keys` has one entry per key, three for
-    /// CUBICSPLINE. Rotations need not be of unit length: they are made so where they are read. Of several channels for
-    /// one property of a joint the last counts.
+    /// Adds a channel. `times_secs` must be non-negative and strictly increasing; `keys` has one entry per key, three
+    /// for CUBICSPLINE. Rotations are normalized when sampled. If a property of a joint has several channels, the last
+    /// one wins.
     pub fn channel(
         &mut self,
         joint: JointIndex,
@@ -134,17 +58,7 @@ impl<'a> ClipBuilder<'a> {
         if joint.get() >= self.skeleton.len() {
             return Err(ChannelError::NoSuchJoint { joint: joint.get(), count: self.skeleton.len() });
         }
-        let Some(&last_secs) = times_secs.last() else { return Err(ChannelError::NoKeys) };
-        let mut before_secs = None;
-        for (key, &time_secs) in times_secs.iter().enumerate() {
-            if !time_secs.is_finite() || time_secs < 0.0 {
-                return Err(ChannelError::BadTime { key, time_secs });
-            }
-            if let Some(before_secs) = before_secs.filter(|&before| time_secs <= before) {
-                return Err(ChannelError::TimesNotIncreasing { key, time_secs, before_secs });
-            }
-            before_secs = Some(time_secs);
-        }
+        let last_secs = check_times(times_secs)?;
         if let Keys::MorphWeights { targets, .. } = &keys {
             let expected = self.skeleton.morph_range(joint).len();
             if *targets != expected || expected == 0 {
@@ -174,7 +88,24 @@ impl<'a> ClipBuilder<'a> {
     }
 }
 
+/// Returns the last time.
+fn check_times(times_secs: &[f32]) -> Result<f32, ChannelError> {
+    let mut before_secs = None;
+    for (key, &time_secs) in times_secs.iter().enumerate() {
+        if !time_secs.is_finite() || time_secs < 0.0 {
+            return Err(ChannelError::BadTime { key, time_secs });
+        }
+        if let Some(before_secs) = before_secs.filter(|&before| time_secs <= before) {
+            return Err(ChannelError::TimesNotIncreasing { key, time_secs, before_secs });
+        }
+        before_secs = Some(time_secs);
+    }
+    before_secs.ok_or(ChannelError::NoKeys)
+}
+
 impl Clip {
+    pub const DEFAULT_FRAMES_PER_SEC: f64 = 30.0;
+
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -184,7 +115,7 @@ impl Clip {
         self.duration_secs
     }
 
-    /// Distinct lists of key times, in seconds, strictly increasing.
+    /// Distinct lists of key times, in strictly increasing seconds.
     pub fn timelines(&self) -> &[Vec<f32>] {
         &self.timelines
     }
@@ -193,10 +124,23 @@ impl Clip {
         &self.channels
     }
 
-    /// Writes the values at `time_secs` into `pose`; what no channel drives is left as it is, so start from the rest
-    /// pose. Before the first key the first value holds, after the last key the last one. `skeleton` is the one the clip
-    /// was built for and `pose` has its size. Allocates only when a cursor meets a clip with more timelines than any before.
+    /// Samples the clip at `time_secs` into `pose`, leaving properties without a channel alone: start from the rest pose.
+    /// Times outside the keys hold the first or the last value. `skeleton` is the one the clip was built for, and `pose`
+    /// has its size. Allocates only if the clip has more timelines than any clip sampled with this cursor before.
     pub fn sample(&self, skeleton: &Skeleton, time_secs: f32, cursor: &mut SampleCursor, pose: &mut Pose) {
-        self.sampler.sample(self, skeleton, time_secs, &mut cursor.segments, pose);
+        self.sampler.sample(&self.timelines, &self.channels, skeleton, time_secs, &mut cursor.segments, pose);
+    }
+
+    /// Estimates the frame rate the keys were authored at; [`Clip::DEFAULT_FRAMES_PER_SEC`] if their times do not tell.
+    pub fn frames_per_sec(&self) -> f64 {
+        const COMMON: [f64; 8] = [Clip::DEFAULT_FRAMES_PER_SEC, 24.0, 25.0, 60.0, 50.0, 48.0, 120.0, 100.0];
+        const MAX_KEYS: usize = 4096;
+        let on_frames = |rate: f64| {
+            self.timelines.iter().flatten().take(MAX_KEYS).all(|&time| {
+                let frame = f64::from(time) * rate;
+                (frame - frame.round()).abs() < 0.02
+            })
+        };
+        COMMON.into_iter().find(|&rate| on_frames(rate)).unwrap_or(Self::DEFAULT_FRAMES_PER_SEC)
     }
 }

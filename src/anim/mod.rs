@@ -1,5 +1,6 @@
-//! Skeletons, poses and clips: what moves and when. Knows no file, GPU, user interface or clock.
+//! Skeletons, poses and clips. Independent of files, GPU, user interface and clock.
 
+mod channel;
 mod clip;
 mod playback;
 mod polar;
@@ -8,7 +9,8 @@ mod sampler;
 mod skeleton;
 mod transform;
 
-pub use clip::{Channel, ChannelError, Clip, ClipBuilder, Interpolation, Keys, Property, SampleCursor};
+pub use channel::{Channel, ChannelError, Interpolation, Keys, Property};
+pub use clip::{Clip, ClipBuilder, SampleCursor};
 pub use playback::{LoopMode, TimeRange, clip_time};
 pub use polar::nearest_rotation;
 pub use pose::{Pose, model_from_joint};

@@ -1,4 +1,4 @@
-//! From a running playhead to a time inside a clip. No clock: whoever has one advances the playhead.
+//! Maps a running playhead to a time inside a clip. Callers with a clock advance the playhead.
 
 use serde::{Deserialize, Serialize};
 
@@ -24,8 +24,8 @@ impl TimeRange {
     }
 }
 
-/// Clip time for a playhead that runs freely (it may be negative, or many loops on). The playhead and the result are in
-/// clip seconds: inside the range they are equal. `Once` clamps; a range without length gives its start.
+/// Returns the clip time of an unbounded playhead, which may be negative or many loops ahead. Both are in clip seconds
+/// and equal inside the range. `Once` clamps; an empty range gives its start.
 pub fn clip_time(playhead_secs: f64, range: TimeRange, mode: LoopMode) -> f64 {
     let length = range.length_secs();
     if !playhead_secs.is_finite() || length <= 0.0 {
@@ -34,7 +34,7 @@ pub fn clip_time(playhead_secs: f64, range: TimeRange, mode: LoopMode) -> f64 {
     let offset = playhead_secs - range.start_secs;
     let inside = match mode {
         LoopMode::Once => offset.clamp(0.0, length),
-        // The out point itself is shown, so that scrubbing to the end does not jump to the start.
+        // Includes the out point, so that scrubbing to the end does not jump to the start.
         LoopMode::Loop if (0.0..=length).contains(&offset) => offset,
         LoopMode::Loop => offset.rem_euclid(length),
         LoopMode::PingPong => {

@@ -1,11 +1,11 @@
-//! One local transform per joint, and the walk from local to model space.
+//! Poses, and the conversion from local to model space.
 
 use glam::Affine3A;
 
 use super::{Skeleton, Transform};
 
-/// What a clip writes and skinning reads: local transforms, and the weights of all morph targets one mesh after the
-/// other (see [`Skeleton::morph_range`]).
+/// The output of sampling and the input of skinning: one local transform per joint, and the morph weights of all meshes,
+/// concatenated (see [`Skeleton::morph_range`]).
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Pose {
     pub locals: Vec<Transform>,
@@ -13,19 +13,19 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// Copies another pose without allocating when the sizes agree.
+    /// Copies another pose, without allocating if the sizes match.
     pub fn copy_from(&mut self, other: &Pose) {
         self.locals.clone_from(&other.locals);
         self.morph_weights.clone_from(&other.morph_weights);
     }
 
-    /// Turns `self` into a mixture: `weight` 1 leaves it as it is, 0 makes it `other`. Rotations take the shorter way, at
-    /// nearly constant speed. Both have the same skeleton.
+    /// Blends towards another pose of the same skeleton: weight 1 keeps `self`, 0 gives `other`. Rotations take the
+    /// shorter arc at nearly constant speed.
     pub fn blend(&mut self, other: &Pose, weight: f32) {
         for (local, other) in self.locals.iter_mut().zip(&other.locals) {
             local.translation = other.translation.lerp(local.translation, weight);
             local.scale = other.scale.lerp(local.scale, weight);
-            // Rotations may be unnormalised splines by a hair; `lerp` minds the sign and makes them unit again.
+            // `Quat::lerp` takes the shorter arc and normalizes.
             local.rotation = other.rotation.lerp(local.rotation, weight);
         }
         for (own, other) in self.morph_weights.iter_mut().zip(&other.morph_weights) {
@@ -34,8 +34,8 @@ impl Pose {
     }
 }
 
-/// Model-space transform of every joint. `locals` and `out` have one entry per joint; joints without a parent are
-/// placed by `world_from_model`, so passing identity gives model space.
+/// Computes the transform of every joint. `locals` and `out` have one entry per joint. `world_from_model` is applied to
+/// root joints; identity gives model space.
 pub fn model_from_joint(
     skeleton: &Skeleton,
     locals: &[Transform],

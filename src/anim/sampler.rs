@@ -1,25 +1,25 @@
-//! Reading a clip at a time, exactly as glTF 2.0 §3.11 and appendix C say, and quickly.
+//! Samples clips as defined in glTF 2.0 §3.11 and appendix C, optimized for playback.
 //!
-//! Most channels of real clips are LINEAR and many share their key times. Those lie here a second time, key by key: one row
-//! holds the values of all of a timeline's channels at one key, so that one search and two neighbouring rows serve them all.
-//! Rotations are already of unit length there and on one side of the sphere, and channels that never change are apart.
-//! The rest (STEP, CUBICSPLINE, morph weights) is read from the clip's own keys.
+//! Most channels of real clips are LINEAR, and many share their key times. Their values are stored here a second time,
+//! key by key: a row holds the values of all channels of a timeline at one key, so one search and two adjacent rows
+//! serve them all. Rotations in rows are normalized and in a consistent hemisphere. Constant channels are kept apart.
+//! Everything else (STEP, CUBICSPLINE, morph weights) is read from the clip's own keys.
 
 use glam::{Quat, Vec3, Vec3A, Vec4};
 
-use super::clip::{Channel, Clip, Interpolation, Keys};
+use super::channel::{Channel, Interpolation, Keys};
 use super::{JointIndex, Pose, Skeleton};
 
 #[derive(Debug, Clone, Default)]
 pub(super) struct Sampler {
-    still: Still,
-    /// One for each of the clip's timelines.
+    constants: Constants,
+    /// One per timeline of the clip.
     timelines: Vec<TimelineTracks>,
 }
 
-/// What is the same at every time.
+/// Values of the channels that never change.
 #[derive(Debug, Clone, Default)]
-struct Still {
+struct Constants {
     translations: Vec<(JointIndex, Vec3)>,
     rotations: Vec<(JointIndex, Quat)>,
     scales: Vec<(JointIndex, Vec3)>,
@@ -31,34 +31,35 @@ struct TimelineTracks {
     translations: VectorTracks,
     scales: VectorTracks,
     rotations: RotationTracks,
-    /// Places in the clip's list of channels.
+    /// Indices of the clip's channels that are not in rows.
     others: Vec<u32>,
 }
 
-/// LINEAR channels: row `key` of `rows` has one value for each of `joints`.
+/// LINEAR channels: row `key` of `rows` has one value per joint of `joints`.
 #[derive(Debug, Clone, Default)]
 struct VectorTracks {
     joints: Vec<JointIndex>,
     rows: Vec<Vec3A>,
 }
 
-/// LINEAR channels, in groups of four. Neighbouring rows are at most a right angle apart (as 4-vectors), so that the short
-/// way is the straight one.
+/// LINEAR channels in groups of four. Adjacent rows are at most a right angle apart (as 4-vectors), so the shortest arc
+/// is the direct one.
 #[derive(Debug, Clone, Default)]
 struct RotationTracks {
     joints: Vec<JointIndex>,
     rows: Vec<[Quat; 4]>,
-    /// Cosine of the angle to the next row less 1, from -1 to 0; four channels a vector.
-    turns: Vec<Vec4>,
+    /// Cosine of the angle to the next row minus 1, from -1 to 0, four channels to a vector.
+    cosines: Vec<Vec4>,
 }
 
-/// A joint with its translations or scales, one per key.
+/// A joint and its translations or scales, one per key.
 type VectorKeys<'a> = (JointIndex, &'a [Vec3]);
 
 impl Sampler {
-    /// `channels` are valid for `timelines`, as the builder made sure.
+    /// `channels` must be valid for `timelines`, which the builder ensures.
     pub(super) fn new(timelines: &[Vec<f32>], channels: &[Channel]) -> Self {
-        let mut sampler = Self { still: Still::default(), timelines: vec![TimelineTracks::default(); timelines.len()] };
+        let mut sampler =
+            Self { constants: Constants::default(), timelines: vec![TimelineTracks::default(); timelines.len()] };
         let mut vectors: Vec<[Vec<VectorKeys>; 2]> = vec![Default::default(); timelines.len()];
         let mut rotations: Vec<Vec<(JointIndex, Vec<Quat>)>> = vec![Vec::new(); timelines.len()];
         for (index, channel) in last_of_each_property(channels) {
@@ -66,11 +67,11 @@ impl Sampler {
             let keys = timelines[timeline].len();
             let joint = channel.joint;
             match &channel.keys {
-                Keys::Translation(values) if let Some(value) = still_vector(channel.interpolation, values) => {
-                    sampler.still.translations.push((joint, value));
+                Keys::Translation(values) if let Some(value) = constant_vector(channel.interpolation, values) => {
+                    sampler.constants.translations.push((joint, value));
                 }
-                Keys::Scale(values) if let Some(value) = still_vector(channel.interpolation, values) => {
-                    sampler.still.scales.push((joint, value));
+                Keys::Scale(values) if let Some(value) = constant_vector(channel.interpolation, values) => {
+                    sampler.constants.scales.push((joint, value));
                 }
                 Keys::Translation(values) if channel.interpolation == Interpolation::Linear => {
                     vectors[timeline][0].push((joint, values));
@@ -79,15 +80,15 @@ impl Sampler {
                     vectors[timeline][1].push((joint, values));
                 }
                 Keys::Rotation(values) if channel.interpolation == Interpolation::Linear => {
-                    let values = one_sided(values);
+                    let values = continuous(values);
                     match values[1..].iter().all(|value| *value == values[0]) {
-                        true => sampler.still.rotations.push((joint, values[0])),
+                        true => sampler.constants.rotations.push((joint, values[0])),
                         false => rotations[timeline].push((joint, values)),
                     }
                 }
                 Keys::Rotation(values) if keys == 1 => {
                     let value = if channel.interpolation == Interpolation::CubicSpline { values[1] } else { values[0] };
-                    sampler.still.rotations.push((joint, unit(value)));
+                    sampler.constants.rotations.push((joint, unit(value)));
                 }
                 _ => sampler.timelines[timeline].others.push(index as u32),
             }
@@ -101,25 +102,27 @@ impl Sampler {
         sampler
     }
 
+    /// `timelines` and `channels` are those the sampler was made from.
     pub(super) fn sample(
         &self,
-        clip: &Clip,
+        timelines: &[Vec<f32>],
+        channels: &[Channel],
         skeleton: &Skeleton,
         time_secs: f32,
         segments: &mut Vec<u32>,
         pose: &mut Pose,
     ) {
-        for &(joint, value) in &self.still.translations {
+        for &(joint, value) in &self.constants.translations {
             pose.locals[joint.get()].translation = value;
         }
-        for &(joint, value) in &self.still.rotations {
+        for &(joint, value) in &self.constants.rotations {
             pose.locals[joint.get()].rotation = value;
         }
-        for &(joint, value) in &self.still.scales {
+        for &(joint, value) in &self.constants.scales {
             pose.locals[joint.get()].scale = value;
         }
         segments.resize(self.timelines.len(), 0);
-        for ((tracks, times), segment) in self.timelines.iter().zip(clip.timelines()).zip(segments) {
+        for ((tracks, times), segment) in self.timelines.iter().zip(timelines).zip(segments) {
             *segment = find_segment(times, time_secs, *segment as usize) as u32;
             let at = Segment::new(times, *segment as usize, time_secs);
             let locals = &mut pose.locals[..];
@@ -127,13 +130,13 @@ impl Sampler {
             tracks.scales.sample(&at, |joint, value| locals[joint.get()].scale = value);
             tracks.rotations.sample(&at, |joint, value| locals[joint.get()].rotation = value);
             for &index in &tracks.others {
-                sample_channel(&clip.channels()[index as usize], &at, skeleton, pose);
+                sample_channel(&channels[index as usize], &at, skeleton, pose);
             }
         }
     }
 }
 
-/// Channels in their order, with their places, without those that a later one for the same property overrides.
+/// Returns the channels with their indices, in order, without those that a later channel for the same property overrides.
 fn last_of_each_property(channels: &[Channel]) -> Vec<(usize, &Channel)> {
     let mut seen = std::collections::HashSet::new();
     let new = |(_, channel): &(usize, &Channel)| seen.insert((channel.joint, channel.keys.property()));
@@ -142,8 +145,8 @@ fn last_of_each_property(channels: &[Channel]) -> Vec<(usize, &Channel)> {
     kept
 }
 
-/// The value that a channel has at every time, if it has.
-fn still_vector(interpolation: Interpolation, values: &[Vec3]) -> Option<Vec3> {
+/// Returns the value of a channel that never changes.
+fn constant_vector(interpolation: Interpolation, values: &[Vec3]) -> Option<Vec3> {
     match interpolation {
         Interpolation::Step | Interpolation::Linear => {
             let first = *values.first()?;
@@ -157,8 +160,8 @@ fn still_vector(interpolation: Interpolation, values: &[Vec3]) -> Option<Vec3> {
     }
 }
 
-/// Unit rotations, each on the same side of the sphere as the one before it.
-fn one_sided(values: &[Quat]) -> Vec<Quat> {
+/// Normalizes rotations and flips each into the hemisphere of the one before it.
+fn continuous(values: &[Quat]) -> Vec<Quat> {
     let mut values: Vec<Quat> = values.iter().map(|value| unit(*value)).collect();
     for key in 1..values.len() {
         if values[key - 1].dot(values[key]) < 0.0 {
@@ -168,7 +171,7 @@ fn one_sided(values: &[Quat]) -> Vec<Quat> {
     values
 }
 
-/// A rotation of unit length; one that is so up to rounding stays as it is, one without a direction is none.
+/// Normalizes a rotation. One that is normalized up to rounding is returned unchanged, a degenerate one becomes identity.
 fn unit(value: Quat) -> Quat {
     let length_squared = value.length_squared();
     if (length_squared - 1.0).abs() < 1e-6 {
@@ -193,14 +196,14 @@ impl VectorTracks {
     }
 }
 
-/// Below this, [`arc_polynomial`] is not good enough: 26 degrees as 4-vectors, 52 as rotations.
-const LEAST_TURN: f32 = -0.1;
+/// Below this, [`arc_polynomial`] is not accurate enough: 26 degrees as 4-vectors, 52 as rotations.
+const MIN_COSINE: f32 = -0.1;
 
 impl RotationTracks {
     fn new(keys: usize, channels: &[(JointIndex, Vec<Quat>)]) -> Self {
         let value = |at: usize, key: usize| channels.get(at).map_or(Quat::IDENTITY, |(_, values)| values[key]);
-        // In f64: the cosine of a small angle is close to 1.
-        let turn = |at: usize, key: usize| {
+        // In f64, because the cosine of a small angle is close to 1.
+        let cosine = |at: usize, key: usize| {
             let next = (key + 1).min(keys - 1);
             let cos = value(at, key).as_dquat().normalize().dot(value(at, next).as_dquat().normalize());
             (cos - 1.0).clamp(-1.0, 0.0) as f32
@@ -210,8 +213,8 @@ impl RotationTracks {
         Self {
             joints: channels.iter().map(|(joint, _)| *joint).collect(),
             rows: (0..keys).flat_map(|key| groups().map(move |at| lanes(at).map(|at| value(at, key)))).collect(),
-            turns: (0..keys)
-                .flat_map(|key| groups().map(move |at| Vec4::from(lanes(at).map(|at| turn(at, key)))))
+            cosines: (0..keys)
+                .flat_map(|key| groups().map(move |at| Vec4::from(lanes(at).map(|at| cosine(at, key)))))
                 .collect(),
         }
     }
@@ -220,14 +223,14 @@ impl RotationTracks {
     fn sample(&self, at: &Segment, mut write: impl FnMut(JointIndex, Quat)) {
         let groups = self.joints.len().div_ceil(4);
         let [from, to] = [at.key, at.next].map(|key| &self.rows[key * groups..][..groups]);
-        let turns = &self.turns[at.key * groups..][..groups];
+        let cosines = &self.cosines[at.key * groups..][..groups];
         let from_polynomial = arc_polynomial(1.0 - at.factor);
         let to_polynomial = arc_polynomial(at.factor);
-        for (((joints, from), to), &turns) in self.joints.chunks(4).zip(from).zip(to).zip(turns) {
-            let (from_weights, to_weights) = if turns.cmplt(Vec4::splat(LEAST_TURN)).any() {
-                (exact_weights(1.0 - at.factor, turns), exact_weights(at.factor, turns))
+        for (((joints, from), to), &cosines) in self.joints.chunks(4).zip(from).zip(to).zip(cosines) {
+            let (from_weights, to_weights) = if cosines.cmplt(Vec4::splat(MIN_COSINE)).any() {
+                (exact_weights(1.0 - at.factor, cosines), exact_weights(at.factor, cosines))
             } else {
-                (evaluate(&from_polynomial, turns), evaluate(&to_polynomial, turns))
+                (evaluate(&from_polynomial, cosines), evaluate(&to_polynomial, cosines))
             };
             let (from_weights, to_weights) = (from_weights.to_array(), to_weights.to_array());
             for (lane, &joint) in joints.iter().enumerate() {
@@ -238,8 +241,8 @@ impl RotationTracks {
 }
 
 /// `sin(factor · ω) / sin(ω)`, the weight of one end of an arc of angle ω, as a polynomial in `cos ω - 1`, lowest first
-/// (Eberly 2011, "A Fast and Accurate Algorithm for Computing SLERP"). The coefficients hang on the time alone, so they are
-/// made once for all channels. Exact at factors 0 and 1; elsewhere within 1e-8 down to [`LEAST_TURN`].
+/// (Eberly 2011, "A Fast and Accurate Algorithm for Computing SLERP"). The coefficients depend on the time only, so
+/// all channels share them. Exact at factors 0 and 1; elsewhere within 1e-8 down to [`MIN_COSINE`].
 fn arc_polynomial(factor: f32) -> [f32; 6] {
     let mut coefficients = [factor; 6];
     for i in 1..6 {
@@ -257,16 +260,16 @@ fn evaluate(polynomial: &[f32; 6], at: Vec4) -> Vec4 {
         .fold(Vec4::splat(polynomial[5]), |sum, &coefficient| sum * at + Vec4::splat(coefficient))
 }
 
-/// The same for any angle up to a right one, which neighbouring keys never exceed.
+/// The weights of [`arc_polynomial`], exact for any angle up to a right one, which adjacent keys never exceed.
 #[cold]
-fn exact_weights(factor: f32, turns: Vec4) -> Vec4 {
-    Vec4::from(turns.to_array().map(|turn| {
-        let angle = (1.0 + turn).acos();
+fn exact_weights(factor: f32, cosines: Vec4) -> Vec4 {
+    Vec4::from(cosines.to_array().map(|cosine| {
+        let angle = (1.0 + cosine).acos();
         if angle > 0.0 { (factor * angle).sin() / angle.sin() } else { factor }
     }))
 }
 
-/// STEP, CUBICSPLINE and morph weights, from the clip's own keys.
+/// Samples STEP, CUBICSPLINE and morph-weight channels from the clip's own keys.
 fn sample_channel(channel: &Channel, at: &Segment, skeleton: &Skeleton, pose: &mut Pose) {
     let local = &mut pose.locals[channel.joint.get()];
     match &channel.keys {
@@ -280,7 +283,7 @@ fn sample_channel(channel: &Channel, at: &Segment, skeleton: &Skeleton, pose: &m
     }
 }
 
-/// Index of the last key at or before `time_secs` (0 before the first key), starting from a guess.
+/// Returns the index of the last key at or before `time_secs` (0 before the first key), trying a guess first.
 fn find_segment(times: &[f32], time_secs: f32, guess: usize) -> usize {
     let fits = |index: usize| {
         times.get(index).is_some_and(|&start| start <= time_secs)
@@ -295,10 +298,10 @@ fn find_segment(times: &[f32], time_secs: f32, guess: usize) -> usize {
     }
 }
 
-/// Two neighbouring keys and where between them the time lies.
+/// Two adjacent keys and the position of the time between them.
 struct Segment {
     key: usize,
-    /// The same as `key` outside the keys, where values hold.
+    /// Equals `key` outside the keys, where values hold.
     next: usize,
     length_secs: f32,
     /// 0 at `key`, 1 at `next`.
@@ -317,14 +320,14 @@ impl Segment {
         }
     }
 
-    /// Hermite basis of glTF 2.0 appendix C.4, the tangents' factors already multiplied by the segment's length.
+    /// Hermite basis of glTF 2.0 appendix C.4, with the segment's length multiplied into the tangent factors.
     fn cubic_factors(&self) -> [f32; 4] {
         let (t, t2, t3) = (self.factor, self.factor * self.factor, self.factor * self.factor * self.factor);
         let length = self.length_secs;
         [2.0 * t3 - 3.0 * t2 + 1.0, length * (t3 - 2.0 * t2 + t), -2.0 * t3 + 3.0 * t2, length * (t3 - t2)]
     }
 
-    /// LINEAR ones are in the rows; where the keys hold, the spline is the key as well.
+    /// STEP or CUBICSPLINE; LINEAR channels are in the rows. At a factor of 0 the spline equals the key.
     fn vec3(&self, values: &[Vec3], interpolation: Interpolation) -> Vec3 {
         if interpolation != Interpolation::CubicSpline {
             return values[self.key];

@@ -1,5 +1,5 @@
-//! The hierarchy that moves: names, parents and the rest pose. All nodes of a file are joints of one skeleton, so every
-//! ancestor of a joint is in it, and meshes, cameras and lights hang on joints too.
+//! Skeletons: joint names, hierarchy and rest pose. Every node of a file is a joint of one skeleton, so all ancestors
+//! of a joint are included, and meshes, cameras and lights are attached to joints.
 
 use std::ops::Range;
 
@@ -15,13 +15,13 @@ impl JointIndex {
     }
 }
 
-/// What a skeleton is built from: one joint, its parent given by position in the same list.
+/// Input for building a skeleton; `parent` is an index into the same list.
 #[derive(Debug, Clone, Default)]
 pub struct Joint {
     pub name: String,
     pub parent: Option<usize>,
     pub rest: Transform,
-    /// Rest weights of the morph targets of the mesh that hangs on this joint; empty when there is none.
+    /// Rest weights of the morph targets of the mesh on this joint, if any.
     pub morph_weights: Vec<f32>,
 }
 
@@ -33,20 +33,20 @@ pub enum SkeletonError {
     Cycle { joint: usize },
 }
 
-/// Joints in an order where every parent comes before its children. Immutable once built.
+/// Joints sorted so that parents come before their children. Immutable once built.
 #[derive(Debug, Clone, Default)]
 pub struct Skeleton {
     names: Vec<String>,
     parents: Vec<Option<JointIndex>>,
     rest: Pose,
     morph_ranges: Vec<Range<u32>>,
-    /// For each joint, its position in the list the skeleton was built from; and the inverse.
+    /// Each joint's index in the list the skeleton was built from, and the inverse mapping.
     source_of_joint: Vec<u32>,
     joint_of_source: Vec<JointIndex>,
 }
 
 impl Skeleton {
-    /// Sorts the joints so that parents come first, keeping the given order otherwise (depth first, siblings as listed).
+    /// Sorts the joints depth first, siblings in the given order.
     pub fn new(joints: Vec<Joint>) -> Result<Self, SkeletonError> {
         let count = joints.len();
         let mut children: Vec<Vec<u32>> = vec![Vec::new(); count];
@@ -102,7 +102,7 @@ impl Skeleton {
         &self.names[joint.get()]
     }
 
-    /// The first joint with this name, in the order of the source list.
+    /// Finds the first joint with this name, in the order of the source list.
     pub fn find(&self, name: &str) -> Option<JointIndex> {
         self.joint_of_source.iter().copied().find(|joint| self.names[joint.get()] == name)
     }
@@ -111,7 +111,7 @@ impl Skeleton {
         self.parents[joint.get()]
     }
 
-    /// Parents of all joints; each is smaller than the joint's own index.
+    /// Parents of all joints; each index is smaller than the joint's own.
     pub fn parents(&self) -> &[Option<JointIndex>] {
         &self.parents
     }
@@ -124,18 +124,18 @@ impl Skeleton {
         &self.rest
     }
 
-    /// Where the morph weights of the mesh on this joint lie in [`Pose::morph_weights`]; empty when there are none.
+    /// Range of this joint's mesh in [`Pose::morph_weights`]; empty without morph targets.
     pub fn morph_range(&self, joint: JointIndex) -> Range<usize> {
         let range = &self.morph_ranges[joint.get()];
         range.start as usize..range.end as usize
     }
 
-    /// Position of this joint in the list the skeleton was built from: a glTF node index, a BVH joint number.
+    /// Index of this joint in the list the skeleton was built from: a glTF node index, a BVH joint number.
     pub fn source_index(&self, joint: JointIndex) -> usize {
         self.source_of_joint[joint.get()] as usize
     }
 
-    /// The same with other names for some joints, given by their position in the list the skeleton was built from.
+    /// Returns a copy with some joints renamed, given by their source index.
     pub fn with_names<'a>(&self, names: impl Iterator<Item = (usize, &'a str)>) -> Self {
         let mut skeleton = self.clone();
         for (source, name) in names {
@@ -146,7 +146,7 @@ impl Skeleton {
         skeleton
     }
 
-    /// The same with another rest pose: one local transform per joint.
+    /// Returns a copy with another rest pose: one local transform per joint.
     pub fn with_rest(&self, locals: &[Transform]) -> Self {
         let mut skeleton = self.clone();
         for (slot, local) in skeleton.rest.locals.iter_mut().zip(locals) {

@@ -1,4 +1,4 @@
-//! Translation, rotation and scale of one joint relative to its parent.
+//! Translation, rotation and scale of a joint relative to its parent.
 
 use glam::{Affine3A, Mat3A, Mat4, Quat, Vec3, Vec3A, Vec3Swizzles, Vec4, Vec4Swizzles};
 use serde::{Deserialize, Serialize};
@@ -22,8 +22,8 @@ impl Transform {
         Self { rotation, ..Self::IDENTITY }
     }
 
-    /// Decomposes a matrix as glTF asks (2.0 §3.5.3): a mirrored one gets a negative X scale. A sheared or singular
-    /// matrix has no such form; the nearest one that keeps the column lengths is returned.
+    /// Decomposes a matrix as required by glTF 2.0 §3.5.3; a mirroring one gets a negative X scale. Sheared and
+    /// singular matrices have no exact decomposition: the result keeps their column lengths.
     pub fn from_matrix(matrix: &Mat4) -> Self {
         let (x, y, z) = (matrix.x_axis.truncate(), matrix.y_axis.truncate(), matrix.z_axis.truncate());
         let mirrored = if matrix.determinant() < 0.0 { -1.0 } else { 1.0 };
@@ -36,7 +36,7 @@ impl Transform {
         Self { translation: matrix.w_axis.truncate(), rotation, scale }
     }
 
-    /// Whether the scale has no zero and mirrors nothing: only then does the rotation say all of how a joint is turned.
+    /// Whether the scale is positive on all axes. Only then is the rotation the joint's whole orientation.
     pub fn is_upright(&self) -> bool {
         self.scale.min_element() > 0.0
     }
@@ -45,8 +45,8 @@ impl Transform {
         Affine3A::from_scale_rotation_translation(self.scale, self.rotation, self.translation)
     }
 
-    /// `to_from_parent * self.to_affine()` in one go: the entries of the rotation's matrix are made four at a time and are
-    /// used where they come to lie, without putting its columns together first.
+    /// Fused `to_from_parent * self.to_affine()`. Computes the rotation matrix four entries at a time and consumes them
+    /// in place, without assembling its columns.
     #[inline]
     pub(super) fn below(&self, to_from_parent: &Affine3A) -> Affine3A {
         let quat = Vec4::from(self.rotation);

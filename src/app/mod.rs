@@ -6,7 +6,6 @@ mod inbox;
 #[cfg(not(target_arch = "wasm32"))]
 mod native;
 mod notices;
-mod png;
 mod record;
 mod run;
 mod save;
@@ -17,7 +16,6 @@ mod viewport;
 pub use device::{Backend, FatalHook, set_fatal_hook};
 pub use host::Host;
 pub use inbox::{Inbox, Message, Opening, Reply, ScriptCall};
-pub use png::encode as encode_png;
 pub use run::App;
 
 #[cfg(not(target_arch = "wasm32"))]

@@ -6,7 +6,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use super::{App, Host, Inbox, Message, Opening, native_options};
 use crate::editor::Contents;
 use crate::files::{OpenError, Role, read_paths};
-use crate::library::sample;
+use crate::samples;
 use crate::state::ViewerState;
 
 /// Why there is no window, or no longer.
@@ -23,7 +23,7 @@ pub enum WindowError {
 /// # Errors
 /// When the first files cannot be read, or no window or graphics device is to be had.
 pub fn run_native(files: Vec<PathBuf>) -> Result<(), WindowError> {
-    let files = if files.is_empty() { vec![sample::FIRST.into()] } else { files };
+    let files = if files.is_empty() { vec![samples::FIRST.into()] } else { files };
     let contents = read_paths(&files, Role::Model)?;
     let create: eframe::AppCreator<'_> = Box::new(move |cc| {
         let app = App::new(cc, Box::new(Window::new(cc.egui_ctx.clone())), contents, None, |_| {})?;

@@ -113,7 +113,7 @@ impl App {
     /// Closes the placeholder that stood in for a link's missing files.
     #[cfg(target_arch = "wasm32")]
     pub fn close_placeholder(&mut self) {
-        self.editor.close_placeholder(&format!("sample:{}", crate::library::sample::WALKER));
+        self.editor.close_placeholder(&format!("sample:{}", crate::samples::WALKER));
         self.context.request_repaint();
     }
 

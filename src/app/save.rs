@@ -1,9 +1,10 @@
 //! Files for the user: what the editor writes, and pictures, which take the graphics device.
 
+use super::App;
 #[cfg(target_arch = "wasm32")]
 use super::Message;
-use super::{App, encode_png};
 use crate::editor::ExportedFile;
+use crate::files::encode_png;
 use crate::render::read_pixels;
 use crate::ui::{PathPrompt, PathPurpose, Saved};
 

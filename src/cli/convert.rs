@@ -7,6 +7,7 @@ use super::{ConvertArguments, open};
 use crate::editor::ModelFiles;
 use crate::files::read_set;
 use crate::formats::{LoadOptions, convert, write_model};
+use crate::frame::{Frame, evaluate};
 use crate::library::Library;
 use crate::state::written_skeleton;
 
@@ -32,6 +33,9 @@ fn posed(arguments: &ConvertArguments, link: &str) -> anyhow::Result<Vec<u8>> {
     let mut library = Library::default();
     library.set(opened.model);
     let state = state_of_link(&mut library, link, &Borrowing::default());
-    let skeleton = library.active().map(|model| written_skeleton(model, &state, true)).unwrap_or_default();
+    let mut frame = Frame::default();
+    evaluate(&library, &state, 1.0, &mut frame);
+    let skeleton =
+        library.active().map(|model| written_skeleton(model, &state, Some(frame.pose()))).unwrap_or_default();
     Ok(write_model(&set, &name, &skeleton, &[])?)
 }

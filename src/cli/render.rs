@@ -4,6 +4,7 @@ use anyhow::{Context, bail};
 
 use super::borrow::{load_library, state_of_link};
 use super::{RenderArguments, open, set_moment};
+use crate::files::encode_png;
 use crate::frame::{Frame, evaluate};
 use crate::library::Library;
 use crate::render::{Renderer, RendererOptions, headless_device, read_pixels};
@@ -27,11 +28,11 @@ pub(super) fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     }
     renderer.draw(&device, &queue, &frame, arguments.size);
     let pixels = pollster::block_on(read_pixels(&device, &queue, renderer.output()));
-    let Some(image) = image::RgbaImage::from_raw(width, height, pixels).filter(|image| image.width() > 0) else {
+    let Some(png) = encode_png(width, height, &pixels) else {
         bail!("the picture could not be read back from the graphics device");
     };
     let out = &arguments.out;
-    image.save_with_format(out, image::ImageFormat::Png).with_context(|| format!("{}", out.display()))
+    std::fs::write(out, png).with_context(|| format!("{}", out.display()))
 }
 
 /// The link's view with the options on top.

@@ -5,6 +5,7 @@ use super::names::stem;
 use super::{Editor, ModelFiles};
 use crate::anim::Clip;
 use crate::formats::{write_model, write_motion};
+use crate::frame::{Frame, evaluate};
 use crate::library::Model;
 use crate::retarget::{bake_layers, baking};
 use crate::state::{active_clip, map_in_force, named, written_skeleton};
@@ -87,7 +88,9 @@ impl Editor {
     fn export_whole(&self, posed: bool) -> Result<ExportedFile, String> {
         let model = self.model()?;
         let ModelFiles { set, name } = self.files_of(model).ok_or("this model has no file")?;
-        let skeleton = written_skeleton(model, &self.state, posed);
+        let mut frame = Frame::default();
+        evaluate(&self.library, &self.state, 1.0, &mut frame);
+        let skeleton = written_skeleton(model, &self.state, posed.then_some(frame.pose()));
         let bytes = write_model(set, name, &skeleton, &[]).map_err(|error| error.to_string())?;
         Ok(ExportedFile::new(format!("{}.glb", stem(&model.source)), bytes))
     }
@@ -97,7 +100,7 @@ impl Editor {
         let model = self.model()?;
         let baked = self.baked_clip(clip)?;
         let clip = baked.clip.as_ref().or_else(|| model.clip(clip)).ok_or("there is no such clip")?;
-        let bytes = write_motion(&model.asset, &written_skeleton(model, &self.state, false), &[clip])
+        let bytes = write_motion(&model.asset, &written_skeleton(model, &self.state, None), &[clip])
             .map_err(|error| error.to_string())?;
         Ok(ExportedFile { remark: baked.remark, ..ExportedFile::new(format!("{}.glb", self.file_stem()), bytes) })
     }
@@ -109,7 +112,7 @@ impl Editor {
         let baked = self.baked_clip(clip)?;
         let clips = [baked.clip.as_ref().unwrap_or(&borrowed.clip)];
         let mut remark = None;
-        let skeleton = written_skeleton(model, &self.state, false);
+        let skeleton = written_skeleton(model, &self.state, None);
         let bytes = match self.files_of(model) {
             Some(ModelFiles { set, name }) if !name.to_lowercase().ends_with(".bvh") => {
                 write_model(set, name, &skeleton, &clips)

@@ -73,7 +73,7 @@ impl Editor {
         let is_replaced = |known: &Motion| motions.iter().any(|motion| motion.origin == known.origin);
         let mut all: Vec<Motion> = self.library.motions().iter().filter(|known| !is_replaced(known)).cloned().collect();
         all.extend(motions);
-        let (found, max) = (all.len(), Library::MOST_MOTIONS);
+        let (found, max) = (all.len(), Library::MAX_MOTIONS);
         if found > max {
             return Err(format!("expected at most {max} motions in all, found {found}; remove some first"));
         }

@@ -1,11 +1,11 @@
 //! What files are called where there is no room for their whole path.
 
-use crate::library::sample;
+use crate::samples;
 
 /// The last part of a path or URL, and where it is.
 pub fn name_and_place(source: &str) -> (String, String) {
     if let Some(sample) = source.strip_prefix("sample:") {
-        return (sample::title(sample).to_owned(), "Sample".to_owned());
+        return (samples::title(sample).to_owned(), "Sample".to_owned());
     }
     let source = source.split(['?', '#']).next().unwrap_or(source);
     match source.trim_end_matches('/').rsplit_once(['/', '\\']) {

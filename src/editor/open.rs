@@ -257,7 +257,7 @@ impl Editor {
         // What has been read since wins.
         motions.retain(|known| !current.iter().any(|motion| motion.origin == known.origin));
         motions.extend(current);
-        motions.truncate(Library::MOST_MOTIONS);
+        motions.truncate(Library::MAX_MOTIONS);
         let motion = Contents::motion_sources(&motions, Some(&origin));
         let old = std::mem::take(&mut self.state);
         self.state = old.for_model(ViewerState { sources: Sources { motion, ..left.sources }, ..left });

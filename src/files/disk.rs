@@ -6,8 +6,9 @@ use super::sort::Origins;
 use super::{Role, SortError, decode_images, sort};
 use crate::editor::{Contents, ModelFiles, OpenedModel};
 use crate::formats::{FileSet, missing_files};
-use crate::library::{Model, Motion, sample};
+use crate::library::{Model, Motion};
 use crate::retarget::JointMap;
+use crate::samples;
 
 /// What was read: a model, what it may borrow from, and the names of all files.
 #[derive(Debug)]
@@ -29,7 +30,7 @@ pub enum OpenError {
     TooLarge { path: PathBuf, found: u64, most: u64 },
     #[error("{}: more than {most} files in the folder; name the model's own files instead", path.display())]
     TooManyFiles { path: PathBuf, most: usize },
-    #[error("{name}: there is no such sample; there are: sample:{}", sample::names().join(", sample:"))]
+    #[error("{name}: there is no such sample; there are: sample:{}", samples::names().join(", sample:"))]
     NoSuchSample { name: String },
     #[error(transparent)]
     Files(#[from] SortError),
@@ -98,12 +99,12 @@ fn read(paths: &[PathBuf]) -> Result<(FileSet, Vec<Model>, Origins), OpenError> 
         if let Some(name) = path.to_str().and_then(|path| path.strip_prefix("sample:")) {
             let source = format!("sample:{name}");
             let before = origins.known.len();
-            for (file, bytes) in sample::files(name) {
+            for (file, bytes) in samples::files(name) {
                 reader.set.insert(file.to_owned(), bytes.to_vec());
                 origins.known.push((file.to_owned(), source.clone()));
             }
             if origins.known.len() == before {
-                samples.push(sample::load(name).ok_or_else(|| OpenError::NoSuchSample { name: source.clone() })?);
+                samples.push(samples::load(name).ok_or_else(|| OpenError::NoSuchSample { name: source.clone() })?);
                 origins.known.push((source.clone(), source));
             }
         } else if let Some(name) = reader.add(path)? {

@@ -68,8 +68,8 @@ pub(super) fn sort_noticing_images(
         sorted.models.push((String::new(), asset));
         return Ok(sorted);
     }
-    if names.len() > Library::MOST_MOTIONS {
-        return Err(SortError::TooManyMotions { found: names.len(), most: Library::MOST_MOTIONS });
+    if names.len() > Library::MAX_MOTIONS {
+        return Err(SortError::TooManyMotions { found: names.len(), most: Library::MAX_MOTIONS });
     }
     for name in names {
         let on_images = &mut |images: &[Image]| on_images(&name, images);
@@ -80,8 +80,8 @@ pub(super) fn sort_noticing_images(
         } else {
             sorted.motions.push((name, asset))
         }
-        if sorted.models.len() > Library::MOST_MODELS {
-            return Err(SortError::TooManyModels { most: Library::MOST_MODELS });
+        if sorted.models.len() > Library::MAX_MODELS {
+            return Err(SortError::TooManyModels { most: Library::MAX_MODELS });
         }
     }
     if role == Role::Model && sorted.models.is_empty() {

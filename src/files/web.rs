@@ -13,7 +13,8 @@ use super::{Role, SortError, raw_address, read_map};
 use crate::asset::{Asset, Image, Warning};
 use crate::editor::{Contents, container_of};
 use crate::formats::{FileSet, missing_files};
-use crate::library::{ImageData, Model, Motion, sample};
+use crate::library::{ImageData, Model, Motion};
+use crate::samples;
 use crate::state::{MotionMap, ViewerState};
 
 /// What is to be opened: one part of a set.
@@ -95,7 +96,7 @@ pub async fn open_items(
             }
             Item::Url(url) => {
                 if let Some(name) = url.strip_prefix("sample:") {
-                    if let Some(sample) = sample::load(name) {
+                    if let Some(sample) = samples::load(name) {
                         samples.push(sample);
                         origins.known.push((url.clone(), url));
                         continue;
@@ -149,7 +150,7 @@ fn files_of_sample(name: &str) -> Result<Vec<(String, String)>, OpenError> {
     let addresses: Option<Array> = Reflect::get(&table, &name.into()).ok().and_then(|list| list.dyn_into().ok());
     let Some(addresses) = addresses else {
         let files = Reflect::own_keys(&table).unwrap_or_default();
-        let known = files.iter().filter_map(|name| name.as_string()).chain([sample::WALKER.to_owned()]);
+        let known = files.iter().filter_map(|name| name.as_string()).chain([samples::WALKER.to_owned()]);
         let known = known.map(|name| format!("sample:{name}")).collect::<Vec<_>>().join(", ");
         return Err(OpenError::NoSuchSample { name: name.to_owned(), known });
     };

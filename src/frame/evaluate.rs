@@ -1,4 +1,4 @@
-//! From what is loaded and set to what is drawn.
+//! Evaluates the library and the state into a frame.
 
 use glam::{Affine3A, Vec3};
 
@@ -12,30 +12,32 @@ use crate::state::{
     world_from_model,
 };
 
-/// What is compared side by side.
+/// Skinning methods shown by the side-by-side comparison.
 const COMPARED: [SkinningMode; 3] = [SkinningMode::Linear, SkinningMode::Rigid, SkinningMode::DualQuaternion];
 
-/// What one evaluation leaves for the next, so that nothing is allocated or looked for again.
+/// Buffers and lookups reused between frames.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
-    sampler: PoseSampler,
+    pub sampler: PoseSampler,
     first_pose: Pose,
     first_cursor: SampleCursor,
     pub world_from_first: Vec<Affine3A>,
     source_pose: Pose,
     source_cursor: SampleCursor,
-    pub shown: InScene,
-    pub source: InScene,
+    pub model_scene: SceneJoints,
+    pub source_scene: SceneJoints,
 }
 
-/// Which joints of a model are in the scene that is shown.
+/// Which joints of a model belong to the chosen scene.
 #[derive(Debug, Default)]
-pub(super) struct InScene {
-    of: Option<(ModelId, Option<usize>)>,
-    pub joints: Vec<bool>,
+pub(super) struct SceneJoints {
+    /// The model and scene the flags were computed for.
+    key: Option<(ModelId, Option<usize>)>,
+    /// One flag per joint.
+    pub visible: Vec<bool>,
 }
 
-/// Fills `frame` for a picture of the given aspect ratio (width over height).
+/// Fills `frame` for a viewport of the given aspect ratio (width over height).
 pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut Frame) {
     let aspect = if aspect.is_finite() { aspect.clamp(1e-3, 1e3) } else { 1.0 };
     frame.lines.clear();
@@ -57,51 +59,54 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
     frame.panes = panes(state, aspect);
     let Some(model) = library.active() else {
         frame.characters.clear();
+        frame.clip = None;
+        frame.scratch.sampler.pose.locals.clear();
+        frame.scratch.sampler.pose.morph_weights.clear();
         frame.bounds = Bounds::EMPTY;
         view::place_camera(library, state, aspect, Vec3::ZERO, frame);
         return;
     };
+    frame.clip = active_clip(model, state);
+    frame.scratch.sampler.sample(model, state);
     let source = source_on_stage(library, state);
-    let modes = if state.inspect.split { &COMPARED[..] } else { std::slice::from_ref(&state.display.skinning) };
-    frame.characters.resize_with(modes.len() + usize::from(source.is_some()), Character::default);
-    frame.scratch.shown.choose(model, state.sources.scene);
-    if let Some(source) = &source {
-        frame.scratch.source.choose(source.model, None);
-    }
-    let Frame { characters, scratch, .. } = frame;
-    scratch.sampler.sample(model, state);
-    for (pane, (character, &skinning)) in characters.iter_mut().zip(modes).enumerate() {
-        character.model = model.id;
-        character.skinning = skinning;
-        character.pane = state.inspect.split.then_some(pane as u32);
-        character.morph_weights.clone_from(&scratch.sampler.pose.morph_weights);
-        let (skeleton, locals) = (&model.asset.skeleton, &scratch.sampler.pose.locals);
-        model_from_joint(skeleton, locals, world_from_model(state.edits.up), &mut character.world_from_joint);
-        let chosen =
-            state.selection.joint.and_then(|joint| skeleton.joint_of_source(joint)).filter(|_| state.inspect.weights);
-        write_draws(model, chosen, &scratch.shown.joints, character);
-    }
-    if let (Some(source), Some(character)) = (&source, characters.last_mut()) {
-        write_source(source, clip_now(model, state), scratch, character);
-    }
-
+    write_characters(model, state, source.as_ref(), frame);
     let travel = match state.camera_options.follow {
-        true => travel(model, state, scratch, &characters[0].world_from_joint),
+        true => travel(model, frame.clip, state, &mut frame.scratch, &frame.characters[0].world_from_joint),
         false => Vec3::ZERO,
     };
-    frame.bounds = moved(resolved_bounds(library, state), travel);
+    frame.bounds = translated(resolved_bounds(library, state), travel);
     write_lights(model, frame);
     overlays::write_ground(model, state, frame);
     view::place_camera(library, state, aspect, travel, frame);
     overlays::write_overlays(model, state, source.as_ref(), frame);
 }
 
-fn clip_now(model: &Model, state: &ViewerState) -> f32 {
-    active_clip(model, state).map_or(0.0, |clip| clip_secs(model, clip, state) as f32)
+/// The model once per skinning method, then the source.
+fn write_characters(model: &Model, state: &ViewerState, source: Option<&SourceOnStage>, frame: &mut Frame) {
+    let modes = if state.inspect.split { &COMPARED[..] } else { std::slice::from_ref(&state.display.skinning) };
+    let Frame { characters, scratch, clip, .. } = frame;
+    characters.resize_with(modes.len() + usize::from(source.is_some()), Character::default);
+    scratch.model_scene.update(model, state.sources.scene);
+    let (skeleton, pose) = (&model.asset.skeleton, &scratch.sampler.pose);
+    let chosen =
+        state.selection.joint.and_then(|joint| skeleton.joint_of_source(joint)).filter(|_| state.inspect.weights);
+    for (pane, (character, &skinning)) in characters.iter_mut().zip(modes).enumerate() {
+        character.model = model.id;
+        character.skinning = skinning;
+        character.pane = state.inspect.split.then_some(pane as u32);
+        character.morph_weights.clone_from(&pose.morph_weights);
+        model_from_joint(skeleton, &pose.locals, world_from_model(state.edits.up), &mut character.world_from_joint);
+        write_draws(model, chosen, &scratch.model_scene.visible, character);
+    }
+    if let (Some(source), Some(character)) = (source, characters.last_mut()) {
+        let time_secs = clip.map_or(0.0, |clip| clip_secs(model, clip, state) as f32);
+        write_source(source, time_secs, scratch, character);
+    }
 }
 
-/// The source plays its own clip at the same time, bent in the ordinary way.
+/// The source plays its own clip at the same time, always with linear skinning.
 fn write_source(source: &SourceOnStage, time_secs: f32, scratch: &mut Scratch, character: &mut Character) {
+    scratch.source_scene.update(source.model, None);
     let skeleton = &source.model.asset.skeleton;
     scratch.source_pose.copy_from(skeleton.rest());
     if let Some(clip) = source.model.clip(source.clip) {
@@ -113,26 +118,26 @@ fn write_source(source: &SourceOnStage, time_secs: f32, scratch: &mut Scratch, c
     character.morph_weights.clone_from(&scratch.source_pose.morph_weights);
     let locals = &scratch.source_pose.locals;
     model_from_joint(skeleton, locals, source.world_from_source, &mut character.world_from_joint);
-    write_draws(source.model, None, &scratch.source.joints, character);
+    write_draws(source.model, None, &scratch.source_scene.visible, character);
 }
 
-impl InScene {
-    fn choose(&mut self, model: &Model, scene: Option<usize>) {
+impl SceneJoints {
+    fn update(&mut self, model: &Model, scene: Option<usize>) {
         let key = (model.id, model.scene(scene));
-        if self.of != Some(key) || self.joints.len() != model.asset.skeleton.len() {
-            self.joints = model.asset.joints_in_scene(key.1);
-            self.of = Some(key);
+        if self.key != Some(key) || self.visible.len() != model.asset.skeleton.len() {
+            self.visible = model.asset.joints_in_scene(key.1);
+            self.key = Some(key);
         }
     }
 }
 
-/// With `chosen`, surfaces show the influence of that joint.
-fn write_draws(model: &Model, chosen: Option<JointIndex>, in_scene: &[bool], character: &mut Character) {
+/// If `chosen` is set, surfaces show that joint's influence.
+fn write_draws(model: &Model, chosen: Option<JointIndex>, visible: &[bool], character: &mut Character) {
     let asset = &model.asset;
     character.palette.clear();
     character.draws.clear();
     for (index, instance) in asset.instances.iter().enumerate() {
-        if !in_scene[instance.joint.get()] {
+        if !visible[instance.joint.get()] {
             continue;
         }
         let world_from_node = character.world_from_joint[instance.joint.get()];
@@ -155,7 +160,7 @@ fn write_draws(model: &Model, chosen: Option<JointIndex>, in_scene: &[bool], cha
     }
 }
 
-/// Where the chosen joint is in the palette of an instance. A mesh without skin follows its node alone.
+/// Index of the chosen joint in the instance's palette. An unskinned mesh has a single entry, its node.
 fn heat_joint(model: &Model, instance: &MeshInstance, chosen: JointIndex) -> u32 {
     let position = match instance.skin {
         Some(skin) => model.asset.skins[skin].joints().iter().position(|&joint| joint == chosen),
@@ -164,18 +169,23 @@ fn heat_joint(model: &Model, instance: &MeshInstance, chosen: JointIndex) -> u32
     position.map_or(u32::MAX, |position| position as u32)
 }
 
-/// How far over the ground the model's root has gone since the start of the clip: where a camera that follows is then.
+/// Returns the ground-plane travel of the active model's root since the start of its clip, which a following camera adds.
 pub fn travelled(library: &Library, state: &ViewerState) -> Vec3 {
     let Some(model) = library.active() else { return Vec3::ZERO };
     let (mut scratch, mut world_from_joint) = (Scratch::default(), Vec::new());
     scratch.sampler.sample(model, state);
     let locals = &scratch.sampler.pose.locals;
     model_from_joint(&model.asset.skeleton, locals, world_from_model(state.edits.up), &mut world_from_joint);
-    travel(model, state, &mut scratch, &world_from_joint)
+    travel(model, active_clip(model, state), state, &mut scratch, &world_from_joint)
 }
 
-fn travel(model: &Model, state: &ViewerState, scratch: &mut Scratch, world_from_joint: &[Affine3A]) -> Vec3 {
-    let clip = active_clip(model, state);
+fn travel(
+    model: &Model,
+    clip: Option<usize>,
+    state: &ViewerState,
+    scratch: &mut Scratch,
+    world_from_joint: &[Affine3A],
+) -> Vec3 {
     let Some((clip, root)) = clip.and_then(|clip| Some((clip, model.root_of_clip(clip)?))) else { return Vec3::ZERO };
     let skeleton = &model.asset.skeleton;
     scratch.first_pose.copy_from(skeleton.rest());
@@ -189,14 +199,14 @@ fn travel(model: &Model, state: &ViewerState, scratch: &mut Scratch, world_from_
     if travel.is_finite() { travel } else { Vec3::ZERO }
 }
 
-fn moved(bounds: Bounds, by: Vec3) -> Bounds {
+fn translated(bounds: Bounds, by: Vec3) -> Bounds {
     if bounds.is_empty() { bounds } else { Bounds { min: bounds.min + by, max: bounds.max + by } }
 }
 
 fn write_lights(model: &Model, frame: &mut Frame) {
     let world_from_joint = &frame.characters[0].world_from_joint;
     for light in &model.asset.lights {
-        if !frame.scratch.shown.joints[light.joint.get()] {
+        if !frame.scratch.model_scene.visible[light.joint.get()] {
             continue;
         }
         let world_from_light = &world_from_joint[light.joint.get()];

@@ -1,4 +1,4 @@
-//! The formula of linear blend skinning at one vertex, with its numbers: `p' = Σ w_j · T_j · B_j⁻¹ · p`.
+//! The terms of linear blend skinning at one vertex: `p' = Σ w_j · T_j · B_j⁻¹ · p`.
 
 use glam::{Affine3A, Vec3};
 
@@ -8,37 +8,37 @@ use crate::library::Model;
 use crate::mesh::{DeformedVertices, deform_vertex};
 use crate::state::VertexChoice;
 
-/// What moves one vertex. Reused from frame to frame.
+/// The formula evaluated at a vertex. Reused between frames.
 #[derive(Debug, Clone, Default)]
 pub struct VertexFormula {
-    /// `p`: where the vertex is bound, after morphing, in mesh space.
+    /// `p`: the morphed bind position, in mesh space.
     pub bound: Vec3,
-    /// Strongest first; those of weight 0 are left out.
-    pub parts: Vec<FormulaPart>,
-    /// `p'`: the sum of the parts, in world space.
+    /// Strongest first, without zero weights.
+    pub terms: Vec<FormulaTerm>,
+    /// `p'`: the sum of the terms, in world space.
     pub sum: Vec3,
-    /// Where the vertex is drawn, as the chosen way of skinning has it.
+    /// The drawn position, by the chosen skinning method.
     pub drawn: Vec3,
     scratch: DeformedVertices,
 }
 
-/// What one joint does to the vertex.
+/// The contribution of one joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FormulaPart {
+pub struct FormulaTerm {
     pub joint: JointIndex,
     pub weight: f32,
-    /// `T_j · B_j⁻¹ · p`: where this joint alone would put the vertex, in world space.
+    /// `T_j · B_j⁻¹ · p`: the position by this joint alone, in world space.
     pub alone: Vec3,
-    /// `w_j` times that.
+    /// `alone`, weighted by `w_j`.
     pub share: Vec3,
 }
 
 /// The three matrices of a joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointMatrices {
-    /// `B_j⁻¹`: from where the mesh was bound to the joint.
+    /// `B_j⁻¹`: the inverse bind matrix.
     pub joint_from_bind: Affine3A,
-    /// `T_j`: from the joint to where it is now.
+    /// `T_j`: the joint's current transform.
     pub world_from_joint: Affine3A,
 }
 
@@ -49,7 +49,7 @@ impl JointMatrices {
     }
 }
 
-/// The matrices of a joint in the first skin that names it; none when none does.
+/// Returns the joint's matrices in the first skin that contains it.
 pub fn joint_matrices(model: &Model, character: &Character, joint: JointIndex) -> Option<JointMatrices> {
     let world_from_joint = *character.world_from_joint.get(joint.get())?;
     model.asset.skins.iter().find_map(|skin| {
@@ -58,24 +58,23 @@ pub fn joint_matrices(model: &Model, character: &Character, joint: JointIndex) -
     })
 }
 
-/// Works out the formula at a vertex; false when it is not drawn. A mesh without a skin follows its node alone.
+/// Evaluates the formula at a vertex; false if it is not drawn. An unskinned vertex has a single term, its node.
 pub fn vertex_formula(model: &Model, character: &Character, choice: VertexChoice, out: &mut VertexFormula) -> bool {
-    out.parts.clear();
+    out.terms.clear();
     let asset = &model.asset;
     let Some(draw) = character.draws.iter().find(|draw| draw.instance == choice.instance) else { return false };
     if !model.has_vertex(choice.instance, choice.primitive, choice.vertex) {
         return false;
     }
     let geometry = &asset.meshes[draw.mesh].primitives[choice.primitive];
-    let weights = &character.morph_weights[draw.morph_weights.start as usize..draw.morph_weights.end as usize];
-    let palette = &character.palette[draw.palette.start as usize..draw.palette.end as usize];
+    let (weights, palette) = (character.morph_weights_of(draw), character.palette_of(draw));
     [out.bound, out.drawn] =
         deform_vertex(geometry, choice.vertex, weights, palette, character.skinning, &mut out.scratch);
     let instance = &asset.instances[choice.instance];
     let mut add = |joint: JointIndex, weight: f32, joint_from_bind: &Affine3A| {
         let Some(world_from_joint) = character.world_from_joint.get(joint.get()) else { return };
         let alone = world_from_joint.transform_point3(joint_from_bind.transform_point3(out.bound));
-        out.parts.push(FormulaPart { joint, weight, alone, share: weight * alone });
+        out.terms.push(FormulaTerm { joint, weight, alone, share: weight * alone });
     };
     match instance.skin.and_then(|skin| asset.skins.get(skin)).filter(|_| !geometry.influences.is_empty()) {
         Some(skin) => {
@@ -88,6 +87,6 @@ pub fn vertex_formula(model: &Model, character: &Character, choice: VertexChoice
         }
         None => add(instance.joint, 1.0, &Affine3A::IDENTITY),
     }
-    out.sum = out.parts.iter().map(|part| part.share).sum();
+    out.sum = out.terms.iter().map(|term| term.share).sum();
     true
 }

@@ -1,5 +1,5 @@
-//! One picture, ready to draw: `evaluate` turns what is loaded and what is set into plain numbers. No clock, no chance:
-//! the same library and state give the same frame.
+//! A frame ready to draw: `evaluate` turns the library and the state into plain numbers. No clock and no randomness: the
+//! same library and state give the same frame.
 
 mod evaluate;
 mod formula;
@@ -13,61 +13,71 @@ use std::ops::Range;
 
 use glam::{Affine3A, Mat4, Vec3, Vec4};
 
+use crate::anim::Pose;
 use crate::asset::LightKind;
 use crate::library::ModelId;
 use crate::mesh::{Bounds, PaletteEntry, SkinningMode};
 use crate::state::Background;
 
 pub use evaluate::{evaluate, travelled};
-pub use formula::{FormulaPart, JointMatrices, VertexFormula, joint_matrices, vertex_formula};
+pub use formula::{FormulaTerm, JointMatrices, VertexFormula, joint_matrices, vertex_formula};
 pub use pick::{PickedJoint, pick_joint};
 pub use pick_vertex::pick_vertex;
 pub use pose_document::pose_document;
 
-/// What the renderer reads. Reused from frame to frame, so that nothing is allocated once it has grown.
+/// Input of the renderer. Reused between frames, so that evaluation stops allocating once the buffers have grown.
 #[derive(Debug, Default)]
 pub struct Frame {
     pub view: View,
     pub look: Look,
-    /// How the picture is divided: columns and rows of panes of one size, all seen by the same camera.
+    /// Columns and rows of equally sized panes that share one camera.
     pub panes: [u32; 2],
-    /// The shown model first: once, or once for each pane. Then the source, if it is on the stage.
+    /// The active model first, once per pane; then the source of its borrowed clip, if shown.
     pub characters: Vec<Character>,
-    /// The file's own lights in world space; empty: the studio's key light shines.
+    /// Index of the active model's clip that the pose was sampled from; none for the rest pose.
+    pub clip: Option<usize>,
+    /// The file's own lights in world space; if empty, the studio's key light is used.
     pub lights: Vec<FrameLight>,
-    /// Overlay lines (skeleton without shapes, bounds, axes), drawn with a width in pixels.
+    /// Overlay lines (bounds, axes), their width in pixels.
     pub lines: Vec<Line>,
-    /// Bones and joints of the skeletons, also where they are not drawn: a click finds them.
+    /// Bones of the skeletons, present even if hidden, so that clicks can pick them.
     pub bones: Vec<Bone>,
-    /// World-space box of all that can be seen over the clip: fits the shadow and the grid.
+    /// World-space bounds of everything visible over the whole clip; the shadow map and the grid fit to them.
     pub bounds: Bounds,
     scratch: evaluate::Scratch,
+}
+
+impl Frame {
+    /// Local pose of the active model: the clip, blended, with everything set by hand. Empty without a model.
+    pub fn pose(&self) -> &Pose {
+        &self.scratch.sampler.pose
+    }
 }
 
 #[derive(Debug, Clone, Copy, Default)]
 pub struct View {
     pub view_from_world: Mat4,
-    /// Depth from 0 (near) to 1 (far), Y up, as WebGPU's clip space.
+    /// WebGPU's clip space: depth from 0 (near) to 1 (far), Y up.
     pub projection_from_view: Mat4,
     pub eye: Vec3,
 }
 
 #[derive(Debug, Clone, Copy)]
 pub struct Look {
-    /// Factor on linear colours: 2^stops.
+    /// Multiplies linear colours: 2^stops.
     pub exposure: f32,
     pub environment_radians: f32,
     pub background: Background,
     pub mesh: bool,
     pub wireframe: bool,
     pub skeleton: bool,
-    /// Of spheres and boxes.
+    /// Draws the skeleton as spheres and boxes.
     pub boxes: bool,
-    /// Meshes without normals are smooth instead of flat.
+    /// Shades meshes without normals smooth instead of flat.
     pub smooth: bool,
     pub shadow: bool,
     pub grid: Option<Grid>,
-    /// Height of the plane that shadows fall on, where the character stands.
+    /// Height of the plane that the character stands on and that receives shadows.
     pub ground_height: f32,
 }
 
@@ -75,43 +85,55 @@ pub struct Look {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Grid {
     pub height: f32,
-    /// Distance of thin lines, a power of ten in metres; every tenth is thick.
+    /// Distance between thin lines, a power of ten in metres; every tenth line is thick.
     pub spacing: f32,
-    /// Where it has faded out, from `center`.
+    /// Distance from `center` at which the grid has faded out.
     pub radius: f32,
     pub center: Vec3,
 }
 
-/// One model in one pose.
+/// A model in a pose.
 #[derive(Debug, Default)]
 pub struct Character {
     pub model: ModelId,
     pub skinning: SkinningMode,
-    /// The one pane it is in, row by row; none: in all of them.
+    /// Index of its pane, row by row; none for all panes.
     pub pane: Option<u32>,
     pub world_from_joint: Vec<Affine3A>,
-    /// Palettes of all draws, one after the other, in world space.
+    /// World-space palettes of all draws, concatenated.
     pub palette: Vec<PaletteEntry>,
     pub morph_weights: Vec<f32>,
     pub draws: Vec<Draw>,
 }
 
-/// One mesh instance. A mesh without skin has a palette of one entry: its node.
+impl Character {
+    /// Returns the palette of one of this character's draws.
+    pub fn palette_of(&self, draw: &Draw) -> &[PaletteEntry] {
+        self.palette.get(draw.palette.start as usize..draw.palette.end as usize).unwrap_or_default()
+    }
+
+    /// Returns the morph weights of one of this character's draws.
+    pub fn morph_weights_of(&self, draw: &Draw) -> &[f32] {
+        self.morph_weights.get(draw.morph_weights.start as usize..draw.morph_weights.end as usize).unwrap_or_default()
+    }
+}
+
+/// A mesh instance. The palette of an unskinned mesh has a single entry, its node.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Draw {
     /// Index into [`crate::asset::Asset::instances`].
     pub instance: usize,
     pub mesh: usize,
-    /// Into [`Character::palette`].
+    /// Range in [`Character::palette`].
     pub palette: Range<u32>,
-    /// Into [`Character::morph_weights`].
+    /// Range in [`Character::morph_weights`].
     pub morph_weights: Range<u32>,
-    /// The node's transform mirrors: front faces are wound the other way. Never for skinned meshes.
+    /// The node's transform mirrors, which flips the winding of front faces. Never set for skinned meshes.
     pub mirrored: bool,
-    /// With the heat-map on: the chosen joint's position in this draw's palette, `u32::MAX` when it is not in it. The
-    /// surface is coloured by that joint's weight instead of its material.
+    /// Heat map: index of the chosen joint in this draw's palette, `u32::MAX` if it is not there. The surface is coloured
+    /// by that joint's weight instead of its material.
     pub heat_joint: Option<u32>,
-    /// World-space middle, for sorting transparent parts.
+    /// World-space center, for sorting transparent surfaces.
     pub center: Vec3,
 }
 
@@ -121,7 +143,7 @@ pub struct FrameLight {
     /// Linear colour times intensity.
     pub color: Vec3,
     pub position: Vec3,
-    /// The way the light travels.
+    /// Direction in which the light travels.
     pub direction: Vec3,
     /// 0: unlimited.
     pub range: f32,
@@ -134,22 +156,22 @@ pub struct Line {
     /// Linear, straight alpha.
     pub color: Vec4,
     pub width_pixels: f32,
-    /// Drawn through everything in front of it.
+    /// Drawn over everything in front of it.
     pub on_top: bool,
 }
 
-/// A tapered octahedron from head to tail, drawn through the mesh.
+/// A tapered octahedron from head to tail, drawn over the mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bone {
     pub head: Vec3,
     pub tail: Vec3,
-    /// Radius at the widest, metres; a joint ball of the same radius is drawn at the head. A box is half as thick.
+    /// Largest radius, metres; the joint at the head is a ball of the same radius. A box is half as thick.
     pub radius: f32,
     /// Linear.
     pub color: Vec4,
-    /// The joint at the head, as its file numbers it.
+    /// The file's number of the joint at the head.
     pub joint: u32,
-    /// It is the source's, not the model's.
+    /// Belongs to the source of the borrowed clip instead of the model.
     pub of_source: bool,
 }
 

@@ -1,4 +1,4 @@
-//! The pose document: the numbers that are drawn, worked out by the reference implementation.
+//! The pose document: the drawn vertices as computed by the CPU reference.
 
 use serde_json::{Value, json};
 
@@ -6,30 +6,29 @@ use super::{Frame, evaluate};
 use crate::anim::Clip;
 use crate::library::{Library, Model, warning_documents};
 use crate::mesh::{DeformedVertices, Geometry, Mesh, deform, smooth_normals};
-use crate::state::{Display, Inspect, Show, ViewerState, active_clip, clip_secs};
+use crate::state::{Display, Inspect, Show, ViewerState, clip_secs};
 
-/// What `gaitway pose --json` prints. World-space positions and normals of every mesh of the shown scene.
+/// Builds the document of `gaitway pose --json`: world-space positions and normals of every mesh in the chosen scene.
 pub fn pose_document(library: &Library, state: &ViewerState) -> Value {
     let Some(model) = library.active() else {
         return json!({ "clip": null, "time_secs": 0.0, "nodes": [], "meshes": [], "warnings": [] });
     };
     let mut frame = Frame::default();
-    // One model, bent in the way that is chosen, also where the picture compares.
+    // Only the model, with the chosen skinning method, even if the viewport shows a comparison.
     let show = Show { source: false, ..state.display.show };
     let (inspect, display) = (Inspect { split: false, ..state.inspect }, Display { show, ..state.display });
     let state = &ViewerState { inspect, display, ..state.clone() };
     evaluate(library, state, 1.0, &mut frame);
-    let clip = active_clip(model, state);
     json!({
-        "clip": clip.and_then(|clip| model.clip(clip)).map(Clip::name),
-        "time_secs": clip.map_or(0.0, |clip| clip_secs(model, clip, state)),
+        "clip": frame.clip.and_then(|clip| model.clip(clip)).map(Clip::name),
+        "time_secs": frame.clip.map_or(0.0, |clip| clip_secs(model, clip, state)),
         "nodes": nodes(model, &frame),
         "meshes": meshes(model, state, &frame),
         "warnings": warning_documents(&model.asset.warnings),
     })
 }
 
-/// In the file's order.
+/// Nodes in the file's order.
 fn nodes(model: &Model, frame: &Frame) -> Vec<Value> {
     let skeleton = &model.asset.skeleton;
     let world_from_joint = frame.characters.first().map_or(&[][..], |character| &character.world_from_joint);
@@ -48,11 +47,10 @@ fn meshes(model: &Model, state: &ViewerState, frame: &Frame) -> Vec<Value> {
     let mut deformed = DeformedVertices::default();
     let mut documents = Vec::new();
     for draw in &character.draws {
-        let palette = &character.palette[draw.palette.start as usize..draw.palette.end as usize];
-        let weights = &character.morph_weights[draw.morph_weights.start as usize..draw.morph_weights.end as usize];
+        let (palette, weights) = (character.palette_of(draw), character.morph_weights_of(draw));
         let node = asset.skeleton.source_index(asset.instances[draw.instance].joint);
         let mesh = &asset.meshes[draw.mesh];
-        let mut whole = Whole::new(mesh, state.display.show.smooth);
+        let mut in_file_order = FileVertices::new(mesh, state.display.show.smooth);
         let mut smooth = if state.display.show.smooth { smooth_normals(&mesh.primitives) } else { Vec::new() };
         for (primitive, geometry) in mesh.primitives.iter().enumerate() {
             let normals = smooth.get_mut(primitive).map(std::mem::take).filter(|normals| !normals.is_empty());
@@ -60,7 +58,7 @@ fn meshes(model: &Model, state: &ViewerState, frame: &Frame) -> Vec<Value> {
             let geometry = smoothed.as_ref().unwrap_or(geometry);
             deform(geometry, weights, palette, state.display.skinning, &mut deformed);
             if mesh.file_vertices > 0 {
-                whole.add(&geometry.file_vertex, &deformed);
+                in_file_order.add(&geometry.file_vertex, &deformed);
                 continue;
             }
             documents.push(json!({
@@ -76,22 +74,22 @@ fn meshes(model: &Model, state: &ViewerState, frame: &Frame) -> Vec<Value> {
                 "node": node,
                 "mesh": draw.mesh,
                 "primitive": 0,
-                "positions": flat(&whole.positions, whole.positions.len()),
-                "normals": flat(&whole.normals, whole.normals.len()),
+                "positions": flat(&in_file_order.positions, in_file_order.positions.len()),
+                "normals": flat(&in_file_order.normals, in_file_order.normals.len()),
             }));
         }
     }
     documents
 }
 
-/// A mesh of several pieces whose file has one list of vertices: put together again in the file's order.
-struct Whole {
+/// Vertices of a mesh whose file has one list for all primitives, back in the file's order.
+struct FileVertices {
     positions: Vec<glam::Vec3>,
-    /// Empty unless every piece has normals.
+    /// Empty unless every primitive has normals.
     normals: Vec<glam::Vec3>,
 }
 
-impl Whole {
+impl FileVertices {
     fn new(mesh: &Mesh, smooth: bool) -> Self {
         let count = mesh.file_vertices;
         let has_normals = smooth || mesh.primitives.iter().all(|geometry| !geometry.normals.is_empty());
@@ -101,7 +99,7 @@ impl Whole {
         }
     }
 
-    /// Of several copies of a vertex, which are all at one place, the first one's normal counts.
+    /// Copies of a vertex share its position; the first copy's normal is kept.
     fn add(&mut self, file_vertex: &[u32], deformed: &DeformedVertices) {
         for (&at, &position) in file_vertex.iter().zip(&deformed.positions) {
             self.positions[at as usize] = position;

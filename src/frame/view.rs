@@ -1,6 +1,6 @@
-//! The camera of one picture: place, direction, and planes that keep depth stable at any size.
+//! The frame's camera: view and projection, with near and far planes that keep depth precise at any scale.
 
-// The projections of the same form as WebGPU's: right-handed, Y up, depth from 0 to 1.
+// WebGPU's conventions: right-handed, Y up, depth from 0 to 1.
 use glam::camera::rh::proj::directx::{orthographic, perspective};
 use glam::camera::rh::view::look_at_mat4;
 use glam::{Affine3A, Mat4, Vec3};
@@ -10,10 +10,10 @@ use crate::asset::CameraProjection;
 use crate::library::Library;
 use crate::state::{CameraChoice, ViewerState, pane_aspect, resolve_camera, world_from_file_camera};
 
-/// The near plane is never nearer than this part of the far plane: more than 24 bits of depth can tell apart otherwise.
-const LEAST_NEAR: f32 = 1e-4;
+/// Smallest ratio of the near to the far plane that 24 bits of depth resolve.
+const MIN_NEAR_RATIO: f32 = 1e-4;
 
-/// Expects bounds, ground and joints of the frame to be there already. `travel` is how far the camera has followed.
+/// Expects the frame's bounds, ground and joints. `travel` moves an orbit camera that follows the character.
 pub(super) fn place_camera(library: &Library, state: &ViewerState, aspect: f32, travel: Vec3, frame: &mut Frame) {
     let pane_aspect = pane_aspect(state, aspect);
     if let CameraChoice::File(index) = state.camera
@@ -30,20 +30,20 @@ pub(super) fn place_camera(library: &Library, state: &ViewerState, aspect: f32, 
     frame.view = View { view_from_world: look_at_mat4(eye, orbit.target, Vec3::Y), projection_from_view, eye };
 }
 
-/// Distances that hold the model and the ground around it, along `ahead`.
+/// Returns near and far distances along `ahead` that enclose the model and the ground around it.
 fn planes(frame: &Frame, eye: Vec3, ahead: Vec3, distance: f32) -> (f32, f32) {
     let bounds = frame.bounds;
     if bounds.is_empty() {
         return (0.01 * distance, 100.0 * distance);
     }
     let ahead = ahead.normalize_or(Vec3::NEG_Z);
-    // Room for what reaches out of the box: overlays, and poses between those it was made from.
+    // Margin for overlays and for poses between those the bounds were sampled from.
     let radius = 0.6 * bounds.diagonal().max(1e-6);
     let middle = (bounds.center() - eye).dot(ahead);
     let ground = frame.look.grid.map_or(0.0, |grid| grid.radius);
     let far = (middle + radius + ground).max(2.0 * radius);
     let ground_near = if ground > 0.0 { 0.02 * distance } else { f32::INFINITY };
-    let near = (middle - radius).min(ground_near.max(0.0)).max(0.001 * distance.min(radius)).max(LEAST_NEAR * far);
+    let near = (middle - radius).min(ground_near.max(0.0)).max(0.001 * distance.min(radius)).max(MIN_NEAR_RATIO * far);
     (near, far.max(2.0 * near))
 }
 

@@ -1,15 +1,14 @@
-//! How far a model reaches: exactly at rest, and closely in any pose without touching every vertex.
+//! Bounds of a model: exact at rest, and a close estimate in any pose without skinning every vertex.
 //!
-//! For each joint of a skin the outermost of the vertices it pulls are kept, in the joint's space. A skinned vertex is a
-//! weighted mean of where its joints would put it, so the box around the kept points holds all.
+//! Each joint keeps the extreme points of the vertices it influences, in joint space. A skinned vertex is a weighted
+//! mean of its positions by each joint, so the bounds of the kept points enclose it.
 
 use glam::{Affine3A, Vec3};
 
 use super::Rig;
-use super::model::rest_world;
-use crate::anim::JointIndex;
+use crate::anim::{JointIndex, model_from_joint};
 use crate::asset::{Asset, MeshInstance};
-use crate::mesh::{Bounds, DeformedVertices, Geometry, SkinningMode, deform, palette_entry, write_palette};
+use crate::mesh::{Bounds, DeformedVertices, Geometry, Skin, SkinningMode, deform, palette_entry, write_palette};
 
 #[derive(Debug, Default)]
 pub(super) struct Extent {
@@ -19,14 +18,14 @@ pub(super) struct Extent {
 
 #[derive(Debug, Default)]
 struct InstanceExtent {
-    parts: Vec<Part>,
-    /// Per morph target, the box of its differences in mesh space.
+    joints: Vec<JointExtent>,
+    /// Bounds of each morph target's deltas, in mesh space.
     morph_reach: Vec<Bounds>,
 }
 
-/// Outermost points that follow one joint rigidly.
+/// Extreme points that a joint moves rigidly.
 #[derive(Debug)]
-struct Part {
+struct JointExtent {
     joint: JointIndex,
     joint_from_mesh: Affine3A,
     /// In joint space.
@@ -34,8 +33,8 @@ struct Part {
     center: Vec3,
 }
 
-/// An influence weaker than this carries no point along, unless it is the vertex's strongest.
-const LEAST_WEIGHT: f32 = 0.05;
+/// Influences below this weight are ignored, except a vertex's strongest.
+const MIN_WEIGHT: f32 = 0.05;
 
 impl Extent {
     pub fn new(asset: &Asset, rig: &Rig) -> Self {
@@ -53,42 +52,45 @@ impl Extent {
         rig: &Rig,
         world_from_joint: &[Affine3A],
         morph_weights: &[f32],
-        in_scene: &[bool],
+        visible: &[bool],
     ) -> Bounds {
         let mut bounds = Bounds::EMPTY;
         for (extent, instance) in self.instances.iter().zip(&asset.instances) {
-            if !in_scene[instance.joint.get()] {
+            if !visible[instance.joint.get()] {
                 continue;
             }
             let range = asset.skeleton.morph_range(instance.joint);
             let reach = extent.reach(morph_weights.get(range).unwrap_or_default());
-            for part in &extent.parts {
-                let world_from_joint = &world_from_joint[part.joint.get()];
+            for extent in &extent.joints {
+                let world_from_joint = &world_from_joint[extent.joint.get()];
                 let slack = reach.map_or((Vec3::ZERO, Vec3::ZERO), |reach| {
-                    let mut linear = *world_from_joint * part.joint_from_mesh;
+                    let mut linear = *world_from_joint * extent.joint_from_mesh;
                     linear.translation = glam::Vec3A::ZERO;
                     let slack = reach.transformed(&linear);
                     (slack.min, slack.max)
                 });
-                for &point in &part.points {
+                for &point in &extent.points {
                     let point = world_from_joint.transform_point3(point);
                     bounds = bounds.including(point + slack.0).including(point + slack.1);
                 }
             }
         }
-        if bounds.is_empty() { joint_bounds(asset, rig, world_from_joint, in_scene) } else { bounds }
+        if bounds.is_empty() { joint_bounds(asset, rig, world_from_joint, visible) } else { bounds }
     }
 
     pub fn instance_center(&self, asset: &Asset, instance: usize, world_from_joint: &[Affine3A]) -> Vec3 {
-        let Some(extent) = self.instances.get(instance).filter(|extent| !extent.parts.is_empty()) else {
+        let Some(extent) = self.instances.get(instance).filter(|extent| !extent.joints.is_empty()) else {
             return asset
                 .instances
                 .get(instance)
                 .map_or(Vec3::ZERO, |instance| world_from_joint[instance.joint.get()].translation.into());
         };
-        let sum: Vec3 =
-            extent.parts.iter().map(|part| world_from_joint[part.joint.get()].transform_point3(part.center)).sum();
-        sum / extent.parts.len() as f32
+        let sum: Vec3 = extent
+            .joints
+            .iter()
+            .map(|extent| world_from_joint[extent.joint.get()].transform_point3(extent.center))
+            .sum();
+        sum / extent.joints.len() as f32
     }
 }
 
@@ -96,25 +98,11 @@ impl InstanceExtent {
     fn new(asset: &Asset, instance: &MeshInstance) -> Self {
         let mesh = &asset.meshes[instance.mesh];
         let skin = instance.skin.map(|skin| &asset.skins[skin]);
-        let slots = skin.map_or(1, |skin| skin.joints().len());
-        let mut supports = vec![Support::default(); slots];
+        let mut supports = vec![Support::default(); skin.map_or(1, |skin| skin.joints().len())];
         for geometry in &mesh.primitives {
-            for (vertex, &position) in geometry.positions.iter().enumerate() {
-                match skin {
-                    Some(skin) if !geometry.influences.is_empty() => {
-                        for (rank, (slot, weight)) in geometry.influences.of_vertex(vertex).enumerate() {
-                            if weight > 0.0 && (rank == 0 || weight >= LEAST_WEIGHT) {
-                                let joint_from_bind = &skin.joint_from_bind()[slot as usize];
-                                supports[slot as usize].add(joint_from_bind.transform_point3(position));
-                            }
-                        }
-                    }
-                    Some(skin) => supports[0].add(skin.joint_from_bind()[0].transform_point3(position)),
-                    None => supports[0].add(position),
-                }
-            }
+            add_support(geometry, skin, &mut supports);
         }
-        let mut parts = Vec::new();
+        let mut joints = Vec::new();
         for (slot, support) in supports.iter().enumerate() {
             let points = support.points();
             if points.is_empty() {
@@ -125,14 +113,14 @@ impl InstanceExtent {
                 None => (instance.joint, Affine3A::IDENTITY),
             };
             let center = Bounds::of(points.iter().copied()).center();
-            parts.push(Part { joint, joint_from_mesh, points, center });
+            joints.push(JointExtent { joint, joint_from_mesh, points, center });
         }
         let targets = mesh.primitives.iter().map(|geometry| geometry.morph_targets.len()).max().unwrap_or(0);
         let morph_reach = (0..targets).map(|target| morph_reach(&mesh.primitives, target)).collect();
-        Self { parts, morph_reach }
+        Self { joints, morph_reach }
     }
 
-    /// Box of the differences that these weights can make, in mesh space; none when there are none.
+    /// Bounds of the offsets that these morph weights can cause, in mesh space; none if they cause none.
     fn reach(&self, weights: &[f32]) -> Option<Bounds> {
         let mut sum: Option<Bounds> = None;
         for (reach, &weight) in self.morph_reach.iter().zip(weights) {
@@ -147,13 +135,33 @@ impl InstanceExtent {
     }
 }
 
-/// Vertices that a target leaves alone count too: their difference is zero.
+/// Adds the vertices of a primitive to the supports of the joints that influence them, in joint space.
+fn add_support(geometry: &Geometry, skin: Option<&Skin>, supports: &mut [Support]) {
+    let Some(skin) = skin else {
+        geometry.positions.iter().for_each(|&position| supports[0].add(position));
+        return;
+    };
+    let joint_from_bind = skin.joint_from_bind();
+    for (vertex, &position) in geometry.positions.iter().enumerate() {
+        if geometry.influences.is_empty() {
+            supports[0].add(joint_from_bind[0].transform_point3(position));
+            continue;
+        }
+        for (rank, (slot, weight)) in geometry.influences.of_vertex(vertex).enumerate() {
+            if weight > 0.0 && (rank == 0 || weight >= MIN_WEIGHT) {
+                supports[slot as usize].add(joint_from_bind[slot as usize].transform_point3(position));
+            }
+        }
+    }
+}
+
+/// Bounds of a target's deltas, including zero for the vertices it does not move.
 fn morph_reach(primitives: &[Geometry], target: usize) -> Bounds {
     let deltas = primitives.iter().filter_map(|geometry| geometry.morph_targets.get(target));
     Bounds::of(deltas.flat_map(|target| target.positions.iter().copied()).chain([Vec3::ZERO]))
 }
 
-/// The outermost points seen so far along 13 axes, both ways.
+/// The extreme points along 13 axes, in both directions.
 #[derive(Debug, Clone)]
 struct Support {
     furthest: [(f32, Vec3); 26],
@@ -193,21 +201,22 @@ impl Support {
     }
 }
 
-/// Box of the joints themselves, of those that bones are drawn for when there is no mesh.
-fn joint_bounds(asset: &Asset, rig: &Rig, world_from_joint: &[Affine3A], in_scene: &[bool]) -> Bounds {
-    let joints = asset.skeleton.joints().filter(|&joint| in_scene[joint.get()] && rig.is_real(joint));
+/// Bounds of the skeleton, for models without a mesh.
+fn joint_bounds(asset: &Asset, rig: &Rig, world_from_joint: &[Affine3A], visible: &[bool]) -> Bounds {
+    let joints = asset.skeleton.joints().filter(|&joint| visible[joint.get()] && rig.is_real(joint));
     Bounds::of(joints.map(|joint| world_from_joint[joint.get()].translation.into()))
 }
 
-/// Every vertex of the default scene's rest pose, skinned.
+/// Bounds of every skinned vertex of the default scene at rest.
 fn exact_rest_bounds(asset: &Asset, rig: &Rig) -> Bounds {
-    let world_from_joint = rest_world(asset);
-    let in_scene = asset.joints_in_scene(asset.default_scene);
+    let mut world_from_joint = Vec::with_capacity(asset.skeleton.len());
+    model_from_joint(&asset.skeleton, &asset.skeleton.rest().locals, Affine3A::IDENTITY, &mut world_from_joint);
+    let visible = asset.joints_in_scene(asset.default_scene);
     let mut bounds = Bounds::EMPTY;
     let mut palette = Vec::new();
     let mut deformed = DeformedVertices::default();
     for instance in &asset.instances {
-        if !in_scene[instance.joint.get()] {
+        if !visible[instance.joint.get()] {
             continue;
         }
         palette.clear();
@@ -221,5 +230,5 @@ fn exact_rest_bounds(asset: &Asset, rig: &Rig) -> Bounds {
             bounds = deformed.positions.iter().fold(bounds, |bounds, &position| bounds.including(position));
         }
     }
-    if bounds.is_empty() { joint_bounds(asset, rig, &world_from_joint, &in_scene) } else { bounds }
+    if bounds.is_empty() { joint_bounds(asset, rig, &world_from_joint, &visible) } else { bounds }
 }

@@ -1,11 +1,11 @@
-//! Decoded images: straight (not premultiplied) RGBA with no colour conversion.
+//! Decoded images: RGBA with straight alpha and no colour conversion.
 
-/// Pixels as the platform's decoder gives them.
+/// Pixels from the platform's decoder.
 #[derive(Debug, Clone)]
 pub enum ImageData {
-    /// Row by row from the top, four bytes a pixel, `4 · width · height` in all.
+    /// `4 · width · height` bytes in rows from the top.
     Rgba8 { width: u32, height: u32, pixels: Vec<u8> },
-    /// The browser's own handle, made with `premultiplyAlpha: "none"` and `colorSpaceConversion: "none"`.
+    /// The browser's bitmap, created with `premultiplyAlpha: "none"` and `colorSpaceConversion: "none"`.
     #[cfg(target_arch = "wasm32")]
     Bitmap(web_sys::ImageBitmap),
 }

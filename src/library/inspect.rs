@@ -1,13 +1,13 @@
-//! The inspect document: what is in a file, as `gaitway inspect --json` and `window.gaitway.open` give it.
+//! The inspect document: the contents of a file, as reported by `gaitway inspect --json` and `window.gaitway.open`.
 
 use serde_json::{Value, json};
 
 use super::Model;
 use crate::anim::{Clip, Interpolation};
-use crate::asset::{Asset, Warnings};
+use crate::asset::{Asset, Warning, Warnings};
 use crate::mesh::{Bounds, Geometry, Mesh};
 
-/// `files` are the names of the files that were read. Counts are of the file: a mesh hung on two nodes counts once.
+/// `files` are the names of the files that were read. Counts refer to the file: a mesh on two nodes counts once.
 pub fn inspect(model: &Model, files: &[String]) -> Value {
     let asset: &Asset = &model.asset;
     let primitives = || asset.meshes.iter().flat_map(|mesh| &mesh.primitives);
@@ -39,13 +39,14 @@ pub fn inspect(model: &Model, files: &[String]) -> Value {
     })
 }
 
-/// `[{"code","message","where"}]`.
+/// Builds `[{"code","message","where"}]`.
 pub fn warning_documents(warnings: &Warnings) -> Value {
-    let document = |warning: &crate::asset::Warning| json!({ "code": warning.code(), "message": warning.to_string(), "where": warning.place() });
+    let document =
+        |warning: &Warning| json!({ "code": warning.code(), "message": warning.to_string(), "where": warning.place() });
     Value::Array(warnings.iter().map(document).collect())
 }
 
-fn target_count(mesh: &crate::mesh::Mesh) -> usize {
+fn target_count(mesh: &Mesh) -> usize {
     mesh.primitives.iter().map(|geometry| geometry.morph_targets.len()).max().unwrap_or(0)
 }
 
@@ -64,7 +65,7 @@ fn clip_document(index: usize, clip: &Clip) -> Value {
     })
 }
 
-/// Null when there is nothing to enclose.
+/// Null for empty bounds.
 fn bounds_document(bounds: Bounds) -> Value {
     if bounds.is_empty() { Value::Null } else { json!({ "min": bounds.min.to_array(), "max": bounds.max.to_array() }) }
 }

@@ -1,10 +1,10 @@
-//! Which joints of an asset are a skeleton to look at, which bones they form, and which of them carries the character.
+//! The visible part of a skeleton: which joints count, the bones between them, and the root that carries the character.
 
 use crate::anim::{Clip, JointIndex, Keys};
 use crate::asset::Asset;
 
-/// Worked out once per model. "Real" joints are those of skins and the nodes between them; without a skin those that
-/// clips move; without a mesh all.
+/// "Real" joints are those of skins and the nodes between them; without a skin, those that clips animate; without a mesh,
+/// all. Computed once per model.
 #[derive(Debug, Default)]
 pub struct Rig {
     real: Vec<bool>,
@@ -13,7 +13,7 @@ pub struct Rig {
     skin_joints: usize,
 }
 
-/// From a joint to one of its children, or to nothing at the end of a chain.
+/// From a joint to one of its children; without a tail at the end of a chain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RigBone {
     pub head: JointIndex,
@@ -23,10 +23,7 @@ pub struct RigBone {
 impl Rig {
     pub(super) fn new(asset: &Asset) -> Self {
         let skeleton = &asset.skeleton;
-        let mut in_skin = vec![false; skeleton.len()];
-        for joint in asset.skins.iter().flat_map(|skin| skin.joints()) {
-            in_skin[joint.get()] = true;
-        }
+        let in_skin = skin_flags(asset);
         let skin_joints = in_skin.iter().filter(|&&inside| inside).count();
         let mut real = in_skin.clone();
         if skin_joints == 0 {
@@ -36,8 +33,8 @@ impl Rig {
                 }
             }
             if asset.instances.is_empty() {
-                let moved = std::mem::replace(&mut real, vec![true; skeleton.len()]);
-                drop_containers(asset, &moved, &mut real);
+                let animated = std::mem::replace(&mut real, vec![true; skeleton.len()]);
+                drop_containers(asset, &animated, &mut real);
             }
         }
         fill_gaps(asset, &mut real);
@@ -56,7 +53,6 @@ impl Rig {
         Self { real, bones, roots, skin_joints }
     }
 
-    /// One flag per joint.
     pub fn is_real(&self, joint: JointIndex) -> bool {
         self.real.get(joint.get()).copied().unwrap_or(false)
     }
@@ -65,12 +61,12 @@ impl Rig {
         &self.bones
     }
 
-    /// How many different joints the skins name.
+    /// Number of distinct joints in the skins.
     pub fn skin_joints(&self) -> usize {
         self.skin_joints
     }
 
-    /// Joints of the skins; of a skeleton without a mesh, all.
+    /// Number of joints to report: those of the skins, or all joints of a skeleton without a mesh.
     pub fn joint_count(&self, asset: &Asset) -> usize {
         if self.skin_joints == 0 && asset.instances.is_empty() { asset.skeleton.len() } else { self.skin_joints }
     }
@@ -80,25 +76,25 @@ impl Rig {
     }
 }
 
-/// Of a skeleton without a mesh, what only holds the moving joints (`RootNode`, `Armature`) is not part of the body: it
-/// stays behind when a clip travels.
-fn drop_containers(asset: &Asset, moved: &[bool], real: &mut [bool]) {
+/// Unmarks nodes that only contain the animated joints of a skeleton without a mesh (`RootNode`, `Armature`). They stay
+/// behind when a clip travels.
+fn drop_containers(asset: &Asset, animated: &[bool], real: &mut [bool]) {
     let skeleton = &asset.skeleton;
-    let mut holds_moved = vec![false; skeleton.len()];
+    let mut contains_animated = vec![false; skeleton.len()];
     for joint in skeleton.joints().rev() {
-        if (moved[joint.get()] || holds_moved[joint.get()])
+        if (animated[joint.get()] || contains_animated[joint.get()])
             && let Some(parent) = skeleton.parent(joint)
         {
-            holds_moved[parent.get()] = true;
+            contains_animated[parent.get()] = true;
         }
     }
     for joint in skeleton.joints() {
-        let below_body = skeleton.parent(joint).is_some_and(|parent| real[parent.get()]);
-        real[joint.get()] = below_body || moved[joint.get()] || !holds_moved[joint.get()];
+        let below_real = skeleton.parent(joint).is_some_and(|parent| real[parent.get()]);
+        real[joint.get()] = below_real || animated[joint.get()] || !contains_animated[joint.get()];
     }
 }
 
-/// A joint between two real ones is real as well.
+/// Marks joints between two real ones.
 fn fill_gaps(asset: &Asset, real: &mut [bool]) {
     let skeleton = &asset.skeleton;
     let mut below_real = vec![false; skeleton.len()];
@@ -119,29 +115,34 @@ fn fill_gaps(asset: &Asset, real: &mut [bool]) {
     }
 }
 
-/// The joint whose travel is the character's in a clip over this asset.
+/// Finds the joint whose travel is the character's in a clip for this asset.
 pub(super) fn root_of(asset: &Asset, clip: &Clip) -> Option<JointIndex> {
+    root_of_clip(asset, clip, &skin_flags(asset))
+}
+
+/// Whether each joint belongs to a skin.
+fn skin_flags(asset: &Asset) -> Vec<bool> {
     let mut in_skin = vec![false; asset.skeleton.len()];
     for joint in asset.skins.iter().flat_map(|skin| skin.joints()) {
         in_skin[joint.get()] = true;
     }
-    root_of_clip(asset, clip, &in_skin)
+    in_skin
 }
 
 fn root_of_clip(asset: &Asset, clip: &Clip, in_skin: &[bool]) -> Option<JointIndex> {
-    let carried = |channel: &&crate::anim::Channel| match &channel.keys {
+    let is_translated = |channel: &&crate::anim::Channel| match &channel.keys {
         Keys::Translation(values) => values.windows(2).any(|pair| pair[0] != pair[1]),
         _ => false,
     };
-    let moved = || clip.channels().iter().filter(carried).map(|channel| channel.joint);
-    // Joints are sorted parents first, so the smallest index is a topmost one.
-    moved()
+    let translated = || clip.channels().iter().filter(is_translated).map(|channel| channel.joint);
+    // Parents come first, so the smallest index is a topmost joint.
+    translated()
         .filter(|joint| in_skin[joint.get()])
         .min()
         .or_else(|| {
-            // The travel sits above the skin: any joint of the skin is carried along.
-            moved().min()?;
+            // A node above the skin travels and carries all its joints along.
+            translated().min()?;
             asset.skeleton.joints().find(|joint| in_skin[joint.get()])
         })
-        .or_else(|| moved().min())
+        .or_else(|| translated().min())
 }

@@ -1,8 +1,8 @@
-//! Axis-aligned boxes.
+//! Axis-aligned bounding boxes.
 
 use glam::{Affine3A, Vec3};
 
-/// An axis-aligned box; empty when `min > max`, as [`Bounds::EMPTY`] is.
+/// An axis-aligned bounding box; empty if `min > max`, as in [`Bounds::EMPTY`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
     pub min: Vec3,
@@ -16,7 +16,7 @@ impl Bounds {
         points.into_iter().fold(Self::EMPTY, Self::including)
     }
 
-    /// The box grown to hold a point; points that are not finite are left out.
+    /// Grows the box to include a point. Non-finite points are ignored.
     pub fn including(self, point: Vec3) -> Self {
         if point.is_finite() { Self { min: self.min.min(point), max: self.max.max(point) } } else { self }
     }
@@ -33,7 +33,7 @@ impl Bounds {
         0.5 * (self.min + self.max)
     }
 
-    /// Edge lengths; zero when empty.
+    /// Edge lengths; zero if empty.
     pub fn size(&self) -> Vec3 {
         if self.is_empty() { Vec3::ZERO } else { self.max - self.min }
     }
@@ -48,7 +48,7 @@ impl Bounds {
         })
     }
 
-    /// The box around this box's corners after a transform.
+    /// Returns the bounds of the transformed corners.
     pub fn transformed(&self, to_from: &Affine3A) -> Self {
         if self.is_empty() { *self } else { Self::of(self.corners().map(|corner| to_from.transform_point3(corner))) }
     }

@@ -1,11 +1,11 @@
-//! One drawable piece of a mesh, as flat arrays with one entry per vertex.
+//! Mesh primitives, as flat arrays with one entry per vertex.
 
 use glam::{Vec2, Vec3, Vec4};
 
-/// The most influences a vertex keeps.
+/// Maximum number of influences per vertex.
 pub const MAX_INFLUENCES: usize = 16;
 
-/// What the indices mean. Strips, fans and loops are turned into lists when a file is read.
+/// How indices form elements. Strips, fans and loops are converted to lists on loading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Topology {
     Points,
@@ -24,22 +24,21 @@ impl Topology {
     }
 }
 
-/// A named list of pieces that share morph targets' names and default weights.
+/// A named list of primitives with the same morph targets.
 #[derive(Debug, Clone, Default)]
 pub struct Mesh {
     pub name: String,
     pub primitives: Vec<Geometry>,
-    /// Names of the morph targets; as many as each primitive has targets.
+    /// Names of the morph targets that every primitive has.
     pub target_names: Vec<String>,
-    /// What the file calls its pieces, one name for each; empty when it has no names for them.
+    /// The file's names of the primitives, if it has any.
     pub part_names: Vec<String>,
-    /// How many vertices the file has, if it has one list for all pieces and the mesh several of them; else 0: each piece
-    /// has a list of its own.
+    /// Number of vertices in the file if several primitives share one vertex list; 0 if each has a list of its own.
     pub file_vertices: usize,
 }
 
 impl Mesh {
-    /// How many vertices the file has for it.
+    /// Number of vertices in the file.
     pub fn file_vertex_count(&self) -> usize {
         match self.file_vertices {
             0 => self.primitives.iter().map(|geometry| geometry.file_vertices).sum(),
@@ -48,32 +47,32 @@ impl Mesh {
     }
 }
 
-/// Positions in mesh space (bind space for a skinned mesh), metres. Optional attributes are empty or have one entry per
-/// vertex; [`Geometry::validate`] says whether they do.
+/// A primitive. Positions are in mesh space (bind space for a skinned mesh), metres. Optional attributes are empty or
+/// have one entry per vertex, which [`Geometry::validate`] checks.
 #[derive(Debug, Clone, Default)]
 pub struct Geometry {
     pub topology: Topology,
     pub positions: Vec<Vec3>,
-    /// Unit length; empty: flat, computed from the deformed triangles where they are drawn.
+    /// Unit length. If empty, flat normals are derived from the deformed triangles when drawn.
     pub normals: Vec<Vec3>,
     /// xyz unit length, w the bitangent's sign.
     pub tangents: Vec<Vec4>,
     pub uvs: [Vec<Vec2>; 2],
     /// Linear, alpha last.
     pub colors: Vec<Vec4>,
-    /// Always a list; never empty for a drawable geometry.
+    /// Never empty for a drawable primitive.
     pub indices: Vec<u32>,
     pub influences: Influences,
     pub morph_targets: Vec<MorphTarget>,
     pub material: Option<usize>,
-    /// How many vertices the file has. Vertices past it are copies made where one has two tangents, texture coordinates or
-    /// normals; they come last, so the first `file_vertices` are the file's own in the file's order.
+    /// Number of vertices in the file, which come first and in the file's order. The rest are copies, made where a
+    /// vertex has several tangents, texture coordinates or normals.
     pub file_vertices: usize,
-    /// Which vertex of the file each is a copy of; empty: there are no copies, the numbers are the file's.
+    /// Each vertex's index in the file; empty if there are no copies and the indices are equal.
     pub file_vertex: Vec<u32>,
 }
 
-/// Differences from the base attributes at weight 1; normals and tangents may be empty.
+/// Deltas to the base attributes at weight 1; normals and tangents may be empty.
 #[derive(Debug, Clone, Default)]
 pub struct MorphTarget {
     pub positions: Vec<Vec3>,
@@ -81,8 +80,8 @@ pub struct MorphTarget {
     pub tangents: Vec<Vec3>,
 }
 
-/// Which joints pull a vertex and how hard: `stride` pairs per vertex, strongest first, weights summing to 1, unused
-/// pairs (0, 0.0). `stride` is 0 (not skinned) or a multiple of 4 up to [`MAX_INFLUENCES`].
+/// Joints and weights that influence each vertex: `stride` pairs per vertex, strongest first, weights summing to 1,
+/// unused pairs (0, 0.0). `stride` is 0 (not skinned) or a multiple of 4 up to [`MAX_INFLUENCES`].
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Influences {
     pub stride: usize,
@@ -106,15 +105,15 @@ impl Influences {
 pub enum GeometryError {
     #[error("{attribute} has {found} entries, expected {expected}")]
     Count { attribute: &'static str, expected: usize, found: usize },
-    #[error("index {index} points at a vertex, but there are only {vertices}")]
+    #[error("index {index} is out of range, there are {vertices} vertices")]
     IndexOutOfRange { index: u32, vertices: usize },
-    #[error("vertex {vertex} follows joint {joint}, but the skin has only {joints}")]
+    #[error("vertex {vertex} references joint {joint}, but the skin has only {joints} joints")]
     JointOutOfRange { vertex: usize, joint: u16, joints: usize },
 }
 
 impl Geometry {
-    /// Checks that all arrays agree in length and that indices are in range. `skin_joints` is the size of the smallest
-    /// skin this geometry is used with, if any.
+    /// Checks that array lengths match and indices are in range. `skin_joints` is the joint count of the smallest skin
+    /// that this geometry is used with, if any.
     pub fn validate(&self, skin_joints: Option<usize>) -> Result<(), GeometryError> {
         let vertices = self.positions.len();
         let check = |attribute: &'static str, found: usize, optional: bool| {
@@ -129,7 +128,7 @@ impl Geometry {
         check("texture coordinates 0", self.uvs[0].len(), true)?;
         check("texture coordinates 1", self.uvs[1].len(), true)?;
         check("colours", self.colors.len(), true)?;
-        check("vertices of the file", self.file_vertex.len(), true)?;
+        check("file vertices", self.file_vertex.len(), true)?;
         for target in &self.morph_targets {
             check("morph target positions", target.positions.len(), true)?;
             check("morph target normals", target.normals.len(), true)?;
@@ -153,7 +152,7 @@ impl Geometry {
         Ok(())
     }
 
-    /// The number that the file has for a vertex.
+    /// Returns the file's index of a vertex.
     pub fn number_in_file(&self, vertex: usize) -> usize {
         self.file_vertex.get(vertex).map_or(vertex, |&number| number as usize)
     }

@@ -1,4 +1,4 @@
-//! Metallic-roughness materials, as glTF 2.0 §3.9 defines them. Colours are linear.
+//! Metallic-roughness materials as defined in glTF 2.0 §3.9. Colours are linear.
 
 use glam::{Vec2, Vec3, Vec4};
 
@@ -15,7 +15,7 @@ pub struct Material {
     pub base_color: Vec4,
     pub metallic: f32,
     pub roughness: f32,
-    /// Emitted light, KHR_materials_emissive_strength multiplied in.
+    /// Includes the factor of KHR_materials_emissive_strength.
     pub emissive: Vec3,
     pub normal_scale: f32,
     pub occlusion_strength: f32,
@@ -57,7 +57,7 @@ impl Default for Material {
     }
 }
 
-/// A texture as one material slot uses it.
+/// A texture in a material slot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TextureRef {
     /// Index into the asset's textures.
@@ -79,10 +79,10 @@ impl UvTransform {
     pub const IDENTITY: Self = Self { offset: Vec2::ZERO, rotation_radians: 0.0, scale: Vec2::ONE };
 }
 
-/// An image and how to read it.
+/// An image and its sampler.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Texture {
-    /// Index into the asset's images; none when no image in a format we read is given.
+    /// Index into the asset's images; none if the file has no image in a supported format.
     pub image: Option<usize>,
     pub sampler: Sampler,
 }

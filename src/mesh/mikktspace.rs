@@ -1,33 +1,33 @@
-//! MikkTSpace (Mikkelsen 2008, "Simulation of Wrinkled Surfaces Revisited"; his mikktspace.c) for triangles: the tangents
-//! that normal maps are made for. A test compares it with another implementation.
+//! MikkTSpace for triangle lists (Mikkelsen 2008, "Simulation of Wrinkled Surfaces Revisited", and his mikktspace.c): the
+//! tangents that normal maps are baked for. A test compares it with another implementation.
 
 use std::collections::HashMap;
 
 use glam::{Vec2, Vec3, Vec4};
 
-/// In place of a face or group: there is none.
+/// No face or group.
 const NONE: u32 = u32::MAX;
-/// Faces at one edge, or around one vertex, that are looked through one by one: more exist only to keep us busy.
-const MOST_COMPARED: usize = 64;
+/// Faces compared pairwise at an edge or around a vertex. Only hostile files have more.
+const MAX_COMPARED: usize = 64;
 
 struct Face {
-    /// Vertices, one number for all that are equal.
+    /// Welded vertices: equal vertices share an index.
     vertices: [u32; 3],
-    /// The way the texture's u and v grow, unit length.
+    /// Directions of increasing u and v, unit length.
     along_u: Vec3,
     along_v: Vec3,
-    /// The texture is not mirrored.
+    /// Whether the texture mapping preserves orientation, i.e. is not mirrored.
     preserving: bool,
-    /// The texture coordinates say nothing: it goes with whatever is around it.
+    /// Whether the texture coordinates are degenerate, so that the face fits any group.
     any: bool,
-    /// Two corners are in one place.
+    /// Whether two corners coincide.
     degenerate: bool,
-    /// Across the edges that start at each corner.
+    /// Faces across the edges that start at each corner.
     neighbors: [u32; 3],
     groups: [u32; 3],
 }
 
-/// Faces around one vertex that share a tangent: a range of the list of all groups' faces.
+/// Faces around a vertex that share a tangent: a range in the list of group members.
 struct Group {
     vertex: u32,
     preserving: bool,
@@ -35,8 +35,9 @@ struct Group {
     end: usize,
 }
 
-/// Tangents of all corners of a triangle list, w the bitangent's sign as mikktspace.c has it; none where neither the corner
-/// nor its vertex has one. The lists have one entry per vertex and `indices` are in range.
+/// Returns the tangent of every corner of a triangle list, w being the bitangent's sign in mikktspace.c's convention;
+/// none if neither the corner nor its vertex has one. The attributes have one entry per vertex, and `indices` are in
+/// range.
 pub(super) fn corner_tangents(
     positions: &[Vec3],
     normals: &[Vec3],
@@ -55,13 +56,13 @@ pub(super) fn corner_tangents(
     for group in &groups {
         let members = &members[group.first..group.end];
         let normal = normals[group.vertex as usize];
-        let whole = |list: &mut dyn Iterator<Item = u32>| blend(&faces, list, group, positions, normal);
-        let shared = whole(&mut members.iter().copied());
-        let split = members.len() <= MOST_COMPARED && opposed(&faces, members, normal);
+        let blend_all = |list: &mut dyn Iterator<Item = u32>| blend(&faces, list, group, positions, normal);
+        let shared = blend_all(&mut members.iter().copied());
+        let split = members.len() <= MAX_COMPARED && opposed(&faces, members, normal);
         for &face in members {
             let tangent = if split {
                 let with = |other: &u32| agree(&faces[face as usize], &faces[*other as usize], normal);
-                whole(&mut members.iter().filter(|other| with(other)).copied())
+                blend_all(&mut members.iter().filter(|other| with(other)).copied())
             } else {
                 shared
             };
@@ -70,7 +71,7 @@ pub(super) fn corner_tangents(
             tangents[3 * face as usize + corner] = Some(tangent.extend(sign));
         }
     }
-    // What has no tangent of its own takes that of the first corner at its vertex.
+    // Corners of degenerate faces take the tangent of the first corner at their vertex.
     let mut first_at: HashMap<u32, Vec4> = HashMap::new();
     for (face, tangents) in faces.iter().zip(tangents.as_chunks::<3>().0) {
         for (&vertex, tangent) in face.vertices.iter().zip(tangents) {
@@ -87,13 +88,13 @@ pub(super) fn corner_tangents(
     tangents
 }
 
-/// For each vertex the first that equals it.
+/// Maps each vertex to the first one that equals it.
 fn weld(positions: &[Vec3], normals: &[Vec3], uvs: &[Vec2]) -> Vec<u32> {
     let mut first: HashMap<[u32; 8], u32> = HashMap::with_capacity(positions.len());
     (0..positions.len())
         .map(|vertex| {
             let (p, n, t) = (positions[vertex], normals[vertex], uvs[vertex]);
-            // Adding 0 makes -0 the same.
+            // Adding zero makes -0 equal to 0.
             let key = [p.x, p.y, p.z, n.x, n.y, n.z, t.x, t.y].map(|number| (number + 0.0).to_bits());
             *first.entry(key).or_insert(vertex as u32)
         })
@@ -135,9 +136,9 @@ impl Face {
     }
 }
 
-/// Pairs of faces that run along one edge in opposite directions; of more than two, each finds the next.
+/// Pairs up faces that traverse an edge in opposite directions; if more than two share it, each pairs with the next.
 fn find_neighbors(faces: &mut [Face]) {
-    // Lower and higher vertex, face, corner that the edge starts at.
+    // Lower and higher vertex, face, and the corner at which the edge starts.
     let mut edges: Vec<(u64, u32, u8)> = Vec::with_capacity(3 * faces.len());
     for (index, face) in faces.iter().enumerate().filter(|(_, face)| !face.degenerate) {
         for corner in 0..3 {
@@ -151,7 +152,7 @@ fn find_neighbors(faces: &mut [Face]) {
         if faces[face as usize].neighbors[corner as usize] != NONE {
             continue;
         }
-        for &(other_edge, other, other_corner) in edges[at + 1..].iter().take(MOST_COMPARED) {
+        for &(other_edge, other, other_corner) in edges[at + 1..].iter().take(MAX_COMPARED) {
             if other_edge != edge {
                 break;
             }
@@ -166,7 +167,7 @@ fn find_neighbors(faces: &mut [Face]) {
     }
 }
 
-/// Walks from face to face around each vertex, as long as the texture is not mirrored on the way.
+/// Flood-fills faces around each vertex, stopping where the texture mapping flips orientation.
 fn find_groups(faces: &mut [Face]) -> (Vec<Group>, Vec<u32>) {
     let mut groups: Vec<Group> = Vec::new();
     let mut members: Vec<u32> = Vec::with_capacity(3 * faces.len());
@@ -208,13 +209,13 @@ fn on_plane(vector: Vec3, normal: Vec3) -> Vec3 {
     (vector - normal * normal.dot(vector)).normalize_or_zero()
 }
 
-/// Whether two faces at a vertex may share a tangent: theirs do not point exactly against each other.
+/// Whether two faces at a vertex may share a tangent, that is, theirs are not exactly opposed.
 fn agree(a: &Face, b: &Face, normal: Vec3) -> bool {
     let above = |a: Vec3, b: Vec3| on_plane(a, normal).dot(on_plane(b, normal)) > -1.0;
     a.any || b.any || std::ptr::eq(a, b) || (above(a.along_u, b.along_u) && above(a.along_v, b.along_v))
 }
 
-/// Whether any two of the faces might disagree: never when all lie within a right angle of the first.
+/// Whether any two of the faces might disagree. They cannot if all are within a right angle of the first.
 fn opposed(faces: &[Face], members: &[u32], normal: Vec3) -> bool {
     let Some(first) = members.first().map(|&face| &faces[face as usize]) else { return false };
     let (u, v) = (on_plane(first.along_u, normal), on_plane(first.along_v, normal));
@@ -222,7 +223,7 @@ fn opposed(faces: &[Face], members: &[u32], normal: Vec3) -> bool {
     first.any || !members.iter().all(|&face| beside(&faces[face as usize]))
 }
 
-/// The mean of the faces' tangents, weighted by their angles at the vertex.
+/// Averages the faces' tangents, weighted by their angles at the vertex.
 fn blend(
     faces: &[Face],
     members: &mut dyn Iterator<Item = u32>,

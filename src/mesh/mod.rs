@@ -1,5 +1,5 @@
-//! Shapes that skeletons bend: geometry, skins, materials, and skinning on the CPU, the reference for the GPU's.
-//! Knows no file, GPU, user interface or clock.
+//! Geometry, skins and materials, and CPU skinning, the reference for the GPU. Independent of files, GPU, user
+//! interface and clock.
 
 mod bounds;
 mod geometry;

@@ -1,26 +1,28 @@
-//! The palette: one matrix per skin joint, in the form each skinning mode reads.
+//! The palette: one entry per skin joint, in the form its skinning mode reads.
 
 use glam::{Affine3A, Mat3, Quat, Vec3, Vec4};
 use serde::{Deserialize, Serialize};
 
 use super::Skin;
 
-/// How a vertex follows several joints.
+/// How the influences of several joints are combined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SkinningMode {
-    /// The weighted sum of where each joint would put the vertex (glTF 2.0 §3.7.3.3).
+    /// Linear blend skinning (glTF 2.0 §3.7.3.3).
     #[default]
     Linear,
-    /// Every vertex follows its strongest influence alone: shows what blending is for.
+    /// Each vertex follows its strongest influence only, which shows what blending is for.
     Rigid,
-    /// Rigid parts are blended as unit dual quaternions (Kavan, Collins, Žára, O'Sullivan 2008, "Geometric Skinning with
-    /// Approximate Dual Quaternion Blending"). Scale and shear are split off each joint's matrix (`M = T·R·S`), blended
-    /// linearly and applied first, as §4.2 of the paper suggests; with one influence this equals `Linear` exactly.
+    /// Rigid transforms are blended as unit dual quaternions (Kavan, Collins, Žára, O'Sullivan 2008, "Geometric
+    /// Skinning with Approximate Dual Quaternion Blending"). Scale and shear are factored out of each joint's matrix
+    /// (`M = T·R·S`), blended linearly and applied first, as §4.2 of the paper suggests. With one influence the result
+    /// equals
+    /// `Linear` exactly.
     DualQuaternion,
 }
 
-/// Five RGBA texels, the same layout in the palette texture. All in the space the palette was made for.
+/// Five RGBA texels in the layout of the palette texture, in the palette's target space.
 ///
 /// `Linear`, `Rigid`: `[0..3]` are the rows of the 3×4 matrix; the rest is unused.
 /// `DualQuaternion`: `[0]` the rotation x y z w, `[1]` the dual part (half translation times rotation), `[2..5]` the rows
@@ -51,8 +53,8 @@ pub fn palette_entry(world_from_bind: &Affine3A, mode: SkinningMode) -> PaletteE
     }
 }
 
-/// The rotation in a matrix: its columns made orthonormal, a mirrored matrix turned around first so that the mirror
-/// stays in what is left.
+/// Extracts the rotation by orthonormalizing the columns. A mirroring matrix is negated first, which leaves the
+/// reflection in the remainder.
 fn rotation_of(matrix: Mat3) -> Quat {
     let matrix = if matrix.determinant() < 0.0 { -matrix } else { matrix };
     let x = matrix.x_axis.normalize_or(Vec3::X);
@@ -60,7 +62,7 @@ fn rotation_of(matrix: Mat3) -> Quat {
     Quat::from_mat3(&Mat3::from_cols(x, y, x.cross(y))).normalize()
 }
 
-/// Palette of one skin: `world_from_joint` has one entry per joint of the skeleton; one entry per skin joint is appended.
+/// Appends one palette entry per skin joint. `world_from_joint` has one entry per joint of the skeleton.
 pub fn write_palette(skin: &Skin, world_from_joint: &[Affine3A], mode: SkinningMode, out: &mut Vec<PaletteEntry>) {
     match mode {
         SkinningMode::Linear | SkinningMode::Rigid => {
@@ -76,7 +78,7 @@ pub fn write_palette(skin: &Skin, world_from_joint: &[Affine3A], mode: SkinningM
     }
 }
 
-/// The product of a matrix and one given by its rows, in rows: no transposition.
+/// Multiplies a matrix by one given in rows, producing rows without a transposition.
 #[inline]
 fn linear_entry(world_from_joint: &Affine3A, [x, y, z]: &[Vec4; 3]) -> PaletteEntry {
     let Affine3A { matrix3, translation } = world_from_joint;

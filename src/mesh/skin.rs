@@ -1,16 +1,16 @@
-//! Skins: which joints bend a mesh, and where each was when the mesh was bound to it.
+//! Skins: the joints that deform a mesh, with their inverse bind matrices.
 
 use glam::{Affine3A, Mat4, Vec4};
 
 use crate::anim::JointIndex;
 
-/// Joints and their inverse bind matrices, one each. Immutable once built.
+/// Joints, each with an inverse bind matrix. Immutable once built.
 #[derive(Debug, Clone)]
 pub struct Skin {
     name: String,
     joints: Vec<JointIndex>,
     joint_from_bind: Vec<Affine3A>,
-    /// The rows of the same matrices, four numbers each, as the palette wants them.
+    /// The same matrices as rows, the form the palette needs.
     joint_from_bind_rows: Vec<[Vec4; 3]>,
 }
 
@@ -18,18 +18,18 @@ pub struct Skin {
 pub enum SkinError {
     #[error("{joints} joints but {matrices} inverse bind matrices")]
     MatrixCount { joints: usize, matrices: usize },
-    #[error("joint {joint} is not one of the {count} joints of the skeleton")]
+    #[error("joint {joint} is out of range, the skeleton has {count} joints")]
     NoSuchJoint { joint: usize, count: usize },
-    #[error("the inverse bind matrix of joint {joint} has a number that is not finite")]
+    #[error("the inverse bind matrix of joint {joint} is not finite")]
     NotFinite { joint: usize },
     #[error("a skin needs at least one joint")]
     NoJoints,
-    #[error("{joints} joints, more than the {} that influences can name", u16::MAX)]
+    #[error("{joints} joints, but influences can address at most {}", u16::MAX)]
     TooManyJoints { joints: usize },
 }
 
 impl Skin {
-    /// `joint_from_bind` are the inverse bind matrices, as many as joints; `skeleton_len` bounds the joints' indices.
+    /// `joint_from_bind` has one inverse bind matrix per joint; `skeleton_len` bounds the joint indices.
     pub fn new(
         name: String,
         joints: Vec<JointIndex>,

@@ -1,4 +1,4 @@
-//! Morphing and skinning on the CPU: the reference for the GPU's, and what `pose` prints.
+//! CPU morphing and skinning: the reference for the GPU and the output of `gaitway pose`.
 
 use glam::{Mat3A, Mat4, Quat, Vec3, Vec3A, Vec4};
 
@@ -8,15 +8,15 @@ use super::{Geometry, PaletteEntry, SkinningMode};
 #[derive(Debug, Clone, Default)]
 pub struct DeformedVertices {
     pub positions: Vec<Vec3>,
-    /// Unit length; empty when the geometry's are.
+    /// Unit length; empty if the geometry has none.
     pub normals: Vec<Vec3>,
 }
 
-/// Morphs, then skins all vertices of a geometry, in the space the palette was made for. `morph_weights` has one entry
-/// per target or is shorter (missing ones are 0). A geometry without influences follows the first palette entry.
+/// Morphs, then skins all vertices of a primitive into the palette's target space. Missing `morph_weights` count as 0.
+/// Without influences, every vertex follows the first palette entry.
 ///
-/// Normals go by the inverse transpose of the blended matrix (for dual quaternions: of the blended rotation times the
-/// blended stretch).
+/// Normals are transformed by the inverse transpose of the blended matrix (for dual quaternions: of the blended rotation
+/// times the blended stretch).
 pub fn deform(
     geometry: &Geometry,
     morph_weights: &[f32],
@@ -26,7 +26,7 @@ pub fn deform(
 ) {
     morph(geometry, morph_weights, out);
     let influences = &geometry.influences;
-    // One entry serves all vertices: a mesh with joint attributes may hang on a node without a skin.
+    // A mesh with joint attributes may be on a node without a skin: its palette has a single entry.
     if influences.is_empty() || palette.len() == 1 {
         let matrix = matrix_of(&palette[0], mode);
         return transform(out, |_| matrix);
@@ -43,17 +43,8 @@ pub fn deform(
             }
             let sets = influences.stride / 4;
             transform(out, |vertex| {
-                let mut sum = [Vec4::ZERO; 3];
                 let sets = vertex * sets..(vertex + 1) * sets;
-                for (joints, weights) in joints[sets.clone()].iter().zip(&weights[sets]) {
-                    // The strongest come first: all that follow pull at nothing.
-                    if weights[0] == 0.0 {
-                        break;
-                    }
-                    let [x, y, z] = blend_4(*joints, *weights, palette);
-                    sum = [sum[0] + x, sum[1] + y, sum[2] + z];
-                }
-                sum
+                blend_sets(&joints[sets.clone()], &weights[sets], palette)
             });
         }
         SkinningMode::Linear => transform(out, |vertex| blend(influences.of_vertex(vertex), palette)),
@@ -63,7 +54,8 @@ pub fn deform(
     }
 }
 
-/// One vertex as [`deform`] has it: where it is bound, after morphing, and where it comes to be. `scratch` is only room.
+/// Like [`deform`] for a single vertex. Returns its morphed bind position and its skinned position. `scratch` is a
+/// buffer.
 pub fn deform_vertex(
     geometry: &Geometry,
     vertex: usize,
@@ -115,7 +107,7 @@ fn matrix_of(entry: &PaletteEntry, mode: SkinningMode) -> Rows {
     }
 }
 
-/// All four at once, those of weight 0 as well: the palette must be finite.
+/// Blends all four matrices, even those with weight 0, so the palette must be finite.
 #[inline(always)]
 fn blend_4(joints: [u16; 4], weights: [f32; 4], palette: &[PaletteEntry]) -> Rows {
     let [a, b, c, d] = [
@@ -126,6 +118,21 @@ fn blend_4(joints: [u16; 4], weights: [f32; 4], palette: &[PaletteEntry]) -> Row
     ];
     let row = |row: usize| (weights[0] * a[row] + weights[1] * b[row]) + (weights[2] * c[row] + weights[3] * d[row]);
     [row(0), row(1), row(2)]
+}
+
+/// Blends several sets of four.
+#[inline(always)]
+fn blend_sets(joints: &[[u16; 4]], weights: &[[f32; 4]], palette: &[PaletteEntry]) -> Rows {
+    let mut sum = [Vec4::ZERO; 3];
+    for (joints, weights) in joints.iter().zip(weights) {
+        // Strongest first: the remaining sets have no weight.
+        if weights[0] == 0.0 {
+            break;
+        }
+        let [x, y, z] = blend_4(*joints, *weights, palette);
+        sum = [sum[0] + x, sum[1] + y, sum[2] + z];
+    }
+    sum
 }
 
 fn blend(influences: impl Iterator<Item = (u16, f32)>, palette: &[PaletteEntry]) -> Rows {
@@ -144,7 +151,7 @@ fn blend_dual_quaternions(influences: impl Iterator<Item = (u16, f32)>, palette:
     let mut pivot = None;
     for (joint, weight) in influences.filter(|(_, weight)| *weight != 0.0) {
         let entry = &palette[joint as usize];
-        // q and −q are the same rotation: bring all to the hemisphere of the first, or they would cancel out.
+        // q and −q are the same rotation: flip all into the hemisphere of the first, or they would cancel out.
         let pivot = *pivot.get_or_insert(entry[0]);
         let signed = if pivot.dot(entry[0]) < 0.0 { -weight } else { weight };
         for (part, factor) in [signed, signed, weight, weight, weight].into_iter().enumerate() {
@@ -170,8 +177,8 @@ fn matrix_of_dual(&[real, dual, x, y, z]: &PaletteEntry) -> Rows {
     [row(rotation.x_axis, translation.x), row(rotation.y_axis, translation.y), row(rotation.z_axis, translation.z)]
 }
 
-/// Moves all vertices, four at a time: `matrix` gives the matrix of a vertex. Written out lane by lane: arrays that are
-/// mapped by closures go through memory.
+/// Transforms all vertices by their matrices, four at a time. Lanes are written out because mapping arrays with
+/// closures would spill them to memory.
 #[inline(always)]
 fn transform(out: &mut DeformedVertices, matrix: impl Fn(usize) -> Rows) {
     let (positions, last_positions) = out.positions.as_chunks_mut::<4>();
@@ -195,14 +202,14 @@ fn transform(out: &mut DeformedVertices, matrix: impl Fn(usize) -> Rows) {
     }
 }
 
-/// Matrices of four vertices, a lane each: three rows of x, y, z and translation.
+/// Matrices of four vertices, one per lane: three rows of x, y, z and translation.
 struct Four {
     x: Mat4,
     y: Mat4,
     z: Mat4,
 }
 
-/// x, y and z of four vectors.
+/// Four vectors as lanes of x, y and z.
 #[derive(Clone, Copy)]
 struct Lanes {
     x: Vec4,
@@ -227,19 +234,21 @@ impl Four {
         Lanes { x: moved(&self.x), y: moved(&self.y), z: moved(&self.z) }.vectors()
     }
 
-    /// By the cofactor matrix, which is the inverse transpose times the determinant: no division, and right for flat scales.
+    /// Uses the cofactor matrix, which is the inverse transpose times the determinant: it needs no division and handles
+    /// zero scales.
     #[inline(always)]
     fn normals(&self, normals: [Vec3; 4]) -> [Vec3; 4] {
         let (x, y, z) = (linear(&self.x), linear(&self.y), linear(&self.z));
         let (cofactor_x, cofactor_y, cofactor_z) = (cross(y, z), cross(z, x), cross(x, y));
         let normals = Lanes::new(normals);
-        let turned = Lanes { x: dot(cofactor_x, normals), y: dot(cofactor_y, normals), z: dot(cofactor_z, normals) };
+        let transformed =
+            Lanes { x: dot(cofactor_x, normals), y: dot(cofactor_y, normals), z: dot(cofactor_z, normals) };
         let mirrored = dot(x, cofactor_x).cmplt(Vec4::ZERO);
-        let scale = dot(turned, turned).sqrt().recip();
+        let scale = dot(transformed, transformed).sqrt().recip();
         let known = scale.is_finite_mask() & scale.cmpgt(Vec4::ZERO);
         let scale = Vec4::select(mirrored, -scale, scale);
         let unit = |part: Vec4| Vec4::select(known, part * scale, Vec4::ZERO);
-        Lanes { x: unit(turned.x), y: unit(turned.y), z: unit(turned.z) }.vectors()
+        Lanes { x: unit(transformed.x), y: unit(transformed.y), z: unit(transformed.z) }.vectors()
     }
 }
 

@@ -1,14 +1,14 @@
-//! Tangents by MikkTSpace, the algorithm that glTF 2.0 §3.7.2.1 names for meshes that bring none.
+//! MikkTSpace tangents, which glTF 2.0 §3.7.2.1 specifies for meshes without tangents.
 
 use glam::{Vec2, Vec3, Vec4};
 
 use super::{Geometry, mikktspace};
 
-/// How many copies of one vertex are looked through for a tangent that fits. Corners that share one are near each other;
-/// a vertex with thousands of copies exists only to keep us busy.
-const COPIES_COMPARED: usize = 64;
+/// Copies of a vertex searched for a matching tangent. Corners that share a tangent are close to each other; only
+/// hostile files have thousands of copies.
+const MAX_COPIES_COMPARED: usize = 64;
 
-/// The tangents of a triangle list's corners, before any vertex is copied. Normals and the texture coordinates are there.
+/// Returns the tangent of every corner of a triangle list, which must have normals and these texture coordinates.
 pub fn corner_tangents(geometry: &Geometry, uv_set: usize) -> Vec<Vec4> {
     let Geometry { positions, normals, uvs, indices, .. } = geometry;
     // MikkTSpace's V points up, glTF's down.
@@ -19,19 +19,19 @@ pub fn corner_tangents(geometry: &Geometry, uv_set: usize) -> Vec<Vec4> {
         .collect()
 }
 
-/// Adds tangents to a triangle list with normals and the given texture coordinates; without these nothing happens.
-/// Where the corners at one vertex want different tangents, the vertex is copied; copies come last, so the first
-/// `file_vertices` stay as they are. The copies take at most `most_copied_bytes`, beyond which corners make do with the
-/// tangent that their vertex has; returned is what they took.
-pub fn add_tangents(geometry: &mut Geometry, uv_set: usize, most_copied_bytes: usize) -> usize {
+/// Adds tangents to a triangle list. Does nothing without normals or the given texture coordinates. A vertex whose
+/// corners need different tangents is duplicated; copies are appended, so the first `file_vertices` stay in place.
+/// Copies take at most
+/// `max_copied_bytes`; beyond that, corners keep their vertex's tangent. Returns the bytes taken.
+pub fn add_tangents(geometry: &mut Geometry, uv_set: usize, max_copied_bytes: usize) -> usize {
     if geometry.normals.is_empty() || geometry.uvs.get(uv_set).is_none_or(Vec::is_empty) {
         return 0;
     }
     let vertex_bytes = vertex_bytes(geometry);
-    let most_copies = most_copied_bytes / vertex_bytes;
+    let max_copies = max_copied_bytes / vertex_bytes;
     let corner_tangents = corner_tangents(geometry, uv_set);
     let mut tangents: Vec<Option<Vec4>> = vec![None; geometry.positions.len()];
-    // Which vertex each copy is of, and the copies of each vertex.
+    // The original of each copy, and the copies of each vertex.
     let mut copies: Vec<u32> = Vec::new();
     let mut copies_of: std::collections::BTreeMap<u32, Vec<u32>> = std::collections::BTreeMap::new();
     for (corner, tangent) in corner_tangents.into_iter().enumerate() {
@@ -42,10 +42,10 @@ pub fn add_tangents(geometry: &mut Geometry, uv_set: usize, most_copied_bytes: u
             Some(other) if same(other) => {}
             Some(_) => {
                 let made = copies_of.entry(vertex).or_default();
-                let mut recent = made.iter().rev().take(COPIES_COMPARED).copied();
+                let mut recent = made.iter().rev().take(MAX_COPIES_COMPARED).copied();
                 if let Some(copy) = recent.find(|&copy| tangents[copy as usize].is_some_and(same)) {
                     geometry.indices[corner] = copy;
-                } else if copies.len() < most_copies {
+                } else if copies.len() < max_copies {
                     let copy = tangents.len() as u32;
                     made.push(copy);
                     copies.push(vertex);
@@ -65,7 +65,7 @@ pub fn add_tangents(geometry: &mut Geometry, uv_set: usize, most_copied_bytes: u
     copies.len() * vertex_bytes
 }
 
-/// What one more vertex takes, at most.
+/// Upper bound of the memory of one vertex.
 fn vertex_bytes(geometry: &Geometry) -> usize {
     let influence = size_of::<u16>() + size_of::<f32>();
     let target = 3 * size_of::<Vec3>();
@@ -78,23 +78,23 @@ fn vertex_bytes(geometry: &Geometry) -> usize {
 }
 
 fn copy_vertex(geometry: &mut Geometry, vertex: usize) {
-    fn again<T: Copy>(list: &mut Vec<T>, at: usize) {
+    fn push_copy<T: Copy>(list: &mut Vec<T>, at: usize) {
         if let Some(&value) = list.get(at) {
             list.push(value);
         }
     }
-    again(&mut geometry.positions, vertex);
-    again(&mut geometry.normals, vertex);
-    again(&mut geometry.uvs[0], vertex);
-    again(&mut geometry.uvs[1], vertex);
-    again(&mut geometry.colors, vertex);
-    again(&mut geometry.file_vertex, vertex);
+    push_copy(&mut geometry.positions, vertex);
+    push_copy(&mut geometry.normals, vertex);
+    push_copy(&mut geometry.uvs[0], vertex);
+    push_copy(&mut geometry.uvs[1], vertex);
+    push_copy(&mut geometry.colors, vertex);
+    push_copy(&mut geometry.file_vertex, vertex);
     let stride = geometry.influences.stride;
     geometry.influences.joints.extend_from_within(vertex * stride..(vertex + 1) * stride);
     geometry.influences.weights.extend_from_within(vertex * stride..(vertex + 1) * stride);
     for target in &mut geometry.morph_targets {
-        again(&mut target.positions, vertex);
-        again(&mut target.normals, vertex);
-        again(&mut target.tangents, vertex);
+        push_copy(&mut target.positions, vertex);
+        push_copy(&mut target.normals, vertex);
+        push_copy(&mut target.tangents, vertex);
     }
 }

@@ -1,13 +1,13 @@
-//! What of a frame's meshes is drawn, in which order and with which pipeline.
+//! Chooses what to draw of a frame's meshes, in which order and with which pipeline.
 
 use super::model::{GpuModel, GpuPrimitive};
 use super::palette::PaletteTexture;
 use super::pipelines::{Features, Layouts, MeshKey, MeshPipeline, Pipelines, Shading};
 use super::uniforms::DrawUniform;
-use crate::frame::Frame;
+use crate::frame::{Character, Draw, Frame};
 use crate::mesh::Topology;
 
-/// Distance of draw uniforms: what WebGPU and WebGL2 ask of dynamic offsets.
+/// Stride of the draw uniforms: the alignment WebGPU and WebGL2 require of dynamic offsets.
 const ALIGNMENT: usize = 256;
 const WIREFRAME_OVER_MESH: [f32; 4] = [0.0, 0.0, 0.0, 0.2];
 const WIREFRAME_ALONE: [f32; 4] = [0.15, 0.25, 0.38, 0.75];
@@ -15,17 +15,17 @@ const WIREFRAME_ALONE: [f32; 4] = [0.15, 0.25, 0.38, 0.75];
 /// One draw call.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Item {
-    /// As [`crate::frame::Character::pane`].
+    /// See [`Character::pane`].
     pub pane: Option<u32>,
     model: usize,
     mesh: usize,
     primitive: usize,
     pub pipeline: MeshPipeline,
-    /// Of the draw's uniform.
+    /// Byte offset of the draw's uniform in the dynamic buffer.
     pub offset: u32,
-    /// Edges are drawn instead of triangles.
+    /// Draws the edges instead of the triangles.
     pub edges: bool,
-    /// Along the view, for sorting.
+    /// View depth, for sorting.
     distance: f32,
 }
 
@@ -35,7 +35,80 @@ impl Item {
     }
 }
 
-/// Reused from frame to frame.
+/// What the primitives of one mesh instance have in common.
+struct Instance<'a> {
+    frame: &'a Frame,
+    character: &'a Character,
+    draw: &'a Draw,
+    /// Index into the renderer's models.
+    model: usize,
+    /// First entry in the palette texture.
+    palette: u32,
+    /// First texel and number of the active morph weights.
+    morph_weights: (u32, u32),
+    /// Features that depend on the frame's lights.
+    lighting: Features,
+    distance: f32,
+}
+
+impl Instance<'_> {
+    fn uniform(&self, primitive: &GpuPrimitive) -> DrawUniform {
+        let geometry = &primitive.geometry;
+        let (morph_weights, morph_count) = self.morph_weights;
+        DrawUniform {
+            palette: self.palette,
+            morph_weights,
+            morph_count: if geometry.morph_view.is_some() { morph_count } else { 0 },
+            morph_attributes: geometry.morph_attributes,
+            vertices: geometry.vertices,
+            influence_stride: geometry.influence_stride,
+            heat_joint: self.draw.heat_joint.unwrap_or(u32::MAX),
+            padding: 0,
+            color: if self.frame.look.mesh { WIREFRAME_OVER_MESH } else { WIREFRAME_ALONE },
+        }
+    }
+
+    fn mesh_key(&self, primitive: &GpuPrimitive) -> MeshKey {
+        let geometry = &primitive.geometry;
+        let shading = if self.draw.heat_joint.is_some() { Shading::Heat } else { primitive.shading };
+        let mut features = primitive.features.with(self.lighting, shading == Shading::Lit);
+        if self.frame.look.smooth && geometry.topology == Topology::Triangles {
+            features = features.without(Features::FLAT);
+        }
+        MeshKey {
+            shading,
+            influences: geometry.influences,
+            skinning: self.character.skinning,
+            topology: geometry.topology,
+            features,
+            cull: (!primitive.double_sided).then_some(wgpu::Face::Back),
+            mirrored: self.draw.mirrored,
+        }
+    }
+}
+
+/// The key that draws the same surface into the shadow map.
+fn shadow_key(key: MeshKey) -> MeshKey {
+    let has_holes = key.features.has(Features::MASK) || key.features.has(Features::BLEND);
+    let alpha_sources = Features::BASE_COLOR_MAP.with(Features::VERTEX_COLORS, true);
+    let features =
+        if has_holes { key.features.only(alpha_sources).with(Features::MASK, true) } else { Features::default() };
+    MeshKey { shading: Shading::Shadow, features, cull: None, mirrored: false, ..key }
+}
+
+/// The key that draws the surface's edges.
+fn wireframe_key(key: MeshKey) -> MeshKey {
+    MeshKey {
+        shading: Shading::Wireframe,
+        topology: Topology::Lines,
+        features: Features::default(),
+        cull: None,
+        mirrored: false,
+        ..key
+    }
+}
+
+/// Draw calls of a frame, reused between frames.
 pub(super) struct DrawList {
     shadow: Vec<Item>,
     solid: Vec<Item>,
@@ -96,107 +169,85 @@ impl DrawList {
         if !frame.look.mesh && !frame.look.wireframe {
             return;
         }
-        let mut next_palette = 0;
         for character in &frame.characters {
             palette.push_palette(&character.palette);
         }
-        let light_features =
+        let lighting =
             Features::default().with(Features::SHADOW, shadow).with(Features::FILE_LIGHTS, !frame.lights.is_empty());
+        let mut next_palette = 0;
         for character in &frame.characters {
             let first_palette = next_palette;
             next_palette += character.palette.len() as u32;
-            let Some(model_index) = models.iter().position(|model| model.id == character.model) else { continue };
+            let Some(model) = models.iter().position(|model| model.id == character.model) else { continue };
             for draw in &character.draws {
-                let weights = draw.morph_weights.start as usize..draw.morph_weights.end as usize;
-                let weights = character.morph_weights.get(weights).unwrap_or_default();
-                let (morph_weights, morph_count) = palette.push_morph_weights(weights);
-                let center = frame.view.view_from_world.transform_point3(draw.center);
-                let primitives = models[model_index].meshes.get(draw.mesh).map_or(0, Vec::len);
-                for primitive_index in 0..primitives {
-                    if frame.look.wireframe {
-                        models[model_index].prepare_edges(device, draw.mesh, primitive_index);
-                    }
-                    let Some(primitive) = &models[model_index].meshes[draw.mesh][primitive_index] else { continue };
-                    let geometry = &primitive.geometry;
-                    let uniform = DrawUniform {
-                        palette: first_palette + draw.palette.start,
-                        morph_weights,
-                        morph_count: if geometry.morph_view.is_some() { morph_count } else { 0 },
-                        morph_attributes: geometry.morph_attributes,
-                        vertices: geometry.vertices,
-                        influence_stride: geometry.influence_stride,
-                        heat_joint: draw.heat_joint.unwrap_or(u32::MAX),
-                        padding: 0,
-                        color: if frame.look.mesh { WIREFRAME_OVER_MESH } else { WIREFRAME_ALONE },
-                    };
-                    let offset = self.push_uniform(&uniform);
-                    let heat = draw.heat_joint.is_some();
-                    let shading = if heat { Shading::Heat } else { primitive.shading };
-                    let mut features = primitive.features.with(light_features, shading == Shading::Lit);
-                    if frame.look.smooth && geometry.topology == Topology::Triangles {
-                        features = features.without(Features::FLAT);
-                    }
-                    let key = MeshKey {
-                        shading,
-                        influences: geometry.influences,
-                        skinning: character.skinning,
-                        topology: geometry.topology,
-                        features,
-                        cull: (!primitive.double_sided).then_some(wgpu::Face::Back),
-                        mirrored: draw.mirrored,
-                    };
-                    let mut item = |key: MeshKey, offset, edges| Item {
-                        pane: character.pane,
-                        model: model_index,
-                        mesh: draw.mesh,
-                        primitive: primitive_index,
-                        pipeline: pipelines.mesh(device, key),
-                        offset,
-                        edges,
-                        distance: -center.z,
-                    };
-                    if frame.look.mesh {
-                        if !features.has(Features::BLEND) {
-                            self.solid.push(item(key, offset, false));
-                        } else if primitive.double_sided && geometry.topology == Topology::Triangles {
-                            // The far side first, or it would be painted over the near one.
-                            for cull in [wgpu::Face::Front, wgpu::Face::Back] {
-                                self.blended.push(item(MeshKey { cull: Some(cull), ..key }, offset, false));
-                            }
-                        } else {
-                            self.blended.push(item(key, offset, false));
-                        }
-                        // One shadow map serves all panes.
-                        if shadow && primitive.casts_shadow && character.pane.is_none_or(|pane| pane == 0) {
-                            let holes = features.has(Features::MASK) || features.has(Features::BLEND);
-                            let kept = Features::BASE_COLOR_MAP.with(Features::VERTEX_COLORS, true);
-                            let features = if holes {
-                                features.only(kept).with(Features::MASK, true)
-                            } else {
-                                Features::default()
-                            };
-                            let key =
-                                MeshKey { shading: Shading::Shadow, features, cull: None, mirrored: false, ..key };
-                            self.shadow.push(item(key, offset, false));
-                        }
-                    }
-                    if frame.look.wireframe && geometry.topology == Topology::Triangles {
-                        let key = MeshKey {
-                            shading: Shading::Wireframe,
-                            topology: Topology::Lines,
-                            features: Features::default(),
-                            cull: None,
-                            mirrored: false,
-                            ..key
-                        };
-                        self.blended.push(item(key, offset, true));
-                    }
+                if frame.look.wireframe {
+                    models[model].prepare_edges(device, draw.mesh);
+                }
+                let instance = Instance {
+                    frame,
+                    character,
+                    draw,
+                    model,
+                    palette: first_palette + draw.palette.start,
+                    morph_weights: palette.push_morph_weights(character.morph_weights_of(draw)),
+                    lighting,
+                    distance: -frame.view.view_from_world.transform_point3(draw.center).z,
+                };
+                let primitives = models[model].meshes.get(draw.mesh).into_iter().flatten();
+                for (index, primitive) in primitives.enumerate() {
+                    self.add(device, pipelines, &instance, index, primitive.as_ref(), shadow);
                 }
             }
         }
         self.solid.sort_unstable_by(|a, b| a.distance.total_cmp(&b.distance).then(a.offset.cmp(&b.offset)));
-        // Stable: parts of one mesh keep the file's order.
+        // A stable sort keeps the file's order within a mesh.
         self.blended.sort_by(|a, b| a.edges.cmp(&b.edges).then(b.distance.total_cmp(&a.distance)));
+    }
+
+    /// Adds the items of one primitive, if it has anything to draw.
+    fn add(
+        &mut self,
+        device: &wgpu::Device,
+        pipelines: &mut Pipelines,
+        instance: &Instance<'_>,
+        index: usize,
+        primitive: Option<&GpuPrimitive>,
+        shadow: bool,
+    ) {
+        let Some(primitive) = primitive else { return };
+        let (look, pane) = (&instance.frame.look, instance.character.pane);
+        let is_surface = primitive.geometry.topology == Topology::Triangles;
+        let offset = self.push_uniform(&instance.uniform(primitive));
+        let key = instance.mesh_key(primitive);
+        let mut item = |key: MeshKey, edges| Item {
+            pane,
+            model: instance.model,
+            mesh: instance.draw.mesh,
+            primitive: index,
+            pipeline: pipelines.mesh(device, key),
+            offset,
+            edges,
+            distance: instance.distance,
+        };
+        if look.mesh {
+            if !key.features.has(Features::BLEND) {
+                self.solid.push(item(key, false));
+            } else if primitive.double_sided && is_surface {
+                // Back faces first, so that front faces blend over them.
+                for cull in [wgpu::Face::Front, wgpu::Face::Back] {
+                    self.blended.push(item(MeshKey { cull: Some(cull), ..key }, false));
+                }
+            } else {
+                self.blended.push(item(key, false));
+            }
+            // All panes share one shadow map.
+            if shadow && primitive.casts_shadow && pane.is_none_or(|pane| pane == 0) {
+                self.shadow.push(item(shadow_key(key), false));
+            }
+        }
+        if look.wireframe && is_surface {
+            self.blended.push(item(wireframe_key(key), true));
+        }
     }
 
     fn push_uniform(&mut self, uniform: &DrawUniform) -> u32 {
@@ -206,7 +257,7 @@ impl DrawList {
         offset as u32
     }
 
-    /// Brings the draws' uniforms to the GPU when they changed.
+    /// Uploads the draws' uniforms if they changed.
     pub fn upload(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, layouts: &Layouts) {
         if self.uniforms == self.uploaded {
             return;

@@ -1,23 +1,23 @@
-//! The studio: an environment of soft boxes given by a formula, blurred for each roughness into a small cube map, and
-//! its diffuse light as nine spherical harmonics. Made on the CPU in a few milliseconds; nothing is downloaded.
+//! The studio environment: procedural soft boxes, prefiltered by roughness into a small cube map, with diffuse light as
+//! nine spherical harmonics. Computed on the CPU in a few milliseconds, so nothing is downloaded.
 
 use glam::{Vec2, Vec3};
 
-/// Edge of the sharpest level in texels.
+/// Edge length of the sharpest level in texels.
 const SIZE: u32 = 64;
-/// Roughness 0 to 1 in equal steps; light.wgsl has the last level's number.
+/// Roughness 0 to 1 in equal steps; must match light.wgsl.
 const LEVELS: u32 = 6;
 
-/// Towards the key light with the environment unturned: from the front left, above.
+/// Direction to the key light without environment rotation: front left, above.
 pub const KEY_DIRECTION: Vec3 = Vec3::new(-0.48, 0.72, 0.50);
 pub const KEY_COLOR: Vec3 = Vec3::new(1.75, 1.68, 1.58);
 
-/// A lamp with a soft edge on an infinitely far plane.
+/// A soft-edged lamp at infinity.
 struct SoftBox {
     direction: Vec3,
     right: Vec3,
     up: Vec3,
-    /// Half the size in units of the distance.
+    /// Half the size at unit distance.
     half_size: Vec2,
     color: Vec3,
 }
@@ -64,7 +64,7 @@ impl Studio {
         }
     }
 
-    /// Linear light from a direction of unit length.
+    /// Linear radiance from a unit direction.
     fn radiance(&self, direction: Vec3) -> Vec3 {
         let floor = Vec3::new(0.16, 0.155, 0.15);
         let horizon = Vec3::new(0.26, 0.27, 0.29);
@@ -79,7 +79,7 @@ impl Studio {
 pub(super) struct Environment {
     pub view: wgpu::TextureView,
     pub sampler: wgpu::Sampler,
-    /// Coefficients of the diffuse light divided by π, in the order light.wgsl sums them.
+    /// Irradiance coefficients divided by π, in the order of light.wgsl.
     pub irradiance: [[f32; 4]; 9],
 }
 
@@ -141,7 +141,7 @@ impl Environment {
     }
 }
 
-/// Where a texel of a face looks; `at` runs from −1 to 1, down and right.
+/// Direction of a texel of a cube face; `at` runs from −1 to 1, right and down.
 fn cube_direction(face: u32, at: Vec2) -> Vec3 {
     let direction = match face {
         0 => Vec3::new(1.0, -at.y, -at.x),
@@ -154,13 +154,13 @@ fn cube_direction(face: u32, at: Vec2) -> Vec3 {
     direction.normalize_or_zero()
 }
 
-/// Directions around +Z that a surface of some roughness reflects, with their weights.
+/// Weighted sample directions around +Z of the reflection lobe for some roughness.
 struct Lobe {
     samples: Vec<(Vec3, f32)>,
 }
 
 impl Lobe {
-    /// Importance-sampled GGX, seen along its normal (Karis 2013, "Real Shading in Unreal Engine 4").
+    /// Importance-samples GGX for a view along the normal (Karis 2013, "Real Shading in Unreal Engine 4").
     fn new(roughness: f32, count: u32) -> Self {
         if roughness == 0.0 {
             return Self { samples: vec![(Vec3::Z, 1.0)] };
@@ -171,7 +171,7 @@ impl Lobe {
             let u = (index as f32 + 0.5) / count as f32;
             let cos_squared = (1.0 - u) / (1.0 + (alpha * alpha - 1.0) * u);
             let (cos, sin) = (cos_squared.sqrt(), (1.0 - cos_squared).max(0.0).sqrt());
-            // The golden angle spreads the samples evenly around.
+            // The golden angle distributes samples evenly.
             let (turn_sin, turn_cos) = (2.399_963_2 * index as f32).sin_cos();
             let half_way = Vec3::new(sin * turn_cos, sin * turn_sin, cos);
             let reflected = 2.0 * half_way.z * half_way - Vec3::Z;
@@ -194,10 +194,10 @@ impl Lobe {
     }
 }
 
-/// Diffuse light as spherical harmonics (Ramamoorthi and Hanrahan 2001), all constants folded in.
+/// Projects the studio's irradiance to spherical harmonics (Ramamoorthi and Hanrahan 2001), with all constants folded in.
 fn irradiance(studio: &Studio) -> [[f32; 4]; 9] {
     const COUNT: u32 = 2048;
-    // Per band: basis constant squared, times the cosine lobe's factor (π, 2π/3, π/4) over π.
+    // Squared basis constant, times the cosine lobe's factor (π, 2π/3, π/4) over π.
     const FACTORS: [f32; 9] = [
         0.282_095 * 0.282_095,
         0.488_603 * 0.488_603 * 2.0 / 3.0,
@@ -225,7 +225,7 @@ fn irradiance(studio: &Studio) -> [[f32; 4]; 9] {
     std::array::from_fn(|index| (sums[index] * (FACTORS[index] * solid_angle)).extend(0.0).to_array())
 }
 
-/// Half-precision bits of a finite number from 0 to 65,504; smaller than a normal half becomes 0.
+/// Converts a finite number from 0 to 65,504 to half-precision bits, flushing subnormals to 0.
 fn half_from_float(value: f32) -> u16 {
     let bits = value.clamp(0.0, 65_504.0).to_bits() + 0x1000;
     let exponent = (bits >> 23) as i32 - 127 + 15;
@@ -237,7 +237,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn halves_keep_eleven_bits() {
+    fn half_floats_keep_eleven_bits() {
         for (value, bits) in [(0.0, 0), (1.0, 0x3c00), (0.5, 0x3800), (2.0, 0x4000), (1.5, 0x3e00), (65_504.0, 0x7bff)]
         {
             assert_eq!(half_from_float(value), bits, "{value}");
@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn a_matte_surface_gives_back_what_the_studio_sends() {
+    fn irradiance_matches_the_studio_integrated_over_a_cosine_lobe() {
         let studio = Studio::new();
         let coefficients = irradiance(&studio);
         for normal in [Vec3::Y, Vec3::NEG_Y, Vec3::X, Vec3::Z, Vec3::new(-0.6, 0.0, 0.8)] {
@@ -254,7 +254,7 @@ mod tests {
                 [1.0, n.y, n.z, n.x, n.x * n.y, n.y * n.z, 3.0 * n.z * n.z - 1.0, n.x * n.z, n.x * n.x - n.y * n.y];
             let shown: f32 = coefficients.iter().zip(basis).map(|(c, b)| c[1] * b).sum();
             let lobe = Lobe::new(1.0, 4096);
-            // With roughness 1 the lobe around the normal is the cosine lobe of a matte surface, nearly.
+            // At roughness 1 the lobe is almost the cosine lobe.
             let expected = lobe.blur(&studio, normal).y;
             assert!((shown - expected).abs() < 0.25 * expected, "{normal}: {shown} instead of {expected}");
         }

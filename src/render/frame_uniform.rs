@@ -1,4 +1,4 @@
-//! From a frame to the numbers that all of its shaders read.
+//! Converts a frame to the uniform that all shaders share.
 
 use glam::{Mat3, Vec3};
 
@@ -8,15 +8,15 @@ use super::uniforms::{FrameUniform, LightUniform, MAX_LIGHTS};
 use crate::asset::LightKind;
 use crate::frame::{Frame, FrameLight};
 
-/// sRGB of the studio's backdrop, in the middle and at the edge.
+/// sRGB colours of the studio backdrop, at the center and at the edge.
 const STUDIO_CENTER: [f32; 4] = [0.735, 0.748, 0.767, 1.0];
 const STUDIO_EDGE: [f32; 4] = [0.496, 0.512, 0.547, 1.0];
-/// How dark the ground gets where no key light reaches it.
+/// Opacity of the shadow on the ground.
 const GROUND_SHADOW: f32 = 0.32;
 /// No light casts a shadow on meshes.
 const NO_SHADOW: u32 = u32::MAX;
 
-/// The part of the ground that can be seen.
+/// The visible part of the ground.
 pub(super) struct GroundPlane {
     pub center: Vec3,
     pub radius: f32,
@@ -26,7 +26,7 @@ pub(super) struct GroundPlane {
 }
 
 impl GroundPlane {
-    /// None when there is neither grid nor shadow to show.
+    /// None without a grid or shadow to show.
     pub fn of(frame: &Frame) -> Option<Self> {
         let bounds = &frame.bounds;
         let shadow = frame.look.shadow && frame.look.mesh && !bounds.is_empty();
@@ -36,7 +36,7 @@ impl GroundPlane {
                 radius: grid.radius,
                 spacing: grid.spacing,
                 grid: true,
-                // From below the ground is clear.
+                // Seen from below, the ground is transparent.
                 shadow: shadow && frame.view.eye.y > grid.height,
             }),
             None if shadow => Some(Self {
@@ -51,7 +51,7 @@ impl GroundPlane {
     }
 }
 
-/// The picture's uniform and, when something casts a shadow, the same seen from the light.
+/// Returns the scene pass's uniform and, if something casts a shadow, the shadow pass's with the light's projection.
 pub(super) fn frame_uniform(
     frame: &Frame,
     ground: Option<&GroundPlane>,
@@ -61,7 +61,8 @@ pub(super) fn frame_uniform(
     let look = &frame.look;
     let (sin, cos) = look.environment_radians.sin_cos();
     let key_direction = Mat3::from_rotation_y(look.environment_radians) * KEY_DIRECTION.normalize_or_zero();
-    // The file's first light that shines like the sun casts the shadow; other lights leave it on the ground alone.
+    // The file's first directional light from above casts the shadow. With other lights only, the key light casts one
+    // on the ground but not on meshes.
     let sun = frame
         .lights
         .iter()
@@ -115,7 +116,7 @@ fn light_uniform(light: &FrameLight) -> LightUniform {
         LightKind::Directional => (0, 0.0, 0.0),
         LightKind::Point => (1, 0.0, 0.0),
         LightKind::Spot { inner_cone_radians, outer_cone_radians } => {
-            // As KHR_lights_punctual suggests.
+            // As recommended by KHR_lights_punctual.
             let outer = outer_cone_radians.cos();
             let scale = 1.0 / (inner_cone_radians.cos() - outer).max(0.001);
             (2, scale, -outer * scale)

@@ -1,4 +1,4 @@
-//! Vertices, influences, morph targets and indices of one primitive on the GPU.
+//! The GPU buffers and textures of a primitive: vertices, influences, morph targets and indices.
 
 use std::collections::HashSet;
 
@@ -9,19 +9,19 @@ use wgpu::util::DeviceExt;
 use super::UploadError;
 use crate::mesh::{Geometry, Influences, Topology};
 
-/// Texels in a row of a vertex texture; skinning.wgsl has the same number.
+/// Width of a vertex texture in texels; must match skinning.wgsl.
 pub const VERTEX_TEXTURE_WIDTH: u32 = 2048;
 
-/// How a vertex stage gets its influences.
+/// Where the vertex stage reads influences from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum InfluenceSource {
-    /// All vertices follow the draw's first palette entry.
+    /// Every vertex uses the draw's first palette entry.
     None,
-    /// 4 in vertex attributes.
+    /// Four per vertex, as vertex attributes.
     Four,
-    /// 8 in vertex attributes.
+    /// Eight per vertex, as vertex attributes.
     Eight,
-    /// 12 or 16, by vertex index from a texture.
+    /// 12 or 16 per vertex, fetched from a texture by vertex index.
     Texture,
 }
 
@@ -35,7 +35,7 @@ impl InfluenceSource {
         }
     }
 
-    /// Vertex stage in vertex.wgsl; `position_only`: the one that gives nothing else.
+    /// Entry point in vertex.wgsl; `position_only` selects the variant that outputs only the position.
     pub fn entry_point(self, position_only: bool) -> &'static str {
         match (self, position_only) {
             (Self::None, false) => "vertex_0",
@@ -74,7 +74,7 @@ struct FourInfluences {
     weights: [f32; 4],
 }
 
-/// Layouts of the vertex buffers a pipeline reads, in the order of [`GpuGeometry::bind`].
+/// Vertex buffer layouts in the order of [`GpuGeometry::bind`].
 pub fn vertex_buffers(influences: InfluenceSource) -> Vec<Option<wgpu::VertexBufferLayout<'static>>> {
     const SHAPE: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
     const SURFACE: [wgpu::VertexAttribute; 3] =
@@ -99,7 +99,7 @@ pub fn vertex_buffers(influences: InfluenceSource) -> Vec<Option<wgpu::VertexBuf
     buffers
 }
 
-/// One primitive.
+/// A primitive on the GPU.
 pub struct GpuGeometry {
     pub topology: Topology,
     pub influences: InfluenceSource,
@@ -117,8 +117,8 @@ pub struct GpuGeometry {
 }
 
 impl GpuGeometry {
-    /// `smooth`: its normals of [`smooth_normals`](crate::mesh::smooth_normals), if it has none of its own. `mesh` and
-    /// `primitive` are for messages. The geometry must be valid and have indices.
+    /// `smooth` are the normals from [`smooth_normals`](crate::mesh::smooth_normals), used if the geometry has none. `mesh`
+    /// and `primitive` are for error messages. The geometry must be valid and have indices.
     pub fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
@@ -129,48 +129,21 @@ impl GpuGeometry {
     ) -> Result<Self, UploadError> {
         let count = geometry.positions.len();
         let too_many = || UploadError::TooManyVertices { mesh, primitive, vertices: count };
-        let most_bytes = device.limits().max_buffer_size;
+        let max_bytes = device.limits().max_buffer_size;
         let vertices = u32::try_from(count).map_err(|_| too_many())?;
-        if count as u64 * size_of::<SurfaceVertex>().max(8 * geometry.influences.stride) as u64 > most_bytes
-            || geometry.indices.len() as u64 * 8 > most_bytes
+        if count as u64 * size_of::<SurfaceVertex>().max(8 * geometry.influences.stride) as u64 > max_bytes
+            || geometry.indices.len() as u64 * 8 > max_bytes
         {
             return Err(too_many());
         }
 
-        // Drawn flat, unless the person wants what has no normals to be smooth.
-        let normals = if geometry.normals.is_empty() { smooth } else { &geometry.normals };
-        let shape: Vec<ShapeVertex> = (0..count)
-            .map(|vertex| ShapeVertex {
-                position: geometry.positions[vertex].to_array(),
-                normal: normals.get(vertex).map_or([0.0; 3], |normal| normal.to_array()),
-            })
-            .collect();
-        let surface: Vec<SurfaceVertex> = (0..count)
-            .map(|vertex| {
-                let uv = |set: usize| geometry.uvs[set].get(vertex).map_or([0.0; 2], |uv| uv.to_array());
-                let ([u0, v0], [u1, v1]) = (uv(0), uv(1));
-                SurfaceVertex {
-                    tangent: geometry.tangents.get(vertex).map_or([0.0; 4], |tangent| tangent.to_array()),
-                    uv: [u0, v0, u1, v1],
-                    color: geometry.colors.get(vertex).map_or([u16::MAX; 4], |color| {
-                        color.to_array().map(|channel| (channel.clamp(0.0, 1.0) * 65_535.0).round() as u16)
-                    }),
-                }
-            })
-            .collect();
         let buffer = |label, contents: &[u8], usage| {
             device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
         };
         let influences = InfluenceSource::of(geometry.influences.stride);
         let joints = used_joints(&geometry.influences);
         let influence_buffer = matches!(influences, InfluenceSource::Four | InfluenceSource::Eight).then(|| {
-            let fours: Vec<FourInfluences> = joints
-                .as_chunks::<4>()
-                .0
-                .iter()
-                .zip(geometry.influences.weights.as_chunks::<4>().0)
-                .map(|(&joints, &weights)| FourInfluences { joints, weights })
-                .collect();
+            let fours = influences_by_four(&joints, &geometry.influences.weights);
             buffer("influences", bytemuck::cast_slice(&fours), wgpu::BufferUsages::VERTEX)
         });
         let influence_view = match influences {
@@ -182,17 +155,15 @@ impl GpuGeometry {
             _ => None,
         };
         let (morph_attributes, morph_numbers) = morph_numbers(geometry);
-        let morph_view = match geometry.morph_targets.is_empty() {
-            true => None,
-            false => Some(vertex_texture(device, queue, "morph targets", morph_numbers).ok_or(
-                UploadError::TooManyMorphTargets {
-                    mesh,
-                    primitive,
-                    vertices: count,
-                    targets: geometry.morph_targets.len(),
-                },
-            )?),
+        let targets = geometry.morph_targets.len();
+        let morph_view = match targets {
+            0 => None,
+            _ => Some(
+                vertex_texture(device, queue, "morph targets", morph_numbers)
+                    .ok_or(UploadError::TooManyMorphTargets { mesh, primitive, vertices: count, targets })?,
+            ),
         };
+        let (shape, surface) = (shape_vertices(geometry, smooth), surface_vertices(geometry));
         Ok(Self {
             topology: geometry.topology,
             influences,
@@ -209,7 +180,7 @@ impl GpuGeometry {
         })
     }
 
-    /// Binds the vertex buffers, not the indices.
+    /// Binds the vertex buffers but not the index buffer.
     pub fn bind(&self, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_vertex_buffer(0, self.shape.slice(..));
         pass.set_vertex_buffer(1, self.surface.slice(..));
@@ -219,8 +190,36 @@ impl GpuGeometry {
     }
 }
 
-/// The joints of all influences. Those that are not used follow the vertex's first joint, so that the vertex stage need not
-/// leave them out: nothing that a vertex does not follow moves it, not even a joint that has gone to infinity.
+/// Meshes without normals get smooth ones here; the FLAT feature ignores them.
+fn shape_vertices(geometry: &Geometry, smooth: &[Vec3]) -> Vec<ShapeVertex> {
+    let normals = if geometry.normals.is_empty() { smooth } else { &geometry.normals };
+    let normal = |vertex: usize| normals.get(vertex).map_or([0.0; 3], |normal| normal.to_array());
+    let positions = geometry.positions.iter().enumerate();
+    positions.map(|(vertex, position)| ShapeVertex { position: position.to_array(), normal: normal(vertex) }).collect()
+}
+
+fn surface_vertices(geometry: &Geometry) -> Vec<SurfaceVertex> {
+    let vertex = |vertex: usize| {
+        let uv = |set: usize| geometry.uvs[set].get(vertex).map_or([0.0; 2], |uv| uv.to_array());
+        let ([u0, v0], [u1, v1]) = (uv(0), uv(1));
+        SurfaceVertex {
+            tangent: geometry.tangents.get(vertex).map_or([0.0; 4], |tangent| tangent.to_array()),
+            uv: [u0, v0, u1, v1],
+            color: geometry.colors.get(vertex).map_or([u16::MAX; 4], |color| {
+                color.to_array().map(|channel| (channel.clamp(0.0, 1.0) * 65_535.0).round() as u16)
+            }),
+        }
+    };
+    (0..geometry.positions.len()).map(vertex).collect()
+}
+
+fn influences_by_four(joints: &[u16], weights: &[f32]) -> Vec<FourInfluences> {
+    let (joints, weights) = (joints.as_chunks::<4>().0, weights.as_chunks::<4>().0);
+    joints.iter().zip(weights).map(|(&joints, &weights)| FourInfluences { joints, weights }).collect()
+}
+
+/// The joints of all influences. Unused influences get the vertex's first joint, so the vertex stage need not skip
+/// them: a joint without weight never affects a vertex, not even one with an infinite matrix.
 fn used_joints(influences: &Influences) -> Vec<u16> {
     let mut joints = influences.joints.clone();
     let stride = influences.stride.max(1);
@@ -233,7 +232,8 @@ fn used_joints(influences: &Influences) -> Vec<u16> {
     joints
 }
 
-/// Texels per vertex and target, and the deltas: targets slowest, then vertices, then position, normal, tangent.
+/// Returns the number of texels per vertex and target, and the deltas: by target, then vertex, then attribute (position,
+/// normal, tangent).
 fn morph_numbers(geometry: &Geometry) -> (u32, Vec<f32>) {
     let targets = &geometry.morph_targets;
     let attributes = if targets.iter().any(|target| !target.tangents.is_empty()) {
@@ -255,7 +255,7 @@ fn morph_numbers(geometry: &Geometry) -> (u32, Vec<f32>) {
     (attributes as u32, numbers)
 }
 
-/// A texture of numbers, four to a texel; none when there are more than the device can hold.
+/// Packs numbers into a texture, four to a texel; none if the device cannot hold them.
 fn vertex_texture(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
@@ -287,7 +287,7 @@ fn vertex_texture(
     Some(texture.create_view(&Default::default()))
 }
 
-/// Every edge of the triangles once, as pairs of indices.
+/// Returns every triangle edge once, as pairs of vertex indices.
 pub(super) fn edges(indices: &[u32]) -> Vec<u32> {
     let mut seen = HashSet::with_capacity(indices.len());
     let mut edges = Vec::with_capacity(indices.len());

@@ -1,20 +1,20 @@
-//! A device without a window, and pixels back from the GPU: for the command line, tests and screenshots.
+//! Devices without a window, and reading pixels back: for the command line, tests and screenshots.
 
 use std::sync::Arc;
 #[cfg(target_arch = "wasm32")]
 use std::sync::atomic::AtomicBool;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-/// Why there is no device.
+/// Why no device could be created.
 #[derive(Debug, thiserror::Error)]
 pub enum HeadlessError {
     #[error("no graphics adapter was found ({0}); install a Vulkan driver, for example Mesa's llvmpipe")]
     NoAdapter(#[from] wgpu::RequestAdapterError),
-    #[error("the graphics adapter gives no device: {0}")]
+    #[error("the graphics adapter did not provide a device: {0}")]
     NoDevice(#[from] wgpu::RequestDeviceError),
 }
 
-/// A device without a window. Limits are WebGL2's, so that what works here works everywhere.
+/// Creates a device without a window. It has WebGL2's limits, so that what works here works everywhere.
 #[cfg(not(target_arch = "wasm32"))]
 pub fn headless_device() -> Result<(wgpu::Device, wgpu::Queue, wgpu::AdapterInfo), HeadlessError> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
@@ -32,8 +32,8 @@ pub fn headless_device() -> Result<(wgpu::Device, wgpu::Queue, wgpu::AdapterInfo
     Ok((device, queue, adapter.get_info()))
 }
 
-/// Pixels of an Rgba8Unorm texture made with `COPY_SRC` (such as [`super::Renderer::output`]): RGBA rows from the top,
-/// straight alpha (the texture's is premultiplied). Empty when the device was lost.
+/// Reads an Rgba8Unorm texture with `COPY_SRC` usage, such as [`super::Renderer::output`], into RGBA rows from the top.
+/// Converts premultiplied to straight alpha. Empty if the device was lost.
 pub async fn read_pixels(device: &wgpu::Device, queue: &wgpu::Queue, texture: &wgpu::Texture) -> Vec<u8> {
     let (width, height) = (texture.width(), texture.height());
     let row_bytes = 4 * width;
@@ -77,8 +77,8 @@ pub async fn read_pixels(device: &wgpu::Device, queue: &wgpu::Queue, texture: &w
     pixels
 }
 
-/// Waits until the buffer is mapped: natively by blocking; in a page by asking again after each turn of the event loop,
-/// as WebGL2 calls back only when polled.
+/// Waits until the buffer is mapped. Native code blocks; a page polls once per turn of the event loop, because WebGL2
+/// calls back only when polled.
 async fn map(device: &wgpu::Device, buffer: &wgpu::Buffer) -> bool {
     const WAITING: u8 = 0;
     const MAPPED: u8 = 1;
@@ -99,7 +99,7 @@ async fn map(device: &wgpu::Device, buffer: &wgpu::Buffer) -> bool {
     state.load(Ordering::Acquire) == MAPPED
 }
 
-/// Resolves when the device has done all that was submitted to it so far, or was lost.
+/// Resolves when all work submitted so far is done or the device is lost.
 #[cfg(target_arch = "wasm32")]
 pub async fn finished(device: &wgpu::Device, queue: &wgpu::Queue) {
     let works = Arc::new(AtomicBool::new(true));
@@ -108,7 +108,7 @@ pub async fn finished(device: &wgpu::Device, queue: &wgpu::Queue) {
     poll_while(device, || works.load(Ordering::Acquire)).await;
 }
 
-/// Lets the device call back, once in each turn of the event loop; false when it was lost.
+/// Polls the device once per turn of the event loop; false if it was lost.
 #[cfg(target_arch = "wasm32")]
 async fn poll_while(device: &wgpu::Device, waits: impl Fn() -> bool) -> bool {
     while waits() {
@@ -127,7 +127,7 @@ async fn next_turn() {
     let promise = js_sys::Promise::new(&mut |resolve, _| {
         let set_timeout = js_sys::Reflect::get(&js_sys::global(), &"setTimeout".into());
         if let Some(set_timeout) = set_timeout.ok().and_then(|value| value.dyn_into::<js_sys::Function>().ok()) {
-            // A page without timers cannot happen; then the promise would wait forever, as it should.
+            // Every page has timers.
             let _ = set_timeout.call2(&wasm_bindgen::JsValue::UNDEFINED, &resolve, &1.into());
         }
     });

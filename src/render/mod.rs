@@ -1,12 +1,14 @@
-//! Draws a [`Frame`](crate::frame::Frame) with wgpu into its own texture. Knows no state and no user interface.
+//! Draws a [`Frame`](crate::frame::Frame) into a texture with wgpu. Independent of the state and the user interface.
 //!
-//! One path on all back ends, within WebGL2's limits: palettes and morph targets are textures read with `textureLoad`.
-//! A picture is a shadow map and one pass, whose stages write the colours that are shown.
+//! All back ends share one path within WebGL2's limits: palettes and morph targets are textures read with
+//! `textureLoad`. A picture takes a shadow pass and a single scene pass, whose fragment stages write display-ready
+//! colours.
 
 mod blit;
 mod draw_list;
 mod environment;
 mod frame_uniform;
+mod full_screen;
 pub mod geometry;
 mod headless;
 mod model;
@@ -28,8 +30,8 @@ pub use headless::headless_device;
 pub use headless::{HeadlessError, read_pixels};
 pub use renderer::{RenderStats, Renderer, RendererOptions, UploadError};
 
-/// Hands over what was asked of the device so far. A browser's graphics process answers others between submissions only, so
-/// what takes long there is handed over by itself.
+/// Submits the work recorded so far. A browser's graphics process serves other clients only between submissions, so each
+/// expensive step gets a submission of its own.
 fn flush(queue: &wgpu::Queue) {
     queue.submit([]);
 }

@@ -1,4 +1,4 @@
-//! One model on the GPU: its primitives with their materials.
+//! A model on the GPU: its primitives with their materials.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ use crate::mesh::{AlphaMode, Geometry, Material, Sampler, TextureRef, Topology, 
 pub(super) struct GpuModel {
     pub id: ModelId,
     asset: Arc<Asset>,
-    /// One list per mesh of the asset; none for a primitive with nothing to draw.
+    /// The primitives of each mesh; none for one with nothing to draw.
     pub meshes: Vec<Vec<Option<GpuPrimitive>>>,
 }
 
@@ -27,13 +27,13 @@ pub(super) struct GpuPrimitive {
     pub shading: Shading,
     pub features: Features,
     pub double_sided: bool,
-    /// Blended surfaces cast a shadow only when they are more than half there.
+    /// Blended surfaces cast a shadow only if they are more than half opaque.
     pub casts_shadow: bool,
-    /// Indices of the edges and their number, once a wireframe was asked for.
+    /// Index buffer of the edges and its length; built when the wireframe is first shown.
     pub edges: Option<(wgpu::Buffer, u32)>,
 }
 
-/// Stand-ins for what a material or geometry does not have, and what mip levels are made with.
+/// Uploads models. Holds the mipmap pipelines and placeholders for missing maps and vertex data.
 pub(super) struct ModelUploader {
     mips: MipMaker,
     white: wgpu::TextureView,
@@ -42,7 +42,7 @@ pub(super) struct ModelUploader {
 }
 
 impl ModelUploader {
-    /// `anisotropy`: 1 where pixels are drawn by the CPU.
+    /// `anisotropy` should be 1 on software adapters.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, anisotropy: u16) -> Self {
         Self {
             mips: MipMaker::new(device),
@@ -67,7 +67,7 @@ impl ModelUploader {
             model,
             images: HashMap::new(),
             samplers: HashMap::new(),
-            made: HashMap::new(),
+            created: HashMap::new(),
         };
         let mut meshes = Vec::with_capacity(asset.meshes.len());
         for (mesh_index, mesh) in asset.meshes.iter().enumerate() {
@@ -90,31 +90,29 @@ impl ModelUploader {
 }
 
 impl GpuModel {
-    /// Makes the list of edges of a primitive, once.
-    pub fn prepare_edges(&mut self, device: &wgpu::Device, mesh: usize, primitive: usize) {
-        let geometry = self.asset.meshes.get(mesh).and_then(|mesh| mesh.primitives.get(primitive));
-        let gpu = self.meshes.get_mut(mesh).and_then(|mesh| mesh.get_mut(primitive));
-        if let (Some(geometry), Some(Some(gpu))) = (geometry, gpu)
-            && gpu.edges.is_none()
-        {
+    /// Builds the edge lists of a mesh on first use.
+    pub fn prepare_edges(&mut self, device: &wgpu::Device, mesh: usize) {
+        let (Some(mesh), Some(primitives)) = (self.asset.meshes.get(mesh), self.meshes.get_mut(mesh)) else { return };
+        for (geometry, primitive) in mesh.primitives.iter().zip(primitives) {
+            let Some(primitive) = primitive.as_mut().filter(|primitive| primitive.edges.is_none()) else { continue };
             let indices = edges(&geometry.indices);
             let buffer = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
                 label: Some("edges"),
                 contents: bytemuck::cast_slice(&indices),
                 usage: wgpu::BufferUsages::INDEX,
             });
-            gpu.edges = Some((buffer, indices.len() as u32));
+            primitive.edges = Some((buffer, indices.len() as u32));
         }
     }
 }
 
-/// A material's uniform buffer and maps, shared by the primitives that have it.
+/// A material's uniform buffer and maps, shared by the primitives that use it.
 struct GpuMaterial {
     uniform: wgpu::Buffer,
     maps: [Option<(wgpu::TextureView, wgpu::Sampler)>; MATERIAL_MAPS],
 }
 
-/// Materials of one model while it is uploaded. An image is on the GPU once for colours and once for other numbers.
+/// Materials of a model during upload. An image is uploaded once as sRGB and once as linear, as its uses require.
 struct Materials<'a> {
     uploader: &'a mut ModelUploader,
     device: &'a wgpu::Device,
@@ -122,68 +120,33 @@ struct Materials<'a> {
     model: &'a Model,
     images: HashMap<(usize, bool), Option<wgpu::TextureView>>,
     samplers: HashMap<Sampler, wgpu::Sampler>,
-    made: HashMap<Option<usize>, GpuMaterial>,
+    created: HashMap<Option<usize>, GpuMaterial>,
 }
 
 impl Materials<'_> {
     fn primitive(&mut self, layouts: &Layouts, geometry: &Geometry, gpu: GpuGeometry) -> GpuPrimitive {
         let default = Material::default();
         let asset = self.model.asset.clone();
-        let known = geometry.material.and_then(|index| asset.materials.get(index));
-        let material = known.unwrap_or(&default);
-        let key = known.and(geometry.material);
-        if !self.made.contains_key(&key) {
-            let made = self.make(material);
-            self.made.insert(key, made);
+        let found = geometry.material.and_then(|index| asset.materials.get(index));
+        let material = found.unwrap_or(&default);
+        let key = found.and(geometry.material);
+        if !self.created.contains_key(&key) {
+            let created = self.create(material);
+            self.created.insert(key, created);
         }
-        let GpuMaterial { uniform, maps } = &self.made[&key];
-
-        // Without its texture coordinates a map says nothing: its first texel would colour everything.
-        let has = |slot: usize, reference: Option<TextureRef>| {
-            maps[slot].is_some() && reference.is_some_and(|reference| !geometry.uvs[reference.uv_set & 1].is_empty())
-        };
-        let blend = material.alpha_mode == AlphaMode::Blend;
-        let features = Features::default()
-            .with(Features::BASE_COLOR_MAP, has(0, material.base_color_texture))
-            .with(Features::METALLIC_ROUGHNESS_MAP, has(1, material.metallic_roughness_texture))
-            .with(Features::NORMAL_MAP, has(2, material.normal_texture))
-            .with(Features::OCCLUSION_MAP, has(3, material.occlusion_texture))
-            .with(Features::EMISSIVE_MAP, has(4, material.emissive_texture))
-            .with(Features::VERTEX_COLORS, !geometry.colors.is_empty())
-            .with(Features::FLAT, geometry.normals.is_empty())
-            .with(Features::TANGENTS, !geometry.tangents.is_empty())
-            .with(Features::MASK, matches!(material.alpha_mode, AlphaMode::Mask { .. }))
-            .with(Features::BLEND, blend);
-        // Points and lines without normals have no side to light (glTF 2.0 §3.7.2.1).
-        let unlit = material.unlit || (geometry.topology != Topology::Triangles && geometry.normals.is_empty());
-
-        let view = |slot: usize| maps[slot].as_ref().map_or(&self.uploader.white, |(view, _)| view);
         let plain = self
             .samplers
             .entry(Sampler::default())
             .or_insert_with(|| sampler(self.device, &Sampler::default(), self.uploader.anisotropy));
-        let mut entries = vec![wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() }];
-        for (slot, map) in maps.iter().enumerate() {
-            let sampler = map.as_ref().map_or(&*plain, |(_, sampler)| sampler);
-            let binding = 1 + 2 * slot as u32;
-            entries.push(wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view(slot)) });
-            entries
-                .push(wgpu::BindGroupEntry { binding: binding + 1, resource: wgpu::BindingResource::Sampler(sampler) });
-        }
-        let numbers = [(11, &gpu.morph_view), (12, &gpu.influence_view)];
-        entries.extend(numbers.map(|(binding, numbers)| wgpu::BindGroupEntry {
-            binding,
-            resource: wgpu::BindingResource::TextureView(numbers.as_ref().unwrap_or(&self.uploader.no_numbers)),
-        }));
-        let bind_group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("primitive"),
-            layout: &layouts.primitive,
-            entries: &entries,
-        });
+        let gpu_material = &self.created[&key];
+        let bind_group = primitive_bind_group(self.device, layouts, gpu_material, &gpu, plain, self.uploader);
+        // Points and lines without normals have no side to light (glTF 2.0 §3.7.2.1).
+        let unlit = material.unlit || (geometry.topology != Topology::Triangles && geometry.normals.is_empty());
+        let blend = material.alpha_mode == AlphaMode::Blend;
         GpuPrimitive {
             bind_group,
             shading: if unlit { Shading::Unlit } else { Shading::Lit },
-            features,
+            features: features(material, &gpu_material.maps, geometry),
             double_sided: material.double_sided,
             casts_shadow: geometry.topology == Topology::Triangles && (!blend || material.base_color.w > 0.5),
             edges: None,
@@ -191,7 +154,7 @@ impl Materials<'_> {
         }
     }
 
-    fn make(&mut self, material: &Material) -> GpuMaterial {
+    fn create(&mut self, material: &Material) -> GpuMaterial {
         let references = [
             (material.base_color_texture, true),
             (material.metallic_roughness_texture, false),
@@ -204,7 +167,7 @@ impl Materials<'_> {
             emissive: material.emissive.to_array(),
             alpha_cutoff: match material.alpha_mode {
                 AlphaMode::Mask { cutoff } => cutoff,
-                // Where a blended surface's shadow has holes.
+                // Cuts holes into the shadows of blended surfaces.
                 AlphaMode::Opaque | AlphaMode::Blend => 0.5,
             },
             metallic: material.metallic,
@@ -241,8 +204,59 @@ impl Materials<'_> {
     }
 }
 
-/// KHR_texture_transform: `offset · rotation · scale`; the rotation is counter-clockwise on the image, whose v points
-/// down, hence its sign.
+/// The parts of the surface shader that a primitive needs.
+fn features(
+    material: &Material,
+    maps: &[Option<(wgpu::TextureView, wgpu::Sampler)>; MATERIAL_MAPS],
+    geometry: &Geometry,
+) -> Features {
+    // A map without texture coordinates is ignored; otherwise its first texel would colour everything.
+    let has = |slot: usize, reference: Option<TextureRef>| {
+        maps[slot].is_some() && reference.is_some_and(|reference| !geometry.uvs[reference.uv_set & 1].is_empty())
+    };
+    Features::default()
+        .with(Features::BASE_COLOR_MAP, has(0, material.base_color_texture))
+        .with(Features::METALLIC_ROUGHNESS_MAP, has(1, material.metallic_roughness_texture))
+        .with(Features::NORMAL_MAP, has(2, material.normal_texture))
+        .with(Features::OCCLUSION_MAP, has(3, material.occlusion_texture))
+        .with(Features::EMISSIVE_MAP, has(4, material.emissive_texture))
+        .with(Features::VERTEX_COLORS, !geometry.colors.is_empty())
+        .with(Features::FLAT, geometry.normals.is_empty())
+        .with(Features::TANGENTS, !geometry.tangents.is_empty())
+        .with(Features::MASK, matches!(material.alpha_mode, AlphaMode::Mask { .. }))
+        .with(Features::BLEND, material.alpha_mode == AlphaMode::Blend)
+}
+
+/// `plain` is the sampler of the maps that the material does not have.
+fn primitive_bind_group(
+    device: &wgpu::Device,
+    layouts: &Layouts,
+    material: &GpuMaterial,
+    geometry: &GpuGeometry,
+    plain: &wgpu::Sampler,
+    placeholders: &ModelUploader,
+) -> wgpu::BindGroup {
+    let mut entries = vec![wgpu::BindGroupEntry { binding: 0, resource: material.uniform.as_entire_binding() }];
+    for (slot, map) in material.maps.iter().enumerate() {
+        let (view, sampler) = map.as_ref().map_or((&placeholders.white, plain), |(view, sampler)| (view, sampler));
+        let binding = 1 + 2 * slot as u32;
+        entries.push(wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) });
+        entries.push(wgpu::BindGroupEntry { binding: binding + 1, resource: wgpu::BindingResource::Sampler(sampler) });
+    }
+    let numbers = [(11, &geometry.morph_view), (12, &geometry.influence_view)];
+    entries.extend(numbers.map(|(binding, numbers)| wgpu::BindGroupEntry {
+        binding,
+        resource: wgpu::BindingResource::TextureView(numbers.as_ref().unwrap_or(&placeholders.no_numbers)),
+    }));
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("primitive"),
+        layout: &layouts.primitive,
+        entries: &entries,
+    })
+}
+
+/// KHR_texture_transform: `offset · rotation · scale`. The rotation is counter-clockwise on the image, whose v axis
+/// points down, hence its sign.
 fn uv_transform(reference: TextureRef) -> UvTransformUniform {
     let transform = reference.uv_transform;
     let (sin, cos) = transform.rotation_radians.sin_cos();

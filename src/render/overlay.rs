@@ -1,4 +1,4 @@
-//! What is drawn over the model: lines and bones, as instances.
+//! Overlays: instanced lines and bones.
 
 use std::ops::Range;
 
@@ -36,29 +36,29 @@ pub(super) struct BoneVertex {
     normal: [f32; 4],
 }
 
-/// Instances that are written again only when they differ from those of the last picture.
+/// Instances uploaded only when they differ from the last upload.
 struct Instances<T> {
     label: &'static str,
     buffer: wgpu::Buffer,
-    now: Vec<T>,
+    current: Vec<T>,
     uploaded: Vec<T>,
 }
 
 impl<T: Pod + PartialEq> Instances<T> {
     fn new(device: &wgpu::Device, label: &'static str) -> Self {
-        Self { label, buffer: instance_buffer(device, label, 1024), now: Vec::new(), uploaded: Vec::new() }
+        Self { label, buffer: instance_buffer(device, label, 1024), current: Vec::new(), uploaded: Vec::new() }
     }
 
     fn upload(&mut self, device: &wgpu::Device, queue: &wgpu::Queue) {
-        if self.now == self.uploaded {
+        if self.current == self.uploaded {
             return;
         }
-        let bytes: &[u8] = bytemuck::cast_slice(&self.now);
+        let bytes: &[u8] = bytemuck::cast_slice(&self.current);
         if bytes.len() as u64 > self.buffer.size() {
             self.buffer = instance_buffer(device, self.label, (bytes.len() as u64).next_power_of_two());
         }
         queue.write_buffer(&self.buffer, 0, bytes);
-        self.uploaded.clone_from(&self.now);
+        self.uploaded.clone_from(&self.current);
     }
 }
 
@@ -71,7 +71,7 @@ fn instance_buffer(device: &wgpu::Device, label: &'static str, size: u64) -> wgp
     })
 }
 
-/// Made when there is first something to draw with them.
+/// Created when there is first something to draw.
 struct OverlayPipelines {
     lines: wgpu::RenderPipeline,
     bones: wgpu::RenderPipeline,
@@ -133,16 +133,16 @@ pub(super) struct Overlay {
     samples: u32,
     pipelines: Option<OverlayPipelines>,
     lines: Instances<LineInstance>,
-    /// Lines before this one are hidden by what is in front of them, the others are not.
+    /// Lines before this index are depth-tested against the scene, the rest are drawn on top.
     lines_on_top: u32,
     bones: Instances<BoneInstance>,
     bone_shape: wgpu::Buffer,
     bone_ranges: BoneRanges,
-    /// Of what is drawn now.
+    /// The range in use.
     bone_vertices: Range<u32>,
 }
 
-/// Vertices of a pointed bone with its ball, and of the ball with a box.
+/// Vertex ranges of the octahedron with its ball, and of the ball with the box.
 #[derive(Clone)]
 struct BoneRanges {
     pointed: Range<u32>,
@@ -168,7 +168,7 @@ impl Overlay {
         }
     }
 
-    /// `boxes`: bones are drawn as boxes.
+    /// `boxes` draws bones as boxes.
     pub fn upload(
         &mut self,
         device: &wgpu::Device,
@@ -188,14 +188,14 @@ impl Overlay {
             to: line.to.to_array(),
             color: line.color.to_array(),
         };
-        self.lines.now.clear();
-        self.lines.now.extend(lines.iter().filter(|line| !line.on_top).map(instance));
-        self.lines_on_top = self.lines.now.len() as u32;
-        self.lines.now.extend(lines.iter().filter(|line| line.on_top).map(instance));
+        self.lines.current.clear();
+        self.lines.current.extend(lines.iter().filter(|line| !line.on_top).map(instance));
+        self.lines_on_top = self.lines.current.len() as u32;
+        self.lines.current.extend(lines.iter().filter(|line| line.on_top).map(instance));
         self.lines.upload(device, queue);
 
-        self.bones.now.clear();
-        self.bones.now.extend(bones.iter().map(|bone| BoneInstance {
+        self.bones.current.clear();
+        self.bones.current.extend(bones.iter().map(|bone| BoneInstance {
             head: bone.head.to_array(),
             radius: bone.radius,
             tail: bone.tail.to_array(),
@@ -204,20 +204,20 @@ impl Overlay {
         self.bones.upload(device, queue);
     }
 
-    /// Instances of the lines that are not, or are, drawn through everything.
+    /// Instance range of the lines on top, or of the others.
     pub fn lines(&self, on_top: bool) -> Range<u32> {
-        if on_top { self.lines_on_top..self.lines.now.len() as u32 } else { 0..self.lines_on_top }
+        if on_top { self.lines_on_top..self.lines.current.len() as u32 } else { 0..self.lines_on_top }
     }
 
     pub fn bones(&self) -> u32 {
-        self.bones.now.len() as u32
+        self.bones.current.len() as u32
     }
 
     pub fn bone_triangles(&self) -> u32 {
         self.bones() * self.bone_vertices.len() as u32 / 3
     }
 
-    /// What comes after it is in front of everything.
+    /// Clears the depth buffer, so that everything drawn afterwards is on top.
     pub fn clear_depth(&self, pass: &mut wgpu::RenderPass<'_>) {
         let Some(pipelines) = &self.pipelines else { return };
         pass.set_pipeline(&pipelines.clear_depth);
@@ -240,10 +240,10 @@ impl Overlay {
     }
 }
 
-/// Triangles of the octahedron from head (y 0) to tail (y 1), flat, of the ball around the head, smooth, and of a box in
-/// place of the octahedron.
+/// Builds the triangles of the flat-shaded octahedron from head (y 0) to tail (y 1), the smooth ball around the head,
+/// and the box that can replace the octahedron.
 fn bone_shape() -> (Vec<BoneVertex>, BoneRanges) {
-    /// Where along the bone it is widest.
+    /// Position along the bone of its widest cross-section.
     const WAIST: f32 = 0.12;
     let mut shape = Vec::new();
     let waist = [Vec3::X, Vec3::NEG_Z, Vec3::NEG_X, Vec3::Z].map(|corner| corner + WAIST * Vec3::Y);
@@ -262,7 +262,7 @@ fn bone_shape() -> (Vec<BoneVertex>, BoneRanges) {
         for y in [Vec3::Y, Vec3::NEG_Y] {
             for z in [Vec3::Z, Vec3::NEG_Z] {
                 let (a, b, c) = if x.dot(y.cross(z)) > 0.0 { (x, y, z) } else { (x, z, y) };
-                ball_part([a, b, c], 2, &mut shape);
+                ball_triangles([a, b, c], 2, &mut shape);
             }
         }
     }
@@ -274,7 +274,7 @@ fn bone_shape() -> (Vec<BoneVertex>, BoneRanges) {
     (shape, ranges)
 }
 
-/// Half as thick as the ball.
+/// The box is half as thick as the ball.
 fn box_side(normal: Vec3, shape: &mut Vec<BoneVertex>) {
     let right = Vec3::new(normal.y, normal.z, normal.x);
     let up = normal.cross(right);
@@ -287,7 +287,7 @@ fn box_side(normal: Vec3, shape: &mut Vec<BoneVertex>) {
     shape.extend([a, b, c, a, c, d]);
 }
 
-fn ball_part([a, b, c]: [Vec3; 3], splits: u32, shape: &mut Vec<BoneVertex>) {
+fn ball_triangles([a, b, c]: [Vec3; 3], splits: u32, shape: &mut Vec<BoneVertex>) {
     if splits == 0 {
         shape.extend(
             [a, b, c].map(|corner| BoneVertex { position: corner.to_array(), normal: corner.extend(1.0).to_array() }),
@@ -295,8 +295,8 @@ fn ball_part([a, b, c]: [Vec3; 3], splits: u32, shape: &mut Vec<BoneVertex>) {
         return;
     }
     let [ab, bc, ca] = [a + b, b + c, c + a].map(Vec3::normalize_or_zero);
-    for part in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
-        ball_part(part, splits - 1, shape);
+    for triangle in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
+        ball_triangles(triangle, splits - 1, shape);
     }
 }
 
@@ -305,7 +305,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn triangles_of_the_bone_face_outwards() {
+    fn bone_triangles_face_outwards() {
         let (shape, ranges) = bone_shape();
         for (triangle, first) in shape.as_chunks::<3>().0.iter().zip((0..).step_by(3)) {
             let [a, b, c] = triangle.map(|vertex| Vec3::from(vertex.position));

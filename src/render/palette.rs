@@ -1,8 +1,8 @@
-//! The palette texture: what every draw of a frame needs of poses and morph weights. palette.wgsl reads it.
+//! The palette texture: palettes and morph weights of all draws in a frame, read by palette.wgsl.
 
 use crate::mesh::PaletteEntry;
 
-/// Texels in a row; palette.wgsl has the same number.
+/// Texels per row; must match palette.wgsl.
 const WIDTH: usize = 1280;
 const ENTRY_TEXELS: usize = 5;
 
@@ -11,7 +11,7 @@ type Texel = [f32; 4];
 pub struct PaletteTexture {
     texture: wgpu::Texture,
     view: wgpu::TextureView,
-    /// What is being collected, and what the texture holds.
+    /// Texels of the next upload and of the last one.
     texels: Vec<Texel>,
     uploaded: Vec<Texel>,
 }
@@ -30,14 +30,14 @@ impl PaletteTexture {
         self.texels.clear();
     }
 
-    /// All palettes come before any morph weights. Returns the number of the first entry.
+    /// Appends a palette; call this before any [`Self::push_morph_weights`]. Returns the index of the first entry.
     pub fn push_palette(&mut self, palette: &[PaletteEntry]) -> u32 {
         let first = self.texels.len() / ENTRY_TEXELS;
         self.texels.extend(palette.iter().flatten().map(|texel| texel.to_array()));
         first as u32
     }
 
-    /// Returns the first texel and how many of the weights are not 0.
+    /// Appends the non-zero weights. Returns the index of the first texel and their number.
     pub fn push_morph_weights(&mut self, weights: &[f32]) -> (u32, u32) {
         let first = self.texels.len();
         let active = weights.iter().enumerate().filter(|(_, weight)| **weight != 0.0);
@@ -45,16 +45,16 @@ impl PaletteTexture {
         (first as u32, (self.texels.len() - first) as u32)
     }
 
-    /// Brings what was collected to the GPU, as far as it fits. True when the view is a new one.
+    /// Uploads the texels, as far as they fit. Returns whether the view was replaced.
     pub fn upload(&mut self, device: &wgpu::Device, queue: &wgpu::Queue) -> bool {
         if self.texels == self.uploaded {
             return false;
         }
-        let most = device.limits().max_texture_dimension_2d as usize;
-        let rows = self.texels.len().div_ceil(WIDTH).clamp(1, most);
+        let max_rows = device.limits().max_texture_dimension_2d as usize;
+        let rows = self.texels.len().div_ceil(WIDTH).clamp(1, max_rows);
         let grown = rows > self.texture.height() as usize;
         if grown {
-            (self.texture, self.view) = create(device, rows.next_power_of_two().min(most) as u32);
+            (self.texture, self.view) = create(device, rows.next_power_of_two().min(max_rows) as u32);
         }
         let length = self.texels.len();
         self.texels.resize(rows * WIDTH, [0.0; 4]);

@@ -1,4 +1,4 @@
-//! Bind group layouts, and pipelines made when they are first needed.
+//! Bind group layouts, and pipelines created on first use.
 
 use std::collections::HashMap;
 
@@ -10,11 +10,11 @@ use super::targets::{DEPTH_FORMAT, SCENE_FORMAT};
 use super::uniforms::{DrawUniform, FrameUniform, MaterialUniform};
 use crate::mesh::{SkinningMode, Topology};
 
-/// Texture and sampler pairs of a material.
+/// Number of texture and sampler pairs in a material.
 pub(super) const MATERIAL_MAPS: usize = 5;
 
-/// Bind group layouts, in the order of their group numbers. No pipeline leaves a number out: software Vulkan loses the
-/// groups after a gap.
+/// Bind group layouts in the order of their group numbers. No pipeline skips a number: software Vulkan drops the groups
+/// after a gap.
 pub(super) struct Layouts {
     /// Group 0: frame, palette.
     pub frame: wgpu::BindGroupLayout,
@@ -78,18 +78,18 @@ impl Layouts {
     }
 }
 
-/// What a mesh is drawn as.
+/// How a mesh is shaded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Shading {
     Lit,
     Unlit,
     Heat,
     Wireframe,
-    /// Into the shadow map.
+    /// Depth only, into the shadow map.
     Shadow,
 }
 
-/// Parts of surface.wgsl that a material needs, as bits: [`OVERRIDES`] has their names.
+/// Features of surface.wgsl that a primitive needs, as bits named by [`OVERRIDES`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub(super) struct Features(pub u16);
 
@@ -146,12 +146,11 @@ pub(super) struct MeshKey {
     pub skinning: SkinningMode,
     pub topology: Topology,
     pub features: Features,
-    /// The side that is left out.
     pub cull: Option<wgpu::Face>,
     pub mirrored: bool,
 }
 
-/// Index of a pipeline made for a [`MeshKey`].
+/// Index of the pipeline for a [`MeshKey`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct MeshPipeline(usize);
 
@@ -198,8 +197,7 @@ pub(super) struct ScenePipeline<'a> {
 }
 
 impl<'a> ScenePipeline<'a> {
-    /// Blended over what is there, hidden by what is in front of it. The last are the entry points of the vertex and
-    /// of the fragment shader.
+    /// Depth-tested and alpha-blended by default. The last argument names the vertex and fragment entry points.
     pub fn new(
         label: &'a str,
         module: &'a wgpu::ShaderModule,
@@ -279,7 +277,7 @@ impl Pipelines {
         flush(queue);
 
         let background_module = shaders::BACKDROP.module(device);
-        // Behind everything: only worked out where it is seen.
+        // Drawn behind everything, so only visible pixels are shaded.
         let background = ScenePipeline {
             blend: None,
             ..ScenePipeline::new("background", &background_module, &frame_layout, ["full_screen", "backdrop"])
@@ -318,24 +316,10 @@ impl Pipelines {
     fn create_mesh(&self, device: &wgpu::Device, key: MeshKey) -> wgpu::RenderPipeline {
         let shadow = key.shading == Shading::Shadow;
         let blended = key.shading == Shading::Wireframe || key.features.has(Features::BLEND);
-        let mut constants: Vec<(&str, f64)> =
-            OVERRIDES.iter().enumerate().map(|(bit, name)| (*name, f64::from(key.features.0 >> bit & 1))).collect();
-        let skinning = match key.skinning {
-            SkinningMode::Linear => 0.0,
-            SkinningMode::Rigid => 1.0,
-            SkinningMode::DualQuaternion => 2.0,
-        };
-        constants.push(("SKINNING", skinning));
-        constants.push(("DEPTH_OFFSET", if key.shading == Shading::Wireframe { 3e-5 } else { 0.0 }));
+        let constants = mesh_constants(key);
         let options =
             || wgpu::PipelineCompilationOptions { constants: &constants, zero_initialize_workgroup_memory: false };
-        let fragment = match key.shading {
-            Shading::Lit => Some("lit"),
-            Shading::Unlit => Some("unlit"),
-            Shading::Heat => Some("heat"),
-            Shading::Wireframe => Some("wireframe"),
-            Shading::Shadow => key.features.has(Features::MASK).then_some("shadow_mask"),
-        };
+        let fragment = fragment_entry_point(key);
         let color = [Some(wgpu::ColorTargetState {
             format: SCENE_FORMAT,
             blend: if blended { BLENDED } else { None },
@@ -378,5 +362,29 @@ impl Pipelines {
             multiview_mask: None,
             cache: None,
         })
+    }
+}
+
+/// Values of the shader's overrides.
+fn mesh_constants(key: MeshKey) -> Vec<(&'static str, f64)> {
+    let mut constants: Vec<(&str, f64)> =
+        OVERRIDES.iter().enumerate().map(|(bit, name)| (*name, f64::from(key.features.0 >> bit & 1))).collect();
+    let skinning = match key.skinning {
+        SkinningMode::Linear => 0.0,
+        SkinningMode::Rigid => 1.0,
+        SkinningMode::DualQuaternion => 2.0,
+    };
+    constants.push(("SKINNING", skinning));
+    constants.push(("DEPTH_OFFSET", if key.shading == Shading::Wireframe { 3e-5 } else { 0.0 }));
+    constants
+}
+
+fn fragment_entry_point(key: MeshKey) -> Option<&'static str> {
+    match key.shading {
+        Shading::Lit => Some("lit"),
+        Shading::Unlit => Some("unlit"),
+        Shading::Heat => Some("heat"),
+        Shading::Wireframe => Some("wireframe"),
+        Shading::Shadow => key.features.has(Features::MASK).then_some("shadow_mask"),
     }
 }

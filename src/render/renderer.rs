@@ -1,4 +1,6 @@
-//! The renderer: GPU data of the models, and one call that draws a frame.
+//! The renderer: holds the models' GPU data and draws frames.
+
+use std::ops::AddAssign;
 
 use super::draw_list::{DrawList, Item};
 use super::environment::Environment;
@@ -17,7 +19,7 @@ use crate::state::Background;
 
 #[derive(Debug, Clone, Copy)]
 pub struct RendererOptions {
-    /// Samples per pixel: 4, or 1 where every pixel is drawn by the CPU.
+    /// Samples per pixel: 4, or 1 on software adapters.
     pub samples: u32,
 }
 
@@ -38,7 +40,14 @@ pub struct RenderStats {
     pub triangles: u32,
 }
 
-/// Draws frames. Belongs to the device it was made with; all calls get that one.
+impl AddAssign for RenderStats {
+    fn add_assign(&mut self, other: Self) {
+        self.draw_calls += other.draw_calls;
+        self.triangles += other.triangles;
+    }
+}
+
+/// Draws frames. Every call must pass the device that the renderer was created with.
 pub struct Renderer {
     options: RendererOptions,
     layouts: Layouts,
@@ -52,17 +61,17 @@ pub struct Renderer {
     draws: DrawList,
     targets: Targets,
     frame_buffer: UniformBuffer,
-    /// The same numbers, seen from the light.
+    /// The frame's uniform with the light's projection.
     shadow_buffer: UniformBuffer,
     frame_group: wgpu::BindGroup,
     shadow_group: wgpu::BindGroup,
     light_group: wgpu::BindGroup,
-    /// Without the shadow map, which is being drawn.
+    /// Used while the shadow map itself is drawn: binds a placeholder instead.
     no_light_group: wgpu::BindGroup,
     stats: RenderStats,
 }
 
-/// A [`FrameUniform`] on the GPU, written when it changes.
+/// A [`FrameUniform`] on the GPU, uploaded when it changes.
 struct UniformBuffer {
     buffer: wgpu::Buffer,
     written: FrameUniform,
@@ -126,7 +135,7 @@ impl Renderer {
             })
         };
         let pipelines = Pipelines::new(device, queue, &layouts, options.samples);
-        // Software draws each pixel's extra samples and extra texels itself: leave out both.
+        // On software adapters extra samples and texels are expensive, so both are disabled.
         let anisotropy = if options.samples > 1 { 4 } else { 1 };
         Self {
             options,
@@ -138,7 +147,7 @@ impl Renderer {
             frame_group: frame_buffer.bind_group(device, &layouts, &palette),
             shadow_group: shadow_buffer.bind_group(device, &layouts, &palette),
             light_group: light_group(&shadow_map.view),
-            no_light_group: light_group(&shadow_map.stand_in),
+            no_light_group: light_group(&shadow_map.placeholder),
             environment,
             shadow_map,
             palette,
@@ -150,7 +159,7 @@ impl Renderer {
         }
     }
 
-    /// Brings a model's geometry and textures to the GPU; a model that is there already is left as it is.
+    /// Uploads a model's geometry and textures, unless it is already uploaded.
     pub fn upload(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, model: &Model) -> Result<(), UploadError> {
         if !self.models.iter().any(|known| known.id == model.id) {
             self.models.push(self.uploader.upload(device, queue, &self.layouts, model)?);
@@ -158,13 +167,13 @@ impl Renderer {
         Ok(())
     }
 
-    /// Drops the GPU data of all models but these.
+    /// Frees the GPU data of all other models.
     pub fn retain(&mut self, keep: &[ModelId]) {
         self.models.retain(|model| keep.contains(&model.id));
     }
 
-    /// Draws the frame into a texture of this size in pixels. The view is of an Rgba8Unorm texture, gamma-encoded, alpha
-    /// premultiplied; it stays the same until the size changes. Models that were not uploaded are left out.
+    /// Draws the frame into a texture of this size in pixels. Returns a view of an Rgba8Unorm texture, gamma-encoded with
+    /// premultiplied alpha, which stays the same until the size changes. Models that are not uploaded are skipped.
     pub fn draw(
         &mut self,
         device: &wgpu::Device,
@@ -172,8 +181,8 @@ impl Renderer {
         frame: &Frame,
         size: [u32; 2],
     ) -> &wgpu::TextureView {
-        let most = device.limits().max_texture_dimension_2d;
-        let size = size.map(|edge| edge.clamp(1, most));
+        let max_size = device.limits().max_texture_dimension_2d;
+        let size = size.map(|edge| edge.clamp(1, max_size));
         if self.targets.size() != size {
             self.targets = Targets::new(device, size, self.options.samples);
         }
@@ -204,7 +213,7 @@ impl Renderer {
         &self.targets.output_view
     }
 
-    /// The next picture gets a texture of its own; the last one's stays with whoever holds it.
+    /// Makes the next picture use a new texture, so that the caller can keep the last one.
     pub fn give_output_away(&mut self, device: &wgpu::Device) {
         self.targets = Targets::new(device, [1, 1], self.options.samples);
     }
@@ -214,7 +223,7 @@ impl Renderer {
         &self.targets.output
     }
 
-    /// Of the last picture.
+    /// Statistics of the last picture.
     pub fn stats(&self) -> RenderStats {
         self.stats
     }
@@ -278,8 +287,7 @@ impl Renderer {
             let [x, y, width, height] = panes.rect(pane);
             pass.set_viewport(x, y, width, height, 0.0, 1.0);
             let stats = self.draw_pane(&mut pass, background, ground, pane);
-            self.stats.draw_calls += stats.draw_calls;
-            self.stats.triangles += stats.triangles;
+            self.stats += stats;
         }
     }
 
@@ -291,52 +299,49 @@ impl Renderer {
         pane: u32,
     ) -> RenderStats {
         let mut stats = RenderStats::default();
-        let mut add = |more: RenderStats| {
-            stats.draw_calls += more.draw_calls;
-            stats.triangles += more.triangles;
-        };
+        let overlay_call = RenderStats { draw_calls: 1, triangles: 0 };
         let draw = self.draws.bind_group();
-        add(draw_items(pass, self.draws.solid(), pane, draw, &self.models, &self.pipelines));
+        stats += draw_items(pass, self.draws.solid(), pane, draw, &self.models, &self.pipelines);
         if background == Background::Studio {
             pass.set_pipeline(&self.pipelines.background);
             pass.draw(0..3, 0..1);
-            add(RenderStats { draw_calls: 1, triangles: 0 });
+            stats += overlay_call;
         }
         if ground.is_some_and(|ground| ground.grid) {
             pass.set_pipeline(&self.pipelines.grid);
             pass.draw(0..18, 0..1);
-            add(RenderStats { draw_calls: 1, triangles: 0 });
+            stats += overlay_call;
         }
-        // After the grid: the shadow falls over its lines.
+        // After the grid, so that the shadow darkens its lines.
         if ground.is_some_and(|ground| ground.shadow) {
             pass.set_pipeline(&self.pipelines.ground_shadow);
             pass.draw(0..6, 0..1);
-            add(RenderStats { draw_calls: 1, triangles: 0 });
+            stats += overlay_call;
         }
-        add(draw_items(pass, self.draws.blended(), pane, draw, &self.models, &self.pipelines));
+        stats += draw_items(pass, self.draws.blended(), pane, draw, &self.models, &self.pipelines);
         for on_top in [false, true] {
             if on_top && (self.overlay.bones() > 0 || !self.overlay.lines(true).is_empty()) {
                 self.overlay.clear_depth(pass);
-                add(RenderStats { draw_calls: 1, triangles: 0 });
+                stats += overlay_call;
             }
             if on_top && self.overlay.bones() > 0 {
                 self.overlay.draw_bones(pass);
-                add(RenderStats { draw_calls: 1, triangles: self.overlay.bone_triangles() });
+                stats += RenderStats { draw_calls: 1, triangles: self.overlay.bone_triangles() };
             }
             if !self.overlay.lines(on_top).is_empty() {
                 self.overlay.draw_lines(pass, on_top);
-                add(RenderStats { draw_calls: 1, triangles: 0 });
+                stats += overlay_call;
             }
         }
         stats
     }
 }
 
-/// The panes of a picture: equal rectangles, row by row.
+/// The panes of a picture: equal rectangles in rows.
 struct Panes {
     columns: u32,
     rows: u32,
-    /// Of one pane, in pixels.
+    /// Size of a pane in pixels.
     size: [f32; 2],
 }
 
@@ -350,7 +355,7 @@ impl Panes {
         self.columns * self.rows
     }
 
-    /// Left, top, width and height in whole pixels: OpenGL knows no others.
+    /// Left, top, width and height in whole pixels, as OpenGL requires.
     fn rect(&self, pane: u32) -> [f32; 4] {
         let edges = |at: u32, size: f32| [at, at + 1].map(|edge| (edge as f32 * size).round());
         let [left, right] = edges(pane % self.columns, self.size[0]);
@@ -369,7 +374,7 @@ fn draw_items(
 ) -> RenderStats {
     let mut stats = RenderStats::default();
     let mut pipeline = None;
-    for item in items.iter().filter(|item| item.pane.is_none_or(|only| only == pane)) {
+    for item in items.iter().filter(|item| item.pane.is_none_or(|item_pane| item_pane == pane)) {
         let Some(primitive) = item.primitive(models) else { continue };
         let (indices, count) = match (&primitive.edges, item.edges) {
             (Some((edges, count)), true) => (edges, *count),

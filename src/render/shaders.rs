@@ -1,4 +1,4 @@
-//! The WGSL of every pipeline, put together from the files in `shaders/`.
+//! The WGSL modules, concatenated from the files in `shaders/`.
 
 const FRAME: &str = include_str!("../../shaders/frame.wgsl");
 const TONE: &str = include_str!("../../shaders/tone.wgsl");
@@ -30,10 +30,10 @@ pub const DEPTH_CLEAR: Shader = Shader { label: "clear depth", parts: &[CLEAR_DE
 pub const BACKDROP: Shader = Shader { label: "background", parts: &[FRAME, BACKGROUND] };
 pub const MIPS: Shader = Shader { label: "mips", parts: &[MIP] };
 pub const BLIT: Shader = Shader { label: "blit", parts: &[BLIT_PICTURE] };
-/// What a vertex stage needs to move a mesh's vertices: frame, palette, skinning and its inputs.
+/// The vertex stages of meshes alone, without fragment stages.
 pub const SKINNED_VERTEX: Shader = Shader { label: "skinned vertex", parts: &[FRAME, PALETTE, SKINNING, VERTEX] };
 
-/// Every module that is drawn with.
+/// Every module used for drawing.
 pub const ALL: [Shader; 8] = [MESH, GROUND_PLANE, LINES, BONES, DEPTH_CLEAR, BACKDROP, MIPS, BLIT];
 
 impl Shader {

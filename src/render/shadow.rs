@@ -1,4 +1,4 @@
-//! The shadow map and where it looks from.
+//! The shadow map and its view.
 
 use glam::camera::rh::proj::directx::orthographic;
 use glam::camera::rh::view::look_to_mat4;
@@ -11,8 +11,8 @@ const SIZE: u32 = 1024;
 
 pub(super) struct ShadowMap {
     pub view: wgpu::TextureView,
-    /// Bound in its place while it is drawn.
-    pub stand_in: wgpu::TextureView,
+    /// Bound instead of the map while it is drawn.
+    pub placeholder: wgpu::TextureView,
     pub sampler: wgpu::Sampler,
 }
 
@@ -38,36 +38,37 @@ impl ShadowMap {
             compare: Some(wgpu::CompareFunction::LessEqual),
             ..Default::default()
         });
-        Self { view: view(SIZE), stand_in: view(1), sampler }
+        Self { view: view(SIZE), placeholder: view(1), sampler }
     }
 }
 
-/// How the light sees the scene.
+/// The light's view of the scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct ShadowView {
     pub shadow_from_world: Mat4,
-    /// Edge of a texel in metres.
+    /// Size of a texel in metres.
     pub texel: f32,
-    /// Middle of what is seen, and from there to its right and upper edges.
+    /// Center of the view, and the vectors from there to its right and upper edges.
     center: Vec3,
     right: Vec3,
     up: Vec3,
 }
 
 impl ShadowView {
-    /// Where what is seen lies on a level plane through `ground`: x and z of its middle from `ground`, then of half its
-    /// two edges. The light must come from above.
+    /// Projects the view along the light onto a horizontal plane through `ground`. Returns x and z of its center,
+    /// relative to
+    /// `ground`, and of half its two edges. The light must come from above.
     pub fn on_ground(&self, to_light: Vec3, ground: Vec3) -> [[f32; 2]; 3] {
-        let slide = |vector: Vec3| {
-            let moved = vector - to_light * (vector.y / to_light.y.max(0.05));
-            [moved.x, moved.z]
+        let project = |vector: Vec3| {
+            let projected = vector - to_light * (vector.y / to_light.y.max(0.05));
+            [projected.x, projected.z]
         };
-        [slide(self.center - ground), slide(self.right), slide(self.up)]
+        [project(self.center - ground), project(self.right), project(self.up)]
     }
 }
 
-/// The tightest parallel view of the box along the light, with a small margin; `to_light` has unit length. None for an
-/// empty box.
+/// Fits an orthographic view along the light to the bounds, with a small margin. `to_light` has unit length. None for
+/// empty bounds.
 pub(super) fn shadow_view(bounds: &Bounds, to_light: Vec3) -> Option<ShadowView> {
     let diagonal = bounds.diagonal();
     if bounds.is_empty() || !diagonal.is_finite() || diagonal <= 0.0 {
@@ -103,7 +104,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_corner_is_seen() {
+    fn every_corner_is_inside_the_view() {
         let bounds = Bounds { min: Vec3::new(-1.0, 0.0, 3.0), max: Vec3::new(2.0, 5.0, 4.0) };
         for to_light in [Vec3::Y, Vec3::new(-0.48, 0.72, 0.5).normalize(), Vec3::X, Vec3::NEG_Y] {
             let view = shadow_view(&bounds, to_light).unwrap();
@@ -120,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_seen_of_the_ground_ends_where_the_map_ends() {
+    fn the_ground_parallelogram_ends_where_the_map_ends() {
         let bounds = Bounds { min: Vec3::new(-1.0, 0.5, 3.0), max: Vec3::new(2.0, 5.0, 4.0) };
         let to_light = Vec3::new(-0.48, 0.72, 0.5).normalize();
         let ground = Vec3::new(0.3, 0.5, -2.0);
@@ -133,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_casts_no_shadow() {
+    fn empty_bounds_have_no_shadow_view() {
         assert_eq!(shadow_view(&Bounds::EMPTY, Vec3::Y), None);
     }
 }

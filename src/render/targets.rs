@@ -1,10 +1,10 @@
-//! The textures a picture is drawn into.
+//! Render targets of a picture.
 
 pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth24Plus;
 pub(super) const SCENE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
 pub(super) struct Targets {
-    /// Several samples per pixel; none with one sample, where `output` is drawn into directly.
+    /// Resolved into `output`; none with one sample per pixel, which is drawn into `output` directly.
     pub multisampled: Option<wgpu::TextureView>,
     pub depth: wgpu::TextureView,
     pub output: wgpu::Texture,

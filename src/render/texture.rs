@@ -1,13 +1,15 @@
-//! Images on the GPU, with mip levels drawn by the GPU.
+//! Image textures with mip levels generated on the GPU.
 
 use std::collections::HashMap;
 
 use super::flush;
+use super::full_screen::{FullScreenPipeline, sampled_texture_group, sampled_texture_layout};
+use super::pipelines::pipeline_layout;
 use super::shaders;
 use crate::library::ImageData;
 use crate::mesh::{Filter, MipFilter, Sampler, Wrap};
 
-/// Draws mip levels.
+/// Generates mip levels.
 pub(super) struct MipMaker {
     module: wgpu::ShaderModule,
     layout: wgpu::BindGroupLayout,
@@ -17,66 +19,30 @@ pub(super) struct MipMaker {
 
 impl MipMaker {
     pub fn new(device: &wgpu::Device) -> Self {
-        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("mips"),
-            entries: &[
-                wgpu::BindGroupLayoutEntry {
-                    binding: 0,
-                    visibility: wgpu::ShaderStages::FRAGMENT,
-                    ty: wgpu::BindingType::Texture {
-                        sample_type: wgpu::TextureSampleType::Float { filterable: true },
-                        view_dimension: wgpu::TextureViewDimension::D2,
-                        multisampled: false,
-                    },
-                    count: None,
-                },
-                wgpu::BindGroupLayoutEntry {
-                    binding: 1,
-                    visibility: wgpu::ShaderStages::FRAGMENT,
-                    ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-                    count: None,
-                },
-            ],
-        });
         let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("mips"),
             mag_filter: wgpu::FilterMode::Linear,
             min_filter: wgpu::FilterMode::Linear,
             ..Default::default()
         });
+        let layout = sampled_texture_layout(device, "mips");
         Self { module: shaders::MIPS.module(device), layout, sampler, pipelines: HashMap::new() }
     }
 
-    /// Fills all levels below the first.
+    /// Fills every level below the first.
     fn fill(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, texture: &wgpu::Texture) {
         let format = texture.format();
         let pipeline = self.pipelines.entry(format).or_insert_with(|| {
-            let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                label: Some("mips"),
-                bind_group_layouts: &[Some(&self.layout)],
-                immediate_size: 0,
-            });
-            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some("mips"),
-                layout: Some(&pipeline_layout),
-                vertex: wgpu::VertexState {
-                    module: &self.module,
-                    entry_point: Some("full_screen"),
-                    compilation_options: Default::default(),
-                    buffers: &[],
-                },
-                primitive: Default::default(),
-                depth_stencil: None,
-                multisample: Default::default(),
-                fragment: Some(wgpu::FragmentState {
-                    module: &self.module,
-                    entry_point: Some("halve"),
-                    compilation_options: Default::default(),
-                    targets: &[Some(format.into())],
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
+            FullScreenPipeline {
+                label: "mips",
+                module: &self.module,
+                layout: &pipeline_layout(device, "mips", &[Some(&self.layout)]),
+                vertex: "full_screen",
+                fragment: "halve",
+                constants: &[],
+                target: format.into(),
+            }
+            .create(device)
         });
         let level_view = |level| {
             texture.create_view(&wgpu::TextureViewDescriptor {
@@ -87,17 +53,7 @@ impl MipMaker {
         };
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("mips") });
         for level in 1..texture.mip_level_count() {
-            let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("mips"),
-                layout: &self.layout,
-                entries: &[
-                    wgpu::BindGroupEntry {
-                        binding: 0,
-                        resource: wgpu::BindingResource::TextureView(&level_view(level - 1)),
-                    },
-                    wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(&self.sampler) },
-                ],
-            });
+            let bind_group = sampled_texture_group(device, "mips", &self.layout, &level_view(level - 1), &self.sampler);
             let target = level_view(level);
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some("mips"),
@@ -119,9 +75,9 @@ impl MipMaker {
         queue.submit([encoder.finish()]);
     }
 
-    /// The image with all its mip levels; none when it has no pixels or is a browser's handle larger than the device
-    /// can hold. Other images that are too large are halved until they fit. Each is submitted by itself: a browser's graphics
-    /// process answers others between submissions only.
+    /// Uploads an image and its mip levels; none if it has no pixels, or if it is a browser's bitmap larger than the
+    /// device supports. Other oversized images are halved until they fit. Each image is a submission of its own,
+    /// because a browser's graphics process serves other clients only between submissions.
     pub fn upload(
         &mut self,
         device: &wgpu::Device,
@@ -129,66 +85,12 @@ impl MipMaker {
         image: &ImageData,
         srgb: bool,
     ) -> Option<wgpu::TextureView> {
-        let most = device.limits().max_texture_dimension_2d;
-        let create = |width: u32, height: u32| {
-            device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("image"),
-                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-                mip_level_count: width.max(height).ilog2() + 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: if srgb { wgpu::TextureFormat::Rgba8UnormSrgb } else { wgpu::TextureFormat::Rgba8Unorm },
-                usage: wgpu::TextureUsages::TEXTURE_BINDING
-                    | wgpu::TextureUsages::COPY_DST
-                    | wgpu::TextureUsages::RENDER_ATTACHMENT,
-                view_formats: &[],
-            })
-        };
         let texture = match image {
             ImageData::Rgba8 { width, height, pixels } => {
-                let (mut width, mut height) = (*width, *height);
-                if width == 0 || height == 0 || pixels.len() as u64 != 4 * u64::from(width) * u64::from(height) {
-                    return None;
-                }
-                let mut smaller: Option<Vec<u8>> = None;
-                while width > most || height > most {
-                    smaller = Some(halved(smaller.as_deref().unwrap_or(pixels), width, height));
-                    (width, height) = ((width / 2).max(1), (height / 2).max(1));
-                }
-                let texture = create(width, height);
-                queue.write_texture(
-                    texture.as_image_copy(),
-                    smaller.as_deref().unwrap_or(pixels),
-                    wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * width), rows_per_image: None },
-                    texture.size(),
-                );
-                texture
+                upload_pixels(device, queue, [*width, *height], pixels, srgb)?
             }
             #[cfg(target_arch = "wasm32")]
-            ImageData::Bitmap(bitmap) => {
-                let (width, height) = (bitmap.width(), bitmap.height());
-                if width == 0 || height == 0 || width > most || height > most {
-                    return None;
-                }
-                let texture = create(width, height);
-                queue.copy_external_image_to_texture(
-                    &wgpu::CopyExternalImageSourceInfo {
-                        source: wgpu::ExternalImageSource::ImageBitmap(bitmap.clone()),
-                        origin: wgpu::Origin2d::ZERO,
-                        flip_y: false,
-                    },
-                    wgpu::CopyExternalImageDestInfo {
-                        texture: &texture,
-                        mip_level: 0,
-                        origin: wgpu::Origin3d::ZERO,
-                        aspect: wgpu::TextureAspect::All,
-                        color_space: wgpu::PredefinedColorSpace::Srgb,
-                        premultiplied_alpha: false,
-                    },
-                    texture.size(),
-                );
-                texture
-            }
+            ImageData::Bitmap(bitmap) => upload_bitmap(device, queue, bitmap, srgb)?,
         };
         flush(queue);
         self.fill(device, queue, &texture);
@@ -196,7 +98,81 @@ impl MipMaker {
     }
 }
 
-/// Every second pixel of every second row: only for images beyond the device's limit, which are mipmapped afterwards.
+fn image_texture(device: &wgpu::Device, [width, height]: [u32; 2], srgb: bool) -> wgpu::Texture {
+    use wgpu::TextureUsages as Usages;
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("image"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: width.max(height).ilog2() + 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: if srgb { wgpu::TextureFormat::Rgba8UnormSrgb } else { wgpu::TextureFormat::Rgba8Unorm },
+        usage: Usages::TEXTURE_BINDING | Usages::COPY_DST | Usages::RENDER_ATTACHMENT,
+        view_formats: &[],
+    })
+}
+
+/// Uploads the first level, halving the image until the device supports its size.
+fn upload_pixels(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    [mut width, mut height]: [u32; 2],
+    pixels: &[u8],
+    srgb: bool,
+) -> Option<wgpu::Texture> {
+    if width == 0 || height == 0 || pixels.len() as u64 != 4 * u64::from(width) * u64::from(height) {
+        return None;
+    }
+    let max_size = device.limits().max_texture_dimension_2d;
+    let mut smaller: Option<Vec<u8>> = None;
+    while width > max_size || height > max_size {
+        smaller = Some(halved(smaller.as_deref().unwrap_or(pixels), width, height));
+        (width, height) = ((width / 2).max(1), (height / 2).max(1));
+    }
+    let texture = image_texture(device, [width, height], srgb);
+    queue.write_texture(
+        texture.as_image_copy(),
+        smaller.as_deref().unwrap_or(pixels),
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * width), rows_per_image: None },
+        texture.size(),
+    );
+    Some(texture)
+}
+
+/// Uploads the first level.
+#[cfg(target_arch = "wasm32")]
+fn upload_bitmap(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    bitmap: &web_sys::ImageBitmap,
+    srgb: bool,
+) -> Option<wgpu::Texture> {
+    let size = [bitmap.width(), bitmap.height()];
+    let max_size = device.limits().max_texture_dimension_2d;
+    if size.contains(&0) || size.into_iter().any(|edge| edge > max_size) {
+        return None;
+    }
+    let texture = image_texture(device, size, srgb);
+    queue.copy_external_image_to_texture(
+        &wgpu::CopyExternalImageSourceInfo {
+            source: wgpu::ExternalImageSource::ImageBitmap(bitmap.clone()),
+            origin: wgpu::Origin2d::ZERO,
+            flip_y: false,
+        },
+        wgpu::CopyExternalImageDestInfo {
+            texture: &texture,
+            mip_level: 0,
+            origin: wgpu::Origin3d::ZERO,
+            aspect: wgpu::TextureAspect::All,
+            color_space: wgpu::PredefinedColorSpace::Srgb,
+            premultiplied_alpha: false,
+        },
+        texture.size(),
+    );
+    Some(texture)
+}
+
+/// Keeps every second pixel of every second row. Only for images over the device's limit, which get mipmaps afterwards.
 fn halved(pixels: &[u8], width: u32, height: u32) -> Vec<u8> {
     let (new_width, new_height) = ((width / 2).max(1), (height / 2).max(1));
     let mut out = Vec::with_capacity((4 * new_width * new_height) as usize);
@@ -209,7 +185,7 @@ fn halved(pixels: &[u8], width: u32, height: u32) -> Vec<u8> {
     out
 }
 
-/// One flat colour.
+/// Creates a texture of a single texel.
 pub(super) fn single_texel(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
@@ -256,7 +232,7 @@ pub(super) fn sampler(device: &wgpu::Device, sampler: &Sampler, anisotropy: u16)
             MipFilter::None | MipFilter::Nearest => wgpu::MipmapFilterMode::Nearest,
             MipFilter::Linear => wgpu::MipmapFilterMode::Linear,
         },
-        // A little above 0, or the smaller filter would never be chosen over the larger.
+        // Slightly above 0, or minification would use the magnification filter.
         lod_max_clamp: if sampler.mip == MipFilter::None { 0.25 } else { 32.0 },
         anisotropy_clamp: if smooth { anisotropy } else { 1 },
         ..Default::default()

@@ -2,7 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-/// The most lights of a file that are drawn with.
+/// Lights of a file beyond this number are ignored.
 pub const MAX_LIGHTS: usize = 8;
 
 /// `Light` in frame.wgsl.

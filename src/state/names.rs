@@ -1,9 +1,9 @@
-//! What joints are called: as the file says, or as a person does.
+//! Joint names: the file's, or those given by the user.
 
 use std::borrow::Cow;
 
-use super::{PoseSampler, ViewerState};
-use crate::anim::{JointIndex, Skeleton};
+use super::ViewerState;
+use crate::anim::{JointIndex, Pose, Skeleton};
 use crate::asset::Asset;
 use crate::library::Model;
 
@@ -18,14 +18,13 @@ pub fn title<'a>(state: Option<&'a ViewerState>, asset: &'a Asset, joint: JointI
     }
 }
 
-/// The skeleton as it is written into a file: with the names given by hand, and in the pose of the moment if `posed`.
-pub fn written_skeleton(model: &Model, state: &ViewerState, posed: bool) -> Skeleton {
+/// Returns the skeleton to write into a file: with the names given by the user and, if `pose` is set, with that as its
+/// rest pose.
+pub fn written_skeleton(model: &Model, state: &ViewerState, pose: Option<&Pose>) -> Skeleton {
     let names = state.edits.names.iter().map(|(&number, name)| (number, name.as_str()));
     let named = model.asset.skeleton.with_names(names);
-    if !posed {
-        return named;
+    match pose {
+        Some(pose) => named.with_rest(&pose.locals),
+        None => named,
     }
-    let mut sampler = PoseSampler::default();
-    sampler.sample(model, state);
-    named.with_rest(&sampler.pose.locals)
 }

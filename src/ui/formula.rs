@@ -196,11 +196,11 @@ fn table(
     controls::hint(ui, "p' = Σ w · T · inv(B) · p, one line for each joint j with a weight w:");
     ui.spacing_mut().item_spacing.y = 1.0;
     // All numbers of the card with the same decimals, so that they can be added up.
-    let largest = formula.parts.iter().map(|part| part.alone.abs().max_element()).fold(0.0, f32::max);
+    let largest = formula.terms.iter().map(|part| part.alone.abs().max_element()).fold(0.0, f32::max);
     let digits = decimals(largest.max(formula.bound.abs().max_element()));
     heads(ui);
     numbers(ui, "p", "where it is bound", formula.bound, digits, true);
-    for part in &formula.parts {
+    for part in &formula.terms {
         let name = title(Some(shown.state), &model.asset, part.joint);
         let number = model.asset.skeleton.source_index(part.joint);
         ui.add_space(3.0);

@@ -6,7 +6,7 @@ use glam::{Quat, Vec3};
 use super::picture::{pane_at, to_screen};
 use super::{Output, Shown, UiState, style};
 use crate::anim::Transform;
-use crate::state::{Command, PoseSampler, degrees_by_hand, rotation_by_hand};
+use crate::state::{Command, degrees_by_hand};
 
 const RADIUS_POINTS: f32 = 72.0;
 /// The disc for free turning, as a share of the rings.
@@ -88,14 +88,7 @@ fn handle(response: &Response, shown: &Shown<'_>) -> Option<Handle> {
     // The rings of a mirrored joint would turn it the wrong way round: it has its sliders.
     let world = Some(Transform::from_matrix(&(*matrix).into())).filter(Transform::is_upright)?.rotation;
     let rest = model.asset.skeleton.rest().locals.get(index.get())?.rotation;
-    let local = match shown.state.edits.pose.get(&joint) {
-        Some(&degrees) => rotation_by_hand(rest, degrees),
-        None => {
-            let mut sampler = PoseSampler::default();
-            sampler.sample(model, shown.state);
-            sampler.pose.locals.get(index.get())?.rotation
-        }
-    };
+    let local = shown.frame.pose().locals.get(index.get())?.rotation;
     let pane = pane_at(shown, response.rect, response.hover_pos());
     let place = Vec3::from(matrix.translation);
     let view = &shown.frame.view;

@@ -9,7 +9,7 @@ use super::{Output, Shown, UiState, clips, controls, formula, style};
 use crate::anim::{JointIndex, Transform};
 use crate::asset::Asset;
 use crate::library::Model;
-use crate::state::{Command, PoseSampler, ViewerState, degrees_by_hand, title};
+use crate::state::{Command, ViewerState, degrees_by_hand, title};
 
 const ROW_HEIGHT: f32 = 26.0;
 const LEAST_TREE_HEIGHT: f32 = 8.0 * ROW_HEIGHT;
@@ -288,9 +288,7 @@ fn joint_card(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, 
             }
         });
     });
-    let mut sampler = PoseSampler::default();
-    sampler.sample(model, shown.state);
-    let local = sampler.pose.locals.get(joint.get()).copied().unwrap_or_default();
+    let local = shown.frame.pose().locals.get(joint.get()).copied().unwrap_or_default();
     ui.add_space(2.0);
     if controls::switch(ui, "Turn by hand", panel.turning) {
         panel.turning = !panel.turning;

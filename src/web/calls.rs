@@ -11,7 +11,8 @@ use crate::app::{App, Message, Opening, Reply, ScriptCall};
 use crate::editor::Contents;
 use crate::files::{Item, OpenError, Role, open_items, open_view};
 use crate::frame::pose_document;
-use crate::library::{Motion, sample};
+use crate::library::Motion;
+use crate::samples;
 use crate::state::{Command, MotionMap, ViewerState, active_clip, from_object, to_object};
 
 /// Opens one set: an array of addresses and of `[name, Uint8Array]`. A model takes the place of what is shown; motions and
@@ -48,7 +49,7 @@ pub async fn apply(partial: String) -> Result<String, JsError> {
         page.inbox.send(Message::Script(ScriptCall::Apply(partial, reply)));
         return settled(promise).await.map(|_| news(&[], &[])).map_err(error);
     }
-    take_over(&page, state.or_sample(sample::WALKER), false, false).await.map_err(error)
+    take_over(&page, state.or_sample(samples::WALKER), false, false).await.map_err(error)
 }
 
 /// Takes the model off the list that was shown while a link's own files were waited for.

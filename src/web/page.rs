@@ -9,7 +9,7 @@ use super::shell::{self, Shell};
 use crate::app::{App, Backend, Host, Inbox, set_fatal_hook, web_options};
 use crate::editor::{Contents, OpenedModel};
 use crate::files::{Item, OpenError, Role, open_items, open_view};
-use crate::library::sample;
+use crate::samples;
 use crate::state::{ViewerState, from_link, to_link};
 
 /// One instance draws on one canvas.
@@ -122,7 +122,7 @@ async fn first_contents(
             }
             models.truncate(1);
             if models.is_empty() {
-                models.extend(sample::load(sample::WALKER).map(OpenedModel::from));
+                models.extend(samples::load(samples::WALKER).map(OpenedModel::from));
             }
             let model = models.first().ok_or_else(|| problems.join("\n"))?;
             let state = state.for_model(ViewerState::of_model(model.model.source.clone()));
@@ -135,7 +135,7 @@ async fn first_contents(
 pub(super) fn state_of_link(link: &str, shell: &Shell) -> ViewerState {
     let (state, errors) = from_link(link);
     errors.iter().for_each(|error| shell.warn(&error.to_string()));
-    let state = state.or_sample(sample::WALKER);
+    let state = state.or_sample(samples::WALKER);
     if prefers_reduced_motion() { state.calmed() } else { state }
 }
 

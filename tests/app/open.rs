@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use gaitway::library::sample;
+use gaitway::samples;
 use gaitway::state::{ClipChoice, Command, to_link};
 
 use crate::desk::{desk, real};
@@ -152,7 +152,7 @@ fn of_an_archive_a_link_names_the_model_that_is_shown() {
     let archive = std::env::temp_dir().join(format!("gaitway-app-{}.zip", std::process::id()));
     let mut writer = zip::ZipWriter::new(std::fs::File::create(&archive).expect("created"));
     for name in ["creature", "dwarf"] {
-        for (file, bytes) in sample::files(name) {
+        for (file, bytes) in samples::files(name) {
             writer.start_file(format!("in/{file}"), zip::write::SimpleFileOptions::default()).expect("begun");
             writer.write_all(bytes).expect("written");
         }

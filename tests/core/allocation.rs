@@ -1,49 +1,15 @@
-//! Nothing is allocated per sample once the buffers have grown.
-
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+//! Sampling and skinning stop allocating once the buffers have grown.
 
 use gaitway::anim::{ClipBuilder, Interpolation, Keys, SampleCursor, model_from_joint};
 use gaitway::mesh::{DeformedVertices, Skin, SkinningMode, deform, write_palette};
 use glam::{Affine3A, Quat, Vec3};
 
+use crate::allocations::allocations_after;
 use crate::build::chain;
 use crate::skinning_cases::scattered;
 
-struct Counting;
-
-thread_local! {
-    /// Allocations of this thread alone: other tests run beside this one.
-    static COUNT: Cell<usize> = const { Cell::new(0) };
-}
-
-fn count() {
-    // The thread may be ending, when its counter is gone already.
-    let _ = COUNT.try_with(|count| count.set(count.get() + 1));
-}
-
-// SAFETY: everything is handed to the system's allocator as it comes.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count();
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        unsafe { System.dealloc(pointer, layout) }
-    }
-
-    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        count();
-        unsafe { System.realloc(pointer, layout, size) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
-
 #[test]
-fn a_character_frame_allocates_nothing() {
+fn sampling_and_skinning_do_not_allocate() {
     let skeleton = chain(20);
     let mut builder = ClipBuilder::new("", &skeleton);
     let times: Vec<f32> = (0..30).map(|key| key as f32 / 30.0).collect();
@@ -68,12 +34,12 @@ fn a_character_frame_allocates_nothing() {
         write_palette(&skin, &world, mode, &mut palette);
         deform(&geometry, &[], &palette, mode, &mut vertices);
     };
-    frame(0.0, SkinningMode::Linear);
-    let before = COUNT.get();
-    assert!(before > 0, "the counter counts");
-    for step in 0..200 {
-        let modes = [SkinningMode::Linear, SkinningMode::Rigid, SkinningMode::DualQuaternion];
-        frame(step as f32 * 0.007, modes[step % 3]);
-    }
-    assert_eq!(COUNT.get() - before, 0);
+    let play = |frame: &mut dyn FnMut(f32, SkinningMode)| {
+        for step in 0..200 {
+            let modes = [SkinningMode::Linear, SkinningMode::Rigid, SkinningMode::DualQuaternion];
+            frame(step as f32 * 0.007, modes[step % 3]);
+        }
+    };
+    let count = allocations_after(&mut frame, |frame| frame(0.0, SkinningMode::Linear), |frame| play(frame));
+    assert_eq!(count, 0);
 }

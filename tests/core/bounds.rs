@@ -1,4 +1,4 @@
-//! Boxes.
+//! Bounding boxes.
 
 use gaitway::mesh::Bounds;
 use glam::{Affine3A, Quat, Vec3};
@@ -8,14 +8,14 @@ fn check(bounds: Bounds, min: [f32; 3], max: [f32; 3]) {
 }
 
 #[test]
-fn points_that_are_not_finite_are_left_out() {
+fn non_finite_points_are_ignored() {
     let points = [Vec3::NAN, Vec3::INFINITY, Vec3::new(1.0, f32::NEG_INFINITY, 0.0)];
     assert!(Bounds::of(points).is_empty());
     check(Bounds::of(points.into_iter().chain([Vec3::ONE])), [1.0; 3], [1.0; 3]);
 }
 
 #[test]
-fn nothing_is_empty_and_stays_so() {
+fn empty_bounds_stay_empty() {
     assert!(Bounds::default().is_empty());
     assert_eq!(Bounds::EMPTY.size(), Vec3::ZERO);
     assert_eq!(Bounds::EMPTY.diagonal(), 0.0);
@@ -24,7 +24,7 @@ fn nothing_is_empty_and_stays_so() {
 }
 
 #[test]
-fn a_box_holds_its_points() {
+fn bounds_enclose_their_points() {
     let bounds = Bounds::of([Vec3::new(1.0, -2.0, 3.0), Vec3::new(-1.0, 4.0, 3.0)]);
     check(bounds, [-1.0, -2.0, 3.0], [1.0, 4.0, 3.0]);
     assert!(!bounds.is_empty());
@@ -35,7 +35,7 @@ fn a_box_holds_its_points() {
 }
 
 #[test]
-fn corners_are_all_eight() {
+fn corners_are_all_distinct() {
     let bounds = Bounds { min: Vec3::ZERO, max: Vec3::new(1.0, 2.0, 4.0) };
     let mut sums = bounds.corners().map(|corner| corner.element_sum());
     sums.sort_by(f32::total_cmp);
@@ -43,7 +43,7 @@ fn corners_are_all_eight() {
 }
 
 #[test]
-fn a_turned_box_is_the_box_of_its_corners() {
+fn transformed_bounds_enclose_the_corners() {
     let bounds = Bounds { min: Vec3::ZERO, max: Vec3::new(2.0, 1.0, 1.0) };
     let turned = Affine3A::from_rotation_translation(Quat::from_rotation_z(90f32.to_radians()), Vec3::X);
     check(bounds.transformed(&turned), [0.0, 0.0, 0.0], [1.0, 2.0, 1.0]);

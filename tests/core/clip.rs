@@ -3,7 +3,8 @@
 use gaitway::anim::{Channel, ChannelError, Clip, ClipBuilder, Interpolation, JointIndex, Keys, Pose, SampleCursor};
 use glam::{DQuat, DVec4, Quat, Vec3};
 
-use crate::build::{Random, chain, one_channel, one_joint};
+use crate::build::{chain, one_channel, one_joint};
+use crate::random::Random;
 
 use Interpolation::{CubicSpline, Linear, Step};
 
@@ -25,7 +26,7 @@ fn check_error(joint: u32, interpolation: Interpolation, times_secs: &[f32], key
     let mut builder = ClipBuilder::new("clip", &skeleton);
     let error = builder.channel(JointIndex(joint), interpolation, times_secs, keys).unwrap_err();
     assert_eq!(error.to_string(), expected.to_string());
-    assert!(builder.build().channels().is_empty(), "a refused channel leaves nothing behind");
+    assert!(builder.build().channels().is_empty(), "a rejected channel must leave nothing behind");
 }
 
 fn zeros(count: usize) -> Keys {
@@ -33,7 +34,7 @@ fn zeros(count: usize) -> Keys {
 }
 
 #[test]
-fn refuses_times_that_do_not_rise() {
+fn rejects_times_that_do_not_increase() {
     let not_after = |key, time_secs, before_secs| ChannelError::TimesNotIncreasing { key, time_secs, before_secs };
     check_error(0, Linear, &[], zeros(0), ChannelError::NoKeys);
     check_error(0, Linear, &[0.0, 0.0], zeros(2), not_after(1, 0.0, 0.0));
@@ -44,7 +45,7 @@ fn refuses_times_that_do_not_rise() {
 }
 
 #[test]
-fn refuses_keys_that_do_not_match_the_times() {
+fn rejects_keys_that_do_not_match_the_times() {
     let count = |keys, expected, found| ChannelError::ValueCount { keys, expected, found };
     check_error(0, Linear, &[0.0, 1.0], zeros(1), count(2, 2, 1));
     check_error(0, Linear, &[0.0], zeros(2), count(1, 1, 2));
@@ -57,13 +58,13 @@ fn refuses_keys_that_do_not_match_the_times() {
     check_error(0, Linear, &[0.0], weights(1, 1), targets(1));
     check_error(0, Linear, &[0.0, 1.0], weights(2, 2), count(2, 4, 2));
     check_error(0, CubicSpline, &[0.0], weights(2, 2), count(1, 6, 2));
-    // A last entry that lacks a weight is no entry; nor may there be weights left over.
+    // Entries must be complete, without leftover weights.
     check_error(0, Linear, &[0.0, 1.0], weights(3, 2), count(2, 4, 3));
     check_error(0, Linear, &[0.0], weights(3, 2), count(1, 2, 3));
 }
 
 #[test]
-fn keys_stay_readable_as_they_were_given() {
+fn keys_are_kept_as_given() {
     let skeleton = one_joint();
     let times = [0.5, 1.0];
     let rotations = vec![Quat::from_xyzw(0.0, 0.0, 0.0, 2.0), Quat::from_xyzw(0.0, -0.6, 0.0, -0.8)];
@@ -72,19 +73,19 @@ fn keys_stay_readable_as_they_were_given() {
     builder.channel(JointIndex(0), Step, &times, zeros(2)).unwrap();
     let clip = builder.build();
     assert_eq!((clip.name(), clip.duration_secs()), ("walk", 1.0));
-    assert_eq!(clip.timelines(), [times.to_vec()], "equal times are one timeline");
+    assert_eq!(clip.timelines(), [times.to_vec()], "equal times share a timeline");
     let channel = |interpolation, keys| Channel { joint: JointIndex(0), interpolation, timeline: 0, keys };
     assert_eq!(clip.channels(), [channel(Linear, Keys::Rotation(rotations)), channel(Step, zeros(2))]);
 }
 
 #[test]
-fn keys_come_back_exactly() {
+fn sampling_at_a_key_gives_exactly_that_key() {
     let mut random = Random(11);
     let count = 9;
     let times: Vec<f32> = (0..count).map(|key| 0.1 + 0.3 * key as f32).collect();
     let vectors: Vec<Vec3> = times.iter().map(|_| random.vec3()).collect();
     let rotations: Vec<Quat> = times.iter().map(|_| random.quat()).collect();
-    let weights: Vec<f32> = (0..2 * count).map(|_| random.next()).collect();
+    let weights: Vec<f32> = (0..2 * count).map(|_| random.f32()).collect();
     for interpolation in [Step, Linear, CubicSpline] {
         let entry =
             |key: usize| if interpolation == CubicSpline { vec![usize::MAX, key, usize::MAX] } else { vec![key] };
@@ -114,7 +115,7 @@ fn keys_come_back_exactly() {
 }
 
 #[test]
-fn outside_the_keys_the_nearest_holds() {
+fn the_nearest_key_holds_outside_the_keys() {
     let skeleton = one_joint();
     let values = vec![Vec3::X, Vec3::Y, Vec3::Z];
     for interpolation in [Step, Linear, CubicSpline] {
@@ -132,13 +133,13 @@ fn outside_the_keys_the_nearest_holds() {
 }
 
 #[test]
-fn a_time_that_is_no_number_gives_a_key() {
+fn nan_gives_a_key() {
     let clip = one_channel(&one_joint(), Linear, &[0.0, 1.0], Keys::Translation(vec![Vec3::X, Vec3::Y]));
     assert_eq!(sample(&clip, f32::NAN).locals[0].translation, Vec3::X);
 }
 
 #[test]
-fn one_key_holds_always() {
+fn a_single_key_holds_at_every_time() {
     let skeleton = one_joint();
     for interpolation in [Step, Linear, CubicSpline] {
         let rotation = Quat::from_rotation_x(1.0);
@@ -166,14 +167,14 @@ fn step_keeps_a_value_until_the_next_key() {
 }
 
 #[test]
-fn linear_goes_straight() {
+fn linear_interpolates_linearly() {
     let keys = Keys::Scale(vec![Vec3::ZERO, Vec3::new(2.0, 4.0, -8.0), Vec3::ONE]);
     let clip = one_channel(&one_joint(), Linear, &[1.0, 3.0, 4.0], keys);
     let halfway = sample(&clip, 1.5).locals[0].scale;
     assert!(halfway.abs_diff_eq(Vec3::new(0.5, 1.0, -2.0), 1e-6), "{halfway}");
 }
 
-/// Slerp as §3.11 writes it (appendix C.3), in f64.
+/// Slerp as defined in appendix C.3, in f64.
 fn slerp(from: Quat, to: Quat, factor: f64) -> DQuat {
     let (from, to) = (from.as_dquat().normalize(), to.as_dquat().normalize());
     let cos = from.dot(to);
@@ -186,11 +187,11 @@ fn slerp(from: Quat, to: Quat, factor: f64) -> DQuat {
 }
 
 #[test]
-fn rotations_turn_evenly_along_the_shortest_arc() {
+fn rotations_follow_the_shortest_arc_at_constant_speed() {
     let mut random = Random(5);
     for round in 0..400 {
         let from = random.quat();
-        // Small turns, large ones, and the other sign of the same rotation.
+        // Small and large angles, and the negated quaternion of the same rotation.
         let angle = [1e-4, 0.01, 0.3, 0.8, 1.1, 2.0, 3.0, 3.1][round % 8];
         let to = Quat::from_axis_angle(random.vec3().normalize(), angle) * from;
         let to = if round % 3 == 0 { -to } else { to };
@@ -209,10 +210,10 @@ fn rotations_turn_evenly_along_the_shortest_arc() {
 }
 
 #[test]
-fn many_rotations_on_one_timeline_each_take_their_own_way() {
+fn rotations_that_share_a_timeline_are_independent() {
     for count in [1, 2, 3, 4, 5, 8, 11] {
         let skeleton = chain(count);
-        let mut random = Random(count as u32);
+        let mut random = Random(count as u64);
         let times = [0.0, 0.5, 0.75, 2.0];
         let keys: Vec<Vec<Quat>> = (0..count)
             .map(|joint| {
@@ -249,7 +250,7 @@ fn many_rotations_on_one_timeline_each_take_their_own_way() {
 }
 
 #[test]
-fn rotation_keys_need_not_be_of_unit_length() {
+fn rotation_keys_need_not_be_normalized() {
     let keys = vec![Quat::from_xyzw(0.0, 0.0, 0.0, 3.0), Quat::from_xyzw(0.0, 0.5, 0.0, 0.5)];
     let clip = one_channel(&one_joint(), Linear, &[0.0, 1.0], Keys::Rotation(keys));
     for (time, degrees) in [(0.0, 0.0), (0.5, 45.0), (1.0, 90.0)] {
@@ -275,14 +276,14 @@ fn hermite(from: f64, out_tangent: f64, in_tangent: f64, to: f64, length_secs: f
 }
 
 #[test]
-fn cubic_splines_are_those_of_appendix_c() {
+fn cubic_splines_match_appendix_c() {
     let mut random = Random(21);
     let times = [0.25, 0.75, 2.25];
     let vectors: Vec<Vec3> = (0..9).map(|_| random.vec3()).collect();
     let rotations: Vec<Quat> = (0..9)
         .map(|entry| if entry % 3 == 1 { random.quat() } else { Quat::from_vec4(random.vec3().extend(0.3)) })
         .collect();
-    let weights: Vec<f32> = (0..18).map(|_| random.next()).collect();
+    let weights: Vec<f32> = (0..18).map(|_| random.f32()).collect();
     let skeleton = one_joint();
     let mut builder = ClipBuilder::new("", &skeleton);
     for keys in [
@@ -329,7 +330,7 @@ fn a_flat_spline_with_tangents_is_not_flat() {
 }
 
 #[test]
-fn weights_go_straight_too() {
+fn morph_weights_interpolate_linearly_and_in_steps() {
     let keys = Keys::MorphWeights { values: vec![0.0, 1.0, 1.0, 0.5], targets: 2 };
     let clip = one_channel(&one_joint(), Linear, &[0.0, 2.0], keys.clone());
     assert_eq!(sample(&clip, 0.5).morph_weights, [0.25, 0.875]);
@@ -338,7 +339,7 @@ fn weights_go_straight_too() {
 }
 
 #[test]
-fn what_no_channel_drives_is_left_as_it_is() {
+fn properties_without_a_channel_are_left_alone() {
     let skeleton = chain(3);
     let clip = one_channel(&skeleton, Linear, &[0.0, 1.0], Keys::Scale(vec![Vec3::ONE, Vec3::splat(3.0)]));
     let mut pose = skeleton.rest().clone();
@@ -349,7 +350,7 @@ fn what_no_channel_drives_is_left_as_it_is() {
 }
 
 #[test]
-fn of_two_channels_on_one_property_the_later_counts() {
+fn the_last_channel_of_a_property_wins() {
     let skeleton = one_joint();
     let same = || Keys::Translation(vec![Vec3::X; 2]);
     let moving = || Keys::Translation(vec![Vec3::ZERO, 2.0 * Vec3::Y]);
@@ -390,17 +391,17 @@ fn busy() -> (gaitway::anim::Skeleton, Clip) {
 }
 
 #[test]
-fn the_cursor_changes_nothing() {
+fn the_cursor_does_not_affect_the_result() {
     let (skeleton, clip) = busy();
     let mut random = Random(8);
     let mut used = SampleCursor::default();
     let (mut with_used, mut with_fresh) = (skeleton.rest().clone(), skeleton.rest().clone());
     for step in 0..500 {
-        // Forwards, backwards, and anywhere.
+        // Forwards, backwards, then random times.
         let time = match step {
             0..200 => step as f32 * 0.02,
             200..300 => (300 - step) as f32 * 0.04,
-            _ => 5.0 * random.next() - 1.0,
+            _ => 5.0 * random.f32() - 1.0,
         };
         clip.sample(&skeleton, time, &mut used, &mut with_used);
         clip.sample(&skeleton, time, &mut SampleCursor::default(), &mut with_fresh);
@@ -409,7 +410,7 @@ fn the_cursor_changes_nothing() {
 }
 
 #[test]
-fn a_cursor_of_another_clip_does_no_harm() {
+fn a_cursor_can_be_shared_between_clips() {
     let (skeleton, clip) = busy();
     let short = one_channel(&skeleton, Linear, &[0.0, 1.0], zeros(2));
     let mut cursor = SampleCursor::default();

@@ -1,16 +1,17 @@
-//! Layers go one way: reads the sources and looks at what each module names.
+//! Enforces the layers: parses the sources for the modules that each module uses.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A module of the crate uses lower ranks and its own folder only. ARCHITECTURE.md has the same table.
-const RANKS: [(&str, u32); 15] = [
+/// A module may use only lower ranks and its own folder. ARCHITECTURE.md has the same table.
+const RANKS: [(&str, u32); 16] = [
     ("anim", 0),
     ("mesh", 1),
     ("asset", 2),
     ("formats", 3),
     ("retarget", 3),
     ("library", 4),
+    ("samples", 5),
     ("state", 5),
     ("frame", 6),
     ("render", 7),
@@ -22,8 +23,8 @@ const RANKS: [(&str, u32); 15] = [
     ("web", 10),
 ];
 
-/// Modules up to this rank know nothing of disk, network, clock, GPU and user interface. `render`, which owns the GPU, is the
-/// one exception.
+/// Modules up to this rank must not use disk, network, clock, GPU or user interface. `render`, which owns the GPU, is the one
+/// exception.
 const LAST_CORE_RANK: u32 = 7;
 
 const OUTSIDE: [&str; 13] = [
@@ -46,7 +47,7 @@ fn rank(module: &str) -> Option<u32> {
     RANKS.iter().find(|(name, _)| *name == module).map(|(_, rank)| *rank)
 }
 
-/// The text without its comments, which may speak of anything. Addresses in strings lose their ends, which is no harm.
+/// Removes comments, which may mention anything. URLs in strings are cut off, which is harmless.
 fn without_comments(text: &str) -> String {
     text.lines().map(|line| line.split("//").next().unwrap_or("")).collect::<Vec<_>>().join("\n")
 }
@@ -56,7 +57,7 @@ fn identifier(text: &str) -> &str {
     &text[..end]
 }
 
-/// Whether the text has this word, and not only as a part of a longer one.
+/// Whether the text contains this word, not just as part of a longer one.
 fn names(text: &str, word: &str) -> bool {
     let part_of_word = |c: char| c.is_alphanumeric() || c == '_';
     text.match_indices(word).any(|(at, _)| {
@@ -65,7 +66,7 @@ fn names(text: &str, word: &str) -> bool {
     })
 }
 
-/// Names directly behind each `crate::`, those of `crate::{a, b::{c, d}}` as well.
+/// Returns the names directly after each `crate::`, including those in `crate::{a, b::{c, d}}`.
 fn modules_used(text: &str) -> Vec<String> {
     let mut modules = Vec::new();
     for (at, _) in text.match_indices("crate::") {
@@ -96,8 +97,8 @@ fn modules_used(text: &str) -> Vec<String> {
     modules
 }
 
-/// What is wrong with one file. `path` is relative to `src`, with `/`.
-fn trouble(path: &str, text: &str) -> Vec<String> {
+/// Returns the violations of a file. `path` is relative to `src`, with `/`.
+fn violations(path: &str, text: &str) -> Vec<String> {
     let text = &without_comments(text);
     let parts: Vec<&str> = path.trim_end_matches(".rs").split('/').filter(|part| *part != "mod").collect();
     let own = parts[0];
@@ -105,36 +106,36 @@ fn trouble(path: &str, text: &str) -> Vec<String> {
         return Vec::new();
     }
     let Some(own_rank) = rank(own) else { return vec![format!("{path}: `{own}` has no rank in this test")] };
-    let mut trouble = Vec::new();
+    let mut found = Vec::new();
     for used in modules_used(text) {
         match rank(&used) {
             _ if used == own => {}
             Some(rank) if rank < own_rank => {}
-            Some(rank) => trouble.push(format!("{path}: `{own}` ({own_rank}) uses `{used}` ({rank})")),
-            None => trouble.push(format!("{path}: `crate::{used}` is no module with a rank")),
+            Some(rank) => found.push(format!("{path}: `{own}` ({own_rank}) uses `{used}` ({rank})")),
+            None => found.push(format!("{path}: `crate::{used}` is not a module with a rank")),
         }
     }
-    // The only other way out of a module's own folder.
+    // The only other way out of a module's folder.
     let upwards = "super::".repeat(parts.len());
     if text.contains(&upwards) {
-        trouble.push(format!("{path}: `{upwards}` leaves the module; say `crate::`"));
+        found.push(format!("{path}: `{upwards}` leaves the module; say `crate::`"));
     }
     if own_rank <= LAST_CORE_RANK && own != "render" {
-        // The library holds a decoded browser image without looking into it.
+        // The library stores the browser's decoded images as opaque handles.
         let text = if own == "library" { text.replace("web_sys::ImageBitmap", "") } else { text.to_owned() };
         for word in OUTSIDE.iter().filter(|word| names(&text, word)) {
-            trouble.push(format!("{path}: the core must not know `{word}`"));
+            found.push(format!("{path}: the core must not know `{word}`"));
         }
     }
-    let apart: &[&str] = match own {
+    let forbidden: &[&str] = match own {
         "render" => &["egui", "ViewerState", "state::Command", "state::apply"],
         "ui" => &["state::apply", "std::fs"],
         _ => &[],
     };
-    for word in apart.iter().filter(|word| names(text, word)) {
-        trouble.push(format!("{path}: `{own}` must not know `{word}`"));
+    for word in forbidden.iter().filter(|word| names(text, word)) {
+        found.push(format!("{path}: `{own}` must not know `{word}`"));
     }
-    trouble
+    found
 }
 
 fn sources(folder: &Path, files: &mut Vec<PathBuf>) {
@@ -142,51 +143,51 @@ fn sources(folder: &Path, files: &mut Vec<PathBuf>) {
         let path = entry.unwrap().path();
         if path.is_dir() {
             sources(&path, files);
-        } else if path.extension().is_some_and(|ending| ending == "rs") {
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
             files.push(path);
         }
     }
 }
 
 #[track_caller]
-fn check_trouble(path: &str, text: &str, expected: usize) {
-    let found = trouble(path, text);
+fn check(path: &str, text: &str, expected: usize) {
+    let found = violations(path, text);
     assert_eq!(found.len(), expected, "{path}: {text}: {found:?}");
 }
 
 #[test]
-fn the_reader_sees_what_it_should() {
+fn violations_are_recognized() {
     assert_eq!(
         modules_used(
             "use crate::anim::Clip; use crate::{mesh::{Skin, Bounds}, asset}; pub(crate) fn f() { crate::ui::g() }"
         ),
         ["anim", "mesh", "asset", "ui"]
     );
-    check_trouble("mesh/skin.rs", "use crate::anim::JointIndex;", 0);
-    check_trouble("mesh/skin.rs", "use crate::mesh::Bounds; // not crate::ui", 0);
-    check_trouble("anim/clip.rs", "use crate::mesh::Skin;", 1);
-    check_trouble("anim/clip.rs", "use super::super::mesh::Skin;", 1);
-    check_trouble("anim/mod.rs", "use super::mesh::Skin;", 1);
-    check_trouble("anim/clip.rs", "let now = std::time::Instant::now();", 2);
-    check_trouble("formats/gltf/mod.rs", "use super::FileSet; use crate::retarget::x;", 1);
-    check_trouble("formats/gltf/read.rs", "use super::super::FileSet; std::fs::read(path)", 1);
-    check_trouble("library/image.rs", "Bitmap(web_sys::ImageBitmap)", 0);
-    check_trouble("library/image.rs", "web_sys::window()", 1);
-    check_trouble("state/view.rs", "pub wireframe: bool, eframe_like: bool", 0);
-    check_trouble("state/view.rs", "use eframe::App;", 1);
-    check_trouble("state/mod.rs", "Bitmap(web_sys::ImageBitmap)", 1);
-    check_trouble("render/mod.rs", "use crate::state::ViewerState;", 1);
-    check_trouble("render/mod.rs", "wgpu::Device", 0);
-    check_trouble("render/mod.rs", "use crate::editor::Contents;", 1);
-    check_trouble("editor/mod.rs", "wgpu::Device, egui::Context, std::fs::read", 3);
-    check_trouble("editor/mod.rs", "use crate::render::Renderer; use crate::frame::Frame;", 1);
-    check_trouble("files/mod.rs", "use crate::ui::style;", 1);
-    check_trouble("elsewhere.rs", "", 1);
-    check_trouble("lib.rs", "use crate::ui;", 0);
+    check("mesh/skin.rs", "use crate::anim::JointIndex;", 0);
+    check("mesh/skin.rs", "use crate::mesh::Bounds; // not crate::ui", 0);
+    check("anim/clip.rs", "use crate::mesh::Skin;", 1);
+    check("anim/clip.rs", "use super::super::mesh::Skin;", 1);
+    check("anim/mod.rs", "use super::mesh::Skin;", 1);
+    check("anim/clip.rs", "let now = std::time::Instant::now();", 2);
+    check("formats/gltf/mod.rs", "use super::FileSet; use crate::retarget::x;", 1);
+    check("formats/gltf/read.rs", "use super::super::FileSet; std::fs::read(path)", 1);
+    check("library/image.rs", "Bitmap(web_sys::ImageBitmap)", 0);
+    check("library/image.rs", "web_sys::window()", 1);
+    check("state/view.rs", "pub wireframe: bool, eframe_like: bool", 0);
+    check("state/view.rs", "use eframe::App;", 1);
+    check("state/mod.rs", "Bitmap(web_sys::ImageBitmap)", 1);
+    check("render/mod.rs", "use crate::state::ViewerState;", 1);
+    check("render/mod.rs", "wgpu::Device", 0);
+    check("render/mod.rs", "use crate::editor::Contents;", 1);
+    check("editor/mod.rs", "wgpu::Device, egui::Context, std::fs::read", 3);
+    check("editor/mod.rs", "use crate::render::Renderer; use crate::frame::Frame;", 1);
+    check("files/mod.rs", "use crate::ui::style;", 1);
+    check("elsewhere.rs", "", 1);
+    check("lib.rs", "use crate::ui;", 0);
 }
 
 #[test]
-fn modules_use_lower_ranks_only() {
+fn modules_use_only_lower_ranks() {
     let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut files = Vec::new();
     sources(&src, &mut files);
@@ -195,7 +196,7 @@ fn modules_use_lower_ranks_only() {
     let mut all = Vec::new();
     for file in files {
         let path = file.strip_prefix(&src).unwrap().to_string_lossy().replace('\\', "/");
-        all.extend(trouble(&path, &fs::read_to_string(&file).unwrap()));
+        all.extend(violations(&path, &fs::read_to_string(&file).unwrap()));
     }
     assert!(all.is_empty(), "\n{}", all.join("\n"));
 }

@@ -1,4 +1,4 @@
-//! Tests of the core: no files of a person, no GPU, no user interface. Each module checks one capability.
+//! Tests of `anim` and `mesh`, and of the layers: no files, GPU or user interface. One module per capability.
 
 mod allocation;
 mod bounds;
@@ -9,8 +9,14 @@ mod morph;
 mod playback;
 mod pose;
 mod skeleton;
+#[path = "../support/skeletons.rs"]
+mod skeletons;
 mod skin;
 mod skinning;
 
+#[path = "../support/allocations.rs"]
+mod allocations;
+#[path = "../support/random.rs"]
+mod random;
 #[path = "../support/skinning_cases.rs"]
 mod skinning_cases;

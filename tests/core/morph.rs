@@ -1,9 +1,9 @@
-//! Morph targets on the CPU.
+//! CPU morphing.
 
 use gaitway::mesh::{DeformedVertices, Geometry, MorphTarget, SkinningMode, deform, palette_entry};
 use glam::{Affine3A, Vec3};
 
-/// Two vertices; target 0 moves positions and normals, target 1 positions alone, target 2 nothing.
+/// Two vertices. Target 0 moves positions and normals, target 1 only positions, target 2 nothing.
 fn geometry() -> Geometry {
     let target = |positions: Vec<Vec3>, normals| MorphTarget { positions, normals, tangents: Vec::new() };
     Geometry {
@@ -30,7 +30,7 @@ fn check(geometry: &Geometry, weights: &[f32], positions: [Vec3; 2], normals: [V
 }
 
 #[test]
-fn missing_weights_are_zero_and_spare_ones_are_not_read() {
+fn missing_weights_are_zero_and_extra_ones_are_ignored() {
     let bound = [Vec3::ZERO, Vec3::X];
     check(&geometry(), &[], bound, [Vec3::Y; 2]);
     check(&geometry(), &[0.0], bound, [Vec3::Y; 2]);
@@ -45,7 +45,7 @@ fn targets_add_up() {
 }
 
 #[test]
-fn weights_may_be_negative_or_beyond_one() {
+fn weights_may_be_negative_or_above_one() {
     check(
         &geometry(),
         &[-1.0],
@@ -56,7 +56,7 @@ fn weights_may_be_negative_or_beyond_one() {
 }
 
 #[test]
-fn a_normal_that_vanishes_is_zero_not_garbage() {
+fn a_vanishing_normal_becomes_zero() {
     check(&geometry(), &[1.0], [Vec3::Y, Vec3::new(1.0, 2.0, 0.0)], [Vec3::new(1.0, 1.0, 0.0).normalize(), Vec3::ZERO]);
 }
 

@@ -1,4 +1,4 @@
-//! From a playhead to a time in the clip.
+//! Mapping the playhead to clip time.
 
 use gaitway::anim::{LoopMode, TimeRange, clip_time};
 
@@ -11,14 +11,14 @@ fn check(range: (f64, f64), mode: LoopMode, cases: &[(f64, f64)]) {
 }
 
 #[test]
-fn a_playhead_that_is_no_number_shows_the_start() {
+fn a_non_finite_playhead_gives_the_start() {
     for mode in [LoopMode::Once, LoopMode::Loop, LoopMode::PingPong] {
         check((1.0, 3.0), mode, &[(f64::NAN, 1.0), (f64::INFINITY, 1.0), (f64::NEG_INFINITY, 1.0)]);
     }
 }
 
 #[test]
-fn a_range_without_length_shows_its_start() {
+fn an_empty_range_gives_its_start() {
     for mode in [LoopMode::Once, LoopMode::Loop, LoopMode::PingPong] {
         check((1.5, 1.5), mode, &[(0.0, 1.5), (1.5, 1.5), (7.0, 1.5)]);
         check((0.0, 0.0), mode, &[(-1.0, 0.0), (0.0, 0.0), (1.0, 0.0)]);
@@ -31,20 +31,20 @@ fn once_holds_at_both_ends() {
 }
 
 #[test]
-fn a_loop_starts_again_and_shows_its_out_point() {
+fn a_loop_wraps_but_includes_its_out_point() {
     check((0.0, 2.0), LoopMode::Loop, &[(0.0, 0.0), (0.5, 0.5), (2.0, 2.0), (2.5, 0.5), (21.0, 1.0)]);
     check((1.0, 3.0), LoopMode::Loop, &[(1.0, 1.0), (3.0, 3.0), (3.5, 1.5), (5.5, 1.5)]);
 }
 
 #[test]
-fn a_loop_runs_backwards_too() {
+fn a_loop_also_runs_backwards() {
     check((0.0, 2.0), LoopMode::Loop, &[(-0.5, 1.5), (-2.0, 0.0), (-3.5, 0.5)]);
-    // A playhead may start anywhere, also before the in point.
+    // The playhead may be before the in point.
     check((1.0, 3.0), LoopMode::Loop, &[(0.5, 2.5), (-1.5, 2.5)]);
 }
 
 #[test]
-fn ping_pong_turns_around() {
+fn ping_pong_reverses_at_both_ends() {
     check((0.0, 2.0), LoopMode::PingPong, &[(0.5, 0.5), (2.0, 2.0), (2.5, 1.5), (4.0, 0.0), (4.5, 0.5), (6.5, 1.5)]);
     check((0.0, 2.0), LoopMode::PingPong, &[(-0.5, 0.5), (-2.0, 2.0), (-3.5, 0.5)]);
     check((1.0, 3.0), LoopMode::PingPong, &[(1.0, 1.0), (3.5, 2.5), (5.0, 1.0), (0.5, 1.5)]);

@@ -1,18 +1,19 @@
-//! Local transforms and the walk to model space.
+//! Local transforms and model space.
 
 use gaitway::anim::{Pose, Transform, model_from_joint};
 use glam::{Affine3A, DAffine3, Mat4, Quat, Vec3};
 
-use crate::build::{Random, chain};
+use crate::build::chain;
+use crate::random::Random;
 
-/// The matrix, taken apart and put together again.
+/// Decomposes and recomposes the matrix.
 fn check_matrix(matrix: Mat4) {
     let found = Mat4::from(Transform::from_matrix(&matrix).to_affine());
     assert!(found.abs_diff_eq(matrix, 1e-5), "{found} from {matrix}");
 }
 
 #[test]
-fn a_matrix_without_shear_survives_being_taken_apart() {
+fn a_matrix_without_shear_survives_decomposition() {
     let mut random = Random(1);
     for _ in 0..100 {
         let scale = random.vec3().abs() + 0.1;
@@ -21,7 +22,7 @@ fn a_matrix_without_shear_survives_being_taken_apart() {
 }
 
 #[test]
-fn a_mirrored_matrix_survives_too() {
+fn a_mirroring_matrix_survives_decomposition() {
     let rotation = Quat::from_rotation_y(0.4);
     for mirror in [Vec3::new(-1.0, 1.0, 1.0), Vec3::new(1.0, -2.0, 1.0), Vec3::new(1.0, 1.0, -3.0), -Vec3::ONE] {
         check_matrix(Mat4::from_scale_rotation_translation(mirror, rotation, Vec3::X));
@@ -29,7 +30,7 @@ fn a_mirrored_matrix_survives_too() {
 }
 
 #[test]
-fn a_singular_matrix_gives_numbers() {
+fn a_singular_matrix_decomposes_to_finite_values() {
     for matrix in [Mat4::ZERO, Mat4::from_scale(Vec3::new(0.0, 1.0, 1.0)), Mat4::from_scale(Vec3::new(0.0, 0.0, 1.0))] {
         let transform = Transform::from_matrix(&matrix);
         assert!(transform.is_finite(), "{transform:?} from {matrix}");
@@ -80,7 +81,7 @@ fn model_space_is_the_product_down_the_chain() {
 }
 
 #[test]
-fn the_model_is_placed_at_its_roots_only() {
+fn the_model_transform_applies_to_roots_only() {
     let skeleton = chain(3);
     let placed = Affine3A::from_rotation_translation(Quat::from_rotation_x(1.0), Vec3::new(1.0, 2.0, 3.0));
     let (mut model, mut world) = (vec![Affine3A::IDENTITY; 9], Vec::new());

@@ -1,9 +1,10 @@
-//! Building skeletons: what is refused, and the order that comes out.
+//! Building skeletons: rejected input and the resulting order.
 
 use gaitway::anim::{Joint, JointIndex, Skeleton, SkeletonError, Transform, model_from_joint};
 use glam::{Affine3A, Vec3};
 
-use crate::build::{Random, joint};
+use crate::random::Random;
+use crate::skeletons::joint;
 
 fn joints(parents: &[Option<usize>]) -> Vec<Joint> {
     let rest = |at: usize| Transform::from_translation(Vec3::new(at as f32, 1.0, 0.0));
@@ -15,20 +16,20 @@ fn check_error(parents: &[Option<usize>], expected: SkeletonError) {
 }
 
 #[test]
-fn refuses_parents_that_do_not_exist() {
+fn rejects_missing_parents() {
     check_error(&[Some(1)], SkeletonError::ParentOutOfRange { joint: 0, parent: 1, count: 1 });
     check_error(&[None, Some(usize::MAX)], SkeletonError::ParentOutOfRange { joint: 1, parent: usize::MAX, count: 2 });
 }
 
 #[test]
-fn refuses_circles() {
+fn rejects_cycles() {
     check_error(&[Some(0)], SkeletonError::Cycle { joint: 0 });
     check_error(&[Some(1), Some(0)], SkeletonError::Cycle { joint: 0 });
     check_error(&[None, Some(3), Some(1), Some(2)], SkeletonError::Cycle { joint: 1 });
 }
 
 #[test]
-fn nothing_is_a_skeleton_too() {
+fn a_skeleton_may_be_empty() {
     let skeleton = Skeleton::new(Vec::new()).unwrap();
     assert!(skeleton.is_empty());
     assert_eq!(skeleton.len(), 0);
@@ -36,7 +37,7 @@ fn nothing_is_a_skeleton_too() {
 
 #[test]
 fn parents_come_first_and_siblings_stay_in_order() {
-    // 4 is the root of 2 (with children 0 and 3) and 1; 5 stands alone.
+    // 4 is the parent of 2 (with children 0 and 3) and of 1; 5 is a root on its own.
     let skeleton = Skeleton::new(joints(&[Some(2), Some(4), Some(4), Some(2), None, None])).unwrap();
     let names: Vec<&str> = skeleton.joints().map(|joint| skeleton.name(joint)).collect();
     assert_eq!(names, ["4", "1", "2", "0", "3", "5"]);
@@ -51,7 +52,7 @@ fn parents_come_first_and_siblings_stay_in_order() {
 }
 
 #[test]
-fn finds_the_first_of_equal_names_in_the_order_of_the_source() {
+fn finds_the_first_of_equal_names_in_source_order() {
     let mut list = joints(&[Some(1), None, None]);
     list[0].name = "twice".into();
     list[2].name = "twice".into();
@@ -61,7 +62,7 @@ fn finds_the_first_of_equal_names_in_the_order_of_the_source() {
 }
 
 #[test]
-fn morph_weights_of_meshes_lie_one_after_the_other() {
+fn morph_weights_of_meshes_are_concatenated() {
     let mut list = joints(&[Some(1), None]);
     list[0].morph_weights = vec![0.1, 0.2];
     list[1].morph_weights = vec![0.3];
@@ -72,18 +73,18 @@ fn morph_weights_of_meshes_lie_one_after_the_other() {
 }
 
 #[test]
-fn the_order_of_the_list_does_not_matter() {
+fn the_order_of_the_input_does_not_matter() {
     let parents = [None, Some(0), Some(1), Some(1), Some(3), None, Some(5)];
     let mut random = Random(3);
     let rests: Vec<Transform> = parents
         .iter()
         .map(|_| Transform { translation: random.vec3(), rotation: random.quat(), scale: random.vec3().abs() })
         .collect();
-    // Where joint 0, 1, … of `parents` is put in the shuffled list.
-    for place in [[0, 1, 2, 3, 4, 5, 6], [6, 5, 4, 3, 2, 1, 0], [3, 6, 0, 5, 1, 4, 2]] {
+    // Positions of the joints of `parents` in the shuffled list.
+    for shuffled in [[0, 1, 2, 3, 4, 5, 6], [6, 5, 4, 3, 2, 1, 0], [3, 6, 0, 5, 1, 4, 2]] {
         let mut list = vec![Joint::default(); parents.len()];
         for (at, parent) in parents.iter().enumerate() {
-            list[place[at]] = joint("", parent.map(|parent: usize| place[parent]), rests[at]);
+            list[shuffled[at]] = joint("", parent.map(|parent: usize| shuffled[parent]), rests[at]);
         }
         let skeleton = Skeleton::new(list).unwrap();
         let mut model = Vec::new();
@@ -95,8 +96,8 @@ fn the_order_of_the_list_does_not_matter() {
                 expected = rests[parent].to_affine() * expected;
                 above = parents[parent];
             }
-            let found = model[skeleton.joint_of_source(place[at]).unwrap().get()];
-            assert!(found.abs_diff_eq(expected, 1e-5), "joint {at} of {place:?}: {found:?}, expected {expected:?}");
+            let found = model[skeleton.joint_of_source(shuffled[at]).unwrap().get()];
+            assert!(found.abs_diff_eq(expected, 1e-5), "joint {at} of {shuffled:?}: {found:?}, expected {expected:?}");
         }
     }
 }

@@ -1,10 +1,11 @@
-//! Skins and the palette made of them.
+//! Skins and their palettes.
 
 use gaitway::anim::{JointIndex, model_from_joint};
 use gaitway::mesh::{Skin, SkinError, SkinningMode, palette_entry, write_palette};
 use glam::{Affine3A, Mat3, Quat, Vec3, Vec4};
 
-use crate::build::{Random, chain};
+use crate::build::chain;
+use crate::random::Random;
 
 #[track_caller]
 fn check_error(joints: Vec<u32>, matrices: Vec<Affine3A>, expected: SkinError) {
@@ -13,7 +14,7 @@ fn check_error(joints: Vec<u32>, matrices: Vec<Affine3A>, expected: SkinError) {
 }
 
 #[test]
-fn refuses_what_is_no_skin() {
+fn rejects_invalid_skins() {
     let one = Affine3A::IDENTITY;
     check_error(vec![], vec![], SkinError::NoJoints);
     check_error(vec![0, 1], vec![one], SkinError::MatrixCount { joints: 2, matrices: 1 });
@@ -55,7 +56,7 @@ fn the_palette_follows_the_order_of_the_skin_and_is_appended() {
 }
 
 #[test]
-fn an_entry_holds_the_rows_of_its_matrix() {
+fn an_entry_contains_the_rows_of_its_matrix() {
     let matrix = Affine3A::from_cols_array(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0, 11.0, 12.0, 13.0]);
     let rows = [Vec4::new(1.0, 4.0, 7.0, 11.0), Vec4::new(2.0, 5.0, 8.0, 12.0), Vec4::new(3.0, 6.0, 10.0, 13.0)];
     for mode in [SkinningMode::Linear, SkinningMode::Rigid] {
@@ -65,11 +66,11 @@ fn an_entry_holds_the_rows_of_its_matrix() {
 }
 
 #[test]
-fn a_dual_quaternion_entry_is_the_matrix_in_parts() {
+fn a_dual_quaternion_entry_recomposes_to_its_matrix() {
     let mut random = Random(9);
     for round in 0..300 {
         let scale = 0.3 + random.vec3().abs();
-        // Mirrored ones too, and some with shear.
+        // Half of them mirrored, a third with shear.
         let scale = if round % 2 == 0 { scale } else { scale * Vec3::new(-1.0, 1.0, 1.0) };
         let mut matrix = Affine3A::from_scale_rotation_translation(scale, random.quat(), 2.0 * random.vec3());
         if round % 3 == 0 {

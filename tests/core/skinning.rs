@@ -1,9 +1,9 @@
-//! Skinning on the CPU: the cases shared with the GPU, and laws.
+//! CPU skinning: the cases shared with the GPU, and laws.
 
 use gaitway::mesh::{DeformedVertices, Geometry, Influences, PaletteEntry, SkinningMode, deform, palette_entry};
 use glam::{Affine3A, Mat3, Quat, Vec3, Vec4};
 
-use crate::build::Random;
+use crate::random::Random;
 use crate::skinning_cases::{
     Case, NORMAL_TOLERANCE, POSITION_TOLERANCE, TUBE_RADIUS, bend, cases, expected, one_influence, scattered, tube,
     twist,
@@ -36,12 +36,12 @@ fn check(case: &Case) {
 }
 
 #[test]
-fn every_case_gives_what_the_definition_says() {
+fn every_case_matches_the_definition() {
     cases().iter().for_each(check);
 }
 
 #[test]
-fn rest_pose_gives_back_bind_positions() {
+fn the_rest_pose_gives_the_bind_positions() {
     for geometry in [tube(0), tube(2), scattered(13, 20), scattered(16, 20)] {
         for mode in [Linear, Rigid, DualQuaternion] {
             let found = deformed(&geometry, &[Affine3A::IDENTITY; 20], mode);
@@ -54,7 +54,7 @@ fn rest_pose_gives_back_bind_positions() {
 }
 
 #[test]
-fn one_influence_is_the_same_in_all_modes() {
+fn all_modes_agree_on_one_influence() {
     let geometry = one_influence();
     let mut random = Random(13);
     for round in 0..100 {
@@ -84,14 +84,14 @@ fn the_sign_of_a_dual_quaternion_does_not_matter() {
     let mut before = DeformedVertices::default();
     deform(&geometry, &[], &plain, DualQuaternion, &mut before);
     for _ in 0..20 {
-        let mut turned = plain.clone();
-        for entry in turned.iter_mut().filter(|_| random.next() < 0.5) {
+        let mut negated = plain.clone();
+        for entry in negated.iter_mut().filter(|_| random.f32() < 0.5) {
             entry[0] = -entry[0];
             entry[1] = -entry[1];
         }
-        assert_ne!(turned, plain);
+        assert_ne!(negated, plain);
         let mut after = DeformedVertices::default();
-        deform(&geometry, &[], &turned, DualQuaternion, &mut after);
+        deform(&geometry, &[], &negated, DualQuaternion, &mut after);
         for vertex in 0..geometry.positions.len() {
             assert!(after.positions[vertex].abs_diff_eq(before.positions[vertex], 1e-6), "vertex {vertex}");
             assert!(after.normals[vertex].abs_diff_eq(before.normals[vertex], 1e-6), "vertex {vertex}");
@@ -106,14 +106,14 @@ fn radius(mode: SkinningMode, twist_degrees: f32) -> f32 {
 }
 
 #[test]
-fn a_twist_below_half_a_turn_keeps_the_radius_with_dual_quaternions() {
+fn dual_quaternions_keep_the_radius_of_a_twist_below_half_a_turn() {
     for degrees in [-179.0, -90.0, 1.0, 45.0, 90.0, 135.0, 170.0, 179.0] {
         let found = radius(DualQuaternion, degrees);
         assert!((found - TUBE_RADIUS).abs() < 1e-6, "{degrees}°: {found}");
     }
-    // What they are for: linear blending pinches the tube like a sweet wrapper, by the cosine of half the angle.
-    let pinched = radius(Linear, 120.0);
-    assert!((pinched - 0.5 * TUBE_RADIUS).abs() < 1e-6, "{pinched}");
+    // Linear blending collapses the tube like a candy wrapper, by the cosine of half the angle.
+    let collapsed = radius(Linear, 120.0);
+    assert!((collapsed - 0.5 * TUBE_RADIUS).abs() < 1e-6, "{collapsed}");
 }
 
 #[test]
@@ -126,7 +126,7 @@ fn rigid_breaks_the_tube_in_two() {
 }
 
 #[test]
-fn one_entry_serves_a_skinned_geometry_too() {
+fn a_single_entry_applies_to_all_vertices() {
     let moved = [Affine3A::from_translation(Vec3::X)];
     for mode in [Linear, Rigid, DualQuaternion] {
         let found = deformed(&scattered(8, 20), &moved, mode);
@@ -137,14 +137,14 @@ fn one_entry_serves_a_skinned_geometry_too() {
 }
 
 #[test]
-fn normals_stay_absent_when_there_are_none() {
+fn absent_normals_stay_absent() {
     let mut geometry = tube(2);
     geometry.normals.clear();
     assert!(deformed(&geometry, &bend(90.0), Linear).normals.is_empty());
 }
 
 #[test]
-fn a_flattened_normal_is_no_garbage() {
+fn zero_scales_give_finite_normals() {
     for scale in [Vec3::new(1.0, 0.0, 1.0), Vec3::new(0.0, 0.0, 1.0), Vec3::ZERO] {
         for mode in [Linear, Rigid, DualQuaternion] {
             let found = deformed(&one_influence(), &[Affine3A::from_scale(scale), Affine3A::IDENTITY], mode);
@@ -154,7 +154,7 @@ fn a_flattened_normal_is_no_garbage() {
 }
 
 #[test]
-fn results_are_replaced_not_added_to() {
+fn results_are_replaced() {
     let mut out = DeformedVertices::default();
     for geometry in [scattered(16, 20), tube(2)] {
         deform(&geometry, &[], &palette(&[Affine3A::IDENTITY; 20], Linear), Linear, &mut out);
@@ -163,8 +163,8 @@ fn results_are_replaced_not_added_to() {
     }
 }
 
-/// Deformed normals against those of the deformed surface, by central differences: an ellipsoid whose vertices all have
-/// the same influences, each with four neighbours on the surface and one above it.
+/// Compares deformed normals with those of the deformed surface, by central differences: samples of an ellipsoid whose
+/// vertices all have the same influences, each with four neighbours on the surface and one above it.
 fn check_normals(matrices: &[Affine3A], weights: &[f32], mode: SkinningMode) {
     const STEP: f32 = 5e-3;
     let radii = Vec3::new(1.0, 0.6, 0.8);
@@ -194,13 +194,13 @@ fn check_normals(matrices: &[Affine3A], weights: &[f32], mode: SkinningMode) {
 }
 
 #[test]
-fn normals_are_those_of_the_deformed_surface() {
+fn normals_match_the_deformed_surface() {
     let mut random = Random(19);
     let shear = Affine3A::from_mat3(Mat3::from_cols(Vec3::X, Vec3::new(0.5, 1.0, 0.2), Vec3::new(0.0, 0.3, 1.0)));
     for mirror in [1.0, -1.0] {
         let matrices: Vec<Affine3A> = (0..4)
             .map(|_| {
-                let scale = Vec3::new(mirror * (0.6 + random.next()), 0.6 + random.next(), 0.6 + random.next());
+                let scale = Vec3::new(mirror * (0.6 + random.f32()), 0.6 + random.f32(), 0.6 + random.f32());
                 let rotation = Quat::from_scaled_axis(0.5 * random.vec3());
                 Affine3A::from_scale_rotation_translation(scale, rotation, random.vec3()) * shear
             })
@@ -213,7 +213,7 @@ fn normals_are_those_of_the_deformed_surface() {
 }
 
 #[test]
-fn unused_influences_are_not_read() {
+fn unused_influences_are_ignored() {
     let mut geometry = tube(2);
     for (joint, weight) in geometry.influences.joints.iter_mut().zip(&geometry.influences.weights) {
         if *weight == 0.0 {

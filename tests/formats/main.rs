@@ -18,3 +18,5 @@ mod write;
 mod coursework;
 #[path = "../support/data_folder.rs"]
 mod data_folder;
+#[path = "../support/random.rs"]
+mod random;

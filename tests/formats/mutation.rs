@@ -7,21 +7,10 @@ use gaitway::formats::{FileSet, LoadOptions, convert, load, missing_files, write
 
 use crate::build_gltf::{Build, one};
 use crate::data_folder::data_folder;
+use crate::random::Random;
 use crate::sweep::file_set;
 
 const CASES_PER_FILE: usize = 150;
-
-/// A xorshift generator: any sequence will do, as long as it stays the same.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, end: usize) -> usize {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 % end.max(1) as u64) as usize
-    }
-}
 
 const NUMBERS: [&str; 14] = [
     "0",

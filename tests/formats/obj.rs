@@ -422,7 +422,7 @@ fn the_exercise_models_stand_where_they_were_bound_and_bend_as_the_formula_says(
         }
         for seed in 1..=8 {
             let (exact, rounded) = pose(18, seed);
-            let off = largest(&deformed(&asset, &rounded, SkinningMode::Linear), &exercise.bent(&exact));
+            let off = largest(&deformed(&asset, &rounded, SkinningMode::Linear), &exercise.skinned(&exact));
             assert!(off < 1e-6, "{name}, pose {seed}: {off}");
         }
     }
@@ -436,7 +436,7 @@ fn a_written_exercise_model_means_the_same_to_another_reader() {
         let (json, binary) = chunks(&written);
         let (exact, _) = pose(18, 5);
         let found = bent_glb(&json, binary, &exact);
-        let off = found.iter().zip(exercise.bent(&exact)).map(|(a, b)| a.distance(b)).fold(0.0, f64::max);
+        let off = found.iter().zip(exercise.skinned(&exact)).map(|(a, b)| a.distance(b)).fold(0.0, f64::max);
         assert_eq!(found.len(), exercise.vertices.len());
         assert!(off < 1e-6, "{name}: {off}");
         // And to our own.

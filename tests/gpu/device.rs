@@ -1,4 +1,4 @@
-//! The adapter that tests draw with, when there is one.
+//! The device that tests draw with.
 
 use gaitway::render::headless_device;
 
@@ -14,7 +14,7 @@ pub fn gpu() -> Option<Gpu> {
 }
 
 impl Gpu {
-    /// Texels of a texture, `size` bytes each, without padding between rows.
+    /// Reads a texture whose texels have `size` bytes, without row padding.
     pub fn read(&self, texture: &wgpu::Texture, size: u32) -> Vec<u8> {
         let (row, height) = (size * texture.width(), texture.height());
         let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);

@@ -3,11 +3,12 @@
 
 use std::fmt;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
+use gaitway::asset::Asset;
 use gaitway::frame::{Frame, evaluate};
-use gaitway::library::{Library, Model, sample};
+use gaitway::library::{Library, Model};
 use gaitway::render::{Renderer, RendererOptions, read_pixels};
+use gaitway::samples;
 use gaitway::state::{Playhead, ViewerState};
 
 use crate::device::{Gpu, gpu};
@@ -70,7 +71,7 @@ fn draw(gpu: &Gpu, model: Model) -> Vec<u8> {
     let mut library = Library::default();
     library.set(model);
     let state =
-        ViewerState { playhead: Playhead { time_secs: 0.3, ..Default::default().playhead }, ..Default::default() };
+        ViewerState { playhead: Playhead { time_secs: 0.3, ..Default::default() }, ..Default::default() };
     let mut frame = Frame::default();
     evaluate(&library, &state, SIZE[0] as f32 / SIZE[1] as f32, &mut frame);
     let mut renderer = Renderer::new(device, queue, RendererOptions { samples: 1 });
@@ -80,13 +81,13 @@ fn draw(gpu: &Gpu, model: Model) -> Vec<u8> {
 }
 
 fn walker() -> Model {
-    sample::load(sample::WALKER).unwrap()
+    samples::load(samples::WALKER).unwrap()
 }
 
 /// The walker without the triangles that follow one of its joints most.
 fn walker_without(joint: &str) -> Model {
-    let mut model = walker();
-    let asset = Arc::get_mut(&mut model.asset).expect("nobody else has it yet");
+    let model = walker();
+    let mut asset = Asset::clone(&model.asset).into_parts();
     let joint = asset.skeleton.find(joint).unwrap();
     let in_skin = asset.skins[0].joints().iter().position(|&other| other == joint).unwrap();
     let parts = asset.meshes.iter_mut().flat_map(|mesh| &mut mesh.primitives);
@@ -102,7 +103,7 @@ fn walker_without(joint: &str) -> Model {
         part.indices = kept;
     }
     assert!(removed > 0, "no triangle follows {in_skin}");
-    model
+    Model::new(model.source, Asset::new(asset).expect("still valid"), model.images)
 }
 
 fn path() -> PathBuf {

@@ -1,4 +1,4 @@
-//! Uniform structs are the same in WGSL and in Rust.
+//! Uniform structs have the same layout in WGSL and in Rust.
 
 use std::collections::BTreeMap;
 use std::mem::{offset_of, size_of};
@@ -7,7 +7,7 @@ use gaitway::render::shaders::MESH;
 use gaitway::render::uniforms::{DrawUniform, FrameUniform, LightUniform, MaterialUniform, UvTransformUniform};
 use naga::TypeInner;
 
-/// Offsets of the members of a struct in the mesh shader, and its size.
+/// Returns the member offsets and the size of a struct in the mesh shader.
 fn in_wgsl(name: &str) -> (BTreeMap<String, usize>, usize) {
     let module = naga::front::wgsl::parse_str(&MESH.source()).unwrap();
     for (_, found) in module.types.iter() {

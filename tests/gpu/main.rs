@@ -1,4 +1,4 @@
-//! What the GPU draws: shaders, layouts, skinning against the shared cases, and a few small pictures.
+//! GPU tests: shaders, layouts, skinning against the shared cases, and small pictures.
 
 #[path = "../support/gpu.rs"]
 mod adapter;
@@ -12,6 +12,8 @@ mod layouts;
 mod lights;
 mod maps;
 mod pictures;
+#[path = "../support/random.rs"]
+mod random;
 mod scene;
 mod shaders;
 mod skinning;

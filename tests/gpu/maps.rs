@@ -1,4 +1,4 @@
-//! A material's maps and how they are read: laws rather than colours.
+//! Material maps and their sampling: laws rather than colours.
 
 use gaitway::library::ImageData;
 use gaitway::mesh::{Filter, Geometry, Material, MipFilter, Sampler, Texture, TextureRef, UvTransform};
@@ -10,7 +10,7 @@ use crate::scene::{SIZE, Scene, near, square, unlit};
 
 const MAP: Option<TextureRef> = Some(TextureRef { texture: 0, uv_set: 0, uv_transform: UvTransform::IDENTITY });
 
-/// Gray, half rough, not metal.
+/// Grey, half rough, dielectric.
 fn gray() -> Material {
     Material { base_color: Vec4::new(0.4, 0.4, 0.4, 1.0), metallic: 0.0, roughness: 0.5, ..Default::default() }
 }
@@ -24,14 +24,14 @@ fn middle(gpu: &Gpu, geometry: Geometry, material: Material, image: ImageData) -
     Scene::textured(vec![geometry], vec![material], vec![texture], vec![Some(image)]).draw(gpu).at(0.1, 0.1)
 }
 
-/// The square, with tangents and without.
+/// The square with and without tangents.
 fn squares() -> [Geometry; 2] {
     let tangents = vec![Vec4::new(1.0, 0.0, 0.0, 1.0); 4];
     [Geometry { tangents, ..square(0) }, square(0)]
 }
 
 #[test]
-fn a_flat_normal_map_equals_none_and_a_tilted_one_turns_to_its_light() {
+fn a_flat_normal_map_changes_nothing_and_a_tilted_one_faces_its_light() {
     let Some(gpu) = gpu() else { return };
     let plain = Scene::new(vec![square(0)], vec![gray()]).draw(&gpu).at(0.1, 0.1);
     let mapped = |geometry, normal_scale, pixel| {
@@ -40,7 +40,7 @@ fn a_flat_normal_map_equals_none_and_a_tilted_one_turns_to_its_light() {
     };
     for geometry in squares() {
         near(mapped(geometry.clone(), 1.0, [128, 128, 255, 255]), plain, 2);
-        // The key light comes from the left, above.
+        // The key light comes from above left.
         let [left, right, up, down] =
             [[38, 128, 218, 255], [218, 128, 218, 255], [128, 218, 218, 255], [128, 38, 218, 255]]
                 .map(|pixel| mapped(geometry.clone(), 1.0, pixel)[1]);
@@ -53,7 +53,7 @@ fn a_flat_normal_map_equals_none_and_a_tilted_one_turns_to_its_light() {
 }
 
 #[test]
-fn white_occlusion_equals_none_and_black_darkens_by_its_strength() {
+fn white_occlusion_changes_nothing_and_black_darkens_by_its_strength() {
     let Some(gpu) = gpu() else { return };
     let plain = Scene::new(vec![square(0)], vec![gray()]).draw(&gpu).at(0.1, 0.1);
     let shown = |occlusion_strength, red| {
@@ -82,7 +82,7 @@ fn a_metallic_roughness_map_multiplies_the_factors() {
 }
 
 #[test]
-fn smaller_levels_hold_averages_of_light() {
+fn mip_levels_average_linear_light() {
     let Some(gpu) = gpu() else { return };
     let edge = 8 * SIZE;
     let pixels = (0..edge * edge).flat_map(|at| [255 * ((at + at / edge) % 2) as u8; 3].into_iter().chain([255]));
@@ -94,7 +94,7 @@ fn smaller_levels_hold_averages_of_light() {
         let images = vec![Some(image.clone())];
         Scene::textured(vec![square(0)], vec![material.clone()], vec![texture], images).draw(&gpu)
     };
-    // Half of the light is 188 of 255 in sRGB, not 128.
+    // Half the light is 188 of 255 in sRGB, not 128.
     for mip in [MipFilter::Nearest, MipFilter::Linear] {
         for (x, y) in [(0.1, 0.1), (-0.3, 0.2), (0.4, -0.4)] {
             near(shown(mip).at(x, y), [188, 188, 188, 255], 2);
@@ -103,7 +103,7 @@ fn smaller_levels_hold_averages_of_light() {
 }
 
 #[test]
-fn an_image_larger_than_the_device_holds_is_drawn_smaller() {
+fn an_image_over_the_device_limit_is_downscaled() {
     let Some(gpu) = gpu() else { return };
     let width = gpu.device.limits().max_texture_dimension_2d + 2;
     let image = ImageData::Rgba8 { width, height: 1, pixels: [10, 200, 30, 255].repeat(width as usize) };
@@ -112,7 +112,7 @@ fn an_image_larger_than_the_device_holds_is_drawn_smaller() {
 }
 
 #[test]
-fn four_samples_smooth_edges_and_keep_the_area() {
+fn multisampling_smooths_edges_and_keeps_the_area() {
     let Some(gpu) = gpu() else { return };
     let mut turned = square(0);
     for position in &mut turned.positions {

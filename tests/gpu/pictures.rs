@@ -1,4 +1,4 @@
-//! Small pictures of things whose colours are known.
+//! Small pictures with known colours.
 
 use gaitway::frame::{Bone, Line};
 use gaitway::library::ImageData;
@@ -23,7 +23,7 @@ fn linear(color: [u8; 3]) -> Vec4 {
 }
 
 #[test]
-fn an_unlit_colour_is_shown_as_it_is() {
+fn an_unlit_colour_is_drawn_unchanged() {
     let Some(gpu) = gpu() else { return };
     for color in [[200, 100, 50], [255, 255, 255], [0, 0, 0], [10, 20, 30], [250, 0, 3], [128, 128, 128]] {
         for exposure in [1.0, 4.0, 0.25] {
@@ -36,7 +36,7 @@ fn an_unlit_colour_is_shown_as_it_is() {
 }
 
 #[test]
-fn a_silhouette_covers_its_pixels_and_no_others() {
+fn a_square_covers_exactly_its_pixels() {
     let Some(gpu) = gpu() else { return };
     let picture = Scene::new(vec![square(0)], vec![unlit(Vec4::ONE)]).draw(&gpu);
     assert_eq!(picture.covered(), (SIZE * SIZE / 4) as usize);
@@ -44,13 +44,13 @@ fn a_silhouette_covers_its_pixels_and_no_others() {
 }
 
 #[test]
-fn a_pane_shows_what_is_in_it_alone() {
+fn a_pane_shows_only_its_own_characters() {
     let Some(gpu) = gpu() else { return };
     let mut scene = Scene::new(vec![square(0)], vec![unlit(Vec4::ONE)]);
     let whole = scene.draw(&gpu).covered();
     scene.frame.panes = [2, 1];
     let both = scene.draw(&gpu);
-    assert!(both.covered() > whole / 2, "what is in no pane of its own is in all of them");
+    assert!(both.covered() > whole / 2, "a character without a pane is in all of them");
     assert_eq!((both.at(-0.5, 0.0)[3], both.at(0.5, 0.0)[3]), (255, 255));
     scene.frame.characters[0].pane = Some(1);
     let right = scene.draw(&gpu);
@@ -59,7 +59,7 @@ fn a_pane_shows_what_is_in_it_alone() {
 }
 
 #[test]
-fn a_mask_cuts_and_does_not_blend() {
+fn a_mask_cuts_without_blending() {
     let Some(gpu) = gpu() else { return };
     for (alpha, shown) in [(0.4, 0), (0.5, 255), (0.6, 255)] {
         let material =
@@ -70,16 +70,16 @@ fn a_mask_cuts_and_does_not_blend() {
 }
 
 #[test]
-fn blended_surfaces_mix_and_are_sorted() {
+fn blended_surfaces_are_sorted_and_blended() {
     let Some(gpu) = gpu() else { return };
     let blend = |color: Vec3, alpha| Material { alpha_mode: AlphaMode::Blend, ..unlit(color.extend(alpha)) };
     let mut scene = Scene::new(vec![square(0)], vec![blend(Vec3::ONE, 0.5)]);
-    // Eight bits of premultiplied colour leave seven and a half here.
+    // Un-premultiplying 8-bit colours loses some precision.
     near(scene.draw(&gpu).at(0.0, 0.0), [255, 255, 255, 128], 2);
     scene.frame.look.background = Background::Color([0, 0, 0]);
     near(scene.draw(&gpu).at(0.0, 0.0), [128, 128, 128, 255], 1);
 
-    // The nearer one is drawn last whichever comes first in the file.
+    // The nearer one is drawn last, whatever the order in the file.
     for near_first in [true, false] {
         let mut squares = vec![square(0), square(1)];
         let depths = if near_first { [1.0, 0.0] } else { [0.0, 1.0] };
@@ -98,7 +98,7 @@ fn blended_surfaces_mix_and_are_sorted() {
 }
 
 #[test]
-fn back_faces_are_left_out_unless_double_sided_and_then_lit_from_their_own_side() {
+fn back_faces_are_culled_unless_double_sided_and_then_lit_from_their_side() {
     let Some(gpu) = gpu() else { return };
     let material = Material { base_color: Vec4::new(0.5, 0.5, 0.5, 1.0), metallic: 0.0, ..Default::default() };
     let double_sided = Material { double_sided: true, ..material.clone() };
@@ -128,7 +128,7 @@ fn a_mirrored_mesh_shows_its_front() {
 }
 
 #[test]
-fn flat_normals_are_those_of_the_triangles() {
+fn flat_normals_come_from_the_triangles() {
     let Some(gpu) = gpu() else { return };
     let material = Material { base_color: Vec4::new(0.5, 0.5, 0.5, 1.0), metallic: 0.0, ..Default::default() };
     let smooth = Scene::new(vec![square(0)], vec![material.clone()]).draw(&gpu);
@@ -138,7 +138,7 @@ fn flat_normals_are_those_of_the_triangles() {
     near(flat.at(0.3, 0.2), smooth.at(0.3, 0.2), 1);
 }
 
-/// Khronos PBR Neutral of gray light, as its specification has it.
+/// Khronos PBR Neutral for grey light, per its specification.
 #[test]
 fn gray_light_is_tone_mapped() {
     let Some(gpu) = gpu() else { return };
@@ -148,7 +148,7 @@ fn gray_light_is_tone_mapped() {
         let mapped = if color < 0.76 { color } else { 1.0 - 0.24 * 0.24 / (color + 0.24 - 0.76) };
         let srgb = if mapped <= 0.0031308 { 12.92 * mapped } else { 1.055 * mapped.powf(1.0 / 2.4) - 0.055 };
         let shown = (255.0 * srgb).round() as u8;
-        // Black metal gives nothing back: only what it emits is seen.
+        // Black metal reflects nothing, so only the emission is visible.
         let material =
             Material { base_color: Vec4::new(0.0, 0.0, 0.0, 1.0), emissive: Vec3::splat(light), ..Default::default() };
         let picture = Scene::new(vec![square(0)], vec![material]).draw(&gpu);
@@ -157,7 +157,7 @@ fn gray_light_is_tone_mapped() {
 }
 
 #[test]
-fn a_texture_is_read_with_its_transform() {
+fn a_texture_is_sampled_with_its_transform() {
     let Some(gpu) = gpu() else { return };
     // Red, green over blue, white.
     let pixels = [[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [255; 4]].concat();
@@ -168,7 +168,7 @@ fn a_texture_is_read_with_its_transform() {
     let half = UvTransform { offset: Vec2::new(0.5, 0.0), ..UvTransform::IDENTITY };
     let cases = [
         (UvTransform::IDENTITY, [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255; 3]]),
-        // u' = u + ½: columns change places.
+        // u' = u + ½: the columns swap.
         (half, [[0, 255, 0], [255, 0, 0], [255; 3], [0, 0, 255]]),
         // u' = v, v' = −u (KHR_texture_transform's matrix for a quarter turn).
         (quarter_turn, [[0, 0, 255], [255, 0, 0], [255; 3], [0, 255, 0]]),
@@ -188,7 +188,7 @@ fn a_texture_is_read_with_its_transform() {
 }
 
 #[test]
-fn weights_are_shown_as_colours() {
+fn the_heat_map_colours_weights() {
     let Some(gpu) = gpu() else { return };
     let mut geometry = square(0);
     geometry.influences =
@@ -209,10 +209,10 @@ fn weights_are_shown_as_colours() {
 }
 
 #[test]
-fn the_ground_shows_the_shadow_of_what_stands_on_it() {
+fn the_ground_shows_the_shadow() {
     let Some(gpu) = gpu() else { return };
     let mut geometry = square(0);
-    // Lying 0.3 above the ground, facing up.
+    // Horizontal, 0.3 above the ground, facing up.
     for position in &mut geometry.positions {
         *position = Vec3::new(position.x, 0.3, -position.y);
     }
@@ -225,14 +225,14 @@ fn the_ground_shows_the_shadow_of_what_stands_on_it() {
     assert_eq!(scene.draw(&gpu).at(0.6, 0.3)[3], 0, "nothing without a shadow");
     scene.frame.look.shadow = true;
     let picture = scene.draw(&gpu);
-    // The key light comes from the left, in front: the shadow lies to the right, behind.
+    // The key light comes from the front left, so the shadow falls to the back right.
     let [r, g, b, alpha] = picture.at(0.6, 0.3);
     assert!([r, g, b] == [0; 3] && (40..200).contains(&alpha), "{r} {g} {b} {alpha}");
     assert_eq!(picture.at(-0.8, -0.8)[3], 0, "and not on the lit side");
 }
 
 #[test]
-fn lines_have_their_width_and_colour_and_on_top_means_through() {
+fn lines_have_their_width_and_colour_and_may_be_on_top() {
     let Some(gpu) = gpu() else { return };
     let line = |y: f32, on_top| Line {
         from: Vec3::new(-0.9, y, -1.0),
@@ -252,7 +252,7 @@ fn lines_have_their_width_and_colour_and_on_top_means_through() {
 }
 
 #[test]
-fn bones_are_seen_through_the_mesh() {
+fn bones_are_visible_through_the_mesh() {
     let Some(gpu) = gpu() else { return };
     let mut scene = Scene::new(vec![square(0)], vec![unlit(Vec4::ONE)]);
     scene.frame.bones = vec![Bone {
@@ -283,7 +283,7 @@ fn a_wireframe_is_drawn_with_and_without_the_mesh() {
 }
 
 #[test]
-fn points_and_lines_of_a_file_are_drawn() {
+fn points_and_lines_are_drawn() {
     let Some(gpu) = gpu() else { return };
     for (topology, indices, covered) in [
         (Topology::Points, vec![0, 1, 2, 3], 2..=4),
@@ -306,7 +306,7 @@ fn an_empty_frame_and_an_unknown_model_draw_the_background() {
     let picture = Picture(pollster::block_on(read_pixels(device, queue, renderer.output())));
     assert!(picture.0.as_chunks::<4>().0.iter().all(|pixel| *pixel == [10, 200, 30, 255]));
     assert_eq!(renderer.stats().triangles, 0);
-    // Nor does a model whose data were dropped.
+    // The same for a model whose data was freed.
     renderer.upload(device, queue, &scene.model).unwrap();
     renderer.draw(device, queue, &scene.frame, [SIZE, SIZE]);
     assert_eq!(renderer.stats().triangles, 2);

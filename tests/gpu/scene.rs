@@ -1,4 +1,4 @@
-//! A few surfaces in front of a camera, and what of them is seen.
+//! Surfaces in front of a camera, drawn into a small picture.
 
 use std::sync::Arc;
 
@@ -34,7 +34,7 @@ pub fn unlit(color: Vec4) -> Material {
     Material { base_color: color, unlit: true, metallic: 0.0, ..Default::default() }
 }
 
-/// One mesh per geometry, all drawn where they are, seen from +Z; the picture spans −1 to 1.
+/// One mesh per geometry at the origin, seen from +Z; the picture spans −1 to 1.
 pub struct Scene {
     pub model: Model,
     pub frame: Frame,
@@ -104,7 +104,7 @@ impl Scene {
 pub struct Picture(pub Vec<u8>);
 
 impl Picture {
-    /// At −1 to 1, up and right.
+    /// Returns the pixel at x and y from −1 to 1, right and up.
     pub fn at(&self, x: f32, y: f32) -> [u8; 4] {
         let pixel = |at: f32| ((0.5 + 0.5 * at) * SIZE as f32) as usize;
         let offset = 4 * (pixel(-y) * SIZE as usize + pixel(x));

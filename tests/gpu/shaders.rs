@@ -1,21 +1,21 @@
-//! Every shader is valid and can be said in GLSL ES 3.00, which WebGL2 speaks.
+//! Every shader is valid and translates to GLSL ES 3.00, the language of WebGL2.
 
 use gaitway::render::shaders::{ALL, SKINNED_VERTEX, Shader};
 use naga::back::glsl;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
-fn check(shader: &Shader, switched_on: bool) {
+fn check(shader: &Shader, overrides_on: bool) {
     let source = shader.source();
     let module = naga::front::wgsl::parse_str(&source)
         .unwrap_or_else(|error| panic!("{}: {}", shader.label, error.emit_to_string(&source)));
-    // Nothing beyond what WebGPU always has.
+    // WebGPU's baseline, without optional capabilities.
     let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
         .validate(&module)
         .unwrap_or_else(|error| panic!("{}: {}", shader.label, error.emit_to_string(&source)));
     let constants = module
         .overrides
         .iter()
-        .filter_map(|(_, value)| Some((value.name.clone()?, f64::from(u8::from(switched_on)))))
+        .filter_map(|(_, value)| Some((value.name.clone()?, f64::from(u8::from(overrides_on)))))
         .collect();
     let options = glsl::Options {
         version: glsl::Version::Embedded { version: 300, is_webgl: true },
@@ -24,7 +24,7 @@ fn check(shader: &Shader, switched_on: bool) {
     };
     assert!(!module.entry_points.is_empty() || shader.label == SKINNED_VERTEX.label, "{}", shader.label);
     for entry in &module.entry_points {
-        let at = format!("{}, {}, {switched_on}", shader.label, entry.name);
+        let at = format!("{}, {}, {overrides_on}", shader.label, entry.name);
         let (module, info) = naga::back::pipeline_constants::process_overrides(
             &module,
             &info,
@@ -39,14 +39,14 @@ fn check(shader: &Shader, switched_on: bool) {
             .and_then(|mut writer| writer.write())
             .unwrap_or_else(|error| panic!("{at}: {error}"));
         assert!(text.starts_with("#version 300 es"), "{at}");
-        // No stage reads more textures, or a vertex more attributes, than WebGL2 promises.
+        // WebGL2 guarantees 16 textures per stage and 16 vertex attributes.
         assert!(text.matches("uniform highp sampler").count() <= 16, "{at}");
         assert!(text.matches("layout(location = ").count() <= 16, "{at}");
     }
 }
 
 #[test]
-fn every_shader_is_valid_and_speaks_webgl2() {
+fn every_shader_is_valid_and_translates_to_webgl2() {
     for shader in ALL.iter().chain([&SKINNED_VERTEX]) {
         check(shader, false);
         check(shader, true);

@@ -1,4 +1,4 @@
-//! The GPU moves vertices as the shared cases and the CPU say: each vertex is drawn as one pixel that holds its place.
+//! GPU skinning against the shared cases and the CPU: each vertex is drawn into a pixel that stores its position.
 
 use bytemuck::Zeroable;
 use gaitway::anim::model_from_joint;
@@ -26,10 +26,10 @@ struct Probe {
     @location(1) normal: vec3f,
 }
 
-fn probe(vertex: u32, moved: VertexOut) -> Probe {
+fn probe(vertex: u32, skinned: VertexOut) -> Probe {
     let pixel = vec2f(f32(vertex % 64u), f32(vertex / 64u)) + 0.5;
     let at = vec2f(pixel.x / 32.0 - 1.0, 1.0 - pixel.y / 32.0);
-    return Probe(vec4f(at, 0.0, 1.0), frame.eye - moved.to_eye, moved.normal);
+    return Probe(vec4f(at, 0.0, 1.0), frame.eye - skinned.to_eye, skinned.normal);
 }
 
 @vertex
@@ -64,7 +64,7 @@ fn write(in: Probe) -> Texels {
 }
 ";
 
-/// Positions and normals of all vertices as the GPU has them.
+/// Skins all vertices on the GPU; returns positions and normals.
 fn on_gpu(
     gpu: &Gpu,
     geometry: &Geometry,
@@ -74,19 +74,12 @@ fn on_gpu(
 ) -> [Vec<Vec3>; 2] {
     let Gpu { device, queue } = gpu;
     let gpu_geometry = GpuGeometry::new(device, queue, geometry, &[], 0, 0).unwrap();
-    // One entry before, so that the offset matters.
     let mut palette_texture = PaletteTexture::new(device);
+    // A preceding entry makes the offset matter.
     palette_texture.push_palette(&[PaletteEntry::default()]);
     let first = palette_texture.push_palette(palette);
     let (morph_weights, morph_count) = palette_texture.push_morph_weights(weights);
     palette_texture.upload(device, queue);
-
-    let number = match mode {
-        SkinningMode::Linear => 0.0,
-        SkinningMode::Rigid => 1.0,
-        SkinningMode::DualQuaternion => 2.0,
-    };
-    let frame = FrameUniform::zeroed();
     let draw = DrawUniform {
         palette: first,
         morph_weights,
@@ -96,16 +89,21 @@ fn on_gpu(
         influence_stride: gpu_geometry.influence_stride,
         ..DrawUniform::zeroed()
     };
-    let uniform = |contents: &[u8]| {
-        device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: None,
-            contents,
-            usage: wgpu::BufferUsages::UNIFORM,
-        })
-    };
-    let (frame, draw) = (uniform(bytemuck::bytes_of(&frame)), uniform(bytemuck::bytes_of(&draw)));
-    let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
-    let texture_layout = |binding| wgpu::BindGroupLayoutEntry {
+    let layouts = bind_group_layouts(device);
+    let groups = bind_groups(device, &layouts, draw, &palette_texture, &gpu_geometry);
+    let pipeline = probe_pipeline(device, &layouts, gpu_geometry.influences, mode);
+    draw_probe(gpu, &pipeline, &groups, &gpu_geometry).map(|texture| {
+        let bytes = gpu.read(&texture, 16);
+        let texels: &[[f32; 4]] = bytemuck::cast_slice(&bytes);
+        let vertices = &texels[..geometry.positions.len()];
+        assert!(vertices.iter().all(|texel| texel[3] == 1.0), "not every vertex was drawn");
+        vertices.iter().map(|texel| Vec3::from_slice(texel)).collect()
+    })
+}
+
+/// Frame, draw and primitive, without the group for light.
+fn bind_group_layouts(device: &wgpu::Device) -> [wgpu::BindGroupLayout; 3] {
+    let texture = |binding| wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::VERTEX,
         ty: wgpu::BindingType::Texture {
@@ -115,7 +113,7 @@ fn on_gpu(
         },
         count: None,
     };
-    let uniform_layout = wgpu::BindGroupLayoutEntry {
+    let uniform = wgpu::BindGroupLayoutEntry {
         binding: 0,
         visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
         ty: wgpu::BindingType::Buffer {
@@ -125,50 +123,86 @@ fn on_gpu(
         },
         count: None,
     };
-    let layouts =
-        [vec![uniform_layout, texture_layout(1)], vec![uniform_layout], vec![texture_layout(11), texture_layout(12)]]
-            .map(|entries| {
-                device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries })
-            });
-    let none = palette_texture.view();
-    let morphs = gpu_geometry.morph_view.as_ref().unwrap_or(none);
-    let influences = gpu_geometry.influence_view.as_ref().unwrap_or(none);
+    [vec![uniform, texture(1)], vec![uniform], vec![texture(11), texture(12)]].map(|entries| {
+        device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries })
+    })
+}
+
+fn bind_groups(
+    device: &wgpu::Device,
+    layouts: &[wgpu::BindGroupLayout; 3],
+    draw: DrawUniform,
+    palette: &PaletteTexture,
+    geometry: &GpuGeometry,
+) -> [wgpu::BindGroup; 3] {
+    let uniform = |contents: &[u8]| {
+        device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: None,
+            contents,
+            usage: wgpu::BufferUsages::UNIFORM,
+        })
+    };
+    let (frame, draw) = (uniform(bytemuck::bytes_of(&FrameUniform::zeroed())), uniform(bytemuck::bytes_of(&draw)));
+    let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+    let texture = |binding, view| entry(binding, wgpu::BindingResource::TextureView(view));
+    let placeholder = palette.view();
     let entries = [
-        vec![entry(0, frame.as_entire_binding()), entry(1, wgpu::BindingResource::TextureView(none))],
+        vec![entry(0, frame.as_entire_binding()), texture(1, palette.view())],
         vec![entry(0, draw.as_entire_binding())],
         vec![
-            entry(11, wgpu::BindingResource::TextureView(morphs)),
-            entry(12, wgpu::BindingResource::TextureView(influences)),
+            texture(11, geometry.morph_view.as_ref().unwrap_or(placeholder)),
+            texture(12, geometry.influence_view.as_ref().unwrap_or(placeholder)),
         ],
     ];
-    // Groups without the one for light, which moves nothing.
+    std::array::from_fn(|group| {
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &layouts[group],
+            entries: &entries[group],
+        })
+    })
+}
+
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+
+fn probe_pipeline(
+    device: &wgpu::Device,
+    layouts: &[wgpu::BindGroupLayout; 3],
+    influences: InfluenceSource,
+    mode: SkinningMode,
+) -> wgpu::RenderPipeline {
+    // Renumbers the groups, since the one for light is missing.
     let source = (SKINNED_VERTEX.source() + PROBE).replace("@group(2)", "@group(1)").replace("@group(3)", "@group(2)");
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("probe"),
         source: wgpu::ShaderSource::Wgsl(source.into()),
     });
-    let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: None,
         bind_group_layouts: &layouts.each_ref().map(Some),
         immediate_size: 0,
     });
-    let format = wgpu::TextureFormat::Rgba32Float;
-    let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+    let skinning = match mode {
+        SkinningMode::Linear => 0.0,
+        SkinningMode::Rigid => 1.0,
+        SkinningMode::DualQuaternion => 2.0,
+    };
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("probe"),
-        layout: Some(&pipeline_layout),
+        layout: Some(&layout),
         vertex: wgpu::VertexState {
             module: &module,
-            entry_point: Some(match gpu_geometry.influences {
+            entry_point: Some(match influences {
                 InfluenceSource::None => "probe_0",
                 InfluenceSource::Four => "probe_4",
                 InfluenceSource::Eight => "probe_8",
                 InfluenceSource::Texture => "probe_texture",
             }),
             compilation_options: wgpu::PipelineCompilationOptions {
-                constants: &[("SKINNING", number)],
+                constants: &[("SKINNING", skinning)],
                 ..Default::default()
             },
-            buffers: &vertex_buffers(gpu_geometry.influences),
+            buffers: &vertex_buffers(influences),
         },
         primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::PointList, ..Default::default() },
         depth_stencil: None,
@@ -177,11 +211,21 @@ fn on_gpu(
             module: &module,
             entry_point: Some("write"),
             compilation_options: Default::default(),
-            targets: &[Some(format.into()), Some(format.into())],
+            targets: &[Some(FORMAT.into()), Some(FORMAT.into())],
         }),
         multiview_mask: None,
         cache: None,
-    });
+    })
+}
+
+/// Draws every vertex as a pixel; returns the textures of positions and normals.
+fn draw_probe(
+    gpu: &Gpu,
+    pipeline: &wgpu::RenderPipeline,
+    groups: &[wgpu::BindGroup; 3],
+    geometry: &GpuGeometry,
+) -> [wgpu::Texture; 2] {
+    let Gpu { device, queue } = gpu;
     let targets = [(); 2].map(|()| {
         device.create_texture(&wgpu::TextureDescriptor {
             label: None,
@@ -189,46 +233,35 @@ fn on_gpu(
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
-            format,
+            format: FORMAT,
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         })
     });
     let views = targets.each_ref().map(|texture| texture.create_view(&Default::default()));
+    let attachments = views.each_ref().map(|view| {
+        Some(wgpu::RenderPassColorAttachment {
+            view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store },
+        })
+    });
     let mut encoder = device.create_command_encoder(&Default::default());
-    {
-        let attachments = views.each_ref().map(|view| {
-            Some(wgpu::RenderPassColorAttachment {
-                view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                    store: wgpu::StoreOp::Store,
-                },
-            })
-        });
-        let mut pass = encoder
-            .begin_render_pass(&wgpu::RenderPassDescriptor { color_attachments: &attachments, ..Default::default() });
-        pass.set_pipeline(&pipeline);
-        for (group, (layout, entries)) in layouts.iter().zip(&entries).enumerate() {
-            let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries });
-            pass.set_bind_group(group as u32, &bind_group, &[]);
-        }
-        gpu_geometry.bind(&mut pass);
-        pass.draw(0..gpu_geometry.vertices, 0..1);
+    let mut pass = encoder
+        .begin_render_pass(&wgpu::RenderPassDescriptor { color_attachments: &attachments, ..Default::default() });
+    pass.set_pipeline(pipeline);
+    for (index, group) in groups.iter().enumerate() {
+        pass.set_bind_group(index as u32, group, &[]);
     }
+    geometry.bind(&mut pass);
+    pass.draw(0..geometry.vertices, 0..1);
+    drop(pass);
     queue.submit([encoder.finish()]);
-    targets.map(|texture| {
-        let bytes = gpu.read(&texture, 16);
-        let texels: &[[f32; 4]] = bytemuck::cast_slice(&bytes);
-        let vertices = &texels[..geometry.positions.len()];
-        assert!(vertices.iter().all(|texel| texel[3] == 1.0), "not every vertex was drawn");
-        vertices.iter().map(|texel| Vec3::from_slice(texel)).collect()
-    })
+    targets
 }
 
-/// The GPU may use a rounded reciprocal square root and fused products: a few more bits than the CPU loses.
+/// The tolerance allows for approximate reciprocal square roots and fused multiply-adds on the GPU.
 fn compare(name: &str, found: &[Vec3], expected: &[DVec3], tolerance: f64) {
     let size = expected.iter().map(|value| value.abs().max_element()).fold(1e-9, f64::max);
     assert_eq!(found.len(), expected.len(), "{name}");
@@ -243,7 +276,7 @@ fn palette_of(case: &Case) -> Vec<PaletteEntry> {
 }
 
 #[test]
-fn the_shared_cases_hold_on_the_gpu() {
+fn the_gpu_passes_the_shared_cases() {
     let Some(gpu) = gpu() else { return };
     for case in cases() {
         let [positions, normals] = on_gpu(&gpu, &case.geometry, &palette_of(&case), &case.morph_weights, case.mode);
@@ -253,15 +286,15 @@ fn the_shared_cases_hold_on_the_gpu() {
     }
 }
 
-/// Against the CPU, with more joints than any uniform buffer of WebGL2 could hold, in every mode and form of influences.
+/// With more joints than a uniform buffer of WebGL2 can hold, in every mode and with every source of influences.
 #[test]
-fn a_thousand_joints_move_as_on_the_cpu() {
+fn a_thousand_joints_match_the_cpu() {
     let Some(gpu) = gpu() else { return };
     let joints: Vec<Affine3A> = (0..1000)
         .map(|joint| {
-            let part = joint as f32 / 1000.0;
-            let rotation = Quat::from_euler(glam::EulerRot::XYZ, 3.0 * part, 2.0 * part, 0.3 - part);
-            Affine3A::from_rotation_translation(rotation, Vec3::new(part, 2.0 * part, -0.5))
+            let share = joint as f32 / 1000.0;
+            let rotation = Quat::from_euler(glam::EulerRot::XYZ, 3.0 * share, 2.0 * share, 0.3 - share);
+            Affine3A::from_rotation_translation(rotation, Vec3::new(share, 2.0 * share, -0.5))
         })
         .collect();
     for influences in [4, 8, 13, 16] {
@@ -280,9 +313,9 @@ fn a_thousand_joints_move_as_on_the_cpu() {
     }
 }
 
-/// The skinning exercise's own models, with up to 13 weights a vertex, against its formula in double precision.
+/// The models of the skinning exercise, with up to 13 weights per vertex, against its formula in double precision.
 #[test]
-fn the_exercise_models_bend_as_the_formula_says() {
+fn the_exercise_models_match_the_formula() {
     let (Some(gpu), Some(folder)) = (gpu(), data_folder()) else { return };
     for (name, seed) in [("Model1", 1), ("Model2", 2), ("Model3", 3), ("Model4", 4)] {
         let text = |kind: &str| std::fs::read_to_string(folder.join(format!("mit6837/{name}.{kind}"))).unwrap();
@@ -291,18 +324,18 @@ fn the_exercise_models_bend_as_the_formula_says() {
             files.insert(format!("{name}.{kind}"), text(kind).into_bytes());
         }
         let asset = load(&files).unwrap();
-        let whole = &asset.meshes[0].primitives[0];
-        // As many vertices as the probe has pixels, from all over the body.
-        let kept: Vec<usize> = (0..whole.positions.len()).step_by(4).collect();
-        let stride = whole.influences.stride;
+        let full = &asset.meshes[0].primitives[0];
+        // The probe has 4,096 pixels: keep every fourth vertex.
+        let kept: Vec<usize> = (0..full.positions.len()).step_by(4).collect();
+        let stride = full.influences.stride;
         let of_kept = |vertex: &usize| vertex * stride..(vertex + 1) * stride;
         let geometry = Geometry {
-            positions: kept.iter().map(|&vertex| whole.positions[vertex]).collect(),
+            positions: kept.iter().map(|&vertex| full.positions[vertex]).collect(),
             normals: vec![Vec3::Y; kept.len()],
             influences: Influences {
                 stride,
-                joints: kept.iter().flat_map(|vertex| whole.influences.joints[of_kept(vertex)].to_vec()).collect(),
-                weights: kept.iter().flat_map(|vertex| whole.influences.weights[of_kept(vertex)].to_vec()).collect(),
+                joints: kept.iter().flat_map(|vertex| full.influences.joints[of_kept(vertex)].to_vec()).collect(),
+                weights: kept.iter().flat_map(|vertex| full.influences.weights[of_kept(vertex)].to_vec()).collect(),
             },
             indices: (0..kept.len() as u32).collect(),
             ..Geometry::default()
@@ -316,8 +349,8 @@ fn the_exercise_models_bend_as_the_formula_says() {
         model_from_joint(&asset.skeleton, &locals, Affine3A::IDENTITY, &mut world);
         write_palette(&asset.skins[0], &world, SkinningMode::Linear, &mut palette);
         let [positions, _] = on_gpu(&gpu, &geometry, &palette, &[], SkinningMode::Linear);
-        let bent = Exercise::read(&text("obj"), &text("skel"), &text("attach")).bent(&exact);
-        let expected: Vec<DVec3> = kept.iter().map(|&vertex| bent[vertex]).collect();
+        let skinned = Exercise::read(&text("obj"), &text("skel"), &text("attach")).skinned(&exact);
+        let expected: Vec<DVec3> = kept.iter().map(|&vertex| skinned[vertex]).collect();
         compare(name, &positions, &expected, 2e-6);
     }
 }

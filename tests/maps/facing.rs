@@ -1,18 +1,18 @@
 //! Which way bodies look, and whether what is called left lies there.
 
-use gaitway::anim::{Joint, Skeleton, Transform};
+use gaitway::anim::{Joint, Transform};
 use gaitway::asset::{Asset, Slot};
 use gaitway::retarget::{Contradiction, recognize};
 use glam::Vec3;
 
 use crate::data::open;
+use crate::skeletons;
 
 /// Hips, legs with feet, a spine, arms and a head in T-pose, looking along +Z, left at `left` (+1 or -1) times +X.
 fn figure(left: f32, toes: bool) -> Asset {
     let mut joints: Vec<Joint> = Vec::new();
     let mut place = |name: &str, parent: Option<usize>, at: Vec3| {
-        let rest = Transform::from_translation(at);
-        joints.push(Joint { name: name.to_owned(), parent, rest, ..Joint::default() });
+        joints.push(skeletons::joint(name, parent, Transform::from_translation(at)));
         joints.len() - 1
     };
     let hips = place("Hips", None, Vec3::Y);
@@ -36,7 +36,7 @@ fn figure(left: f32, toes: bool) -> Asset {
             at = place(&format!("{side}{name}"), Some(at), Vec3::new(step * out, 0.0, 0.0));
         }
     }
-    Asset::from(Skeleton::new(joints).expect("a tree"))
+    skeletons::asset(joints)
 }
 
 #[test]

@@ -6,4 +6,6 @@ mod files;
 mod proposals;
 mod resolving;
 mod rigs;
+#[path = "../support/skeletons.rs"]
+mod skeletons;
 mod truth;

@@ -1,11 +1,12 @@
 //! What is proposed for two files.
 
-use gaitway::anim::{Joint, JointIndex, Skeleton, Transform};
+use gaitway::anim::{Joint, JointIndex, Transform};
 use gaitway::asset::Asset;
 use gaitway::retarget::{JointMap, Proposal, Reason, propose};
 use glam::Vec3;
 
 use crate::data::open;
+use crate::skeletons;
 
 /// The number of the source joint that each named target follows.
 fn check(model: &Asset, proposal: &Proposal, motion: &Asset, expected: &[(&str, usize)]) {
@@ -167,8 +168,7 @@ fn large_scenes_are_quick() {
             ..Joint::default()
         });
         let unnamed = joints.clone().map(|joint| Joint { name: String::new(), ..joint });
-        let asset = |joints| Asset::from(Skeleton::new(joints).expect("a tree"));
-        let (named, unnamed) = (asset(joints.collect()), asset(unnamed.collect()));
+        let (named, unnamed) = (skeletons::asset(joints.collect()), skeletons::asset(unnamed.collect()));
         let start = std::time::Instant::now();
         propose(&named, &unnamed);
         propose(&unnamed, &named);

@@ -1,9 +1,11 @@
 //! Rigs of which there is no file at hand, by the names that their makers give: `A>B` hangs B on A, `A(B, C)` both. They have
 //! no shape: names and hierarchy must do.
 
-use gaitway::anim::{Joint, Skeleton};
+use gaitway::anim::{Joint, Transform};
 use gaitway::asset::{Asset, Slot};
 use gaitway::retarget::{Reason, Recognized, recognize};
+
+use crate::skeletons;
 
 /// A skeleton from its text.
 fn rig(text: &str) -> Asset {
@@ -19,7 +21,7 @@ fn rig(text: &str) -> Asset {
         }
         if !name.trim().is_empty() {
             last = Some(joints.len());
-            joints.push(Joint { name: name.trim().to_owned(), parent, ..Joint::default() });
+            joints.push(skeletons::joint(name.trim(), parent, Transform::IDENTITY));
         }
         name.clear();
         match char {
@@ -34,7 +36,7 @@ fn rig(text: &str) -> Asset {
             }
         }
     }
-    Asset::from(Skeleton::new(joints).expect("a tree"))
+    skeletons::asset(joints)
 }
 
 /// The text of the right side from that of the left.

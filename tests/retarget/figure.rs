@@ -9,6 +9,8 @@ use gaitway::anim::{
 use gaitway::asset::{Asset, AssetParts, Humanoid, Slot};
 use glam::{DQuat, DVec3, EulerRot, Quat, Vec3};
 
+use crate::random::Random;
+
 /// Slot, parent slot, place in the world at the T-pose, metres; faces +Z.
 pub const BODY: [(Slot, Option<Slot>, [f64; 3]); 22] = [
     (Slot::Hips, None, [0.0, 1.0, 0.0]),
@@ -73,21 +75,10 @@ impl Default for Rig {
     }
 }
 
-/// Numbers from 0 to 1, always the same for a seed (SplitMix64).
-pub struct Random(pub u64);
-
 impl Random {
-    pub fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
     pub fn rotation(&mut self, most_degrees: f64) -> DQuat {
-        let axis = DVec3::new(self.next() - 0.5, self.next() - 0.5, self.next() - 0.5);
-        let angle = most_degrees.to_radians() * (2.0 * self.next() - 1.0);
+        let axis = DVec3::new(self.f64() - 0.5, self.f64() - 0.5, self.f64() - 0.5);
+        let angle = most_degrees.to_radians() * (2.0 * self.f64() - 1.0);
         DQuat::from_axis_angle(axis.normalize_or(DVec3::Y), angle)
     }
 }
@@ -237,7 +228,7 @@ impl Figure {
         let skeleton = &self.asset.skeleton;
         let mut clip = ClipBuilder::new("dance", skeleton);
         for (&slot, &joint) in &self.slots.0 {
-            let keys = 4 + (random.next() * 5.0) as usize;
+            let keys = 4 + (random.f64() * 5.0) as usize;
             let times: Vec<f32> = (0..keys).map(|key| key as f32 * 1.5 / (keys - 1) as f32).collect();
             let rest = skeleton.rest().locals[joint.get()];
             let mut rotations: Vec<Quat> = Vec::new();
@@ -246,13 +237,13 @@ impl Figure {
             for _ in 0..keys {
                 let spline = interpolation == Interpolation::CubicSpline;
                 let value = (random.rotation(degrees) * rest.rotation.as_dquat()).normalize().as_quat();
-                let mut tangent = || Quat::from_euler(EulerRot::XYZ, random.next() as f32, 0.3, -0.2) * 0.5;
+                let mut tangent = || Quat::from_euler(EulerRot::XYZ, random.f64() as f32, 0.3, -0.2) * 0.5;
                 if spline {
                     rotations.extend([tangent(), value, tangent()]);
                 } else {
                     rotations.push(value);
                 }
-                let mut wander = || Vec3::new(random.next() as f32, random.next() as f32, random.next() as f32) * hips;
+                let mut wander = || Vec3::new(random.f64() as f32, random.f64() as f32, random.f64() as f32) * hips;
                 if spline {
                     places.extend([wander(), rest.translation + 0.5 * wander(), wander()]);
                 } else {

@@ -4,6 +4,8 @@
 mod data_folder;
 #[path = "../support/pairs.rs"]
 mod pairs_of_people;
+#[path = "../support/random.rs"]
+mod random;
 
 mod coursework;
 mod feet;

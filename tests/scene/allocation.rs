@@ -1,47 +1,13 @@
-//! Playing allocates nothing once a frame has grown.
-
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+//! Playback stops allocating once the frame's buffers have grown.
 
 use gaitway::frame::{Frame, evaluate};
 use gaitway::state::{CameraOptions, Command, Selection, ViewerState, apply};
 
+use crate::allocations::allocations_after;
 use crate::data::walker;
 
-struct Counting;
-
-thread_local! {
-    /// Allocations of this thread alone: other tests run beside this one.
-    static COUNT: Cell<usize> = const { Cell::new(0) };
-}
-
-fn count() {
-    // The thread may be ending, when its counter is gone already.
-    let _ = COUNT.try_with(|count| count.set(count.get() + 1));
-}
-
-// SAFETY: everything is handed to the system's allocator as it comes.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count();
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        unsafe { System.dealloc(pointer, layout) }
-    }
-
-    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        count();
-        unsafe { System.realloc(pointer, layout, size) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
-
 #[test]
-fn a_second_round_of_the_clip_allocates_nothing() {
+fn a_second_loop_of_the_clip_does_not_allocate() {
     let library = walker();
     let mut state = ViewerState {
         camera_options: CameraOptions { follow: true, ..CameraOptions::default() },
@@ -60,9 +26,5 @@ fn a_second_round_of_the_clip_allocates_nothing() {
             evaluate(&library, &state, 1.5, &mut frame);
         }
     };
-    play(70);
-    let before = COUNT.with(Cell::get);
-    assert!(before > 0, "the counter counts");
-    play(200);
-    assert_eq!(COUNT.with(Cell::get) - before, 0);
+    assert_eq!(allocations_after(&mut play, |play| play(70), |play| play(200)), 0);
 }

@@ -149,7 +149,7 @@ fn people_get_text() {
 
 #[test]
 fn parts_are_found_beside_the_model_and_in_folders() {
-    let Some(data) = crate::data::folder() else { return };
+    let Some(data) = crate::data_folder::data_folder() else { return };
     let of = |path: &Path| document(&["inspect", path.to_str().expect("a plain path"), "--json"]);
     let folder = data.join("khronos/CesiumMan/glTF");
     let (beside, inside) = (of(&folder.join("CesiumMan.gltf")), of(&folder));

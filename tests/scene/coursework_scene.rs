@@ -16,7 +16,8 @@ use glam::{DQuat, DVec3, EulerRot, Vec2, Vec3};
 use serde_json::Value;
 
 use crate::coursework::Exercise;
-use crate::data::{folder, library_of, open, walker};
+use crate::data::{library_of, open, walker};
+use crate::data_folder::data_folder;
 
 const BENT: &str = "v=1&clip=&pose=0:10:-20:5,2:0:0:15,5:-60:0:10,6:70:0:0,12:0:30:-20,13:0:0:45,16:-30:20:0";
 
@@ -35,7 +36,7 @@ fn rotations(state: &ViewerState) -> Vec<DQuat> {
 }
 
 fn exercise(name: &str) -> Option<Exercise> {
-    let folder = folder()?.join("mit6837");
+    let folder = data_folder()?.join("mit6837");
     let text = |kind: &str| std::fs::read_to_string(folder.join(format!("{name}.{kind}"))).expect("a real file");
     Some(Exercise::read(&text("obj"), &text("skel"), &text("attach")))
 }
@@ -59,7 +60,7 @@ fn sliders_bend_the_models_as_the_formula_says() {
         let (Some(exercise), Some(library)) = (exercise(name), open(&format!("mit6837/{name}.obj"))) else { return };
         let state = bent();
         let found = positions(&pose_document(&library, &state));
-        assert!(furthest(&found, &exercise.bent(&rotations(&state))) < 1e-6, "{name}");
+        assert!(furthest(&found, &exercise.skinned(&rotations(&state))) < 1e-6, "{name}");
         assert!(furthest(&found, &exercise.vertices) > 0.05, "{name} is bent");
         let rest = ViewerState {
             playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
@@ -71,7 +72,7 @@ fn sliders_bend_the_models_as_the_formula_says() {
 
 #[test]
 fn a_set_is_opened_by_any_of_its_names() {
-    let Some(folder) = folder() else { return };
+    let Some(folder) = data_folder() else { return };
     let folder = folder.join("mit6837");
     for name in ["Model2.obj", "Model2.skel", "Model2.attach", "Model2"] {
         let opened = open_paths(&[folder.join(name)]).unwrap_or_else(|problem| panic!("{name}: {problem}"));
@@ -93,7 +94,7 @@ fn run(arguments: &[&str]) -> Vec<u8> {
 
 #[test]
 fn the_command_line_reads_bends_and_writes_them() {
-    let (Some(folder), Some(exercise)) = (folder(), exercise("Model1")) else { return };
+    let (Some(folder), Some(exercise)) = (data_folder(), exercise("Model1")) else { return };
     let model = folder.join("mit6837/Model1.obj");
     let model = model.to_str().expect("a plain path");
     let inspected: Value = serde_json::from_slice(&run(&["inspect", model, "--json"])).expect("JSON");
@@ -103,7 +104,7 @@ fn the_command_line_reads_bends_and_writes_them() {
     assert_eq!((inspected["format"].as_str(), inspected["warnings"].as_array().map(Vec::len)), (Some("obj"), Some(0)));
     let posed = |arguments: &[&str]| positions(&serde_json::from_slice(&run(arguments)).expect("JSON"));
     assert!(furthest(&posed(&["pose", model, "--json"]), &exercise.vertices) < 1e-6);
-    let wanted = exercise.bent(&rotations(&bent()));
+    let wanted = exercise.skinned(&rotations(&bent()));
     assert!(furthest(&posed(&["pose", model, "--view", BENT, "--json"]), &wanted) < 1e-6);
 
     let out = std::env::temp_dir().join(format!("gaitway-coursework-{}.glb", std::process::id()));
@@ -131,19 +132,19 @@ fn the_formula_adds_up_to_what_is_drawn() {
     for up in [UpAxis::Y, UpAxis::Z] {
         let state = ViewerState { edits: Edits { up, ..bent().edits }, ..bent() };
         let frame = evaluated(&library, &state);
-        let wanted = exercise.bent(&rotations(&state));
+        let wanted = exercise.skinned(&rotations(&state));
         let mut formula = VertexFormula::default();
         let mut most = 0;
         for vertex in (0..13336).step_by(37) {
             let choice = VertexChoice { instance: 0, primitive: 0, vertex };
             assert!(vertex_formula(model, &frame.characters[0], choice, &mut formula));
-            most = most.max(formula.parts.len());
+            most = most.max(formula.terms.len());
             assert!(formula.sum.distance(formula.drawn) < 1e-6);
             if up == UpAxis::Y {
                 assert!(formula.sum.as_dvec3().distance(wanted[vertex]) < 1e-6);
             }
-            assert!((formula.parts.iter().map(|part| part.weight).sum::<f32>() - 1.0).abs() < 1e-6);
-            for part in &formula.parts {
+            assert!((formula.terms.iter().map(|part| part.weight).sum::<f32>() - 1.0).abs() < 1e-6);
+            for part in &formula.terms {
                 let matrices = joint_matrices(model, &frame.characters[0], part.joint).expect("of the skin");
                 let alone = matrices.world_from_bind().transform_point3(formula.bound);
                 assert!(alone.distance(part.alone) < 1e-6 && part.share == part.weight * part.alone);
@@ -241,7 +242,7 @@ fn joints_can_be_renamed() {
     assert_eq!(title(None, asset, joint), before, "other files keep their names");
     apply(&mut state, &library, Command::RenameJoint { joint: 9999, name: "Nobody".to_owned() });
     assert_eq!(state.edits.names.len(), 1);
-    let written = written_skeleton(library.active().expect("a model"), &state, false);
+    let written = written_skeleton(library.active().expect("a model"), &state, None);
     assert_eq!(written.name(joint), "Crown,of: the head");
     assert_eq!(written.rest(), asset.skeleton.rest());
 }
@@ -320,7 +321,7 @@ fn several_parts_are_one_mesh_in_the_order_of_the_file() {
 /// The joints have no names, so the map is written by hand.
 #[test]
 fn a_motion_can_be_lent_to_them() {
-    let Some(folder) = folder() else { return };
+    let Some(folder) = data_folder() else { return };
     let (model, motion) = (folder.join("mit6837/Model1.obj"), folder.join("cosc422/original/Dwarf/avatar_walk.bvh"));
     let scratch = |name: &str| std::env::temp_dir().join(format!("gaitway-lent-{}-{name}", std::process::id()));
     let (map, out) = (scratch("map.json"), scratch("out.glb"));

@@ -1,13 +1,14 @@
 //! Models for the tests: the walker, small ones made in code, and real files where they are at hand.
 
-use std::path::PathBuf;
-
 use gaitway::anim::{ClipBuilder, Interpolation, Joint, Keys, Skeleton, Transform};
 use gaitway::asset::{Asset, AssetParts, MeshInstance};
 use gaitway::files::open_paths;
-use gaitway::library::{Library, Model, sample};
+use gaitway::library::{Library, Model};
 use gaitway::mesh::{Geometry, Mesh};
+use gaitway::samples;
 use glam::Vec3;
+
+use crate::data_folder::data_folder;
 
 pub fn library_of(model: Model) -> Library {
     let mut library = Library::default();
@@ -16,7 +17,7 @@ pub fn library_of(model: Model) -> Library {
 }
 
 pub fn walker() -> Library {
-    library_of(sample::load("walker").expect("the walker is built in"))
+    library_of(samples::load("walker").expect("the walker is built in"))
 }
 
 /// A box of the given half size on one node, with these keys of its translation as the clip "Move".
@@ -42,20 +43,8 @@ pub fn moving_box(half: f32, times_secs: &[f32], places: &[Vec3]) -> Library {
     library_of(Model::new("box".to_owned(), asset, Vec::new()))
 }
 
-/// The folder of real files; none (and a line that says so) where there is none.
-pub fn folder() -> Option<PathBuf> {
-    let folder = std::env::var_os("GAITWAY_DATA")
-        .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/data"), PathBuf::from);
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    assert!(std::env::var_os("GAITWAY_REQUIRE_DATA").is_none(), "real files are required and {folder:?} is not there");
-    println!("skipped: no real files at {}", folder.display());
-    None
-}
-
 /// A real file, opened as the command line does.
 pub fn open(path: &str) -> Option<Library> {
-    let path = folder()?.join(path);
+    let path = data_folder()?.join(path);
     Some(library_of(open_paths(std::slice::from_ref(&path)).unwrap_or_else(|error| panic!("{path:?}: {error}")).model))
 }

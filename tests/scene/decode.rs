@@ -1,17 +1,13 @@
 //! Decoding images of a model: what cannot be read is a warning, never an end.
 
-use std::io::Cursor;
 use std::sync::Arc;
 
 use gaitway::asset::{Asset, AssetParts, Image};
-use gaitway::files::decode_images;
+use gaitway::files::{decode_images, encode_png};
 use gaitway::library::ImageData;
 
 fn png(width: u32, height: u32, pixels: &[u8]) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    let image = image::RgbaImage::from_raw(width, height, pixels.to_vec()).expect("as many pixels");
-    image.write_to(&mut Cursor::new(&mut bytes), image::ImageFormat::Png).expect("memory");
-    bytes
+    encode_png(width, height, pixels).expect("the pixels match the size")
 }
 
 fn decode(bytes: Vec<u8>) -> (Option<ImageData>, Asset) {

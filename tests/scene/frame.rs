@@ -1,10 +1,11 @@
 //! What a frame says about models, overlays and clicks.
 
+use gaitway::anim::{Pose, model_from_joint};
 use gaitway::frame::{Frame, PickedJoint, evaluate, pick_joint};
 use gaitway::library::Library;
 use gaitway::mesh::SkinningMode;
-use gaitway::state::{Background, Display, Inspect, Playhead, Selection, Show, ViewerState};
-use glam::{Vec2, Vec3, Vec4Swizzles};
+use gaitway::state::{Background, ClipChoice, Display, Inspect, Playhead, Selection, Show, ViewerState};
+use glam::{Affine3A, Vec2, Vec3, Vec4Swizzles};
 
 use crate::data::{moving_box, walker};
 
@@ -51,6 +52,28 @@ fn the_same_state_is_the_same_frame() {
     assert_eq!(used.characters[0].palette, fresh.characters[0].palette);
     assert_eq!(used.bones, fresh.bones);
     assert_eq!(used.view.view_from_world, fresh.view.view_from_world);
+}
+
+#[test]
+fn the_frame_carries_the_pose_and_clip_it_was_made_from() {
+    let mut library = walker();
+    let clip = ClipChoice::Named("Wave".to_owned());
+    let mut state =
+        ViewerState { playhead: Playhead { time_secs: 1.3, clip, ..Playhead::default() }, ..ViewerState::default() };
+    state.edits.pose.insert(HEAD, [30.0, 0.0, 0.0]);
+    let mut frame = frame_of(&library, &state);
+    let skeleton = library.active().expect("the walker").asset.skeleton.clone();
+    let mut world_from_joint = Vec::new();
+    model_from_joint(&skeleton, &frame.pose().locals, Affine3A::IDENTITY, &mut world_from_joint);
+    assert_eq!(world_from_joint, frame.characters[0].world_from_joint);
+    assert_eq!(frame.pose().morph_weights, frame.characters[0].morph_weights);
+    assert_eq!(frame.clip, Some(2));
+    state.playhead.clip = ClipChoice::RestPose;
+    evaluate(&library, &state, 1.5, &mut frame);
+    assert_eq!(frame.clip, None);
+    library = Library::default();
+    evaluate(&library, &state, 1.5, &mut frame);
+    assert_eq!((frame.clip, frame.pose()), (None, &Pose::default()));
 }
 
 #[test]

@@ -142,7 +142,7 @@ fn closed_models_go_first() {
     let asset = library.active().unwrap().asset.clone();
     history.closed(library.listed());
     library.close(first);
-    for index in 1..Library::MOST_MODELS {
+    for index in 1..Library::MAX_MODELS {
         library.add(Model::new(format!("{index}.glb"), asset.clone(), Vec::new()));
     }
     assert!(library.trim().is_empty(), "nobody has to hear of it");
@@ -155,14 +155,14 @@ fn closed_models_go_first() {
 fn the_oldest_model_goes_and_never_the_shown_one() {
     let (mut library, first, second) = two_models();
     let asset = library.active().unwrap().asset.clone();
-    for index in library.models().len()..Library::MOST_MODELS {
+    for index in library.models().len()..Library::MAX_MODELS {
         library.add(Model::new(format!("{index}.glb"), asset.clone(), Vec::new()));
     }
     assert!(library.trim().is_empty());
     let newest = library.add(Model::new("one-more.glb".to_owned(), asset, Vec::new()));
     library.show(first);
     let gone: Vec<ModelId> = library.trim().iter().map(|model| model.id).collect();
-    assert_eq!((gone, library.models().len()), (vec![second], Library::MOST_MODELS));
+    assert_eq!((gone, library.models().len()), (vec![second], Library::MAX_MODELS));
     assert_eq!(library.active().map(|model| model.id), Some(first));
     library.remove(first);
     assert!(library.get(first).is_some(), "what is shown stays");

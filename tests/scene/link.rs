@@ -15,6 +15,8 @@ use gaitway::state::{
 };
 use glam::Vec3;
 
+use crate::random::Random;
+
 fn check_round_trip(state: &ViewerState) {
     let link = to_link(state);
     let (back, errors) = from_link(&link);
@@ -207,12 +209,8 @@ fn all_fields_at_once_come_back() {
 
 #[test]
 fn any_camera_comes_back_exactly() {
-    // A simple generator of bit patterns: no two cameras are alike, and the same ones every time.
-    let mut seed = 0x9e37_79b9_u32;
-    let mut next = |scale: f32| {
-        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        scale * ((seed >> 8) as f32 / (1 << 23) as f32 - 1.0)
-    };
+    let mut random = Random(1);
+    let mut next = |scale: f32| scale * (2.0 * random.f32() - 1.0);
     for _ in 0..500 {
         let camera = OrbitCamera {
             yaw_radians: next(std::f32::consts::PI),

@@ -13,17 +13,11 @@ use gaitway::state::{
 use glam::{Quat, Vec3};
 use serde_json::Value;
 
-/// A simple generator: the same values every time.
-struct Random(u64);
+use crate::random::Random;
 
 impl Random {
-    fn next(&mut self) -> u32 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) as u32
-    }
-
-    fn below(&mut self, count: usize) -> usize {
-        self.next() as usize % count
+    fn word(&mut self) -> u32 {
+        self.bits() as u32
     }
 
     fn often(&mut self) -> bool {
@@ -34,8 +28,8 @@ impl Random {
     fn number(&mut self) -> f32 {
         match self.below(4) {
             0 => self.below(9) as f32 * 0.25 - 1.0,
-            1 => self.next() as f32 / 7.0,
-            _ => Some(f32::from_bits(self.next() << 1)).filter(|number| number.is_finite()).unwrap_or(1e-30),
+            1 => self.word() as f32 / 7.0,
+            _ => Some(f32::from_bits(self.word())).filter(|number| number.is_finite()).unwrap_or(1e-30),
         }
     }
 
@@ -91,7 +85,7 @@ impl Random {
         let joints: BTreeMap<String, MapEntry> = joints.collect();
         let root = if self.often() { self.root() } else { RootOptions::default() };
         let map = JointMap { joints, root, feet: self.one(&[Feet::Off, Feet::Plant]), ..JointMap::default() };
-        MotionMap::Numbers(NumberedMap { checksum: self.next(), map })
+        MotionMap::Numbers(NumberedMap { checksum: self.word(), map })
     }
 
     fn camera(&mut self) -> CameraChoice {
@@ -161,7 +155,7 @@ impl Random {
             22 => state.display.exposure = self.number(),
             23 => state.display.environment_degrees = self.number(),
             24 => {
-                let [_, red, green, blue] = self.next().to_be_bytes();
+                let [_, red, green, blue] = self.word().to_be_bytes();
                 state.display.background = self.one(&[Background::Transparent, Background::Color([red, green, blue])]);
             }
             25 => {

@@ -2,6 +2,8 @@
 
 mod address;
 mod allocation;
+#[path = "../support/allocations.rs"]
+mod allocations;
 mod by_hand;
 mod cli;
 mod cli_borrow;
@@ -10,6 +12,8 @@ mod coursework;
 mod coursework_scene;
 mod crossfade;
 mod data;
+#[path = "../support/data_folder.rs"]
+mod data_folder;
 mod decode;
 mod editor;
 mod extent;
@@ -21,10 +25,14 @@ mod link;
 mod link_properties;
 mod map_edits;
 mod motion;
+#[path = "../support/random.rs"]
+mod random;
 mod real_models;
 mod samples;
 mod scale;
 mod sets;
+#[path = "../support/skeletons.rs"]
+mod skeletons;
 mod stage;
 mod state;
 mod walker;

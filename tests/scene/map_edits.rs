@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use gaitway::anim::{Joint, Skeleton, Transform};
+use gaitway::anim::Transform;
 use gaitway::asset::Asset;
 use gaitway::frame::pose_document;
 use gaitway::library::{Library, Model, Motion};
@@ -18,6 +18,7 @@ use gaitway::state::{
 use glam::{Quat, Vec3};
 
 use crate::data::walker;
+use crate::skeletons;
 
 /// The walker with its own clips to borrow, the first of them playing, a bit after its start.
 fn dancing() -> (Library, ViewerState) {
@@ -103,16 +104,13 @@ fn sides_are_swapped_and_swapped_back() {
     assert_eq!(edited(&library, &swapped, MapEdit::SwapSides), state);
 }
 
-/// One joint after another under the first.
+/// All joints are children of the first.
 fn beast(names: &[&str]) -> Arc<Asset> {
-    let joint = |(index, name): (usize, &&str)| Joint {
-        name: (*name).to_owned(),
-        parent: (index > 0).then_some(0),
-        rest: Transform::from_translation(Vec3::new(index as f32, 1.0, 0.0)),
-        ..Joint::default()
+    let joint = |(index, name): (usize, &&str)| {
+        let rest = Transform::from_translation(Vec3::new(index as f32, 1.0, 0.0));
+        skeletons::joint(name, (index > 0).then_some(0), rest)
     };
-    let skeleton = Skeleton::new(names.iter().enumerate().map(joint).collect()).expect("one root");
-    Arc::new(Asset::from(skeleton))
+    Arc::new(skeletons::asset(names.iter().enumerate().map(joint).collect()))
 }
 
 /// Which source each target follows, both by their numbers in the file, after the sides were swapped.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use gaitway::anim::{Clip, Joint, Skeleton, Transform};
+use gaitway::anim::Clip;
 use gaitway::asset::Asset;
 use gaitway::frame::pose_document;
 use gaitway::library::{Library, Motion};
@@ -15,6 +15,7 @@ use gaitway::state::{
 use glam::{Quat, Vec3};
 
 use crate::data::walker;
+use crate::skeletons;
 
 /// The walker, and its own clips to borrow.
 fn dancing() -> Library {
@@ -24,16 +25,9 @@ fn dancing() -> Library {
     library
 }
 
-/// A skeleton of these names, one under the other, without any clip.
+/// A chain of joints with these names, without a clip.
 fn chain(names: &[&str]) -> Asset {
-    let joint = |(index, name): (usize, &&str)| Joint {
-        name: (*name).to_owned(),
-        parent: index.checked_sub(1),
-        rest: Transform::from_translation(Vec3::Y),
-        morph_weights: Vec::new(),
-    };
-    let skeleton = Skeleton::new(names.iter().enumerate().map(joint).collect()).expect("a chain");
-    Asset::from(skeleton)
+    skeletons::asset(skeletons::chain(names.iter().copied(), Vec3::Y))
 }
 
 fn settled(library: &mut Library, state: &mut ViewerState) -> Vec<MapProblem> {

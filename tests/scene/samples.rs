@@ -1,7 +1,7 @@
 //! The samples that come along, and the scenes of the gallery made of them.
 
 use gaitway::files::{Role, open_paths, read_paths};
-use gaitway::library::sample;
+use gaitway::samples;
 use gaitway::state::{ClipChoice, Command, ViewerState, active_clip, apply, from_link, resolve_camera};
 use serde_json::Value;
 
@@ -47,7 +47,7 @@ fn check(scene: &Value) {
 /// Scenes whose samples are not there are left out of the gallery; the first, which is the first screen, has to be there.
 #[test]
 fn every_scene_opens() {
-    let known = sample::names();
+    let known = samples::names();
     let there = |scene: &&Value| {
         let link = scene["link"].as_str().unwrap_or_default();
         let sources = link.split(['=', '&']).filter_map(|part| part.strip_prefix("sample:"));
@@ -60,12 +60,12 @@ fn every_scene_opens() {
 
 #[test]
 fn what_the_window_begins_with_is_there() {
-    open_paths(&[sample::FIRST.into()]).expect("the first sample");
+    open_paths(&[samples::FIRST.into()]).expect("the first sample");
 }
 
 #[test]
 fn every_sample_opens() {
-    for name in sample::names() {
+    for name in samples::names() {
         let source = format!("sample:{name}");
         let contents =
             read_paths(&[source.clone().into()], Role::Any).unwrap_or_else(|error| panic!("{source}: {error}"));
@@ -73,6 +73,6 @@ fn every_sample_opens() {
         let found: Vec<String> =
             contents.models.iter().map(|opened| opened.model.source.clone()).chain(motions).collect();
         assert_eq!(found, [source]);
-        assert_ne!(sample::title(name), name, "it should have a title for the screen");
+        assert_ne!(samples::title(name), name, "it should have a title for the screen");
     }
 }

@@ -1,12 +1,14 @@
-//! The skinning exercise of MIT 6.837 done straightforwardly in double precision, from the texts of its three files:
-//! `p' = Σ w_j · T_j · B_j⁻¹ · p`. Shares no code with what it judges.
+//! The skinning exercise of MIT 6.837, implemented literally in double precision from the text of its three files:
+//! `p' = Σ w_j · T_j · B_j⁻¹ · p`. Shares no code with the library.
 
 use glam::{DMat4, DQuat, DVec3, Quat};
+
+use crate::random::Random;
 
 pub struct Exercise {
     pub vertices: Vec<DVec3>,
     joints: Vec<(DVec3, Option<usize>)>,
-    /// One row for each vertex, one weight for each joint.
+    /// One row per vertex, one weight per joint.
     weights: Vec<Vec<f64>>,
 }
 
@@ -27,8 +29,8 @@ impl Exercise {
         Self { vertices: vertices.collect(), joints: joints.collect(), weights: weights.collect() }
     }
 
-    /// Where the vertices are with every joint turned.
-    pub fn bent(&self, rotations: &[DQuat]) -> Vec<DVec3> {
+    /// Skins all vertices with these rotations of the joints.
+    pub fn skinned(&self, rotations: &[DQuat]) -> Vec<DVec3> {
         let mut bind: Vec<DMat4> = Vec::new();
         let mut world: Vec<DMat4> = Vec::new();
         for (&(offset, parent), &rotation) in self.joints.iter().zip(rotations) {
@@ -37,26 +39,22 @@ impl Exercise {
             bind.push(bind_parent * DMat4::from_translation(offset));
             world.push(world_parent * DMat4::from_rotation_translation(rotation, offset));
         }
-        let moves: Vec<DMat4> = world.iter().zip(&bind).map(|(world, bind)| *world * bind.inverse()).collect();
-        let move_one = |(vertex, row): (&DVec3, &Vec<f64>)| {
-            row.iter().zip(&moves).map(|(&weight, moved)| weight * moved.transform_point3(*vertex)).sum()
+        let world_from_bind: Vec<DMat4> =
+            world.iter().zip(&bind).map(|(world, bind)| *world * bind.inverse()).collect();
+        let skin = |(vertex, row): (&DVec3, &Vec<f64>)| {
+            row.iter().zip(&world_from_bind).map(|(&weight, matrix)| weight * matrix.transform_point3(*vertex)).sum()
         };
-        self.vertices.iter().zip(&self.weights).map(move_one).collect()
+        self.vertices.iter().zip(&self.weights).map(skin).collect()
     }
 }
 
-/// Any angles for all joints, the same on every run: exact, and rounded as the real thing has them.
-#[allow(dead_code)] // Not every test program turns joints at random.
+/// Random rotations of all joints: in double precision, and rounded to single.
+#[allow(dead_code)] // Not every test program uses it.
 pub fn pose(joints: usize, seed: u64) -> (Vec<DQuat>, Vec<Quat>) {
-    let mut random = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15);
-    let mut part = || {
-        random ^= random << 13;
-        random ^= random >> 7;
-        random ^= random << 17;
-        (random % 20_001) as f64 / 10_000.0 - 1.0
-    };
+    let mut random = Random(seed);
+    let mut angle = || 3.0 * random.f64() - 1.5;
     let rounded: Vec<Quat> = (0..joints)
-        .map(|_| DQuat::from_euler(glam::EulerRot::XYZ, 1.5 * part(), 1.5 * part(), 1.5 * part()).as_quat().normalize())
+        .map(|_| DQuat::from_euler(glam::EulerRot::XYZ, angle(), angle(), angle()).as_quat().normalize())
         .collect();
     (rounded.iter().map(|rotation| rotation.as_dquat().normalize()).collect(), rounded)
 }

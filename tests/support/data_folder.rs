@@ -1,12 +1,12 @@
-//! Where the real files are that some tests read. They are not part of the repository.
+//! Real model files for tests. They are not part of the repository.
 
 use std::path::{Path, PathBuf};
 
 use gaitway::asset::Asset;
 use gaitway::formats::{FileSet, load};
 
-/// The folder named by `GAITWAY_DATA`, else `../shared/data` beside the repository. None when there is none: the caller
-/// prints `skipped: …` through this function and passes, unless `GAITWAY_REQUIRE_DATA=1` turns that into a failure.
+/// Returns the folder named by `GAITWAY_DATA`, or else `../shared/data`. Without it this prints `skipped: …` and
+/// returns none, so that the test passes; with `GAITWAY_REQUIRE_DATA=1` it panics instead.
 #[allow(dead_code)]
 pub fn data_folder() -> Option<PathBuf> {
     let folder = match std::env::var_os("GAITWAY_DATA") {
@@ -22,10 +22,11 @@ pub fn data_folder() -> Option<PathBuf> {
     None
 }
 
-/// What one of the real files holds.
+/// Loads one of the files.
 #[allow(dead_code)]
 pub fn read(folder: &Path, name: &str) -> Asset {
     let mut files = FileSet::default();
-    files.insert(name.rsplit('/').next().unwrap(), std::fs::read(folder.join(name)).unwrap());
-    load(&files).unwrap()
+    let bytes = std::fs::read(folder.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
+    files.insert(name.rsplit('/').next().unwrap(), bytes);
+    load(&files).unwrap_or_else(|error| panic!("{name}: {error}"))
 }

@@ -1,8 +1,8 @@
-//! What tests do where there is no graphics adapter.
+//! Skipping tests without a graphics adapter.
 
 use std::fmt::Display;
 
-/// None, and a line that says so, when there is no adapter; a failure with `REQUIRE_GPU=1`.
+/// Without an adapter, prints `skipped: …` and returns none; with `REQUIRE_GPU=1` it panics instead.
 pub fn or_skipped<T>(found: Result<T, impl Display>) -> Option<T> {
     found
         .inspect_err(|problem| {

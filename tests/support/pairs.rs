@@ -1,4 +1,4 @@
-//! The real characters and motions that are retargeted to one another, and the figures of each pair.
+//! Real characters and motions, and the result of retargeting each pair.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use gaitway::asset::{Asset, Humanoid};
 use gaitway::formats::{FileSet, load};
 use gaitway::retarget::{Body, Feet, Figures, ResolvedMap, Retargeting, propose, recognize};
 
-/// A file with a person in it: its path under the data folder, and the clip to lend; none for those that only borrow.
+/// A file with a person: its path under the data folder, and the clip to retarget; none for targets only.
 pub struct Person {
     pub file: &'static str,
     pub clip: Option<&'static str>,
@@ -21,7 +21,7 @@ const fn borrower(file: &'static str) -> Person {
     Person { file, clip: None, has_mesh: true }
 }
 
-/// Without a name: the file's only clip.
+/// A motion whose only clip is used.
 const fn motion(file: &'static str) -> Person {
     Person { file, clip: Some(""), has_mesh: false }
 }
@@ -108,7 +108,7 @@ impl Loaded {
     }
 }
 
-/// What became of one pair. Whoever includes this file reads a part of it.
+/// The result of one pair. Each test program uses a part of it.
 #[allow(dead_code)]
 pub struct Outcome {
     pub mapped: usize,

@@ -1,10 +1,12 @@
-//! Morphing and skinning cases that the CPU's and the GPU's code both have to pass, with the answers worked out here in
-//! f64 from the definitions alone: nothing of `gaitway::mesh` but its data types is used.
+//! Morphing and skinning cases for both the CPU and the GPU. Expected results are computed here in f64 from the definitions;
+//! only the data types come from `gaitway::mesh`.
 
 use std::f64::consts::TAU;
 
 use gaitway::mesh::{Geometry, Influences, MorphTarget, SkinningMode};
 use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3, DVec4, Mat3, Quat, Vec3};
+
+use crate::random::Random;
 
 /// One geometry in one pose.
 pub struct Case {
@@ -17,10 +19,10 @@ pub struct Case {
     pub mode: SkinningMode,
 }
 
-/// How far a position may be from [`expected`], as a part of the case's largest coordinate.
+/// Tolerance of positions relative to the case's largest coordinate.
 #[allow(dead_code)]
 pub const POSITION_TOLERANCE: f64 = 2e-6;
-/// How far a normal may be from [`expected`].
+/// Tolerance of normals.
 #[allow(dead_code)]
 pub const NORMAL_TOLERANCE: f64 = 1e-5;
 
@@ -32,7 +34,7 @@ pub fn cases() -> Vec<Case> {
     };
     add("not skinned", tube(0), vec![joint(0.3, Vec3::ONE)], &[], Linear);
     add("not skinned, mirrored", tube(0), vec![joint(0.3, Vec3::new(-1.0, 1.0, 1.0))], &[], Linear);
-    add("one influence, scaled unevenly", one_influence(), vec![joint(1.1, Vec3::new(0.5, 2.0, 3.0))], &[], Linear);
+    add("one influence, non-uniform scale", one_influence(), vec![joint(1.1, Vec3::new(0.5, 2.0, 3.0))], &[], Linear);
     add("linear, a bend", tube(2), bend(80.0), &[], Linear);
     add("linear, a twist", tube(2), twist(170.0), &[], Linear);
     add("linear, 4 influences, scaled and sheared", scattered(4, 9), many(9), &[], Linear);
@@ -52,8 +54,8 @@ pub fn cases() -> Vec<Case> {
         DualQuaternion,
     );
     add("dual quaternion, 4 influences, scaled", scattered(4, 9), many(9), &[], DualQuaternion);
-    add("dual quaternion, 13 influences", scattered(13, 20), turned(20), &[], DualQuaternion);
-    add("dual quaternion, 16 influences", scattered(16, 20), turned(20), &[], DualQuaternion);
+    add("dual quaternion, 13 influences", scattered(13, 20), rigid(20), &[], DualQuaternion);
+    add("dual quaternion, 16 influences", scattered(16, 20), rigid(20), &[], DualQuaternion);
     add("morphed", morphing(tube(0)), vec![Affine3A::IDENTITY], &[0.75, -0.5], Linear);
     add("morphed, a weight of zero", morphing(tube(0)), vec![Affine3A::IDENTITY], &[0.0, 1.0], Linear);
     add("morphed and bent", morphing(tube(2)), bend(60.0), &[0.25, 1.0], Linear);
@@ -61,7 +63,7 @@ pub fn cases() -> Vec<Case> {
     cases
 }
 
-/// Positions and unit normals of all vertices.
+/// Computes positions and unit normals of all vertices.
 pub fn expected(case: &Case) -> (Vec<DVec3>, Vec<DVec3>) {
     let geometry = &case.geometry;
     let mut positions = Vec::new();
@@ -108,8 +110,8 @@ fn linear_blend(influences: &[(DAffine3, f64)]) -> DAffine3 {
     DAffine3 { matrix3, translation }
 }
 
-/// Kavan et al. 2008: `M = T·R·S`; the `S` are blended linearly and come first, the rigid `T·R` as dual quaternions
-/// `r + ε·½·t·r` on the hemisphere of the first, normalised.
+/// Kavan et al. 2008: `M = T·R·S`. The `S` are blended linearly and applied first, the rigid `T·R` as dual quaternions
+/// `r + ε·½·t·r` in the hemisphere of the first, then normalized.
 fn dual_quaternion_blend(influences: &[(DAffine3, f64)]) -> DAffine3 {
     let mut stretch = DMat3::ZERO;
     let mut real = DVec4::ZERO;
@@ -132,8 +134,7 @@ fn dual_quaternion_blend(influences: &[(DAffine3, f64)]) -> DAffine3 {
     DAffine3 { matrix3: DMat3::from_quat(rotation) * stretch, translation: DVec3::new(twice.x, twice.y, twice.z) }
 }
 
-/// The rotation of a matrix as the palette defines it: its columns made orthonormal one after the other, all turned
-/// around first when the matrix mirrors.
+/// Extracts the rotation as the palette defines it: Gram-Schmidt on the columns, of the negated matrix if it mirrors.
 fn gram_schmidt(matrix: DMat3) -> DMat3 {
     let matrix = if matrix.determinant() < 0.0 { -matrix } else { matrix };
     let x = matrix.x_axis.normalize();
@@ -145,8 +146,8 @@ pub const TUBE_SIDES: usize = 12;
 pub const TUBE_RINGS: usize = 9;
 pub const TUBE_RADIUS: f32 = 0.2;
 
-/// An upright tube, 1 m high; with `joints` = 2 the weights go over from joint 0 at the foot to joint 1 at the top, with
-/// 0 it is not skinned.
+/// An upright tube, 1 m high. With 2 `joints` the weights blend from joint 0 at the bottom to joint 1 at the top; with 0 it is
+/// not skinned.
 pub fn tube(joints: usize) -> Geometry {
     let mut geometry = Geometry::default();
     for ring in 0..TUBE_RINGS {
@@ -177,7 +178,7 @@ pub fn tube(joints: usize) -> Geometry {
     geometry
 }
 
-/// The tube, all of it on joint 0.
+/// The tube, rigidly on joint 0.
 pub fn one_influence() -> Geometry {
     let mut geometry = tube(0);
     let vertices = geometry.positions.len();
@@ -193,8 +194,8 @@ pub fn scattered(influences: usize, joints: usize) -> Geometry {
     let mut random = Random(7);
     geometry.influences.stride = stride;
     for _ in 0..geometry.positions.len() {
-        let start = (random.next() * joints as f32) as usize;
-        let mut weights: Vec<f32> = (0..influences).map(|_| 0.05 + random.next()).collect();
+        let start = (random.f32() * joints as f32) as usize;
+        let mut weights: Vec<f32> = (0..influences).map(|_| 0.05 + random.f32()).collect();
         let sum: f32 = weights.iter().sum();
         weights.iter_mut().for_each(|weight| *weight /= sum);
         weights.sort_by(|a, b| b.total_cmp(a));
@@ -206,7 +207,7 @@ pub fn scattered(influences: usize, joints: usize) -> Geometry {
     geometry
 }
 
-/// Two targets: one swells the tube and tilts its normals, one shifts it and leaves the normals alone.
+/// Adds two targets: one inflates the tube and tilts its normals, one shifts it without changing normals.
 pub fn morphing(mut geometry: Geometry) -> Geometry {
     let swell = MorphTarget {
         positions: geometry.normals.iter().map(|normal| 0.3 * *normal).collect(),
@@ -221,12 +222,12 @@ pub fn morphing(mut geometry: Geometry) -> Geometry {
     geometry
 }
 
-/// The upper joint turned about Z around the tube's middle.
+/// Rotates the upper joint about Z at the tube's middle.
 pub fn bend(angle_degrees: f32) -> Vec<Affine3A> {
     vec![Affine3A::IDENTITY, about_middle(Quat::from_rotation_z(angle_degrees.to_radians()))]
 }
 
-/// The upper joint turned about the tube's own axis.
+/// Rotates the upper joint about the tube's axis.
 pub fn twist(angle_degrees: f32) -> Vec<Affine3A> {
     vec![Affine3A::IDENTITY, about_middle(Quat::from_rotation_y(angle_degrees.to_radians()))]
 }
@@ -241,7 +242,7 @@ fn joint(seed: f32, scale: Vec3) -> Affine3A {
     Affine3A::from_scale_rotation_translation(scale, rotation, Vec3::new(seed, -0.5 * seed, 0.2))
 }
 
-/// Turned, moved, scaled unevenly, a little sheared.
+/// Rotated, translated, non-uniformly scaled and slightly sheared.
 fn many(count: usize) -> Vec<Affine3A> {
     let shear = Affine3A::from_mat3(Mat3::from_cols(Vec3::X, Vec3::new(0.2, 1.0, 0.0), Vec3::new(0.0, -0.1, 1.0)));
     (0..count)
@@ -252,18 +253,7 @@ fn many(count: usize) -> Vec<Affine3A> {
         .collect()
 }
 
-/// Turned and moved only.
-fn turned(count: usize) -> Vec<Affine3A> {
+/// Rotated and translated only.
+fn rigid(count: usize) -> Vec<Affine3A> {
     (0..count).map(|at| joint(1.5 * at as f32 / count as f32 - 0.7, Vec3::ONE)).collect()
-}
-
-/// A small linear congruential generator (Numerical Recipes' constants): the same numbers everywhere.
-struct Random(u32);
-
-impl Random {
-    /// From 0 up to 1.
-    fn next(&mut self) -> f32 {
-        self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        (self.0 >> 8) as f32 / (1 << 24) as f32
-    }
 }

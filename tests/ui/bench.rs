@@ -6,7 +6,8 @@ use gaitway::anim::{ClipBuilder, Interpolation, Joint, JointIndex, Keys, Skeleto
 use gaitway::asset::{Asset, AssetParts, Warning};
 use gaitway::editor::Editor;
 use gaitway::frame::{Frame, evaluate};
-use gaitway::library::{Library, Model, Motion, sample};
+use gaitway::library::{Library, Model, Motion};
+use gaitway::samples;
 use gaitway::state::{Command, Playback, ViewerState};
 use gaitway::ui::{self, Output, Shown, UiAction, UiState};
 
@@ -24,13 +25,13 @@ pub const NARROW: [f32; 2] = [390.0, 844.0];
 
 /// The sample at rest in its first moment, paused so that nothing moves by itself.
 pub fn sample_bench(size: [f32; 2]) -> Harness<'static, Bench> {
-    bench(size, sample::load("walker").expect("the sample is there"))
+    bench(size, samples::load("walker").expect("the sample is there"))
 }
 
 /// The sample with the sample's own clips to borrow, as if they came from other files.
 pub fn motion_bench(size: [f32; 2], motions: &[&str]) -> Harness<'static, Bench> {
     let mut library = Library::default();
-    library.set(sample::load("walker").expect("the sample is there"));
+    library.set(samples::load("walker").expect("the sample is there"));
     let asset = library.active().expect("just set").asset.clone();
     library.set_motions(motions.iter().map(|name| Motion::new((*name).to_owned(), asset.clone())).collect());
     bench_of(size, library)

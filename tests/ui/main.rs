@@ -10,4 +10,6 @@ mod layout;
 mod models;
 mod motion;
 mod picture;
+#[path = "../support/skeletons.rs"]
+mod skeletons;
 mod transport;

@@ -1,14 +1,15 @@
 //! Several models at once, and the way back from what was opened.
 
 use egui_kittest::kittest::Queryable;
-use gaitway::library::{Library, Model, sample};
+use gaitway::library::{Library, Model};
+use gaitway::samples;
 use gaitway::ui::{Toast, UiAction};
 
 use crate::bench::{NARROW, WIDE, bench_of, press, sample_bench};
 
 fn two_models() -> Library {
     let mut library = Library::default();
-    let first = library.set(sample::load("walker").expect("the sample is there"));
+    let first = library.set(samples::load("walker").expect("the sample is there"));
     let asset = library.get(first).expect("just set").asset.clone();
     library.add(Model::new("folder/other.glb".to_owned(), asset, Vec::new()));
     library
@@ -36,12 +37,12 @@ fn models_are_listed_when_there_are_several() {
 fn the_shown_model_is_in_sight_among_many() {
     let mut library = two_models();
     let asset = library.active().expect("there are two").asset.clone();
-    for index in library.models().len()..Library::MOST_MODELS {
+    for index in library.models().len()..Library::MAX_MODELS {
         library.add(Model::new(format!("{index}.glb"), asset.clone(), Vec::new()));
     }
     let mut harness = bench_of([1280.0, 400.0], library);
     harness.run_steps(30);
-    let last = format!("Close {}.glb", Library::MOST_MODELS - 1);
+    let last = format!("Close {}.glb", Library::MAX_MODELS - 1);
     // Its section leaves room to the clips.
     let section = harness.get_by_label("CLIPS").rect();
     assert!(harness.get_by_label(&last).rect().bottom() <= section.top());

@@ -2,8 +2,6 @@
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use gaitway::anim::{Joint, Skeleton};
-use gaitway::asset::Asset;
 use gaitway::editor::Export;
 use gaitway::library::{Library, Model, Motion};
 use gaitway::retarget::{
@@ -13,6 +11,7 @@ use gaitway::state::{ClipChoice, Command, MapEdit, map_in_force, muted_propertie
 use gaitway::ui::{PathPrompt, PathPurpose, Saved, UiAction};
 
 use crate::bench::{Bench, NARROW, WIDE, bench_of, drag, motion_bench, press, press_key, sample_bench};
+use crate::skeletons;
 
 fn map(harness: &Harness<'_, Bench>, motion: usize) -> JointMap {
     let bench = harness.state();
@@ -557,14 +556,8 @@ fn both_joints_are_clicked_where_both_are_shown() {
 
 #[test]
 fn three_hundred_joints_have_their_lines() {
-    let joint = |index: usize| Joint {
-        name: format!("Tentacle{index}"),
-        parent: index.checked_sub(1),
-        rest: gaitway::anim::Transform::from_translation(glam::Vec3::Y * 0.01),
-        ..Joint::default()
-    };
-    let skeleton = Skeleton::new((0..300).map(joint).collect()).expect("a chain");
-    let asset = Asset::from(skeleton);
+    let names: Vec<String> = (0..300).map(|index| format!("Tentacle{index}")).collect();
+    let asset = skeletons::asset(skeletons::chain(names.iter().map(String::as_str), glam::Vec3::Y * 0.01));
     let mut library = Library::default();
     library.set(Model::new("squid.glb".to_owned(), asset, Vec::new()));
     let asset = library.active().expect("just set").asset.clone();

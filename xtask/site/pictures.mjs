@@ -7,7 +7,7 @@ import path from "node:path";
 import { samplesOf, valuesOf } from "./samples.mjs";
 
 const TARGET = process.env.CARGO_TARGET_DIR ?? "target";
-const CODE = ["shaders", ...["anim", "mesh", "asset", "formats", "retarget", "library", "state", "frame", "render", "files"].map((module) => `src/${module}`)];
+const CODE = ["shaders", ...["anim", "mesh", "asset", "formats", "retarget", "library", "samples", "state", "frame", "render", "files"].map((module) => `src/${module}`)];
 
 function codeHash() {
   const hash = crypto.createHash("sha256");

@@ -1,6 +1,6 @@
-"""Measures the finished files as a player plays them: how deep soles go, how fast a foot slides while it bears weight,
-and whether clips close. `python check.py FILE.glb [CLIP=SPEED …]`: SPEED metres a second of the treadmill (0 where not
-given; +Z walks). A foot bears weight while part of its sole is within 4 mm of the ground and neither rises nor falls.
+"""Measures finished files as played back: ground penetration of the soles, sliding of planted feet, and loop seams.
+`python check.py FILE.glb [CLIP=SPEED …]`: SPEED of the treadmill in metres per second (default 0; walks face +Z). A foot is
+planted while part of its sole is within 4 mm of the ground and neither rises nor falls.
 """
 
 import json
@@ -70,7 +70,7 @@ class File:
 
 
 def soles(file, clip, times):
-    """Places (T, V, 3) over the vertices that are soles in the rest pose, and which foot each belongs to."""
+    """Positions (T, V, 3) of the vertices that are soles in the rest pose, and the foot each belongs to."""
     prim = file.json["meshes"][0]["primitives"][0]["attributes"]
     skin = file.json["skins"][0]
     place = file.array(prim["POSITION"])
@@ -104,7 +104,7 @@ def main():
                 for a, b in zip(q, q[1:]):
                     bears = (a[:, 1] < 0.004) & (b[:, 1] < 0.004) & (np.abs(b[:, 1] - a[:, 1]) * rate < 0.1)
                     if bears.any():
-                        # The sole's steadiest quarter: the edge that is just landing or leaving is not standing.
+                        # The steadiest quarter of the sole: an edge that is landing or lifting is not planted.
                         v = np.sort(np.linalg.norm((b - a)[bears][:, [0, 2]], axis=1) * rate)
                         v = v[: max(1, len(v) // 4)].mean()
                         mean.append(v)

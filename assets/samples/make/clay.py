@@ -1,10 +1,10 @@
-"""Clay: bodies modelled as signed distances, turned into even quads.
+"""Clay: bodies modelled as signed distance fields and converted to even quads.
 
-A shape is a function of points (N, 3) -> distances (N,), negative inside, in metres; they need only be near enough to
-true distances for blending. Shapes are joined with `union(..., k=...)`, k being the width in metres of the soft seam.
-`mesh_of(shape, …)` samples a shape, meshes it (surface nets), lets Blender's QuadriFlow lay even quads over it and pulls
-every vertex back onto the shape. Characters look along +Z, stand on y = 0, their left is +X; `half=True` models only the
-left half (x >= 0) and mirrors it, so that both sides have the very same loops.
+A shape is a function of points (N, 3) -> distances (N,), negative inside, in metres, close enough to true distances for
+blending. Shapes are joined with `union(..., k=...)`, k being the blend width in metres.
+`mesh_of(shape, …)` samples a shape, meshes it (surface nets), remeshes it to even quads with Blender's QuadriFlow and projects
+every vertex back onto the shape. Characters face +Z, stand on y = 0, and their left is +X; `half=True` models only the left
+half (x >= 0) and mirrors it, so that both sides have identical loops.
 
 Leaves to others: joints and weights (rig.py), colours (paint.py), files (glb.py).
 """
@@ -28,7 +28,7 @@ def sphere(center, radius):
 
 
 def ellipsoid(center, radii, rotation=None):
-    """`rotation` (3x3) turns the ellipsoid's own axes into the model's."""
+    """`rotation` (3x3) maps the ellipsoid's axes to the model's."""
     center, radii = _vec(center), _vec(radii)
 
     def distance(p):
@@ -64,7 +64,7 @@ def capsule(a, b, radius_a, radius_b=None, flatten=None):
 
 
 def box(center, half, rounding=0.01, rotation=None):
-    """`half` are the outer half sizes, the rounding included."""
+    """`half` are the outer half sizes, including the rounding."""
     center, inner = _vec(center), _vec(half) - rounding
 
     def distance(p):
@@ -103,7 +103,7 @@ def _smooth_table(t, values):
 
 
 def loft(origin, along, side, stations, rounding=0.02, power=2.0):
-    """Cross-sections strung along an axis: the sculptor's tool for torsos and limbs.
+    """Cross-sections lofted along an axis, for torsos and limbs.
 
     `along` is the axis, `side` a vector across it; the third direction is along x side. A station is
     (t, center_side, center_other, radius_side, radius_other[, power]): t metres from `origin`, section a superellipse
@@ -126,7 +126,7 @@ def loft(origin, along, side, stations, rounding=0.02, power=2.0):
         y = np.abs(q @ other - s[:, 1])
         n = s[:, 4]
         a = ((x / s[:, 2]) ** n + (y / s[:, 3]) ** n + 1e-12) ** (1.0 / n)
-        # The gradient's size of the radial term, so that flat sections keep distances near true.
+        # Divided by the gradient of the radial term, so that flat sections keep nearly true distances.
         gx = (x / s[:, 2]) ** (n - 1) / s[:, 2]
         gy = (y / s[:, 3]) ** (n - 1) / s[:, 3]
         slope = np.sqrt(gx**2 + gy**2) * np.maximum(a, 1e-6) ** (1.0 - n)
@@ -172,12 +172,12 @@ def union(*shapes, k=0.02):
 
 
 def cut(shape, tool, k=0.01):
-    """`shape` without `tool`, the edge rounded over `k`."""
+    """`shape` minus `tool`, the edge rounded over `k`."""
     return lambda p: -smooth_min(-shape(p), tool(p), k)
 
 
 def common(a, b, k=0.01):
-    """What lies in both."""
+    """The intersection."""
     return lambda p: -smooth_min(-a(p), -b(p), k)
 
 
@@ -190,13 +190,13 @@ def shell(shape, thickness):
 
 
 def halfspace(point, outward):
-    """Everything behind the plane through `point` that faces `outward`."""
+    """The half space behind the plane through `point` with normal `outward`."""
     point, outward = _vec(point), _vec(outward) / np.linalg.norm(outward)
     return lambda p: (p - point) @ outward
 
 
 def mirrored(shape):
-    """Both sides of a shape that is modelled at x >= 0."""
+    """Mirrors a shape modelled at x >= 0."""
     return lambda p: shape(np.column_stack([np.abs(p[:, 0]), p[:, 1], p[:, 2]]))
 
 
@@ -232,7 +232,7 @@ def project(shape, p, rounds=6, keep_plane=None):
 
 
 def _sample(shape, low, high, step):
-    """Distances on a grid; only blocks near the surface are evaluated finely."""
+    """Distances on a grid; only blocks near the surface are evaluated at full resolution."""
     block = 4
     count = (np.ceil((high - low) / (step * block)).astype(int) + 1) * block
     axes = [low[i] + step * np.arange(count[i] + 1) for i in range(3)]
@@ -304,7 +304,7 @@ def surface_nets(shape, low, high, step):
 
 
 def marching_tetrahedra(shape, low, high, step):
-    """Vertices and triangles; more and worse-shaped than surface nets, but always a manifold."""
+    """Vertices and triangles; more and less regular than surface nets, but always a manifold."""
     low, high = _vec(low), _vec(high)
     field = _sample(shape, low, high, step)
     field = np.where(np.abs(field) < 1e-9, 1e-9, field)
@@ -319,7 +319,7 @@ def marching_tetrahedra(shape, low, high, step):
     flat = field.reshape(-1)
     grid = (base[:, None, :] + corners[None]) @ np.array([size[1] * size[2], size[2], 1])
     pairs, outward = [], []
-    # Six tetrahedra round the cell's diagonal 0-7; corner number = 4x + 2y + z.
+    # Six tetrahedra around the cell's diagonal 0-7; corner index = 4x + 2y + z.
     for tet in ((0, 4, 6, 7), (0, 6, 2, 7), (0, 2, 3, 7), (0, 3, 1, 7), (0, 1, 5, 7), (0, 5, 4, 7)):
         index = grid[:, tet]
         sign = flat[index] < 0.0
@@ -344,7 +344,7 @@ def marching_tetrahedra(shape, low, high, step):
     i, j = unique // flat.size, unique % flat.size
     a = np.stack(np.unravel_index(i, field.shape), axis=-1)
     b = np.stack(np.unravel_index(j, field.shape), axis=-1)
-    # Crossings keep away from the corners, so that no triangle shrinks to a point.
+    # Crossings are kept away from the corners, so that no triangle degenerates.
     t = np.clip(flat[i] / (flat[i] - flat[j]), 0.12, 0.88)[:, None]
     vertices = low + step * (a + (b - a) * t)
     tris = number.reshape(-1, 3)
@@ -355,7 +355,7 @@ def marching_tetrahedra(shape, low, high, step):
 
 
 def _is_manifold(faces):
-    """Every directed edge once at most, and no vertex where two sheets touch."""
+    """Whether the mesh is manifold: each directed edge at most once, and no vertex where two sheets touch."""
     faces = np.asarray(faces)
     n = faces.shape[1]
     a = faces.reshape(-1)
@@ -388,7 +388,7 @@ def _is_manifold(faces):
 
 
 class Mesh:
-    """Vertices (N, 3), faces (lists of 3 or 4 indices), and per face the number of its part."""
+    """Vertices (N, 3), faces (lists of 3 or 4 indices), and the part number of each face."""
 
     def __init__(self, vertices, faces, part=None):
         self.vertices = np.asarray(vertices, dtype=np.float64)
@@ -435,7 +435,7 @@ def _blender_mesh(name, vertices, faces):
 
 
 def _relax(vertices, faces, shape, plane, rounds):
-    """Evens the quads out: each vertex goes half-way to its neighbours' mean, then back onto the shape."""
+    """Relaxes the quads: each vertex moves halfway to its neighbours' mean, then back onto the shape."""
     edges = set()
     for f in faces:
         for a, b in zip(f, f[1:] + f[:1]):
@@ -444,7 +444,7 @@ def _relax(vertices, faces, shape, plane, rounds):
     for _ in range(rounds):
         total = np.zeros_like(vertices)
         count = np.zeros(len(vertices))
-        # On the mirror plane only neighbours on the plane count, so that the seam stays even.
+        # On the mirror plane only neighbours on the plane count, which keeps the seam even.
         both = plane[edges[:, 0]] & plane[edges[:, 1]]
         for a, b in ((0, 1), (1, 0)):
             use = both | ~plane[edges[:, a]]
@@ -457,8 +457,8 @@ def _relax(vertices, faces, shape, plane, rounds):
 
 
 def mesh_of(shape, low, high, quads, step=0.008, half=True, relax=3, seed=0):
-    """Even quads over a shape inside the box `low`..`high`; about `quads` of them in the whole (mirrored) mesh."""
-    import bpy  # first: it is what makes bmesh importable
+    """Even quads for a shape inside the box `low`..`high`; about `quads` of them in the full (mirrored) mesh."""
+    import bpy  # must come first: it makes bmesh importable
     import bmesh
 
     low, high = _vec(low).copy(), _vec(high).copy()
@@ -468,7 +468,7 @@ def mesh_of(shape, low, high, quads, step=0.008, half=True, relax=3, seed=0):
     vertices, faces = surface_nets(shape, low, high, step)
     if not _is_manifold(faces):
         vertices, faces = marching_tetrahedra(shape, low, high, step)
-    # QuadriFlow calls edges below half a millimetre degenerate: it works on a body 100 times as large.
+    # QuadriFlow treats edges below half a millimetre as degenerate, so the body is scaled by 100.
     thing = _blender_mesh("clay", vertices * 100.0, faces)
     if touches:
         edit = bmesh.new()
@@ -502,7 +502,7 @@ def mesh_of(shape, low, high, quads, step=0.008, half=True, relax=3, seed=0):
                 plane[a] = plane[b] = True
         vertices[plane, 0] = 0.0
         if not plane.any():
-            # QuadriFlow closes small openings, so a small part is made whole, without a mirror.
+            # QuadriFlow closes small openings, so small parts are meshed whole instead of mirrored.
             low[0] = -high[0]
             return mesh_of(shape, low, high, quads, step, False, relax, seed)
     vertices = project(shape, vertices, 6, plane)
@@ -513,7 +513,7 @@ def mesh_of(shape, low, high, quads, step=0.008, half=True, relax=3, seed=0):
     mesh = Mesh(vertices, faces)
     mesh.plane = plane
     mesh.whole = not half
-    # A face that lies in the mirror plane would only meet its own image.
+    # A face in the mirror plane would coincide with its own image.
     return _outward(_only(mesh, np.array([not all(plane[i] for i in f) for f in faces])), shape)
 
 
@@ -528,7 +528,7 @@ def _outward(mesh, shape):
 
 
 def cast(shape, start, direction, reach, steps=64):
-    """Where rays (N, 3 starts; N, 3 directions) first meet the shape within `reach` directions; rays that miss end there."""
+    """First hits of rays (N, 3 origins; N, 3 directions) with the shape within `reach` directions; rays that miss end there."""
     start, direction = np.asarray(start, dtype=np.float64), np.asarray(direction, dtype=np.float64)
     low = np.zeros(len(start))
     high = np.full(len(start), float(reach))
@@ -548,7 +548,7 @@ def cast(shape, start, direction, reach, steps=64):
 
 
 def ring(shape, origin, axis, side, profile, segments, half=False, closed=False, reach=0.3):
-    """A band round a limb, in clean loops: cuffs, belts, collars, the rims of boots.
+    """A band around a limb in clean loops: cuffs, belts, collars, boot rims.
 
     `axis` the limb's direction, `side` the direction where the loop begins; `profile` a list of (along, offset): metres
     along the axis from `origin`, and metres out from the shape's surface there, from one edge to the other. `half`: only
@@ -586,7 +586,7 @@ def ring(shape, origin, axis, side, profile, segments, half=False, closed=False,
 
 
 def _away(mesh, origin, axis):
-    """Turns all faces over if they look towards the axis."""
+    """Flips all faces if they face the axis."""
     tris, _ = mesh.triangles()
     v = mesh.vertices
     face = np.cross(v[tris[:, 1]] - v[tris[:, 0]], v[tris[:, 2]] - v[tris[:, 0]])
@@ -598,7 +598,7 @@ def _away(mesh, origin, axis):
 
 
 def patch(shape, center, facing, up, radii, profile, size=8, power=2.5, reach=0.15):
-    """A plate that lies on a body, in clean loops: pads, pockets, pouches, badges.
+    """A plate on a body in clean loops: pads, pockets, pouches, badges.
 
     It is seen from `facing` (a direction), `up` across it; `radii` (across, up) of its outline, a superellipse of
     exponent `power`; `profile`: (0..1 from middle to border, metres above the surface) keys, the last normally below 0.
@@ -612,7 +612,7 @@ def patch(shape, center, facing, up, radii, profile, size=8, power=2.5, reach=0.
     grid = np.linspace(-1, 1, size + 1)
     u, v = [c.reshape(-1) for c in np.meshgrid(grid, grid)]
     s = np.maximum(np.abs(u), np.abs(v))
-    # Square loops become loops of the outline's own kind.
+    # Morphs square loops into the outline's shape.
     angle = np.arctan2(v, u)
     norm = (np.abs(np.cos(angle)) ** power + np.abs(np.sin(angle)) ** power) ** (1.0 / power)
     x, y = s * np.cos(angle) / norm, s * np.sin(angle) / norm
@@ -635,8 +635,8 @@ def patch(shape, center, facing, up, radii, profile, size=8, power=2.5, reach=0.
 
 
 def globe(shape, center, radii, counts, rotation=None):
-    """A closed part in clean loops: a box of `counts` quads along its three axes, blown onto a shape that can be seen
-    whole from `center`. `radii` are about the shape's own, along the same axes; `rotation` (3x3) turns them."""
+    """A closed part in clean loops: a box of `counts` quads along its three axes, projected onto a shape that is star-shaped
+    around `center`. `radii` approximate the shape's along the same axes; `rotation` (3x3) rotates them."""
     center, radii = _vec(center), _vec(radii)
     turn = np.eye(3) if rotation is None else np.asarray(rotation)
     index, vertices, faces = {}, [], []
@@ -669,7 +669,7 @@ def globe(shape, center, radii, counts, rotation=None):
 
 
 def without_hidden(mesh, covers):
-    """The mesh without the faces that lie wholly inside one of `covers` [(shape, depth in metres)]."""
+    """The mesh without the faces that lie entirely inside one of `covers` [(shape, depth in metres)]."""
     hidden = np.zeros(len(mesh.faces), dtype=bool)
     for shape, depth in covers:
         inside = shape(mesh.vertices) < -depth
@@ -678,7 +678,7 @@ def without_hidden(mesh, covers):
 
 
 def _only(mesh, keep):
-    """The mesh of the faces in the mask `keep`, without vertices that nothing uses."""
+    """The mesh of the faces in the mask `keep`, without unused vertices."""
     faces = [f for f, k in zip(mesh.faces, keep) if k]
     used = np.unique([i for f in faces for i in f])
     number = np.full(len(mesh.vertices), -1)
@@ -689,7 +689,7 @@ def _only(mesh, keep):
 
 
 def joined(meshes):
-    """One mesh of several; `part` numbers where each face came from."""
+    """Joins meshes; `part` stores the origin of each face."""
     vertices, faces, part, plane, base = [], [], [], [], 0
     for number, m in enumerate(meshes):
         vertices.append(m.vertices)
@@ -703,10 +703,10 @@ def joined(meshes):
 
 
 def mirror(mesh, uv=None, alone=()):
-    """The whole of a left half. Vertices on the mirror plane are shared; both sides use the same UVs (per face corner).
+    """Mirrors a left half. Vertices on the mirror plane are shared; both sides use the same UVs (per face corner).
 
-    Faces of the parts numbered in `alone` are whole already and stay as they are. `other` of the result: the vertex on the
-    other side of each of the first vertices.
+    Faces of the parts in `alone` are complete already and are not mirrored. `other` of the result is the mirror image of each
+    of the first vertices.
     """
     count = len(mesh.vertices)
     doubled = [i for i, part in enumerate(mesh.part) if part not in alone]

@@ -7,8 +7,8 @@ legs' push and a gathered one after the fore legs'; the back bends and stretches
 quadrupedal gaits of vertebrates" (BioScience 1989); Alexander, "Principles of Animal Locomotion" (2003), ch. 7; Bertram and
 Gutmann, "Motions of the running horse and cheetah revisited" (2009) for the rotary order; Muybridge, "Animals in Motion".
 
-Legs are placed from the toes up: the tip of the toes stands still on the moving ground, metatarsus and pastern follow a key
-curve, two-bone inverse kinematics finds the rest. All clips stay on the spot.
+Legs are solved from the toes up: the toe tip is fixed on the moving ground, metatarsus and pastern follow a key curve, and
+two-bone inverse kinematics solves the rest. All clips are in place.
 """
 
 import os
@@ -30,8 +30,8 @@ OUT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "creature.g
 
 # ---------------------------------------------------------------- joints
 
-# The middle and the left side, metres; the fox looks along +Z. The last number is how thick the body is round the bone
-# that starts there, which is what shares out the weights.
+# Center and left side, metres; the fox faces +Z. The last number is the thickness of the body around the bone that starts
+# there, which determines the weights.
 PLACES = [
     ("root", None, (0, 0, 0)),
     ("hips", "root", (0, 0.400, -0.200)),
@@ -69,7 +69,7 @@ def skeleton():
     return s
 
 
-# Bones for the weights: joint, from, to, radius, softness. From and to are joints or places.
+# Bones for the weights: joint, from, to, radius, softness. From and to are joints or positions.
 BONES = [
     ("hips", (0, 0.400, -0.270), "spine1", 0.070, 0.014),
     ("spine1", "spine1", "spine2", 0.075, 0.014),
@@ -93,7 +93,7 @@ BONES = [
 
 
 def place_weights(s, p):
-    """Weights by nearness to bones, thick ones reaching further: what two bones are equally near to follows both."""
+    """Weights by distance to bones, relative to their thickness; points equally close to two bones follow both."""
     rows, joints = [], []
     for name, a, b, radius, soft in BONES:
         a, b = (AT[v] if isinstance(v, str) else np.array(v) for v in (a, b))
@@ -204,7 +204,7 @@ def head():
 
 
 def lids():
-    """Upper lids, a soft slant that makes the look friendly."""
+    """Upper lids with a slight slant for a friendly expression."""
     whole = clay.shell(clay.sphere(EYE, 0.0222), 0.0042)
     upper = common(whole, halfspace(EYE + [0, -0.0020, 0], (0.16, -0.95, 0.26)), k=0.002)
     lower = common(whole, halfspace(EYE + [0, -0.0130, 0], (0.0, 1.0, 0.0)), k=0.002)
@@ -216,7 +216,7 @@ def nose():
 
 
 def scarf():
-    """A soft band round the neck with a knot under the left cheek and two ends."""
+    """A scarf around the neck with a knot under the left cheek and two ends."""
     a, b = np.array([0.0, 0.495, 0.256]), np.array([0.0, 0.86, 0.51])
     b = b / np.linalg.norm(b)
     side = np.cross([1.0, 0, 0], b)
@@ -224,7 +224,7 @@ def scarf():
     def band(p):
         q = p - a
         t = q @ b
-        # Wider in front, where the breast's fur swells.
+        # Wider in front, over the fur of the chest.
         x, z = q[:, 0], np.where(q @ side > 0, (q @ side) / 1.42, q @ side)
         around = np.arctan2(x, z)
         r = np.hypot(x / 0.97, z)
@@ -259,14 +259,14 @@ NAMES = [p.name for p in PARTS]
 SPLITS = {"body": (1, 0.0, 0.0), "head": (0, 0.35, 1), "eye": (0, 0, 1), "lids": (0, 0, 1), "nose": (0, 0, 1), "scarf": (0, 0, 1)}
 
 
-# Where the silhouette ends in a point: even quads round such places off, so the nearest vertex is put there.
+# Pointed tips: even quads round them off, so the nearest vertex is moved there.
 POINTS = {
     "body": [(0, 0.484, -0.770)],
     "head": [(0.1055, 0.848, 0.3045), (0.151, 0.559, 0.307), (0.112, 0.516, 0.3095), (0.149, 0.608, 0.291)],
 }
 
 
-# What must be there: now and then the quads lose a thin limb.
+# Required points, because remeshing sometimes loses a thin limb.
 KEEP = {"body": [(0.069, 0.012, 0.24), (0.071, 0.012, -0.145), (0, 0.470, -0.74)], "head": [(0.100, 0.83, 0.306)]}
 
 
@@ -313,7 +313,7 @@ def height(part, p):
 
 
 def coat(q):
-    """Signed distances, ragged as fur is: socks, cream parts of the body, tail's tip."""
+    """Signed distances with ragged, fur-like edges: socks, cream parts of the body, tail's tip."""
     x, y, z = q.T
     rag = 0.010 * noise(q * [1, 0.4, 1], 0.012, 31) + 0.006 * noise(q, 0.03, 32)
     sock = np.maximum(y - np.where(z > 0, 0.172, 0.165) - rag, -z - 0.32)
@@ -394,13 +394,13 @@ def weights_of(s, body):
         mine = np.unique([k for f, p in zip(body.faces, body.part) if p == i for k in f])
         p = v[mine]
         if part.name == "body":
-            # A paw's sole is one piece, so that what stands does not creep.
+            # A paw's sole is rigid, so that it does not creep while planted.
             for side, sign in ((".L", 1), (".R", -1)):
                 for joint, fore in (("forepaw", 1), ("hindpaw", -1)):
                     sole = smooth_step((0.042 - p[:, 1]) / 0.018) * (sign * p[:, 0] > 0) * (fore * p[:, 2] > 0)
                     w[mine] *= (1 - sole)[:, None]
                     w[mine, s[joint + side]] += sole
-            # The neck passes into the head under the scarf.
+            # Neck and head blend under the scarf.
             t = (p - AT["head"]) @ np.array([0, 0.86, 0.51])
             up = smooth_step(t / 0.10 + 0.45) * (p[:, 2] > 0.2)
             w[mine] *= (1 - up)[:, None]
@@ -415,7 +415,7 @@ def weights_of(s, body):
                 w[mine, s["ear" + side]] = own * (1 - tip)
                 w[mine, s["eartip" + side]] = own * tip
         elif part.name == "scarf":
-            # The ends lie on the chest.
+            # The ends rest on the chest.
             low = smooth_step((0.455 - p[:, 1]) / 0.09) * smooth_step((p[:, 0] - 0.02) / 0.03)
             w[mine] = 0
             w[mine, s["neck"]] = 1 - 0.6 * low
@@ -448,7 +448,7 @@ def figure_of(s):
 
 
 def within_reach(figure, turns, moves, role, foot, shaft, lean):
-    """The lean nearest to `lean` with which the two bones above can reach; as it is where none does."""
+    """The lean closest to `lean` at which the two bones above can reach, or `lean` if there is none."""
     s = figure.skeleton
     upper, lower, end = (figure.names[f"{role}.{r}"] for r in ("upper", "lower", "end"))
     above = s.names[s.parents[s[upper]]]
@@ -466,8 +466,8 @@ def within_reach(figure, turns, moves, role, foot, shaft, lean):
 
 
 def set_leg(figure, turns, moves, pair, side, tip, lean, paw):
-    """Puts a paw: `tip` where the toes' tip is, `paw` degrees the toes point down, `lean` degrees the bone above the paw
-    leans forward of its rest."""
+    """Places a paw: `tip` is the position of the toe tip, `paw` degrees the toes point down, `lean` degrees the bone above the paw
+    leans forward from its rest."""
     sign = 1 if side == "L" else -1
     role = f"{pair}.{side}"
     foot = tip - rotate(qx(paw), TIP)
@@ -482,9 +482,9 @@ def set_leg(figure, turns, moves, pair, side, tip, lean, paw):
 
 
 class Step:
-    """The way of one paw through a stride of `length` metres; on the ground from phase 0 to `duty`.
+    """The path of a paw through a stride of `length` metres; on the ground from phase 0 to `duty`.
 
-    `start`: where the toes' tip lands (z); `lean` keys over (0..1 of the stance, 1..2 of the swing) in degrees.
+    `start`: where the toe tip lands (z); `lean` keys over (0..1 of the stance, 1..2 of the swing) in degrees.
     """
 
     def __init__(self, x, start, length, duty, lift, lean, curl, roll=12.0):
@@ -492,7 +492,7 @@ class Step:
         self.lean, self.curl, self.roll = lean, curl, roll
 
     def at(self, phase):
-        """(tip, lean, paw) at a phase of this paw's own stride."""
+        """(tip, lean, paw) at a phase of this paw's stride."""
         from gait import curve
 
         p = phase % 1.0
@@ -504,7 +504,7 @@ class Step:
             paw = self.roll * float(smooth_step((u - 0.72) / 0.28)) * 0.5
             return np.array([self.x, 0.006, self.start - self.length * p]), lean, paw
         s = u - 1.0
-        # Leaves and lands with the speed of the ground, so that no paw jerks.
+        # Lifts off and lands at the speed of the ground, so that no paw jerks.
         slope = -(1.0 - d) / d
         way = (s**3 - 2 * s**2 + s) * slope + (3 * s**2 - 2 * s**3) + (s**3 - s**2) * slope
         z = self.start - self.length * d * (1.0 - way)
@@ -514,7 +514,7 @@ class Step:
 
 
 def settle_head(figure, turns, moves, want, share=0.45):
-    """Turns neck and head so that the head's whole turn is `want`."""
+    """Turns neck and head so that the head's world turn is `want`."""
     _, chest = figure.world(turns, moves, "chest")
     local = mul(conj(chest), want)
     half = slerp(np.array([0, 0, 0, 1.0]), local, share)
@@ -527,7 +527,7 @@ def swing(p, at=0.0):
 
 
 def wag(turns, p, base, side, lift, lag=0.09):
-    """The tail follows joint by joint, each a little later. `base`: degrees each joint droops."""
+    """The tail follows joint by joint with increasing delay. `base`: degrees each joint droops."""
     for i in range(4):
         turns[f"tail{i + 1}"] = mul(qy(side[i] * swing(p, 0.10 + lag * i)), qx(base[i] + lift[i] * swing(2 * p, 0.15 + lag * i)))
 
@@ -628,7 +628,7 @@ def idle(figure, frames=300):
         for pair, joints in LEGS.items():
             for side, sign in (("L", 1), ("R", -1)):
                 tip = AT[f"{joints[3]}.L"] * [sign, 1, 1] + TIP
-                # One hind paw a little ahead: no animal stands like a table.
+                # One hind paw slightly ahead, for a natural stance.
                 tip[2] += {"hind": 0.022, "fore": -0.010}[pair] * sign
                 tip[1] = 0.006
                 set_leg(figure, turns, moves, pair, side, tip, {"hind": 2.0, "fore": -2.0}[pair] * -sign, 0)
@@ -681,7 +681,7 @@ def main(size=int(os.environ.get("ATLAS", "640"))):
     legs = [n for n in s.names if n.split(".")[0] in ("hips", "scapula", *LEGS["hind"], *LEGS["fore"]) or n in figure.names["spine"]]
     for name, make in (("idle", idle), ("walk", walk), ("run", run)):
         pose, frames, _ = make(figure)
-        # Keys are straight lines between moments: fast paws need them close together.
+        # Keys are interpolated linearly, so fast paws need them close together.
         fine = {"idle": 1, "walk": 2, "run": 4}[name]
         poses = gait.cycle(pose, frames * fine)
         out.clip(name, nodes, gait.channels(s, poses, RATE * fine, tight=legs, tolerance=0.010, loose=0.25, move_tolerance=0.0001))

@@ -1,7 +1,7 @@
-"""Makes ../dwarf.glb: a heavy dwarf of 1.4 m with joint names of his own and one clip, "crouch and look" (55 ticks).
+"""Makes ../dwarf.glb: a heavy dwarf of 1.4 m with unusual joint names and one clip, "crouch and look" (55 frames).
 
-His rest pose has hanging arms, so that a borrowed walk that knows nothing of arms still looks like a swagger, and all
-rest frames are parallel to the model's axes, as old exporters wrote them: motion can be copied channel by channel.
+His arms hang at rest, so that a retargeted walk without arm motion still looks like a swagger. All rest frames are parallel
+to the model's axes, as in files of old exporters: motion can be copied channel by channel.
 """
 
 import os
@@ -22,7 +22,7 @@ OUT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "dwarf.glb"
 
 # ---------------------------------------------------------------- joints
 
-# The middle and the left side, metres; he looks along +Z.
+# Center and left side, metres; he faces +Z.
 PLACES = [
     ("base", None, (0, 0, 0)),
     ("middle", "base", (0, 0.53, 0.0)),
@@ -57,7 +57,7 @@ def skeleton():
 
 
 def gates(s):
-    """Where weight passes from joint to joint in the trunk and the legs; see rig.Gates."""
+    """The weight gates of trunk and legs; see rig.Gates."""
     g = rig.Gates(s)
     up = (0, 1, 0)
     g.gate("spine2", up, 0.16)
@@ -73,8 +73,8 @@ def gates(s):
 
 
 def place_weights(s, points):
-    """Weights as a function of the place. The arms hang beside the trunk, so they are not behind the trunk's gates:
-    what is further out than the flank is arm, whatever its height."""
+    """Weights as a function of position. The arms hang beside the trunk, so they bypass its gates: whatever is outside the flank
+    belongs to the arm, at any height."""
     w = gates(s).weights(points, "middle")
     arm = rig.Gates(s)
     for side, sign in (("l", 1.0), ("r", -1.0)):
@@ -95,7 +95,7 @@ def place_weights(s, points):
 
 
 def placed(shape, rotation, origin):
-    """A shape modelled in a frame of its own, whose axes are the columns of `rotation`."""
+    """A shape modelled in a local frame, whose axes are the columns of `rotation`."""
     rotation, origin = np.asarray(rotation), np.asarray(origin)
     return lambda p: shape((p - origin) @ rotation)
 
@@ -239,7 +239,7 @@ PAULDRON_OUT = np.array([0.70, 0.714, 0.0])
 
 
 def pauldron():
-    """A steel dome with a brass rim over each shoulder: a turned piece, in loops round its axis."""
+    """A steel dome with a brass rim over each shoulder: lathed, in loops around its axis."""
     # (radius, height along the axis), from the inside over the rim to the boss.
     profile = [
         (0.098, 0.046), (0.104, 0.018), (0.112, 0.008), (0.122, 0.011), (0.126, 0.024), (0.121, 0.038), (0.1095, 0.043), (0.100, 0.060),
@@ -364,7 +364,7 @@ class Part:
     def __init__(self, name, shape, carrier=None, box=None, quads=0, step=0.004, mesh=None, solid=True, half=True, relax=3):
         self.name, self.shape, self.carrier = name, shape, carrier
         self.box, self.quads, self.step, self.mesh, self.half, self.relax = box, quads, step, mesh, half, relax
-        # Whether its clay hides what lies inside it.
+        # Whether its clay hides what is inside it.
         self.solid = solid and shape is not None
 
 
@@ -389,7 +389,7 @@ PARTS = [
     Part("horn", horn(), "head", [(0.08, 1.20, -0.06), (0.32, 1.50, 0.08)], 180, 0.005, solid=False),
 ]
 NAMES = [p.name for p in PARTS]
-# Where the charts of the atlas part: front and back, top and bottom, inside and outside.
+# Splits of the atlas charts: front and back, top and bottom, inside and outside.
 SPLITS = {
     "cloth": (0, 0, 1), "skirt": (0, 0, 1), "hand": (1, 0.3, -0.3), "boot": (1, 0, 0), "cuff": (0, 1, 0), "pauldron": (1, 1, 0),
     "eye": (0, 0, 1), "lids": (0, 0, 1), "beard": (0, 0, 1), "moustache": (0, 0, 1), "brow": (0, 0, 1), "hair": (0, 0, 1), "horn": (0, 0, 1),
@@ -398,7 +398,7 @@ SPLITS = {
 
 
 def sculpt():
-    """The left halves of all parts (or whole ones), without what the parts over them hide."""
+    """The left halves of all parts (or complete ones), without faces hidden by the parts over them."""
     meshes = []
     for part in PARTS:
         start = time.time()
@@ -408,7 +408,7 @@ def sculpt():
             mesh = meshed(part, good=40)
         full = len(mesh.faces)
         if part.shape is not None:
-            # What moves against a part must not hide it.
+            # A part must not hide what it moves against.
             depth = 0.035 if part.carrier in ("beard", "hair") else 0.006
             covers = [(p.shape, depth) for p in PARTS if p.solid and p is not part and p.carrier in (part.carrier, None)]
             if part.name == "face":
@@ -432,7 +432,7 @@ def band(x, a, b):
 
 
 def strands(p, scale=0.011, seed=0):
-    """Hair that runs down and fans out from the chin, -1..1."""
+    """Strands that run down and fan out from the chin, -1..1."""
     across = np.arctan2(p[:, 0], 0.35 + np.abs(p[:, 2])) * 0.35 + 0.006 * noise(p, 0.06, seed)
     fine = np.cos(across * 2 * np.pi / scale + 2.0 * noise(p * [1, 0.3, 1], 0.03, seed + 1))
     return 0.7 * fine + 0.5 * noise(p * [1, 0.12, 1], 0.006, seed + 2)
@@ -646,7 +646,7 @@ def weights_of(s, body):
                 frame = axes(AT["lfist"] - WRIST, (-0.32, 0.0, 1.0))
                 t = (q - WRIST) @ frame
                 fist = rig.smooth_step((t[:, 0] - 0.092) / 0.036 + 0.5) * (1 - rig.smooth_step((t[:, 2] - 0.058) / 0.006 + 0.5))
-                # The thumb starts at its root's side, away from the index finger.
+                # The thumb starts on the side of its root that faces away from the index finger.
                 thumb = rig.smooth_step((t[:, 2] - 0.052 + 0.25 * np.maximum(t[:, 0] - 0.075, 0)) / 0.022 + 0.5) * (1 - fist)
                 low = rig.smooth_step(0.5 - (t[:, 0] + 0.004) / 0.05)
                 w[own] = 0
@@ -664,7 +664,7 @@ def weights_of(s, body):
             w[mine, s["beard1"]] = first * (1 - second)
             w[mine, s["beard2"]] = first * second
         elif part.carrier == "skirt":
-            # The wide hem clears the thighs of a walk; in front it has joints of its own for deeper bends.
+            # The wide hem clears the thighs in a walk; its front has separate joints for deeper bends.
             low = rig.smooth_step((0.56 - p[:, 1]) / 0.12)
             front = low * rig.smooth_step((p[:, 2] + 0.13) / 0.22)
             left = rig.smooth_step(p[:, 0] / 0.22 + 0.5)
@@ -676,7 +676,7 @@ def weights_of(s, body):
             for side, own in (("l", mine[p[:, 0] > 0]), ("r", mine[p[:, 0] < 0])):
                 w[own, s[side + "collar"]], w[own, s[side + "sholda"]] = 0.6, 0.4
         elif part.carrier == "hair":
-            # Below the mantle the hair lies on the back.
+            # Below the mantle the hair rests on the back.
             low = rig.smooth_step((1.04 - p[:, 1]) / 0.14)
             w[mine, s["head"]] = 1 - low
             w[mine, s["spine1"]] = low
@@ -713,7 +713,7 @@ def crouch_and_look(s):
         turns["middle"] = mul(qy(0.12 * y), qx(15 * d))
         figure.spine(turns, pitch=13 * d, yaw=0.38 * y, roll=-2 * d)
         figure.head(turns, pitch=-20 * d + 2.0 * np.sin(f * 0.9) * hand * 0.6, yaw=0.62 * y, roll=0.10 * y)
-        # The beard hangs down and comes after the head.
+        # The beard hangs down and follows the head with a delay.
         turns["beard1"] = mul(qy(0.45 * (late - y)), qx(3 * d - 14 * (drop - d)))
         turns["beard2"] = mul(qy(0.35 * (late - y)), qx(4 * d - 10 * (drop - d)))
         for side, sign in (("left", 1), ("right", -1)):
@@ -740,7 +740,7 @@ def crouch_and_look(s):
                 pole = np.array([-0.75, -0.85, 0.20])
             amount = float(np.clip(amount, 0, 1))
             place = free + (goal - free) * amount
-            # Swings out on its way, round the belly and the beard.
+            # Swings out around the belly and the beard.
             place = place + np.array([sign * 0.06, 0, 0.05]) * np.sin(np.pi * amount)
             turn = slerp(chest, want, amount)
             rest_pole = np.array([sign * 0.35, 0, -1.0])

@@ -1,12 +1,12 @@
-"""Gait: poses and cycles of two-legged figures, keyed from how people move, as turns on any skeleton.
+"""Gait: poses and cycles of bipeds, keyed from measurements of human motion, as turns on any skeleton.
 
-A turn is a joint's rotation away from the T-pose in axes parallel to the model's (x left, y up, z ahead), relative to its
-parent's turn; rig.Skeleton.local_rotation makes file rotations of it. A cycle is a function of the phase 0..1 (0: the
-left heel strikes) that returns (turns, moves). Feet are placed first - heel, flat foot or toe joint rests on a point that
-stands still on the ground - and the legs follow by two-bone inverse kinematics, so feet neither slide nor sink. Clips
-that walk on the spot are on a treadmill: the ground moves back at the stated speed.
+A turn is a joint's rotation from the T-pose in axes parallel to the model's (x left, y up, z forward), relative to its
+parent's turn; rig.Skeleton.local_rotation converts it to a file's rotation. A cycle is a function of the phase 0..1 (0: the
+left heel strikes) that returns (turns, moves). Feet are placed first - heel, flat foot or toe joint rests on a fixed point
+on the ground - and the legs follow by two-bone inverse kinematics, so feet neither slide nor sink. Clips
+in place are on a treadmill: the ground moves back at the given speed.
 
-Sources of the figures: Whittle, "Gait Analysis" (stance 62 % of a walking stride; heel strike, foot flat at 8 %, heel
+Sources of the numbers: Whittle, "Gait Analysis" (stance 62 % of a walking stride; heel strike, foot flat at 8 %, heel
 rise at 35 %, toe off at 62 %; the trunk highest in mid-stance, the pelvis turning about 4 degrees each way and dropping
 about 4 degrees on the swinging side, the shoulders turning against it); Novacheck, "The biomechanics of running" (stance
 under 40 %, two phases of flight, trunk lowest in mid-stance); Williams, "The Animator's Survival Kit" (contact, down,
@@ -23,7 +23,7 @@ NONE = np.array([0.0, 0.0, 0.0, 1.0])
 
 
 def curve(keys, t, period=None):
-    """A smooth curve through (time, value) keys; values may be vectors. With `period` it closes on itself."""
+    """A smooth curve through (time, value) keys; values may be vectors. With `period` it is periodic."""
     times = [k[0] for k in keys]
     values = [np.asarray(k[1], dtype=np.float64) for k in keys]
     if period is not None:
@@ -38,7 +38,7 @@ def curve(keys, t, period=None):
             return np.zeros_like(values[0])
         before = (values[k] - values[k - 1]) / (times[k] - times[k - 1])
         after = (values[k + 1] - values[k]) / (times[k + 1] - times[k])
-        # No overshoot: a turning point is flat, and no slope exceeds three times a neighbour.
+        # No overshoot: extrema are flat, and no slope exceeds three times a neighbour.
         limit = 3.0 * np.minimum(np.abs(before), np.abs(after))
         mean = (values[k + 1] - values[k - 1]) / (times[k + 1] - times[k - 1])
         return np.where(before * after <= 0, 0.0, np.clip(mean, -limit, limit))
@@ -52,12 +52,12 @@ def curve(keys, t, period=None):
 
 
 def swing(phase, at=0.0):
-    """cos of a whole turn, 1 at phase `at`."""
+    """One cosine cycle, 1 at phase `at`."""
     return np.cos(2 * np.pi * (phase - at))
 
 
 class Figure:
-    """A skeleton with the roles that motion needs. `names`: role -> joint name; missing roles are left out.
+    """A skeleton with the roles that motion needs. `names`: role -> joint name; missing roles are skipped.
 
     Roles: hips, spine (list), neck, head, and per side "left"/"right": shoulder, arm, forearm, hand, thigh, shin, foot,
     toe, and "fingers": lists of joint chains (the thumb's first).
@@ -66,7 +66,7 @@ class Figure:
     def __init__(self, skeleton, names):
         self.skeleton = skeleton
         self.names = names
-        # The farthest that any limb was asked to reach, over its length: above 1 it could not.
+        # The farthest requested reach of any limb, relative to its length; above 1 it is out of reach.
         self.worst_reach = 0.0
 
     def place(self, role):
@@ -76,7 +76,7 @@ class Figure:
         return role in self.names
 
     def world(self, turns, moves, name):
-        """Place and whole turn of a joint in a pose."""
+        """World position and turn of a joint in a pose."""
         s = self.skeleton
         chain = []
         j = s[name]
@@ -96,8 +96,8 @@ class Figure:
     def limb(self, turns, moves, upper, lower, end, target, end_turn, pole, hinge):
         """Two-bone inverse kinematics: sets the turns of `upper`, `lower`, `end` so that `end` is at `target`.
 
-        `end_turn` is the end's whole turn (None: follows the lower bone); the middle joint points to `pole` (a
-        direction); `hinge` is the direction the joint bends towards in the rest pose.
+        `end_turn` is the end's world turn (None: follows the lower bone); the middle joint points towards `pole` (a direction);
+        `hinge` is the direction in which it bends in the rest pose.
         """
         s = self.skeleton
         a, b, c = self.place(upper), self.place(lower), self.place(end)
@@ -125,7 +125,7 @@ class Figure:
         return target
 
     def leg(self, turns, moves, side, ankle, pitch, toe=0.0, yaw=0.0, roll=0.0, knee=None):
-        """Puts a foot: `ankle` its joint's place, `pitch` degrees toes up, `toe` degrees the toes bend up against it."""
+        """Places a foot: `ankle` is its joint's position, `pitch` degrees toes up, `toe` degrees the toes bend up against it."""
         foot = mul(qy(yaw), qx(-pitch), qz(roll))
         pole = rotate(qy(yaw), AHEAD) if knee is None else np.asarray(knee, dtype=np.float64)
         self.limb(turns, moves, f"{side}.thigh", f"{side}.shin", f"{side}.foot", ankle, foot, pole, AHEAD)
@@ -133,7 +133,7 @@ class Figure:
             turns[self.names[f"{side}.toe"]] = qx(-toe)
 
     def spine(self, turns, pitch=0.0, yaw=0.0, roll=0.0):
-        """Spreads a bend of the whole spine over its joints; pitch forward, yaw to the left, roll to the right."""
+        """Distributes a bend of the spine over its joints; pitch forward, yaw to the left, roll to the right."""
         joints = self.names["spine"]
         for name in joints:
             k = 1.0 / len(joints)
@@ -177,9 +177,9 @@ class Figure:
 
 
 class Tread:
-    """The way of one foot through a stride.
+    """The path of a foot through a stride.
 
-    `heel`, `ball`: where heel and toe joint are relative to the ankle with the foot flat; `pitch`, `toe`: periodic keys
+    `heel`, `ball`: where heel and toe joint are, relative to the ankle of the flat foot; `pitch`, `toe`: periodic keys
     (phase, degrees); `flat`, `rise`, `off`: phases when the foot is flat, the heel leaves, the toes leave; `length`: how
     far the ground passes in a stride; `start`: the ankle's z when it would stand flat at phase 0; `air`: keys (part of
     the swing 0..1, (rise, advance)) that shape the way through the air; `toe_air`: the same for the toes' bend; `lift`:
@@ -209,7 +209,7 @@ class Tread:
         return place, pitch, toe
 
     def at(self, p):
-        """(ankle, pitch, toe bend) at a phase of this foot's own stride."""
+        """(ankle, pitch, toe bend) at a phase of this foot's stride."""
         p = p % 1.0
         if p <= self.off:
             return self._grounded(p)
@@ -224,7 +224,7 @@ class Tread:
             place[1] = leave[1] + (land[1] - leave[1]) * smooth_step(s) + lift
             return place
 
-        # Leaves and lands with the speed it has on the ground, so that no joint jerks at those moments.
+        # Lifts off and lands at the speed of the ground, so that no joint jerks.
         h = 1e-3
         before = (leave - self._grounded(self.off - h)[0]) / h * span - (way(h) - way(0.0)) / h
         after = (self._grounded(h)[0] - land) / h * span - (way(1.0) - way(1.0 - h)) / h
@@ -243,7 +243,7 @@ class Tread:
 
 
 def channels(skeleton, poses, rate, tolerance=0.06, loose=0.3, tight=(), move_tolerance=0.0003, scale_moves=None):
-    """File channels of a list of poses [(turns, moves)] at `rate` a second: as few LINEAR keys as keep within a
+    """File channels of poses [(turns, moves)] at `rate` per second, with as few LINEAR keys as possible within a
     tolerance (degrees; `tight` joints within `tolerance`, others within `loose`)."""
     times = np.arange(len(poses)) / rate
     out = []
@@ -272,7 +272,7 @@ def channels(skeleton, poses, rate, tolerance=0.06, loose=0.3, tight=(), move_to
 
 
 def _thin(track, mix, distance, limit):
-    """The indices of the keys that must stay (Douglas-Peucker)."""
+    """Indices of the keys to keep (Douglas-Peucker)."""
     keep = {0, len(track) - 1}
     todo = [(0, len(track) - 1)]
     while todo:
@@ -286,7 +286,7 @@ def _thin(track, mix, distance, limit):
             keep.add(where)
             todo += [(a, where), (where, b)]
     kept = sorted(keep)
-    # What stands still needs one key.
+    # A constant channel needs one key.
     return kept[:1] if len(kept) == 2 and distance(track[kept[0]], track[kept[1]]) < 1e-6 else kept
 
 

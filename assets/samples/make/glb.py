@@ -1,7 +1,7 @@
-"""Writes a skeleton, skinned meshes with textures or vertex colours, morph targets and clips as one .glb (glTF 2.0).
+"""Writes a skeleton, skinned meshes with textures or vertex colours, morph targets and clips into a .glb (glTF 2.0).
 
-Vertices are stored small without extensions: u8 joints, u8 weights that sum to exactly 255, u16 UVs, u8 colours;
-keys of rotations as 16-bit numbers.
+Vertices are compact without extensions: u8 joints, u8 weights that sum to exactly 255, u16 UVs, u8 colours. Rotation keys
+are 16-bit.
 """
 
 import io
@@ -43,7 +43,7 @@ class Glb:
         return self.add("bufferViews", view)
 
     def accessor(self, array, kind, component, target=None, normalized=False, bounds=False, pad_to=None):
-        """An array (N,) or (N, width). Rows are padded to `pad_to` components' bytes where alignment asks for it."""
+        """An array (N,) or (N, width). Rows are padded to `pad_to` components where alignment requires it."""
         dtype = {FLOAT: "<f4", U8: "u1", U16: "<u2", U32: "<u4", I16: "<i2", I8: "i1"}[component]
         array = np.ascontiguousarray(array, dtype=dtype)
         stored = array
@@ -62,7 +62,7 @@ class Glb:
         return self.add("accessors", accessor)
 
     def sparse(self, array, tolerance=2e-6, bounds=False):
-        """A float VEC3 accessor of mostly zeros: only the rows that differ are stored."""
+        """A sparse float VEC3 accessor: only non-zero rows are stored."""
         array = np.asarray(array, dtype="<f4")
         rows = np.nonzero(np.abs(array).max(axis=1) > tolerance)[0]
         accessor = {"componentType": FLOAT, "count": len(array), "type": "VEC3"}
@@ -80,14 +80,14 @@ class Glb:
         return self.add("accessors", accessor)
 
     def _shared(self, array, kind, component, **more):
-        """An accessor that equal data share: still joints and clips of one length would else repeat themselves."""
+        """Returns an accessor shared by equal data, such as constant joints and clips of equal length."""
         key = (kind, component, np.ascontiguousarray(array, dtype="<i2" if component == I16 else "<f4").tobytes())
         if key not in self.known:
             self.known[key] = self.accessor(array, kind, component, **more)
         return self.known[key]
 
     def image(self, pixels, kind="jpeg", quality=85, name=None):
-        """`pixels` (H, W, 3 or 4) u8. Returns the texture's number."""
+        """`pixels` (H, W, 3 or 4) u8. Returns the texture's index."""
         from PIL import Image
 
         out = io.BytesIO()
@@ -107,7 +107,7 @@ class Glb:
                   tangent=None, small=False):
         """`weights` (N, 4) floats; `targets`: [(position deltas, normal deltas or None)].
 
-        With `tangent` (N, 4), normals and tangents are stored small (KHR_mesh_quantization); `small` alone: normals in bytes.
+        With `tangent` (N, 4), normals and tangents are quantized (KHR_mesh_quantization); `small` alone quantizes normals to bytes.
         """
         attributes = {"POSITION": self.accessor(positions, "VEC3", FLOAT, 34962, bounds=True)}
         if tangent is None and not small:
@@ -148,7 +148,7 @@ class Glb:
         return primitive
 
     def nodes_of(self, skeleton, base_children=None):
-        """Adds one node per joint of a rig.Skeleton; returns their numbers."""
+        """Adds one node per joint of a rig.Skeleton; returns their indices."""
         first = len(self.json.get("nodes", []))
         for j, name in enumerate(skeleton.names):
             node = {"name": name}
@@ -165,7 +165,7 @@ class Glb:
         return list(range(first, first + len(skeleton.names)))
 
     def skin(self, skeleton, nodes, joints, name=None):
-        """`joints`: joint numbers of the skeleton, in skin order. The mesh is bound at the rest pose."""
+        """`joints`: joint indices of the skeleton, in skin order. The mesh is bound at the rest pose."""
         matrices = np.array([np.linalg.inv(skeleton.world_rest[j]) for j in joints])
         skin = {
             "joints": [nodes[j] for j in joints],
@@ -186,7 +186,7 @@ class Glb:
             kind = {"rotation": "VEC4", "weights": "SCALAR"}.get(path, "VEC3")
             values = np.asarray(values, dtype=np.float64)
             if path == "rotation":
-                # Sixteen bits are exact to 0.004 degrees and half the size.
+                # 16 bits are accurate to 0.004 degrees at half the size.
                 output = self._shared(np.round(values * 32767), kind, I16, normalized=True)
             else:
                 output = self._shared(values.reshape(-1) if path == "weights" else values, kind, FLOAT)
@@ -212,9 +212,9 @@ class Glb:
         return total
 
     def _share_keys(self):
-        """Puts the accessors that have no view target (keys, matrices) of equal element size into common views.
+        """Merges accessors without a view target (keys, matrices) of equal element size into shared views.
 
-        Without it every key track would pay for a bufferView of its own in the JSON.
+        Otherwise every key track would need its own bufferView in the JSON.
         """
         views, accessors = self.json.get("bufferViews", []), self.json.get("accessors", [])
         images = {i["bufferView"] for i in self.json.get("images", [])}

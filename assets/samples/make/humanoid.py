@@ -1,10 +1,10 @@
-"""What the two-legged samples share: the joints of a person of 1.75 m in T-pose under Mixamo's names, and their gates."""
+"""Shared by the humanoid samples: a 1.75 m skeleton in T-pose with Mixamo's names, and its weight gates."""
 
 import numpy as np
 
 import rig
 
-# The left side and the middle, metres. Rest is a T-pose with palms down, looking along +Z.
+# Center and left side, metres. T-pose at rest with palms down, facing +Z.
 PLACES = [
     ("Hips", None, (0, 0.965, 0.0)),
     ("Spine", "Hips", (0, 1.065, 0.0)),
@@ -46,7 +46,7 @@ def finger_places(name):
 
 
 def skeleton(prefix="mixamorig:", fingers=True, ends=True):
-    """The person's skeleton with identity rest frames."""
+    """The human skeleton with identity rest frames."""
     places = list(PLACES)
     if fingers:
         at = [p[0] for p in places].index("LeftUpLeg")
@@ -62,7 +62,7 @@ def skeleton(prefix="mixamorig:", fingers=True, ends=True):
     if not ends:
         places = [p for p in places if not (p[0].endswith("_End") or p[0].endswith("4"))]
     full = []
-    # The right side follows the left one limb by limb, as exporters of this rig write it.
+    # The right side follows the left limb by limb, in the order of this rig's exporters.
     for limb in ("", "Shoulder Arm ForeArm Hand", "UpLeg Leg Foot Toe"):
         words = tuple(limb.split())
         if not words:
@@ -86,7 +86,7 @@ def _capsule_distance(p, a, b):
 
 
 def gates(s, prefix="mixamorig:", fingers=True):
-    """Where weight passes from joint to joint on this body; see rig.Gates."""
+    """The weight gates of this body; see rig.Gates."""
     g = rig.Gates(s)
     n = lambda name: prefix + name
     up = (0, 1, 0)
@@ -97,7 +97,7 @@ def gates(s, prefix="mixamorig:", fingers=True):
     g.gate(n("Neck"), up, 0.07, shift=0.01, near=middle)
     g.gate(n("Head"), up, 0.05)
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
-        # Below the armpit the trunk keeps its weight; further out everything is arm.
+        # Below the armpit the trunk keeps its weight; farther out everything belongs to the arm.
         high = lambda p, sign=sign: np.maximum(
             rig.smooth_step((p[:, 1] - 1.285) / 0.10), rig.smooth_step((sign * p[:, 0] - 0.155) / 0.075)
         )

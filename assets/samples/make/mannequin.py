@@ -1,6 +1,6 @@
-"""Makes ../mannequin.glb (an artist's wooden figure without a clip) and ../mannequin_run.glb (its skeleton with a run that
-travels). Both have the armature node of files that went through FBX: scaled by 100, turned -90 degrees about X, with the
-joints' places in hundredths of metres, z up, each frame's y along its bone."""
+"""Makes ../mannequin.glb (an artist's wooden mannequin without clips) and ../mannequin_run.glb (its skeleton with a run that
+travels). Both have the armature node of FBX conversions: scaled by 100, rotated by -90 degrees about X, with joint
+positions in centimetres, z up, and each frame's y axis along its bone."""
 
 import os
 import sys
@@ -25,7 +25,7 @@ SPEED = 3.2
 
 
 def skeleton():
-    """The person's joints under an armature node."""
+    """The human skeleton under an armature node."""
     plain = humanoid.skeleton(PREFIX, fingers=False)
     s = rig.Skeleton()
     s.add("Armature", None, (0, 0, 0), rig.qx(-90), 100.0)
@@ -33,7 +33,7 @@ def skeleton():
         kids = plain.children(j)
         along = None
         if kids:
-            # The bone points at the joint that carries the limb on.
+            # The bone points at the joint that continues the limb.
             heir = next((k for k in kids if any(w in plain.names[k] for w in ("Spine", "Neck"))), kids[0])
             along = plain.world[heir] - plain.world[j]
         elif plain.parents[j] >= 0:
@@ -45,7 +45,7 @@ def skeleton():
 
 
 def rotation_to(direction):
-    """A rotation (3x3) whose y goes along a direction."""
+    """A rotation (3x3) whose y axis points in a direction."""
     return rig.matrix(rig.between(np.array([0.0, 1.0, 1e-6]), np.asarray(direction, dtype=np.float64)))
 
 
@@ -63,7 +63,7 @@ def ball(center, radius, joint, both=True, counts=(4, 4, 4)):
 
 
 def pieces():
-    """The left side and the middle."""
+    """Center and left side."""
     s = humanoid.skeleton("", fingers=False)
     at = lambda n: s.world[s[n]]
     out = []
@@ -264,7 +264,7 @@ MAPLE, HONEY, WALNUT, RIM = srgb("#d9b27c"), srgb("#b9854c"), srgb("#6d4326"), s
 
 
 def wood(piece, seed, p, opened):
-    """Year rings round an axis beside the piece, fibres along it; darker where pieces meet."""
+    """Growth rings around an axis beside the piece, fibres along it; darker where pieces meet."""
     along = piece.along
     side = np.cross(along, [0.3, 0.2, 0.93])
     side /= np.linalg.norm(side)
@@ -305,7 +305,7 @@ def main():
     shown = paint.surface(left, uv, alone)
     joints = list(range(1, len(s.names)))
     joints = [j for j in joints if not s.names[j].endswith("_End")]
-    # Wood does not bend: every piece follows one joint.
+    # Wood does not bend: each piece is rigid.
     slots = np.zeros((len(shown.place), 4), dtype=int)
     weights = np.tile([1.0, 0, 0, 0], (len(shown.place), 1))
     whole = shown.mesh

@@ -1,9 +1,9 @@
-"""Makes ../morphs.glb: the bust of a young goblin whose face has twelve morph targets, and a clip that plays with them.
+"""Makes ../morphs.glb: the bust of a young goblin with twelve facial morph targets, and a clip that animates them.
 
-The face is one mesh in clean loops: rings of quads round each eye and round the mouth, set into a grid of longitudes and
-latitudes and cast onto clay. The lids lie on a sphere round the eyeball that is a tenth larger, because a morph target moves
-vertices along straight lines: at half a blink a lid is nearer to the eye's middle than at either end, and must still clear
-the eyeball. The lips run on into a mouth with teeth and a tongue, so that nothing is open when the jaw drops.
+The face is one mesh in clean loops: rings of quads around the eyes and the mouth, set into a grid of longitudes and latitudes
+and projected onto clay. The lids lie on a sphere a tenth larger than the eyeball, because a morph target moves vertices along
+straight lines: halfway through a blink a lid is closer to the eye's center than at either end, and must still clear the
+eyeball. The lips continue into a mouth with teeth and a tongue, so that there is no hole when the jaw drops.
 """
 
 import os
@@ -21,7 +21,7 @@ from sculpting import bent, meshed, mixed, pointed
 
 OUT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "morphs.glb")
 
-# Everything is modelled round the head's middle and lifted onto the ground at the end.
+# Everything is modelled around the head's center and moved onto the ground at the end.
 LIFT = 0.345
 EYE, BALL = np.array([0.0505, 0.020, 0.0820]), 0.0355
 LID = 1.10 * BALL
@@ -76,11 +76,11 @@ HAIR = clay.mirrored(union(*[bent(points, radii) for points, radii in LOCKS], k=
 
 
 def hair():
-    """Each lock is a tube of its own with a sharp tip; those in the middle are halves, to be mirrored."""
+    """Each lock is a separate tube with a sharp tip; those on the mirror plane are halves."""
     meshes = []
     for points, radii in LOCKS:
         middle = points[-1][0] < 0.01
-        # The root lies well inside the head.
+        # The root is well inside the head.
         points = [np.array(points[0]) * 0.80, *points[1:]]
         at = clay._smooth_table(np.linspace(0, 1, 3), np.column_stack([points, radii]))
         t = np.linspace(0, 1, 6) ** 0.85
@@ -174,7 +174,7 @@ LON = [0, 3, 6, 9, 14, 19, 24, 29, 34, 39, 47, 57, 70, 86, 108, 142, 180]
 LAT = [-76, -63, -52, -46, -40, -34, -28, -22, -17, -12, -7, -2, 3, 8, 13, 18, 23, 28, 35, 45, 60, 77]
 EYE_BLOCK = (LON.index(9), LON.index(39), LAT.index(-7), LAT.index(28))
 MOUTH_BLOCK = (0, LON.index(29), LAT.index(-52), LAT.index(-22))
-# How far each ring is on its way from the block's border (0) to the opening's rim (1).
+# Position of each ring between the block's border (0) and the opening's rim (1).
 EYE_RINGS = (0.34, 0.64, 0.87, 1.0)
 MOUTH_RINGS = (0.32, 0.60, 0.83, 1.0)
 
@@ -195,7 +195,7 @@ def angles_of(p):
 
 
 class Face:
-    """Vertices with what the targets must know of them: `eye` and `mouth` = (ring 0..1 or beyond, angle), NaN elsewhere."""
+    """Vertices with the data the targets need: `eye` and `mouth` = (ring 0..1 or beyond, angle), NaN elsewhere."""
 
     def __init__(self):
         self.places, self.faces, self.kind, self.eye, self.mouth, self.skin = [], [], [], [], [], []
@@ -217,7 +217,7 @@ class Face:
 
 
 def rim_of_eye(theta):
-    """The lids' opening, seen from the eye's middle: (azimuth, elevation) in degrees, an almond that slants up outwards."""
+    """The lids' opening, seen from the eye's center: (azimuth, elevation) in degrees, an almond that slants up outwards."""
     x = np.cos(theta)
     up = np.where(np.sin(theta) > 0, 29.0, -25.0)
     return 16.0 + 36.0 * x, up * np.abs(np.sin(theta)) ** 0.92 + 3.0 * x
@@ -346,7 +346,7 @@ class Part:
         self.half, self.relax = half, relax
 
 
-# Groups: "face" has the targets, "head" moves with the head, "bust" stands still.
+# Groups: "face" has the targets, "head" moves with the head, "bust" is static.
 PARTS = [
     Part("face", None, "face"),
     Part("upper teeth", None, "face"),
@@ -364,7 +364,7 @@ SPLITS = {"face": (0.0, 0, 1), "upper teeth": (0, 0, 1), "lower teeth": (0, 0, 1
           "shirt": (0, 0, 1), "collar": (0, 0, 1), "foot": (0, 1, 0)}
 
 
-# Where the silhouette ends in a point: even quads round such places off, so the nearest vertex is put there.
+# Pointed tips: even quads round them off, so the nearest vertex is moved there.
 POINTS = {
     "ear": [(0.2645, 0.0845, -0.0672)],
 }
@@ -383,7 +383,7 @@ def sculpt():
             mesh.vertices[mesh.plane, 0] = 0.0
             mesh.whole = False
         elif part.name == "shirt":
-            # Seen whole from its middle.
+            # Star-shaped around its center.
             mesh = clay.globe(part.shape, (0, -0.222, -0.022), (0.20, 0.075, 0.10), (10, 5, 5))
             mesh.whole = True
         elif part.name in READY:
@@ -409,7 +409,7 @@ def near(p, center, radius):
 
 
 class Rig:
-    """All vertices of the face's mesh (both sides) with what is known of them."""
+    """All vertices of the face mesh (both sides) with their target data."""
 
     def __init__(self, p, part, eye, mouth):
         self.p, self.part, self.eye, self.mouth = p, part, eye, mouth
@@ -422,7 +422,7 @@ class Rig:
     # Masks -------------------------------------------------------
 
     def lower(self):
-        """1 what hangs on the jaw, 0 what stays: split exactly at the lips."""
+        """1 for what moves with the jaw, 0 for the rest: split exactly at the lips."""
         p, q = self.p, self.q
         ring, angle = self.mouth[:, 0], self.mouth[:, 1]
         # Skin: below the mouth's line and in front of the jaw's joint.
@@ -437,20 +437,20 @@ class Rig:
         return out
 
     def lids(self, up_amount, low_amount, sides):
-        """The lids' way: elevation about the eye's middle goes to the closed line by these shares."""
+        """The lids' motion: elevation about the eye's center moves to the closed line by these shares."""
         out = np.zeros_like(self.p)
         ring, angle = self.eye[:, 0], self.eye[:, 1]
         mine = ~np.isnan(angle) & np.isin(self.side, sides)
         q = self.q[mine] - EYE
         t, a = ring[mine], angle[mine]
         _, elevation = rim_of_eye(a)
-        # Where the lids meet: low, and through both corners; the upper one comes to lie a little over the lower.
+        # Where the lids meet: low, and through both corners; the upper one slightly overlaps the lower.
         closed = 3.0 * np.cos(a) - 15.0 * np.abs(np.sin(a)) ** 0.92
         share = smooth_step((np.minimum(t, 1.0) - 0.18) / 0.82)
         upper = np.sin(a) > 0
         closed = closed + np.where(upper, -1.5, 1.0) * np.abs(np.sin(a))
         part = share * np.where(upper, up_amount, low_amount)
-        # Each vertex stays on its own sphere round the eye's middle and on its own meridian.
+        # Each vertex stays on its sphere around the eye's center and on its meridian.
         radius = np.linalg.norm(q, axis=1) * (1.0 + 0.022 * upper * np.maximum(part, 0.0))
         rise = np.arctan2(q[:, 1], np.hypot(q[:, 0], q[:, 2])) + np.radians((closed - elevation) * part)
         around = np.arctan2(q[:, 0], q[:, 2])
@@ -467,13 +467,13 @@ class Rig:
         stays = self.on("upper teeth") | self.on("lower teeth") | self.on("tongue")
         if "brow" not in also:
             stays |= self.on("brow")
-        # The mouth's bag follows the lips less the deeper it lies.
+        # The inside of the mouth follows the lips less with depth.
         deep = np.clip((np.nan_to_num(self.mouth[:, 0]) - 1.0) / 0.4, 0, 1)
         return d * np.where(stays, 0.0, 1.0 - deep)[:, None]
 
 
 def half(side, p):
-    """1 on the left (or right) half, soft over the middle."""
+    """1 on the left (or right) half, with a soft transition in the middle."""
     return smooth_step(side * p[:, 0] / 0.030 + 0.5)[:, None]
 
 
@@ -520,7 +520,7 @@ def targets(rig):
     a = np.radians(15.0)
     turned = (p - hinge) @ np.array([[1, 0, 0], [0, np.cos(a), np.sin(a)], [0, -np.sin(a), np.cos(a)]]) + hinge
     jaw = (turned - p + [0, -0.004, 0.0]) * lower[:, None]
-    # The corners are drawn in, and the upper lip follows a little.
+    # The corners are drawn in, and the upper lip follows slightly.
     jaw += rig.skin_only(rig.mirrored_field(lambda q: near(q, corner, (0.026, 0.022, 0.04))[:, None] * [-0.0070, 0, 0.0020]))
     jaw += rig.skin_only(near(p, (0, -0.062, 0.11), (0.030, 0.012, 0.04))[:, None] * [0, 0.0028, 0.0]) * (1 - lower)[:, None]
     tongue = np.zeros_like(p)
@@ -619,7 +619,7 @@ def paint(part, p, n, opened):
 
 
 def eyeball():
-    """A sphere with its pole ahead, coloured by rings: no texture, no seam. (places, normals, triangles, colours)"""
+    """A sphere with its pole in front, coloured by rings: no texture, no seam. (positions, normals, triangles, colours)"""
     rings = [0, 12.5, 15, 22, 29, 34, 36.5, 40, 55, 72, 92, 120, 150, 180]
     colors = {0: INK, 12.5: INK, 15: srgb("#a8741a"), 22: srgb("#e0a829"), 29: srgb("#d9971f"), 34: srgb("#8a5410"), 36.5: srgb("#4d2f10"), 40: srgb("#f2eee2")}
     linear = lambda c: np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
@@ -638,7 +638,7 @@ def eyeball():
                 tris.append((a, c, b))
             if i < len(rings) - 2:
                 tris.append((b, c, d))
-    # The first and last ring are points; their unused corners stay for the sake of simple numbers.
+    # The first and last ring are points; their unused corners keep the indexing simple.
     n = np.array(places)
     return n * BALL, n, np.array(tris), np.array(shades)
 
@@ -681,7 +681,7 @@ def expressions(names):
             s = t - b
             shut = max(shut, float(smooth_step((s + 0.09) / 0.09)) if s <= 0 else float(1 - smooth_step((s - 0.03) / 0.19)))
         row = {name: at(k, t) for name, k in keys.items()}
-        # Laughing narrows the eyes; the wink is the left eye's alone.
+        # Laughing narrows the eyes; only the left eye winks.
         squint = 0.30 * float(smooth_step((row["smileLeft"] - 0.6) / 0.4))
         wink = float(curve([(0, 0), (7.00, 0), (7.12, 1), (7.30, 1), (7.52, 0), (12, 0)], t))
         # Lids follow the gaze.
@@ -717,7 +717,7 @@ def main(size=int(os.environ.get("ATLAS", "512"))):
     for f, number in zip(whole.faces, whole.part):
         part[f] = number
 
-    # What the targets know of the left half holds for its mirror image too.
+    # The target data of the left half also applies to its mirror image.
     count = len(left.vertices)
     twin = np.arange(len(whole.vertices))
     moved = np.nonzero(whole.other != np.arange(count))[0] if len(whole.other) == count else np.array([], dtype=int)
@@ -754,7 +754,7 @@ def main(size=int(os.environ.get("ATLAS", "512"))):
         for _, d in morphs:
             bent_ = clay.Mesh(whole.vertices + d, whole.faces, whole.part).normals()
             change = bent_ - rest
-            # What moves less than a fifth of a millimetre, or turns by less than five degrees, is left out.
+            # Deltas below 0.2 mm or five degrees are dropped.
             d = np.where(np.abs(d).max(axis=1, keepdims=True) > 2e-4, d, 0.0)
             change = np.where(np.abs(change).max(axis=1, keepdims=True) > 0.09, change, 0.0)
             deltas.append((d[v], change[v]))
@@ -780,7 +780,7 @@ def main(size=int(os.environ.get("ATLAS", "512"))):
     bust = node(name="goblin", mesh=bust_mesh, children=[head])
 
     times, weights, gaze, heads = expressions(names)
-    # Keys that a straight line explains are left out, for all weights together.
+    # Drops keys on a straight line, for all weights together.
     keep = gait._thin(list(weights), lambda a, b, t: a + (b - a) * t, lambda a, b: np.abs(a - b).max(), 0.02)
     angle = lambda a, b: 2 * np.arccos(min(1.0, abs(a @ b)))
     few = lambda track: gait._thin(list(track), slerp, angle, np.radians(0.25))
@@ -794,7 +794,7 @@ def main(size=int(os.environ.get("ATLAS", "512"))):
     print(out.write(OUT, [bust]), "bytes")
 
 
-# The head turns about the top of the neck.
+# The head rotates about the top of the neck.
 PIVOT = np.array([0.0, -0.105, -0.020])
 
 if __name__ == "__main__":

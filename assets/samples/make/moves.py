@@ -1,4 +1,4 @@
-"""The clips of a person: idle, walk, run, jump, wave, crouch-aim. Each returns (poses, frames a second)."""
+"""Human clips: idle, walk, run, jump, wave, crouch-aim. Each function returns (poses, frames per second)."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ RATE = 30.0
 
 
 def mixamo_figure(s, prefix="mixamorig:"):
-    """The roles of a skeleton with Mixamo's names."""
+    """Roles of a skeleton with Mixamo's names."""
     n = lambda x: prefix + x
     names = {"hips": n("Hips"), "spine": [n("Spine"), n("Spine1"), n("Spine2")], "neck": n("Neck"), "head": n("Head")}
     for side, word in (("left", "Left"), ("right", "Right")):
@@ -169,7 +169,7 @@ def run(figure, speed=3.2, frames=20):
 
 
 def _stand(figure, turns, moves, spread=0.02, turn=9.0, lift=0.0):
-    """Feet flat, a little apart, toes out."""
+    """Feet flat, slightly apart, toes out."""
     ankle, _, _ = feet(figure)
     for side, sign in (("left", 1), ("right", -1)):
         figure.leg(
@@ -217,7 +217,7 @@ def idle(figure, frames=120):
 
 
 def wave(figure, frames=72):
-    """The right arm is up; the forearm swings and twists, the body answers."""
+    """The right arm is raised; the forearm swings and twists, the body counters."""
 
     def pose(p):
         turns, moves = {}, {}
@@ -248,13 +248,13 @@ def wave(figure, frames=72):
 
 
 def jump(figure, frames=54):
-    """Gathers, springs 0.36 m, lands softly, stands again; flight is a true parabola."""
+    """Crouches, jumps 0.36 m high, lands softly, stands up; the flight is a true parabola."""
     leave, land = 14, 30
     flight = (land - leave) / RATE
     ankle, heel, ball = feet(figure)
     tip = 52.0
     stretched = ball - rotate(qx(tip), ball)
-    # Neither take-off nor landing is on quite straight legs: near the stretch knees move too fast for 30 keys a second.
+    # Legs are never fully straight at take-off and landing: nearly straight knees move too fast for 30 keys per second.
     top, bottom = 0.012, -0.035
     spring = (bottom - top) / flight + 9.81 * flight / 2
 
@@ -273,7 +273,7 @@ def jump(figure, frames=54):
         h = height(f)
         y = h if h is not None else float(curve(keys, f) if f < leave else curve(after, f))
         if 11 <= f < leave:
-            # Leaves the ground with the speed of the flight.
+            # Takes off at the initial speed of the flight.
             s = (f - 11) / (leave - 11)
             v = spring * (leave - 11) / RATE
             y = (
@@ -320,7 +320,7 @@ def jump(figure, frames=54):
             a = float(curve([(0, 24), (8.5, 46), (leave, 10), (24, 14), (36, 40), (frames, 24)], f))
             figure.curl(turns, side, (a - 4, a, a + 3, a + 7), thumb=14)
         for side, sign in (("left", 1), ("right", -1)):
-            # A millimetre and a half up, against the sag between keys.
+            # Raised by 1.5 mm to compensate for the sag between keys.
             base = np.array([sign * (ankle[0] + 0.030), ankle[1] + 0.0015, ankle[2]])
             if f <= leave:
                 pitch = -tip * float(smooth_step((f - 8.5) / (leave + 0.6 - 8.5)))
@@ -329,7 +329,7 @@ def jump(figure, frames=54):
                 figure.leg(turns, moves, side, place, pitch, -pitch, yaw=sign * 9)
             elif f < land:
                 s = (f - leave) / (land - leave)
-                # In the air the feet hang from the hips: they trail, tuck a little, then reach for the ground.
+                # In the air the feet follow the hips: they trail, tuck slightly, then reach for the ground.
                 rise = spring * (f - leave) / RATE - 0.5 * 9.81 * ((f - leave) / RATE) ** 2 - (bottom - top) * s
                 tuck = float(curve([(0, 0), (0.3, 0.03), (0.6, 0.10), (1, 0.0)], s))
                 pitch = float(curve([(0, -tip), (0.35, -46), (0.75, -14), (1, -12)], s))
@@ -358,7 +358,7 @@ def jump(figure, frames=54):
 
 
 def crouch_aim(figure, frames=90):
-    """Low on a bent front leg, the rear heel up, both hands ahead and following something from side to side."""
+    """Crouched on a bent front leg, rear heel up, both hands forward and tracking from side to side."""
     ankle, heel, ball = feet(figure)
 
     def pose(p):
@@ -375,7 +375,7 @@ def crouch_aim(figure, frames=90):
         b = ball * [-1, 1, 1]
         rear = flat + rotate(qy(yaw), b) - rotate(mul(qy(yaw), qx(-rear_pitch)), b)
         figure.leg(turns, moves, "right", rear, rear_pitch, -rear_pitch, yaw=yaw, knee=rotate(qy(-26), AHEAD))
-        # Both hands at eye height, straight ahead of the sternum, turning with the chest.
+        # Both hands at eye height, straight in front of the sternum, turning with the chest.
         chest, whole = figure.world(turns, moves, figure.names["spine"][-1])
         aim = qy(9 * track)
         eye = chest + np.array([0, 0.245, 0])
@@ -384,7 +384,7 @@ def crouch_aim(figure, frames=90):
                 turns[figure.names[f"{side}.shoulder"]] = mul(qy(-sign * 14), qz(sign * 2))
             reach = np.array([sign * 0.022, -0.035 if side == "left" else 0.0, 0.47 if side == "right" else 0.42])
             place = eye + rotate(aim, reach)
-            # Palms face each other, thumbs up, the left one turned a little under the right.
+            # Palms face each other, thumbs up, the left hand rotated slightly under the right.
             grip = mul(aim, qz(-sign * (84 if side == "right" else 60)), qy(-sign * 84))
             figure.limb(
                 turns,

@@ -1,7 +1,7 @@
 """Paint: unwraps a mesh into one atlas and bakes colour, roughness, metal, occlusion and fine relief into textures.
 
-Colours are functions of the place on the body, so borders are as crisp as a texel wherever the mesh's edges run.
-Relief is a height in metres as a function of place; it and the exact normals of the clay end in the normal map.
+Colours are functions of the position on the body, so borders are sharp to a texel independent of the mesh. Relief is a height
+in metres as a function of position; it is baked into the normal map along with the exact normals of the clay.
 """
 
 import numpy as np
@@ -10,10 +10,10 @@ import clay
 
 
 def unwrap(mesh, splits=None, margin=0.004):
-    """One atlas: per face a list of corner UVs, v up.
+    """The atlas: a list of corner UVs per face, v up.
 
-    Every part is cut into charts where its faces turn away: `splits[part]` is the direction (a vector) that parts front
-    from back, or None for the six sides of a box. Few charts mean few doubled vertices.
+    Every part is cut into charts by face direction: `splits[part]` is the vector that separates front from back, or None for the
+    six sides of a box. Fewer charts mean fewer duplicated vertices.
     """
     import bpy
 
@@ -44,7 +44,7 @@ def unwrap(mesh, splits=None, margin=0.004):
 
 
 def _charts(mesh, splits):
-    """A chart number per face: by the side it faces, islands too small to matter given to their neighbours."""
+    """A chart number per face, by the side it faces; small islands are merged into their neighbours."""
     v = mesh.vertices
     normal = np.array([np.cross(v[f[1]] - v[f[0]], v[f[2]] - v[f[0]]) + (np.cross(v[f[2]] - v[f[0]], v[f[-1]] - v[f[0]]) if len(f) > 3 else 0) for f in mesh.faces])
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
@@ -57,7 +57,7 @@ def _charts(mesh, splits):
         if len(near) == 2:
             neighbours[near[0]].append(near[1])
             neighbours[near[1]].append(near[0])
-    # Normals are smoothed first: a chart's border should run straight, not follow every bump.
+    # Normals are smoothed first, so that chart borders run straight instead of following every bump.
     for _ in range(6):
         mean = np.array([normal[n].sum(axis=0) if n else np.zeros(3) for n in neighbours])
         normal = normal + mean
@@ -100,9 +100,9 @@ def _islands(side, neighbours):
 
 
 def corners_of(mesh, uv):
-    """The mesh as a file wants it: (vertex of each corner, corner UVs, triangles over corners, face of each triangle).
+    """The mesh in file layout: (vertex of each corner, corner UVs, triangles over corners, face of each triangle).
 
-    Corners with the same vertex and UV are one.
+    Corners with equal vertex and UV are merged.
     """
     number, vertex, coords = {}, [], []
     faces = []
@@ -141,12 +141,12 @@ def _tangents(mesh, uv):
 
 
 class Surface:
-    """A mesh as a file wants it: per corner `vertex` (its number in the whole mesh), `place`, `normal`, `uv` (v down),
+    """A mesh in file layout: per corner `vertex` (its index in the full mesh), `place`, `normal`, `uv` (v down),
     `tangent` (with sign); `triangles` over the corners."""
 
 
 def surface(left, uv, alone=()):
-    """The whole Surface of a left half and its UVs; both sides share the atlas, the right one mirrored."""
+    """The full Surface of a left half and its UVs; both sides share the atlas, the right one mirrored."""
     whole = clay.mirror(left, alone=alone)
     vertex, coords, tris, source, tangent, sign = _tangents(left, uv)
     total = np.zeros((len(vertex), 3))
@@ -175,7 +175,7 @@ def surface(left, uv, alone=()):
 
 
 class Texels:
-    """What lies under each texel of the atlas: `at` rows, place, normal, tangent, bitangent, part."""
+    """The surface under each texel of the atlas: `at` rows, place, normal, tangent, bitangent, part."""
 
 
 def _rasterise(mesh, uv, size):
@@ -195,7 +195,7 @@ def _rasterise(mesh, uv, size):
         u = ((b[0] - x) * (c[1] - y) - (b[1] - y) * (c[0] - x)) / area
         v = ((c[0] - x) * (a[1] - y) - (c[1] - y) * (a[0] - x)) / area
         w = 1 - u - v
-        # Half a texel beyond the edge counts, so that no chart is thinner in the picture than on the mesh.
+        # Includes half a texel beyond the edge, so that no chart is thinner in the texture than on the mesh.
         slack = -0.75 * max(np.linalg.norm(b - a), np.linalg.norm(c - b), np.linalg.norm(a - c)) / abs(area)
         inside = np.minimum(np.minimum(u, v), w)
         old = owner[low[1] : high[1], low[0] : high[0]]
@@ -219,7 +219,7 @@ def _rasterise(mesh, uv, size):
 
 
 def _overlap(mesh, uv):
-    """The share of chart area that is lost because charts lie over each other."""
+    """The fraction of chart area lost to overlapping charts."""
     size = 512
     area = 0.0
     for f in uv:
@@ -236,7 +236,7 @@ def _overlap(mesh, uv):
 
 
 def _spread(picture, filled, rounds=6):
-    """Fills the gaps between charts from their edges, so that filtering never mixes in the background."""
+    """Dilates the charts, so that filtering never picks up the background."""
     for _ in range(rounds):
         total = np.zeros_like(picture)
         count = np.zeros(filled.shape)
@@ -253,7 +253,7 @@ def _spread(picture, filled, rounds=6):
 
 
 def occlusion(scene, place, normal, reach=(0.008, 0.02, 0.045, 0.1)):
-    """How open the surface is (1: fully), from the scene's distances a little above it."""
+    """Ambient occlusion (1: fully open), from the scene's distances slightly above the surface."""
     total, weight = np.zeros(len(place)), 0.0
     for d in reach:
         free = scene(place + normal * d)
@@ -265,8 +265,8 @@ def occlusion(scene, place, normal, reach=(0.008, 0.02, 0.045, 0.1)):
 def bake(mesh, uv, shapes, paint, height=None, size=1024, scene=None):
     """Textures (u8): base colour, normal (+Y up), occlusion-roughness-metal (half the size).
 
-    `shapes[part]` is the clay of each part, or None where the mesh's own normals are right; `paint(part, place, normal,
-    open)` -> (sRGB colours (N, 3) in 0..1, roughness (N,), metal (N,)); `height(part, place)` -> metres; `scene` all
+    `shapes[part]` is the clay of each part, or None to use the mesh's normals; `paint(part, place, normal,
+    open)` -> (sRGB colours (N, 3) in 0..1, roughness (N,), metal (N,)); `height(part, place)` -> metres; `scene` is all
     clay, for occlusion.
     """
     fine = _rasterise(mesh, uv, size)
@@ -274,13 +274,13 @@ def bake(mesh, uv, shapes, paint, height=None, size=1024, scene=None):
     rough = _rasterise(mesh, uv, size // 2)
     half = size // 2
 
-    # Slow things (clay normals, occlusion) at half the size.
+    # Clay normals and occlusion are slow, so they are computed at half the size.
     surface = rough.normal.copy()
     for part in np.unique(rough.part):
         if shapes[part] is not None:
             mine = rough.part == part
             surface[mine] = clay.gradient(shapes[part], rough.place[mine], 1.5e-3)
-    # Where a coarse mesh cuts a corner of the clay the exact normal would look wrong.
+    # Where a coarse mesh cuts a corner of the clay, the exact normal would look wrong.
     turned = np.einsum("ij,ij->i", surface, rough.normal)
     surface[turned < 0.35] = rough.normal[turned < 0.35]
     opened = occlusion(scene, rough.place, surface) if scene else np.ones(len(rough.place))

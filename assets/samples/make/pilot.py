@@ -1,4 +1,4 @@
-"""Makes ../pilot.glb: a test pilot in a flight suit, 52 moving joints under Mixamo's names, six clips."""
+"""Makes ../pilot.glb: a test pilot in a flight suit, 52 animated joints with Mixamo's names, six clips."""
 
 import os
 import sys
@@ -83,7 +83,7 @@ def leg():
 TORSO, ARM, LEG = torso(), arm(), leg()
 SUIT = clay.mirrored(union(union(TORSO, ARM, k=0.075), LEG, k=0.035))
 
-# ---------------------------------------------------------------- what is worn
+# ---------------------------------------------------------------- clothing and equipment
 
 
 def glove():
@@ -126,7 +126,7 @@ def glove():
 
 
 def cuff():
-    """The gauntlet: a flared tube with a rolled rim, its inside running back to the sleeve."""
+    """The gauntlet: a flared tube with a rolled rim, its inside continuing to the sleeve."""
     cone = sideways(
         [
             (0.56, 1.411, -0.018, 0.0585, 0.0605),
@@ -307,7 +307,7 @@ def helmet_outer():
 
 
 def window(p, grow=0.0):
-    """The visor's outline on the helmet: wraps round to the temples, negative inside."""
+    """The visor's outline on the helmet, wrapping around to the temples, negative inside."""
     around = np.arctan2(np.abs(p[:, 0]), np.maximum(p[:, 2] + 0.03, 1e-3)) * 0.145
     middle = 1.652 - 0.30 * np.maximum(around - 0.06, 0.0) ** 1.0 * 0.25
     across, tall = 0.172 + grow, 0.060 + grow - 0.06 * np.maximum(around - 0.05, 0)
@@ -336,7 +336,7 @@ def helmet():
 
 
 def visor():
-    """A sheet of glass just under the helmet's outer surface; its border lies inside the wall, so the frame's edge is what is seen."""
+    """A sheet of glass just under the helmet's outer surface; its border is hidden inside the wall."""
     glass = grown(HELMET_OUTER, -0.0035)
     around, heights = np.linspace(0.0, 1.29, 11), np.linspace(1.578, 1.728, 10)
     a, y = [c.reshape(-1) for c in np.meshgrid(around, heights)]
@@ -356,7 +356,7 @@ def visor():
 
 
 def collar():
-    """The neck ring the helmet sits on."""
+    """The neck ring under the helmet."""
     neck = upright([(1.42, 0, -0.016, 0.092, 0.082), (1.46, 0, -0.015, 0.092, 0.083), (1.54, 0, -0.010, 0.086, 0.080)])
     profile = [
         (1.440, -0.006),
@@ -402,7 +402,7 @@ class Part:
     def __init__(self, name, shape, carrier=None, box=None, quads=0, step=0.004, mesh=None, solid=True, half=True):
         self.name, self.shape, self.carrier = name, shape, carrier
         self.box, self.quads, self.step, self.mesh, self.half = box, quads, step, mesh, half
-        # Whether its clay hides what lies inside it.
+        # Whether its clay hides what is inside it.
         self.solid = solid and shape is not None
 
 
@@ -428,7 +428,7 @@ PARTS = [
 
 
 def sculpt():
-    """The left halves of all parts (or whole ones), without what the parts over them hide."""
+    """The left halves of all parts (or complete ones), without faces hidden by the parts over them."""
     meshes = []
     for part in PARTS:
         start = time.time()
@@ -447,7 +447,7 @@ def sculpt():
 
 # ---------------------------------------------------------------- colours and relief
 
-# Where the charts of the atlas part: front and back, top and bottom, inside and outside.
+# Splits of the atlas charts: front and back, top and bottom, inside and outside.
 SPLITS = {
     "suit": (0, 0, 1),
     "glove": (0, 1, 0),
@@ -497,7 +497,7 @@ def suit_regions(p):
 
 
 def folds(p):
-    """Creases of cloth where it bends, metres."""
+    """Creases where the cloth bends, metres."""
     x, y, z = np.abs(p[:, 0]), p[:, 1], p[:, 2]
     q = np.column_stack([x, y, z])
     warp = noise(q, 0.07, 1) * 0.016 + noise(q, 0.03, 2) * 0.004

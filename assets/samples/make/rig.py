@@ -1,12 +1,12 @@
-"""Rig: skeletons and blend weights.
+"""Rig: skeletons and skin weights.
 
-A Skeleton is names, parents (parents first) and rest positions; the rest frames are identity rotations unless given.
-Motion is written as *turns* (see gait.py): rotations in axes parallel to the model's, which `local_rotation` turns into
-what a file wants, so the same motion drives skeletons whose rest frames differ.
+A Skeleton has names, parents (parents first) and rest positions; the rest frames are identity rotations unless given.
+Motion is written as *turns* (see gait.py): rotations in axes parallel to the model's, which `local_rotation` converts to a
+file's rotations, so the same motion drives skeletons with different rest frames.
 
-Weights are functions of the place in the rest pose, not of the mesh: weight flows from the root down the tree and at
-every joint a soft gate decides how much passes on to the child. So layers of clothing that lie over each other bend
-alike, left and right are the same, and any mesh of the character can be skinned by the same `Gates`.
+Weights are functions of the rest position, not of the mesh: weight flows from the root down the tree, and at every joint a
+soft gate decides how much passes to the child. So layers of clothing deform alike, left and right match, and any mesh of the
+character can be skinned with the same `Gates`.
 """
 
 import numpy as np
@@ -79,14 +79,14 @@ def from_matrix(m):
 
 
 def between(a, b):
-    """The shortest turn from direction a to direction b."""
+    """The shortest rotation from direction a to direction b."""
     a, b = a / np.linalg.norm(a), b / np.linalg.norm(b)
     q = np.append(np.cross(a, b), 1.0 + a @ b)
     return q / np.linalg.norm(q)
 
 
 def frame(down, pole, rest_down, rest_pole):
-    """The turn that brings (rest_down, rest_pole) to (down, pole); poles are made square to the first."""
+    """The rotation from (rest_down, rest_pole) to (down, pole); poles are orthogonalized first."""
 
     def basis(d, p):
         d = d / np.linalg.norm(d)
@@ -151,13 +151,13 @@ class Skeleton:
         return [k for k, p in enumerate(self.parents) if p == j]
 
     def local_rotation(self, j, turn):
-        """The file's local rotation of a turn (a rotation in the model's axes, relative to the parent's turn)."""
+        """Converts a turn (a rotation in the model's axes, relative to the parent's turn) to a file's local rotation."""
         up = self.parents[j]
         after = mul(turn, self.frame(j))
         return after if up < 0 else mul(conj(self.frame(up)), after)
 
     def pose(self, turns, moves=None):
-        """World positions and turns of all joints. `turns`: {name: turn}; `moves`: {name: shift in the parent's axes}."""
+        """World positions and turns of all joints. `turns`: {name: turn}; `moves`: {name: offset in the parent's axes}."""
         places, whole = [None] * len(self.names), [None] * len(self.names)
         moves = moves or {}
         identity = np.array([0, 0, 0, 1.0])
@@ -183,11 +183,11 @@ def smooth_step(t):
 
 
 class Gates:
-    """Where weight passes from a joint to its child: a soft plane through the child's joint.
+    """The transitions of weight from a joint to its child: a soft plane through the child.
 
     `gate(child, toward, width, shift, near)`: `toward` the direction into the child (default: the mean of the bones on
-    both sides), `width` in metres over which it passes, `shift` metres along `toward`, `near` an optional function of
-    points -> [0, 1] for children that lie side by side (fingers, legs). Joints without a gate get no weight.
+    both sides), `width` of the transition in metres, `shift` metres along `toward`, `near` an optional function of
+    points -> [0, 1] for children side by side (fingers, legs). Joints without a gate get no weight.
     """
 
     def __init__(self, skeleton):
@@ -206,7 +206,7 @@ class Gates:
         self.gates[j] = (toward / np.linalg.norm(toward), width, shift, near)
 
     def weights(self, points, root):
-        """(N, joints) weights that sum to 1; all of it starts at the joint `root`."""
+        """(N, joints) weights that sum to 1; all weight starts at the joint `root`."""
         s = self.skeleton
         flow = {s[root]: np.ones(len(points))}
         out = np.zeros((len(points), len(s.names)))
@@ -222,7 +222,7 @@ class Gates:
                 g = smooth_step(t / width + 0.5)
                 opened[child] = g * near(points) if near else g
             total = sum(opened.values()) if opened else np.zeros(len(points))
-            # Siblings that want more than there is share it.
+            # Siblings that claim more than available share it.
             over = np.maximum(total, 1.0)
             for child, g in opened.items():
                 flow[child] = flow[j] * g / over
@@ -250,7 +250,7 @@ def smoothed(weights, faces, rounds=2, amount=0.5):
 
 
 def lent(points, mesh_points, mesh_weights, count=4):
-    """Weights for points (belts, straps) from the nearest vertices of the body they lie on: so they move with it."""
+    """Weights for points (belts, straps) from the nearest vertices of the body, so that they move with it."""
     out = np.zeros((len(points), mesh_weights.shape[1]))
     for i, p in enumerate(points):
         d = np.linalg.norm(mesh_points - p, axis=1)

@@ -1,5 +1,5 @@
-"""Sculpting: what the dwarf, the fox and the goblin share on top of clay.py - strings of capsules, pieces that are meshed
-with another grid where the remesher stumbles, and sharp tips."""
+"""Sculpting tools on top of clay.py, shared by dwarf, fox and goblin: chains of capsules, remeshing on other grids where
+QuadriFlow fails, and sharp tips."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from clay import capsule, union
 
 
 def chain(points, radii, k=0.01, flatten=None):
-    """A soft string of capsules: locks of hair, horns, fingers, legs."""
+    """A blended chain of capsules: locks of hair, horns, fingers, legs."""
     return union(*[capsule(a, b, ra, rb, flatten) for a, b, ra, rb in zip(points, points[1:], radii, radii[1:])], k=k)
 
 
@@ -20,7 +20,7 @@ def bent(points, radii, k=0.01, count=6, flatten=None):
 
 
 def folded(mesh, shape):
-    """How many faces look another way than the clay under them does, or bridge a hollow: tears and dents."""
+    """Number of faces whose normal disagrees with the clay, or that bridge a hollow: tears and dents."""
     tris, _ = mesh.triangles()
     v = mesh.vertices
     face = np.cross(v[tris[:, 1]] - v[tris[:, 0]], v[tris[:, 2]] - v[tris[:, 0]])
@@ -31,8 +31,8 @@ def folded(mesh, shape):
 
 
 def meshed(part, keep=(), tries=4, good=4):
-    """The quads of a part (`shape`, `box`, `quads`, `step`, `half`, `relax`): the best of a few grids, because the remesher may refuse
-    one, tear a crevice or lose a limb (some vertex must be near each place of `keep`)."""
+    """The quads of a part (`shape`, `box`, `quads`, `step`, `half`, `relax`): the best of several grids, because the remesher may
+    fail, tear a crevice or lose a limb (a vertex must be near each point of `keep`)."""
     best, fewest = None, None
     for factor in (1.0, 0.93, 1.06, 0.87, 1.12, 0.82)[:tries]:
         try:
@@ -53,7 +53,7 @@ def meshed(part, keep=(), tries=4, good=4):
 
 
 def pointed(mesh, places):
-    """Even quads round off where a silhouette ends in a point; the vertex nearest to each of `places` is put there."""
+    """Even quads round off pointed tips; moves the nearest vertex to each of `places`."""
     for place in places:
         d = np.linalg.norm(mesh.vertices - place, axis=1)
         if place[0] == 0:
@@ -63,11 +63,11 @@ def pointed(mesh, places):
 
 
 def mixed(base, color, amount):
-    """Colours (N, 3) painted over with one colour by amounts (N,)."""
+    """Blends colours (N, 3) towards one colour by amounts (N,)."""
     return base + (color - base) * np.asarray(amount)[:, None]
 
 
 def unit_normals(shown):
-    """Where the mirror plane folds a face onto its twin, the two normals cancel; any unit vector does there."""
+    """Normals cancel where the mirror plane folds a face onto its twin; replaces them with arbitrary unit vectors."""
     lost = np.linalg.norm(shown.normal, axis=1) < 0.5
     shown.normal[lost], shown.tangent[lost, :3] = (0, 0, 1), (1, 0, 0)

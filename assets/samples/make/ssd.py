@@ -1,8 +1,8 @@
-"""Makes ../ssd.obj, ../ssd.skel and ../ssd.attach: an imp in bare clay with 18 joints, for skeletal subspace deformation
-as it is taught: every vertex listens to many joints.
+"""Makes ../ssd.obj, ../ssd.skel and ../ssd.attach: an imp of plain clay with 18 joints, for teaching skeletal subspace
+deformation: every vertex has many influences.
 
-`.skel`: a line per joint, `x y z parent`, the offset from the parent's joint (the root's parent is -1). `.attach`: a row per
-vertex, a weight for every joint but the root (what is missing to 1 is the root's... here nothing is: rows sum to 1)."""
+`.skel`: a line per joint, `x y z parent`, with the offset from the parent (the root's parent is -1). `.attach`: a row per
+vertex, with a weight for every joint but the root, which would get the remainder to 1; here all rows sum to 1."""
 
 import os
 import sys
@@ -17,7 +17,7 @@ from clay import capsule, common, cut, ellipsoid, forward, grown, halfspace, sid
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 
-# The root has no column of its own, so the belly belongs to `pelvis`, just above it.
+# The root has no column, so the belly belongs to `pelvis`, just above it.
 JOINTS = [
     ("root", None, (0, 0.60, 0.0)),
     ("pelvis", "root", (0, 0.655, 0.0)),
@@ -56,7 +56,7 @@ def head():
     ear = capsule((0.165, 1.370, -0.020), (0.385, 1.485, -0.082), 0.068, 0.024, flatten=((-0.25, 0.0, 1.0), 0.50))
     hollow = capsule((0.215, 1.398, 0.016), (0.325, 1.454, -0.024), 0.034, 0.012, flatten=((-0.25, 0.0, 1.0), 0.55))
     shape = union(shape, cut(ear, hollow, k=0.018), k=0.035)
-    # Large eyes in their sockets under heavy lids; brows that wonder.
+    # Large eyes in their sockets under heavy lids; raised brows.
     eye = np.array([0.080, 1.386, 0.122])
     shape = cut(shape, ellipsoid(eye + [0.002, 0.002, 0.050], (0.072, 0.066, 0.046)), k=0.030)
     globe = sphere(eye, 0.060)
@@ -71,7 +71,7 @@ def head():
     shape = union(shape, brow, k=0.018)
     shape = union(shape, ellipsoid((0, 1.330, 0.196), (0.043, 0.040, 0.056)), k=0.022)
     shape = union(shape, ellipsoid((0.033, 1.321, 0.178), (0.023, 0.021, 0.026)), k=0.014)
-    # The mouth is a line drawn into the surface, with a corner that turns up, and a lower lip.
+    # The mouth is a groove in the surface with upturned corners, and a lower lip.
     line = [(0.0, 1.236), (0.040, 1.240), (0.080, 1.256), (0.110, 1.280), (0.124, 1.300)]
     starts = np.array([(x, y, 0.4) for x, y in line])
     points = clay.cast(bare, starts, np.broadcast_to([0, 0, -0.4], starts.shape), 1.0)
@@ -152,7 +152,7 @@ def body():
     hand = union(hand, capsule((0.660, 1.026, 0.034), (0.728, 1.014, 0.098), 0.027, 0.0235), k=0.022)
     arm = union(arm, hand, k=0.03)
     leg = LEG
-    # Short trousers: a thicker skin; its ends lie under the belt and the hems.
+    # Short trousers: a thicker skin that ends under the belt and the hems.
     skin = union(union(trunk, leg, k=0.045), arm, k=0.08)
     cloth = grown(union(trunk, leg, k=0.045), 0.010)
     cloth = common(cloth, halfspace((0, 0.655, 0.0), (0, 1, 0)), k=0.02)
@@ -161,7 +161,7 @@ def body():
 
 
 def bands():
-    """Belt, hems and bracelets: loops of their own, laid round the body."""
+    """Belt, hems and bracelets: separate loops around the body."""
 
     def roll(half, thick):
         across = [
@@ -190,9 +190,9 @@ NECK, WRIST, FINER_HEAD, FINER_HAND = 1.185, 0.625, 2.3, 1.6
 
 
 def shrunk(p):
-    """Places of a body whose head and hands are FINER_… times as large -> places on the imp.
+    """Maps positions on a body whose head and hands are FINER_… times as large to the imp.
 
-    Quads are laid on that body, so face and fingers get more of them.
+    That body is remeshed, so face and fingers get more quads.
     """
     x, y, z = np.abs(p[:, 0]), p[:, 1], p[:, 2]
     f = 1 - (1 - 1 / FINER_HEAD) * rig.smooth_step((y - NECK) / 0.32)
@@ -248,20 +248,20 @@ def main():
     s = rig.Skeleton()
     for joint in JOINTS:
         s.add(*joint)
-    # Made whole: this body shows its middle line, where halves would be sewn.
+    # Meshed whole: the seam of mirrored halves would be visible on this body.
     mesh = clay.mesh_of(
         lambda p: IMP(shrunk(p)), (-1.06, -0.03, -0.50), (1.06, 2.48, 0.62), 5900, 0.012, half=False, relax=5
     )
     mesh.vertices = clay.project(IMP, shrunk(mesh.vertices), 3)
     w = gates(s).weights(mesh.vertices, "root")
-    # Diffused over the surface, a part of it far: that is what makes the weights dense.
+    # Diffused over the surface, partly over a long distance, which makes the weights dense.
     near = rig.smoothed(w, mesh.faces, 40)
     w = 0.86 * near + 0.14 * rig.smoothed(near, mesh.faces, 500)
     rolls = clay.joined(bands())
     w = np.concatenate([w, rig.lent(rolls.vertices, mesh.vertices, w, 8)])
     mesh = clay.joined([mesh, rolls])
     w[:, 0] = 0.0
-    # Beyond the twelve strongest nothing; then thousandths that sum to exactly 1.
+    # Keeps the twelve strongest, rounded to thousandths that sum to exactly 1.
     order = np.argsort(-w, axis=1)
     np.put_along_axis(w, order[:, 12:], 0.0, axis=1)
     w /= w.sum(axis=1, keepdims=True)

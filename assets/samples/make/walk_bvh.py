@@ -1,9 +1,9 @@
-"""Makes ../walk.bvh: thirteen ticks of a brisk walk on a skeleton in the joint order that Poser writes.
+"""Makes ../walk.bvh: thirteen frames of a brisk walk on a skeleton in Poser's joint order.
 
-Channel numbers are places in the file (End Sites not counted): 0 hip, 1 abdomen, 2 chest, 3 neckDummy, 4 neck, 5 head,
+Joint numbers are positions in the file, without End Sites: 0 hip, 1 abdomen, 2 chest, 3 neckDummy, 4 neck, 5 head,
 6 figureHair, 7 lCollar, 8 lShldr, 9 lForeArm, 10 lHand, 11 rCollar, 12 rShldr, 13 rForeArm, 14 rHand, 15 lThigh, 16 lShin,
-17 lFoot, 18 rThigh, 19 rShin, 20 rFoot. Lengths are centimetres, rest is a T-pose, and, as in such files, joints differ in
-the order of their angles."""
+17 lFoot, 18 rThigh, 19 rShin, 20 rFoot. Lengths are in centimetres, the rest pose is a T-pose, and, as is common in such
+files, the rotation order differs between joints."""
 
 import os
 import sys
@@ -19,7 +19,7 @@ from gait import Tread, swing
 OUT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "walk.bvh")
 TICKS, TICK = 13, 1.0 / 15.0
 
-# name, parent, place in the model (metres), order of the angles
+# name, parent, position in the model (metres), rotation order
 PERSON = [
     ("hip", None, (0, 0.94, 0.0), "XZY"),
     ("abdomen", "hip", (0, 0.97, 0.0), "XZY"),
@@ -74,7 +74,7 @@ def figure_of(s):
 
 
 def walk(figure):
-    """A brisk walk of 0.87 s a stride that travels 1.6 m/s."""
+    """A brisk walk with a stride of 0.87 s, travelling at 1.6 m/s."""
     ankle = figure.place("left.foot")
     length = 1.6 * TICKS * TICK
     tread = Tread(
@@ -128,13 +128,13 @@ def walk(figure):
         return turns, shift
 
     poses = [pose(i / TICKS) for i in range(TICKS)]
-    # The last frame is the first one, a stride further on.
+    # The last frame repeats the first, one stride ahead.
     turns, shift = pose(0.0)
     return poses + [(turns, {"hip": np.asarray(shift["hip"]) + [0, 0, length]})]
 
 
 def angles(m, order):
-    """Degrees about the axes in `order`, the first one outermost, that make the rotation matrix."""
+    """Euler angles in degrees of a rotation matrix, in the given `order`, outermost first."""
     i, j, k = ("XYZ".index(c) for c in order)
     sign = 1.0 if (i, j, k) in ((0, 1, 2), (1, 2, 0), (2, 0, 1)) else -1.0
     second = np.arcsin(np.clip(sign * m[i, k], -1, 1))

@@ -1,8 +1,8 @@
-//! The walker's surface: tubes around chains of joints, rounded at their ends, with weights that blend over each bend.
+//! The walker's mesh: tubes around joint chains, rounded at the ends, with weights that blend across each bend.
 
 use glam::{Vec2, Vec3, Vec4};
 
-use super::{joint, place};
+use super::{joint, position};
 use crate::mesh::{Geometry, Influences, MorphTarget};
 
 const SIDES: usize = 24;
@@ -18,16 +18,16 @@ const EYES_MATERIAL: usize = 2;
 const HEAD_CENTER: Vec3 = Vec3::new(0.0, 1.635, 0.01);
 const HEAD_RADII: Vec3 = Vec3::new(0.118, 0.125, 0.122);
 
-/// A cut through a tube.
+/// A cross-section of a tube.
 #[derive(Clone, Copy)]
 struct Ring {
     center: Vec3,
-    /// Half widths along the tube's two side axes.
+    /// Along the tube's `across` and `up` axes.
     radii: Vec2,
     color: Vec3,
 }
 
-/// Vertices and triangles of one piece, put together ring by ring.
+/// A mesh primitive under construction.
 #[derive(Default)]
 struct Surface {
     positions: Vec<Vec3>,
@@ -36,8 +36,8 @@ struct Surface {
     indices: Vec<u32>,
 }
 
-/// Weight of each joint of a chain at a distance along it: 1 in the middle of a bone, blended over `blend` metres to
-/// either side of a joint.
+/// A joint chain and its skin weights along `axis`: 1 in the middle of a bone, blended over `blend` metres on either side
+/// of a joint.
 struct Chain<'a> {
     joints: &'a [usize],
     axis: Vec3,
@@ -45,15 +45,15 @@ struct Chain<'a> {
 }
 
 impl Chain<'_> {
-    /// The two joints that share this place, and the second one's part.
+    /// Returns the two joints that influence a point, with their weights.
     fn weights(&self, point: Vec3) -> [(usize, f32); 2] {
         let along = point.dot(self.axis);
         let mut at = [(self.joints[0], 1.0), (self.joints[0], 0.0)];
         for pair in self.joints.windows(2) {
-            let start = place(pair[1]).dot(self.axis) - self.blend;
-            let part = ((along - start) / (2.0 * self.blend)).clamp(0.0, 1.0);
-            if part > 0.0 {
-                let smooth = part * part * (3.0 - 2.0 * part);
+            let start = position(pair[1]).dot(self.axis) - self.blend;
+            let share = ((along - start) / (2.0 * self.blend)).clamp(0.0, 1.0);
+            if share > 0.0 {
+                let smooth = share * share * (3.0 - 2.0 * share);
                 at = [(pair[0], 1.0 - smooth), (pair[1], smooth)];
             }
         }
@@ -68,11 +68,12 @@ pub fn body() -> Vec<Geometry> {
     for side in [1.0, -1.0] {
         arm(&mut shell, side);
         leg(&mut shell, side);
+        shoe(&mut shell, side);
     }
     vec![shell.build(SHELL_MATERIAL), visor()]
 }
 
-/// Two lights on the visor; the morph target presses them flat.
+/// Two lights on the visor; the morph target flattens them.
 pub fn eyes() -> Geometry {
     let mut surface = Surface::default();
     for side in [1.0, -1.0] {
@@ -140,14 +141,14 @@ fn head(surface: &mut Surface) {
     }
 }
 
-/// How far out in front the visor is at a place of the face.
+/// Returns the Z of the visor at a point of the face.
 fn on_visor(x: f32, y: f32) -> f32 {
     let radii = 1.035 * HEAD_RADII;
     let (u, v) = ((x - HEAD_CENTER.x) / radii.x, (y - HEAD_CENTER.y) / radii.y);
     HEAD_CENTER.z + radii.z * (1.0 - u * u - v * v).max(0.0).sqrt()
 }
 
-/// A shield before the face: a piece of a slightly larger head, sunk in along its edge.
+/// A face shield: a patch of a slightly larger head, sunk in along its rim.
 fn visor() -> Geometry {
     const COLUMNS: usize = 28;
     const ROWS: usize = 14;
@@ -155,7 +156,7 @@ fn visor() -> Geometry {
     for row in 0..=ROWS {
         for column in 0..=COLUMNS {
             let (u, v) = (2.0 * column as f32 / COLUMNS as f32 - 1.0, 2.0 * row as f32 / ROWS as f32 - 1.0);
-            // Square to disk-like: rounded corners.
+            // Maps the square to a rounded one.
             let (x, y) = (u * (1.0 - 0.28 * v * v).sqrt(), v * (1.0 - 0.28 * u * u).sqrt());
             let (azimuth, elevation) = (1.12 * x, 0.47 * y + 0.06);
             let direction =
@@ -176,11 +177,9 @@ fn visor() -> Geometry {
 }
 
 fn arm(surface: &mut Surface, side: f32) {
-    let joints = if side > 0.0 { joint::LEFT_ARM } else { joint::RIGHT_ARM };
-    let [shoulder, upper, lower, hand] = joints;
-    let line = [joint::CHEST, shoulder, upper, lower, hand];
-    let chain = Chain { joints: &line[2..], axis: side * Vec3::X, blend: 0.045 };
-    let y = place(upper).y;
+    let [_, upper, lower, hand] = if side > 0.0 { joint::LEFT_ARM } else { joint::RIGHT_ARM };
+    let chain = Chain { joints: &[upper, lower, hand], axis: side * Vec3::X, blend: 0.045 };
+    let y = position(upper).y;
     let ring = |x: f32, radius: f32, color: Vec3| Ring {
         center: Vec3::new(side * x, y, -0.01),
         radii: Vec2::splat(radius),
@@ -222,10 +221,9 @@ fn arm(surface: &mut Surface, side: f32) {
 }
 
 fn leg(surface: &mut Surface, side: f32) {
-    let [upper, lower, foot, toes] = if side > 0.0 { joint::LEFT_LEG } else { joint::RIGHT_LEG };
-    let x = place(upper).x;
-    let line = [joint::HIPS, upper, lower, foot];
-    let chain = Chain { joints: &line, axis: -Vec3::Y, blend: 0.05 };
+    let [upper, lower, foot, _] = if side > 0.0 { joint::LEFT_LEG } else { joint::RIGHT_LEG };
+    let x = position(upper).x;
+    let chain = Chain { joints: &[joint::HIPS, upper, lower, foot], axis: -Vec3::Y, blend: 0.05 };
     let ring = |y: f32, radius: f32, z: f32, color: Vec3| Ring {
         center: Vec3::new(x, y, z),
         radii: Vec2::splat(radius),
@@ -266,40 +264,44 @@ fn leg(surface: &mut Surface, side: f32) {
         ring(0.065, 0.034, 0.0, DARK),
     ];
     surface.tube(&rings, Vec3::X, -Vec3::Z, &chain);
+}
 
-    // The shoe is a tube from heel to toe, flat below.
-    let shoe = Chain { joints: &[foot, toes], axis: Vec3::Z, blend: 0.03 };
-    let cut = |z: f32, half_width: f32, height: f32, color: Vec3| Ring {
+/// A tube from heel to toe with a flat sole.
+fn shoe(surface: &mut Surface, side: f32) {
+    let [_, _, foot, toes] = if side > 0.0 { joint::LEFT_LEG } else { joint::RIGHT_LEG };
+    let x = position(foot).x;
+    let chain = Chain { joints: &[foot, toes], axis: Vec3::Z, blend: 0.03 };
+    let ring = |z: f32, half_width: f32, height: f32, color: Vec3| Ring {
         center: Vec3::new(x, 0.5 * height, z),
         radii: Vec2::new(half_width, 0.5 * height),
         color,
     };
-    let cuts = [
-        cut(-0.078, 0.016, 0.05, SHELL),
-        cut(-0.074, 0.034, 0.072, SHELL),
-        cut(-0.06, 0.045, 0.088, SHELL),
-        cut(-0.03, 0.05, 0.1, SHELL),
-        cut(0.01, 0.053, 0.104, SHELL),
-        cut(0.045, 0.055, 0.098, SHELL),
-        cut(0.08, 0.057, 0.084, SHELL),
-        cut(0.105, 0.058, 0.075, SHELL),
-        cut(0.118, 0.058, 0.072, DARK),
-        cut(0.13, 0.058, 0.07, DARK),
-        cut(0.142, 0.058, 0.067, DARK),
-        cut(0.155, 0.057, 0.064, ACCENT),
-        cut(0.175, 0.052, 0.058, ACCENT),
-        cut(0.192, 0.042, 0.05, ACCENT),
-        cut(0.203, 0.026, 0.04, ACCENT),
-        cut(0.206, 0.012, 0.03, ACCENT),
+    let rings = [
+        ring(-0.078, 0.016, 0.05, SHELL),
+        ring(-0.074, 0.034, 0.072, SHELL),
+        ring(-0.06, 0.045, 0.088, SHELL),
+        ring(-0.03, 0.05, 0.1, SHELL),
+        ring(0.01, 0.053, 0.104, SHELL),
+        ring(0.045, 0.055, 0.098, SHELL),
+        ring(0.08, 0.057, 0.084, SHELL),
+        ring(0.105, 0.058, 0.075, SHELL),
+        ring(0.118, 0.058, 0.072, DARK),
+        ring(0.13, 0.058, 0.07, DARK),
+        ring(0.142, 0.058, 0.067, DARK),
+        ring(0.155, 0.057, 0.064, ACCENT),
+        ring(0.175, 0.052, 0.058, ACCENT),
+        ring(0.192, 0.042, 0.05, ACCENT),
+        ring(0.203, 0.026, 0.04, ACCENT),
+        ring(0.206, 0.012, 0.03, ACCENT),
     ];
-    surface.tube(&cuts, Vec3::X, Vec3::Y, &shoe);
+    surface.tube(&rings, Vec3::X, Vec3::Y, &chain);
 }
 
 impl Surface {
     fn vertex(&mut self, position: Vec3, color: Vec3, [(a, weight_a), (b, weight_b)]: [(usize, f32); 2]) {
         self.positions.push(position);
         self.colors.push(color.extend(1.0));
-        // Strongest first, as every loader leaves them.
+        // Strongest first, as in every loaded asset.
         let (first, second) =
             if weight_a >= weight_b { ((a, weight_a), (b, weight_b)) } else { ((b, weight_b), (a, weight_a)) };
         let second = if second.1 > 0.0 { second } else { (0, 0.0) };
@@ -312,11 +314,11 @@ impl Surface {
         self.indices.extend([a, b, c, a, c, d]);
     }
 
-    /// Rings from one end to the other; `across × up` points from the first to the last. Both ends are closed.
+    /// Adds a tube through the rings, capped at both ends. `across × up` points along the tube.
     fn tube(&mut self, rings: &[Ring], across: Vec3, up: Vec3, chain: &Chain) {
         let start = self.positions.len() as u32;
         let along = rings.last().map_or(Vec3::ZERO, |last| last.center - rings[0].center);
-        let turned = across.cross(up).dot(along) < 0.0;
+        let reversed = across.cross(up).dot(along) < 0.0;
         for ring in rings {
             for side in 0..SIDES {
                 let (sin, cos) = (std::f32::consts::TAU * side as f32 / SIDES as f32).sin_cos();
@@ -330,10 +332,10 @@ impl Surface {
                 let next = (side + 1) % sides;
                 let (a, b) = (start + ring * sides + side, start + ring * sides + next);
                 let quad = [a, b, b + sides, a + sides];
-                self.quad(if turned { [quad[3], quad[2], quad[1], quad[0]] } else { quad });
+                self.quad(if reversed { [quad[3], quad[2], quad[1], quad[0]] } else { quad });
             }
         }
-        for (ring, outwards) in [(0, turned), (rings.len() as u32 - 1, !turned)] {
+        for (ring, outwards) in [(0, reversed), (rings.len() as u32 - 1, !reversed)] {
             let first = start + ring * sides;
             for side in 1..sides - 1 {
                 let (b, c) = (first + side, first + side + 1);
@@ -379,7 +381,7 @@ impl Surface {
     }
 }
 
-/// Means of the faces around each place, by area; vertices at the same place share one.
+/// Area-weighted vertex normals, shared by vertices at the same position.
 fn smooth_normals(positions: &[Vec3], indices: &[u32]) -> Vec<Vec3> {
     let key = |position: Vec3| position.to_array().map(|value| (value * 1e5).round() as i32);
     let mut sums: std::collections::BTreeMap<[i32; 3], Vec3> = std::collections::BTreeMap::new();

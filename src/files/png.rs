@@ -1,11 +1,12 @@
-//! PNG as screenshots need it: 8-bit RGBA, no filters beyond "up". Written here because the page has no other encoder.
+//! A PNG encoder for pictures: 8-bit RGBA with the "up" filter. Written here so that the page needs no image encoder.
 
 use std::io::Write;
 
 use flate2::{Compression, Crc, write::ZlibEncoder};
 
-/// `pixels` are RGBA rows from the top, straight alpha, `4 · width · height` bytes. None when they are not that many.
-pub fn encode(width: u32, height: u32, pixels: &[u8]) -> Option<Vec<u8>> {
+/// Encodes RGBA rows from the top with straight alpha. None unless `pixels` has `4 · width · height` bytes, at least
+/// one pixel.
+pub fn encode_png(width: u32, height: u32, pixels: &[u8]) -> Option<Vec<u8>> {
     let row_bytes = 4 * width as usize;
     if width == 0 || height == 0 || pixels.len() != row_bytes * height as usize {
         return None;
@@ -25,7 +26,7 @@ pub fn encode(width: u32, height: u32, pixels: &[u8]) -> Option<Vec<u8>> {
     let mut header = Vec::with_capacity(13);
     header.extend(width.to_be_bytes());
     header.extend(height.to_be_bytes());
-    // Eight bits, RGBA, the only compression and filter methods there are, not interlaced.
+    // 8 bits, RGBA, the only defined compression and filter methods, no interlacing.
     header.extend([8, 6, 0, 0, 0]);
     let mut png = vec![0x89, b'P', b'N', b'G', b'\r', b'\n', 0x1a, b'\n'];
     chunk(&mut png, b"IHDR", &header);
@@ -47,19 +48,19 @@ fn chunk(png: &mut Vec<u8>, kind: &[u8; 4], data: &[u8]) {
 
 #[cfg(test)]
 mod tests {
-    use super::encode;
+    use super::encode_png;
 
     #[test]
-    fn wrong_sizes_are_refused() {
-        assert_eq!(encode(0, 1, &[]), None);
-        assert_eq!(encode(2, 1, &[0; 4]), None);
+    fn wrong_sizes_are_rejected() {
+        assert_eq!(encode_png(0, 1, &[]), None);
+        assert_eq!(encode_png(2, 1, &[0; 4]), None);
     }
 
     #[cfg(not(target_arch = "wasm32"))]
     #[test]
     fn another_decoder_reads_the_same_pixels() {
         let pixels: Vec<u8> = (0..4 * 7 * 5).map(|index| (index * 37 % 251) as u8).collect();
-        let png = encode(7, 5, &pixels).expect("seven by five");
+        let png = encode_png(7, 5, &pixels).expect("seven by five");
         let decoded = image::load_from_memory(&png).expect("a PNG").to_rgba8();
         assert_eq!((decoded.width(), decoded.height()), (7, 5));
         assert_eq!(decoded.into_raw(), pixels);

@@ -1,29 +1,30 @@
-//! How the walker moves: a walk with heel strike, roll-off and toe-off whose feet stand still on the (moving) ground, a
-//! breathing idle, and a wave. Legs are solved from where the feet must be, everything else is set as angles.
+//! The walker's clips: a walk with heel strike, roll-off and toe-off whose feet do not slide on the (moving) ground, a
+//! breathing idle, and a wave. Legs use inverse kinematics; everything else is set as angles.
 
 use std::f32::consts::{PI, TAU};
 
 use glam::{Quat, Vec3};
 
-use super::{EYES_NODE, SampleError, joint, place};
+use super::{EYES_NODE, WalkerError, joint, position};
 use crate::anim::{Clip, ClipBuilder, Interpolation, JointIndex, Keys, Skeleton};
 
 const FRAMES_PER_SEC: usize = 30;
 
-/// Local rotations of all joints, and where the hips are.
+/// Hips position and the local rotations of all joints.
 struct Stance {
     hips: Vec3,
     rotations: [Quat; joint::COUNT],
     eyes_closed: f32,
 }
 
-/// Where a foot is: its ankle, in metres from the ground between the feet, and how far its toes point down.
+/// A foot: ankle position, in metres from the point on the ground between the feet, and pitch, positive with the toes
+/// down.
 struct Foot {
     ankle: Vec3,
     pitch: f32,
 }
 
-pub fn clips(skeleton: &Skeleton) -> Result<Vec<Clip>, SampleError> {
+pub fn all(skeleton: &Skeleton) -> Result<Vec<Clip>, WalkerError> {
     Ok(vec![
         record("Walk", skeleton, 32, walk)?,
         record("Idle", skeleton, 120, idle)?,
@@ -31,31 +32,38 @@ pub fn clips(skeleton: &Skeleton) -> Result<Vec<Clip>, SampleError> {
     ])
 }
 
-/// Samples a motion at every frame; `motion` takes the part of the clip that has gone by, 0 to 1, both the same stance.
-fn record(name: &str, skeleton: &Skeleton, frames: usize, motion: impl Fn(f32) -> Stance) -> Result<Clip, SampleError> {
+/// Bakes a function of the clip's phase, 0 to 1, into a clip with a key at every frame. Phases 0 and 1 give the same
+/// stance.
+fn record(
+    name: &str,
+    skeleton: &Skeleton,
+    frames: usize,
+    stance_at: impl Fn(f32) -> Stance,
+) -> Result<Clip, WalkerError> {
     let times_secs: Vec<f32> = (0..=frames).map(|frame| frame as f32 / FRAMES_PER_SEC as f32).collect();
     // The last key repeats the first exactly, so that the loop has no seam.
-    let stances: Vec<Stance> = (0..=frames).map(|frame| motion((frame % frames) as f32 / frames as f32)).collect();
+    let stances: Vec<Stance> = (0..=frames).map(|frame| stance_at((frame % frames) as f32 / frames as f32)).collect();
     let mut clip = ClipBuilder::new(name, skeleton);
-    let of_source = |source: usize| skeleton.joint_of_source(source).unwrap_or(JointIndex(0));
+    let joint_of_source = |source: usize| skeleton.joint_of_source(source).unwrap_or(JointIndex(0));
     let hips = stances.iter().map(|stance| stance.hips).collect();
-    clip.channel(of_source(joint::HIPS), Interpolation::Linear, &times_secs, Keys::Translation(hips))?;
+    clip.channel(joint_of_source(joint::HIPS), Interpolation::Linear, &times_secs, Keys::Translation(hips))?;
     for source in joint::HIPS..joint::COUNT {
         let rotations: Vec<Quat> = stances.iter().map(|stance| stance.rotations[source]).collect();
         if rotations.iter().any(|rotation| rotation.dot(Quat::IDENTITY).abs() < 1.0 - 1e-7) {
-            clip.channel(of_source(source), Interpolation::Linear, &times_secs, Keys::Rotation(rotations))?;
+            clip.channel(joint_of_source(source), Interpolation::Linear, &times_secs, Keys::Rotation(rotations))?;
         }
     }
     let values = stances.iter().map(|stance| stance.eyes_closed).collect();
     let eyes = Keys::MorphWeights { values, targets: 1 };
-    clip.channel(of_source(EYES_NODE), Interpolation::Linear, &times_secs, eyes)?;
+    clip.channel(joint_of_source(EYES_NODE), Interpolation::Linear, &times_secs, eyes)?;
     Ok(clip.build())
 }
 
 impl Stance {
     /// Upright, arms hanging.
     fn standing() -> Self {
-        let mut stance = Self { hips: place(joint::HIPS), rotations: [Quat::IDENTITY; joint::COUNT], eyes_closed: 0.0 };
+        let mut stance =
+            Self { hips: position(joint::HIPS), rotations: [Quat::IDENTITY; joint::COUNT], eyes_closed: 0.0 };
         stance.arm(1.0, 0.0, 0.16, 0.2);
         stance.arm(-1.0, 0.0, 0.16, 0.2);
         stance
@@ -71,13 +79,14 @@ impl Stance {
         self.rotations[hand] = Quat::from_rotation_y(-side * 0.1);
     }
 
-    /// Bends the legs so that the feet are where they should be. The hips must be set before.
+    /// Bends the legs to reach the feet (two-bone inverse kinematics). Set the hips first.
     fn legs(&mut self, feet: [Foot; 2]) {
         for (foot, joints) in feet.into_iter().zip([joint::LEFT_LEG, joint::RIGHT_LEG]) {
             let [upper, lower, ankle, toes] = joints;
             let hips = self.rotations[joint::HIPS];
-            let hip_joint = self.hips + hips * (place(upper) - place(joint::HIPS));
-            let (thigh, shin) = ((place(upper) - place(lower)).length(), (place(lower) - place(ankle)).length());
+            let hip_joint = self.hips + hips * (position(upper) - position(joint::HIPS));
+            let (thigh, shin) =
+                ((position(upper) - position(lower)).length(), (position(lower) - position(ankle)).length());
             let reach = foot.ankle - hip_joint;
             let distance = reach.length().min(0.9995 * (thigh + shin));
             let angle = |opposite: f32, a: f32, b: f32| {
@@ -96,12 +105,12 @@ impl Stance {
     }
 }
 
-/// Part of a gait cycle that a foot is on the ground.
+/// Fraction of the gait cycle in which a foot is on the ground.
 const CONTACT: f32 = 0.62;
-/// How far the ground goes by under a foot in that time, metres.
+/// Ground travel under a foot in that time, metres.
 const TRAVEL: f32 = 0.56;
 
-/// Pitch of the foot over the cycle, from heel strike to heel strike: (part of the cycle, radians, toes down positive).
+/// Foot pitch over the cycle from heel strike to heel strike: (phase, radians, toes down positive).
 const ROLL: [(f32, f32); 9] = [
     (0.0, -0.3),
     (0.09, 0.0),
@@ -114,14 +123,14 @@ const ROLL: [(f32, f32); 9] = [
     (1.0, -0.3),
 ];
 
-/// A foot of the walk, at a part of its own cycle that begins with the heel's strike.
-fn walking_foot(side: f32, part: f32) -> Foot {
-    let pitch = keyed(&ROLL, part);
-    let (forward, lift) = if part < CONTACT {
-        (TRAVEL * (0.5 - part / CONTACT), 0.0)
+/// A foot of the walk, at a phase of its own cycle, which starts at heel strike.
+fn walking_foot(side: f32, phase: f32) -> Foot {
+    let pitch = keyed(&ROLL, phase);
+    let (forward, lift) = if phase < CONTACT {
+        (TRAVEL * (0.5 - phase / CONTACT), 0.0)
     } else {
-        let swing = (part - CONTACT) / (1.0 - CONTACT);
-        // Hermite: leaves and meets the ground at the ground's own speed.
+        let swing = (phase - CONTACT) / (1.0 - CONTACT);
+        // Hermite: lifts off and lands at the ground's speed.
         let speed = -TRAVEL / CONTACT * (1.0 - CONTACT);
         let (s2, s3) = (swing * swing, swing * swing * swing);
         let forward = -0.5 * TRAVEL * (2.0 * s3 - 3.0 * s2 + 1.0)
@@ -133,29 +142,29 @@ fn walking_foot(side: f32, part: f32) -> Foot {
     rolled(side, forward, lift, pitch)
 }
 
-/// A foot turned about what it stands on: the heel when the toes are up, the toes' joint when they are down.
+/// A foot pitched about its pivot: the heel with the toes up, the toe joint with the toes down.
 fn rolled(side: f32, forward: f32, lift: f32, pitch: f32) -> Foot {
-    let [ankle, toes] = [joint::LEFT_LEG[2], joint::LEFT_LEG[3]].map(place);
+    let [ankle, toes] = [joint::LEFT_LEG[2], joint::LEFT_LEG[3]].map(position);
     let flat = Vec3::new(0.075 * side, ankle.y + lift, forward);
     let pivot = if pitch > 0.0 { toes - ankle } else { Vec3::new(0.0, -ankle.y, -0.07) };
     Foot { ankle: flat + pivot - Quat::from_rotation_x(pitch) * pivot, pitch }
 }
 
-/// Smooth steps between keys.
+/// Interpolates between keys with smoothstep.
 fn keyed(keys: &[(f32, f32)], at: f32) -> f32 {
     keys.windows(2).find(|pair| at <= pair[1].0).map_or(keys[keys.len() - 1].1, |pair| {
-        let part = ((at - pair[0].0) / (pair[1].0 - pair[0].0)).clamp(0.0, 1.0);
-        pair[0].1 + (pair[1].1 - pair[0].1) * part * part * (3.0 - 2.0 * part)
+        let share = ((at - pair[0].0) / (pair[1].0 - pair[0].0)).clamp(0.0, 1.0);
+        pair[0].1 + (pair[1].1 - pair[0].1) * share * share * (3.0 - 2.0 * share)
     })
 }
 
-/// On the spot: the ground goes by. The left heel strikes at 0, the right one half a cycle later.
-fn walk(part: f32) -> Stance {
+/// A walk in place. The left heel strikes at phase 0, the right one half a cycle later.
+fn walk(phase: f32) -> Stance {
     let mut stance = Stance::standing();
-    let (sin, cos) = (TAU * part).sin_cos();
-    // Highest when a leg is upright under the body, lowest while both feet are down; over the standing leg.
-    let bob = -(2.0 * TAU * (part - 0.04)).cos();
-    stance.hips += Vec3::new(0.018 * (TAU * (part - 0.05)).sin(), -0.052 + 0.013 * bob, 0.0);
+    let (sin, cos) = (TAU * phase).sin_cos();
+    // Highest with a leg upright under the body, lowest in double support; shifted over the supporting leg.
+    let bob = -(2.0 * TAU * (phase - 0.04)).cos();
+    stance.hips += Vec3::new(0.018 * (TAU * (phase - 0.05)).sin(), -0.052 + 0.013 * bob, 0.0);
     let turn = 0.13 * cos;
     stance.rotations[joint::HIPS] =
         Quat::from_rotation_y(-turn) * Quat::from_rotation_z(0.05 * sin) * Quat::from_rotation_x(0.04);
@@ -165,32 +174,32 @@ fn walk(part: f32) -> Stance {
     stance.rotations[joint::NECK] = Quat::from_rotation_y(-0.4 * turn) * Quat::from_rotation_x(-0.03);
     stance.rotations[joint::HEAD] = Quat::from_rotation_y(-0.4 * turn) * Quat::from_rotation_x(-0.02 + 0.015 * bob);
     for side in [1.0, -1.0] {
-        // The arm goes forward with the other leg.
-        let swing = -side * (TAU * (part - 0.02)).cos();
+        // Arms swing with the opposite leg.
+        let swing = -side * (TAU * (phase - 0.02)).cos();
         stance.arm(side, 0.05 + 0.42 * swing, 0.15, 0.32 + 0.2 * swing.max(-0.5));
     }
-    stance.legs([walking_foot(1.0, part), walking_foot(-1.0, (part + 0.5) % 1.0)]);
-    stance.eyes_closed = blink(part, 0.7, 0.13);
+    stance.legs([walking_foot(1.0, phase), walking_foot(-1.0, (phase + 0.5) % 1.0)]);
+    stance.eyes_closed = blink(phase, 0.7, 0.13);
     stance
 }
 
-fn idle(part: f32) -> Stance {
+fn idle(phase: f32) -> Stance {
     let mut stance = Stance::standing();
-    stand(&mut stance, part);
+    stand(&mut stance, phase);
     let look = keyed(
         &[(0.0, 0.0), (0.3, 0.0), (0.4, 0.42), (0.52, 0.42), (0.66, -0.3), (0.78, -0.3), (0.9, 0.0), (1.0, 0.0)],
-        part,
+        phase,
     );
     stance.rotations[joint::NECK] = Quat::from_rotation_y(0.4 * look);
     stance.rotations[joint::HEAD] =
-        Quat::from_rotation_y(0.6 * look) * Quat::from_rotation_x(0.02 * (2.0 * TAU * part).sin());
-    stance.eyes_closed = blink(part, 0.33, 0.04) + blink(part, 0.62, 0.04) + blink(part, 0.68, 0.04);
+        Quat::from_rotation_y(0.6 * look) * Quat::from_rotation_x(0.02 * (2.0 * TAU * phase).sin());
+    stance.eyes_closed = blink(phase, 0.33, 0.04) + blink(phase, 0.62, 0.04) + blink(phase, 0.68, 0.04);
     stance
 }
 
-/// Two breaths, the weight going from one leg to the other, both feet where they are.
-fn stand(stance: &mut Stance, part: f32) {
-    let (sway, breath) = ((TAU * part).sin(), (2.0 * TAU * part).sin());
+/// Two breaths while the weight shifts from leg to leg, feet planted.
+fn stand(stance: &mut Stance, phase: f32) {
+    let (sway, breath) = ((TAU * phase).sin(), (2.0 * TAU * phase).sin());
     stance.hips += Vec3::new(0.022 * sway, -0.022 + 0.004 * breath, 0.0);
     stance.rotations[joint::HIPS] = Quat::from_rotation_z(-0.025 * sway) * Quat::from_rotation_y(0.03 * sway);
     stance.rotations[joint::SPINE] = Quat::from_rotation_z(0.02 * sway) * Quat::from_rotation_x(0.012 * breath);
@@ -201,14 +210,14 @@ fn stand(stance: &mut Stance, part: f32) {
     stance.legs([rolled(1.35, 0.015, 0.0, 0.0), rolled(-1.35, -0.015, 0.0, 0.0)]);
 }
 
-fn wave(part: f32) -> Stance {
+fn wave(phase: f32) -> Stance {
     let mut stance = Stance::standing();
-    stand(&mut stance, part);
-    let raised = keyed(&[(0.0, 0.0), (0.06, 0.0), (0.24, 1.0), (0.8, 1.0), (0.98, 0.0), (1.0, 0.0)], part);
-    let beat = raised * (TAU * 4.0 * (part - 0.24) / 0.56).sin() * f32::from(u8::from((0.24..=0.8).contains(&part)));
+    stand(&mut stance, phase);
+    let raised = keyed(&[(0.0, 0.0), (0.06, 0.0), (0.24, 1.0), (0.8, 1.0), (0.98, 0.0), (1.0, 0.0)], phase);
+    let beat = raised * (TAU * 4.0 * (phase - 0.24) / 0.56).sin() * f32::from(u8::from((0.24..=0.8).contains(&phase)));
     let [shoulder, upper, lower, hand] = joint::RIGHT_ARM;
     let hanging = [shoulder, upper, lower, hand].map(|joint| stance.rotations[joint]);
-    // The right arm's own axis is −X: a negative turn about Z lifts it, the forearm is then turned upright.
+    // The right arm points along −X: a negative rotation about Z raises it, then the forearm is rotated upright.
     let lifted = [
         Quat::from_rotation_z(-0.2),
         Quat::from_rotation_z(-0.12) * Quat::from_rotation_y(0.25),
@@ -221,11 +230,11 @@ fn wave(part: f32) -> Stance {
     stance.rotations[joint::CHEST] *= Quat::from_rotation_z(0.07 * raised + 0.012 * beat);
     stance.rotations[joint::HEAD] = Quat::from_rotation_z(-0.12 * raised) * Quat::from_rotation_y(-0.1 * raised);
     stance.eyes_closed =
-        0.35 * keyed(&[(0.0, 0.0), (0.28, 0.0), (0.36, 1.0), (0.7, 1.0), (0.78, 0.0), (1.0, 0.0)], part);
+        0.35 * keyed(&[(0.0, 0.0), (0.28, 0.0), (0.36, 1.0), (0.7, 1.0), (0.78, 0.0), (1.0, 0.0)], phase);
     stance
 }
 
-/// Shut at `at`, open again after `length` (parts of the clip).
-fn blink(part: f32, at: f32, length: f32) -> f32 {
-    (1.0 - (part - at).abs() / (0.5 * length)).clamp(0.0, 1.0)
+/// Closed at phase `at`; the whole blink takes `length`.
+fn blink(phase: f32, at: f32, length: f32) -> f32 {
+    (1.0 - (phase - at).abs() / (0.5 * length)).clamp(0.0, 1.0)
 }

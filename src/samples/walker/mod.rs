@@ -1,67 +1,17 @@
-//! The sample characters: files of `assets/samples`, which are part of the program everywhere but on the page, where they
-//! lie beside it; and the walker, a small robot made in code, so that there is always something to look at. The walker has
-//! 22 joints in a T-pose facing +Z, smooth weights at every bend, three clips, one morph target (closing eyes).
+//! The walker: a small robot with 22 joints in a T-pose facing +Z, smooth weights at every bend, three clips and one
+//! morph target (closing eyes).
 
-mod motion;
+mod clips;
 mod shape;
 
 use glam::{Affine3A, Vec3, Vec4};
 
-use super::{ImageData, Model};
-use crate::anim::{Joint, JointIndex, Skeleton, SkeletonError, Transform};
+use crate::anim::{ChannelError, Joint, JointIndex, Skeleton, SkeletonError, Transform};
 use crate::asset::{Asset, AssetError, AssetParts, MeshInstance, Scene};
 use crate::mesh::{Material, Mesh, Skin, SkinError};
 
-/// The name after `sample:` of the one that is made in code.
-pub const WALKER: &str = "walker";
-
-/// What the window shows when nothing was asked for; the page begins with the first scene of its gallery.
-#[cfg(not(target_arch = "wasm32"))]
-pub const FIRST: &str = "sample:pilot";
-
-#[cfg(not(target_arch = "wasm32"))]
-include!(concat!(env!("OUT_DIR"), "/samples.rs"));
-
-/// The files of a sample by its name after `sample:`, each with its content; none for a name that no file has.
-#[cfg(not(target_arch = "wasm32"))]
-pub fn files(name: &str) -> impl Iterator<Item = (&'static str, &'static [u8])> {
-    FILES.iter().filter(move |(of, ..)| *of == name).map(|&(_, file, bytes)| (file, bytes))
-}
-
-/// All names that `sample:NAME` understands.
-#[cfg(not(target_arch = "wasm32"))]
-pub fn names() -> Vec<&'static str> {
-    let mut names: Vec<&str> = FILES.iter().map(|&(name, ..)| name).chain([WALKER]).collect();
-    names.dedup();
-    names
-}
-
-/// What the samples are called on the screen.
-const TITLES: [(&str, &str); 9] = [
-    ("pilot", "Pilot"),
-    ("mannequin", "Mannequin"),
-    ("mannequin_run", "Mannequin's run"),
-    ("dwarf", "Dwarf"),
-    ("walk", "Walk"),
-    ("ssd", "Imp"),
-    ("creature", "Fox"),
-    ("morphs", "Goblin"),
-    (WALKER, "Walker"),
-];
-
-/// What a sample is called on the screen, by its name after `sample:`.
-pub fn title(name: &str) -> &str {
-    TITLES.iter().find(|(of, _)| *of == name).map_or(name, |(_, title)| title)
-}
-
-/// A model that is made in code, by its name after `sample:`; none when there is none of that name.
-pub fn load(name: &str) -> Option<Model> {
-    let images: Vec<Option<ImageData>> = Vec::new();
-    (name == WALKER).then(|| Model::new(format!("sample:{name}"), walker(), images))
-}
-
-/// Joints of the walker, by their number in [`JOINTS`].
-pub(crate) mod joint {
+/// Indices into [`JOINTS`].
+mod joint {
     pub const HIPS: usize = 1;
     pub const SPINE: usize = 2;
     pub const CHEST: usize = 3;
@@ -76,7 +26,7 @@ pub(crate) mod joint {
     pub const COUNT: usize = 22;
 }
 
-/// Name, parent, and place of each joint in the T-pose, in metres from the ground between the feet. Left is +X.
+/// Name, parent and T-pose position of each joint, in metres from the point on the ground between the feet. Left is +X.
 const JOINTS: [(&str, Option<usize>, [f32; 3]); joint::COUNT] = [
     ("Root", None, [0.0, 0.0, 0.0]),
     ("Hips", Some(0), [0.0, 0.94, 0.0]),
@@ -102,21 +52,21 @@ const JOINTS: [(&str, Option<usize>, [f32; 3]); joint::COUNT] = [
     ("RightToes", Some(20), [-0.095, 0.025, 0.13]),
 ];
 
-/// The nodes that the two meshes hang on, after the joints.
+/// The nodes of the two meshes, after the joints.
 const BODY_NODE: usize = joint::COUNT;
 const EYES_NODE: usize = joint::COUNT + 1;
 
-fn place(joint: usize) -> Vec3 {
+fn position(joint: usize) -> Vec3 {
     JOINTS[joint].2.into()
 }
 
-/// The asset is put together from constants: the checks that it passes through cannot fail, and a test says so.
-fn walker() -> Asset {
+/// Built from constants, so validation cannot fail; a test checks that.
+pub(super) fn asset() -> Asset {
     build().unwrap_or_default()
 }
 
 #[derive(Debug, thiserror::Error)]
-enum SampleError {
+enum WalkerError {
     #[error(transparent)]
     Skeleton(#[from] SkeletonError),
     #[error(transparent)]
@@ -124,10 +74,10 @@ enum SampleError {
     #[error(transparent)]
     Asset(#[from] AssetError),
     #[error(transparent)]
-    Channel(#[from] crate::anim::ChannelError),
+    Channel(#[from] ChannelError),
 }
 
-fn build() -> Result<Asset, SampleError> {
+fn build() -> Result<Asset, WalkerError> {
     let skeleton = skeleton()?;
     let skin = skin(&skeleton)?;
     let meshes = vec![
@@ -139,18 +89,18 @@ fn build() -> Result<Asset, SampleError> {
             ..Mesh::default()
         },
     ];
-    let of_source = |source: usize| skeleton.joint_of_source(source).unwrap_or(JointIndex(0));
+    let joint_of_source = |source: usize| skeleton.joint_of_source(source).unwrap_or(JointIndex(0));
     let instances = vec![
-        MeshInstance { joint: of_source(BODY_NODE), mesh: 0, skin: Some(0) },
-        MeshInstance { joint: of_source(EYES_NODE), mesh: 1, skin: Some(0) },
+        MeshInstance { joint: joint_of_source(BODY_NODE), mesh: 0, skin: Some(0) },
+        MeshInstance { joint: joint_of_source(EYES_NODE), mesh: 1, skin: Some(0) },
     ];
     Ok(Asset::new(AssetParts {
         format: "sample",
         generator: "Gaitway".to_owned(),
-        clips: motion::clips(&skeleton)?,
+        clips: clips::all(&skeleton)?,
         scenes: vec![Scene {
             name: "Walker".to_owned(),
-            roots: vec![of_source(0), of_source(BODY_NODE), of_source(EYES_NODE)],
+            roots: vec![joint_of_source(0), joint_of_source(BODY_NODE), joint_of_source(EYES_NODE)],
         }],
         default_scene: Some(0),
         skins: vec![skin],
@@ -169,7 +119,7 @@ fn skeleton() -> Result<Skeleton, SkeletonError> {
         .map(|(index, &(name, parent, _))| Joint {
             name: name.to_owned(),
             parent,
-            rest: Transform::from_translation(place(index) - parent.map_or(Vec3::ZERO, place)),
+            rest: Transform::from_translation(position(index) - parent.map_or(Vec3::ZERO, position)),
             morph_weights: Vec::new(),
         })
         .collect();
@@ -178,14 +128,14 @@ fn skeleton() -> Result<Skeleton, SkeletonError> {
     Skeleton::new(joints)
 }
 
-/// Bound in the T-pose, where no joint is turned.
+/// Bound in the T-pose, where every rotation is identity.
 fn skin(skeleton: &Skeleton) -> Result<Skin, SkinError> {
     let joints = (0..joint::COUNT).filter_map(|source| skeleton.joint_of_source(source)).collect();
-    let joint_from_bind = (0..joint::COUNT).map(|joint| Affine3A::from_translation(-place(joint))).collect();
+    let joint_from_bind = (0..joint::COUNT).map(|joint| Affine3A::from_translation(-position(joint))).collect();
     Skin::new("Walker".to_owned(), joints, joint_from_bind, skeleton.len())
 }
 
-/// In the order [`shape`] numbers them.
+/// In the order of [`shape`]'s material indices.
 fn materials() -> Vec<Material> {
     let material = |name: &str, color: [f32; 3], metallic: f32, roughness: f32| Material {
         name: name.to_owned(),

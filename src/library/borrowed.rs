@@ -1,0 +1,104 @@
+//! Clips of other files, retargeted to a model.
+
+use std::sync::{Arc, OnceLock};
+
+use glam::Affine3A;
+
+use crate::anim::{Clip, JointIndex};
+use crate::asset::Asset;
+use crate::retarget::{
+    Body, Figures, FootTrack, JointMap, LayerClip, MapError, Proposal, ResolvedMap, RetargetError, Retargeting,
+    StagePair, layer_clips, propose,
+};
+
+/// A clip of a motion retargeted to a model; plays like one of the model's own.
+#[derive(Debug)]
+pub struct BorrowedClip {
+    pub clip: Clip,
+    /// Layers that animate the joints without a source.
+    pub layers: Vec<LayerClip>,
+    /// Index into [`Library::motions`](super::Library::motions).
+    pub motion: usize,
+    /// Index into the motion's clips.
+    pub source_clip: usize,
+    pub root: Option<JointIndex>,
+    /// Frame rate the source was authored at; retargeting may add keys between its frames.
+    pub frames_per_sec: f64,
+    /// Places the source in this model's space.
+    pub model_from_source: Affine3A,
+    pub pairs: Vec<StagePair>,
+    map: Arc<ResolvedMap>,
+    measured: OnceLock<Option<(Figures, Vec<FootTrack>)>>,
+    /// Crossfade to and from this clip.
+    pub crossfade_secs: f64,
+}
+
+impl BorrowedClip {
+    /// Measures how well the clip matches its source, on first use.
+    pub(super) fn measured(&self, model: Body<'_>, motion: Body<'_>) -> Option<&(Figures, Vec<FootTrack>)> {
+        let measure = || {
+            let pair = Retargeting::new(model, motion, self.source_clip, &self.map).ok()?;
+            let made = pair.bake().ok()?;
+            Some(pair.measure(&made.clip, made.unplanted.as_ref()))
+        };
+        self.measured.get_or_init(measure).as_ref()
+    }
+}
+
+/// Why a motion cannot be borrowed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum BorrowError {
+    #[error("{motion}: {problem}")]
+    Map { motion: String, problem: MapError },
+    #[error("{motion}: {problem}")]
+    Retarget { motion: String, problem: RetargetError },
+}
+
+/// Returns the active map between two files: the given one, or else the proposal.
+pub fn map_for(model: &Asset, motion: &Asset, map: Option<&JointMap>) -> (JointMap, Option<Proposal>) {
+    match map {
+        Some(map) => (map.clone(), None),
+        None => {
+            let proposal = propose(model, motion);
+            (proposal.to_map(model, motion), Some(proposal))
+        }
+    }
+}
+
+/// Retargets all clips of a motion to a model.
+pub(super) fn borrow(
+    model: Body<'_>,
+    motion: Body<'_>,
+    source: &str,
+    index: usize,
+    map: &ResolvedMap,
+    root_of: impl Fn(&Clip) -> Option<JointIndex>,
+) -> Result<Vec<BorrowedClip>, BorrowError> {
+    let layers = layer_clips(model.asset, map);
+    let shared = Arc::new(map.clone());
+    let clips = 0..motion.asset.clips.len().max(1);
+    let borrow = |source_clip| {
+        let error = |problem| BorrowError::Retarget { motion: source.to_owned(), problem };
+        let pair = Retargeting::new(model, motion, source_clip, map).map_err(error)?;
+        let baked = pair.bake().map_err(error)?;
+        let root = root_of(&baked.clip);
+        Ok(BorrowedClip {
+            clip: baked.clip,
+            layers: layers.clone(),
+            motion: index,
+            source_clip,
+            root,
+            frames_per_sec: motion
+                .asset
+                .clips
+                .get(source_clip)
+                .map_or(Clip::DEFAULT_FRAMES_PER_SEC, Clip::frames_per_sec),
+            model_from_source: pair.model_from_source(),
+            pairs: pair.stage_pairs(),
+            map: shared.clone(),
+            measured: OnceLock::new(),
+            crossfade_secs: map.crossfade_secs,
+        })
+    };
+    clips.map(borrow).collect()
+}

@@ -1,0 +1,44 @@
+//! Reproducible random numbers: the same sequence on every machine (SplitMix64).
+
+// Each test program uses a part of it.
+#![allow(dead_code)]
+
+use glam::{Quat, Vec3};
+
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// From 0 up to, but excluding, 1.
+    pub fn f64(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// From 0 up to, but excluding, 1.
+    pub fn f32(&mut self) -> f32 {
+        (self.bits() >> 40) as f32 / (1 << 24) as f32
+    }
+
+    /// From 0 up to, but excluding, `end`; 0 if `end` is 0.
+    pub fn below(&mut self, end: usize) -> usize {
+        (self.bits() % end.max(1) as u64) as usize
+    }
+
+    /// Components from -1 to 1.
+    pub fn vec3(&mut self) -> Vec3 {
+        2.0 * Vec3::new(self.f32(), self.f32(), self.f32()) - 1.0
+    }
+
+    /// A rotation of unit length.
+    pub fn quat(&mut self) -> Quat {
+        let xyz = self.vec3();
+        Quat::from_xyzw(xyz.x, xyz.y, xyz.z, 2.0 * self.f32() - 1.0).normalize()
+    }
+}
