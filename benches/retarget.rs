@@ -1,5 +1,5 @@
-//! Making a clip over for another skeleton, and what comes before and after: recognising, proposing, measuring.
-//! `-- over`, `-- proposed`, `-- figures`: only these.
+//! Retargeting a clip, and the steps before and after: proposing a map and measuring the result.
+//! `-- retargeted`, `-- proposed` or `-- figures` runs only these.
 
 mod support;
 
@@ -34,7 +34,7 @@ fn main() {
             let nanos = measure(work);
             println!("{:<36} {:>12.1} {:>12.1}", format!("{name}, {what}"), nanos.median / 1e3, nanos.fastest / 1e3);
         };
-        row("made over", &mut || {
+        row("retargeted", &mut || {
             let (model, motion) = bodies();
             black_box(Retargeting::new(model, motion, clip, &map).and_then(|pair| pair.bake())).ok();
         });

@@ -1,4 +1,4 @@
-//! Real files, read as the program reads them.
+//! Real files, loaded as the program loads them.
 
 #[path = "../support/data_folder.rs"]
 mod data_folder;
@@ -6,7 +6,7 @@ mod data_folder;
 use gaitway::asset::Asset;
 use gaitway::formats::{self, FileSet};
 
-/// None where there are no real files.
+/// None if there is no data folder.
 pub fn open(path: &str) -> Option<Asset> {
     let folder = data_folder::data_folder()?;
     let path = folder.join(path);

@@ -1,4 +1,4 @@
-//! Real people borrow from real people: every pair, by the proposed map.
+//! Every pair of real characters and motions, retargeted by the proposed map.
 
 use crate::data_folder::data_folder;
 use crate::pairs_of_people::{borrow, load_people};
@@ -20,9 +20,9 @@ fn every_real_pair_keeps_orientations_and_directions() {
                 }
             };
             let figures = outcome.figures;
-            let least = |value: Option<f64>, least: f64| value.is_some_and(|value| value >= least);
-            let below = |value: Option<f64>, most: f64| value.is_some_and(|value| value < most);
-            if !(least(figures.coverage, 0.9)
+            let at_least = |value: Option<f64>, min: f64| value.is_some_and(|value| value >= min);
+            let below = |value: Option<f64>, max: f64| value.is_some_and(|value| value < max);
+            if !(at_least(figures.coverage, 0.9)
                 && below(figures.orientation_error_degrees_mean, 0.5)
                 && below(figures.limb_direction_error_degrees_mean, 4.0))
             {
