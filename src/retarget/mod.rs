@@ -1,4 +1,9 @@
-//! Borrowed motion: a clip of one skeleton and a joint map make an ordinary clip of another skeleton. Knows no file format.
+//! Retargets a clip: turns a clip of one skeleton and a joint map into an ordinary clip of another skeleton. Knows no file
+//! format.
+//!
+//! The steps, in order: `recognize` finds humanoid slots, `map` proposes and resolves a joint map, `align` brings the two
+//! rests together, `transfer` computes the channels, `feet` plants the feet, `bake` builds the clip, `measure` compares it
+//! with its source. `pose`, `keys` and `math` are shared by all.
 
 mod align;
 mod bake;
@@ -19,6 +24,6 @@ pub use map::{
     propose,
 };
 pub use measure::{Figures, FootTrack, StagePair};
-pub use recognize::{Contradiction, Facing, Part, Reason, Recognized, recognize};
+pub use recognize::{Contradiction, Facing, Reason, Recognized, RecognizedJoint, recognize};
 pub use retargeting::{Body, Retargeting};
 pub use transfer::{Baking, LayerClip, bake_layers, baking, layer_clips};

@@ -5,7 +5,7 @@ mod data_folder;
 
 use gaitway::asset::Asset;
 
-/// None without the data folder.
+/// None if there is no data folder.
 pub fn open(path: &str) -> Option<Asset> {
     Some(data_folder::read(&data_folder::data_folder()?, path))
 }

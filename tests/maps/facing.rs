@@ -1,4 +1,4 @@
-//! Which way bodies look, and whether what is called left lies there.
+//! Which way bodies face, and whether the side named left is on the left.
 
 use gaitway::anim::{Joint, Transform};
 use gaitway::asset::{Asset, Slot};
@@ -8,7 +8,7 @@ use glam::Vec3;
 use crate::data::open;
 use crate::skeletons;
 
-/// Hips, legs with feet, a spine, arms and a head in T-pose, looking along +Z, left at `left` (+1 or -1) times +X.
+/// A T-pose facing +Z with the left side at `left` (+1 or -1) times +X.
 fn figure(left: f32, toes: bool) -> Asset {
     let mut joints: Vec<Joint> = Vec::new();
     let mut place = |name: &str, parent: Option<usize>, at: Vec3| {
@@ -40,7 +40,7 @@ fn figure(left: f32, toes: bool) -> Asset {
 }
 
 #[test]
-fn a_figure_with_names_that_fit() {
+fn a_figure_with_correct_names() {
     let found = recognize(&figure(1.0, true));
     assert_eq!(
         (found.facing.up, found.facing.left, found.facing.forward),
@@ -51,7 +51,7 @@ fn a_figure_with_names_that_fit() {
 }
 
 #[test]
-fn names_beat_shape_and_it_is_said() {
+fn names_win_over_shape_and_the_contradiction_is_reported() {
     let asset = figure(-1.0, true);
     let found = recognize(&asset);
     let called = |slot: Slot| found.joint(slot).map(|joint| asset.skeleton.name(joint));
@@ -68,7 +68,7 @@ fn names_beat_shape_and_it_is_said() {
 }
 
 #[test]
-fn without_toes_eyes_and_bent_knees_nobody_can_tell() {
+fn without_toes_eyes_and_bent_knees_the_facing_is_unknown() {
     let found = recognize(&figure(-1.0, false));
     assert_eq!(found.facing.left, Some(Vec3::NEG_X));
     assert_eq!(found.facing.forward, None);
@@ -76,23 +76,23 @@ fn without_toes_eyes_and_bent_knees_nobody_can_tell() {
 }
 
 #[test]
-fn real_bodies_look_where_they_look() {
+fn real_bodies_face_the_right_way() {
     for (path, forward, mirrored) in [
         ("threejs/Xbot.glb", Vec3::Z, false),
         ("threejs/Soldier.glb", Vec3::NEG_Z, false),
         ("vrm/vrm0_cryptovoxels.vrm", Vec3::NEG_Z, false),
         ("khronos/CesiumMan/glTF-Binary/CesiumMan.glb", Vec3::X, false),
         ("kaykit/Knight.glb", Vec3::Z, false),
-        // Bones along one axis at rest: the first frame is looked at.
+        // At rest all bones lie along one axis, so the first frame is used.
         ("bvh/animateddrawings_rokoko_jesse_dance.bvh", Vec3::Z, false),
         ("cosc422/original/Dwarf/avatar_walk.bvh", Vec3::Z, false),
-        // A converter mirrored these and left the names.
+        // A converter mirrored these and kept the names.
         ("cosc422/dwarf.glb", Vec3::Z, true),
         ("cosc422/ArmyPilot.glb", Vec3::NEG_Z, true),
     ] {
         let Some(asset) = open(path) else { return };
         let found = recognize(&asset);
-        assert!(found.facing.forward.is_some_and(|seen| seen.dot(forward) > 0.99), "{path}: {:?}", found.facing);
+        assert!(found.facing.forward.is_some_and(|found| found.dot(forward) > 0.99), "{path}: {:?}", found.facing);
         assert_eq!(found.facing.is_mirrored(), mirrored, "{path}");
         assert_eq!(!found.contradictions.is_empty(), mirrored, "{path}");
     }

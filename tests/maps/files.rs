@@ -1,4 +1,4 @@
-//! The form that maps have in files.
+//! The file form of joint maps.
 
 use gaitway::retarget::{
     ClipRef, Feet, JointMap, Keep, MapEntry, MutedChannel, MutedProperty, RestChoice, RestChoices, RootOptions,
@@ -6,7 +6,7 @@ use gaitway::retarget::{
 };
 use glam::Quat;
 
-/// The example of the documentation, word for word.
+/// The documentation's example, word for word.
 const EXAMPLE: &str = r##"{ "gaitway_map": 1,
   "joints": {
     "spine1": { "source": "neck" },
@@ -25,7 +25,7 @@ fn check_refused(text: &str, expected: &str) {
 }
 
 #[test]
-fn refuses_what_is_no_map() {
+fn anything_but_a_map_is_refused() {
     check_refused("", "not JSON");
     check_refused("{", "not JSON");
     check_refused("[]", "no “gaitway_map”");
@@ -35,7 +35,7 @@ fn refuses_what_is_no_map() {
 }
 
 #[test]
-fn says_where_a_member_is_wrong() {
+fn errors_give_the_path_of_a_wrong_member() {
     let joint = |entry: &str| format!(r#"{{"gaitway_map": 1, "joints": {{"head": {entry}}}}}"#);
     check_refused(r#"{"gaitway_map": 1, "joint": {}}"#, "unknown field `joint`, expected one of");
     check_refused(r#"{"gaitway_map": 1, "joints": []}"#, "joints: ");
@@ -81,11 +81,11 @@ fn the_documented_example_is_read() {
     assert_eq!(map, expected);
     let documented =
         std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/joint-maps.md")).expect("the page");
-    assert!(documented.contains(EXAMPLE), "docs/joint-maps.md shows another example");
+    assert!(documented.contains(EXAMPLE), "docs/joint-maps.md has another example");
 }
 
 #[test]
-fn what_is_written_reads_the_same() {
+fn written_maps_read_back_the_same() {
     let playing = |clip, frozen| Unmapped::Clip { clip, frozen };
     let entry = |source, correction, unmapped| MapEntry { source, correction, unmapped };
     let full = JointMap {

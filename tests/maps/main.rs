@@ -1,4 +1,4 @@
-//! Joint maps: which joint is which part of a body, what is proposed for two skeletons, and the file form.
+//! Joint maps: recognition of humanoid slots, proposals for two skeletons, and the file form.
 
 mod data;
 mod facing;

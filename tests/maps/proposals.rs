@@ -1,4 +1,4 @@
-//! What is proposed for two files.
+//! Proposed maps for two files.
 
 use gaitway::anim::{Joint, JointIndex, Transform};
 use gaitway::asset::Asset;
@@ -8,7 +8,7 @@ use glam::Vec3;
 use crate::data::open;
 use crate::skeletons;
 
-/// The number of the source joint that each named target follows.
+/// Checks the number of the source joint that each named target follows.
 fn check(model: &Asset, proposal: &Proposal, motion: &Asset, expected: &[(&str, usize)]) {
     for (name, number) in expected {
         let target = model.skeleton.find(name).unwrap_or_else(|| panic!("{name}"));
@@ -18,7 +18,7 @@ fn check(model: &Asset, proposal: &Proposal, motion: &Asset, expected: &[(&str, 
 }
 
 #[test]
-fn the_dwarf_gets_the_table_that_people_wrote_by_hand() {
+fn the_dwarf_gets_the_map_of_the_coursework() {
     let (Some(dwarf), Some(walk)) = (open("cosc422/dwarf.glb"), open("cosc422/original/Dwarf/avatar_walk.bvh")) else {
         return;
     };
@@ -39,7 +39,7 @@ fn the_dwarf_gets_the_table_that_people_wrote_by_hand() {
             ("rankle", 20),
         ],
     );
-    assert!(!proposal.model.contradictions.is_empty(), "lhip lies at the right");
+    assert!(!proposal.model.contradictions.is_empty(), "lhip is on the right");
     assert!(proposal.motion.contradictions.is_empty());
 }
 
@@ -49,16 +49,16 @@ fn names_decide_where_most_are_shared() {
         return;
     };
     let proposal = propose(&mannequin, &run);
-    // All nodes of the motion but the one that only wraps them have their name in the model.
+    // Every name of the motion is in the model.
     assert_eq!(proposal.pairs.len(), run.skeleton.len());
     assert!(proposal.unused_sources.is_empty() && proposal.unmapped_targets.is_empty());
     let name = |asset: &Asset, joint: JointIndex| asset.skeleton.name(joint).to_owned();
     assert!(proposal.pairs.iter().all(|pair| name(&mannequin, pair.target) == name(&run, pair.source)));
 }
 
-/// Files made for each other: names decide although the motion leaves joints of the trunk out.
+/// Files made for each other: names decide although the motion lacks joints of the trunk.
 #[test]
-fn a_motion_with_fewer_joints_goes_by_names() {
+fn a_motion_with_fewer_joints_is_matched_by_name() {
     let (Some(model), Some(motion)) = (open("playcanvas/bitmoji.glb"), open("playcanvas/bitmoji-anim/jump-flip.glb"))
     else {
         return;
@@ -70,21 +70,20 @@ fn a_motion_with_fewer_joints_goes_by_names() {
     }
 }
 
-/// Exporters write names in their own ways: `upper_arm.L` is `upper_armFBXASC046L`.
+/// Exporters rewrite names: `upper_arm.L` becomes `upper_armFBXASC046L`.
 #[test]
-fn names_of_two_exporters_are_the_same() {
+fn names_from_two_exporters_match() {
     let (Some(model), Some(motion)) = (open("misc/babylon_riggedMesh.glb"), open("cosc422/mannequin_run.glb")) else {
         return;
     };
     let proposal = propose(&model, &motion);
-    // All but the root that only wraps the skeleton.
+    // All but the root, which only wraps the skeleton.
     assert_eq!(proposal.pairs.len(), motion.skeleton.len() - 1);
     assert!(proposal.pairs.iter().all(|pair| pair.reason == Reason::SameName));
 }
 
-/// Every file for itself: all joints follow themselves.
 #[test]
-fn a_file_follows_itself() {
+fn every_joint_of_a_file_follows_itself() {
     for path in [
         "threejs/RobotExpressive.glb",
         "threejs/Xbot.glb",
@@ -105,9 +104,8 @@ fn a_file_follows_itself() {
     }
 }
 
-/// What a proposal says in names says the same when it is read back.
 #[test]
-fn proposals_survive_their_file() {
+fn proposals_read_back_from_their_file_form() {
     for (model, motion) in [
         ("threejs/RobotExpressive.glb", "threejs/Xbot.glb"),
         ("khronos/CesiumMan/glTF-Binary/CesiumMan.glb", "bvh/cmu_01_01.bvh"),
@@ -124,7 +122,7 @@ fn proposals_survive_their_file() {
 }
 
 #[test]
-fn what_has_nothing_in_common_gets_no_pairs() {
+fn skeletons_with_nothing_in_common_get_no_pairs() {
     let (Some(snake), Some(walk)) = (open("mesh2motion/snake-animations.glb"), open("bvh/cosc422_Walk.bvh")) else {
         return;
     };
@@ -133,9 +131,8 @@ fn what_has_nothing_in_common_gets_no_pairs() {
     assert_eq!(proposal.unused_sources.len(), walk.skeleton.len());
 }
 
-/// Trunks of different length are matched at their ends.
 #[test]
-fn trunks_meet_at_their_ends() {
+fn trunks_of_different_length_are_matched_at_their_ends() {
     let (Some(bot), Some(mannequiny)) = (open("threejs/Xbot.glb"), open("misc/godot_mannequiny.glb")) else { return };
     let source = |model: &Asset, motion: &Asset, name: &str| {
         let target = model.skeleton.find(name).expect(name);
@@ -152,9 +149,9 @@ fn trunks_meet_at_their_ends() {
     assert_eq!(from_bot("spine_02").as_deref(), Some("mixamorig:Spine2"));
 }
 
-/// A scene of very many joints that all mean something must not take minutes.
+/// Many joints with known words must not take minutes.
 #[test]
-fn large_scenes_are_quick() {
+fn large_scenes_are_fast() {
     let count = 40_000;
     let chain = |at: usize| at.checked_sub(1);
     let star = |at: usize| (at > 0).then_some(0);

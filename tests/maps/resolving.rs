@@ -1,4 +1,4 @@
-//! Looking a map's names up in two skeletons.
+//! Resolving a map's names in two skeletons.
 
 use gaitway::anim::{ClipBuilder, Joint, Property, Skeleton};
 use gaitway::asset::{Asset, AssetParts};
@@ -7,7 +7,7 @@ use gaitway::retarget::{
 };
 use glam::Quat;
 
-/// A chain of joints with these names, listed the other way round than they hang, and clips.
+/// A chain of joints with these names, listed from tip to base, and clips.
 fn chain(names: &[&str], clips: &[&str]) -> Asset {
     let joints = names.iter().enumerate().map(|(at, name)| Joint {
         name: (*name).to_owned(),
@@ -50,7 +50,7 @@ fn check_refused(map: &JointMap, expected: &str) {
 }
 
 #[test]
-fn joints_that_are_not_there() {
+fn missing_and_ambiguous_joints_are_refused() {
     check_refused(&map(&[("spine", name("neck"))]), "joints.spine: the model has no joint “spine”; nearest: spine2");
     check_refused(&map(&[("tip", name("Neck1"))]), "joints.tip.source: the motion has no joint “Neck1”; nearest: neck");
     check_refused(&map(&[("xyz", name("neck"))]), "the model has no joint “xyz”");
@@ -69,14 +69,14 @@ fn joints_that_are_not_there() {
 }
 
 #[test]
-fn maps_that_say_nothing() {
+fn maps_without_sources_are_refused() {
     check_refused(&map(&[]), "the map names no source");
     check_refused(&map(&[("tip", None)]), "the map names no source");
     check_refused(&JointMap { gaitway_map: 3, ..map(&[("tip", name("neck"))]) }, "gaitway_map is 3");
 }
 
 #[test]
-fn clips_corrections_and_times_that_cannot_be() {
+fn invalid_clips_corrections_and_times_are_refused() {
     let good = map(&[("tip", name("neck"))]);
     let play = |clip| Unmapped::Clip { clip, frozen: false };
     let with_clip = |clip| JointMap { unmapped: play(clip), ..good.clone() };
@@ -99,7 +99,7 @@ fn clips_corrections_and_times_that_cannot_be() {
 }
 
 #[test]
-fn names_and_numbers_are_found() {
+fn names_and_numbers_are_resolved() {
     let (model, motion) = (model(), motion());
     let mut map =
         map(&[("base", name("hip")), ("#2", Some(SourceRef::Number(2))), ("#3", name("head")), ("spine2", None)]);
@@ -111,8 +111,8 @@ fn names_and_numbers_are_found() {
         MutedChannel { source: SourceRef::Number(3), property: Some(MutedProperty::Scale) },
         MutedChannel { source: SourceRef::Number(4), property: None },
     ];
-    let resolved = map.resolve(&model, &motion).expect("all is there");
-    // Lists run from the tip, joints from the base.
+    let resolved = map.resolve(&model, &motion).expect("every name exists");
+    // The file lists joints from the tip, the skeleton from the base.
     let target = |number| model.skeleton.joint_of_source(number).expect("a joint");
     let source = |number| motion.skeleton.joint_of_source(number).expect("a joint");
     let pair = |to, from| Pair { target: target(to), source: source(from), correction: Quat::IDENTITY };
@@ -126,11 +126,11 @@ fn names_and_numbers_are_found() {
 }
 
 #[test]
-fn a_joint_may_rest_while_the_others_play() {
+fn a_joint_may_rest_while_others_play() {
     let mut map = map(&[("base", name("hip")), ("tip", None)]);
     map.joints.get_mut("tip").expect("an entry").unmapped = Some(Unmapped::Rest);
     map.unmapped = Unmapped::Clip { clip: ClipRef::Index(1), frozen: false };
-    let resolved = resolve(&map).expect("all is there");
+    let resolved = resolve(&map).expect("every name exists");
     let tip = model().skeleton.find("tip").expect("a joint");
     assert!(resolved.layers.iter().all(|layer| layer.joint != tip));
     assert_eq!(resolved.layers.len(), 4);

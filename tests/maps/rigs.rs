@@ -1,5 +1,5 @@
-//! Rigs of which there is no file at hand, by the names that their makers give: `A>B` hangs B on A, `A(B, C)` both. They have
-//! no shape: names and hierarchy must do.
+//! Rigs without a file at hand, built from the names that their tools use: `A>B` makes B a child of A, `A(B, C)` both. They
+//! have no shape, so names and hierarchy must do.
 
 use gaitway::anim::{Joint, Transform};
 use gaitway::asset::{Asset, Slot};
@@ -7,7 +7,7 @@ use gaitway::retarget::{Reason, Recognized, recognize};
 
 use crate::skeletons;
 
-/// A skeleton from its text.
+/// Builds a skeleton from its text.
 fn rig(text: &str) -> Asset {
     let mut joints: Vec<Joint> = Vec::new();
     let mut parent = None;
@@ -39,7 +39,7 @@ fn rig(text: &str) -> Asset {
     skeletons::asset(joints)
 }
 
-/// The text of the right side from that of the left.
+/// Repeats a template for both sides.
 fn both(template: &str, sides: [&str; 2]) -> String {
     sides.map(|side| template.replace('~', side)).join(", ")
 }
@@ -286,15 +286,15 @@ fn numbers_of_smpl_and_letters_of_optitrack() {
     );
 }
 
-/// No vocabulary: words, sides at any end, and where things hang.
+/// No vocabulary: words, sides at either end, and the hierarchy.
 #[test]
-fn words_of_nobody_in_particular() {
+fn words_outside_any_vocabulary() {
     let asset = rig(
         "ROOT>hero_pelvis(hero_torso_a>hero_torso_b(hero_neck>hero_head, hero_left_collarbone>hero_left_upperarm>\
          hero_left_elbow>hero_left_wrist, hero_right_collarbone>hero_right_upperarm>hero_right_elbow>hero_right_wrist), \
          hero_left_thigh>hero_left_knee>hero_left_ankle, hero_right_thigh>hero_right_knee>hero_right_ankle)",
     );
-    // A name of the rig before every joint's own is not a word of the body.
+    // The rig's name in front of every joint's own does not count.
     check(
         &asset,
         &[
@@ -332,9 +332,9 @@ fn sanitised_mixamo() {
     assert!(found.parts.values().all(|part| part.reason == Reason::Vocabulary("Mixamo")));
 }
 
-/// The legs alone, as some motion capture has them, are worth little and said to be.
+/// Some motion capture has only legs.
 #[test]
-fn half_a_body_is_less_sure() {
+fn half_a_body_has_less_confidence() {
     let legs = "~UpLeg>~Leg>~Foot>~ToeBase";
     let asset = rig(&format!("Hips({}, Spine>Spine1)", both(legs, ["Left", "Right"])));
     let found = check(&asset, &[("hips", "Hips"), ("leftUpperLeg", "LeftUpLeg"), ("rightToes", "RightToeBase")]);

@@ -623,7 +623,7 @@ fn with_nodes_reversed(asset: &Asset) -> Asset {
     });
     let instances = asset.instances.iter().map(|instance| MeshInstance { joint: moved(&instance.joint), ..*instance });
     let (skins, clips, instances) = (skins.collect(), clips.into_iter().collect(), instances.collect());
-    let parts = AssetParts { skeleton, skins, clips, instances, ..asset.clone().into_parts() };
+    let parts = AssetParts { skeleton, skins, clips, instances, ..Asset::clone(asset).into_parts() };
     Asset::new(parts).expect("still valid")
 }
 

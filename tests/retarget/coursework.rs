@@ -1,4 +1,4 @@
-//! The three scenes of the COSC422 coursework with its own numbers, and real files borrowing from themselves.
+//! Scenes of the COSC422 coursework with its own numbers, and real files retargeted to themselves.
 
 use gaitway::anim::{Clip, JointIndex, Pose, SampleCursor, Skeleton, model_from_joint};
 use gaitway::asset::Asset;
@@ -9,7 +9,7 @@ use glam::{Affine3A, Quat, Vec3};
 
 use crate::data_folder::{data_folder, read};
 
-fn carry(model: &Asset, motion: &Asset, clip: usize, map: &ResolvedMap) -> Retargeted {
+fn retarget(model: &Asset, motion: &Asset, clip: usize, map: &ResolvedMap) -> Retargeted {
     let slots = [recognize(model).humanoid(), recognize(motion).humanoid()];
     let pair =
         Retargeting::new(Body { asset: model, slots: &slots[0] }, Body { asset: motion, slots: &slots[1] }, clip, map);
@@ -41,14 +41,14 @@ const DWARF_MAP: &str = r#"{ "gaitway_map": 1,
   "unmapped": { "clip": 0 } }"#;
 
 #[test]
-fn the_dwarf_walks_like_the_avatar_while_its_arms_do_their_own() {
+fn the_dwarf_walks_like_the_avatar_while_its_arms_play_its_own_clip() {
     let Some(folder) = data_folder() else { return };
     let (dwarf, avatar) = (read(&folder, "cosc422/dwarf.glb"), read(&folder, "cosc422/original/Dwarf/avatar_walk.bvh"));
     let map = JointMap::from_json(DWARF_MAP).unwrap().resolve(&dwarf, &avatar).unwrap();
-    let done = carry(&dwarf, &avatar, 0, &map);
+    let done = retarget(&dwarf, &avatar, 0, &map);
     let (skeleton, walk) = (&dwarf.skeleton, &avatar.clips[0]);
-    // Both face +Z and both rests have no rotation, so the coursework's own rule holds: a joint turns in the world as its
-    // channel does, but for the legs' rests, which point elsewhere by a little.
+    // Both face +Z and neither rest has rotations, so the coursework's own rule holds: a joint turns in the world as its
+    // channel does. The legs' rests differ slightly in direction.
     for frame in 0..=13 {
         let time = frame as f32 * walk.duration_secs() / 13.0;
         let rotation = |world: Affine3A| -> Quat { world.to_scale_rotation_translation().1 };
@@ -69,9 +69,9 @@ fn the_dwarf_walks_like_the_avatar_while_its_arms_do_their_own() {
             assert!(found.angle_between(wanted).to_degrees() < 0.2, "{upper} at {time}");
         }
     }
-    // 13 ticks of walk over 55 ticks of idle: each loops on its own.
+    // 13 ticks of walk over 55 ticks of idle: each loops with its own duration.
     let layers = layer_clips(&dwarf, &map);
-    assert_eq!(layers.len(), 2, "what plays and what stands still");
+    assert_eq!(layers.len(), 2, "one plays, one is frozen");
     let own = &dwarf.clips[0];
     let moving = layers.iter().find(|layer| !layer.frozen).unwrap();
     assert!((moving.duration_secs - 2.2).abs() < 1e-3 && (walk.duration_secs() - 0.8667).abs() < 1e-3);
@@ -88,12 +88,12 @@ fn the_dwarf_walks_like_the_avatar_while_its_arms_do_their_own() {
 }
 
 #[test]
-fn the_mannequin_runs_away_or_on_the_spot() {
+fn the_mannequin_runs_away_or_in_place() {
     let Some(folder) = data_folder() else { return };
     let (model, motion) = (read(&folder, "cosc422/mannequin.glb"), read(&folder, "cosc422/mannequin_run.glb"));
     let proposed = propose(&model, &motion).to_map(&model, &motion);
     let travel = |map: &JointMap| {
-        let done = carry(&model, &motion, 0, &map.resolve(&model, &motion).unwrap());
+        let done = retarget(&model, &motion, 0, &map.resolve(&model, &motion).unwrap());
         let hips = joint(&model, "hips").get();
         let at = |time| Vec3::from(world(&model.skeleton, &done.clip, time)[hips].translation);
         let gone = at(done.clip.duration_secs()) - at(0.0);
@@ -111,7 +111,7 @@ fn the_mannequin_runs_away_or_on_the_spot() {
 }
 
 #[test]
-fn real_files_get_their_own_clips_back() {
+fn real_files_retargeted_to_themselves_keep_their_clips() {
     let Some(folder) = data_folder() else { return };
     for name in [
         "threejs/Xbot.glb",
@@ -130,7 +130,7 @@ fn real_files_get_their_own_clips_back() {
         let map = propose(&asset, &asset).to_map(&asset, &asset).resolve(&asset, &asset).unwrap();
         let size = size(&asset);
         for (index, clip) in asset.clips.iter().enumerate() {
-            let done = carry(&asset, &asset, index, &map);
+            let done = retarget(&asset, &asset, index, &map);
             assert_eq!(done.resampled, [], "{name}, {}", clip.name());
             for part in 0..=10 {
                 let time = clip.duration_secs() * part as f32 / 10.0;

@@ -1,4 +1,4 @@
-//! Planted feet, on a figure that walks with its feet sliding.
+//! Planted feet, on a walking figure whose feet would slide.
 
 use std::collections::BTreeMap;
 
@@ -13,8 +13,8 @@ use crate::data_folder::{data_folder, read};
 use crate::figure::{Figure, Rig, build};
 use crate::laws::{body, map};
 
-/// Two steps of a second each: one leg stands still under the body that passes over it while the other swings. `lift`: how
-/// high above the ground all of it happens.
+/// Two steps of a second each: one foot stays in contact while the body passes over it and the other leg swings. `lift` is the
+/// height of the whole clip above the ground.
 fn walker(lift: f32) -> Figure {
     let mut figure = build(&Rig::default());
     let skeleton = &figure.asset.skeleton;
@@ -22,7 +22,7 @@ fn walker(lift: f32) -> Figure {
     let times: Vec<f32> = (0..=60).map(|frame| frame as f32 / 30.0).collect();
     let hips = figure.joint(Slot::Hips);
     let (rest, length) = (skeleton.rest().locals[hips.get()].translation, 0.87f32);
-    // The standing leg's angle goes from +20° to −20°; hips follow so that its ankle stays.
+    // The supporting leg turns from +20° to −20°; the hips follow so that its ankle stays.
     let angle = |time: f32, phase: f32| {
         let at = (time + phase).rem_euclid(2.0);
         let degrees: f32 = if at < 1.0 { 20.0 - 40.0 * at } else { -20.0 + 40.0 * (at - 1.0) };
@@ -31,12 +31,12 @@ fn walker(lift: f32) -> Figure {
     let mut forward = 0.0f32;
     let mut places = Vec::new();
     for (index, &time) in times.iter().enumerate() {
-        let standing = if time.rem_euclid(2.0) < 1.0 { 0.0 } else { 1.0 };
+        let supporting = if time.rem_euclid(2.0) < 1.0 { 0.0 } else { 1.0 };
         if index > 0 {
-            let before = angle(times[index - 1], standing).sin();
-            forward += length * (before - angle(time, standing).sin());
+            let before = angle(times[index - 1], supporting).sin();
+            forward += length * (before - angle(time, supporting).sin());
         }
-        let down = length * (1.0 - angle(time, standing).cos());
+        let down = length * (1.0 - angle(time, supporting).cos());
         places.push(rest + Vec3::new(0.0, lift - down, forward));
     }
     clip.channel(hips, Interpolation::Linear, &times, Keys::Translation(places)).unwrap();
@@ -46,7 +46,7 @@ fn walker(lift: f32) -> Figure {
             Slot::LeftUpperLeg => Slot::LeftLowerLeg,
             _ => Slot::RightLowerLeg,
         };
-        // The swinging foot is lifted by a bent knee and stays level.
+        // A bent knee lifts the swinging foot, which stays level.
         let bend = |time: f32| {
             let at = (time + phase).rem_euclid(2.0);
             if at < 1.0 { 0.02 } else { 0.02 + 0.9 * ((at - 1.0) * std::f32::consts::PI).sin() }
@@ -64,7 +64,7 @@ fn walker(lift: f32) -> Figure {
     figure
 }
 
-fn carry(model: &Figure, motion: &Figure, map: &ResolvedMap) -> (Retargeted, Figures) {
+fn retarget(model: &Figure, motion: &Figure, map: &ResolvedMap) -> (Retargeted, Figures) {
     let pair = Retargeting::new(body(model), body(motion), 0, map).unwrap();
     let done = pair.bake().unwrap();
     let figures = pair.figures(&done);
@@ -72,19 +72,19 @@ fn carry(model: &Figure, motion: &Figure, map: &ResolvedMap) -> (Retargeted, Fig
 }
 
 #[test]
-fn planting_stops_feet_that_slide_because_legs_differ() {
+fn planting_stops_the_sliding_of_legs_of_another_length() {
     let motion = walker(0.0);
-    // Longer thighs and shins than the hips' height over the ground accounts for.
+    // Legs of another length than the hips' height accounts for.
     let model = build(&Rig { axes: 3, leg_length: 0.6, size: 1.4, armature: true, ..Rig::default() });
     let plain = map(&model, &motion);
-    let (_, sliding) = carry(&model, &motion, &plain);
+    let (_, sliding) = retarget(&model, &motion, &plain);
     let planted = ResolvedMap { feet: Feet::Plant, ..plain.clone() };
-    let (done, standing) = carry(&model, &motion, &planted);
+    let (done, standing) = retarget(&model, &motion, &planted);
     let (before, after) = (sliding.foot_slide_metres_per_sec.unwrap(), standing.foot_slide_metres_per_sec.unwrap());
     assert!(before > 0.01 && after < 0.2 * before, "{before} → {after}");
     assert!(done.unplanted.is_some());
-    assert!(standing.orientation_error_degrees_mean.unwrap() < 0.01, "measured without planting");
-    // Knees keep bending the way they bend.
+    assert!(standing.orientation_error_degrees_mean.unwrap() < 0.01, "measured without planted feet");
+    // Knees bend the same way as before.
     for frame in 0..=60 {
         let world = model.world(&done.clip, frame as f32 / 30.0);
         let at = |slot| world[model.joint(slot).get()].1;
@@ -94,14 +94,14 @@ fn planting_stops_feet_that_slide_because_legs_differ() {
 }
 
 #[test]
-fn feet_in_place_are_planted_on_the_ground_that_moves() {
+fn feet_of_a_walk_in_place_are_planted_on_the_moving_ground() {
     let motion = walker(0.0);
     let model = build(&Rig { axes: 3, leg_length: 0.6, ..Rig::default() });
     let mut plain = map(&model, &motion);
     plain.root.horizontal = RootPart::InPlace;
     let planted = ResolvedMap { feet: Feet::Plant, ..plain.clone() };
-    let (_, sliding) = carry(&model, &motion, &plain);
-    let (_, standing) = carry(&model, &motion, &planted);
+    let (_, sliding) = retarget(&model, &motion, &plain);
+    let (_, standing) = retarget(&model, &motion, &planted);
     assert!(standing.foot_slide_metres_per_sec.unwrap() < 0.5 * sliding.foot_slide_metres_per_sec.unwrap());
 }
 
@@ -111,34 +111,34 @@ fn feet_that_hover_or_sink_are_brought_to_the_ground() {
         let motion = walker(lift);
         let model = build(&Rig { axes: 3, size: 1.4, armature: true, ..Rig::default() });
         let planted = ResolvedMap { feet: Feet::Plant, ..map(&model, &motion) };
-        let (done, _) = carry(&model, &motion, &planted);
+        let (done, _) = retarget(&model, &motion, &planted);
         let height = |clip, time: f32| model.world(clip, time)[model.joint(Slot::LeftToes).get()].1.y;
         let rest = 1.4 * 0.02;
         for time in (3..27).map(|frame| frame as f32 / 30.0) {
             let before = height(done.unplanted.as_ref().unwrap(), time) - rest;
             let after = height(&done.clip, time) - rest;
-            assert!((before - 1.4 * f64::from(lift)).abs() < 0.02, "at {time} s it was {before} m off");
-            assert!(after.abs() < 0.002, "at {time} s it is {after} m off");
+            assert!((before - 1.4 * f64::from(lift)).abs() < 0.02, "{before} m off the ground at {time} s, unplanted");
+            assert!(after.abs() < 0.002, "{after} m off the ground at {time} s, planted");
         }
     }
 }
 
 #[test]
-fn who_stands_well_is_left_alone() {
+fn planting_leaves_good_contacts_alone() {
     let motion = walker(0.0);
     let mut same = map(&motion, &motion);
     same.rest.model = RestChoice::Node;
     same.feet = Feet::Plant;
-    let (_, figures) = carry(&motion, &motion, &same);
+    let (_, figures) = retarget(&motion, &motion, &same);
     let (ours, theirs) =
         (figures.foot_slide_metres_per_sec.unwrap(), figures.foot_slide_source_metres_per_sec.unwrap());
     assert!(ours <= theirs + 1e-3, "{ours} against {theirs}");
     assert!(figures.limb_direction_error_degrees_mean.unwrap() < 1.0, "{figures:?}");
 }
 
-/// In a nearly straight leg millimetres of the foot's place turn the knee by degrees: it twitches.
+/// In a nearly straight leg, millimetres of the foot's position turn the knee by degrees, so that it twitches.
 #[test]
-fn a_planted_leg_is_hardly_straighter_than_it_was() {
+fn a_planted_leg_is_hardly_straighter_than_before() {
     let Some(folder) = data_folder() else { return };
     let real = |file| {
         let asset = read(&folder, file);
@@ -147,12 +147,12 @@ fn a_planted_leg_is_hardly_straighter_than_it_was() {
     let (model, motion) = (real("threejs/Soldier.glb"), real("bvh/cmu_01_01.bvh"));
     let proposed = propose(&model.asset, &motion.asset).to_map(&model.asset, &motion.asset);
     let map = ResolvedMap { feet: Feet::Plant, ..proposed.resolve(&model.asset, &motion.asset).unwrap() };
-    let (done, _) = carry(&model, &motion, &map);
+    let (done, _) = retarget(&model, &motion, &map);
     let legs = [
         [Slot::LeftUpperLeg, Slot::LeftLowerLeg, Slot::LeftFoot],
         [Slot::RightUpperLeg, Slot::RightLowerLeg, Slot::RightFoot],
     ];
-    // 1: straight.
+    // 1 for a straight leg.
     let reach = |clip: &Clip, time: f32| {
         let world = model.world(clip, time);
         legs.map(|leg| {
@@ -164,9 +164,9 @@ fn a_planted_leg_is_hardly_straighter_than_it_was() {
     for time in (0..22 * 30).map(|frame| frame as f32 / 30.0) {
         let (before, after) = (reach(done.unplanted.as_ref().unwrap(), time), reach(&done.clip, time));
         for (before, after) in before.into_iter().zip(after) {
-            assert!(after < before.max(0.99) + 0.003, "at {time} s {before} became {after}");
+            assert!(after < before.max(0.99) + 0.003, "{before} became {after} at {time} s");
             straightest = straightest.max(after);
         }
     }
-    assert!(straightest > 0.98, "it walks: {straightest}");
+    assert!(straightest > 0.98, "it never walks: {straightest}");
 }

@@ -1,5 +1,5 @@
-//! A small human figure made in code, and re-rigs of it: other joint axes, another rest, more joints or fewer, other names,
-//! an armature on top. What the flesh should do is known, so the exact answer is.
+//! A small human figure made in code, and other rigs of it: with other joint axes, another rest, more or fewer joints, other
+//! names, an armature on top. The motion of the body parts is known, so the exact answer is.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use glam::{DQuat, DVec3, EulerRot, Quat, Vec3};
 
 use crate::random::Random;
 
-/// Slot, parent slot, place in the world at the T-pose, metres; faces +Z.
+/// Slot, parent slot, and position in the T-pose in metres. The figure faces +Z.
 pub const BODY: [(Slot, Option<Slot>, [f64; 3]); 22] = [
     (Slot::Hips, None, [0.0, 1.0, 0.0]),
     (Slot::Spine, Some(Slot::Hips), [0.0, 1.1, 0.0]),
@@ -37,25 +37,26 @@ pub const BODY: [(Slot, Option<Slot>, [f64; 3]); 22] = [
     (Slot::Jaw, Some(Slot::Head), [0.0, 1.62, 0.08]),
 ];
 
-/// How a rig differs from the plain one, which has all axes along the world's.
+/// How a rig differs from the default one, whose axes are all the world's.
 #[derive(Debug, Clone)]
 pub struct Rig {
-    /// Seeds a random orientation of every joint's axes; 0: none.
+    /// Seed of a random orientation for every joint's axes; 0 for none.
     pub axes: u64,
-    /// Degrees by which the upper arms hang down at the rest.
+    /// How far the arms hang down at rest.
     pub arms_down_degrees: f64,
-    /// Parts that have no joint.
+    /// Slots without a joint.
     pub without: Vec<Slot>,
-    /// A joint more between each of these and its parent.
+    /// Slots with an extra joint between them and their parent.
     pub doubled: Vec<Slot>,
     /// Prefix of all names.
     pub prefix: &'static str,
-    /// Factor on all lengths, and on those below the hips' sides besides.
+    /// Factor on all lengths.
     pub size: f64,
+    /// Additional factor on the legs.
     pub leg_length: f64,
-    /// An armature node on top: turned by −90° about X, scaled by 0.01, the joints below in centimetres.
+    /// An armature node on top: turned by −90° about X and scaled by 0.01, with joints in centimetres.
     pub armature: bool,
-    /// Degrees that the figure is turned about +Y at its rest.
+    /// Turn of the whole figure about +Y at rest.
     pub facing_degrees: f64,
 }
 
@@ -76,9 +77,9 @@ impl Default for Rig {
 }
 
 impl Random {
-    pub fn rotation(&mut self, most_degrees: f64) -> DQuat {
+    pub fn rotation(&mut self, max_degrees: f64) -> DQuat {
         let axis = DVec3::new(self.f64() - 0.5, self.f64() - 0.5, self.f64() - 0.5);
-        let angle = most_degrees.to_radians() * (2.0 * self.f64() - 1.0);
+        let angle = max_degrees.to_radians() * (2.0 * self.f64() - 1.0);
         DQuat::from_axis_angle(axis.normalize_or(DVec3::Y), angle)
     }
 }
@@ -86,11 +87,11 @@ impl Random {
 pub struct Figure {
     pub asset: Asset,
     pub slots: Humanoid,
-    /// World rotation of each slot's joint when the flesh stands in the T-pose facing +Z.
+    /// World rotation of each slot's joint when the body is in the T-pose, facing +Z.
     pub t_pose: BTreeMap<Slot, DQuat>,
 }
 
-/// The rest's own turn away from the T-pose, of the arms.
+/// Rotation of a slot at rest away from the T-pose.
 fn lowered(slot: Slot, degrees: f64) -> DQuat {
     let name = slot.name();
     let arm = name.ends_with("UpperArm") || name.ends_with("LowerArm") || name.ends_with("Hand");
@@ -102,96 +103,118 @@ fn lowered(slot: Slot, degrees: f64) -> DQuat {
 }
 
 pub fn build(rig: &Rig) -> Figure {
-    let mut random = Random(rig.axes.wrapping_mul(7919));
-    let facing = DQuat::from_rotation_y(rig.facing_degrees.to_radians());
-    let armature = DQuat::from_rotation_x(-std::f64::consts::FRAC_PI_2);
-    let mut joints: Vec<Joint> = Vec::new();
-    // Of each slot: the joint that has it, its world rotation and place at the rest.
-    let mut made: BTreeMap<Slot, (usize, DQuat, DVec3)> = BTreeMap::new();
-    let mut t_pose = BTreeMap::new();
-    let top = if rig.armature {
-        let rest = Transform { rotation: armature.as_quat(), scale: Vec3::splat(0.01), ..Transform::IDENTITY };
-        joints.push(Joint { name: "Armature".into(), rest, ..Joint::default() });
-        Some((0, armature, DVec3::ZERO))
-    } else {
-        None
-    };
-    let unit = if rig.armature { 100.0 } else { 1.0 };
-    let place = |slot: Slot| {
-        let (_, _, at) = BODY.iter().find(|(other, ..)| *other == slot).unwrap();
-        let mut at = DVec3::from(*at);
-        let hip = 0.95;
-        if at.y < hip {
-            // Directions stay: only lengths differ.
-            at.y = hip - (hip - at.y) * rig.leg_length;
-            at.z *= rig.leg_length;
-        }
-        // Stands on the ground whatever its legs.
-        at.y += 0.93 * (rig.leg_length - 1.0);
-        at * rig.size
-    };
+    let mut builder = Builder::new(rig);
     for (slot, parent, _) in BODY {
-        // Always drawn, so that other options do not change it.
-        let axes = if rig.axes == 0 { DQuat::IDENTITY } else { random.rotation(180.0) };
-        if rig.without.contains(&slot) {
-            continue;
-        }
-        let mut above = parent;
-        while let Some(missing) = above.filter(|slot| rig.without.contains(slot)) {
-            above = BODY.iter().find(|(other, ..)| *other == missing).unwrap().1;
-        }
-        let (mut parent_joint, mut parent_turn, parent_at) = match above {
-            Some(above) => {
-                let (joint, turn, at) = made[&above];
-                (Some(joint), turn, at)
-            }
-            None => match top {
-                Some((joint, turn, at)) => (Some(joint), turn, at),
-                None => (None, DQuat::IDENTITY, DVec3::ZERO),
-            },
-        };
-        // From the parent in the T-pose, turned as the parent's flesh is at the rest.
-        let at = match above {
-            Some(above) => {
-                let lowered = lowered(above, rig.arms_down_degrees);
-                parent_at + facing * (lowered * (place(slot) - place(above)))
-            }
-            None => facing * place(slot),
-        };
-        let upright = axes;
-        let turn = facing * lowered(slot, rig.arms_down_degrees) * upright;
-        t_pose.insert(slot, upright);
-        let mut step = (parent_turn.conjugate() * (at - parent_at)) * unit;
-        if rig.doubled.contains(&slot) {
-            let extra = random.rotation(90.0);
-            let rest =
-                Transform { translation: (0.4 * step).as_vec3(), rotation: extra.as_quat(), ..Transform::IDENTITY };
-            joints.push(Joint {
-                name: format!("{}extra_{}", rig.prefix, slot.name()),
-                parent: parent_joint,
-                rest,
-                ..Joint::default()
-            });
-            parent_joint = Some(joints.len() - 1);
-            step = extra.conjugate() * (0.6 * step);
-            parent_turn *= extra;
-        }
-        let rest = Transform {
-            translation: step.as_vec3(),
-            rotation: (parent_turn.conjugate() * turn).as_quat(),
-            ..Transform::IDENTITY
-        };
-        joints.push(Joint {
-            name: format!("{}{}", rig.prefix, slot.name()),
-            parent: parent_joint,
-            rest,
-            ..Joint::default()
-        });
-        made.insert(slot, (joints.len() - 1, turn, at));
+        builder.add(slot, parent);
     }
-    let skeleton = Skeleton::new(joints).unwrap();
-    let slots = Humanoid(made.iter().map(|(&slot, made)| (slot, skeleton.joint_of_source(made.0).unwrap())).collect());
-    Figure { asset: Asset::from(skeleton), slots, t_pose }
+    let skeleton = Skeleton::new(builder.joints).unwrap();
+    let joint = |placed: &Placed| skeleton.joint_of_source(placed.joint).unwrap();
+    let slots = Humanoid(builder.placed.iter().map(|(&slot, placed)| (slot, joint(placed))).collect());
+    Figure { asset: Asset::from(skeleton), slots, t_pose: builder.t_pose }
+}
+
+/// A joint's index in the list, and its world rotation and position at rest.
+#[derive(Clone, Copy)]
+struct Placed {
+    joint: usize,
+    rotation: DQuat,
+    position: DVec3,
+}
+
+struct Builder<'a> {
+    rig: &'a Rig,
+    random: Random,
+    facing: DQuat,
+    armature: Option<Placed>,
+    joints: Vec<Joint>,
+    placed: BTreeMap<Slot, Placed>,
+    t_pose: BTreeMap<Slot, DQuat>,
+}
+
+impl<'a> Builder<'a> {
+    fn new(rig: &'a Rig) -> Self {
+        let mut builder = Self {
+            rig,
+            random: Random(rig.axes.wrapping_mul(7919)),
+            facing: DQuat::from_rotation_y(rig.facing_degrees.to_radians()),
+            armature: None,
+            joints: Vec::new(),
+            placed: BTreeMap::new(),
+            t_pose: BTreeMap::new(),
+        };
+        if rig.armature {
+            let rotation = DQuat::from_rotation_x(-std::f64::consts::FRAC_PI_2);
+            let rest = Transform { rotation: rotation.as_quat(), scale: Vec3::splat(0.01), ..Transform::IDENTITY };
+            builder.joints.push(Joint { name: "Armature".into(), rest, ..Joint::default() });
+            builder.armature = Some(Placed { joint: 0, rotation, position: DVec3::ZERO });
+        }
+        builder
+    }
+
+    /// Adds a slot's joint. Parents come first.
+    fn add(&mut self, slot: Slot, parent: Option<Slot>) {
+        let rig = self.rig;
+        // Always drawn, so that other options do not change it.
+        let axes = if rig.axes == 0 { DQuat::IDENTITY } else { self.random.rotation(180.0) };
+        if rig.without.contains(&slot) {
+            return;
+        }
+        let parent = self.nearest_present(parent);
+        let above = parent.map(|parent| self.placed[&parent]).or(self.armature);
+        let (mut parent_joint, mut parent_rotation, parent_position) = match above {
+            Some(above) => (Some(above.joint), above.rotation, above.position),
+            None => (None, DQuat::IDENTITY, DVec3::ZERO),
+        };
+        // From the parent in the T-pose, turned as the parent is at rest.
+        let position = match parent {
+            Some(parent) => {
+                let lowered = lowered(parent, rig.arms_down_degrees);
+                parent_position + self.facing * (lowered * (t_pose_position(rig, slot) - t_pose_position(rig, parent)))
+            }
+            None => self.facing * t_pose_position(rig, slot),
+        };
+        let rotation = self.facing * lowered(slot, rig.arms_down_degrees) * axes;
+        self.t_pose.insert(slot, axes);
+        let centimetres = if rig.armature { 100.0 } else { 1.0 };
+        let mut step = (parent_rotation.conjugate() * (position - parent_position)) * centimetres;
+        if rig.doubled.contains(&slot) {
+            let extra = self.random.rotation(90.0);
+            parent_joint = Some(self.push(format!("extra_{}", slot.name()), parent_joint, 0.4 * step, extra));
+            step = extra.conjugate() * (0.6 * step);
+            parent_rotation *= extra;
+        }
+        let joint = self.push(slot.name().to_owned(), parent_joint, step, parent_rotation.conjugate() * rotation);
+        self.placed.insert(slot, Placed { joint, rotation, position });
+    }
+
+    /// The slot, or its nearest ancestor that the rig has.
+    fn nearest_present(&self, mut slot: Option<Slot>) -> Option<Slot> {
+        while let Some(missing) = slot.filter(|slot| self.rig.without.contains(slot)) {
+            slot = BODY.iter().find(|(other, ..)| *other == missing).unwrap().1;
+        }
+        slot
+    }
+
+    fn push(&mut self, name: String, parent: Option<usize>, translation: DVec3, rotation: DQuat) -> usize {
+        let (translation, rotation) = (translation.as_vec3(), rotation.as_quat());
+        let rest = Transform { translation, rotation, ..Transform::IDENTITY };
+        self.joints.push(Joint { name: format!("{}{name}", self.rig.prefix), parent, rest, ..Joint::default() });
+        self.joints.len() - 1
+    }
+}
+
+fn t_pose_position(rig: &Rig, slot: Slot) -> DVec3 {
+    let (_, _, position) = BODY.iter().find(|(other, ..)| *other == slot).unwrap();
+    let mut position = DVec3::from(*position);
+    let hip = 0.95;
+    if position.y < hip {
+        // Longer or shorter, in the same direction.
+        position.y = hip - (hip - position.y) * rig.leg_length;
+        position.z *= rig.leg_length;
+    }
+    // On the ground, however long its legs.
+    position.y += 0.93 * (rig.leg_length - 1.0);
+    position * rig.size
 }
 
 impl Figure {
@@ -199,7 +222,7 @@ impl Figure {
         self.slots.joint(slot).unwrap()
     }
 
-    /// World rotations (without scale) and places of all joints.
+    /// World rotations (without scale) and positions of all joints.
     pub fn world(&self, clip: &Clip, time_secs: f32) -> Vec<(DQuat, DVec3)> {
         let skeleton = &self.asset.skeleton;
         let mut pose: Pose = skeleton.rest().clone();
@@ -213,8 +236,8 @@ impl Figure {
         world.into_iter().map(|(turn, at, _)| (turn, at)).collect()
     }
 
-    /// How far the flesh of each part is turned away from the T-pose facing +Z.
-    pub fn flesh(&self, clip: &Clip, time_secs: f32) -> BTreeMap<Slot, DQuat> {
+    /// Rotation of each slot's body part away from the T-pose, facing +Z.
+    pub fn body_parts(&self, clip: &Clip, time_secs: f32) -> BTreeMap<Slot, DQuat> {
         let world = self.world(clip, time_secs);
         let turned = |(&slot, &joint): (&Slot, &JointIndex)| {
             (slot, (world[joint.get()].0 * self.t_pose[&slot].conjugate()).normalize())
@@ -222,7 +245,7 @@ impl Figure {
         self.slots.0.iter().map(turned).collect()
     }
 
-    /// A lively clip on all joints with a slot: rotations of up to `degrees` about the rest, and the hips wander.
+    /// Adds a clip with random rotations of up to `degrees` from the rest on every slot, and travelling hips.
     pub fn dance(&mut self, seed: u64, degrees: f64, interpolation: Interpolation) {
         let mut random = Random(seed);
         let skeleton = &self.asset.skeleton;

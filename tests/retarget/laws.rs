@@ -7,7 +7,7 @@ use glam::{DQuat, DVec3, Quat};
 
 use crate::figure::{Figure, Rig, build};
 
-/// All slots that both have.
+/// Maps all slots that both have.
 pub fn map(model: &Figure, motion: &Figure) -> ResolvedMap {
     let mut pairs: Vec<Pair> = model
         .slots
@@ -25,7 +25,7 @@ pub fn body(figure: &Figure) -> Body<'_> {
     Body { asset: &figure.asset, slots: &figure.slots }
 }
 
-fn carry(model: &Figure, motion: &Figure, map: &ResolvedMap) -> Retargeted {
+fn retarget(model: &Figure, motion: &Figure, map: &ResolvedMap) -> Retargeted {
     Retargeting::new(body(model), body(motion), 0, map).unwrap().bake().unwrap()
 }
 
@@ -34,22 +34,22 @@ fn degrees(a: DQuat, b: DQuat) -> f64 {
     (2.0 * turn.xyz().length().atan2(turn.w.abs())).to_degrees()
 }
 
-/// The flesh of every part that both have does the same, within `most_degrees`, at many times.
-fn check_flesh(model: &Figure, motion: &Figure, most_degrees: f64) -> Retargeted {
+/// Checks that each body part that both have turns alike, within `max_degrees`, at many times.
+fn check_body_parts(model: &Figure, motion: &Figure, max_degrees: f64) -> Retargeted {
     let map = map(model, motion);
-    let done = carry(model, motion, &map);
+    let done = retarget(model, motion, &map);
     let mut worst: f64 = 0.0;
     for step in 0..=60 {
         let time = step as f32 * 1.6 / 60.0;
-        let wanted = motion.flesh(&motion.asset.clips[0], time);
-        let found = model.flesh(&done.clip, time);
+        let wanted = motion.body_parts(&motion.asset.clips[0], time);
+        let found = model.body_parts(&done.clip, time);
         for (slot, turn) in &found {
             if let Some(wanted) = wanted.get(slot) {
                 worst = worst.max(degrees(*wanted, *turn));
             }
         }
     }
-    assert!(worst < most_degrees, "{worst} degrees");
+    assert!(worst < max_degrees, "{worst} degrees");
     done
 }
 
@@ -60,12 +60,12 @@ fn dancer(rig: &Rig, interpolation: Interpolation) -> Figure {
 }
 
 #[test]
-fn the_same_skeleton_gets_the_same_keys() {
+fn the_same_skeleton_keeps_its_keys() {
     for interpolation in [Interpolation::Step, Interpolation::Linear, Interpolation::CubicSpline] {
         for armature in [false, true] {
             let figure = dancer(&Rig { axes: 3, armature, ..Rig::default() }, interpolation);
             let map = ResolvedMap { translations: Keep::Keep, scales: Keep::Keep, ..map(&figure, &figure) };
-            let done = carry(&figure, &figure, &map);
+            let done = retarget(&figure, &figure, &map);
             assert_eq!(done.resampled, []);
             assert_eq!(done.keys_in, done.keys_out);
             let clip = &figure.asset.clips[0];
@@ -84,36 +84,31 @@ fn the_same_skeleton_gets_the_same_keys() {
 fn other_axes_sizes_names_and_an_armature_change_nothing() {
     let motion = dancer(&Rig::default(), Interpolation::Linear);
     let rig = Rig { axes: 5, prefix: "x:", size: 2.5, leg_length: 0.7, armature: true, ..Rig::default() };
-    let done = check_flesh(&build(&rig), &motion, 1e-3);
-    assert_eq!(done.resampled, [], "every joint has its counterpart, so keys are transformed");
+    let done = check_body_parts(&build(&rig), &motion, 1e-3);
+    assert_eq!(done.resampled, [], "every joint has a counterpart, so keys are transformed");
     let motion = dancer(&rig, Interpolation::Linear);
-    check_flesh(&build(&Rig { axes: 9, ..Rig::default() }), &motion, 1e-3);
+    check_body_parts(&build(&Rig { axes: 9, ..Rig::default() }), &motion, 1e-3);
 }
 
 #[test]
-fn a_rest_with_lowered_arms_meets_one_with_raised_arms() {
+fn rests_with_lowered_and_raised_arms_are_aligned() {
     let lowered = Rig { axes: 5, arms_down_degrees: 45.0, ..Rig::default() };
     let raised = Rig { axes: 8, armature: true, ..Rig::default() };
     for (model, motion) in [(&lowered, &raised), (&raised, &lowered)] {
-        check_flesh_between_rests(&build(model), &dancer(motion, Interpolation::Linear));
+        check_body_parts(&build(model), &dancer(motion, Interpolation::Linear), 0.05);
     }
 }
 
-/// The arms' turn is measured from the T-pose of the flesh, which no rest need be.
-fn check_flesh_between_rests(model: &Figure, motion: &Figure) {
-    check_flesh(model, motion, 0.05);
-}
-
 #[test]
-fn facing_another_way_turns_the_whole_motion() {
+fn a_model_that_faces_another_way_turns_the_whole_motion() {
     let motion = dancer(&Rig { axes: 2, ..Rig::default() }, Interpolation::Linear);
     let model = build(&Rig { axes: 4, facing_degrees: 90.0, ..Rig::default() });
-    let done = carry(&model, &motion, &map(&model, &motion));
+    let done = retarget(&model, &motion, &map(&model, &motion));
     let turn = DQuat::from_rotation_y(std::f64::consts::FRAC_PI_2);
     for step in 0..=20 {
         let time = step as f32 * 1.5 / 20.0;
-        let wanted = motion.flesh(&motion.asset.clips[0], time);
-        for (slot, found) in model.flesh(&done.clip, time) {
+        let wanted = motion.body_parts(&motion.asset.clips[0], time);
+        for (slot, found) in model.body_parts(&done.clip, time) {
             assert!(degrees(turn * wanted[&slot], found) < 0.01, "{slot:?}");
         }
         let hips = |figure: &Figure, clip| figure.world(clip, time)[figure.joint(Slot::Hips).get()].1;
@@ -122,33 +117,33 @@ fn facing_another_way_turns_the_whole_motion() {
 }
 
 #[test]
-fn joints_that_one_side_lacks_are_folded_into_their_neighbours() {
+fn joints_missing_on_one_side_are_folded_into_their_neighbours() {
     let full = Rig { axes: 5, ..Rig::default() };
     let lacking = Rig { axes: 6, without: vec![Slot::Spine, Slot::Neck, Slot::LeftShoulder], ..Rig::default() };
     let more = Rig { axes: 7, doubled: vec![Slot::Chest, Slot::LeftLowerArm, Slot::RightFoot], ..Rig::default() };
     let motion = dancer(&full, Interpolation::Linear);
-    let done = check_flesh(&build(&lacking), &motion, 0.1);
-    assert!(!done.resampled.is_empty(), "two moving joints in one cannot keep either's keys");
-    check_flesh(&build(&more), &motion, 1e-3);
-    check_flesh(&build(&full), &dancer(&lacking, Interpolation::Linear), 1e-3);
-    // Moving joints of the source that the target lacks.
+    let done = check_body_parts(&build(&lacking), &motion, 0.1);
+    assert!(!done.resampled.is_empty(), "a joint that combines two moving ones cannot keep either's keys");
+    check_body_parts(&build(&more), &motion, 1e-3);
+    check_body_parts(&build(&full), &dancer(&lacking, Interpolation::Linear), 1e-3);
+    // Moving joints of the source that the target does not have.
     let mut motion = build(&more);
     let extra = motion.asset.skeleton.find("extra_chest").unwrap();
     motion.slots.0.insert(Slot::UpperChest, extra);
     motion.t_pose.insert(Slot::UpperChest, DQuat::IDENTITY);
     motion.dance(12, 60.0, Interpolation::Linear);
     motion.slots.0.remove(&Slot::UpperChest);
-    check_flesh(&build(&full), &motion, 0.1);
+    check_body_parts(&build(&full), &motion, 0.1);
 }
 
 #[test]
-fn there_and_back_is_where_it_was() {
+fn retargeting_there_and_back_gives_the_same_motion() {
     let first = dancer(&Rig { axes: 3, arms_down_degrees: 30.0, ..Rig::default() }, Interpolation::Linear);
     let mut second =
         build(&Rig { axes: 4, size: 0.6, leg_length: 1.2, armature: true, prefix: "other_", ..Rig::default() });
-    let there = carry(&second, &first, &map(&second, &first));
+    let there = retarget(&second, &first, &map(&second, &first));
     second.set_clip(there.clip);
-    let back = carry(&first, &second, &map(&first, &second));
+    let back = retarget(&first, &second, &map(&first, &second));
     for step in 0..=30 {
         let time = step as f32 * 1.5 / 30.0;
         let (wanted, found) = (first.world(&first.asset.clips[0], time), first.world(&back.clip, time));
@@ -163,9 +158,9 @@ fn there_and_back_is_where_it_was() {
 fn splines_stay_splines() {
     let motion = dancer(&Rig { axes: 1, ..Rig::default() }, Interpolation::CubicSpline);
     let model = build(&Rig { axes: 2, size: 3.0, armature: true, ..Rig::default() });
-    let done = check_flesh(&model, &motion, 1e-3);
+    let done = check_body_parts(&model, &motion, 1e-3);
     assert!(done.clip.channels().iter().all(|channel| channel.interpolation == Interpolation::CubicSpline));
-    // Not only the turns: the hips' path between the keys as well.
+    // Not only rotations but the hips' path between the keys as well.
     let scale = done.hips_scale.unwrap();
     fn hips(figure: &Figure, clip: &Clip, time: f32) -> DVec3 {
         figure.world(clip, time)[figure.joint(Slot::Hips).get()].1
@@ -188,12 +183,12 @@ fn rest_of(figure: &Figure) -> gaitway::anim::Clip {
 fn a_correction_turns_one_joint_and_not_its_children() {
     let motion = dancer(&Rig::default(), Interpolation::Linear);
     let model = build(&Rig { axes: 6, ..Rig::default() });
-    let plain = carry(&model, &motion, &map(&model, &motion));
+    let plain = retarget(&model, &motion, &map(&model, &motion));
     let mut corrected = map(&model, &motion);
     let correction = Quat::from_rotation_y(0.4);
     let joint = model.joint(Slot::LeftUpperArm);
     corrected.pairs.iter_mut().find(|pair| pair.target == joint).unwrap().correction = correction;
-    let turned = carry(&model, &motion, &corrected);
+    let turned = retarget(&model, &motion, &corrected);
     let (plain, turned) = (model.world(&plain.clip, 0.7), model.world(&turned.clip, 0.7));
     for (index, (plain, turned)) in plain.iter().zip(&turned).enumerate() {
         let wanted = if index == joint.get() { plain.0 * correction.as_dquat() } else { plain.0 };
@@ -202,12 +197,12 @@ fn a_correction_turns_one_joint_and_not_its_children() {
 }
 
 #[test]
-fn the_hips_go_where_they_are_let() {
+fn root_options_edit_the_hips_path() {
     let motion = dancer(&Rig::default(), Interpolation::Linear);
     let model = build(&Rig { axes: 6, armature: true, ..Rig::default() });
     let plain = map(&model, &motion);
     let path = |map: &ResolvedMap| {
-        let done = carry(&model, &motion, map);
+        let done = retarget(&model, &motion, map);
         move |time: f32| model_hips(&done, time)
     };
     fn model_hips(done: &Retargeted, time: f32) -> (DQuat, glam::DVec3) {
@@ -248,10 +243,10 @@ fn the_hips_go_where_they_are_let() {
     options.root.extract = true;
     let extracted = path(&options);
     for time in [0.0, 0.4, 1.1, 1.5] {
-        assert!(extracted(time).1.distance(kept(time).1) < 2e-3, "the figure goes where it went");
+        assert!(extracted(time).1.distance(kept(time).1) < 2e-3, "the figure still travels");
         assert!(degrees(extracted(time).0, kept(time).0) < 0.1);
     }
-    let done = carry(&model, &motion, &options);
+    let done = retarget(&model, &motion, &options);
     let armature = model.asset.skeleton.find("Armature").unwrap();
     let travels =
         |channel: &&gaitway::anim::Channel| channel.joint == armature && matches!(channel.keys, Keys::Translation(_));
@@ -261,7 +256,7 @@ fn the_hips_go_where_they_are_let() {
 #[test]
 fn the_first_frame_can_be_the_rest() {
     let mut motion = dancer(&Rig::default(), Interpolation::Linear);
-    // A clip that starts in the rest: with its first frame as the rest it must say the same as with the nodes'.
+    // The clip starts at the rest, so its first frame as the rest gives the same result as the nodes'.
     let skeleton = &motion.asset.skeleton;
     let mut clip = gaitway::anim::ClipBuilder::new("from rest", skeleton);
     for channel in motion.asset.clips[0].channels() {
@@ -277,7 +272,7 @@ fn the_first_frame_can_be_the_rest() {
     let model = build(&Rig { axes: 6, ..Rig::default() });
     let mut first = map(&model, &motion);
     first.rest.motion = RestChoice::FirstFrame;
-    let (node, first) = (carry(&model, &motion, &map(&model, &motion)), carry(&model, &motion, &first));
+    let (node, first) = (retarget(&model, &motion, &map(&model, &motion)), retarget(&model, &motion, &first));
     let worst = model
         .world(&node.clip, 0.8)
         .iter()
@@ -288,7 +283,7 @@ fn the_first_frame_can_be_the_rest() {
 }
 
 #[test]
-fn figures_find_no_error_where_there_is_none_and_one_where_there_is() {
+fn figures_tell_a_good_clip_from_a_bad_one() {
     let motion = dancer(&Rig::default(), Interpolation::Linear);
     let model = build(&Rig { axes: 6, size: 1.3, arms_down_degrees: 40.0, ..Rig::default() });
     let map = map(&model, &motion);

@@ -1,4 +1,4 @@
-//! Borrowed motion, without GPU: laws on figures made in code, and real pairs of files.
+//! Retargeting without a GPU: laws checked on figures made in code, and real pairs of files.
 
 #[path = "../support/data_folder.rs"]
 mod data_folder;

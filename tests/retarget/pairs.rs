@@ -1,4 +1,4 @@
-//! Every real character with every real motion, by the proposed map.
+//! Every pair of real characters and motions, retargeted by the proposed map.
 
 use std::collections::BTreeMap;
 

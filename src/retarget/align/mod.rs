@@ -97,9 +97,7 @@ fn aligned_locals(
 /// A pair fills its target's slot, or its source's if the target has none.
 fn pairs_of_slots(map: &ResolvedMap, source_slots: &Humanoid, target_slots: &Humanoid) -> BTreeMap<Slot, usize> {
     let mut pair_of_slot = BTreeMap::new();
-    let joint_of_side: [(&Humanoid, fn(&Pair) -> JointIndex); 2] =
-        [(target_slots, |pair| pair.target), (source_slots, |pair| pair.source)];
-    for (slots, joint_of) in joint_of_side {
+    let mut fill = |slots: &Humanoid, joint_of: fn(&Pair) -> JointIndex| {
         for (index, pair) in map.pairs.iter().enumerate() {
             if !pair_of_slot.values().any(|&taken| taken == index)
                 && let Some(slot) = slots.slot(joint_of(pair))
@@ -107,6 +105,8 @@ fn pairs_of_slots(map: &ResolvedMap, source_slots: &Humanoid, target_slots: &Hum
                 pair_of_slot.entry(slot).or_insert(index);
             }
         }
-    }
+    };
+    fill(target_slots, |pair| pair.target);
+    fill(source_slots, |pair| pair.source);
     pair_of_slot
 }

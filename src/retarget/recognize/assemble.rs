@@ -1,5 +1,5 @@
-//! Puts a body together from joints whose names say something: limbs first, then the hips where legs and spine meet, then
-//! what lies between. Words say what a joint may be, the hierarchy decides between them.
+//! Assembles a body from joints with known words: limbs first, then the hips where legs and spine meet, then what lies
+//! between. Words say what a joint may be; the hierarchy decides between candidates.
 
 use std::collections::BTreeMap;
 
@@ -7,19 +7,19 @@ use super::known::{self, Known};
 use super::names::Side;
 use super::tree::Tree;
 use super::words::Word;
-use super::{Part, Reason};
+use super::{Reason, RecognizedJoint};
 use crate::anim::JointIndex;
 use crate::asset::Slot::{self, *};
 
-/// How sure a reason of this kind makes, before anything is known against it.
-const SURE_VOCABULARY: f32 = 0.95;
-const SURE_WORDS: f32 = 0.8;
-const SURE_HIERARCHY: f32 = 0.6;
+/// Confidence by reason.
+const VOCABULARY_CONFIDENCE: f32 = 0.95;
+const WORDS_CONFIDENCE: f32 = 0.8;
+const HIERARCHY_CONFIDENCE: f32 = 0.6;
 
-/// Of so many heads one is looked for; a crowd is not a body.
-const MOST_HEADS: usize = 64;
+/// Maximum number of heads to search; a crowd is not a body.
+const MAX_HEADS: usize = 64;
 
-/// The joints of one leg or arm; `extra` are its toes or its collar bone.
+/// The joints of one leg or arm; `extra` is its toes or its collar bone.
 #[derive(Debug, Default, Clone, Copy)]
 struct Limb {
     extra: Option<JointIndex>,
@@ -28,7 +28,7 @@ struct Limb {
     end: Option<JointIndex>,
 }
 
-pub(super) fn find(tree: &Tree, known: Option<&Known>) -> BTreeMap<Slot, Part> {
+pub(super) fn find(tree: &Tree, known: Option<&Known>) -> BTreeMap<Slot, RecognizedJoint> {
     let mut search = Search { tree, known, words: Vec::new(), parts: BTreeMap::new() };
     search.words = tree.skeleton.joints().map(|joint| search.read(joint)).collect();
     search.run();
@@ -38,13 +38,13 @@ pub(super) fn find(tree: &Tree, known: Option<&Known>) -> BTreeMap<Slot, Part> {
 struct Search<'a> {
     tree: &'a Tree<'a>,
     known: Option<&'a Known>,
-    /// By joint: the word and the side.
+    /// Word and side of each joint.
     words: Vec<Option<(Word, Option<Side>)>>,
-    parts: BTreeMap<Slot, Part>,
+    parts: BTreeMap<Slot, RecognizedJoint>,
 }
 
 impl Search<'_> {
-    /// What a vocabulary says beats single words.
+    /// A vocabulary wins over single words.
     fn read(&self, joint: JointIndex) -> Option<(Word, Option<Side>)> {
         match self.known.and_then(|known| known.slots.get(&joint)) {
             Some(&slot) => Some((known::word_of(slot), known::side_of(slot))),
@@ -80,7 +80,7 @@ impl Search<'_> {
         }
     }
 
-    /// In the skeleton's order: what hangs under another comes after it.
+    /// In the skeleton's order, so that descendants come after their ancestors.
     fn all(&self, side: Option<Side>, word: Word) -> Vec<JointIndex> {
         self.tree.skeleton.joints().filter(|joint| self.words[joint.get()] == Some((word, side))).collect()
     }
@@ -113,7 +113,7 @@ impl Search<'_> {
             };
             upper = upper.or_else(|| lower.and_then(first_of));
         }
-        // A joint between thigh and foot without a word is the shin.
+        // An unnamed joint between thigh and foot is the shin.
         if let (Some(upper), None) = (upper, lower) {
             let foot = self.under(&feet, upper);
             lower = foot.and_then(|foot| match self.tree.path(upper, foot).as_slice() {
@@ -121,7 +121,7 @@ impl Search<'_> {
                 _ => None,
             });
         }
-        // Feet that follow a control, as in many rigs for games, hang elsewhere.
+        // In many game rigs, feet follow a control and are not descendants of the leg.
         let end = lower.and_then(|lower| self.under(&feet, lower).or(feet.first().copied()));
         let extra = end.and_then(|foot| self.under(&toes, foot).or_else(|| self.under(&feet, foot)));
         Limb { extra, upper, lower, end }
@@ -158,12 +158,12 @@ impl Search<'_> {
         Limb { extra, upper, lower, end }
     }
 
-    /// Of several heads (controls are often called so as well) the one nearest to the body.
+    /// The head nearest to the body: controls are often called head as well.
     fn head(&self, pelvis: Option<JointIndex>, shoulders: Option<JointIndex>) -> Option<JointIndex> {
         let heads = self.all(None, Word::Head);
         let Some(body) = shoulders.or(pelvis) else { return heads.first().copied() };
         let mut best: Option<(usize, JointIndex)> = None;
-        for head in heads.into_iter().take(MOST_HEADS) {
+        for head in heads.into_iter().take(MAX_HEADS) {
             let Some(meeting) = self.tree.meeting(head, body) else { continue };
             let depth = self.tree.upwards(meeting).count();
             if best.is_none_or(|(other, _)| depth > other) {
@@ -176,7 +176,7 @@ impl Search<'_> {
         })
     }
 
-    /// Where legs and spine meet. A pelvis beside the spine moves the legs alone.
+    /// Where legs and spine meet; a pelvis beside the spine moves only the legs.
     fn hips(&self, pelvis: Option<JointIndex>, top: Option<JointIndex>) -> Option<JointIndex> {
         let named = self.all(None, Word::Pelvis);
         let Some(pelvis) = pelvis else {
@@ -191,7 +191,7 @@ impl Search<'_> {
         Some(meeting)
     }
 
-    /// Spine, chest and neck: what lies between hips and head.
+    /// Spine, chest and neck: the joints between hips and head.
     fn trunk(&mut self, hips: JointIndex, head: Option<JointIndex>, shoulders: Option<JointIndex>) {
         let Some(top) = head.or(shoulders) else { return };
         let mut path = self.tree.path(hips, top);
@@ -235,7 +235,7 @@ impl Search<'_> {
         }
     }
 
-    /// Each finger from the palm outwards, as far as there are slots: what comes after are tips.
+    /// Each finger from the palm outwards, as far as there are slots; the joints after that are tips.
     fn fingers(&mut self, side: Side, hand: JointIndex) {
         for finger in 0..5_u8 {
             let mut above = hand;
@@ -264,15 +264,15 @@ impl Search<'_> {
         let known = self.known.filter(|known| known.slots.get(&joint) == Some(&slot));
         let word = self.words[joint.get()].is_some();
         let (reason, confidence) = match known {
-            Some(known) => (Reason::Vocabulary(known.vocabulary), SURE_VOCABULARY),
-            None if reason == Reason::Words && word => (Reason::Words, SURE_WORDS),
-            None => (Reason::Hierarchy, SURE_HIERARCHY),
+            Some(known) => (Reason::Vocabulary(known.vocabulary), VOCABULARY_CONFIDENCE),
+            None if reason == Reason::Words && word => (Reason::Words, WORDS_CONFIDENCE),
+            None => (Reason::Hierarchy, HIERARCHY_CONFIDENCE),
         };
-        self.parts.insert(slot, Part { joint, reason, confidence });
+        self.parts.insert(slot, RecognizedJoint { joint, reason, confidence });
     }
 }
 
-/// Spreads the joints between hips and neck over the three slots of the trunk: the lowest, one from the middle, the highest.
+/// Spreads the joints between hips and neck over the three slots of the trunk: lowest, middle, highest.
 pub(super) fn spread(torso: &[JointIndex]) -> Vec<(Slot, JointIndex)> {
     match *torso {
         [] => Vec::new(),

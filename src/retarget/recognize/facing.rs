@@ -1,4 +1,4 @@
-//! Which way a body stands and looks, and whether its names for left and right agree with that.
+//! Which way a body stands and faces, and whether its names for left and right agree.
 
 use std::collections::BTreeMap;
 
@@ -7,36 +7,36 @@ use glam::Vec3;
 use super::known::side_of;
 use super::names::Side;
 use super::tree::Tree;
-use super::{Contradiction, Facing, Part, Reason};
+use super::{Contradiction, Facing, Reason, RecognizedJoint};
 use crate::asset::Slot::{self, *};
 
-/// Limbs whose sides are far enough apart to tell; the upper ones first.
+/// Joints whose two sides are far enough apart to compare.
 const LIMBS: [Slot; 8] =
     [LeftUpperLeg, LeftLowerLeg, LeftFoot, LeftToes, LeftShoulder, LeftUpperArm, LeftLowerArm, LeftHand];
 
-/// Cosine of the angle between head over hips and hips over feet: 1 stands straight, 0 walks on four legs.
-pub(super) fn straightness(tree: &Tree, parts: &BTreeMap<Slot, Part>) -> Option<f32> {
-    let place = |slot| parts.get(&slot).map(|part| tree.place(part.joint));
+/// Cosine of the angle between feet → hips and hips → head: 1 stands straight, 0 walks on four legs.
+pub(super) fn straightness(tree: &Tree, parts: &BTreeMap<Slot, RecognizedJoint>) -> Option<f32> {
+    let place = |slot| parts.get(&slot).map(|part| tree.position(part.joint));
     let hips = place(Hips)?;
     let upper = place(Head).or_else(|| place(Neck))? - hips;
     let lower = hips - feet(tree, parts)?;
     Some(upper.try_normalize()?.dot(lower.try_normalize()?))
 }
 
-/// Between the feet, or as far down as the legs go.
-fn feet(tree: &Tree, parts: &BTreeMap<Slot, Part>) -> Option<Vec3> {
+/// Midpoint of the feet, or of the shins without feet.
+fn feet(tree: &Tree, parts: &BTreeMap<Slot, RecognizedJoint>) -> Option<Vec3> {
     [LeftFoot, LeftLowerLeg].into_iter().find_map(|slot| {
         let (left, right) = (parts.get(&slot)?, parts.get(&slot.mirrored())?);
-        Some(tree.place(left.joint).midpoint(tree.place(right.joint)))
+        Some(tree.position(left.joint).midpoint(tree.position(right.joint)))
     })
 }
 
-pub(super) fn find(tree: &Tree, parts: &BTreeMap<Slot, Part>) -> Facing {
+pub(super) fn find(tree: &Tree, parts: &BTreeMap<Slot, RecognizedJoint>) -> Facing {
     let Some(up) = up(tree, parts) else { return Facing::default() };
     let left = left(tree, parts, up);
     let mut forward = toes(tree, parts, up).or_else(|| eyes(tree, parts, up)).or_else(|| knees(tree, parts, up));
-    // Feet are turned outwards and rests are crooked: the line through both sides says more exactly where forward is, but
-    // not which of its two ways.
+    // Feet point outwards and rests are crooked: the line through both sides gives the axis more exactly, but not its
+    // direction.
     if let (Some(across), Some(seen)) = (left.map(|left| left.cross(up)), forward) {
         let along = across.dot(seen);
         forward = (along.abs() > 0.5).then_some(across * along.signum());
@@ -44,9 +44,9 @@ pub(super) fn find(tree: &Tree, parts: &BTreeMap<Slot, Part>) -> Facing {
     Facing { up: Some(up), left, forward }
 }
 
-/// The axis nearest to the line from the feet to the head, or that line where none is near.
-fn up(tree: &Tree, parts: &BTreeMap<Slot, Part>) -> Option<Vec3> {
-    let place = |slot| parts.get(&slot).map(|part| tree.place(part.joint));
+/// The axis nearest to the line from the feet to the head, or that line if none is near.
+fn up(tree: &Tree, parts: &BTreeMap<Slot, RecognizedJoint>) -> Option<Vec3> {
+    let place = |slot| parts.get(&slot).map(|part| tree.position(part.joint));
     let top = place(Head).or_else(|| place(Neck)).or_else(|| place(Chest))?;
     let bottom = feet(tree, parts).or_else(|| place(Hips))?;
     let line = (top - bottom).try_normalize()?;
@@ -54,42 +54,42 @@ fn up(tree: &Tree, parts: &BTreeMap<Slot, Part>) -> Option<Vec3> {
     Some(axes.into_iter().find(|axis| axis.dot(line) > 0.8).unwrap_or(line))
 }
 
-fn across(vector: Vec3, up: Vec3) -> Vec3 {
+fn perpendicular(vector: Vec3, up: Vec3) -> Vec3 {
     vector - up * vector.dot(up)
 }
 
-fn left(tree: &Tree, parts: &BTreeMap<Slot, Part>, up: Vec3) -> Option<Vec3> {
+fn left(tree: &Tree, parts: &BTreeMap<Slot, RecognizedJoint>, up: Vec3) -> Option<Vec3> {
     let apart = |slot: Slot| {
         let (left, right) = (parts.get(&slot)?, parts.get(&slot.mirrored())?);
-        Some(across(tree.place(left.joint) - tree.place(right.joint), up))
+        Some(perpendicular(tree.position(left.joint) - tree.position(right.joint), up))
     };
     [LeftUpperLeg, LeftUpperArm, LeftFoot, LeftHand].into_iter().filter_map(apart).sum::<Vec3>().try_normalize()
 }
 
-/// From both ankles to what hangs under them.
-fn toes(tree: &Tree, parts: &BTreeMap<Slot, Part>, up: Vec3) -> Option<Vec3> {
+/// From the ankles to the toes, or to their first children.
+fn toes(tree: &Tree, parts: &BTreeMap<Slot, RecognizedJoint>, up: Vec3) -> Option<Vec3> {
     let of_side = |foot: Slot, toes: Slot| {
         let foot = parts.get(&foot)?.joint;
         let toes = match parts.get(&toes) {
             Some(toes) => toes.joint,
             None => *tree.children(foot).first()?,
         };
-        across(tree.place(toes) - tree.place(foot), up).try_normalize()
+        perpendicular(tree.position(toes) - tree.position(foot), up).try_normalize()
     };
     let both = of_side(LeftFoot, LeftToes)? + of_side(RightFoot, RightToes)?;
     significant(both, 2.0)
 }
 
-fn eyes(tree: &Tree, parts: &BTreeMap<Slot, Part>, up: Vec3) -> Option<Vec3> {
-    let head = tree.place(parts.get(&Head)?.joint);
+fn eyes(tree: &Tree, parts: &BTreeMap<Slot, RecognizedJoint>, up: Vec3) -> Option<Vec3> {
+    let head = tree.position(parts.get(&Head)?.joint);
     let (left, right) = (parts.get(&LeftEye)?, parts.get(&RightEye)?);
-    let eyes = tree.place(left.joint).midpoint(tree.place(right.joint));
-    significant(across(eyes - head, up), eyes.distance(head))
+    let eyes = tree.position(left.joint).midpoint(tree.position(right.joint));
+    significant(perpendicular(eyes - head, up), eyes.distance(head))
 }
 
-/// Knees are before the line from hip to ankle.
-fn knees(tree: &Tree, parts: &BTreeMap<Slot, Part>, up: Vec3) -> Option<Vec3> {
-    let place = |slot| parts.get(&slot).map(|part: &Part| tree.place(part.joint));
+/// Knees are in front of the line from hip to ankle.
+fn knees(tree: &Tree, parts: &BTreeMap<Slot, RecognizedJoint>, up: Vec3) -> Option<Vec3> {
+    let place = |slot| parts.get(&slot).map(|part: &RecognizedJoint| tree.position(part.joint));
     let bend = |sides: [Slot; 3]| {
         let [upper, lower, foot] = sides.map(place);
         let (upper, lower, foot) = (upper?, lower?, foot?);
@@ -99,22 +99,26 @@ fn knees(tree: &Tree, parts: &BTreeMap<Slot, Part>, up: Vec3) -> Option<Vec3> {
     };
     let (left, length) = bend([LeftUpperLeg, LeftLowerLeg, LeftFoot])?;
     let (right, _) = bend([RightUpperLeg, RightLowerLeg, RightFoot])?;
-    significant(across(left + right, up), 0.1 * length)
+    significant(perpendicular(left + right, up), 0.1 * length)
 }
 
-/// None for what is too small, against `whole`, to mean anything.
+/// The direction of a vector; None if it is too short, compared to `whole`, to mean anything.
 fn significant(vector: Vec3, whole: f32) -> Option<Vec3> {
     if vector.length() > 0.2 * whole { vector.try_normalize() } else { None }
 }
 
-/// Limbs whose names put them on one side while they lie on the other, as seen from where the body looks.
-pub(super) fn contradictions(tree: &Tree, parts: &BTreeMap<Slot, Part>, facing: &Facing) -> Vec<Contradiction> {
+/// Joints named for one side that lie on the other, as the body faces.
+pub(super) fn contradictions(
+    tree: &Tree,
+    parts: &BTreeMap<Slot, RecognizedJoint>,
+    facing: &Facing,
+) -> Vec<Contradiction> {
     let (Some(up), Some(forward)) = (facing.up, facing.forward) else { return Vec::new() };
     let left = up.cross(forward);
     let mut found = Vec::new();
     for slot in LIMBS.into_iter().chain(LIMBS.map(Slot::mirrored)) {
         let (Some(part), Some(other)) = (parts.get(&slot), parts.get(&slot.mirrored())) else { continue };
-        let sideways = (tree.place(part.joint) - tree.place(other.joint)).dot(left);
+        let sideways = (tree.position(part.joint) - tree.position(other.joint)).dot(left);
         let lies_left = sideways > 0.0;
         if part.reason != Reason::Geometry && sideways != 0.0 && lies_left != (side_of(slot) == Some(Side::Left)) {
             found.push(Contradiction::Side {
@@ -132,7 +136,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn left_is_x_when_looking_along_z() {
+    fn left_is_x_when_facing_z() {
         let facing = Facing { up: Some(Vec3::Y), left: Some(Vec3::X), forward: Some(Vec3::Z) };
         assert!(!facing.is_mirrored());
         assert!(Facing { left: Some(Vec3::NEG_X), ..facing }.is_mirrored());

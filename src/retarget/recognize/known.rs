@@ -1,4 +1,4 @@
-//! Which known vocabulary a skeleton's names are from, and what it says of each joint.
+//! Finds the known vocabulary that a skeleton's names come from, and the slots it gives them.
 
 use std::collections::BTreeMap;
 
@@ -9,27 +9,27 @@ use super::words::Word;
 use crate::anim::JointIndex;
 use crate::asset::Slot;
 
-/// What one vocabulary says.
+/// The slots of one vocabulary.
 #[derive(Debug, Default)]
 pub(super) struct Known {
     pub vocabulary: &'static str,
     pub slots: BTreeMap<JointIndex, Slot>,
 }
 
-/// Fewer parts than this (fingers aside) may be chance: `hips`, `head` and `foot` are in many.
-const FEWEST_PARTS: usize = 8;
+/// Fewer slots than this (without fingers) may be chance: `hips`, `head` and `foot` are in many vocabularies.
+const MIN_SLOTS: usize = 8;
 
-/// The vocabulary that says most; none when none says enough.
+/// Returns the vocabulary that fits best; None if none fits well enough.
 pub(super) fn find(tree: &Tree) -> Option<Known> {
     let keys: Vec<[Key; 2]> = tree.names.iter().map(keys).collect();
     let mut best: Option<(i32, Known)> = None;
     for vocabulary in VOCABULARIES {
-        let (known, odd) = read(tree, &keys, vocabulary);
-        let parts = known.slots.values().filter(|slot| !is_finger(**slot)).count();
-        if parts < FEWEST_PARTS {
+        let (known, misfits) = read(tree, &keys, vocabulary);
+        let slots = known.slots.values().filter(|slot| !is_finger(**slot)).count();
+        if slots < MIN_SLOTS {
             continue;
         }
-        let score = known.slots.len() as i32 - 2 * odd as i32;
+        let score = known.slots.len() as i32 - 2 * misfits as i32;
         if best.as_ref().is_none_or(|(other, _)| score > *other) {
             best = Some((score, known));
         }
@@ -37,15 +37,15 @@ pub(super) fn find(tree: &Tree) -> Option<Known> {
     best.map(|(_, known)| known)
 }
 
-/// A name to compare: whether it has a side, and its words.
+/// A name for comparison: whether it has a side, and its words.
 type Key = (bool, String);
 
-/// With its numbers as written, and without their leading zeros.
+/// With numbers as written, and without leading zeros.
 fn keys(name: &Name) -> [Key; 2] {
     [name.key(), name.short_key()].map(|key| (name.side.is_some(), key))
 }
 
-/// What the vocabulary says, and how many of its words do not fit the hierarchy.
+/// Returns the vocabulary's slots, and how many of them do not fit the hierarchy.
 fn read(tree: &Tree, keys_of: &[[Key; 2]], vocabulary: &Vocabulary) -> (Known, usize) {
     let mut entries: [BTreeMap<Key, Slot>; 2] = Default::default();
     for &(name, slot) in vocabulary.body.iter().chain(&fingers(vocabulary)) {
@@ -63,7 +63,7 @@ fn read(tree: &Tree, keys_of: &[[Key; 2]], vocabulary: &Vocabulary) -> (Known, u
     }
     let mut known = Known { vocabulary: vocabulary.name, ..Known::default() };
     let mut chosen: BTreeMap<Slot, JointIndex> = BTreeMap::new();
-    let mut odd = 0;
+    let mut misfits = 0;
     // Parents come before children in the order of slots.
     for (&slot, joints) in &candidates {
         let above = std::iter::successors(parent_of(slot), |slot| parent_of(*slot)).find_map(|slot| chosen.get(&slot));
@@ -73,17 +73,17 @@ fn read(tree: &Tree, keys_of: &[[Key; 2]], vocabulary: &Vocabulary) -> (Known, u
                 chosen.insert(slot, joint);
                 known.slots.insert(joint, slot);
             }
-            None => odd += 1,
+            None => misfits += 1,
         }
     }
-    (known, odd)
+    (known, misfits)
 }
 
 fn fingers(vocabulary: &Vocabulary) -> Vec<(&'static str, Slot)> {
     vocabulary.fingers.iter().copied().zip(FINGERS).filter(|(name, _)| !name.is_empty()).collect()
 }
 
-/// The word that a slot stands for.
+/// The word for a slot.
 pub(super) fn word_of(slot: Slot) -> Word {
     let name = slot.name();
     let part = name.strip_prefix("left").or_else(|| name.strip_prefix("right")).unwrap_or(name);
@@ -122,7 +122,7 @@ pub(super) fn is_finger(slot: Slot) -> bool {
     FINGERS.contains(&slot) || FINGERS.contains(&slot.mirrored())
 }
 
-/// The slot that a slot hangs on in VRM 1.0, optional ones included.
+/// The parent slot in VRM 1.0, including optional ones.
 pub(super) fn parent_of(slot: Slot) -> Option<Slot> {
     use Slot::*;
     if side_of(slot) == Some(Side::Right) {
@@ -150,7 +150,7 @@ pub(super) fn parent_of(slot: Slot) -> Option<Slot> {
     })
 }
 
-/// The three slots of a finger (thumb 0), from the palm outwards.
+/// The three slots of a finger (0 is the thumb), from the palm outwards.
 pub(super) fn finger_slots(finger: u8, side: Side) -> impl Iterator<Item = Slot> {
     let slots = FINGERS.iter().skip(usize::from(finger) * 3).take(3);
     slots.map(move |&slot| if side == Side::Right { slot.mirrored() } else { slot })

@@ -1,5 +1,5 @@
-//! Which joint of an asset is which part of a human body: the file's own word first, then known vocabularies, then what
-//! names and hierarchy suggest, then shape. Says of each joint how it was found.
+//! Finds the joints of an asset that fill the humanoid slots: by the file's own humanoid map, else by known vocabularies,
+//! words and hierarchy, else by shape. Records how each joint was found.
 
 mod assemble;
 mod facing;
@@ -21,42 +21,42 @@ use tree::Tree;
 
 pub use names::{Name, Side};
 
-/// What [`recognize`] found. Empty for what is not a human body.
+/// The result of [`recognize`]; empty for anything but a human body.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Recognized {
-    pub parts: BTreeMap<Slot, Part>,
+    pub parts: BTreeMap<Slot, RecognizedJoint>,
     pub facing: Facing,
-    /// Where the evidence disagrees; what is in `parts` is the decision.
+    /// Evidence against what was decided in `parts`.
     pub contradictions: Vec<Contradiction>,
 }
 
-/// One joint that was recognised.
+/// The joint of a slot.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Part {
+pub struct RecognizedJoint {
     pub joint: JointIndex,
     pub reason: Reason,
     /// 0 (a guess) to 1 (the file says so).
     pub confidence: f32,
 }
 
-/// How a joint was found.
+/// How a joint was matched.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Reason {
     /// The file's own humanoid map (VRM, VRMA).
     File,
-    /// The two skeletons name it alike.
+    /// Both skeletons give it the same name.
     SameName,
-    /// A known vocabulary, by its name.
+    /// A known vocabulary; holds its name.
     Vocabulary(&'static str),
     /// Words in its name.
     Words,
-    /// Its place among joints found otherwise.
+    /// Its position between joints that were found otherwise.
     Hierarchy,
-    /// Where it lies.
+    /// Its position in space.
     Geometry,
 }
 
-/// For people: “Mixamo name”, “where it lies”.
+/// A text for the UI: “Mixamo name”, “where it lies”.
 impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -70,20 +70,21 @@ impl fmt::Display for Reason {
     }
 }
 
-/// Which way the character looks at its rest, in model space. Each from its own evidence, so that they can be compared.
+/// Which way the character faces at rest, in model space. Each direction comes from its own evidence, so that they can be
+/// compared.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Facing {
-    /// From the feet to the head: the body's own, +Y unless the rest lies down.
+    /// From the feet to the head; +Y unless the character rests lying down.
     pub up: Option<Vec3>,
-    /// From the right side to the left, as the sides were decided (names beat geometry); across `up`.
+    /// From the right side to the left as they were decided (names win over geometry); perpendicular to `up`.
     pub left: Option<Vec3>,
-    /// Where toes, eyes and face point, without any word on left and right; across `up`.
+    /// Where toes, eyes and knees point, regardless of left and right; perpendicular to `up`.
     pub forward: Option<Vec3>,
 }
 
 impl Facing {
-    /// True when what is called left lies to the right of where the toes point: the model is mirrored or its names are
-    /// swapped, and (right → left) × up points backwards.
+    /// Whether the side named left is on the right as the toes point: the model is mirrored or its names are swapped, and
+    /// (right → left) × up points backwards.
     pub fn is_mirrored(&self) -> bool {
         match (self.up, self.left, self.forward) {
             (Some(up), Some(left), Some(forward)) => left.cross(up).dot(forward) < 0.0,
@@ -92,10 +93,10 @@ impl Facing {
     }
 }
 
-/// Evidence that disagrees with the decision.
+/// Evidence that contradicts a decision.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Contradiction {
-    /// Named for one side, lies on the other as the toes point.
+    /// Named for one side but on the other, as the toes point.
     Side { slot: Slot, joint: JointIndex, name: String },
 }
 
@@ -113,31 +114,32 @@ impl Recognized {
     }
 }
 
-/// Where words leave so much of a body open, they may mean something else.
-const SURE_PARTIAL: f32 = 0.7;
+/// Factor on the confidence in names that leave much of a body unmatched: they may mean something else.
+const PARTIAL_BODY_FACTOR: f32 = 0.7;
 
-/// Fewer parts than this are no humanoid map that a file means.
-const FEWEST_OF_FILE: usize = 6;
+/// A file's own humanoid map with fewer slots than this is ignored.
+const MIN_FILE_SLOTS: usize = 6;
 
-/// Cosine between upper body and legs that whoever has a tail must reach to count as human.
-const STRAIGHT: f32 = 0.8;
+/// A creature with a tail counts as human only from this cosine between upper body and legs.
+const MIN_CREATURE_STRAIGHTNESS: f32 = 0.8;
 
-/// Finds the parts of a human body. The same asset always gives the same answer.
+/// Finds the joints of a human body; deterministic.
 pub fn recognize(asset: &Asset) -> Recognized {
     let mut tree = Tree::new(asset);
-    let own = asset.humanoid.as_ref().map(of_file).filter(|parts| parts.len() >= FEWEST_OF_FILE);
-    let says_so = own.is_some();
-    let parts = match own {
-        Some(own) => with_fingers(&tree, own),
+    let from_file = asset.humanoid.as_ref().map(from_file).filter(|parts| parts.len() >= MIN_FILE_SLOTS);
+    let is_declared = from_file.is_some();
+    let parts = match from_file {
+        Some(parts) => with_fingers(&tree, parts),
         None => by_names(&tree).unwrap_or_else(|| shape::find(&tree)),
     };
     if parts.is_empty() {
         return Recognized::default();
     }
-    stand_up(asset, &mut tree, &parts);
-    // Four legs under a level back: names of a dog's joints are often those of a human.
-    let is_level = facing::straightness(&tree, &parts).is_some_and(|straightness| straightness < STRAIGHT);
-    if !says_so && is_level && has_parts_of_creature(&tree) {
+    pose_upright(asset, &mut tree, &parts);
+    // Four legs under a level back: the joints of a dog often have human names.
+    let is_level =
+        facing::straightness(&tree, &parts).is_some_and(|straightness| straightness < MIN_CREATURE_STRAIGHTNESS);
+    if !is_declared && is_level && names_a_creature(&tree) {
         return Recognized::default();
     }
     let facing = facing::find(&tree, &parts);
@@ -145,59 +147,60 @@ pub fn recognize(asset: &Asset) -> Recognized {
     Recognized { parts, facing, contradictions }
 }
 
-fn of_file(humanoid: &Humanoid) -> BTreeMap<Slot, Part> {
-    let part = |joint| Part { joint, reason: Reason::File, confidence: 1.0 };
-    humanoid.0.iter().map(|(&slot, &joint)| (slot, part(joint))).collect()
+fn from_file(humanoid: &Humanoid) -> BTreeMap<Slot, RecognizedJoint> {
+    let declared = |joint| RecognizedJoint { joint, reason: Reason::File, confidence: 1.0 };
+    humanoid.0.iter().map(|(&slot, &joint)| (slot, declared(joint))).collect()
 }
 
-/// Files often leave some fingers out that they have. Other parts that are left out may be meant to be.
-fn with_fingers(tree: &Tree, mut parts: BTreeMap<Slot, Part>) -> BTreeMap<Slot, Part> {
+/// Adds fingers, which humanoid maps often leave out. Other slots may be left out on purpose.
+fn with_fingers(tree: &Tree, mut parts: BTreeMap<Slot, RecognizedJoint>) -> BTreeMap<Slot, RecognizedJoint> {
     for (slot, part) in by_names(tree).unwrap_or_default() {
-        let is_free = |other: &Part| other.joint != part.joint;
+        let is_free = |other: &RecognizedJoint| other.joint != part.joint;
         let above = std::iter::successors(known::parent_of(slot), |slot| known::parent_of(*slot));
-        let hangs_right = above
+        let is_under_its_parent = above
             .filter_map(|slot| parts.get(&slot))
             .next()
             .is_some_and(|above| tree.is_under(part.joint, above.joint));
-        if known::is_finger(slot) && !parts.contains_key(&slot) && parts.values().all(is_free) && hangs_right {
+        if known::is_finger(slot) && !parts.contains_key(&slot) && parts.values().all(is_free) && is_under_its_parent {
             parts.insert(slot, part);
         }
     }
     parts
 }
 
-/// None when the names are not those of a body, or of too little of it.
-fn by_names(tree: &Tree) -> Option<BTreeMap<Slot, Part>> {
+/// None if the names are unknown, so that the shape may decide; empty if they belong to something else.
+fn by_names(tree: &Tree) -> Option<BTreeMap<Slot, RecognizedJoint>> {
     let known = known::find(tree);
     let mut parts = assemble::find(tree, known.as_ref());
-    if is_whole(&parts) {
+    if has_whole_body(&parts) {
         return Some(parts);
     }
-    if known.is_some() && !has_parts_of_creature(tree) {
+    if known.is_some() && !names_a_creature(tree) {
         for part in parts.values_mut() {
-            part.confidence *= SURE_PARTIAL;
+            part.confidence *= PARTIAL_BODY_FACTOR;
         }
         return Some(parts);
     }
-    // Words were there, and they spoke against a body: its shape would only mislead.
-    let spoken = tree.words.iter().flatten().count();
-    (spoken > tree.skeleton.len() / 4 || has_parts_of_creature(tree)).then(BTreeMap::new)
+    // The names are known and contradict a human body: its shape would only mislead.
+    let known_words = tree.words.iter().flatten().count();
+    (known_words > tree.skeleton.len() / 4 || names_a_creature(tree)).then(BTreeMap::new)
 }
 
-/// Whether hips, head, arms and legs are there. Hands, feet and the spine may be missing in simple figures.
-fn is_whole(parts: &BTreeMap<Slot, Part>) -> bool {
+/// Whether hips, head, arms and legs are there. Simple figures may lack hands, feet and a spine.
+fn has_whole_body(parts: &BTreeMap<Slot, RecognizedJoint>) -> bool {
     use Slot::*;
     let limbs = [LeftUpperLeg, LeftLowerLeg, LeftUpperArm, LeftLowerArm];
     let sides = limbs.into_iter().chain(limbs.map(Slot::mirrored));
     [Hips, Head].into_iter().chain(sides).all(|slot| parts.contains_key(&slot))
 }
 
-fn has_parts_of_creature(tree: &Tree) -> bool {
+fn names_a_creature(tree: &Tree) -> bool {
     tree.names.iter().any(words::is_of_creature)
 }
 
-/// The rest of many motion files is no pose of a body (all bones along one axis); then the first frame is looked at.
-fn stand_up(asset: &Asset, tree: &mut Tree, parts: &BTreeMap<Slot, Part>) {
+/// Uses the first frame for files whose rest is not a pose of a body: motion capture often rests with all bones along one
+/// axis.
+fn pose_upright(asset: &Asset, tree: &mut Tree, parts: &BTreeMap<Slot, RecognizedJoint>) {
     let Some(clip) = asset.clips.first().filter(|_| asset.skins.is_empty()) else { return };
     let at_rest = facing::straightness(tree, parts);
     if at_rest.is_none_or(|straightness| straightness > 0.5) {
@@ -205,8 +208,8 @@ fn stand_up(asset: &Asset, tree: &mut Tree, parts: &BTreeMap<Slot, Part>) {
     }
     let mut pose: Pose = asset.skeleton.rest().clone();
     clip.sample(&asset.skeleton, 0.0, &mut SampleCursor::default(), &mut pose);
-    tree.stand(&pose);
+    tree.set_pose(&pose);
     if facing::straightness(tree, parts) < at_rest {
-        tree.stand(asset.skeleton.rest());
+        tree.set_pose(asset.skeleton.rest());
     }
 }

@@ -1,5 +1,5 @@
-//! Reads a joint's name: what exporters did to it is undone, then it is cut into words at separators, case changes and
-//! digits, and the word for the side is taken out. `mixamorig1:LeftUpLeg`, `Left_UpLeg` and `UpLeg.L` read the same.
+//! Reads a joint's name: undoes what exporters did to it, splits it into words at separators, case changes and digits, and
+//! takes out the word for the side. `mixamorig1:LeftUpLeg`, `Left_UpLeg` and `UpLeg.L` read the same.
 
 /// Left and right are the character's own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -8,18 +8,18 @@ pub enum Side {
     Right,
 }
 
-/// A name cut into words.
+/// A name split into words.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Name {
     pub side: Option<Side>,
-    /// In lower case, numbers apart, without the side and without the prefix of the rig.
+    /// Lower case, numbers separate, without the side and the rig's prefix.
     pub words: Vec<String>,
 }
 
 const LEFT: [&str; 4] = ["left", "l", "lft", "lt"];
 const RIGHT: [&str; 4] = ["right", "r", "rgt", "rt"];
 
-/// Prefixes of rigs, as words. A number after the last word belongs to it.
+/// Prefixes of rigs, as words. A number that follows belongs to the prefix.
 const PREFIXES: [&[&str]; 16] = [
     &["mixamorig"],
     &["cc", "base"],
@@ -39,8 +39,8 @@ const PREFIXES: [&[&str]; 16] = [
     &["jnt"],
 ];
 
-/// Words of one letter glued to one of these is the side: `lhip`, `rShldr` in lower case.
-const GLUED: [&str; 29] = [
+/// Words that a one-letter side may be attached to: `lhip`, `rshldr`.
+const WORDS_AFTER_SIDE: [&str; 29] = [
     "hip", "thigh", "upleg", "leg", "knee", "shin", "calf", "ankle", "foot", "toe", "toes", "collar", "clavicle",
     "shoulder", "sholda", "shldr", "arm", "uparm", "upperarm", "elbow", "elbo", "forearm", "lowerarm", "wrist", "hand",
     "thumb", "eye", "buttock", "fingers",
@@ -48,19 +48,19 @@ const GLUED: [&str; 29] = [
 
 impl Name {
     pub fn read(raw: &str) -> Self {
-        let mut words = words(&plain(raw));
+        let mut words = words(&without_exporter_marks(raw));
         drop_prefix(&mut words);
         let mut name = Self { side: None, words };
         name.take_side();
         name
     }
 
-    /// The words as one, to look up: `handthumb1`.
+    /// The words as one, for lookup: `handthumb1`.
     pub fn key(&self) -> String {
         self.words.concat()
     }
 
-    /// As [`Name::key`], numbers without leading zeros.
+    /// As [`Name::key`], with numbers without leading zeros.
     pub fn short_key(&self) -> String {
         self.words.iter().map(|word| without_zeros(word)).collect()
     }
@@ -69,7 +69,7 @@ impl Name {
         self.words.iter().any(|other| other == word)
     }
 
-    /// Without a first word that all joints of a rig share, as the character's name is.
+    /// Removes a first word that the joints of a rig share, such as the character's name.
     pub fn drop_first(&mut self, word: &str) {
         if self.words.len() > 1 && self.words[0] == word {
             self.words.remove(0);
@@ -104,7 +104,7 @@ impl Name {
             for (long, short, side) in [("left", "l", Side::Left), ("right", "r", Side::Right)] {
                 let rest = match word.strip_prefix(long).or_else(|| word.strip_suffix(long)) {
                     Some(rest) if rest.len() >= 3 => Some(rest),
-                    _ => word.strip_prefix(short).filter(|rest| GLUED.contains(rest)),
+                    _ => word.strip_prefix(short).filter(|rest| WORDS_AFTER_SIDE.contains(rest)),
                 };
                 if let Some(rest) = rest {
                     *word = rest.to_owned();
@@ -116,8 +116,8 @@ impl Name {
     }
 }
 
-/// Without what exporters add: namespaces and paths (`Armature|rig:Hips`), characters written as `FBXASC046`.
-fn plain(raw: &str) -> String {
+/// Removes namespaces and paths (`Armature|rig:Hips`) and decodes characters written as `FBXASC046`.
+fn without_exporter_marks(raw: &str) -> String {
     let mut text = String::with_capacity(raw.len());
     let mut rest = raw;
     while let Some(at) = rest.find("FBXASC") {
@@ -141,8 +141,8 @@ fn plain(raw: &str) -> String {
     }
 }
 
-/// Cut at what is no letter or digit, between letters and digits, before a capital after a small letter, and before the
-/// last capital of a run that a small letter follows (`LLeg` is `L`, `Leg`).
+/// Splits at anything but letters and digits, between letters and digits, before a capital that follows a small letter, and
+/// before the last capital of a run that a small letter follows (`LLeg` is `L`, `Leg`).
 fn words(text: &str) -> Vec<String> {
     let chars: Vec<char> = text.chars().collect();
     let mut words = Vec::new();
@@ -168,7 +168,7 @@ fn words(text: &str) -> Vec<String> {
     words
 }
 
-/// Rigs may have several, as `Armature_mixamorig`. Never the whole name: `Bip01` and `Character1` stay.
+/// Drops up to two prefixes, as in `Armature_mixamorig`, but never the whole name: `Bip01` and `Character1` stay.
 fn drop_prefix(words: &mut Vec<String>) {
     for _ in 0..2 {
         let leaves_a_word = |prefix: &[&str]| words.iter().skip(prefix.len()).any(|word| !is_number(word));
@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn reads_the_ways_of_writing() {
+    fn separators_prefixes_and_sides_are_read() {
         let (left, right) = (Some(Side::Left), Some(Side::Right));
         check("mixamorig:LeftUpLeg", left, "up leg");
         check("mixamorig12:RightHandThumb1", right, "hand thumb 1");
@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn letters_within_words_are_no_side() {
+    fn letters_within_words_are_not_sides() {
         for raw in ["tail", "shoulder", "lower", "rear", "leg", "Roll", "neckDummy", "hair", "Lid"] {
             assert_eq!(Name::read(raw).side, None, "{raw}");
         }

@@ -1,4 +1,4 @@
-//! A skeleton as recognition looks at it: which joints may be parts of a body, their names read, where they lie.
+//! A skeleton prepared for recognition: which joints may belong to a body, the words in their names, their positions.
 
 use std::collections::BTreeMap;
 
@@ -12,14 +12,14 @@ use crate::asset::Asset;
 pub(super) struct Tree<'a> {
     pub skeleton: &'a Skeleton,
     pub names: Vec<Name>,
-    /// What each name says; none for joints that cannot be parts of a body.
+    /// The word in each name; None for joints that cannot belong to a body.
     pub words: Vec<Option<Word>>,
-    /// False for nodes that only hold a mesh.
+    /// False for nodes that only carry a mesh.
     pub usable: Vec<bool>,
-    /// In model space, of the pose that looks most like a body at rest.
-    pub places: Vec<Vec3>,
+    /// Positions in model space, in the pose that looks most like a body at rest.
+    pub positions: Vec<Vec3>,
     children: Vec<Vec<JointIndex>>,
-    /// One past the last joint that hangs under each: joints are in depth-first order.
+    /// One past each joint's last descendant: joints are in depth-first order.
     ends: Vec<u32>,
 }
 
@@ -43,33 +43,33 @@ impl<'a> Tree<'a> {
                 ends[parent.get()] = ends[parent.get()].max(ends[joint.get()]);
             }
         }
-        Self { skeleton, names, words, usable, places: places(skeleton, skeleton.rest()), children, ends }
+        Self { skeleton, names, words, usable, positions: positions(skeleton, skeleton.rest()), children, ends }
     }
 
     pub fn word(&self, joint: JointIndex) -> Option<Word> {
         self.words[joint.get()]
     }
 
-    pub fn place(&self, joint: JointIndex) -> Vec3 {
-        self.places[joint.get()]
+    pub fn position(&self, joint: JointIndex) -> Vec3 {
+        self.positions[joint.get()]
     }
 
-    /// The joint itself, then its ancestors.
+    /// The joint, then its ancestors.
     pub fn upwards(&self, joint: JointIndex) -> impl Iterator<Item = JointIndex> + '_ {
         std::iter::successors(Some(joint), |&joint| self.skeleton.parent(joint))
     }
 
-    /// Whether `below` is `above` or hangs under it.
+    /// Whether `below` is `above` or one of its descendants.
     pub fn is_under(&self, below: JointIndex, above: JointIndex) -> bool {
         (above.0..self.ends[above.get()]).contains(&below.0)
     }
 
-    /// Where two chains meet.
+    /// The nearest common ancestor.
     pub fn meeting(&self, a: JointIndex, b: JointIndex) -> Option<JointIndex> {
         self.upwards(a).find(|&joint| self.is_under(b, joint))
     }
 
-    /// From `above` down to `below`, without `above` and with `below`; empty when `below` hangs elsewhere.
+    /// The joints from `above` (excluded) down to `below` (included); empty if `below` is not a descendant.
     pub fn path(&self, above: JointIndex, below: JointIndex) -> Vec<JointIndex> {
         if !self.is_under(below, above) {
             return Vec::new();
@@ -79,28 +79,29 @@ impl<'a> Tree<'a> {
         path
     }
 
-    /// Usable ones, as listed.
+    /// The usable children, in order.
     pub fn children(&self, joint: JointIndex) -> &[JointIndex] {
         &self.children[joint.get()]
     }
 
-    /// Takes the places from another pose.
-    pub fn stand(&mut self, pose: &Pose) {
-        self.places = places(self.skeleton, pose);
+    /// Takes the positions from another pose.
+    pub fn set_pose(&mut self, pose: &Pose) {
+        self.positions = positions(self.skeleton, pose);
     }
 }
 
-/// So many of all names begin with the same word when it says nothing of the joint.
-const SHARED: f32 = 0.6;
+/// A first word that at least this share of all names has in common says nothing about the joints.
+const MIN_SHARED: f32 = 0.6;
 
-/// `hero_left_thigh`, `hero_head`: what most names begin with is the rig's, unless it is a part of the body.
+/// Drops the first word that most names share (`hero_left_thigh`, `hero_head`): it names the rig, unless it is a word for
+/// a part of the body.
 fn drop_shared_word(names: &mut [Name]) {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     for name in names.iter().filter(|name| name.words.len() > 1) {
         *counts.entry(&name.words[0]).or_default() += 1;
     }
     let most = counts.into_iter().max_by_key(|&(_, count)| count);
-    let Some((word, _)) = most.filter(|&(_, count)| count as f32 >= SHARED * names.len() as f32) else { return };
+    let Some((word, _)) = most.filter(|&(_, count)| count as f32 >= MIN_SHARED * names.len() as f32) else { return };
     let word = word.to_owned();
     if words::read(&Name { side: None, words: vec![word.clone()] }).is_none() {
         for name in names {
@@ -109,7 +110,7 @@ fn drop_shared_word(names: &mut [Name]) {
     }
 }
 
-/// A node that holds a mesh is a part of the body only where a skin names it, or where nothing has a skin.
+/// A node that carries a mesh is usable only if a skin names it, or if there is no skin at all.
 fn usable(asset: &Asset) -> Vec<bool> {
     let mut usable = vec![true; asset.skeleton.len()];
     if asset.skins.is_empty() {
@@ -124,7 +125,7 @@ fn usable(asset: &Asset) -> Vec<bool> {
     usable
 }
 
-fn places(skeleton: &Skeleton, pose: &Pose) -> Vec<Vec3> {
+fn positions(skeleton: &Skeleton, pose: &Pose) -> Vec<Vec3> {
     let mut model_from = Vec::new();
     model_from_joint(skeleton, &pose.locals, Affine3A::IDENTITY, &mut model_from);
     model_from.into_iter().map(|transform| transform.translation.into()).collect()

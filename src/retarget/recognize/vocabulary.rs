@@ -1,18 +1,18 @@
-//! The names that programs, shops and archives give to the joints of a body. To teach another vocabulary, write one more
-//! entry: names as they stand in the files, those of the left side only. Separators, capitals, the way the side is
-//! written and known prefixes of rigs make no difference (see `recognize/names.rs`).
+//! The names that programs, shops and archives give to the joints of a body. To add a vocabulary, add an entry with the names
+//! as the files have them, left side only. Separators, capitals, the spelling of the side and known prefixes make no
+//! difference (see `names`).
 
 use crate::asset::Slot::{self, *};
 
 pub(super) struct Vocabulary {
-    /// What people call it.
+    /// Its common name.
     pub name: &'static str,
     pub body: &'static [(&'static str, Slot)],
-    /// Names of [`FINGERS`]; empty ones and those past the end have no name.
+    /// Names in the order of [`FINGERS`]; empty or missing ones have no name.
     pub fingers: &'static [&'static str],
 }
 
-/// Of the left hand, in the order in which vocabularies list them.
+/// The left hand's slots, in the order of [`Vocabulary::fingers`].
 pub(super) const FINGERS: [Slot; 15] = [
     LeftThumbMetacarpal,
     LeftThumbProximal,
@@ -31,7 +31,7 @@ pub(super) const FINGERS: [Slot; 15] = [
     LeftLittleDistal,
 ];
 
-/// Where two fit equally well, the first is taken.
+/// The first of several that fit equally well wins.
 #[rustfmt::skip]
 pub(super) const VOCABULARIES: &[Vocabulary] = &[
     Vocabulary {
@@ -55,7 +55,7 @@ pub(super) const VOCABULARIES: &[Vocabulary] = &[
     },
     Vocabulary {
         name: "Quaternius",
-        // The joint `Hips` is a part of the belly: legs and spine meet in Body.
+        // The joint `Hips` is in the belly; legs and spine meet in `Body`.
         body: &[
             ("Body", Hips), ("Abdomen", Spine), ("Torso", Chest), ("Neck", Neck), ("Head", Head),
             ("UpperLeg.L", LeftUpperLeg), ("LowerLeg.L", LeftLowerLeg), ("Foot.L", LeftFoot),
@@ -67,7 +67,7 @@ pub(super) const VOCABULARIES: &[Vocabulary] = &[
     },
     Vocabulary {
         name: "KayKit",
-        // The hand starts at the wrist: `hand.l` lies in the palm.
+        // The hand begins at the wrist; `hand.l` is in the palm.
         body: &[
             ("hips", Hips), ("spine", Spine), ("chest", Chest), ("head", Head),
             ("upperleg.l", LeftUpperLeg), ("lowerleg.l", LeftLowerLeg), ("foot.l", LeftFoot), ("toes.l", LeftToes),
@@ -328,7 +328,7 @@ pub(super) const VOCABULARIES: &[Vocabulary] = &[
     },
     Vocabulary {
         name: "MilkShape dwarf",
-        // Counted from the top: the head sits on spine1.
+        // The spine is numbered from the top: the head sits on spine1.
         body: &[
             ("middle", Hips), ("spine2", Spine), ("spine1", Neck), ("head", Head),
             ("lhip", LeftUpperLeg), ("lknee", LeftLowerLeg), ("lankle", LeftFoot), ("ltoe", LeftToes),

@@ -1,8 +1,8 @@
-//! What the words of a joint's name say of its place in a body, whatever vocabulary they are from.
+//! What the words in a joint's name say about its place in a body, in any vocabulary.
 
 use super::names::{Name, is_number};
 
-/// A part of the body as names speak of it: less exact than a slot. With a side where the name has one.
+/// A part of the body as names describe it: less exact than a slot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Word {
     Pelvis,
@@ -15,25 +15,25 @@ pub(super) enum Word {
     /// The collar bone in some vocabularies, the upper arm in others.
     Shoulder,
     UpperArm,
-    /// The upper arm unless there is a better word for it.
+    /// The upper arm, unless another joint has a better word for it.
     Arm,
     LowerArm,
     Hand,
     /// The thigh in some vocabularies, a joint before it in others.
     Hip,
     UpperLeg,
-    /// The thigh, or below it.
+    /// The thigh, or the shin below it.
     Leg,
     LowerLeg,
     Foot,
     Toes,
     /// Thumb 0 to little finger 4.
     Finger(u8),
-    /// No part of the body that moves by itself: helpers, tips, twist joints, things that are held.
+    /// Nothing that moves by itself: helpers, tips, twist joints, props.
     Aside,
 }
 
-/// Looked up without numbers, separators and noise.
+/// Words by part, without numbers, separators and noise.
 const WORDS: &[(Word, &[&str])] = &[
     (Word::Pelvis, &["hips", "hip", "pelvis"]),
     (
@@ -89,7 +89,7 @@ const WORDS: &[(Word, &[&str])] = &[
     (Word::Finger(4), &["pinky", "pinkie", "little", "littlefinger", "fpinky"]),
 ];
 
-/// Said of joints of any part.
+/// Words that may go with any part.
 const NOISE: [&str; 8] = ["bind", "jnt", "joint", "bone", "c", "center", "ctr", "def"];
 
 const ASIDE: [&str; 47] = [
@@ -142,13 +142,13 @@ const ASIDE: [&str; 47] = [
     "geo",
 ];
 
-/// Segments of fingers, left out when the finger is looked for.
+/// Segments of fingers, ignored when the finger is looked up.
 const SEGMENTS: [&str; 6] = ["proximal", "intermediate", "medial", "distal", "hand", "finger"];
 
-/// Of the fingers other than the thumb, the bone inside the palm has no slot.
+/// Bones inside the palm, which have no slot except the thumb's.
 const PALM: [&str; 5] = ["metacarpal", "carpal", "meta", "palm", "in"];
 
-/// What a name says; none for words that are not known.
+/// Returns the part that a name describes; None for unknown words.
 pub(super) fn read(name: &Name) -> Option<Word> {
     let words: Vec<&str> = name.words.iter().map(String::as_str).filter(|word| !is_number(word)).collect();
     if words.iter().any(|word| ASIDE.contains(word)) {
@@ -170,7 +170,7 @@ fn look_up(letters: &str) -> Option<Word> {
     WORDS.iter().find(|(_, texts)| texts.contains(&letters)).map(|(word, _)| *word)
 }
 
-/// `ArmCollarbone`, `LegCalf`: the limb before its part.
+/// The limb before its part: `ArmCollarbone`, `LegCalf`.
 fn within_limb(words: &[&str]) -> Option<Word> {
     match words {
         ["arm" | "leg", rest @ ..] if !rest.is_empty() => look_up(&rest.concat()).or_else(|| finger(rest)),
@@ -190,7 +190,7 @@ fn finger(words: &[&str]) -> Option<Word> {
     }
 }
 
-/// Words that a human body has no use for.
+/// Whether a name mentions what a human body does not have.
 pub(super) fn is_of_creature(name: &Name) -> bool {
     const PARTS: [&str; 13] = [
         "tail", "wing", "fin", "paw", "hoof", "beak", "snout", "muzzle", "feather", "fang", "antenna", "tentacle",
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn knows_parts_in_many_ways_of_writing() {
+    fn parts_are_found_in_many_spellings() {
         check("LLegUpper", Some(Word::UpperLeg));
         check("LLegCalf", Some(Word::LowerLeg));
         check("LLegAnkle", Some(Word::Foot));
@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn knows_what_to_leave_aside() {
+    fn helpers_and_unknown_words_are_not_parts() {
         check("LeftInHandIndex", Some(Word::Aside));
         check("index_metacarpal_l", Some(Word::Aside));
         check("upperarm_twist_01_l", Some(Word::Aside));

@@ -1,7 +1,6 @@
-//! What joints without a source do meanwhile: parts of the model's own clips, each looping on its own duration.
+//! Joints without a source may play one of the model's own clips, which loops with its own duration.
 
-use crate::anim::{Channel, Clip, ClipBuilder, JointIndex, Keys, Pose, SampleCursor, Skeleton};
-
+use crate::anim::{Channel, Clip, ClipBuilder, Interpolation, JointIndex, Keys, Pose, SampleCursor, Skeleton};
 use crate::asset::Asset;
 use crate::retarget::map::ResolvedMap;
 
@@ -9,14 +8,14 @@ use crate::retarget::map::ResolvedMap;
 #[derive(Debug, Clone)]
 pub struct LayerClip {
     pub clip: Clip,
-    /// The loop's length: that of the whole clip.
+    /// Duration of the whole clip, which is that of the loop.
     pub duration_secs: f32,
-    /// The first key for all time.
+    /// Holds the first key.
     pub frozen: bool,
 }
 
 impl LayerClip {
-    /// Where in the clip it is when the player has run for so long, in seconds from 0 up.
+    /// Time within the clip after the player has run for `elapsed_secs`.
     pub fn time_secs(&self, elapsed_secs: f64) -> f32 {
         let duration_secs = f64::from(self.duration_secs);
         if self.frozen || duration_secs <= 0.0 || !elapsed_secs.is_finite() {
@@ -25,13 +24,13 @@ impl LayerClip {
         elapsed_secs.rem_euclid(duration_secs) as f32
     }
 
-    /// Writes the layer's joints into `pose`; others are left as they are.
+    /// Writes the layer's joints into `pose`; leaves others as they are.
     pub fn sample(&self, skeleton: &Skeleton, elapsed_secs: f64, cursor: &mut SampleCursor, pose: &mut Pose) {
         self.clip.sample(skeleton, self.time_secs(elapsed_secs), cursor, pose);
     }
 }
 
-/// The layers of a map over the model it was resolved against.
+/// Returns the layers of a map for the model it was resolved against.
 pub fn layer_clips(model: &Asset, map: &ResolvedMap) -> Vec<LayerClip> {
     let mut layers: Vec<LayerClip> = Vec::new();
     let mut kinds: Vec<(usize, bool)> = map.layers.iter().map(|layer| (layer.clip, layer.frozen)).collect();
@@ -43,66 +42,69 @@ pub fn layer_clips(model: &Asset, map: &ResolvedMap) -> Vec<LayerClip> {
             map.layers.iter().any(|layer| layer.joint == joint && layer.clip == index && layer.frozen == frozen)
         };
         let channels = clip.channels().iter().filter(|channel| plays(channel.joint));
-        layers.push(LayerClip { clip: part(model, clip, channels), duration_secs: clip.duration_secs(), frozen });
+        layers.push(LayerClip { clip: clip_of(model, clip, channels), duration_secs: clip.duration_secs(), frozen });
     }
     layers
 }
 
-/// Channels of a clip as a clip of their own.
-fn part<'a>(model: &Asset, clip: &Clip, channels: impl Iterator<Item = &'a Channel>) -> Clip {
+/// A clip of some of another's channels.
+fn clip_of<'a>(model: &Asset, clip: &Clip, channels: impl Iterator<Item = &'a Channel>) -> Clip {
     let mut builder = ClipBuilder::new(clip.name(), &model.skeleton);
     for channel in channels {
         let times = &clip.timelines()[channel.timeline as usize];
-        // They come from a valid clip over the same skeleton.
+        // Channels of a valid clip for the same skeleton are valid.
         let copied = builder.channel(channel.joint, channel.interpolation, times, channel.keys.clone());
         debug_assert!(copied.is_ok());
     }
     builder.build()
 }
 
-/// Most rounds of the borrowed clip that are looked at when it is to come out even with its layers.
-const MOST_LOOPS: usize = 16;
+/// Maximum number of loops to try for a seamless end.
+const MAX_LOOPS: usize = 16;
 
-/// A layer may run this much faster or slower to fit.
-const MOST_STRETCH: f64 = 0.1;
+/// Maximum share by which a layer may run faster or slower to fit.
+const MAX_STRETCH: f64 = 0.1;
 
-/// How layered motion is written down.
+/// How a clip and its layers become one clip.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Baking {
-    /// Rounds of the borrowed clip.
+    /// Loops of the borrowed clip.
     pub loops: usize,
-    /// All layers end with it; else the seam shows.
+    /// All layers end with it; otherwise the loop has a visible seam.
     pub seamless: bool,
 }
 
-/// The smallest number of rounds in which every layer comes within a tenth of whole loops; else one.
+/// Chooses the smallest number of loops in which every layer comes close to a whole number of its own; one if there is none.
 pub fn baking(clip: &Clip, layers: &[LayerClip], asked_loops: Option<usize>) -> Baking {
     let moving = || layers.iter().filter(|layer| !layer.frozen && layer.duration_secs > 0.0);
     let fits = |loops: usize| {
         let secs = loops as f64 * f64::from(clip.duration_secs());
         moving().all(|layer| {
             let rounds = secs / f64::from(layer.duration_secs);
-            rounds.round() >= 1.0 && (rounds / rounds.round() - 1.0).abs() <= MOST_STRETCH
+            rounds.round() >= 1.0 && (rounds / rounds.round() - 1.0).abs() <= MAX_STRETCH
         })
     };
     match asked_loops {
         Some(loops) => Baking { loops: loops.clamp(1, 1000), seamless: fits(loops.clamp(1, 1000)) },
-        None => match (1..=MOST_LOOPS).find(|&loops| fits(loops)) {
+        None => match (1..=MAX_LOOPS).find(|&loops| fits(loops)) {
             Some(loops) => Baking { loops, seamless: true },
             None => Baking { loops: 1, seamless: false },
         },
     }
 }
 
-/// The borrowed clip and its layers as one ordinary clip: keys are repeated, layers stretched to whole loops where they
+/// Merges the borrowed clip and its layers into one ordinary clip: repeats keys, and stretches layers to whole loops if they
 /// fit. Nothing is resampled.
 pub fn bake_layers(model: &Asset, clip: &Clip, layers: &[LayerClip], baking: &Baking) -> Clip {
     let mut builder = ClipBuilder::new(clip.name(), &model.skeleton);
     let total_secs = f64::from(clip.duration_secs()) * baking.loops as f64;
-    let mut add = |source: &Clip, period_secs: f64, stretch: f64, rounds: usize| {
+    let mut add = |source: &Clip, repeat: Option<Repeat>| {
         for channel in source.channels() {
-            let times = &source.timelines()[channel.timeline as usize];
-            let (times, keys) = repeated(times, channel, period_secs, stretch, rounds, total_secs);
+            let (times, kept) = match &repeat {
+                Some(repeat) => repeated_times(&source.timelines()[channel.timeline as usize], repeat),
+                None => (vec![0.0], vec![0]),
+            };
+            let keys = select_keys(channel, &kept);
             let added = builder.channel(channel.joint, channel.interpolation, &times, keys);
             debug_assert!(added.is_ok(), "{added:?}");
         }
@@ -110,60 +112,66 @@ pub fn bake_layers(model: &Asset, clip: &Clip, layers: &[LayerClip], baking: &Ba
     for layer in layers {
         let duration_secs = f64::from(layer.duration_secs);
         if layer.frozen || duration_secs <= 0.0 || total_secs <= 0.0 {
-            add(&layer.clip, 0.0, 0.0, 1);
+            add(&layer.clip, None);
             continue;
         }
-        let rounds = total_secs / duration_secs;
-        let stretch = if baking.seamless { rounds / rounds.round().max(1.0) } else { 1.0 };
-        add(&layer.clip, duration_secs * stretch, stretch, (total_secs / (duration_secs * stretch)).ceil() as usize);
+        let loops = total_secs / duration_secs;
+        let stretch = if baking.seamless { loops / loops.round().max(1.0) } else { 1.0 };
+        let period_secs = duration_secs * stretch;
+        let loops = (total_secs / period_secs).ceil() as usize;
+        add(&layer.clip, Some(Repeat { loops, period_secs, stretch, total_secs }));
     }
-    add(clip, f64::from(clip.duration_secs()), 1.0, baking.loops);
+    let period_secs = f64::from(clip.duration_secs());
+    add(clip, Some(Repeat { loops: baking.loops, period_secs, stretch: 1.0, total_secs }));
     builder.build()
 }
 
-/// Keys of `rounds` rounds of a channel, each `period_secs` long; keys after `total_secs` are left out, but for the first
-/// of them, which the way there leads to. A stretch of 0 keeps the first key alone.
-fn repeated(
-    times: &[f32],
-    channel: &Channel,
+/// How often a clip is repeated, and how long one loop is after stretching.
+struct Repeat {
+    loops: usize,
     period_secs: f64,
+    /// Factor on the clip's times.
     stretch: f64,
-    rounds: usize,
     total_secs: f64,
-) -> (Vec<f32>, Keys) {
-    let mut at: Vec<usize> = Vec::new();
-    let mut out: Vec<f32> = Vec::new();
-    if stretch == 0.0 {
-        (at, out) = (vec![0], vec![0.0]);
-    }
-    'rounds: for round in 0..if stretch == 0.0 { 0 } else { rounds.max(1) } {
+}
+
+/// Returns the repeated times and which key each belongs to. Of the keys after `total_secs` only the first is kept, as the
+/// end of the last segment.
+fn repeated_times(times: &[f32], repeat: &Repeat) -> (Vec<f32>, Vec<usize>) {
+    let mut repeated: Vec<f32> = Vec::new();
+    let mut kept: Vec<usize> = Vec::new();
+    for round in 0..repeat.loops.max(1) {
         for (key, &time) in times.iter().enumerate() {
-            let exact = round as f64 * period_secs + f64::from(time) * stretch;
+            let exact = round as f64 * repeat.period_secs + f64::from(time) * repeat.stretch;
             let mut time = exact as f32;
-            // The end of one round is the start of the next: both keys stay, the second as soon after as can be told.
-            if let Some(&before) = out.last()
+            // The end of one loop is the start of the next: both keys stay, the second at the next representable time.
+            if let Some(&before) = repeated.last()
                 && time <= before
             {
                 time = before.next_up();
             }
-            out.push(time);
-            at.push(key);
-            if exact >= total_secs && round > 0 {
-                break 'rounds;
+            repeated.push(time);
+            kept.push(key);
+            if exact >= repeat.total_secs && round > 0 {
+                return (repeated, kept);
             }
         }
     }
-    let per_key = if channel.interpolation == crate::anim::Interpolation::CubicSpline { 3 } else { 1 };
-    fn pick<T: Copy>(values: &[T], at: &[usize], per_key: usize) -> Vec<T> {
-        at.iter().flat_map(|&key| values[key * per_key..(key + 1) * per_key].iter().copied()).collect()
+    (repeated, kept)
+}
+
+/// The channel's keys with these indices.
+fn select_keys(channel: &Channel, kept: &[usize]) -> Keys {
+    fn select<T: Copy>(values: &[T], kept: &[usize], per_key: usize) -> Vec<T> {
+        kept.iter().flat_map(|&key| values[key * per_key..(key + 1) * per_key].iter().copied()).collect()
     }
-    let keys = match &channel.keys {
-        Keys::Translation(values) => Keys::Translation(pick(values, &at, per_key)),
-        Keys::Scale(values) => Keys::Scale(pick(values, &at, per_key)),
-        Keys::Rotation(values) => Keys::Rotation(pick(values, &at, per_key)),
+    let per_key = if channel.interpolation == Interpolation::CubicSpline { 3 } else { 1 };
+    match &channel.keys {
+        Keys::Translation(values) => Keys::Translation(select(values, kept, per_key)),
+        Keys::Scale(values) => Keys::Scale(select(values, kept, per_key)),
+        Keys::Rotation(values) => Keys::Rotation(select(values, kept, per_key)),
         Keys::MorphWeights { values, targets } => {
-            Keys::MorphWeights { values: pick(values, &at, per_key * targets), targets: *targets }
+            Keys::MorphWeights { values: select(values, kept, per_key * targets), targets: *targets }
         }
-    };
-    (out, keys)
+    }
 }

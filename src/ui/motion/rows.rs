@@ -232,7 +232,7 @@ impl Whole {
             swapped: false,
         };
         if let Some(proposal) = pairing.proposal {
-            let slots = |parts: &BTreeMap<Slot, crate::retarget::Part>| {
+            let slots = |parts: &BTreeMap<Slot, crate::retarget::RecognizedJoint>| {
                 parts.iter().map(|(&slot, part)| (part.joint, slot)).collect()
             };
             whole.target_slots = slots(&proposal.model.parts);
