@@ -1,4 +1,4 @@
-//! Files that the types of the `gltf` crate reject and that load all the same, and the limits of that.
+//! Lenient reading: files that load although the types of the `gltf` crate reject them, and its limits.
 
 use gaitway::asset::Asset;
 use gaitway::formats::load;
@@ -24,7 +24,7 @@ fn read(build: Build) -> Asset {
     build.load().unwrap_or_else(|problem| panic!("{problem}"))
 }
 
-/// What `complete` must still hold after a harmless change.
+/// Loads `complete` with a harmless change, and checks that nothing is lost.
 #[track_caller]
 fn check(pointer: &str, value: Value) -> Asset {
     let asset = read(complete().with(pointer, value));
@@ -73,7 +73,8 @@ fn channels_without_a_node_are_set_aside() {
     build.json["animations"][0]["channels"].as_array_mut().unwrap().insert(0, pointer);
     let asset = read(build);
     assert_eq!(asset.clips[0].channels().len(), 1);
-    let ignored = asset.warnings.iter().find(|warning| warning.code() == "channel-ignored").expect("a warning").to_string();
+    let ignored =
+        asset.warnings.iter().find(|warning| warning.code() == "channel-ignored").expect("a warning").to_string();
     assert!(ignored.contains("animations[0].channels[0]") && ignored.contains("“pointer”"), "{ignored}");
 }
 
