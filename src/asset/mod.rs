@@ -24,7 +24,7 @@ pub struct Asset {
     pub warnings: Warnings,
 }
 
-/// What an [`Asset`] is built from.
+/// The parts that an [`Asset`] is built from.
 #[derive(Debug, Default)]
 pub struct AssetParts {
     /// The kind of file: `glb`, `gltf`, ….

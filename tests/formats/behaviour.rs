@@ -1,4 +1,4 @@
-//! What a good file means: attributes, indices, nodes, materials, clips.
+//! What a valid file loads as: attributes, indices, nodes, materials, clips.
 
 use gaitway::asset::{Asset, CameraProjection, LightKind};
 use gaitway::mesh::{Filter, Geometry, MipFilter, Topology, Wrap, add_tangents};
@@ -19,7 +19,7 @@ fn codes(asset: &Asset) -> Vec<&'static str> {
     asset.warnings.iter().map(|warning| warning.code()).collect()
 }
 
-/// The smallest PNG there is in practice: one pixel.
+/// The header of a PNG of one pixel.
 pub const PNG: &[u8] = &[
     0x89, b'P', b'N', b'G', 0x0D, 0x0A, 0x1A, 0x0A, 0, 0, 0, 13, b'I', b'H', b'D', b'R', 0, 0, 0, 1, 0, 0, 0, 1, 8, 6,
     0, 0, 0, 0x1F, 0x15, 0xC4, 0x89,
@@ -32,7 +32,7 @@ pub fn textured_square() -> Build {
     let corners = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0];
     build.accessor(F32, "VEC3", 4, &floats(&corners));
     build.accessor(F32, "VEC3", 4, &floats(&[0.0, 0.0, 1.0].repeat(4)));
-    // Vertices 0 and 2 lie on the seam; 1 and 3 both have u to their own side of it.
+    // Vertices 0 and 2 are on the seam; 1 and 3 each have u on their own side of it.
     build.accessor(F32, "VEC2", 4, &floats(&[0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 1.0]));
     build.accessor(U16, "SCALAR", 6, &shorts(&[0, 1, 2, 0, 2, 3]));
     let image = build.view(PNG);
@@ -47,7 +47,7 @@ pub fn textured_square() -> Build {
 }
 
 #[test]
-fn a_triangle_without_indices() {
+fn triangle_without_indices() {
     let asset = read(Build::triangle());
     let geometry = geometry(&asset);
     assert_eq!(geometry.positions, [Vec3::ZERO, Vec3::X, Vec3::Y]);
@@ -83,7 +83,7 @@ fn strips_fans_and_loops_become_lists() {
 }
 
 #[test]
-fn interleaved_data_is_read_by_its_stride() {
+fn interleaved_data_is_read_with_its_stride() {
     let mut build = Build::triangle();
     let rows: Vec<f32> = (0..3).flat_map(|row| [row as f32, 0.0, 0.0, 0.0, 0.0, 1.0]).collect();
     let view = build.view(&floats(&rows));
@@ -100,7 +100,7 @@ fn interleaved_data_is_read_by_its_stride() {
 }
 
 #[test]
-fn sparse_entries_replace_what_is_there_or_zeros() {
+fn sparse_entries_replace_elements_or_zeros() {
     for base in [true, false] {
         let mut build = Build::triangle();
         let indices = build.view(&[2]);
@@ -119,7 +119,7 @@ fn sparse_entries_replace_what_is_there_or_zeros() {
 }
 
 #[test]
-fn normalised_integers_are_fractions() {
+fn normalized_integers_become_fractions() {
     let check = |component: u32, bytes: &[u8], expected: [f32; 2]| {
         let mut build = Build::triangle();
         let accessor = build.accessor(component, "VEC2", 3, bytes);
@@ -134,7 +134,7 @@ fn normalised_integers_are_fractions() {
 }
 
 #[test]
-fn colours_of_three_numbers_are_opaque() {
+fn rgb_colours_are_opaque() {
     let mut build = Build::triangle();
     let accessor = build.accessor(F32, "VEC3", 3, &floats(&[0.25, 0.5, 0.75].repeat(3)));
     build.attribute("COLOR_0", accessor);
@@ -142,7 +142,7 @@ fn colours_of_three_numbers_are_opaque() {
 }
 
 #[test]
-fn nodes_by_matrix_and_by_parts() {
+fn nodes_with_a_matrix_or_with_trs() {
     let transform = Mat4::from_scale_rotation_translation(Vec3::splat(2.0), Quat::from_rotation_y(1.0), Vec3::X);
     let nodes = json!([
         { "matrix": transform.to_cols_array(), "children": [1] },
@@ -159,9 +159,9 @@ fn nodes_by_matrix_and_by_parts() {
     assert_eq!(codes(&asset), ["matrix-not-decomposable"]);
 }
 
-/// Children may come before their parents in a file; source indices stay the file's.
+/// Children may precede their parents in a file; source indices are the file's.
 #[test]
-fn the_order_of_nodes_does_not_matter() {
+fn node_order_does_not_matter() {
     let nodes = json!([{ "name": "hand" }, { "name": "arm", "children": [0] }, { "name": "hip", "children": [1] }]);
     let asset = read(Build::new().with("/nodes", nodes));
     let skeleton = &asset.skeleton;
@@ -173,7 +173,7 @@ fn the_order_of_nodes_does_not_matter() {
 }
 
 #[test]
-fn several_scenes_and_the_one_to_show() {
+fn several_scenes_and_the_default_one() {
     let scenes = json!([{ "name": "a", "nodes": [0] }, { "name": "b", "nodes": [1] }]);
     let build = || Build::new().with("/nodes", json!([{}, { "children": [2] }, {}])).with("/scenes", scenes.clone());
     let asset = read(build());
@@ -186,7 +186,7 @@ fn several_scenes_and_the_one_to_show() {
 }
 
 #[test]
-fn morph_weights_of_the_node_win_over_the_meshs() {
+fn morph_weights_of_the_node_override_those_of_the_mesh() {
     let build = |mesh: Value, node: Value| {
         let mut build = Build::triangle();
         let target = json!({ "POSITION": 0 });
@@ -207,7 +207,7 @@ fn morph_weights_of_the_node_win_over_the_meshs() {
 }
 
 #[test]
-fn mikktspace_copies_seam_vertices_behind_the_files_own() {
+fn mikktspace_appends_copies_of_seam_vertices() {
     let asset = read(textured_square());
     let square = geometry(&asset);
     assert_eq!(square.file_vertices, 4);
@@ -221,7 +221,7 @@ fn mikktspace_copies_seam_vertices_behind_the_files_own() {
     for tangent in &square.tangents {
         assert!((tangent.truncate().length() - 1.0).abs() < 1e-5 && tangent.w.abs() == 1.0, "{tangent}");
     }
-    // The tangent is where u grows; the bitangent, w · (normal × tangent), is where v grows in glTF's sense.
+    // The tangent points along growing u; the bitangent, w · (normal × tangent), along growing v in glTF's sense.
     let first = square.indices[1] as usize;
     let along = square.tangents[first];
     assert!(along.truncate().dot(Vec3::new(1.0, -1.0, 0.0)) > 0.0, "{along}");
@@ -233,7 +233,7 @@ fn mikktspace_copies_seam_vertices_behind_the_files_own() {
 }
 
 #[test]
-fn copies_for_tangents_stay_within_their_bytes() {
+fn copies_for_tangents_stay_within_their_budget() {
     let check = |most_bytes: usize, expected_copies: usize| {
         let asset = read(textured_square().with("/materials/0", json!({})));
         let mut square = geometry(&asset).clone();
@@ -252,7 +252,7 @@ fn copies_for_tangents_stay_within_their_bytes() {
 }
 
 #[test]
-fn texture_transforms_and_sets() {
+fn texture_transforms_and_uv_sets() {
     let info = json!({ "index": 0, "texCoord": 0, "scale": 0.5, "extensions": { "KHR_texture_transform": {
         "offset": [0.25, 0.5], "rotation": 1.5, "scale": [2, 3], "texCoord": 1 } } });
     let asset = read(textured_square().with("/materials/0/normalTexture", info));
@@ -266,7 +266,7 @@ fn texture_transforms_and_sets() {
 }
 
 #[test]
-fn webp_is_preferred_where_the_file_offers_it() {
+fn webp_is_preferred_if_present() {
     let mut build = textured_square();
     let image = build.json["images"][0].clone();
     build.json["images"] = json!([image.clone(), image]);
@@ -275,7 +275,7 @@ fn webp_is_preferred_where_the_file_offers_it() {
 }
 
 #[test]
-fn samplers_by_their_opengl_codes() {
+fn sampler_codes() {
     let mut build = textured_square();
     build.json["textures"][0]["sampler"] = json!(0);
     build.json["samplers"] = json!([{ "magFilter": 9728, "minFilter": 9985, "wrapS": 33071, "wrapT": 33648 }]);
@@ -285,7 +285,7 @@ fn samplers_by_their_opengl_codes() {
 }
 
 #[test]
-fn an_image_that_cannot_be_read_costs_its_texture_only() {
+fn an_unreadable_image_only_leaves_its_texture_empty() {
     let mut build = textured_square();
     let view = build.view(b"GIF89a, which is not read");
     let ktx = build.view(b"\xABKTX 20\xBB\r\n\x1A\n");
@@ -293,7 +293,7 @@ fn an_image_that_cannot_be_read_costs_its_texture_only() {
     let asset = read(build);
     assert_eq!(codes(&asset), ["image-unreadable", "image-unreadable", "image-missing", "image-unreadable"]);
     assert!(asset.images.iter().all(|image| image.bytes.is_empty()));
-    assert_eq!(asset.images.len(), 4, "indices stay as they are in the file");
+    assert_eq!(asset.images.len(), 4, "indices are those of the file");
 }
 
 #[test]
@@ -317,7 +317,7 @@ fn lights_and_cameras() {
 }
 
 #[test]
-fn clips_keep_the_files_keys() {
+fn clips_keep_the_keys_of_the_file() {
     let values = [0.0, 0.0, 0.0, 1.0, 2.0, 3.0];
     let asset = read(Build::animated("translation", &[0.5, 2.0], "VEC3", 2, &values));
     let clip = &asset.clips[0];
@@ -326,7 +326,7 @@ fn clips_keep_the_files_keys() {
 }
 
 #[test]
-fn channels_of_extensions_are_left_out_with_a_warning() {
+fn channels_of_extensions_are_ignored_with_a_warning() {
     let build = || Build::animated("translation", &[0.0, 1.0], "VEC3", 2, &[0.0; 6]);
     let target = "/animations/0/channels/0/target";
     let pointer = read(build().with(target, json!({ "path": "pointer" })));
@@ -355,7 +355,7 @@ fn a_primitive_without_positions_is_left_empty() {
 }
 
 #[test]
-fn large_indices() {
+fn indices_of_32_bits() {
     let mut build = Build::triangle();
     let indices: Vec<u8> = [2_u32, 1, 0].iter().flat_map(|index| index.to_le_bytes()).collect();
     let accessor = build.accessor(U32, "SCALAR", 3, &indices);

@@ -1,10 +1,10 @@
-//! Small glTF files made in code: JSON beside the bytes it points into.
+//! Builds small glTF files: JSON and the buffer that it refers to.
 
 use gaitway::asset::Asset;
 use gaitway::formats::{FileSet, LoadError, load};
 use serde_json::{Value, json};
 
-/// A file in the making. `json` is open to any change; `accessor` adds data.
+/// A glTF file under construction. Tests change `json` at will; `accessor` adds data.
 pub struct Build {
     pub json: Value,
     pub bytes: Vec<u8>,
@@ -52,7 +52,7 @@ impl Build {
         build
     }
 
-    /// The triangle's node moved by a clip: input is accessor 1, output accessor 2.
+    /// The triangle, its node animated: input is accessor 1, output accessor 2.
     pub fn animated(path: &str, times: &[f32], shape: &str, count: usize, values: &[f32]) -> Self {
         let mut build = Self::triangle();
         build.accessor(F32, "SCALAR", times.len(), &floats(times));
@@ -65,7 +65,7 @@ impl Build {
         build
     }
 
-    /// Adds bytes as a view of their own, aligned to 4.
+    /// Adds a buffer view of these bytes, aligned to 4, and returns its index.
     pub fn view(&mut self, bytes: &[u8]) -> usize {
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
         let view = json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len() });
@@ -94,7 +94,7 @@ impl Build {
         self
     }
 
-    /// As a GLB, whose buffer is its binary chunk.
+    /// Returns a GLB with the buffer as binary chunk.
     pub fn glb(mut self) -> Vec<u8> {
         if !self.bytes.is_empty() {
             self.json["buffers"] = json!([{ "byteLength": self.bytes.len() }]);
@@ -102,7 +102,7 @@ impl Build {
         glb(self.json.to_string().as_bytes(), &self.bytes)
     }
 
-    /// As JSON text with one external buffer.
+    /// Returns JSON text with one external buffer.
     pub fn gltf(mut self, buffer_uri: &str) -> Vec<u8> {
         self.json["buffers"] = json!([{ "byteLength": self.bytes.len(), "uri": buffer_uri }]);
         self.json.to_string().into_bytes()

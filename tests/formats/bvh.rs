@@ -1,4 +1,4 @@
-//! Motion capture text files: broken ones first, then what they mean, then the real ones.
+//! BVH: invalid files first, then behaviour, then real files.
 
 use gaitway::anim::{Interpolation, JointIndex, Keys, SampleCursor, model_from_joint};
 use gaitway::asset::Asset;
@@ -8,7 +8,7 @@ use glam::{Affine3A, Quat, Vec3};
 use crate::build_gltf::one;
 use crate::data_folder::data_folder;
 
-/// A hip with one leg, in metres (so that the size is that of a person), and two frames.
+/// A hip with one leg, in metres and of human size, and two frames.
 pub const TWO_JOINTS: &str = "HIERARCHY
 ROOT hip
 {
@@ -41,7 +41,7 @@ fn codes(asset: &Asset) -> Vec<&'static str> {
     asset.warnings.iter().map(|warning| warning.code()).collect()
 }
 
-/// Where every joint is at a time, in the file's order.
+/// World transforms of all joints at a time, in the file's order.
 fn world(asset: &Asset, time_secs: f32) -> Vec<Affine3A> {
     let mut pose = asset.skeleton.rest().clone();
     if let Some(clip) = asset.clips.first() {
@@ -62,8 +62,8 @@ fn rotations(asset: &Asset, joint: &str) -> Vec<Quat> {
 }
 
 #[test]
-fn broken_files_are_refused_with_file_line_expected_and_found() {
-    // What is put in place of what, the line that must be named, and a word of what was expected.
+fn invalid_files_are_rejected_with_file_line_expected_and_found() {
+    // Text, replacement, the line that the message names, and part of what it expected.
     let cases: [(&str, &str, &str, &str); 19] = [
         ("HIERARCHY", "HIERARCHIE", "line 1", "HIERARCHY"),
         ("ROOT hip\n{", "ROOT hip\n", "line 4", "{"),
@@ -99,7 +99,7 @@ fn broken_files_are_refused_with_file_line_expected_and_found() {
 }
 
 #[test]
-fn a_file_means_what_others_read_in_it() {
+fn a_file_loads_as_in_other_programs() {
     let asset = read_bvh(TWO_JOINTS).expect("readable");
     let skeleton = &asset.skeleton;
     let (hip, leg) = (JointIndex(0), JointIndex(1));
@@ -112,14 +112,14 @@ fn a_file_means_what_others_read_in_it() {
     let clip = &asset.clips[0];
     assert_eq!((clip.name(), clip.duration_secs(), clip.timelines()), ("walk", 0.5, &[vec![0.0, 0.5]][..]));
     assert!(clip.channels().iter().all(|channel| channel.interpolation == Interpolation::Linear));
-    // The hip moves and turns, the leg only turns: its OFFSET stays.
+    // The hip translates and rotates, the leg only rotates: its OFFSET stays.
     assert_eq!(clip.channels().len(), 3);
     let degrees = |degrees: f32| degrees.to_radians();
     let leg_turn = Quat::from_rotation_x(degrees(30.0))
         * Quat::from_rotation_y(degrees(40.0))
         * Quat::from_rotation_z(degrees(50.0));
     assert!(rotations(&asset, "leg")[1].abs_diff_eq(leg_turn, 1e-6));
-    // Turned by 90° about Z, the leg's offset points along +Y and +X: (0.5, −1) becomes (1, 0.5).
+    // Rotated by 90° about Z, the leg's offset points along +Y and +X: (0.5, −1) becomes (1, 0.5).
     let at = world(&asset, 0.5);
     assert!(at[0].translation.abs_diff_eq(glam::Vec3A::new(1.0, 2.0, 3.0), 1e-6));
     assert!(at[1].translation.abs_diff_eq(glam::Vec3A::new(2.0, 2.5, 3.0), 1e-6));
@@ -127,7 +127,7 @@ fn a_file_means_what_others_read_in_it() {
 }
 
 #[test]
-fn the_order_of_channels_is_the_order_of_the_product() {
+fn rotations_multiply_in_channel_order() {
     let about = |letter: char, degrees: f32| match letter {
         'X' => Quat::from_rotation_x(degrees.to_radians()),
         'Y' => Quat::from_rotation_y(degrees.to_radians()),
@@ -144,8 +144,8 @@ fn the_order_of_channels_is_the_order_of_the_product() {
 }
 
 #[test]
-fn odd_but_harmless_files_are_read_with_a_word_about_it() {
-    // What is put in place of what, and the warnings that come of it.
+fn harmless_deviations_load_with_a_warning() {
+    // Text, replacement, and the resulting warnings.
     let cases: [(&str, &str, &[&str]); 12] = [
         ("\n", "\r\n", &[]),
         ("\n", "\r", &[]),
@@ -161,23 +161,24 @@ fn odd_but_harmless_files_are_read_with_a_word_about_it() {
         ("30 40 50\n", "30 40 50\n9 9 9", &["bvh-motion"]),
     ];
     let plain = read_bvh(TWO_JOINTS).expect("readable");
-    for (usual, odd, warnings) in cases {
-        let asset = read_bvh(&TWO_JOINTS.replace(usual, odd)).unwrap_or_else(|problem| panic!("{odd:?}: {problem}"));
-        assert_eq!(asset.clips[0].channels(), plain.clips[0].channels(), "{odd:?}");
-        assert_eq!(asset.clips[0].timelines(), plain.clips[0].timelines(), "{odd:?}");
-        assert_eq!(codes(&asset), warnings, "{odd:?}");
+    for (usual, unusual, warnings) in cases {
+        let asset =
+            read_bvh(&TWO_JOINTS.replace(usual, unusual)).unwrap_or_else(|problem| panic!("{unusual:?}: {problem}"));
+        assert_eq!(asset.clips[0].channels(), plain.clips[0].channels(), "{unusual:?}");
+        assert_eq!(asset.clips[0].timelines(), plain.clips[0].timelines(), "{unusual:?}");
+        assert_eq!(codes(&asset), warnings, "{unusual:?}");
     }
 }
 
 #[test]
-fn a_frame_may_go_on_over_several_lines() {
+fn a_frame_may_span_several_lines() {
     let wrapped = TWO_JOINTS.replace("0 1 0 0 0 0 0 0 0\n1 2 3", "0 1 0 0 0\n0 0 0 0\n1 2 3\n");
     let asset = read_bvh(&wrapped).expect("readable");
     assert_eq!(asset.clips[0].channels(), read_bvh(TWO_JOINTS).expect("readable").clips[0].channels());
 }
 
 #[test]
-fn one_frame_none_and_no_motion_at_all() {
+fn one_frame_no_frames_and_no_motion() {
     let (start, _) = TWO_JOINTS.split_once("1 2 3 90").expect("two frames");
     let one_frame = read_bvh(&start.replace("Frames: 2", "Frames: 1").replace("0.5\n0", "0\n0")).expect("readable");
     assert_eq!((one_frame.clips[0].duration_secs(), one_frame.warnings.len()), (0.0, 0));
@@ -189,7 +190,7 @@ fn one_frame_none_and_no_motion_at_all() {
 }
 
 #[test]
-fn positions_replace_the_offset_unless_they_are_never_set() {
+fn positions_replace_the_offset_unless_all_are_zero() {
     let channels = "\t\tCHANNELS 3 X";
     let moved = TWO_JOINTS.replace(channels, "\t\tCHANNELS 6 Xposition Yposition Zposition X");
     let with = |first: &str, second: &str| {
@@ -202,14 +203,14 @@ fn positions_replace_the_offset_unless_they_are_never_set() {
     let asset = with("0 0 0", "0 0 0");
     assert_eq!(codes(&asset), ["channel-ignored"]);
     assert!(world(&asset, 0.0)[1].translation.abs_diff_eq(glam::Vec3A::new(0.5, 0.0, 0.0), 1e-6));
-    // Only some axes have a channel: the others keep the OFFSET.
+    // Axes without a channel keep the OFFSET.
     let text = TWO_JOINTS.replace(channels, "\t\tCHANNELS 4 Yposition X").replace("0 0 0 0 0\n1", "0 0 0 0 0 0\n1");
     let asset = read_bvh(&text.replace("90 0 0 30", "90 0 0 -3 30")).expect("readable");
     assert!(world(&asset, 0.5)[1].translation.abs_diff_eq(glam::Vec3A::new(4.0, 2.5, 3.0), 1e-6));
 }
 
 #[test]
-fn neighbouring_frames_take_the_short_way_round() {
+fn consecutive_rotations_take_the_short_arc() {
     let text = TWO_JOINTS.replace("0 1 0 0 0 0 0 0 0", "0 1 0 -170 0 0 0 0 0").replace("90 0 0 30", "170 0 0 30");
     let asset = read_bvh(&text).expect("readable");
     let keys = rotations(&asset, "hip");
@@ -219,7 +220,7 @@ fn neighbouring_frames_take_the_short_way_round() {
 }
 
 #[test]
-fn files_may_nest_as_deep_as_they_like() {
+fn joints_may_nest_to_any_depth() {
     const DEPTH: usize = 100_000;
     let mut text = "HIERARCHY\nROOT a {\n OFFSET 0 0 0 CHANNELS 0\n".to_owned();
     text += &"JOINT a { OFFSET 0 0 0\n".repeat(DEPTH);
@@ -230,7 +231,7 @@ fn files_may_nest_as_deep_as_they_like() {
 }
 
 #[test]
-fn several_roots_names_with_spaces_and_a_joint_without_a_name() {
+fn several_roots_names_with_spaces_and_an_unnamed_joint() {
     let text = "HIERARCHY ROOT left hand { OFFSET 0 1 0 CHANNELS 0 JOINT\n{ OFFSET 1 0 0 CHANNELS 1 Xrotation } }
         ROOT right hand\n{ OFFSET 0 2 0 CHANNELS 1 Yrotation }
         MOTION\nFrames: 1\nFrame Time: 1\n10 20\n";
@@ -240,7 +241,7 @@ fn several_roots_names_with_spaces_and_a_joint_without_a_name() {
     assert_eq!(asset.clips[0].channels().len(), 2);
 }
 
-/// A person of 1.8 units standing along Y with arms stretched: the way from fingertip to toe is 2.7 units.
+/// A person of 1.8 units in T-pose: 2.7 units from fingertip to toe along the bones.
 fn person(size: f64, z_up: bool) -> String {
     let offset = |up: f64, side: f64| {
         let (up, side) = (up * size, side * size);
@@ -262,7 +263,7 @@ fn person(size: f64, z_up: bool) -> String {
 }
 
 #[test]
-fn the_unit_is_guessed_by_the_size_and_can_be_told() {
+fn the_unit_is_guessed_from_the_size_and_can_be_overridden() {
     for units_per_metre in [1.0, 100.0, 1000.0, 1.0 / 0.0254, 0.45 / 0.0254] {
         // From a child to a giant.
         for height in [0.8, 1.0, 1.2] {
@@ -271,27 +272,27 @@ fn the_unit_is_guessed_by_the_size_and_can_be_told() {
             assert_eq!(codes(&asset), ["unit-guessed"]);
             let found = f64::from(asset.skeleton.rest().locals[0].translation.y);
             assert!((found - height).abs() < 1e-6, "{units_per_metre} units a metre: {found}, not {height}");
-            let told = LoadOptions { bvh_unit_metres: Some(0.5), ..LoadOptions::default() };
-            let asset = load_with(&files, &told).expect("readable");
+            let chosen = LoadOptions { bvh_unit_metres: Some(0.5), ..LoadOptions::default() };
+            let asset = load_with(&files, &chosen).expect("readable");
             let found = f64::from(asset.skeleton.rest().locals[0].translation.y);
             assert!((found / (units_per_metre * height * 0.5) - 1.0).abs() < 1e-6);
             assert_eq!(codes(&asset), [""; 0]);
         }
     }
-    // Nothing to measure: taken as it is.
+    // Nothing to measure: no conversion.
     let text = "HIERARCHY ROOT a { OFFSET 0 0 0 CHANNELS 0 }";
     assert_eq!(load(&one("a.bvh", text.into())).expect("readable").skeleton.len(), 1);
 }
 
 #[test]
-fn a_skeleton_that_stands_along_z_is_turned_up() {
+fn a_skeleton_with_z_up_is_rotated_to_y_up() {
     let up = load(&one("person.bvh", person(100.0, false).into_bytes())).expect("readable");
     let turned = load(&one("person.bvh", person(100.0, true).into_bytes())).expect("readable");
     assert_eq!(codes(&turned), ["unit-guessed", "up-axis-guessed"]);
     for (up, turned) in up.skeleton.rest().locals.iter().zip(&turned.skeleton.rest().locals) {
         assert!(up.translation.abs_diff_eq(turned.translation, 1e-6), "{up:?} {turned:?}");
     }
-    // A motion in Z-up is the same motion: the joints are where they were, turned by −90° about X.
+    // A motion in Z-up is the same motion, rotated by −90° about X.
     let z_up = LoadOptions { bvh_z_up: Some(true), ..METRES };
     let plain = read_bvh(TWO_JOINTS).expect("readable");
     let turned = load_with(&one("walk.bvh", TWO_JOINTS.into()), &z_up).expect("readable");
@@ -302,7 +303,7 @@ fn a_skeleton_that_stands_along_z_is_turned_up() {
 }
 
 #[test]
-fn a_set_can_hold_a_model_and_a_motion() {
+fn a_set_may_contain_a_model_and_a_motion() {
     let mut files = one("walk.bvh", TWO_JOINTS.into());
     files.insert("model.glb", crate::build_gltf::Build::triangle().glb());
     assert_eq!(main_files(&files).expect("readable"), ["walk.bvh", "model.glb"]);
@@ -310,20 +311,20 @@ fn a_set_can_hold_a_model_and_a_motion() {
     assert_eq!(load_named(&files, "walk.bvh", &METRES).expect("readable").format, "bvh");
     assert_eq!(load_named(&files, "model.glb", &METRES).expect("readable").format, "glb");
     assert!(load_named(&files, "other.glb", &METRES).is_err());
-    // By content, whatever the name.
+    // Recognized by content, whatever the name.
     let mut files = FileSet::default();
     files.insert("download", TWO_JOINTS.as_bytes().to_vec());
     assert_eq!(load(&files).expect("readable").format, "bvh");
 }
 
-/// Joints, frames, seconds from the first to the last, metres in one unit, and whether Z is up.
+/// Joints, frames, seconds from the first to the last, metres per unit, and whether Z is up.
 const REAL: [(&str, usize, usize, f32, f64, bool); 15] = [
     ("cosc422/original/Dwarf/avatar_walk.bvh", 21, 14, 0.866671, 0.0254, false),
     ("bvh/animateddrawings_cmu1_jumping_jacks.bvh", 31, 125, 4.13292, 0.0254 / 0.45, false),
     ("bvh/animateddrawings_fair1_dab.bvh", 27, 339, 11.266655, 0.0254, true),
     ("bvh/animateddrawings_fair1_zombie.bvh", 27, 779, 25.933307, 0.0254, true),
     ("bvh/animateddrawings_rokoko_jesse_dance.bvh", 60, 1007, 10.06, 0.01, false),
-    // Says 3069.
+    // The header says 3069 frames.
     ("bvh/assimp_Boxing_Toes.bvh", 21, 3070, 30.69, 0.01, false),
     ("bvh/cmu_01_01.bvh", 31, 2752, 22.924908, 0.0254 / 0.45, false),
     ("bvh/cosc422_Dance.bvh", 18, 219, 7.266594, 0.0254, false),
@@ -337,7 +338,7 @@ const REAL: [(&str, usize, usize, f32, f64, bool); 15] = [
 ];
 
 #[test]
-fn real_files_hold_what_is_counted_in_them() {
+fn real_files_have_known_contents() {
     let Some(data) = data_folder() else { return };
     for (path, joints, frames, secs, unit_metres, z_up) in REAL {
         let bytes = std::fs::read(data.join(path)).expect("readable");
@@ -346,7 +347,7 @@ fn real_files_hold_what_is_counted_in_them() {
         let found = (asset.skeleton.len(), clip.timelines()[0].len());
         assert_eq!(found, (joints, frames), "{path}");
         assert!((clip.duration_secs() - secs).abs() < 1e-5, "{path}: {} s", clip.duration_secs());
-        // Every joint turns, only the root moves.
+        // Every joint rotates, only the root translates.
         assert_eq!(clip.channels().len(), joints + 1, "{path}");
         let text = asset.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
         assert_eq!(text.contains("up axis"), z_up, "{path}: {text}");
@@ -360,7 +361,7 @@ fn real_files_hold_what_is_counted_in_them() {
     }
 }
 
-/// Where joints are in the sixth frame, worked out by another program (matrices in Python), in the file's units.
+/// Joint positions in the sixth frame, computed independently (matrices in Python), in the file's units.
 const AVATAR_WALK_FRAME_5: [(usize, [f32; 3]); 5] = [
     (0, [-0.1148, 42.3072, 2.9681]),
     (5, [0.1752, 61.1665, 4.4765]),
@@ -370,7 +371,7 @@ const AVATAR_WALK_FRAME_5: [(usize, [f32; 3]); 5] = [
 ];
 
 #[test]
-fn avatar_walk_has_the_channel_numbers_of_the_coursework() {
+fn avatar_walk_has_the_joint_numbers_of_the_coursework() {
     let Some(data) = data_folder() else { return };
     let bytes = std::fs::read(data.join("cosc422/original/Dwarf/avatar_walk.bvh")).expect("readable");
     let asset = load_with(&one("avatar_walk.bvh", bytes), &METRES).expect("readable");

@@ -1,4 +1,4 @@
-//! How a model finds its files: beside it, in folders, in archives, in itself.
+//! How a model finds its files: in the same folder, in others, in archives, in data URIs.
 
 use std::io::{Cursor, Write};
 
@@ -31,7 +31,7 @@ fn zipped(files: &[(&str, Vec<u8>)]) -> Vec<u8> {
     writer.finish().unwrap().into_inner()
 }
 
-/// Loads without a missing file; gives the codes of the warnings.
+/// Loads without missing files. Returns the codes of the warnings.
 #[track_caller]
 fn check(files: &FileSet) -> Vec<&'static str> {
     assert_eq!(missing_files(files), [""; 0]);
@@ -41,7 +41,7 @@ fn check(files: &FileSet) -> Vec<&'static str> {
 }
 
 #[test]
-fn what_a_model_names_is_listed_decoded_and_once() {
+fn missing_files_are_listed_decoded_and_once() {
     let mut build = Build::triangle();
     build.json["images"] = serde_json::json!([
         { "uri": "skin%20a.png" }, { "uri": "skin%20a.png" }, { "uri": "data:image/png;base64,AAAA" }
@@ -61,7 +61,7 @@ fn percent_encoded_names() {
 }
 
 #[test]
-fn folders_and_dots() {
+fn relative_paths() {
     let files =
         set(&[("a/models/m.gltf", Build::triangle().gltf("./../data//mesh.bin")), ("a/data/mesh.bin", buffer())]);
     assert_eq!(check(&files), [""; 0]);
@@ -70,14 +70,14 @@ fn folders_and_dots() {
 }
 
 #[test]
-fn the_right_one_of_two_files_with_one_name() {
+fn of_two_files_with_the_same_name_the_path_decides() {
     let files =
         set(&[("b/mesh.bin", vec![0; 4]), ("a/m.gltf", Build::triangle().gltf("mesh.bin")), ("a/mesh.bin", buffer())]);
     assert_eq!(check(&files), [""; 0]);
 }
 
 #[test]
-fn the_bare_name_will_do_with_a_warning() {
+fn a_match_by_bare_name_is_a_warning() {
     for uri in ["C:\\export\\Mesh.BIN", "../elsewhere/mesh.bin"] {
         let files = set(&[("m.gltf", Build::triangle().gltf(uri)), ("mesh.bin", buffer())]);
         assert_eq!(check(&files), ["found-by-bare-name"], "{uri}");
@@ -107,12 +107,12 @@ fn archives_with_folders() {
         ("character/._m.gltf", b"not a model".to_vec()),
     ];
     assert_eq!(check(&one("character.zip", zipped(&files))), [""; 0]);
-    // A GLB inside an archive without an ending, beside the archive nothing else.
+    // A GLB inside an archive without a file extension.
     assert_eq!(check(&one("download", zipped(&[("m.glb", Build::triangle().glb())]))), [""; 0]);
 }
 
 #[test]
-fn broken_archives_say_what_is_wrong() {
+fn invalid_archives_are_rejected_with_a_reason() {
     let whole = zipped(&[("m.glb", Build::triangle().glb())]);
     let cut = load(&one("a.zip", whole[..whole.len() / 2].to_vec())).unwrap_err();
     assert!(matches!(cut, LoadError::Archive { .. }) && cut.to_string().contains("a.zip"), "{cut}");
@@ -120,9 +120,9 @@ fn broken_archives_say_what_is_wrong() {
     assert!(empty.contains("no model") && empty.contains("readme.txt"), "{empty}");
 }
 
-/// One that says so, before anything is unpacked; the bytes after it are not what it says.
+/// Rejected by its header, before anything is unpacked.
 #[test]
-fn an_archive_of_too_many_bytes_is_refused() {
+fn an_archive_that_is_too_large_is_rejected() {
     let mut archive = zipped(&[("m.glb", Build::triangle().glb())]);
     let central = archive.windows(4).rposition(|window| window == b"PK\x01\x02").expect("a central directory");
     archive[central + 24..central + 28].copy_from_slice(&0x7000_0000_u32.to_le_bytes());
@@ -131,7 +131,7 @@ fn an_archive_of_too_many_bytes_is_refused() {
 }
 
 #[test]
-fn an_archive_of_too_many_files_is_refused() {
+fn an_archive_with_too_many_files_is_rejected() {
     let names: Vec<String> = (0..10_001).map(|at| format!("{at}")).collect();
     let files: Vec<(&str, Vec<u8>)> = names.iter().map(|name| (name.as_str(), Vec::new())).collect();
     let problem = load(&one("many.zip", zipped(&files))).unwrap_err().to_string();
@@ -139,7 +139,7 @@ fn an_archive_of_too_many_files_is_refused() {
 }
 
 #[test]
-fn a_model_without_a_name_is_known_by_its_content() {
+fn a_model_without_extension_is_recognized_by_content() {
     assert_eq!(check(&one("blob", Build::triangle().glb())), [""; 0]);
     let files = set(&[("blob", Build::triangle().gltf("mesh.bin")), ("mesh.bin", buffer())]);
     assert_eq!(check(&files), [""; 0]);

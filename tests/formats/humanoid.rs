@@ -1,4 +1,4 @@
-//! Which joint is which part of a body, where the file says so.
+//! Humanoid bones that a file declares.
 
 use gaitway::asset::{Asset, Slot};
 use gaitway::formats::load;
@@ -22,7 +22,7 @@ fn joint_name(asset: &Asset, slot: Slot) -> &str {
 }
 
 #[test]
-fn bones_of_vrm_1_and_of_its_animations() {
+fn bones_of_vrm_1_and_its_animations() {
     for (extension, format) in [("VRMC_vrm", "vrm"), ("VRMC_vrm_animation", "vrma")] {
         let bones =
             json!({ "hips": { "node": 1 }, "leftThumbMetacarpal": { "node": 2 }, "leftThumbProximal": { "node": 0 } });
@@ -36,7 +36,7 @@ fn bones_of_vrm_1_and_of_its_animations() {
 }
 
 #[test]
-fn thumbs_of_vrm_0_are_counted_from_another_bone() {
+fn vrm_0_thumbs_are_renamed() {
     let bones = json!([
         { "bone": "hips", "node": 0 },
         { "bone": "leftThumbProximal", "node": 1 },
@@ -53,15 +53,15 @@ fn thumbs_of_vrm_0_are_counted_from_another_bone() {
 }
 
 #[test]
-fn bones_that_cannot_be_are_warned_about() {
-    let odd = [
+fn invalid_bones_are_skipped_with_a_warning() {
+    let invalid = [
         json!({ "hips": { "node": 1 }, "tail": { "node": 2 } }),
         json!({ "hips": { "node": 1 }, "spine": { "node": 3 } }),
         json!({ "hips": { "node": 1 }, "spine": { "node": "b" } }),
         json!({ "hips": { "node": 1 }, "spine": 2 }),
         json!({ "hips": { "node": 1 }, "spine": { "node": 1e300 } }),
     ];
-    for bones in odd {
+    for bones in invalid {
         let asset = with_extension("VRMC_vrm", json!({ "humanoid": { "humanBones": bones } }));
         assert_eq!(joint_name(&asset, Slot::Hips), "b");
         let codes: Vec<_> = asset.warnings.iter().map(|warning| warning.code()).collect();
@@ -77,7 +77,7 @@ fn bones_that_cannot_be_are_warned_about() {
 }
 
 #[test]
-fn real_avatars_have_their_bones() {
+fn real_avatars_have_all_their_bones() {
     let Some(data) = data_folder() else { return };
     let cases = [
         ("vrm0_cryptovoxels.vrm", 43, "vrm"),

@@ -1,4 +1,4 @@
-//! Which joints pull a vertex: sets merged, weights made to sum to 1, the person told when that changed anything.
+//! Influences: sets are merged, weights normalized, and changes reported.
 
 use gaitway::asset::{Asset, Warning};
 use serde_json::json;
@@ -13,7 +13,7 @@ fn warnings(asset: &Asset) -> Vec<Warning> {
     asset.warnings.iter().cloned().collect()
 }
 
-/// The triangle with `count` influences at each vertex, weights falling from joint to joint, in sets of four.
+/// The triangle with `count` influences per vertex in sets of four, weights falling from joint to joint.
 fn many(count: usize) -> Build {
     let mut build = Build::triangle();
     let total: f32 = (1..=count).map(|at| at as f32).sum();
@@ -38,7 +38,7 @@ fn many(count: usize) -> Build {
 }
 
 #[test]
-fn weights_are_sorted_and_divided_by_their_sum_with_one_warning() {
+fn weights_are_sorted_and_normalized_with_one_warning() {
     let weights = [1.0, 3.0, 0.0, 0.0, 0.5, 0.5, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0];
     let asset = Build::skinned([0, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0], weights).load().unwrap();
     assert_eq!(influences(&asset, 0), [(1, 0.75), (0, 0.25)]);
@@ -48,7 +48,7 @@ fn weights_are_sorted_and_divided_by_their_sum_with_one_warning() {
 }
 
 #[test]
-fn vertices_without_weight_follow_the_first_joint() {
+fn vertices_without_weights_follow_the_first_joint() {
     let weights = [0.0, 0.0, 0.0, 0.0, f32::NAN, -1.0, f32::INFINITY, 3e38, 0.0, 1.0, 0.0, 0.0];
     let asset = Build::skinned([1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1], weights).load().unwrap();
     assert_eq!(influences(&asset, 0), [(0, 1.0)]);
@@ -68,7 +68,7 @@ fn thirteen_influences_are_kept() {
 }
 
 #[test]
-fn past_sixteen_the_weakest_are_dropped_and_said_so() {
+fn past_sixteen_the_weakest_are_dropped_with_a_warning() {
     let asset = many(20).load().unwrap();
     let found = influences(&asset, 0);
     assert_eq!(found.iter().map(|&(joint, _)| joint).collect::<Vec<_>>(), (0..16).collect::<Vec<_>>());
@@ -81,9 +81,9 @@ fn past_sixteen_the_weakest_are_dropped_and_said_so() {
     }
 }
 
-/// The joint's number is checked only where it pulls: exporters leave anything in unused places.
+/// A joint index is checked only if its weight is not zero: exporters leave anything in unused slots.
 #[test]
-fn joints_of_weight_zero_may_be_anything() {
+fn joints_with_zero_weight_may_be_anything() {
     let asset =
         Build::skinned([0, 200, 0, 0, 0, 9, 0, 0, 1, 0, 0, 255], [1.0, 0.0, 0.0, 0.0].repeat(3).try_into().unwrap());
     assert_eq!(influences(&asset.load().unwrap(), 2), [(1, 1.0)]);

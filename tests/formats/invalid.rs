@@ -1,11 +1,11 @@
-//! Broken files: each is refused with the place in the file, what was expected and what was found.
+//! Invalid files: each is rejected with the place in the file, what was expected and what was found.
 
 use gaitway::formats::{FileSet, LoadError, load};
 use serde_json::{Value, json};
 
 use crate::build_gltf::{Build, F32, U8, U32, floats, glb, one};
 
-/// The load fails and the message holds all of `parts`.
+/// Checks that loading fails with a message that contains all `parts`.
 #[track_caller]
 fn check(build: Build, parts: &[&str]) {
     check_bytes("model.glb", build.glb(), parts);
@@ -20,7 +20,7 @@ fn check_bytes(name: &str, bytes: Vec<u8>, parts: &[&str]) {
 }
 
 #[test]
-fn a_cut_glb() {
+fn truncated_glb() {
     let whole = Build::triangle().glb();
     for length in [4, 8, 11] {
         check_bytes("model.glb", whole[..length].to_vec(), &["GLB header", "12 bytes", &length.to_string()]);
@@ -31,7 +31,7 @@ fn a_cut_glb() {
 }
 
 #[test]
-fn broken_chunks() {
+fn invalid_chunks() {
     let mut too_big = Build::triangle().glb();
     too_big[12..16].copy_from_slice(&u32::MAX.to_le_bytes());
     check_bytes("model.glb", too_big, &["GLB chunk at byte 12", "4294967295 bytes"]);
@@ -42,7 +42,7 @@ fn broken_chunks() {
 }
 
 #[test]
-fn another_version() {
+fn other_versions() {
     let mut old = Build::triangle().glb();
     old[4..8].copy_from_slice(&1_u32.to_le_bytes());
     check_bytes("model.glb", old, &["glTF 1.0", "2.0"]);
@@ -53,7 +53,7 @@ fn another_version() {
 }
 
 #[test]
-fn json_of_another_shape_is_placed_by_line_and_column() {
+fn invalid_json_is_located_by_line_and_column() {
     let text = "{ \"asset\": { \"version\": \"2.0\" },\n  \"nodes\": [{ \"mesh\": -1 }] }";
     check_bytes("model.gltf", text.as_bytes().to_vec(), &["line 2", "column", "-1"]);
     let deep = format!("{{\"asset\":{{\"version\":\"2.0\"}},\"extras\":{}", "[".repeat(100_000));
@@ -62,7 +62,7 @@ fn json_of_another_shape_is_placed_by_line_and_column() {
 }
 
 #[test]
-fn references_out_of_range_name_their_place() {
+fn indices_out_of_range_name_their_place() {
     let moved = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0];
     let base = || {
         let mut build = Build::animated("translation", &[0.0, 1.0], "VEC3", 2, &moved);
@@ -81,7 +81,7 @@ fn references_out_of_range_name_their_place() {
         build.json["meshes"][0]["primitives"][0]["material"] = json!(0);
         build
     };
-    base().load().expect("the whole file loads");
+    base().load().expect("the valid file loads");
     let places = [
         ("/nodes/0/mesh", "nodes[0].mesh"),
         ("/nodes/0/skin", "nodes[0].skin"),
@@ -114,7 +114,7 @@ fn references_out_of_range_name_their_place() {
 }
 
 #[test]
-fn an_index_past_the_vertices() {
+fn vertex_index_out_of_range() {
     let mut build = Build::triangle();
     let indices = [0_u32, 1, 3].iter().flat_map(|index| index.to_le_bytes()).collect::<Vec<u8>>();
     let accessor = build.accessor(U32, "SCALAR", 3, &indices);
@@ -123,14 +123,14 @@ fn an_index_past_the_vertices() {
 }
 
 #[test]
-fn a_joint_past_the_skin() {
+fn joint_index_out_of_range() {
     let build =
         Build::skinned([0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 0, 0], [1.0, 0.0, 0.0, 0.0].repeat(3).try_into().unwrap());
     check(build, &["meshes[0].primitives[0].attributes.JOINTS_n, vertex 2", "a joint below 2"]);
 }
 
 #[test]
-fn data_past_its_view_or_buffer() {
+fn data_beyond_its_view_or_buffer() {
     check(Build::triangle().with("/accessors/0/count", json!(4)), &["accessors[0]", "48 bytes", "found 36"]);
     check(Build::triangle().with("/accessors/0/byteOffset", json!(4)), &["accessors[0]", "36 bytes", "found 32"]);
     check(Build::triangle().with("/accessors/0/byteOffset", json!(u64::MAX)), &["accessors[0]", "found 0"]);
@@ -149,22 +149,22 @@ fn data_past_its_view_or_buffer() {
 }
 
 #[test]
-fn counts_too_large_for_any_memory() {
+fn counts_beyond_the_budget() {
     let zeros = |count: u64| json!({ "componentType": 5126, "type": "VEC3", "count": count });
     for count in [200_000_000, 1 << 40, u64::MAX] {
         check(Build::triangle().with("/accessors/0", zeros(count)), &["accessors[0]", "MiB of data in all"]);
     }
 }
 
-/// A few bytes of JSON each, that would multiply to more than any memory.
+/// A few bytes of JSON that multiply to more than any memory.
 #[test]
-fn products_too_large_for_any_memory() {
+fn products_beyond_the_budget() {
     // Every node of a mesh has a weight for each morph target.
     let mut weights = Build::triangle();
     weights.json["meshes"][0]["primitives"][0]["targets"] = Value::Array(vec![json!({}); 20_000]);
     weights.json["nodes"] = Value::Array(vec![json!({ "mesh": 0 }); 20_000]);
     check(weights, &["nodes[", "morph weights in all"]);
-    // Many images in one view.
+    // Many images share one view.
     let mut images = Build::triangle();
     let view = images.view(&vec![0; 1 << 20]);
     images.json["images"] = Value::Array(vec![json!({ "bufferView": view }); 3_000]);
@@ -172,7 +172,7 @@ fn products_too_large_for_any_memory() {
 }
 
 #[test]
-fn accessors_of_the_wrong_kind() {
+fn accessors_of_the_wrong_type() {
     let place = "meshes[0].primitives[0].attributes.POSITION (accessor 0)";
     check(Build::triangle().with("/accessors/0/type", json!("VEC2")), &[place, "expected VEC3", "found VEC2"]);
     check(Build::triangle().with("/accessors/0/type", json!("VEC9")), &["accessors[0]", "“VEC9”"]);
@@ -201,7 +201,7 @@ fn numbers_that_are_not_finite() {
 }
 
 #[test]
-fn broken_sparse_accessors() {
+fn invalid_sparse_accessors() {
     let sparse = |indices: &[u8], count: usize| {
         let mut build = Build::triangle();
         let index_view = build.view(indices);
@@ -213,7 +213,7 @@ fn broken_sparse_accessors() {
         });
         build
     };
-    sparse(&[0, 2], 2).load().expect("a whole one loads");
+    sparse(&[0, 2], 2).load().expect("a valid one loads");
     check(sparse(&[0, 3], 2), &["accessors[0].sparse", "indices below 3", "found 3"]);
     check(sparse(&[0, 1, 2, 0], 4), &["accessors[0].sparse", "at most 3 entries", "found 4"]);
     check(sparse(&[0], 2), &["accessors[0].sparse.indices", "2 bytes"]);
@@ -223,7 +223,7 @@ fn broken_sparse_accessors() {
 }
 
 #[test]
-fn nodes_that_are_no_tree() {
+fn nodes_that_are_not_a_tree() {
     let nodes = |nodes: Value| Build::new().with("/nodes", nodes);
     check(nodes(json!([{ "children": [0] }])), &["nodes[0]", "a tree of nodes"]);
     check(
@@ -237,12 +237,12 @@ fn nodes_that_are_no_tree() {
 }
 
 #[test]
-fn broken_clips() {
+fn invalid_clips() {
     let moved = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0];
     let clip =
         |times: &[f32], count: usize, values: &[f32]| Build::animated("translation", times, "VEC3", count, values);
     let good = || clip(&[0.0, 1.0], 2, &moved);
-    good().load().expect("a whole one loads");
+    good().load().expect("a valid one loads");
     let cubic = "/animations/0/samplers/0/interpolation";
     check(good().with(cubic, json!("BEZIER")), &["animations[0].samplers[0].interpolation", "“BEZIER”"]);
     check(clip(&[1.0, 0.0], 2, &moved), &["animations[0].samplers[0]"]);
@@ -271,7 +271,7 @@ fn joints_without_weights() {
 }
 
 #[test]
-fn morph_targets_in_unequal_numbers() {
+fn primitives_with_different_numbers_of_morph_targets() {
     let primitive = json!({ "attributes": { "POSITION": 0 } });
     let with_target = json!({ "attributes": { "POSITION": 0 }, "targets": [{ "POSITION": 0 }] });
     let primitives = json!([with_target, primitive]);
@@ -282,7 +282,7 @@ fn morph_targets_in_unequal_numbers() {
 }
 
 #[test]
-fn buffers_that_cannot_be_had() {
+fn unavailable_buffers() {
     let missing = Build::triangle().gltf("mesh%20data.bin");
     check_bytes("model.gltf", missing, &["buffers[0].uri", "“mesh data.bin”", "drop it together"]);
     check_bytes("model.gltf", Build::triangle().gltf("data:text/plain;base64,%%%"), &["buffers[0].uri", "base64"]);
@@ -292,7 +292,7 @@ fn buffers_that_cannot_be_had() {
 }
 
 #[test]
-fn required_extensions_that_are_not_supported() {
+fn unsupported_required_extensions() {
     let build = |name: &str| Build::triangle().with("/extensionsRequired", json!([name]));
     check(build("KHR_draco_mesh_compression"), &["KHR_draco_mesh_compression", "without mesh compression"]);
     check(build("KHR_texture_basisu"), &["KHR_texture_basisu", "PNG"]);
@@ -301,7 +301,7 @@ fn required_extensions_that_are_not_supported() {
 }
 
 #[test]
-fn a_set_with_no_model_or_several() {
+fn sets_without_a_model_or_with_several() {
     let empty = load(&FileSet::default()).unwrap_err();
     assert!(matches!(&empty, LoadError::NoModel { found } if found.is_empty()), "{empty}");
     let mut files = one("readme.txt", b"hello".to_vec());

@@ -1,4 +1,4 @@
-//! Tests of the loaders: broken files first, then what a good file means, then every real file at hand.
+//! Tests of the loaders and writers: invalid files first, then behaviour, then every real file in the data folder.
 
 mod behaviour;
 mod build_gltf;

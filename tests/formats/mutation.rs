@@ -1,8 +1,9 @@
-//! Damaged files, the same ones on every run: flipped bytes, cut ends, changed numbers. The loader may refuse them or
-//! read them, but what it reads must be consistent, and nothing may panic.
+//! Damaged files, the same on every run: flipped bits, truncation, other numbers. The loader may reject or load them, but what
+//! it loads must be consistent, and nothing may panic.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use gaitway::asset::Asset;
 use gaitway::formats::{FileSet, LoadOptions, convert, load, missing_files, write_motion};
 
 use crate::build_gltf::{Build, one};
@@ -45,7 +46,7 @@ fn damage(file: &[u8], random: &mut Random) -> Vec<u8> {
             file[at..end].fill([0, 0x7F, 0xFF][random.below(3)]);
         }
         3 => repeat_or_drop(&mut file, random),
-        // Most damage is done to numbers of the JSON: they are what the reader trusts or does not.
+        // Mostly numbers in the JSON: these are what a reader must not trust.
         _ => {
             for _ in 0..=random.below(2) {
                 replace_number(&mut file, random);
@@ -55,7 +56,7 @@ fn damage(file: &[u8], random: &mut Random) -> Vec<u8> {
     file
 }
 
-/// Takes a piece out, or puts it in a second time: words and braces that are missing or too many.
+/// Removes a piece or repeats it, so that words and braces are missing or duplicated.
 fn repeat_or_drop(file: &mut Vec<u8>, random: &mut Random) {
     let at = random.below(file.len());
     let end = (at + random.below(40)).min(file.len());
@@ -66,7 +67,7 @@ fn repeat_or_drop(file: &mut Vec<u8>, random: &mut Random) {
     }
 }
 
-/// Puts another number in place of one in the text, and keeps a GLB's lengths right so that it is looked at at all.
+/// Replaces a number in the text, and corrects a GLB's lengths so that it is read at all.
 fn replace_number(file: &mut Vec<u8>, random: &mut Random) {
     let is_glb = file.starts_with(b"glTF") && file.len() >= 20;
     let (start, end) = match is_glb {
@@ -93,31 +94,10 @@ fn replace_number(file: &mut Vec<u8>, random: &mut Random) {
 fn check(name: &str, file: &[u8], random: &mut Random, failures: &mut Vec<String>) -> usize {
     let mut read = 0;
     for case in 0..CASES_PER_FILE {
-        let damaged = damage(file, random);
+        let files = one(name, damage(file, random));
         let result = catch_unwind(AssertUnwindSafe(|| {
-            let files = one(name, damaged);
             let _ = missing_files(&files);
-            load(&files).map(|asset| {
-                let skinned = |mesh: usize| {
-                    let of_mesh = asset.instances.iter().filter(move |instance| instance.mesh == mesh);
-                    of_mesh.filter_map(|instance| Some(asset.skins[instance.skin?].joints().len())).min()
-                };
-                for (index, mesh) in asset.meshes.iter().enumerate() {
-                    for geometry in &mesh.primitives {
-                        geometry.validate(skinned(index)).expect("what is read is consistent");
-                    }
-                }
-                assert!(asset.skeleton.rest().locals.iter().all(|local| local.is_finite()));
-                // What is read can be written, or there is a word about why not.
-                let clips: Vec<_> = asset.clips.iter().collect();
-                for written in [write_motion(&asset, &asset.skeleton, &clips), convert(&files, &LoadOptions::default())]
-                {
-                    match written {
-                        Ok(written) => drop(load(&one("written.glb", written)).expect("what is written can be read")),
-                        Err(problem) => assert!(!problem.to_string().is_empty()),
-                    }
-                }
-            })
+            load(&files).map(|asset| check_asset(&files, &asset))
         }));
         match result {
             Ok(Ok(())) => read += 1,
@@ -126,6 +106,27 @@ fn check(name: &str, file: &[u8], random: &mut Random, failures: &mut Vec<String
         }
     }
     read
+}
+
+/// Whatever loads is consistent, and can be written, or the error says why not.
+fn check_asset(files: &FileSet, asset: &Asset) {
+    let skinned = |mesh: usize| {
+        let of_mesh = asset.instances.iter().filter(move |instance| instance.mesh == mesh);
+        of_mesh.filter_map(|instance| Some(asset.skins[instance.skin?].joints().len())).min()
+    };
+    for (index, mesh) in asset.meshes.iter().enumerate() {
+        for geometry in &mesh.primitives {
+            geometry.validate(skinned(index)).expect("consistent geometry");
+        }
+    }
+    assert!(asset.skeleton.rest().locals.iter().all(|local| local.is_finite()));
+    let clips: Vec<_> = asset.clips.iter().collect();
+    for written in [write_motion(asset, &asset.skeleton, &clips), convert(files, &LoadOptions::default())] {
+        match written {
+            Ok(written) => drop(load(&one("written.glb", written)).expect("what is written can be read")),
+            Err(problem) => assert!(!problem.to_string().is_empty()),
+        }
+    }
 }
 
 fn generated() -> Vec<(&'static str, Vec<u8>)> {
@@ -141,7 +142,7 @@ fn generated() -> Vec<(&'static str, Vec<u8>)> {
     ]
 }
 
-/// Small, and of different kinds.
+/// Small files of different kinds.
 const REAL: [&str; 13] = [
     "khronos/SimpleSkin/glTF-Embedded/SimpleSkin.gltf",
     "khronos/SimpleMorph/glTF-Embedded/SimpleMorph.gltf",
@@ -177,7 +178,7 @@ fn damaged_files_never_panic() {
     assert!(read > 20, "only {read} damaged files were read at all: the damage hides what it should test");
 }
 
-/// One of the four files of an exercise model is damaged, the others are fine.
+/// One of the four files of an exercise model is damaged, the others are intact.
 #[test]
 fn damaged_exercises_never_panic() {
     let obj = "mtllib m.mtl\nv 0 0 0\nv 1 0 0 1 0 0\nv 1 1 0\nv 0.3 0.3 0\nvt 0 0\nvn 0 0 1\ng a\nusemtl red\n\

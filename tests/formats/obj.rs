@@ -1,5 +1,5 @@
-//! .obj with .skel and .attach: broken files first, each with its own words, then what good ones mean, then the real ones
-//! against the exercise's formula in double precision.
+//! .obj with .skel and .attach: invalid files first, then behaviour, then real files against the exercise's formula in double
+//! precision.
 
 use gaitway::anim::model_from_joint;
 use gaitway::asset::{Asset, Warning};
@@ -44,7 +44,7 @@ fn check_error(found: Result<Asset, LoadError>, wanted: [&str; 4]) {
 }
 
 #[test]
-fn a_broken_obj_says_what_is_wrong_and_where() {
+fn an_invalid_obj_is_rejected_with_place_and_reason() {
     let cases = [
         ("v 1 2\n", ["m.obj", "line 1", "3 numbers after “v”", "2"]),
         ("v 1 2 3 4 5\n", ["m.obj", "line 1", "4 with a weight", "5"]),
@@ -70,7 +70,7 @@ fn a_broken_obj_says_what_is_wrong_and_where() {
 }
 
 #[test]
-fn a_broken_skeleton_says_what_is_wrong_and_where() {
+fn an_invalid_skeleton_is_rejected_with_place_and_reason() {
     let cases = [
         ("", ["m.skel", "line 1", "x y z -1", "the end of the file"]),
         ("0 0 0\n", ["m.skel", "line 1", "4 numbers", "3"]),
@@ -90,7 +90,7 @@ fn a_broken_skeleton_says_what_is_wrong_and_where() {
 }
 
 #[test]
-fn broken_weights_say_what_is_wrong_and_where() {
+fn invalid_weights_are_rejected_with_place_and_reason() {
     let cases = [
         ("0\n0.25\n1\n", ["m.attach", "line 4", "4 rows", "3 and the end of the file"]),
         ("0\n0.25\n1\n0.5\n0.5\n", ["m.attach", "line 5", "4 rows", "more"]),
@@ -107,7 +107,7 @@ fn broken_weights_say_what_is_wrong_and_where() {
 }
 
 #[test]
-fn a_set_that_is_not_complete_says_what_to_drop() {
+fn an_incomplete_set_says_what_to_drop() {
     let check = |files: &[(&str, &str)], wanted: &str, missing: &[&str]| {
         let problem = load(&set(files)).expect_err("not complete").to_string();
         assert!(problem.contains(wanted) && problem.contains("drop it together"), "{problem}");
@@ -121,20 +121,20 @@ fn a_set_that_is_not_complete_says_what_to_drop() {
 }
 
 #[test]
-fn files_find_each_other_by_stem_or_by_being_alone() {
+fn companions_are_found_by_stem_or_as_the_only_ones() {
     let joints =
         |files: &[(&str, &str)]| load(&set(files)).map(|asset| asset.skins.first().map(|skin| skin.joints().len()));
     assert_eq!(joints(&[("f/m.obj", SQUARE), ("f/m.skel", TWO_JOINTS), ("f/m.attach", ROWS)]), Ok(Some(2)));
     assert_eq!(joints(&[("M.OBJ", SQUARE), ("m.Skel", TWO_JOINTS), ("M.attach", ROWS)]), Ok(Some(2)));
     assert_eq!(joints(&[("mesh.obj", SQUARE), ("bones.skel", TWO_JOINTS), ("w.attach", ROWS)]), Ok(Some(2)));
     assert_eq!(joints(&[("m.obj", SQUARE)]), Ok(None), "a static model");
-    // Of two that could belong to it, none is guessed.
+    // Of two candidates, neither is guessed.
     assert_eq!(joints(&[("m.obj", SQUARE), ("a.skel", TWO_JOINTS), ("b.skel", "0 0 0 -1")]), Ok(None));
     assert_eq!(missing_files(&set(&[("m.obj", SQUARE)])), ["m.skel", "m.attach"]);
 }
 
 #[test]
-fn weights_are_divided_by_their_sum_and_odd_rows_are_told_of() {
+fn weights_are_normalized_and_unusual_rows_are_reported() {
     let asset = exercise(SQUARE, "0 0 0 -1\n1 0 0 0\n1 0 0 0\n", "0 0\r\n1 3\r\n0.5 0.4999\r\n0.25 0.75").unwrap();
     let of = |vertex| {
         let influences = &asset.meshes[0].primitives[0].influences;
@@ -154,7 +154,7 @@ fn weights_are_divided_by_their_sum_and_odd_rows_are_told_of() {
 }
 
 #[test]
-fn sixteen_weights_are_kept_and_more_are_told_of() {
+fn sixteen_weights_are_kept_and_more_are_reported() {
     let joints = |count: usize| {
         (0..count)
             .map(|joint| if joint == 0 { "0 0 0 -1\n".to_owned() } else { "1 0 0 0\n".to_owned() })
@@ -171,14 +171,14 @@ fn sixteen_weights_are_kept_and_more_are_told_of() {
 }
 
 #[test]
-fn one_joint_needs_no_columns() {
+fn a_single_joint_needs_no_columns() {
     let asset = exercise(SQUARE, "1 2 3 -1\n", "").unwrap();
     assert_eq!(asset.meshes[0].primitives[0].influences.weights, [1.0, 0.0, 0.0, 0.0].repeat(4));
     check_error(exercise(SQUARE, "1 2 3 -1\n", "1\n"), ["m.attach", "line 1", "0 weights", "more"]);
 }
 
 #[test]
-fn every_form_of_a_face_means_the_same() {
+fn all_forms_of_a_face_are_equivalent() {
     let head = "# a comment\r\nv 0 0 0\r\nv 1 0 0 1.0\r\nv 1 1 0\r\nvt 0 0\r\nvt 1\r\nvt 1 1 0\r\nvn 0 0 2\r\n";
     for face in [
         "f 1 2 3",
@@ -206,12 +206,12 @@ fn every_form_of_a_face_means_the_same() {
             );
         }
     }
-    // Points are needed first only by what points backwards.
+    // Only negative numbers require the vertices to come first.
     let asset = alone("f 1 2 3\nv 0 0 0\nv 1 0 0\nv 1 1 0\n");
     assert_eq!(asset.meshes[0].primitives[0].indices, [0, 1, 2]);
 }
 
-/// Twice the area of all triangles, with the sign that the winding gives them.
+/// Twice the signed area of all triangles.
 fn area(asset: &Asset) -> Vec3 {
     let geometry = &asset.meshes[0].primitives[0];
     let corners = geometry.indices.as_chunks::<3>().0;
@@ -220,8 +220,8 @@ fn area(asset: &Asset) -> Vec3 {
 }
 
 #[test]
-fn polygons_are_cut_without_overlapping() {
-    // Both ways round, an arrow's head, an L, a star and a comb: the parts' areas have one sign and add up.
+fn polygons_are_triangulated_without_overlap() {
+    // An arrowhead, an L, a star and a comb, in both windings: the triangles' areas have one sign and add up.
     let shapes: [(&[[f32; 2]], f32); 5] = [
         (&[[0., 0.], [1., 0.], [1., 1.], [0., 1.]], 2.0),
         (&[[0., 0.], [2., 0.], [2., 2.], [1.9, 0.1]], 0.4),
@@ -274,18 +274,18 @@ fn polygons_are_cut_without_overlapping() {
             }
         }
     }
-    // Without an area, or crossing itself: as many triangles all the same.
+    // Degenerate and self-intersecting polygons yield the same number of triangles.
     assert_eq!(alone("v 0 0 0\nf 1 1 1 1 1\n").meshes[0].primitives[0].triangles(), 3);
     assert_eq!(alone("v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 4\n").meshes[0].primitives[0].triangles(), 2);
 }
 
 #[test]
-fn a_vertex_with_two_texture_coordinates_is_one_vertex_of_the_file() {
+fn copies_of_a_vertex_count_as_one_vertex_of_the_file() {
     let obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 9 9 9\nv 0 1 0\nvt 0 0\nvt 1 1\nf 1/1 2/1 3/1\nf 1/2 3/2 5/2\n";
     let asset = load(&set(&[("m.obj", obj), ("m.skel", TWO_JOINTS), ("m.attach", "0\n0\n0.5\n1\n1\n")])).unwrap();
     let geometry = &asset.meshes[0].primitives[0];
     assert_eq!((geometry.file_vertices, geometry.positions.len()), (5, 7), "two are copied");
-    assert_eq!(geometry.positions[3], Vec3::splat(9.0), "one that no face names is there");
+    assert_eq!(geometry.positions[3], Vec3::splat(9.0), "a vertex of no face is kept");
     assert_eq!(geometry.positions[5..], [geometry.positions[0], geometry.positions[2]]);
     assert_eq!(
         geometry.influences.of_vertex(6).collect::<Vec<_>>(),
@@ -297,7 +297,7 @@ fn a_vertex_with_two_texture_coordinates_is_one_vertex_of_the_file() {
 }
 
 #[test]
-fn groups_and_materials_are_parts_that_keep_the_order_of_the_file() {
+fn groups_and_materials_become_primitives_in_file_order() {
     let obj = "mtllib some where.mtl other.mtl\no Body\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 5 5 5\n\
                g front\nusemtl red\nf 1 2 3\ng back\nf 1 3 4\ng front\nf 3 4 1\nusemtl \nf 4 1 2\n";
     let mtl =
@@ -327,19 +327,19 @@ fn groups_and_materials_are_parts_that_keep_the_order_of_the_file() {
 }
 
 #[test]
-fn vertices_may_have_colours_and_the_rest_is_told_of() {
+fn vertex_colours_are_read_and_unread_statements_reported() {
     let asset = alone("v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0.5 0.5 0.5\nf 1 2 3\nl 1 2\ncurv 1 2\ns off\n");
     let colors = &asset.meshes[0].primitives[0].colors;
     assert_eq!(colors[0].to_array(), [1.0, 0.0, 0.0, 1.0]);
-    assert!((colors[2].x - 0.21404).abs() < 1e-4, "as a screen shows them: {}", colors[2].x);
+    assert!((colors[2].x - 0.21404).abs() < 1e-4, "sRGB: {}", colors[2].x);
     let codes: Vec<&str> = asset.warnings.iter().map(Warning::code).collect();
     assert_eq!(codes, ["obj-statement", "obj-statement"]);
     assert!(alone("v 0 0 0 1 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n").meshes[0].primitives[0].colors.is_empty());
 }
 
-/// Each part has a name of its own, so a long one must not be kept for all of them.
+/// Each primitive has its own copy of a name, so long ones must not be kept.
 #[test]
-fn long_names_are_cut() {
+fn long_names_are_truncated() {
     let long = "ä".repeat(1 << 19);
     let mut obj = format!("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\no {long}\nusemtl {long}\n");
     obj.extend((0..4096).map(|part| format!("g {part}\nf 1 2 3\n")));
@@ -357,7 +357,7 @@ fn long_names_are_cut() {
 }
 
 #[test]
-fn what_many_names_ask_for_is_bounded() {
+fn the_number_of_referenced_files_is_bounded() {
     let mut obj: String = (0..50_000).map(|library| format!("mtllib {library}.mtl\n")).collect();
     obj.push_str(SQUARE);
     let asset = alone(&obj);
@@ -368,7 +368,7 @@ fn what_many_names_ask_for_is_bounded() {
     let pictures: String = (0..50_000).map(|name| format!("newmtl {name}\nmap_Kd {name}.png\n")).collect();
     let missing = missing_files(&set(&[("m.obj", "mtllib m.mtl\n"), ("m.mtl", &pictures)]));
     assert_eq!(missing.len(), 2 + 512);
-    // More models than can be open at once: what is beside them is not looked for.
+    // With more models than any real scene, companions are not looked up.
     let mut many = FileSet::default();
     for model in 0..5000 {
         many.insert(format!("{model}.obj"), SQUARE.as_bytes().to_vec());
@@ -386,7 +386,7 @@ fn real(name: &str) -> Option<(Asset, Exercise, FileSet)> {
     Some((load(&files).expect("it loads"), Exercise::read(&text("obj"), &text("skel"), &text("attach")), files))
 }
 
-/// All vertices as the reference puts them with these joint rotations.
+/// All vertices as the CPU reference deforms them with these joint rotations.
 fn deformed(asset: &Asset, locals: &[glam::Quat], mode: SkinningMode) -> Vec<Vec3> {
     let skeleton = &asset.skeleton;
     let mut pose = skeleton.rest().clone();
@@ -402,7 +402,7 @@ fn deformed(asset: &Asset, locals: &[glam::Quat], mode: SkinningMode) -> Vec<Vec
 }
 
 #[test]
-fn the_exercise_models_stand_where_they_were_bound_and_bend_as_the_formula_says() {
+fn exercise_models_match_the_formula_at_rest_and_bent() {
     for name in ["Model1", "Model2", "Model3", "Model4"] {
         let Some((asset, exercise, _)) = real(name) else { return };
         assert_eq!(
@@ -429,7 +429,7 @@ fn the_exercise_models_stand_where_they_were_bound_and_bend_as_the_formula_says(
 }
 
 #[test]
-fn a_written_exercise_model_means_the_same_to_another_reader() {
+fn a_written_exercise_model_matches_the_formula_in_another_reader() {
     for name in ["Model1", "Model3"] {
         let Some((_, exercise, files)) = real(name) else { return };
         let written = convert(&files, &LoadOptions::default()).unwrap();
@@ -439,7 +439,7 @@ fn a_written_exercise_model_means_the_same_to_another_reader() {
         let off = found.iter().zip(exercise.skinned(&exact)).map(|(a, b)| a.distance(b)).fold(0.0, f64::max);
         assert_eq!(found.len(), exercise.vertices.len());
         assert!(off < 1e-6, "{name}: {off}");
-        // And to our own.
+        // And in our own.
         let mut set = FileSet::default();
         set.insert("written.glb", written);
         let asset = load(&set).unwrap();
@@ -451,7 +451,7 @@ fn a_written_exercise_model_means_the_same_to_another_reader() {
 }
 
 #[test]
-fn a_webp_picture_is_written_with_its_extension() {
+fn webp_images_are_written_with_their_extension() {
     // One pixel.
     let webp = b"RIFF\x1a\0\0\0WEBPVP8L\x0d\0\0\0\x2f\0\0\0\x10\x07\x10\x11\x11\x88\x88\xfe\x07\0";
     let obj = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nusemtl skin\nf 1/1 2/1 3/1\n";
@@ -478,13 +478,21 @@ fn chunks(glb: &[u8]) -> (serde_json::Value, &[u8]) {
     (serde_json::from_slice(json).unwrap(), &glb[20 + json.len() + 8..])
 }
 
-/// A reader of skinned GLBs that shares no code with the real one: all in double precision, joints turned by `rotations`.
-fn bent_glb(json: &serde_json::Value, binary: &[u8], rotations: &[glam::DQuat]) -> Vec<DVec3> {
-    let number = |value: &serde_json::Value| value.as_u64().unwrap_or(0) as usize;
-    let read = |accessor: usize| -> Vec<f64> {
-        let accessor = &json["accessors"][accessor];
-        let view = &json["bufferViews"][number(&accessor["bufferView"])];
-        let start = number(&view["byteOffset"]) + number(&accessor["byteOffset"]);
+/// The accessors of a GLB as numbers in double precision, without any code of the real reader.
+struct Numbers<'a> {
+    json: &'a serde_json::Value,
+    binary: &'a [u8],
+}
+
+impl Numbers<'_> {
+    fn index(value: &serde_json::Value) -> usize {
+        value.as_u64().unwrap_or(0) as usize
+    }
+
+    fn read(&self, accessor: &serde_json::Value) -> Vec<f64> {
+        let accessor = &self.json["accessors"][Self::index(accessor)];
+        let view = &self.json["bufferViews"][Self::index(&accessor["bufferView"])];
+        let bytes = &self.binary[Self::index(&view["byteOffset"]) + Self::index(&accessor["byteOffset"])..];
         let width = match accessor["type"].as_str().unwrap() {
             "SCALAR" => 1,
             "VEC3" => 3,
@@ -492,15 +500,15 @@ fn bent_glb(json: &serde_json::Value, binary: &[u8], rotations: &[glam::DQuat]) 
             "MAT4" => 16,
             other => panic!("{other}"),
         };
-        let count = number(&accessor["count"]) * width;
-        match number(&accessor["componentType"]) {
-            5123 => binary[start..start + 2 * count]
+        let count = Self::index(&accessor["count"]) * width;
+        match Self::index(&accessor["componentType"]) {
+            5123 => bytes[..2 * count]
                 .as_chunks::<2>()
                 .0
                 .iter()
                 .map(|bytes| f64::from(u16::from_le_bytes(*bytes)))
                 .collect(),
-            5126 => binary[start..start + 4 * count]
+            5126 => bytes[..4 * count]
                 .as_chunks::<4>()
                 .0
                 .iter()
@@ -508,44 +516,47 @@ fn bent_glb(json: &serde_json::Value, binary: &[u8], rotations: &[glam::DQuat]) 
                 .collect(),
             other => panic!("{other}"),
         }
-    };
+    }
+}
+
+/// World matrices of all nodes, rotated by `rotations`.
+fn node_matrices(json: &serde_json::Value, rotations: &[glam::DQuat]) -> Vec<DMat4> {
     let nodes = json["nodes"].as_array().unwrap();
-    let mut world = vec![DMat4::IDENTITY; nodes.len()];
-    let mut parent = vec![None; nodes.len()];
+    let mut parent: Vec<Option<usize>> = vec![None; nodes.len()];
     for (index, node) in nodes.iter().enumerate() {
         for child in node["children"].as_array().into_iter().flatten() {
-            parent[number(child)] = Some(index);
+            parent[Numbers::index(child)] = Some(index);
         }
     }
-    for index in 0..nodes.len() {
-        let at = |part: usize| nodes[index]["translation"][part].as_f64().unwrap_or(0.0);
-        let rotation = rotations.get(index).copied().unwrap_or_default();
-        let local = DMat4::from_rotation_translation(rotation, DVec3::new(at(0), at(1), at(2)));
-        // Parents come first in these files.
-        world[index] = parent[index].map_or(local, |parent: usize| world[parent] * local);
+    let mut world = vec![DMat4::IDENTITY; nodes.len()];
+    for (index, node) in nodes.iter().enumerate() {
+        let coordinate = |axis: usize| node["translation"][axis].as_f64().unwrap_or(0.0);
+        let translation = DVec3::new(coordinate(0), coordinate(1), coordinate(2));
+        let local = DMat4::from_rotation_translation(rotations.get(index).copied().unwrap_or_default(), translation);
+        // Parents precede children in these files.
+        world[index] = parent[index].map_or(local, |parent| world[parent] * local);
     }
-    let primitive = &json["meshes"][0]["primitives"][0]["attributes"];
+    world
+}
+
+/// Deforms a skinned GLB in double precision, joints rotated by `rotations`.
+fn bent_glb(json: &serde_json::Value, binary: &[u8], rotations: &[glam::DQuat]) -> Vec<DVec3> {
+    let numbers = Numbers { json, binary };
+    let world = node_matrices(json, rotations);
+    let attributes = &json["meshes"][0]["primitives"][0]["attributes"];
     let skin = &json["skins"][0];
-    let inverse = read(number(&skin["inverseBindMatrices"]));
-    let palette: Vec<DMat4> = skin["joints"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .zip(inverse.as_chunks::<16>().0)
-        .map(|(joint, inverse)| world[number(joint)] * DMat4::from_cols_array(inverse))
-        .collect();
-    let positions = read(number(&primitive["POSITION"]));
+    let inverse = numbers.read(&skin["inverseBindMatrices"]);
+    let joints = skin["joints"].as_array().unwrap().iter().zip(inverse.as_chunks::<16>().0);
+    let palette: Vec<DMat4> =
+        joints.map(|(joint, inverse)| world[Numbers::index(joint)] * DMat4::from_cols_array(inverse)).collect();
     let sets: Vec<[Vec<f64>; 2]> = (0..4)
-        .filter_map(|set| {
-            Some([format!("JOINTS_{set}"), format!("WEIGHTS_{set}")]).filter(|keys| !primitive[&keys[0]].is_null())
-        })
-        .map(|keys| keys.map(|key| read(number(&primitive[key]))))
+        .map(|set| [format!("JOINTS_{set}"), format!("WEIGHTS_{set}")])
+        .filter(|[joints, _]| !attributes[joints].is_null())
+        .map(|keys| keys.map(|key| numbers.read(&attributes[key])))
         .collect();
-    positions
-        .as_chunks::<3>()
-        .0
-        .iter()
-        .enumerate()
+    let positions = numbers.read(&attributes["POSITION"]);
+    let vertices = positions.as_chunks::<3>().0.iter().enumerate();
+    vertices
         .map(|(vertex, position)| {
             let mut sum = DVec3::ZERO;
             for [joints, weights] in &sets {

@@ -1,4 +1,4 @@
-//! Every real file: what must load loads, what must be refused is refused in words, and nothing panics.
+//! Every real file: valid ones load, others are rejected with a reason, and nothing panics.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use gaitway::formats::{FileSet, LoadError, load, missing_files};
 
 use crate::data_folder::data_folder;
 
-/// A model with the files that it names, as a person would drop them.
+/// A model with the files that it refers to, as a user would drop them.
 pub fn file_set(path: &Path) -> FileSet {
     let folder = path.parent().expect("a file lies in a folder");
     let mut files = FileSet::default();
@@ -22,14 +22,14 @@ pub fn file_set(path: &Path) -> FileSet {
     files
 }
 
-pub fn models_under(folder: &Path, endings: &[&str], out: &mut Vec<PathBuf>) {
+pub fn models_under(folder: &Path, extensions: &[&str], out: &mut Vec<PathBuf>) {
     let mut entries: Vec<PathBuf> =
         std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()).collect();
     entries.sort();
     for path in entries {
         if path.is_dir() {
-            models_under(&path, endings, out);
-        } else if path.extension().is_some_and(|ending| endings.iter().any(|wanted| ending == *wanted)) {
+            models_under(&path, extensions, out);
+        } else if path.extension().is_some_and(|extension| extensions.iter().any(|wanted| extension == *wanted)) {
             out.push(path);
         }
     }
@@ -37,12 +37,12 @@ pub fn models_under(folder: &Path, endings: &[&str], out: &mut Vec<PathBuf>) {
 
 pub const GLTF: [&str; 4] = ["glb", "gltf", "vrm", "vrma"];
 
-/// Loads every model; the outcome as text where `check` does not like it, panics included.
-fn sweep(folders: &[&str], endings: &[&str], check: impl Fn(&str, Result<Asset, LoadError>) -> Result<(), String>) {
+/// Loads every model and reports all that `check` rejects, and all panics.
+fn sweep(folders: &[&str], extensions: &[&str], check: impl Fn(&str, Result<Asset, LoadError>) -> Result<(), String>) {
     let Some(data) = data_folder() else { return };
     let mut paths = Vec::new();
     for folder in folders {
-        models_under(&data.join(folder), endings, &mut paths);
+        models_under(&data.join(folder), extensions, &mut paths);
     }
     assert!(!paths.is_empty(), "no models in {folders:?}");
     let mut failures = Vec::new();
@@ -58,7 +58,7 @@ fn sweep(folders: &[&str], endings: &[&str], check: impl Fn(&str, Result<Asset, 
     assert!(failures.is_empty(), "{} of {}:\n{}", failures.len(), paths.len(), failures.join("\n"));
 }
 
-/// What the loader promises about every asset: lengths agree and all indices are in range.
+/// What the loader guarantees for every asset: lengths agree and all indices are in range.
 fn consistent(asset: &Asset) -> Result<(), String> {
     for (index, mesh) in asset.meshes.iter().enumerate() {
         let smallest_skin = asset
@@ -80,7 +80,7 @@ fn consistent(asset: &Asset) -> Result<(), String> {
     Ok(())
 }
 
-/// The extension for which a file of the collection must be refused.
+/// The unsupported extension that a file of the collection requires.
 fn unreadable(name: &str) -> Option<&'static str> {
     let has = |part: &str| name.contains(part);
     if has("raco") {
@@ -223,7 +223,7 @@ fn every_refused_file_of_the_validator_is_in_the_folder() {
 }
 
 #[test]
-fn valid_files_of_the_validator_load() {
+fn the_validators_valid_files_load() {
     let Some(data) = data_folder() else { return };
     // Not animation/valid.gltf: its key times are all zero, which the specification forbids.
     for name in ["accessor/valid.gltf", "buffer/valid.gltf", "buffer/valid.glb", "glb/valid.glb"] {
@@ -233,14 +233,14 @@ fn valid_files_of_the_validator_load() {
 }
 
 #[test]
-fn other_programs_formats_are_sent_through_blender() {
+fn foreign_formats_are_rejected_with_advice() {
     sweep(&["threejs", "cosc422/original"], &["fbx", "x"], |_, result| match result {
         Err(problem @ LoadError::UnsupportedFormat { .. }) if problem.to_string().contains("Blender") => Ok(()),
         other => Err(format!("{other:?}")),
     });
 }
 
-/// Joints of the largest skin, vertices as the file has them, clips, and the first clip's duration in seconds.
+/// Joints of the largest skin, vertices of the file, clips, and the first clip's duration in seconds.
 struct Facts {
     path: &'static str,
     joints: usize,
@@ -300,7 +300,7 @@ const FACTS: &[Facts] = &[
 ];
 
 #[test]
-fn real_models_hold_what_other_programs_count_in_them() {
+fn real_models_have_the_contents_that_other_programs_report() {
     let Some(data) = data_folder() else { return };
     let mut failures = Vec::new();
     for facts in FACTS {

@@ -6,18 +6,18 @@ use glam::{Vec2, Vec3, Vec4};
 use crate::data_folder::data_folder;
 use crate::sweep::file_set;
 
-struct Other<'a> {
+struct Reference<'a> {
     geometry: &'a Geometry,
     tangents: Vec<Option<Vec4>>,
 }
 
-impl Other<'_> {
+impl Reference<'_> {
     fn vertex(&self, face: usize, corner: usize) -> usize {
         self.geometry.indices[3 * face + corner] as usize
     }
 }
 
-impl bevy_mikktspace::Geometry for Other<'_> {
+impl bevy_mikktspace::Geometry for Reference<'_> {
     fn num_faces(&self) -> usize {
         self.geometry.indices.len() / 3
     }
@@ -46,11 +46,11 @@ impl bevy_mikktspace::Geometry for Other<'_> {
 }
 
 fn compare(name: &str, geometry: &Geometry) {
-    let mut other = Other { geometry, tangents: vec![None; geometry.indices.len()] };
-    bevy_mikktspace::generate_tangents(&mut other).expect("triangles");
+    let mut reference = Reference { geometry, tangents: vec![None; geometry.indices.len()] };
+    bevy_mikktspace::generate_tangents(&mut reference).expect("triangles");
     let ours = corner_tangents(geometry, 0);
     let (mut compared, mut off) = (0, 0);
-    for (ours, other) in ours.iter().zip(&other.tangents) {
+    for (ours, other) in ours.iter().zip(&reference.tangents) {
         let Some(other) = other.filter(|tangent| tangent.truncate().length() > 0.5) else { continue };
         compared += 1;
         off += usize::from(ours.distance(other) > 1e-3);
@@ -59,7 +59,7 @@ fn compare(name: &str, geometry: &Geometry) {
     assert_eq!(off, 0, "{name}: corners that differ, of {compared}");
 }
 
-/// A wavy sheet, its texture mirrored along the middle, with seams, faces without texture and faces without area.
+/// A wavy sheet, its texture mirrored along the middle, with seams and with faces degenerate in UV or in space.
 fn sheet() -> Geometry {
     const EDGE: u32 = 24;
     let mut geometry = Geometry::default();
@@ -90,16 +90,16 @@ fn a_sheet_with_seams_agrees() {
 
 #[test]
 fn copies_of_a_vertex_count_as_one() {
-    let whole = sheet();
+    let shared = sheet();
     let mut split = Geometry::default();
-    for (at, &vertex) in whole.indices.iter().enumerate() {
+    for (at, &vertex) in shared.indices.iter().enumerate() {
         let vertex = vertex as usize;
-        split.positions.push(whole.positions[vertex]);
-        split.normals.push(whole.normals[vertex]);
-        split.uvs[0].push(whole.uvs[0][vertex]);
+        split.positions.push(shared.positions[vertex]);
+        split.normals.push(shared.normals[vertex]);
+        split.uvs[0].push(shared.uvs[0][vertex]);
         split.indices.push(at as u32);
     }
-    assert_eq!(corner_tangents(&split, 0), corner_tangents(&whole, 0));
+    assert_eq!(corner_tangents(&split, 0), corner_tangents(&shared, 0));
 }
 
 #[test]

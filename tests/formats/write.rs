@@ -1,4 +1,4 @@
-//! What is written is read again: clips to the bit, and of the original nothing is lost.
+//! Written files load again: clips bit by bit, and nothing of the original is lost.
 
 use gaitway::anim::{Clip, ClipBuilder, Interpolation, JointIndex, Keys};
 use gaitway::asset::Asset;
@@ -12,8 +12,8 @@ use crate::bvh::TWO_JOINTS;
 use crate::data_folder::data_folder;
 use crate::sweep::{GLTF, file_set, models_under};
 
-/// JSON and binary chunk of a GLB. Checks what the container promises.
-fn parts(file: &[u8]) -> (String, &[u8]) {
+/// Returns JSON and binary chunk of a GLB, after checking the container.
+fn chunks_of(file: &[u8]) -> (String, &[u8]) {
     let word = |at: usize| u32::from_le_bytes(file[at..at + 4].try_into().expect("four bytes")) as usize;
     assert_eq!((&file[..4], word(4), word(8)), (&b"glTF"[..], 2, file.len()));
     let json = 20..20 + word(12);
@@ -23,17 +23,17 @@ fn parts(file: &[u8]) -> (String, &[u8]) {
 }
 
 fn json_of(file: &[u8]) -> Value {
-    serde_json::from_str(&parts(file).0).expect("JSON")
+    serde_json::from_str(&chunks_of(file).0).expect("JSON")
 }
 
 fn loaded(file: Vec<u8>) -> Asset {
     load(&one("written.glb", file)).unwrap_or_else(|problem| panic!("{problem}"))
 }
 
-/// A clip's name; of each channel the joint, the interpolation, the bits of its key times, and the keys.
+/// A clip's name; for each channel the joint, the interpolation, the bits of its key times, and the keys.
 type Contents = (String, Vec<(JointIndex, Interpolation, Vec<u32>, Keys)>);
 
-/// Everything of a clip that a file holds.
+/// Everything that a file has of a clip.
 fn contents(clip: &Clip) -> Contents {
     let bits = |times: &[f32]| times.iter().map(|secs| secs.to_bits()).collect();
     let channel = |channel: &gaitway::anim::Channel| {
@@ -69,7 +69,7 @@ fn morphing_triangle() -> Build {
 }
 
 #[test]
-fn a_clip_comes_back_to_the_bit_behind_the_models_own() {
+fn added_clips_load_bit_by_bit_after_the_models_own() {
     let mut build = Build::animated("translation", &[0.0, 1.0, 2.0], "VEC3", 3, &[0.5; 9]);
     build.json["meshes"][0]["primitives"][0]["targets"] = json!([{ "POSITION": 0 }, { "POSITION": 0 }]);
     let files = one("model.glb", build.glb());
@@ -91,7 +91,7 @@ fn a_clip_comes_back_to_the_bit_behind_the_models_own() {
 }
 
 #[test]
-fn of_the_original_nothing_is_lost() {
+fn nothing_of_the_original_is_lost() {
     let text = r#"{ "extras": {"z": 1, "a": [1.0000000000000000000001, 1E+2, -0.0, 12345678901234567890123]},
         "nodes":[{"name":"tab\u0009","translation":[ 0.10, 2e-1, 3 ],"extras":{"matrix":null}}, {"extensions":{"NOBODY_knows":{"it":7}}}],
         "asset":{"version":"2.0","copyright":"me"}, "extensionsUsed":["NOBODY_knows"],
@@ -101,7 +101,7 @@ fn of_the_original_nothing_is_lost() {
     let asset = load(&files).expect("readable");
     let clip = clip_of_all_kinds(&asset);
     let written = write_model(&files, "model.glb", &asset.skeleton, &[&clip]).expect("writable");
-    let (json, binary) = parts(&written);
+    let (json, binary) = chunks_of(&written);
     assert!(binary.starts_with(&[1, 2, 3, 4, 5]));
     for kept in [
         r#""extras":{"z": 1, "a": [1.0000000000000000000001, 1E+2, -0.0, 12345678901234567890123]}"#,
@@ -111,12 +111,12 @@ fn of_the_original_nothing_is_lost() {
     ] {
         assert!(json.contains(kept), "no {kept} in {json}");
     }
-    // In the old order, what is new at the end.
+    // In the original order, new members last.
     let keys = "extras nodes asset extensionsUsed buffers extensions accessors bufferViews animations";
     let root: serde_json::Map<String, Value> = serde_json::from_str(&json).expect("JSON");
     assert_eq!(root.keys().map(String::as_str).collect::<Vec<_>>().join(" "), keys);
     assert_eq!(root["buffers"][0]["byteLength"], json!(binary.len()));
-    // Nothing to add: the same bytes.
+    // With nothing to add, the bytes are the same.
     let same = write_model(&files, "model.glb", &asset.skeleton, &[]).expect("writable");
     assert_eq!(Some(&same[..]), files.get("model.glb").map(|bytes| &bytes[..]));
 }
@@ -130,7 +130,7 @@ fn a_gltf_with_its_files_becomes_one_glb() {
     let mut build =
         Build::skinned([0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0], [1.0, 0.0, 0.0, 0.0].repeat(3).try_into().expect("12"));
     let (json, bytes) = (&mut build.json, build.bytes.clone());
-    // Three buffers: positions in a file (with more in it than is used), the rest in another and in a data URI.
+    // Three buffers: positions in a file that is longer than needed, the rest in another and in a data URI.
     let ends: Vec<(usize, usize)> = (0..3)
         .map(|view| {
             (json["bufferViews"][view]["byteOffset"].as_u64(), json["bufferViews"][view]["byteLength"].as_u64())
@@ -162,7 +162,7 @@ fn a_gltf_with_its_files_becomes_one_glb() {
     let clip = clip_of_all_kinds(&asset);
     for clips in [vec![], vec![&clip]] {
         let written = write_model(&files, "model.gltf", &asset.skeleton, &clips).expect("writable");
-        let (_, binary) = parts(&written);
+        let (_, binary) = chunks_of(&written);
         assert!(binary.starts_with(&slice(0)));
         let json = json_of(&written);
         assert_eq!((json["buffers"].as_array().map(Vec::len), &json["buffers"][0]["uri"]), (Some(1), &Value::Null));
@@ -180,7 +180,7 @@ fn a_gltf_with_its_files_becomes_one_glb() {
 }
 
 #[test]
-fn buffers_that_extensions_name_by_number_stay_apart() {
+fn buffers_that_extensions_refer_to_stay_separate() {
     let mut build = Build::triangle();
     build.json["bufferViews"].as_array_mut().expect("views").push(json!({
         "buffer": 1, "byteLength": 4, "extensions": { "NOBODY_compresses": { "buffer": 2, "byteLength": 4 } },
@@ -198,7 +198,7 @@ fn buffers_that_extensions_name_by_number_stay_apart() {
 }
 
 #[test]
-fn a_matrix_that_a_clip_moves_becomes_its_parts() {
+fn an_animated_matrix_becomes_trs() {
     let matrix = Mat4::from_scale_rotation_translation(Vec3::new(1.0, 2.0, 3.0), Quat::from_rotation_x(0.5), Vec3::ONE);
     let mut build = Build::triangle();
     build.json["nodes"] =
@@ -215,7 +215,7 @@ fn a_matrix_that_a_clip_moves_becomes_its_parts() {
 }
 
 #[test]
-fn only_what_counts_is_written_and_only_what_readers_accept() {
+fn written_channels_are_unique_and_valid() {
     let asset = Build::triangle().load().expect("readable");
     let mut builder = ClipBuilder::new("", &asset.skeleton);
     for far in [1.0, 2.0] {
@@ -235,7 +235,7 @@ fn only_what_counts_is_written_and_only_what_readers_accept() {
 }
 
 #[test]
-fn what_cannot_be_written_is_an_error() {
+fn unwritable_input_is_an_error() {
     let files = one("model.glb", Build::triangle().glb());
     let asset = load(&files).expect("readable");
     let empty = ClipBuilder::new("empty", &asset.skeleton).build();
@@ -255,9 +255,9 @@ fn what_cannot_be_written_is_an_error() {
 }
 
 #[test]
-fn a_skeleton_and_its_clip_alone() {
+fn a_skeleton_and_its_clip() {
     let mut build = morphing_triangle();
-    // The child comes before its parent in the file.
+    // The child precedes its parent in the file.
     build.json["nodes"] = json!([
         { "mesh": 0, "name": "child", "scale": [1, 1, 2] },
         { "name": "root", "children": [2, 0], "rotation": [0, 1, 0, 0] },
@@ -279,13 +279,13 @@ fn a_skeleton_and_its_clip_alone() {
         assert_eq!(again.skeleton.name(new), asset.skeleton.name(old));
         assert_eq!(again.skeleton.rest().locals[new.get()], asset.skeleton.rest().locals[old.get()]);
     }
-    // Morph weights need the mesh that is left out. (Joint 0 of both is the root, the only one the clip moves.)
+    // Morph weights need the mesh, which is left out. (Joint 0 of both is the root, the only one that the clip animates.)
     assert_eq!(contents(&again.clips[0]), contents(&clip));
     assert!(again.meshes.is_empty());
 }
 
 #[test]
-fn a_motion_capture_file_as_glb() {
+fn bvh_as_glb() {
     let files = one("walk.bvh", TWO_JOINTS.into());
     let asset = load(&files).expect("readable");
     let again = loaded(convert(&files, &LoadOptions::default()).expect("writable"));
@@ -294,7 +294,7 @@ fn a_motion_capture_file_as_glb() {
     assert_eq!((again.skeleton.name(JointIndex(1)), again.clips[0].name()), ("leg", "walk"));
 }
 
-/// Members of `old` that are not in `new` as they were. The arrays that may grow are compared as far as they go.
+/// Members of `old` that `new` lacks or has changed. Arrays may grow: only the old elements are compared.
 fn lost(old: &Value, new: &Value) -> Vec<String> {
     let old = old.as_object().expect("an object");
     let same = |key: &str, value: &Value| match key {
@@ -316,7 +316,7 @@ fn lost(old: &Value, new: &Value) -> Vec<String> {
 }
 
 #[test]
-fn real_models_keep_all_they_have() {
+fn real_models_lose_nothing() {
     let Some(data) = data_folder() else { return };
     let mut paths = Vec::new();
     for folder in ["asset-generator/Positive", "khronos", "threejs", "misc", "vrm", "blender-io", "cosc422", "kaykit"] {
@@ -336,7 +336,7 @@ fn real_models_keep_all_they_have() {
         let original = files.get(&name).expect("read").clone();
         let new = json_of(&written);
         if original.starts_with(b"glTF") {
-            let (old, binary) = (json_of(&original), parts(&original).1);
+            let (old, binary) = (json_of(&original), chunks_of(&original).1);
             let moved_matrix = own.iter().any(|clip| {
                 clip.channels()
                     .iter()
@@ -344,7 +344,7 @@ fn real_models_keep_all_they_have() {
             });
             let lost = lost(&old, &new);
             assert!(lost.is_empty() || (moved_matrix && lost == ["nodes"]), "{name}: {lost:?} changed");
-            assert!(parts(&written).1.starts_with(binary), "{name}: the buffer changed");
+            assert!(chunks_of(&written).1.starts_with(binary), "{name}: the buffer changed");
         }
         let again = loaded(written);
         assert_eq!(again.clips.len(), asset.clips.len() + own.len(), "{name}");
@@ -370,7 +370,7 @@ fn real_models_keep_all_they_have() {
     assert!(written_files > 100 && with_clips > 200, "{written_files} models, {with_clips} clips");
 }
 
-/// Whether no rotation had to be made shorter or longer.
+/// Whether all rotations are unit quaternions already.
 fn all_unit(clip: &Clip) -> bool {
     clip.channels().iter().all(|channel| match &channel.keys {
         Keys::Rotation(keys) => keys.iter().all(|key| (key.length_squared() - 1.0).abs() <= 1e-5),
@@ -378,7 +378,7 @@ fn all_unit(clip: &Clip) -> bool {
     })
 }
 
-/// [`contents`], with only the channels that count.
+/// [`contents`] of the channels that are written: the last one per property.
 fn last_of_each(clip: &Clip) -> Contents {
     let (name, mut channels) = contents(clip);
     let keys: Vec<_> = channels.iter().map(|channel| (channel.0, channel.3.property())).collect();
@@ -391,7 +391,7 @@ fn last_of_each(clip: &Clip) -> Contents {
 }
 
 #[test]
-fn real_motion_capture_as_glb() {
+fn real_bvh_as_glb() {
     let Some(data) = data_folder() else { return };
     let mut paths = Vec::new();
     models_under(&data.join("bvh"), &["bvh"], &mut paths);

@@ -3,6 +3,7 @@
 
 use std::fmt;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use gaitway::asset::Asset;
 use gaitway::frame::{Frame, evaluate};
@@ -86,7 +87,7 @@ fn walker() -> Model {
 /// The walker without the triangles that follow one of its joints most.
 fn walker_without(joint: &str) -> Model {
     let model = walker();
-    let mut asset = Asset::clone(&model.asset).into_parts();
+    let mut asset = Arc::into_inner(model.asset).expect("nobody else has it yet").into_parts();
     let joint = asset.skeleton.find(joint).unwrap();
     let in_skin = asset.skins[0].joints().iter().position(|&other| other == joint).unwrap();
     let parts = asset.meshes.iter_mut().flat_map(|mesh| &mut mesh.primitives);

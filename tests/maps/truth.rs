@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use gaitway::anim::{ClipBuilder, Joint, JointIndex, Skeleton};
 use gaitway::asset::{Asset, AssetParts, MeshInstance, Slot, Slot::*};
-use gaitway::mesh::Skin;
+use gaitway::mesh::{Mesh, Skin};
 use gaitway::retarget::{ProposedPair, Reason, Recognized, propose, recognize};
 
 use crate::data::open;
@@ -623,7 +623,9 @@ fn with_nodes_reversed(asset: &Asset) -> Asset {
     });
     let instances = asset.instances.iter().map(|instance| MeshInstance { joint: moved(&instance.joint), ..*instance });
     let (skins, clips, instances) = (skins.collect(), clips.into_iter().collect(), instances.collect());
-    let parts = AssetParts { skeleton, skins, clips, instances, ..Asset::clone(asset).into_parts() };
+    // What the meshes look like does not matter.
+    let meshes = asset.meshes.iter().map(|_| Mesh::default()).collect();
+    let parts = AssetParts { skeleton, skins, clips, meshes, instances, ..AssetParts::default() };
     Asset::new(parts).expect("still valid")
 }
 

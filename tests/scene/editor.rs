@@ -33,11 +33,13 @@ fn active(editor: &Editor) -> &str {
 }
 
 fn notices(events: &[Event]) -> Vec<&str> {
-    let text = |event| match event {
-        &Event::Notice { ref text, .. } => Some(text.as_str()),
-        _ => None,
-    };
-    events.iter().filter_map(text).collect()
+    let mut texts = Vec::new();
+    for event in events {
+        if let Event::Notice { text, .. } = event {
+            texts.push(text.as_str());
+        }
+    }
+    texts
 }
 
 fn orbit(editor: &Editor) -> OrbitCamera {

@@ -1,8 +1,8 @@
 //! The JSON of a glTF file in the types of the `gltf` crate.
 //!
-//! Those types are stricter than the specification in a few places (an animation channel need not name a node) and stricter
-//! than a viewer has to be in many. So the text is read typed first, which is enough for nearly every file. Only if that
-//! fails it is read again as a plain value, [`loosen`]ed, and converted.
+//! Those types are stricter than the specification in a few places (an animation channel need not target a node) and stricter
+//! than a viewer needs to be in many. So the text is deserialized directly first, which works for nearly every file. If that
+//! fails, it is parsed as a plain value, [`loosen`]ed, and converted.
 
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
@@ -18,7 +18,7 @@ use crate::formats::LoadError;
 /// The `target.node` of an animation channel that has none: an extension defines what it animates.
 const NO_NODE: u32 = u32::MAX;
 
-/// Members with an index or a code, of which the crate keeps the lowest 32 bits.
+/// Members that hold an index or a code. The crate silently truncates these to 32 bits.
 const NARROW_MEMBERS: [&str; 23] = [
     "buffer",
     "bufferView",
@@ -45,7 +45,7 @@ const NARROW_MEMBERS: [&str; 23] = [
     "targets",
 ];
 
-/// Extensions with types in the crate. The contents of all others are left as they are.
+/// Extensions that the crate has types for. The contents of all others are left alone.
 const TYPED_EXTENSIONS: [&str; 4] =
     ["KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_unlit", "KHR_texture_transform"];
 
@@ -53,7 +53,7 @@ const TYPED_EXTENSIONS: [&str; 4] =
 pub struct Document<'a> {
     pub root: Root,
     text: &'a [u8],
-    /// The text as a plain value, parsed when a message has to quote it.
+    /// The text as a plain value, parsed once a message has to quote it.
     value: OnceCell<Value>,
 }
 
@@ -69,8 +69,8 @@ impl<'a> Document<'a> {
         Ok(Self { root, text, value: OnceCell::new() })
     }
 
-    /// Returns the text of the value at `place`, such as `meshes[0].primitives[1].mode`: what the file has where the crate
-    /// only says that a code is unknown.
+    /// Returns the value at `place`, such as `meshes[0].primitives[1].mode`, as text, for messages: the crate does not keep the
+    /// codes that it does not know.
     pub fn text_at(&self, place: &str) -> String {
         self.value_at(place).map_or_else(String::new, text)
     }
@@ -88,12 +88,12 @@ impl<'a> Document<'a> {
     }
 }
 
-/// A byte count or offset. One that is too large for this machine is out of range of any buffer.
+/// Converts a byte count or offset. A value that is too large for this machine becomes one that is beyond any buffer.
 pub fn size(bytes: USize64) -> usize {
     usize::try_from(bytes.0).unwrap_or(usize::MAX)
 }
 
-/// The node that an animation channel targets.
+/// Returns the node that an animation channel targets, if any.
 pub fn target_node(node: Index<scene::Node>) -> Option<usize> {
     Some(node.value()).filter(|&node| node != NO_NODE as usize)
 }
@@ -107,10 +107,10 @@ pub fn json_error(file: &str, problem: &serde_json::Error) -> LoadError {
     LoadError::Json { file: file.to_owned(), line, column, problem }
 }
 
-/// Reads a file that the crate's types refuse, or whose integers they may truncate.
+/// Reads a text that the crate's types reject, or whose integers they may truncate.
 fn read_loosened(file: &str, text: &[u8]) -> Result<Root, LoadError> {
     let mut value: Value = serde_json::from_slice(text).map_err(|problem| json_error(file, &problem))?;
-    // A file of another version has another structure: its version is what matters.
+    // Other versions have another structure, so the version comes first.
     let asset = |key: &str| value.pointer(&format!("/asset/{key}")).filter(|value| !value.is_null()).map(self::text);
     check_version(file, asset("version").as_deref(), asset("minVersion").as_deref())?;
     loosen(&mut value);
@@ -140,7 +140,7 @@ fn text(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
 
-/// Whether the text has an integer of ten digits or more, which may not fit into 32 bits. Looks at every tenth byte.
+/// Whether the text has an integer of ten digits or more, which may not fit into 32 bits. Inspects every tenth byte.
 fn has_long_integer(text: &[u8]) -> bool {
     const DIGITS: usize = 10;
     let mut at = DIGITS - 1;
@@ -152,7 +152,7 @@ fn has_long_integer(text: &[u8]) -> bool {
         let is_digit = |byte: &&u8| byte.is_ascii_digit();
         let start = at - text[..at].iter().rev().take_while(is_digit).count();
         let end = at + text[at..].iter().take_while(is_digit).count();
-        // Neither part of a fraction nor of a name.
+        // Not part of a fraction or a name.
         let before = start.checked_sub(1).and_then(|before| text.get(before));
         let is_integer = before.is_none_or(|byte| b":,[ \t\r\n".contains(byte))
             && text.get(end).is_none_or(|byte| b",]} \t\r\n".contains(byte));
@@ -186,7 +186,7 @@ fn position(text: &[u8], path: &Path) -> (usize, usize) {
     (1 + before.matches('\n').count(), 1 + before.len() - line_start)
 }
 
-/// Removes or completes what the crate's types refuse although the reader can do without it.
+/// Removes or completes members that the crate's types reject and the reader can do without.
 fn loosen(root: &mut Value) {
     clean(root, None);
     let asset = root.get_mut("asset").and_then(Value::as_object_mut);
@@ -203,7 +203,7 @@ fn loosen(root: &mut Value) {
     objects(root, "scenes").for_each(|scene| set_default(scene, "nodes", empty_list()));
     objects(root, "skins").for_each(|skin| set_default(skin, "joints", empty_list()));
     for camera in objects(root, "cameras") {
-        // The kind of a camera is told by its members.
+        // The reader goes by the members of a camera.
         remove_unless(camera, "type", Value::is_string);
         set_default(camera, "type", Value::from("perspective"));
     }
@@ -224,8 +224,8 @@ fn loosen(root: &mut Value) {
     }
 }
 
-/// What holds everywhere: null is the same as nothing, a name that is no text is none, and so is an extension that is no
-/// object. Integers that the crate would truncate become fractions, which it refuses. `key`: the member that has the value.
+/// Applies the rules for all objects: removes null members, names that are not strings and extensions that are not objects.
+/// Turns integers that the crate would truncate into floats, which it rejects. `key`: the member that holds the value.
 fn clean(value: &mut Value, key: Option<&str>) {
     match value {
         Value::Array(list) => list.iter_mut().for_each(|value| clean(value, key)),
@@ -260,20 +260,20 @@ fn clean_extensions(extensions: &mut Value) {
             clean(extension, None);
         }
     }
-    // Being there is all that it says.
+    // Its presence is all that matters.
     if let Some(unlit) = extensions.get_mut("KHR_materials_unlit").filter(|unlit| !unlit.is_object()) {
         *unlit = Value::Object(Map::new());
     }
 }
 
-/// Removes null members, which mean the same as missing ones.
+/// Returns a copy without null members.
 pub fn without_nulls(value: &Value) -> Value {
     let mut value = value.clone();
     clean(&mut value, None);
     value
 }
 
-/// Attributes that are never read may be anything.
+/// Removes attributes that are never read and are not indices.
 fn loosen_attributes(primitive: &mut Map<String, Value>) {
     set_default(primitive, "attributes", Value::Object(Map::new()));
     let is_read = |semantic: &str| {

@@ -15,7 +15,7 @@ use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
 use crate::mesh::{AlphaMode, Filter, Material, MipFilter, Sampler, Texture, TextureRef, UvTransform, Wrap};
 
-/// Reads the object of an extension that the crate has no type for at this place.
+/// Reads an extension that the crate has no type for at this place.
 fn extension<T: DeserializeOwned>(
     extensions: &Map<String, Value>,
     name: &str,
@@ -82,7 +82,7 @@ fn alpha_mode(document: &Document, material: &json::Material, here: &str, warnin
         Checked::Valid(JsonAlphaMode::Blend) => AlphaMode::Blend,
         Checked::Invalid => {
             let found = document.text_at(&format!("{here}.alphaMode"));
-            // An empty one is taken for a missing one.
+            // An empty string counts as missing.
             if !found.is_empty() {
                 let problem = format!("alpha mode “{found}” is not known; it is drawn opaque");
                 warnings.push(Warning::Other { code: "alpha-mode", place: here.to_owned(), problem });
@@ -92,15 +92,15 @@ fn alpha_mode(document: &Document, material: &json::Material, here: &str, warnin
     }
 }
 
-/// Reads the textures of one material. The crate has a type for KHR_texture_transform in textures of colours, but not in
-/// those of normals and occlusion.
+/// Reads the textures of one material. The crate has KHR_texture_transform typed for colour textures, but not for normal and
+/// occlusion textures.
 struct TextureReader<'a> {
     root: &'a Root,
     material: &'a str,
     warnings: &'a mut Warnings,
 }
 
-/// Texture, set of texture coordinates, extensions.
+/// Texture index, UV set, extensions.
 type DataTexture<'a> = (usize, u32, Option<&'a Map<String, Value>>);
 
 impl TextureReader<'_> {
@@ -157,7 +157,7 @@ pub fn textures(root: &Root) -> Result<Vec<Texture>, Problem> {
             Some(extensions) => extension(&extensions.others, "EXT_texture_webp", &here)?,
             None => None,
         };
-        // The crate's way to say that there is no source.
+        // The crate's value for a missing source.
         let source = Some(texture.source.value()).filter(|&source| source != u32::MAX as usize);
         let image = webp.and_then(|webp| webp.source).or(source);
         if let Some(image) = image {
@@ -174,7 +174,7 @@ pub fn textures(root: &Root) -> Result<Vec<Texture>, Problem> {
     Ok(textures)
 }
 
-/// Unknown codes get the default.
+/// Unknown codes become the default.
 fn read_sampler(sampler: &JsonSampler) -> Sampler {
     let wrap = |mode: Checked<WrappingMode>| match mode {
         Checked::Valid(WrappingMode::ClampToEdge) => Wrap::ClampToEdge,

@@ -18,70 +18,95 @@ pub fn read(
     joints: usize,
     warnings: &mut Warnings,
 ) -> Result<Influences, Problem> {
-    // All pairs of all rows, strongest first, and where each row ends.
-    let mut pairs: Vec<(u16, f32)> = Vec::new();
-    let mut ends: Vec<usize> = Vec::new();
+    let mut rows = Rows { max_count: 1, ..Rows::default() };
     let mut row: Vec<(u16, f64)> = Vec::new();
-    let (mut missing, mut normalized, mut most, mut largest_lost_weight) = (0, 0, 1, 0.0_f32);
     let mut lines = Lines::new(bytes);
     while let Some((line, content)) = lines.next_full_line() {
         if content.starts_with(b"#") {
             continue;
         }
-        if ends.len() == vertices {
+        if rows.ends.len() == vertices {
             let expected = format!("{vertices} rows, one for each vertex of the .obj");
             return Err(Problem::new(format!("line {line}"), expected, "more"));
         }
         let total = read_row(line, content, joints, &mut row)?;
+        rows.add(&mut row, total);
+    }
+    // With a single joint, rows have no columns, so there is nothing to count.
+    if rows.ends.len() < vertices && joints > 1 {
+        let expected = format!("{vertices} rows, one for each vertex of the .obj");
+        return Err(Problem::new(lines.place(), expected, format!("{} and the end of the file", rows.ends.len())));
+    }
+    for _ in rows.ends.len()..vertices {
+        rows.pairs.push((0, 1.0));
+        rows.ends.push(rows.pairs.len());
+    }
+    rows.warn(file, warnings);
+    Ok(rows.influences())
+}
+
+/// The rows read so far, and what has to be reported about them.
+#[derive(Default)]
+struct Rows {
+    /// Pairs of joint and weight of all rows, strongest first.
+    pairs: Vec<(u16, f32)>,
+    /// End of each row in `pairs`.
+    ends: Vec<usize>,
+    max_count: usize,
+    missing: usize,
+    normalized: usize,
+    largest_lost_weight: f32,
+}
+
+impl Rows {
+    /// Adds a row, whose weights sum to `total`.
+    fn add(&mut self, row: &mut Vec<(u16, f64)>, total: f64) {
         if row.is_empty() {
-            missing += 1;
+            self.missing += 1;
             row.push((0, 1.0));
         } else if (total - 1.0).abs() > SUM_TOLERANCE {
-            normalized += 1;
+            self.normalized += 1;
         }
-        // Stable: of equal weights, the one that comes first in the file stays first.
+        // Stable: equal weights keep the file's order.
         row.sort_by(|a, b| b.1.total_cmp(&a.1));
-        most = most.max(row.len());
+        self.max_count = self.max_count.max(row.len());
         if let Some(lost) = row.get(MAX_INFLUENCES) {
-            largest_lost_weight = largest_lost_weight.max((lost.1 / total) as f32);
+            self.largest_lost_weight = self.largest_lost_weight.max((lost.1 / total) as f32);
         }
         row.truncate(MAX_INFLUENCES);
         let kept: f64 = row.iter().map(|pair| pair.1).sum();
-        pairs.extend(row.iter().map(|&(joint, weight)| (joint, (weight / kept) as f32)));
-        ends.push(pairs.len());
+        self.pairs.extend(row.iter().map(|&(joint, weight)| (joint, (weight / kept) as f32)));
+        self.ends.push(self.pairs.len());
     }
-    // With a single joint, rows have no columns, so there is nothing to count.
-    if ends.len() < vertices && joints > 1 {
-        let expected = format!("{vertices} rows, one for each vertex of the .obj");
-        return Err(Problem::new(lines.place(), expected, format!("{} and the end of the file", ends.len())));
-    }
-    for _ in ends.len()..vertices {
-        pairs.push((0, 1.0));
-        ends.push(pairs.len());
-    }
-    let mesh = || file.to_owned();
-    if most > MAX_INFLUENCES {
-        let (found, kept) = (most, MAX_INFLUENCES);
-        warnings.push(Warning::InfluencesDropped { mesh: mesh(), found, kept, largest_lost_weight });
-    }
-    if missing > 0 {
-        warnings.push(Warning::WeightsMissing { mesh: mesh(), vertices: missing });
-    }
-    if normalized > 0 {
-        warnings.push(Warning::WeightsNormalized { mesh: mesh(), vertices: normalized });
-    }
-    let stride = most.min(MAX_INFLUENCES).next_multiple_of(4);
-    let mut influences =
-        Influences { stride, joints: vec![0; stride * vertices], weights: vec![0.0; stride * vertices] };
-    let mut start = 0;
-    for (vertex, &end) in ends.iter().enumerate() {
-        for (at, &(joint, weight)) in pairs[start..end].iter().enumerate() {
-            influences.joints[vertex * stride + at] = joint;
-            influences.weights[vertex * stride + at] = weight;
+
+    fn warn(&self, file: &str, warnings: &mut Warnings) {
+        let mesh = || file.to_owned();
+        if self.max_count > MAX_INFLUENCES {
+            let (found, kept, largest_lost_weight) = (self.max_count, MAX_INFLUENCES, self.largest_lost_weight);
+            warnings.push(Warning::InfluencesDropped { mesh: mesh(), found, kept, largest_lost_weight });
         }
-        start = end;
+        if self.missing > 0 {
+            warnings.push(Warning::WeightsMissing { mesh: mesh(), vertices: self.missing });
+        }
+        if self.normalized > 0 {
+            warnings.push(Warning::WeightsNormalized { mesh: mesh(), vertices: self.normalized });
+        }
     }
-    Ok(influences)
+
+    fn influences(&self) -> Influences {
+        let stride = self.max_count.min(MAX_INFLUENCES).next_multiple_of(4);
+        let count = stride * self.ends.len();
+        let mut influences = Influences { stride, joints: vec![0; count], weights: vec![0.0; count] };
+        let mut start = 0;
+        for (vertex, &end) in self.ends.iter().enumerate() {
+            for (at, &(joint, weight)) in self.pairs[start..end].iter().enumerate() {
+                influences.joints[vertex * stride + at] = joint;
+                influences.weights[vertex * stride + at] = weight;
+            }
+            start = end;
+        }
+        influences
+    }
 }
 
 /// Reads the influences of one row, in the file's order, and returns the sum of their weights.

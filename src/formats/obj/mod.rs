@@ -129,7 +129,7 @@ pub(super) fn load(
     Ok(asset)
 }
 
-/// What a .skel and a .attach add to the mesh. Influences are those of the file's vertices.
+/// Contents of a .skel and a .attach. The influences are those of the file's vertices.
 struct Rig {
     skeleton: Skeleton,
     skin: Skin,
