@@ -1,4 +1,4 @@
-//! Every real file: what must load loads, what must be refused is refused in words, and nothing panics.
+//! Every real file: each one loads or is refused with a reason, as it should be, and none panics.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use gaitway::formats::{FileSet, LoadError, load, missing_files};
 
 use crate::data_folder::data_folder;
 
-/// A model with the files that it names, as a person would drop them.
+/// A model with the files that it refers to, as a user would drop them.
 pub fn file_set(path: &Path) -> FileSet {
     let folder = path.parent().expect("a file lies in a folder");
     let mut files = FileSet::default();
@@ -37,7 +37,7 @@ pub fn models_under(folder: &Path, endings: &[&str], out: &mut Vec<PathBuf>) {
 
 pub const GLTF: [&str; 4] = ["glb", "gltf", "vrm", "vrma"];
 
-/// Loads every model; the outcome as text where `check` does not like it, panics included.
+/// Loads every model and collects the complaints of `check`, and panics.
 fn sweep(folders: &[&str], endings: &[&str], check: impl Fn(&str, Result<Asset, LoadError>) -> Result<(), String>) {
     let Some(data) = data_folder() else { return };
     let mut paths = Vec::new();
@@ -58,7 +58,7 @@ fn sweep(folders: &[&str], endings: &[&str], check: impl Fn(&str, Result<Asset, 
     assert!(failures.is_empty(), "{} of {}:\n{}", failures.len(), paths.len(), failures.join("\n"));
 }
 
-/// What the loader promises about every asset: lengths agree and all indices are in range.
+/// Checks what the loader guarantees for every asset: lengths agree and all indices are in range.
 fn consistent(asset: &Asset) -> Result<(), String> {
     for (index, mesh) in asset.meshes.iter().enumerate() {
         let smallest_skin = asset
@@ -80,7 +80,7 @@ fn consistent(asset: &Asset) -> Result<(), String> {
     Ok(())
 }
 
-/// The extension for which a file of the collection must be refused.
+/// The extension that must be named when this file is refused.
 fn unreadable(name: &str) -> Option<&'static str> {
     let has = |part: &str| name.contains(part);
     if has("raco") {
@@ -240,7 +240,8 @@ fn other_programs_formats_are_sent_through_blender() {
     });
 }
 
-/// Joints of the largest skin, vertices as the file has them, clips, and the first clip's duration in seconds.
+/// Joints of the largest skin, vertices in the file, clips, and the first clip's duration in seconds, as counted by other
+/// programs. A negative duration isn't compared.
 struct Facts {
     path: &'static str,
     joints: usize,
@@ -300,7 +301,7 @@ const FACTS: &[Facts] = &[
 ];
 
 #[test]
-fn real_models_hold_what_other_programs_count_in_them() {
+fn real_models_contain_what_other_programs_count() {
     let Some(data) = data_folder() else { return };
     let mut failures = Vec::new();
     for facts in FACTS {
