@@ -1,10 +1,56 @@
-//! Gaitway: drop in a glTF character, watch it move, and see why it bends as it does.
+//! Gaitway: drop in a glTF character, watch it move, and see why it bends the way it does.
 //!
-//! One core with three faces: a web page, a native window and a command line. The layers go one way; ARCHITECTURE.md
-//! lists them and `tests/core/layering.rs` holds them.
+//! One core with three faces: a web page, a native window and a command line. A module uses only the layers below it;
+//! ARCHITECTURE.md lists them and `tests/core/layering.rs` enforces them.
 //!
-//! Metres, seconds, radians; right-handed, Y up, column vectors, quaternions x y z w, as glTF. Transforms are named
-//! `to_from_from`, so that neighbours in a product match: `model_from_joint * joint_from_bind`.
+//! Units are metres, seconds and radians; right-handed, Y up, column vectors, quaternions x y z w, as in glTF. Transforms are
+//! named `to_from_from`, so that neighbours in a product match: `model_from_joint * joint_from_bind`.
+//!
+//! # The main path
+//!
+//! Load two files, propose which joint follows which, retarget a clip, sample it, and write the model with the new clip.
+//! `examples/` has the same as programs.
+//!
+//! ```
+//! use gaitway::anim::SampleCursor;
+//! use gaitway::formats::{FileSet, load, write_model};
+//! use gaitway::retarget::{Body, Retargeting, propose};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! // Loaders never touch the disk: they read a set of files in memory, by name.
+//! let mut model_files = FileSet::default();
+//! model_files.insert("dwarf.glb", std::fs::read("assets/samples/dwarf.glb")?);
+//! let mut motion_files = FileSet::default();
+//! motion_files.insert("walk.bvh", std::fs::read("assets/samples/walk.bvh")?);
+//! let (model, motion) = (load(&model_files)?, load(&motion_files)?);
+//!
+//! // A map by joint names, which could also come from a file, resolved against these two skeletons.
+//! let proposal = propose(&model, &motion);
+//! let map = proposal.to_map(&model, &motion).resolve(&model, &motion)?;
+//!
+//! // Retargeting bakes an ordinary clip of the model.
+//! let (model_slots, motion_slots) = (proposal.model.humanoid(), proposal.motion.humanoid());
+//! let target = Body { asset: &model, slots: &model_slots };
+//! let source = Body { asset: &motion, slots: &motion_slots };
+//! let clip = Retargeting::new(target, source, 0, &map)?.bake()?.clip;
+//!
+//! // Joints that the clip doesn't animate keep their values: start from the rest pose.
+//! let mut pose = model.skeleton.rest().clone();
+//! clip.sample(&model.skeleton, 0.5, &mut SampleCursor::default(), &mut pose);
+//! assert_ne!(pose, *model.skeleton.rest());
+//!
+//! // The new file holds everything the old one did.
+//! let glb = write_model(&model_files, "dwarf.glb", &model.skeleton, &[&clip])?;
+//! let mut written = FileSet::default();
+//! written.insert("new.glb", glb);
+//! assert_eq!(load(&written)?.clips.len(), model.clips.len() + 1);
+//! # Ok(())
+//! # }
+//! ```
+
+#![forbid(unsafe_code)]
+// Files come from anyone. Whatever is wrong with them must be reported, not panic.
+#![warn(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
 pub mod anim;
 pub mod asset;

@@ -1,5 +1,7 @@
 //! The one binary: the command line natively, the page in wasm32.
 
+#![forbid(unsafe_code)]
+
 #[cfg(not(target_arch = "wasm32"))]
 fn main() -> std::process::ExitCode {
     gaitway::cli::main()

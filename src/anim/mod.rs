@@ -1,4 +1,24 @@
 //! Skeletons, poses and clips. Independent of files, GPU, user interface and clock.
+//!
+//! ```
+//! use gaitway::anim::{ClipBuilder, Interpolation, Joint, Keys, SampleCursor, Skeleton};
+//! use glam::Vec3;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let skeleton = Skeleton::new(vec![Joint { name: "hips".to_owned(), ..Joint::default() }])?;
+//! let hips = skeleton.find("hips").ok_or("no hips")?;
+//!
+//! let mut builder = ClipBuilder::new("step", &skeleton);
+//! let path = Keys::Translation(vec![Vec3::ZERO, Vec3::X]);
+//! builder.channel(hips, Interpolation::Linear, &[0.0, 1.0], path)?;
+//! let clip = builder.build();
+//!
+//! let mut pose = skeleton.rest().clone();
+//! clip.sample(&skeleton, 0.25, &mut SampleCursor::default(), &mut pose);
+//! assert_eq!(pose.locals[hips.get()].translation, Vec3::new(0.25, 0.0, 0.0));
+//! # Ok(())
+//! # }
+//! ```
 
 mod channel;
 mod clip;

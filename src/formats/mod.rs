@@ -1,5 +1,26 @@
 //! Loads files in memory as an [`Asset`], and writes GLB. Knows neither disk nor network: callers ask [`missing_files`] what
 //! else a file refers to, add it to the [`FileSet`], then call [`load`].
+//!
+//! ```
+//! use gaitway::formats::{FileSet, load, missing_files};
+//!
+//! # fn main() -> Result<(), gaitway::formats::LoadError> {
+//! let json = r#"{
+//!     "asset": { "version": "2.0" },
+//!     "nodes": [{ "name": "hips" }],
+//!     "buffers": [{ "uri": "fox.bin", "byteLength": 4 }]
+//! }"#;
+//! let mut files = FileSet::default();
+//! files.insert("fox.gltf", json.as_bytes());
+//! // The caller finds these files, wherever they are.
+//! assert_eq!(missing_files(&files), ["fox.bin"]);
+//! files.insert("fox.bin", [0; 4]);
+//!
+//! let asset = load(&files)?;
+//! assert!(asset.skeleton.find("hips").is_some());
+//! # Ok(())
+//! # }
+//! ```
 
 mod bvh;
 mod error;

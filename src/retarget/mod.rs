@@ -4,6 +4,27 @@
 //! The steps, in order: `recognize` finds humanoid slots, `map` proposes and resolves a joint map, `align` brings the two
 //! rests together, `transfer` computes the channels, `feet` plants the feet, `bake` builds the clip, `measure` compares it
 //! with its source. `pose`, `keys` and `math` are shared by all.
+//!
+//! ```
+//! use gaitway::formats::{FileSet, load};
+//! use gaitway::retarget::propose;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let open = |name: &str| -> Result<_, Box<dyn std::error::Error>> {
+//!     let mut files = FileSet::default();
+//!     files.insert(name, std::fs::read(format!("assets/samples/{name}"))?);
+//!     Ok(load(&files)?)
+//! };
+//! let (model, motion) = (open("mannequin.glb")?, open("walk.bvh")?);
+//!
+//! let proposal = propose(&model, &motion);
+//! let hips = model.skeleton.find("hips").ok_or("no hips")?;
+//! let pair = proposal.pairs.iter().find(|pair| pair.target == hips).ok_or("unmapped")?;
+//! assert_eq!(motion.skeleton.name(pair.source), "hip");
+//! println!("{} ({:.0} %)", pair.reason, 100.0 * pair.confidence);
+//! # Ok(())
+//! # }
+//! ```
 
 mod align;
 mod bake;

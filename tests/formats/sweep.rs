@@ -58,7 +58,7 @@ fn sweep(folders: &[&str], extensions: &[&str], check: impl Fn(&str, Result<Asse
     assert!(failures.is_empty(), "{} of {}:\n{}", failures.len(), paths.len(), failures.join("\n"));
 }
 
-/// What the loader guarantees for every asset: lengths agree and all indices are in range.
+/// Checks what the loader guarantees for every asset: lengths agree and all indices are in range.
 fn consistent(asset: &Asset) -> Result<(), String> {
     for (index, mesh) in asset.meshes.iter().enumerate() {
         let smallest_skin = asset
@@ -240,7 +240,8 @@ fn foreign_formats_are_rejected_with_advice() {
     });
 }
 
-/// Joints of the largest skin, vertices of the file, clips, and the first clip's duration in seconds.
+/// Joints of the largest skin, vertices in the file, clips, and the first clip's duration in seconds, as counted by other
+/// programs. A negative duration isn't compared.
 struct Facts {
     path: &'static str,
     joints: usize,

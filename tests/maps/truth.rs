@@ -1,5 +1,5 @@
-//! Which joint is which part of the body in real files, written down by a person reading the names (and, where there are no
-//! names, looking at the skeleton), and how much of it is recognised.
+//! The body parts of real skeletons, labelled by a person from the joints' names (from the skeleton's shape if there are none),
+//! and how many of them are recognized.
 
 use std::collections::BTreeMap;
 
@@ -10,10 +10,10 @@ use gaitway::retarget::{ProposedPair, Reason, Recognized, propose, recognize};
 
 use crate::data::open;
 
-/// One rig. Names are those of the left side; an empty one says that there is no such joint.
+/// One rig. Names are those of the left side; an empty name means that there is no such joint.
 struct Rig {
     files: &'static [&'static str],
-    /// What all names begin with.
+    /// The common prefix of all names.
     prefix: &'static str,
     /// Hips, spine, chest, upper chest, neck, head.
     trunk: [&'static str; 6],
@@ -23,7 +23,7 @@ struct Rig {
     fingers: [[&'static str; 3]; 5],
     /// Left eye, right eye, jaw.
     face: [&'static str; 3],
-    /// How a name of the left side becomes one of the right.
+    /// Turns a name of the left side into that of the right.
     sides: Sides,
 }
 
@@ -31,7 +31,7 @@ struct Rig {
 enum Sides {
     Begin(&'static str, &'static str),
     End(&'static str, &'static str),
-    /// Both written out, `left/right`.
+    /// Both are written out, as `left/right`.
     Both,
 }
 
@@ -251,7 +251,7 @@ const RIGS: &[Rig] = &[
     },
     Rig {
         files: &["bvh/cosc422_Walk.bvh"],
-        // ToSpine only leads to the spine: it never turns.
+        // ToSpine only connects the spine: it never rotates.
         trunk: ["Hips", "Spine", "Spine1", "", "Neck", "Head"],
         fingers: NO_FINGERS,
         ..CMU
@@ -296,7 +296,8 @@ const RIGS: &[Rig] = &[
     Rig {
         files: &["threejs/RobotExpressive.glb"],
         prefix: "",
-        // Legs and trunk hang on Body; Hips is above the legs' joint. Feet hang on the floor, hands are only palms.
+        // Body is the parent of legs and spine; Hips is above the legs' joint. Feet are parented to the floor, and hands are
+        // only palms.
         trunk: ["Body", "Abdomen", "#10", "", "Neck", "#12"],
         limbs: ["#15/#35", "UpperArm.L", "LowerArm.L", "", "UpperLeg.L", "#57/#62", "#3/#67", ""],
         fingers: [
@@ -321,7 +322,7 @@ const RIGS: &[Rig] = &[
     Rig {
         files: &["cosc422/dwarf.glb"],
         prefix: "",
-        // The head sits on spine1, which people have always given the neck's motion.
+        // The head's parent is spine1, which people have always mapped to the neck.
         trunk: ["middle", "spine2", "", "", "spine1", "head"],
         limbs: ["", "lsholda", "lelbo", "lwrist", "lhip", "lknee", "lankle", "ltoe"],
         fingers: NO_FINGERS,
@@ -352,7 +353,7 @@ const RIGS: &[Rig] = &[
         face: NO_FACE,
         sides: Sides::Begin("L", "R"),
     },
-    // Without names, by node. The man looks along +X, so his left is at -Z; the figure looks along +Z.
+    // Unnamed, so by node. The man faces +X, so his left is at -Z; the figure faces +Z.
     Rig {
         files: &["khronos/CesiumMan/glTF-Binary/CesiumMan.glb", "khronos/RiggedFigure/glTF-Binary/RiggedFigure.glb"],
         prefix: "",
@@ -453,8 +454,8 @@ const RIGS: &[Rig] = &[
     },
 ];
 
-/// What is no human body, and one arm that is not enough of one.
-const NO_BODIES: [&str; 9] = [
+/// Skeletons that aren't human bodies, and an arm that isn't enough of one.
+const NOT_BODIES: [&str; 9] = [
     "khronos/Fox/glTF-Binary/Fox.glb",
     "khronos/Monster/glTF-Binary/Monster.glb",
     "khronos/RiggedSimple/glTF-Binary/RiggedSimple.glb",
@@ -512,7 +513,7 @@ fn without_humanoid(asset: Asset) -> Asset {
     Asset::new(AssetParts { humanoid: None, ..asset.into_parts() }).expect("indices in range")
 }
 
-/// All files by names and shape alone, also those that say themselves what is what.
+/// Visits every file without its own humanoid map, so that names and shape alone decide.
 fn each_file(mut visit: impl FnMut(&str, &Asset, &BTreeMap<Slot, String>)) {
     for rig in RIGS {
         for path in rig.files {
@@ -527,7 +528,7 @@ fn each_file(mut visit: impl FnMut(&str, &Asset, &BTreeMap<Slot, String>)) {
     }
 }
 
-/// How many parts are right, of those that are there or were found.
+/// Counts the correct parts, those that exist or were found, and describes the wrong ones.
 fn score(asset: &Asset, found: &Recognized, truth: &BTreeMap<Slot, String>) -> (usize, usize, Vec<String>) {
     let (mut right, mut all, mut wrong) = (0, 0, Vec::new());
     for &slot in Slot::ALL {
@@ -569,13 +570,13 @@ fn parts_of_real_files_are_recognised() {
 
 #[test]
 fn what_is_no_body_gets_no_parts() {
-    for path in NO_BODIES {
+    for path in NOT_BODIES {
         let Some(asset) = open(path) else { return };
         assert_eq!(recognize(&asset), Recognized::default(), "{path}");
     }
 }
 
-/// `leftThumbMetacarpal` is not in this file's own map, but its joint is there.
+/// One file's own map lacks `leftThumbMetacarpal`, although the joint exists.
 #[test]
 fn files_that_say_what_is_what_are_believed() {
     for path in ["vrm/vrm0_cryptovoxels.vrm", "vrm/chatvrm_idle_loop.vrma"] {
@@ -592,7 +593,7 @@ fn files_that_say_what_is_what_are_believed() {
     }
 }
 
-/// The same skeleton, skins and first clip with the nodes listed from last to first: siblings change places.
+/// The same skeleton, skins and first clip with the nodes listed in reverse, which reverses siblings.
 fn with_nodes_reversed(asset: &Asset) -> Asset {
     let old = &asset.skeleton;
     let count = old.len();
@@ -648,7 +649,7 @@ fn the_order_of_nodes_does_not_change_what_is_recognised() {
     });
 }
 
-/// Every rig with every other: nobody's left follows a right, and little is lost.
+/// Every rig with every other one: no left joint follows a right one, and few parts are lost.
 #[test]
 fn no_proposal_crosses_sides() {
     let mut files: Vec<(String, Asset, BTreeMap<JointIndex, Slot>)> = Vec::new();

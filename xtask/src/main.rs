@@ -1,5 +1,7 @@
 //! Tasks for working on the repository, run as `cargo xtask TASK`. Each task sets up what it needs first.
 
+#![forbid(unsafe_code)]
+
 mod data;
 mod page;
 mod process;

@@ -8,7 +8,7 @@ use anyhow::Context;
 
 use crate::process::{repository, run};
 
-/// What rustc emits for wasm32 today and every browser with SIMD has.
+/// WebAssembly features that rustc uses today. Every browser with SIMD supports them.
 const WASM_FEATURES: [&str; 8] = [
     "--enable-simd",
     "--enable-bulk-memory",
@@ -24,7 +24,7 @@ pub fn dist() -> PathBuf {
     repository().join("dist")
 }
 
-/// `url`: where the site will be, for what has to name whole addresses.
+/// `url` is the site's future URL, for link previews.
 pub fn build(features: &[&str], url: Option<&str>) -> anyhow::Result<()> {
     let features = features.join(",");
     let mut arguments = vec!["build", "--offline"];
@@ -32,7 +32,7 @@ pub fn build(features: &[&str], url: Option<&str>) -> anyhow::Result<()> {
         arguments.extend(["--features", &features]);
     }
     run("trunk", &arguments)?;
-    let wasm = file_ending("_bg.wasm")?;
+    let wasm = file_with_suffix("_bg.wasm")?;
     optimise(&wasm)?;
     rename_imports(&wasm)?;
     shorten_scripts()?;
@@ -52,7 +52,7 @@ fn optimise(wasm: &Path) -> anyhow::Result<()> {
     )
 }
 
-/// The script has the program's name with another ending.
+/// The script has the program's name with another suffix.
 fn rename_imports(wasm: &Path) -> anyhow::Result<()> {
     let program = wasm.to_str().context("the repository's path is not UTF-8")?;
     let script = program.replace("_bg.wasm", ".js");
@@ -68,20 +68,20 @@ fn shorten_scripts() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The host may send the program compressed, and then the length it gives is not the one that arrives.
+/// If the host sends the program compressed, its Content-Length isn't the length that the page counts up to.
 fn write_length(wasm: &Path) -> anyhow::Result<()> {
     let index = dist().join("index.html");
     let length = fs::metadata(wasm)?.len();
     let html = fs::read_to_string(&index).context("dist/index.html")?;
     let marked = html.replacen(" data-wasm=", &format!(" data-bytes=\"{length}\" data-wasm="), 1);
-    anyhow::ensure!(marked != html, "dist/index.html does not name the program: see pattern_script in Trunk.toml");
+    anyhow::ensure!(marked != html, "dist/index.html doesn't name the program: see pattern_script in Trunk.toml");
     Ok(fs::write(&index, marked)?)
 }
 
-fn file_ending(ending: &str) -> anyhow::Result<PathBuf> {
+fn file_with_suffix(suffix: &str) -> anyhow::Result<PathBuf> {
     let mut paths = files()?.into_iter();
-    let found = paths.find(|path| path.to_str().is_some_and(|path| path.ends_with(ending)));
-    found.with_context(|| format!("trunk left no *{ending} in dist/"))
+    let found = paths.find(|path| path.to_str().is_some_and(|path| path.ends_with(suffix)));
+    found.with_context(|| format!("trunk left no *{suffix} in dist/"))
 }
 
 fn files() -> anyhow::Result<Vec<PathBuf>> {

@@ -1,15 +1,16 @@
-//! How large the page is on its way: with both back ends at most 1.9 MB. Compressed copies are left beside the files.
+//! Measures the page's download and leaves compressed copies beside the files.
 
 use anyhow::Context;
 
 use crate::page::dist;
 use crate::process::run;
 
-const MOST_BYTES: &str = "1900000";
+/// With both back ends, compressed with brotli.
+const MAX_BYTES: &str = "1900000";
 
-/// `limited`: fails when it is more than that.
+/// If `limited`, fails when the page exceeds [`MAX_BYTES`].
 pub fn compress_and_print(limited: bool) -> anyhow::Result<()> {
     let dist = dist();
     let folder = dist.to_str().context("the repository's path is not UTF-8")?;
-    run("node", &["xtask/site/sizes.mjs", folder, if limited { MOST_BYTES } else { "Infinity" }])
+    run("node", &["xtask/site/sizes.mjs", folder, if limited { MAX_BYTES } else { "Infinity" }])
 }
