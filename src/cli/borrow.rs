@@ -1,4 +1,4 @@
-//! What the subcommands that borrow motion have in common: reading the motion and the map, and naming joints.
+//! Shared by the subcommands that borrow motion: opening motions, maps and links, and naming joints.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,8 @@ use clap::Args;
 
 use super::state_of_view;
 use crate::anim::{JointIndex, Skeleton};
-use crate::files::{Opened, Role, read_map, read_paths};
+use crate::editor::Contents;
+use crate::files::{Opened, Role, open_view, read_map, read_paths};
 use crate::library::{Library, Motion};
 use crate::retarget::JointMap;
 use crate::state::{Command, MotionMap, ViewerState, apply, maps_in_force, settled_maps};
@@ -23,7 +24,7 @@ pub(super) struct Borrowing {
     pub map: Option<PathBuf>,
 }
 
-/// Reads one motion; what is odd about it is said.
+/// Opens one motion and prints its warnings.
 pub(super) fn open_motion(path: &Path) -> anyhow::Result<Motion> {
     let contents = read_paths(&[path.to_owned()], Role::Motion)?;
     let motions = contents.motions.unwrap_or_default();
@@ -31,10 +32,14 @@ pub(super) fn open_motion(path: &Path) -> anyhow::Result<Motion> {
     let Some(motion) = motions.into_iter().next().filter(|_| count == 1) else {
         bail!("{}: expected one motion, found {count}", path.display());
     };
+    print_warnings(&motion);
+    Ok(motion)
+}
+
+fn print_warnings(motion: &Motion) {
     for warning in motion.asset.warnings.iter() {
         eprintln!("warning: {}: {warning}", motion.source);
     }
-    Ok(motion)
 }
 
 pub(super) fn open_map(path: &Path) -> anyhow::Result<JointMap> {
@@ -42,7 +47,7 @@ pub(super) fn open_map(path: &Path) -> anyhow::Result<JointMap> {
     Ok(read_map(&path.display().to_string(), &bytes)?)
 }
 
-/// Puts model and motions into the library and makes the borrowed clips.
+/// Builds the library of model and motions, including the borrowed clips.
 pub(super) fn load_library(opened: Opened, borrowing: &Borrowing) -> anyhow::Result<Library> {
     let Opened { model, mut motions, map, .. } = opened;
     let map = match &borrowing.map {
@@ -65,32 +70,31 @@ pub(super) fn load_library(opened: Opened, borrowing: &Borrowing) -> anyhow::Res
     Ok(library)
 }
 
-/// What a link says, with the motions and maps that it names read as far as they are files here; the command line's own win.
-/// What is not used of it is said.
-pub(super) fn state_of_link(library: &mut Library, link: &str, borrowing: &Borrowing) -> ViewerState {
+/// Returns the view of a link, having opened the motions and maps it lists that are files on disk. Options of the command
+/// line override those of the link. Warns about anything that is not used.
+pub(super) fn state_of_link(library: &mut Library, link: &str, borrowing: &Borrowing) -> anyhow::Result<ViewerState> {
     let mut state = state_of_view(library, link);
-    if borrowing.motion.is_none() && !state.motion.is_empty() {
-        let read = |source: &String| match open_motion(Path::new(source.strip_prefix("file:").unwrap_or(source))) {
-            Ok(motion) => Some(motion),
-            Err(error) => {
-                eprintln!("warning: {error:#}; the link's motion is left out: it has to be a file here");
-                None
-            }
-        };
-        let motions = state.motion.iter().filter_map(read).collect();
+    let mut listed = state.clone();
+    if borrowing.motion.is_some() {
+        listed.motion.clear();
+    }
+    if borrowing.map.is_some() {
+        listed.map.clear();
+    }
+    let Contents { motions, map, problems, .. } = open_view(&mut listed, false, &[])?;
+    for problem in problems {
+        eprintln!("warning: {problem}");
+    }
+    if !listed.motion.is_empty() {
+        let motions = motions.unwrap_or_default();
+        motions.iter().for_each(print_warnings);
         library.set_motions(motions);
     }
     if borrowing.map.is_some() {
-        return state;
+        return Ok(state);
     }
-    for map in &mut state.map {
-        if let MotionMap::File(file) = map {
-            match open_map(Path::new(file.as_str())) {
-                Ok(read) => *map = MotionMap::Names(read),
-                Err(error) => eprintln!("warning: {error:#}; the link's map is left out: it has to be a file here"),
-            }
-        }
-    }
+    state.map = listed.map;
+    state.map.extend(map.map(MotionMap::Names));
     for problem in settled_maps(library, &state).1 {
         eprintln!("warning: {problem}");
     }
@@ -99,10 +103,10 @@ pub(super) fn state_of_link(library: &mut Library, link: &str, borrowing: &Borro
     for error in library.borrow_errors() {
         eprintln!("warning: {error}");
     }
-    state
+    Ok(state)
 }
 
-/// A joint's name, or `#NODE` where it has none or shares it.
+/// Returns a joint's name, or `#NODE` if the name is empty or not unique.
 pub(super) fn joint_name(skeleton: &Skeleton, joint: JointIndex) -> String {
     let name = skeleton.name(joint);
     let alone = skeleton.joints().filter(|&other| skeleton.name(other) == name).count() == 1;

@@ -31,7 +31,7 @@ fn posed(arguments: &ConvertArguments, link: &str) -> anyhow::Result<Vec<u8>> {
     };
     let mut library = Library::default();
     library.set(opened.model);
-    let state = state_of_link(&mut library, link, &Borrowing::default());
+    let state = state_of_link(&mut library, link, &Borrowing::default())?;
     let skeleton = library.active().map(|model| written_skeleton(model, &state, true)).unwrap_or_default();
     Ok(write_model(&set, &name, &skeleton, &[])?)
 }

@@ -10,7 +10,7 @@ use crate::state::{ClipChoice, ViewerState};
 pub(super) fn run(arguments: &PoseArguments) -> anyhow::Result<()> {
     let mut library = load_library(open(&arguments.input.files)?, &arguments.borrowing)?;
     let mut state = match &arguments.view {
-        Some(link) => state_of_link(&mut library, link, &arguments.borrowing),
+        Some(link) => state_of_link(&mut library, link, &arguments.borrowing)?,
         None => ViewerState { clip: ClipChoice::RestPose, ..ViewerState::default() },
     };
     set_moment(&library, &arguments.moment, arguments.borrowing.motion.is_some(), &mut state)?;

@@ -38,7 +38,7 @@ pub(super) fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
 fn view(arguments: &RenderArguments, library: &mut Library) -> anyhow::Result<ViewerState> {
     let mut state = ViewerState { clip: ClipChoice::RestPose, ..ViewerState::default() };
     if let Some(link) = &arguments.view {
-        state = state_of_link(library, link, &arguments.borrowing);
+        state = state_of_link(library, link, &arguments.borrowing)?;
     }
     set_moment(library, &arguments.moment, arguments.borrowing.motion.is_some(), &mut state)?;
     if let Some([yaw_degrees, pitch_degrees, distance]) = arguments.camera {

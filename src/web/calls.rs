@@ -241,7 +241,7 @@ pub(super) fn items_of(items: &Array) -> Result<Vec<Item>, String> {
         .iter()
         .map(|item| {
             if let Some(url) = item.as_string() {
-                return Ok(Item::Url(url));
+                return Ok(Item::Address(url.into()));
             }
             let pair: Array = item.dyn_into().map_err(|_| wrong())?;
             let name = pair.get(0).as_string().ok_or_else(wrong)?;

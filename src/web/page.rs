@@ -118,7 +118,7 @@ async fn first_contents(
             let mut problems = vec![error.to_string()];
             let mut models = Vec::new();
             for motion in &state.motion {
-                match open_items(vec![Item::Url(motion.clone())], Role::Model, &progress).await {
+                match open_items(vec![Item::Address(motion.into())], Role::Model, &progress).await {
                     Ok(found) => models.extend(found.models),
                     Err(error) => problems.push(error.to_string()),
                 }
