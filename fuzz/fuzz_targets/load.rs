@@ -9,8 +9,10 @@ use gaitway::formats::{FileSet, LoadOptions, convert, load, missing_files};
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     let mut files = FileSet::default();
-    // Without an extension the format is detected from the content, so that archives are tried, too.
-    files.insert("model", bytes.to_vec());
+    // Without an extension the format is detected from the bytes, so archives are covered too.
+    if files.add("model", bytes.to_vec()).is_err() {
+        return;
+    }
     let _ = missing_files(&files);
     let Ok(asset) = load(&files) else { return };
     for (index, mesh) in asset.meshes.iter().enumerate() {

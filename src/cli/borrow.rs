@@ -1,16 +1,16 @@
-//! What the subcommands that borrow motion have in common: reading the motion and the map, and naming joints.
+//! Shared by the subcommands that borrow motion: opening motions, maps and links, and naming joints.
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, bail};
+use anyhow::{Context, Error, bail};
 use clap::Args;
 
-use super::state_of_view;
 use crate::anim::{JointIndex, Skeleton};
-use crate::files::{Opened, Role, read_map, read_paths};
-use crate::library::{Library, Motion};
+use crate::editor::{Contents, Editor, Event, OpenedModel};
+use crate::files::{Opened, Role, open_view, read_map, read_paths};
+use crate::library::Motion;
 use crate::retarget::JointMap;
-use crate::state::{Command, MotionMap, ViewerState, apply, maps_in_force, settled_maps};
+use crate::state::{ClipChoice, Command, Sources, ViewerState, from_link};
 
 /// A motion to borrow, and by which map.
 #[derive(Debug, Default, Args)]
@@ -23,7 +23,7 @@ pub(super) struct Borrowing {
     pub map: Option<PathBuf>,
 }
 
-/// Reads one motion; what is odd about it is said.
+/// Opens one motion and prints its warnings.
 pub(super) fn open_motion(path: &Path) -> anyhow::Result<Motion> {
     let contents = read_paths(&[path.to_owned()], Role::Motion)?;
     let motions = contents.motions.unwrap_or_default();
@@ -31,10 +31,14 @@ pub(super) fn open_motion(path: &Path) -> anyhow::Result<Motion> {
     let Some(motion) = motions.into_iter().next().filter(|_| count == 1) else {
         bail!("{}: expected one motion, found {count}", path.display());
     };
+    print_warnings(&motion);
+    Ok(motion)
+}
+
+fn print_warnings(motion: &Motion) {
     for warning in motion.asset.warnings.iter() {
         eprintln!("warning: {}: {warning}", motion.source);
     }
-    Ok(motion)
 }
 
 pub(super) fn open_map(path: &Path) -> anyhow::Result<JointMap> {
@@ -42,9 +46,10 @@ pub(super) fn open_map(path: &Path) -> anyhow::Result<JointMap> {
     Ok(read_map(&path.display().to_string(), &bytes)?)
 }
 
-/// Puts model and motions into the library and makes the borrowed clips.
-pub(super) fn load_library(opened: Opened, borrowing: &Borrowing) -> anyhow::Result<Library> {
-    let Opened { model, mut motions, map, .. } = opened;
+/// Opens model, motions and map in an editor, at rest and not playing. Motions and map of the options override those that came
+/// with the model.
+pub(super) fn open_editor(opened: Opened, borrowing: &Borrowing) -> anyhow::Result<Editor> {
+    let Opened { model, model_files, mut motions, map, .. } = opened;
     let map = match &borrowing.map {
         Some(path) => Some(open_map(path)?),
         None => map,
@@ -53,56 +58,56 @@ pub(super) fn load_library(opened: Opened, borrowing: &Borrowing) -> anyhow::Res
         motions = vec![open_motion(path)?];
     }
     if motions.is_empty() && borrowing.map.is_some() {
-        bail!("--map says how a motion is borrowed; name the motion with --motion FILE");
+        bail!("--map says how a motion is retargeted; name the motion with --motion FILE");
     }
-    let mut library = Library::default();
-    library.set(model);
-    library.set_motions(motions);
-    library.borrow(map.as_ref());
-    if let Some(error) = library.borrow_errors().first() {
-        bail!("{error}");
-    }
-    Ok(library)
-}
-
-/// What a link says, with the motions and maps that it names read as far as they are files here; the command line's own win.
-/// What is not used of it is said.
-pub(super) fn state_of_link(library: &mut Library, link: &str, borrowing: &Borrowing) -> ViewerState {
-    let mut state = state_of_view(library, link);
-    if borrowing.motion.is_none() && !state.sources.motion.is_empty() {
-        let read = |source: &String| match open_motion(Path::new(source.strip_prefix("file:").unwrap_or(source))) {
-            Ok(motion) => Some(motion),
-            Err(error) => {
-                eprintln!("warning: {error:#}; the link's motion is left out: it has to be a file here");
-                None
-            }
-        };
-        let motions = state.sources.motion.iter().filter_map(read).collect();
-        library.set_motions(motions);
-    }
-    if borrowing.map.is_some() {
-        return state;
-    }
-    for map in &mut state.retarget.map {
-        if let MotionMap::File(file) = map {
-            match open_map(Path::new(file.as_str())) {
-                Ok(read) => *map = MotionMap::Names(read),
-                Err(error) => eprintln!("warning: {error:#}; the link's map is left out: it has to be a file here"),
-            }
+    if let Some(map) = &map {
+        for motion in &motions {
+            map.resolve(&model.asset, &motion.asset).with_context(|| motion.source.clone())?;
         }
     }
-    for problem in settled_maps(library, &state).1 {
-        eprintln!("warning: {problem}");
+    let models = vec![OpenedModel { model, files: model_files }];
+    let contents = Contents { models, motions: Some(motions), map, ..Contents::default() };
+    let mut editor = Editor::default();
+    editor.open(contents, None, &mut |_| Ok(())).map_err(Error::msg)?;
+    if let Some(Event::Problem(problem)) =
+        editor.take_events().into_iter().find(|event| matches!(event, Event::Problem(_)))
+    {
+        bail!("{problem}");
     }
-    apply(&mut state, library, Command::SettleMaps);
-    library.borrow_each(maps_in_force(library, &state));
-    for error in library.borrow_errors() {
-        eprintln!("warning: {error}");
-    }
-    state
+    editor.apply(Command::SetPlaying(false));
+    editor.apply(Command::SetClip(ClipChoice::RestPose));
+    Ok(editor)
 }
 
-/// A joint's name, or `#NODE` where it has none or shares it.
+/// Applies the view of a link to the model that is open, with the motions and maps it lists that are files on disk. Options of
+/// the command line override those of the link. Warns about anything that is not used.
+pub(super) fn apply_link(editor: &mut Editor, link: &str, borrowing: &Borrowing) -> anyhow::Result<()> {
+    let fragment = link.split_once('#').map_or(link, |(_, fragment)| fragment);
+    let (view, errors) = from_link(fragment);
+    errors.iter().for_each(|error| eprintln!("warning: {error}"));
+    let now = editor.state().clone();
+    let keeps_motions = borrowing.motion.is_some() || view.sources.motion.is_empty();
+    let motion = if keeps_motions { now.sources.motion } else { view.sources.motion };
+    let retarget = if borrowing.map.is_some() { now.retarget } else { view.retarget };
+    let sources = Sources { model: now.sources.model, motion, ..view.sources };
+    let held = if keeps_motions { editor.library().motions().to_vec() } else { Vec::new() };
+    let (mut contents, view) = open_view(ViewerState { sources, retarget, ..view }, false, &held)?;
+    std::mem::take(&mut contents.problems).iter().for_each(|problem| eprintln!("warning: {problem}"));
+    if keeps_motions {
+        contents.motions = Some(held);
+    } else {
+        contents.motions.iter().flatten().for_each(print_warnings);
+    }
+    editor.open(contents, Some(view), &mut |_| Ok(())).map_err(Error::msg)?;
+    for event in editor.take_events() {
+        if let Event::Problem(problem) = event {
+            eprintln!("warning: {problem}");
+        }
+    }
+    Ok(())
+}
+
+/// Returns a joint's name, or `#NODE` if the name is empty or not unique.
 pub(super) fn joint_name(skeleton: &Skeleton, joint: JointIndex) -> String {
     let name = skeleton.name(joint);
     let alone = skeleton.joints().filter(|&other| skeleton.name(other) == name).count() == 1;

@@ -1,15 +1,12 @@
 //! `gaitway convert`: any readable model as one GLB.
 
-use anyhow::{Context, bail};
+use anyhow::{Context, Error, bail};
 
-use super::borrow::{Borrowing, state_of_link};
+use super::borrow::{Borrowing, apply_link, open_editor};
 use super::{ConvertArguments, open};
-use crate::editor::ModelFiles;
+use crate::editor::Export;
 use crate::files::read_set;
-use crate::formats::{LoadOptions, convert, write_model};
-use crate::frame::{Frame, evaluate};
-use crate::library::Library;
-use crate::state::written_skeleton;
+use crate::formats::{LoadOptions, convert};
 
 pub(super) fn run(arguments: &ConvertArguments) -> anyhow::Result<()> {
     let bytes = match &arguments.view {
@@ -26,16 +23,10 @@ pub(super) fn run(arguments: &ConvertArguments) -> anyhow::Result<()> {
 /// A model of another format as it stands in a view.
 fn posed(arguments: &ConvertArguments, link: &str) -> anyhow::Result<Vec<u8>> {
     let opened = open(&arguments.input.files)?;
-    let ModelFiles { set, name } = match &opened.model_files {
-        Some(files) if opened.model.asset.format == "obj" => files.clone(),
-        _ => bail!("{}: --view is for .obj: a file that is a glTF already is written as it is", opened.model.source),
-    };
-    let mut library = Library::default();
-    library.set(opened.model);
-    let state = state_of_link(&mut library, link, &Borrowing::default());
-    let mut frame = Frame::default();
-    evaluate(&library, &state, 1.0, &mut frame);
-    let skeleton =
-        library.active().map(|model| written_skeleton(model, &state, Some(frame.pose()))).unwrap_or_default();
-    Ok(write_model(&set, &name, &skeleton, &[])?)
+    if opened.model.asset.format != "obj" {
+        bail!("{}: --view is for .obj: a file that is a glTF already is written as it is", opened.model.source);
+    }
+    let mut editor = open_editor(opened, &Borrowing::default())?;
+    apply_link(&mut editor, link, &Borrowing::default())?;
+    Ok(editor.export(Export::Whole { posed: true }).map_err(Error::msg)?.bytes)
 }

@@ -17,11 +17,12 @@ use anyhow::{Context, bail};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::anim::LoopMode;
+use crate::editor::Editor;
 use crate::files::{Opened, open_paths};
-use crate::library::{Library, Model};
+use crate::library::Model;
 use crate::mesh::SkinningMode;
 use crate::retarget::{Feet, Keep, RestChoice, RootPart};
-use crate::state::{ClipChoice, Command, ViewerState, active_clip, apply, choice_of_clip, from_link};
+use crate::state::{ClipChoice, Command, active_clip, choice_of_clip};
 use borrow::Borrowing;
 
 /// Drop in a glTF character, watch it move, and see why it bends as it does.
@@ -323,53 +324,38 @@ fn open(files: &[PathBuf]) -> anyhow::Result<Opened> {
     Ok(opened)
 }
 
-/// What a link, or its part after `#`, says about a model that is there already.
-fn state_of_view(library: &Library, link: &str) -> ViewerState {
-    let fragment = link.split_once('#').map_or(link, |(_, fragment)| fragment);
-    let (wanted, errors) = from_link(fragment);
-    for error in errors {
-        eprintln!("warning: {error}");
-    }
-    let mut state = ViewerState::default();
-    apply(&mut state, library, Command::Replace(Box::new(wanted)));
-    state
-}
-
-/// Puts the model at the wanted moment. What is not given stays as the state has it.
-/// `borrows`: a motion was named, so that its clips come first.
-fn set_moment(library: &Library, moment: &Moment, borrows: bool, state: &mut ViewerState) -> anyhow::Result<()> {
-    state.playback.playing = false;
-    if let Some(model) = library.active() {
+/// Goes to the wanted moment; what is not given stays. If `has_motion`, a motion was named, whose clips come first.
+fn set_moment(editor: &mut Editor, moment: &Moment, has_motion: bool) -> anyhow::Result<()> {
+    editor.apply(Command::SetPlaying(false));
+    if let Some(model) = editor.library().active() {
+        let retargeted = |name: &str| borrowed_clip(model, name).filter(|_| has_motion);
         let choice = match &moment.clip {
-            Some(name) => {
-                Some(borrowed_clip(model, name).filter(|_| borrows).unwrap_or(ClipChoice::Named(name.clone())))
-            }
-            None if borrows => borrowed_clip(model, "0"),
-            None => None,
+            Some(name) => Some(retargeted(name).unwrap_or(ClipChoice::Named(name.clone()))),
+            None => retargeted("0"),
         };
         if let Some(choice) = choice {
-            apply(state, library, Command::SetClip(choice));
+            editor.apply(Command::SetClip(choice));
         }
-        if let Some(name) = &moment.clip
-            && active_clip(model, state).is_none()
-        {
-            bail!("there is no clip “{name}”; {}", clips_text(model));
-        }
+    }
+    if let (Some(name), Some(model)) = (&moment.clip, editor.library().active())
+        && active_clip(model, editor.state()).is_none()
+    {
+        bail!("there is no clip “{name}”; {}", clips_text(model));
     }
     if let Some(time_secs) = moment.time {
         if !time_secs.is_finite() {
             bail!("--time {time_secs}: expected a number of seconds");
         }
-        state.playhead.range = None;
-        state.playback.loop_mode = LoopMode::Once;
-        apply(state, library, Command::Seek(time_secs));
+        editor.apply(Command::SetRange(None));
+        editor.apply(Command::SetLoopMode(LoopMode::Once));
+        editor.apply(Command::Seek(time_secs));
     }
     if let Some(skinning) = moment.skinning {
-        state.display.skinning = match skinning {
+        editor.apply(Command::SetSkinning(match skinning {
             Skinning::Linear => SkinningMode::Linear,
             Skinning::Rigid => SkinningMode::Rigid,
             Skinning::DualQuaternion => SkinningMode::DualQuaternion,
-        };
+        }));
     }
     Ok(())
 }

@@ -2,22 +2,17 @@
 
 use std::fmt::Write;
 
-use super::borrow::{load_library, state_of_link};
+use super::borrow::{apply_link, open_editor};
 use super::{PoseArguments, open, print_bytes, print_json, set_moment};
 use crate::frame::pose_document;
-use crate::state::{ClipChoice, Playhead, ViewerState};
 
 pub(super) fn run(arguments: &PoseArguments) -> anyhow::Result<()> {
-    let mut library = load_library(open(&arguments.input.files)?, &arguments.borrowing)?;
-    let mut state = match &arguments.view {
-        Some(link) => state_of_link(&mut library, link, &arguments.borrowing),
-        None => ViewerState {
-            playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
-            ..ViewerState::default()
-        },
-    };
-    set_moment(&library, &arguments.moment, arguments.borrowing.motion.is_some(), &mut state)?;
-    let document = pose_document(&library, &state);
+    let mut editor = open_editor(open(&arguments.input.files)?, &arguments.borrowing)?;
+    if let Some(link) = &arguments.view {
+        apply_link(&mut editor, link, &arguments.borrowing)?;
+    }
+    set_moment(&mut editor, &arguments.moment, arguments.borrowing.motion.is_some())?;
+    let document = pose_document(editor.library(), editor.state());
     if arguments.json {
         return print_json(&document);
     }

@@ -2,27 +2,25 @@
 
 use anyhow::{Context, bail};
 
-use super::borrow::{load_library, state_of_link};
+use super::borrow::{apply_link, open_editor};
 use super::{RenderArguments, open, set_moment};
+use crate::editor::Editor;
 use crate::files::encode_png;
 use crate::frame::{Frame, evaluate};
-use crate::library::Library;
 use crate::render::{Renderer, RendererOptions, headless_device, read_pixels};
-use crate::state::{
-    CameraChoice, ClipChoice, Command, OrbitCamera, Playhead, ViewerState, apply, resolve_camera, source_on_stage,
-};
+use crate::state::{CameraChoice, Command, OrbitCamera, resolve_camera, source_on_stage};
 
 pub(super) fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
-    let mut library = load_library(open(&arguments.input.files)?, &arguments.borrowing)?;
-    let state = view(arguments, &mut library)?;
+    let editor = open_view(arguments)?;
+    let (library, state) = (editor.library(), editor.state());
     let [width, height] = arguments.size;
     let mut frame = Frame::default();
-    evaluate(&library, &state, width as f32 / height as f32, &mut frame);
+    evaluate(library, state, width as f32 / height as f32, &mut frame);
 
     let (device, queue, adapter) = headless_device()?;
     eprintln!("drawing with {} ({})", adapter.name, adapter.backend);
     let mut renderer = Renderer::new(&device, &queue, RendererOptions { samples: 4 });
-    let source = source_on_stage(&library, &state).map(|source| source.model);
+    let source = source_on_stage(library, state).map(|source| source.model);
     for model in library.models().iter().chain(source) {
         renderer.upload(&device, &queue, model)?;
     }
@@ -35,26 +33,24 @@ pub(super) fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     std::fs::write(out, png).with_context(|| format!("{}", out.display()))
 }
 
-/// The link's view with the options on top.
-fn view(arguments: &RenderArguments, library: &mut Library) -> anyhow::Result<ViewerState> {
-    let mut state = ViewerState {
-        playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
-        ..ViewerState::default()
-    };
+/// The link's view, overridden by the other options.
+fn open_view(arguments: &RenderArguments) -> anyhow::Result<Editor> {
+    let mut editor = open_editor(open(&arguments.input.files)?, &arguments.borrowing)?;
+    let [width, height] = arguments.size;
+    let aspect = width as f32 / height as f32;
+    editor.set_aspect(aspect);
     if let Some(link) = &arguments.view {
-        state = state_of_link(library, link, &arguments.borrowing);
+        apply_link(&mut editor, link, &arguments.borrowing)?;
     }
-    set_moment(library, &arguments.moment, arguments.borrowing.motion.is_some(), &mut state)?;
+    set_moment(&mut editor, &arguments.moment, arguments.borrowing.motion.is_some())?;
     if let Some([yaw_degrees, pitch_degrees, distance]) = arguments.camera {
-        let [width, height] = arguments.size;
-        let target = resolve_camera(library, &state, width as f32 / height as f32).target;
         let orbit = OrbitCamera {
             yaw_radians: yaw_degrees.to_radians(),
             pitch_radians: pitch_degrees.to_radians(),
             distance,
-            target,
+            target: resolve_camera(editor.library(), editor.state(), aspect).target,
         };
-        apply(&mut state, library, Command::SetCamera(CameraChoice::Orbit(orbit)));
+        editor.apply(Command::SetCamera(CameraChoice::Orbit(orbit)));
     }
-    Ok(state)
+    Ok(editor)
 }

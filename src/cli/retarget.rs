@@ -51,7 +51,7 @@ pub(super) fn run(arguments: &RetargetArguments) -> anyhow::Result<()> {
                 model.source
             );
         }
-        let names = main_files(&set)?;
+        let names = main_files(&set);
         let [name] = names.as_slice() else {
             bail!("{}: expected one model to write, found {}", arguments.model.display(), names.len());
         };

@@ -8,7 +8,7 @@ use super::names::is_obj;
 use super::{Admit, Contents, Editor, Event, ModelFiles, OTHER_FILES, OpenedModel, short_name};
 use crate::library::{Library, Loaded, Model, ModelId, Motion};
 use crate::retarget::JointMap;
-use crate::state::{MotionMap, RetargetEdits, Sources, ViewerState};
+use crate::state::{Command, MotionMap, RetargetEdits, Sources, ViewerState, apply};
 
 /// What is kept of a loaded model besides the model.
 #[derive(Debug, Default)]
@@ -92,7 +92,10 @@ impl Editor {
         if !keeps_motions {
             self.library.set_motions(motions.unwrap_or_default());
         }
-        self.state = view.unwrap_or_else(|| self.view_of_new_model(origin, keeps_motions));
+        match view {
+            Some(view) => self.set_view(view),
+            None => self.state = self.view_of_new_model(origin, keeps_motions),
+        }
         if is_view {
             self.events.push(Event::ViewOpened);
         }
@@ -115,6 +118,11 @@ impl Editor {
             self.notify_undoable(Opened { name, is_new, others, evicted, lacks_joints, about_motions }.text());
         }
         Ok(())
+    }
+
+    /// Replaces the state, each value checked as if it had been set alone. Opening is the step of the history, not this.
+    fn set_view(&mut self, view: ViewerState) {
+        apply(&mut self.state, &self.library, Command::Replace(Box::new(view)));
     }
 
     /// The default view of a new model, with what a new model does not reset.
@@ -228,7 +236,7 @@ impl Editor {
             self.admit(&before, admit)?;
         }
         self.remember(before);
-        self.state = view;
+        self.set_view(view);
         self.state.retarget.map.extend(map.map(MotionMap::Names));
         self.library.set_motions(motions);
         let problems = self.retarget();

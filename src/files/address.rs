@@ -1,5 +1,4 @@
-//! Addresses of files as people copy them: GitHub's pages about a file are turned into the address of the file itself,
-//! which other pages may read.
+//! URLs as people copy them: a GitHub page about a file is replaced by the raw file, which other pages are allowed to read.
 
 use std::borrow::Cow;
 
@@ -8,8 +7,8 @@ const RAW: &str = "https://raw.githubusercontent.com";
 const GISTS: &str = "gist.github.com";
 const RAW_GISTS: &str = "https://gist.githubusercontent.com";
 
-/// The address of the file that a page of GitHub is about; any other address comes back as it is. Branches whose name has
-/// slashes work too, since the raw form has the same path. Of a gist without a file's name it is the first file.
+/// Returns the raw URL of the file that a GitHub page shows; any other URL is returned unchanged. Branch names with slashes
+/// work too, since the raw URL has the same path. A gist without a file name gives its first file.
 pub fn raw_address(url: &str) -> Cow<'_, str> {
     raw_of_page(url).map_or(Cow::Borrowed(url), Cow::Owned)
 }
@@ -19,7 +18,7 @@ fn raw_of_page(url: &str) -> Option<String> {
     if !scheme.eq_ignore_ascii_case("https") && !scheme.eq_ignore_ascii_case("http") {
         return None;
     }
-    // What stands behind `?` and `#` (raw=true, a line, a token) is about the page.
+    // Query and fragment (raw=true, a line, a token) refer to the page.
     let rest = rest.split(['?', '#']).next()?;
     let (host, path) = rest.split_once('/')?;
     let host = host.to_ascii_lowercase();

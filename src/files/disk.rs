@@ -1,210 +1,220 @@
-//! Models from disk: the named files, folders with all that is in them, and what a model names beside itself.
+//! Opens files and folders on disk.
 
+use std::ffi::OsStr;
 use std::path::{Component, Path, PathBuf};
+use std::pin::pin;
+use std::task::{Context, Poll, Waker};
 
-use super::sort::Origins;
-use super::{Role, SortError, decode_images, sort};
+use super::open::{open_items, open_read};
+use super::origins::Origins;
+use super::read::{FilesRead, Item, read_items};
+use super::source::{Content, Located, Progress, Reading, Source};
+use super::{OpenError, Role, SortError, decode_images, view};
+use crate::asset::{Asset, Image};
 use crate::editor::{Contents, ModelFiles, OpenedModel};
-use crate::formats::{FileSet, missing_files};
-use crate::library::{Model, Motion};
+use crate::formats::FileSet;
+use crate::library::{ImageData, Model, Motion};
 use crate::retarget::JointMap;
 use crate::samples;
+use crate::state::ViewerState;
 
-/// What was read: a model, what it may borrow from, and the names of all files.
+/// One model with the motions and the joint map that were opened along with it.
 #[derive(Debug)]
 pub struct Opened {
     pub model: Model,
-    /// What the model was read from; none for a sample.
+    /// `None` for a sample generated in code.
     pub model_files: Option<ModelFiles>,
     pub motions: Vec<Motion>,
     pub map: Option<JointMap>,
+    /// Names of all files that were read.
     pub files: Vec<String>,
 }
 
-/// Why nothing could be opened.
-#[derive(Debug, thiserror::Error)]
-pub enum OpenError {
-    #[error("{}: {source}", path.display())]
-    Read { path: PathBuf, source: std::io::Error },
-    #[error("{}: {found} bytes, more than the {most} that are read at once", path.display())]
-    TooLarge { path: PathBuf, found: u64, most: u64 },
-    #[error("{}: more than {most} files in the folder; name the model's own files instead", path.display())]
-    TooManyFiles { path: PathBuf, most: usize },
-    #[error("{name}: there is no such sample; there are: sample:{}", samples::names().join(", sample:"))]
-    NoSuchSample { name: String },
-    #[error(transparent)]
-    Files(#[from] SortError),
-}
-
-const MOST_BYTES: u64 = 2 << 30;
-const MOST_FILES: usize = 4096;
-const MOST_FOLDERS_DEEP: usize = 16;
-
-/// Reads one model from files and folders, together with the files that it names beside itself, motions and a joint map.
-/// `sample:NAME` is one of the characters that come along. A motion alone is shown as a model.
+/// Opens exactly one model from files, folders and samples (`sample:NAME`), together with the files they refer to, motions
+/// and a joint map. A motion by itself is opened as a model.
 pub fn open_paths(paths: &[PathBuf]) -> Result<Opened, OpenError> {
-    let (set, samples, origins) = read(paths)?;
-    open_set(&set, samples, &origins, Role::Model)
+    finish(async { only_model(read_items(&Disk, items(paths), NO_PROGRESS).await?).await })
 }
 
-/// The bytes behind paths, as they are: for whoever writes a file anew from them.
+/// Reads files, folders and samples, and the files they refer to, without parsing them.
 pub fn read_set(paths: &[PathBuf]) -> Result<FileSet, OpenError> {
-    Ok(read(paths)?.0)
+    Ok(finish(read_items(&Disk, items(paths), NO_PROGRESS))?.set)
 }
 
-/// A model from files in memory, as they are dropped onto the window.
+/// Opens exactly one model from files in memory. `source` is what a folder or an archive of these files would be called.
 pub fn open_bytes(files: &FileSet, source: String) -> Result<Opened, OpenError> {
-    open_set(files, Vec::new(), &Origins { other: source, ..Origins::default() }, Role::Model)
+    let names = files.names().map(str::to_owned).collect();
+    let origins = Origins { container: source, ..Origins::default() };
+    finish(only_model(FilesRead { set: files.clone(), names, origins, ..FilesRead::default() }))
 }
 
-/// Reads whatever the files are: a model, motions, a joint map, or several of these.
+/// Opens whatever the files are: models, motions, a joint map, or several of these.
 pub fn read_paths(paths: &[PathBuf], role: Role) -> Result<Contents, OpenError> {
-    let (set, samples, origins) = read(paths)?;
-    contents(&set, samples, &origins, role)
+    finish(open_items(&Disk, items(paths), role, NO_PROGRESS))
 }
 
-fn open_set(set: &FileSet, samples: Vec<Model>, origins: &Origins, role: Role) -> Result<Opened, OpenError> {
-    let has_sample = !samples.is_empty();
-    let Contents { mut models, motions, map, .. } = contents(set, samples, origins, role)?;
+/// Opens the files of a view that are on disk, except for its model if `with_model` is not set and for motions that are
+/// among `held`. See `view` for the details.
+pub fn open_view(view: ViewerState, with_model: bool, held: &[Motion]) -> Result<(Contents, ViewerState), OpenError> {
+    finish(view::open_view(&Disk, view, with_model, held, NO_PROGRESS))
+}
+
+const NO_PROGRESS: Progress<'_> = &|_, _, _| ();
+
+fn items(paths: &[PathBuf]) -> Vec<Item> {
+    paths.iter().map(|path| Item::Address(path.into())).collect()
+}
+
+async fn only_model(read: FilesRead) -> Result<Opened, OpenError> {
+    let mut files = read.names.clone();
+    let has_sample = !read.samples.is_empty();
+    let Contents { mut models, motions, map, .. } = open_read(&Disk, read, Role::Model).await?;
     if models.len() > 1 {
         let found = models.into_iter().map(|opened| opened.model.source).collect();
         return Err(SortError::SeveralModels { found }.into());
     }
-    let no_model = || SortError::NoModel { found: set.names().map(str::to_owned).collect() };
-    let OpenedModel { model, files: model_files } = models.pop().ok_or_else(no_model)?;
-    let mut files: Vec<String> = set.names().map(str::to_owned).collect();
+    let Some(OpenedModel { model, files: model_files }) = models.pop() else {
+        return Err(SortError::NoModel { found: files }.into());
+    };
     if has_sample {
         files.insert(0, model.source.clone());
     }
     Ok(Opened { model, model_files, motions: motions.unwrap_or_default(), map, files })
 }
 
-fn contents(set: &FileSet, samples: Vec<Model>, origins: &Origins, role: Role) -> Result<Contents, OpenError> {
-    // Files beside a sample that is the model are what it borrows from, whatever they hold.
-    let role = if samples.is_empty() || role == Role::Motion { role } else { Role::Any };
-    let mut sorted = if set.is_empty() && !samples.is_empty() { Default::default() } else { sort(set, role)? };
-    let models = std::mem::take(&mut sorted.models).into_iter().map(|(name, mut asset)| {
-        let images = decode_images(&mut asset);
-        origins.model(set, name, asset, images)
-    });
-    Ok(origins.contents(sorted, models.collect(), samples, role))
-}
-
-/// All files that the paths stand for, with what they name beside themselves; and the samples among the paths.
-fn read(paths: &[PathBuf]) -> Result<(FileSet, Vec<Model>, Origins), OpenError> {
-    let mut reader = Reader::default();
-    let mut samples = Vec::new();
-    let mut origins = Origins::default();
-    for path in paths {
-        if let Some(name) = path.to_str().and_then(|path| path.strip_prefix("sample:")) {
-            let source = format!("sample:{name}");
-            let before = origins.known.len();
-            for (file, bytes) in samples::files(name) {
-                reader.set.insert(file.to_owned(), bytes.to_vec());
-                origins.known.push((file.to_owned(), source.clone()));
-            }
-            if origins.known.len() == before {
-                samples.push(samples::load(name).ok_or_else(|| OpenError::NoSuchSample { name: source.clone() })?);
-                origins.known.push((source.clone(), source));
-            }
-        } else if let Some(name) = reader.add(path)? {
-            origins.known.push((name.clone(), name));
+/// Drives a future of [`Disk`], which never has to wait.
+fn finish<T>(future: impl Future<Output = T>) -> T {
+    let mut future = pin!(future);
+    loop {
+        if let Poll::Ready(output) = future.as_mut().poll(&mut Context::from_waker(Waker::noop())) {
+            return output;
         }
     }
-    origins.other = paths.iter().find_map(|path| path.file_name()).map_or_else(String::new, lossy);
-    // A sidecar may name others in turn, as a .gltf inside a folder does: look again until nothing new turns up.
-    let mut missing = missing_files(&reader.set);
-    while reader.add_beside(&missing)? {
-        missing = missing_files(&reader.set);
-    }
-    Ok((reader.set, samples, origins))
 }
 
-#[derive(Default)]
-struct Reader {
-    set: FileSet,
-    bytes: u64,
-    /// Folders that the named files lie in: where what they name is looked for.
-    folders: Vec<PathBuf>,
+const MAX_FILES: usize = 4096;
+const MAX_FOLDER_DEPTH: usize = 16;
+
+struct Disk;
+
+enum Place {
+    Path(PathBuf),
+    Embedded(&'static [u8]),
 }
 
-impl Reader {
-    /// The name in the set, unless the path is a folder.
-    fn add(&mut self, path: &Path) -> Result<Option<String>, OpenError> {
-        // A model of several files may be named by what their names share.
-        let of_stem = path.file_name().map(|stem| path.with_file_name(lossy(stem) + ".obj"));
-        let of_stem = of_stem.filter(|of_stem| !path.exists() && of_stem.is_file());
-        let path = of_stem.as_deref().unwrap_or(path);
-        let folder = if path.is_dir() { path } else { path.parent().unwrap_or(Path::new("")) };
-        if !self.folders.iter().any(|other| other == folder) {
-            self.folders.push(folder.to_owned());
-        }
+impl Source for Disk {
+    type Place = Place;
+    /// The folder.
+    type Base = PathBuf;
+    type Decoding = ();
+
+    const MAX_BYTES: u64 = 2 << 30;
+
+    fn locate(&self, address: &OsStr) -> Result<Located<Place, PathBuf>, OpenError> {
+        let path = existing(Path::new(address));
+        let label = path.file_name().map_or_else(String::new, lossy);
         if path.is_dir() {
-            return self.add_folder(path, path, 0).map(|()| None);
+            let mut files = Vec::new();
+            list_folder(&path, &path, 0, &mut files)?;
+            return Ok(Located { content: Content::Folder(files), base: path, label });
         }
-        let name = path.file_name().map_or_else(String::new, lossy);
-        // Two files of the same name from two folders: the second keeps its path.
-        let name = if self.set.get(&name).is_some() { slashed(path) } else { name };
-        self.read(path, name.clone())?;
-        Ok(Some(name))
+        let base = path.parent().unwrap_or(Path::new("")).to_owned();
+        let (name, full_name) = (label.clone(), slashed(&path));
+        let content = Content::File { place: Place::Path(path), name, full_name, origin: None };
+        Ok(Located { content, base, label })
     }
 
-    fn add_folder(&mut self, root: &Path, folder: &Path, depth: usize) -> Result<(), OpenError> {
-        let failed = |source| OpenError::Read { path: folder.to_owned(), source };
-        let entries = std::fs::read_dir(folder).map_err(failed)?;
-        let mut paths = entries.map(|entry| Ok(entry?.path())).collect::<Result<Vec<_>, _>>().map_err(failed)?;
-        paths.sort();
-        for path in paths {
-            if path.is_dir() {
-                // A link to a folder further up would go round and round.
-                if depth < MOST_FOLDERS_DEEP && !path.is_symlink() {
-                    self.add_folder(root, &path, depth + 1)?;
-                }
-            } else if path.is_file() {
-                if self.set.names().count() >= MOST_FILES {
-                    return Err(OpenError::TooManyFiles { path: root.to_owned(), most: MOST_FILES });
-                }
-                let name = slashed(path.strip_prefix(root).unwrap_or(&path));
-                self.read(&path, name)?;
-            }
+    fn sample(&self, name: &str) -> Result<Vec<(String, Place)>, OpenError> {
+        let files: Vec<_> =
+            samples::files(name).map(|(file, bytes)| (file.to_owned(), Place::Embedded(bytes))).collect();
+        if files.is_empty() {
+            let known = samples::names().iter().map(|name| format!("sample:{name}")).collect();
+            return Err(OpenError::NoSuchSample { name: format!("sample:{name}"), known });
         }
-        Ok(())
+        Ok(files)
     }
 
-    /// Reads those of the missing files that lie beside the named ones; true when there was one.
-    fn add_beside(&mut self, missing: &[String]) -> Result<bool, OpenError> {
-        let mut found = false;
-        for uri in missing {
-            let relative = Path::new(uri);
-            let plain = relative
-                .components()
-                .all(|part| matches!(part, Component::Normal(_) | Component::ParentDir | Component::CurDir));
-            let beside = self.folders.iter().map(|folder| folder.join(relative)).find(|path| plain && path.is_file());
-            if let Some(path) = beside.filter(|_| self.set.get(uri).is_none()) {
-                self.read(&path, uri.clone())?;
-                found = true;
-            }
-        }
-        Ok(found)
+    async fn read(&self, place: &Place, name: &str, reading: &mut Reading<'_>) -> Result<Vec<u8>, OpenError> {
+        let path = match place {
+            Place::Path(path) => path,
+            Place::Embedded(bytes) => return Ok(bytes.to_vec()),
+        };
+        let failed = |source| OpenError::Read { path: path.clone(), source };
+        let length = std::fs::metadata(path).map_err(failed)?.len();
+        (reading.progress)(name, 0, length);
+        reading.spend(name, length)?;
+        std::fs::read(path).map_err(failed)
     }
 
-    fn read(&mut self, path: &Path, name: String) -> Result<(), OpenError> {
-        let failed = |source| OpenError::Read { path: path.to_owned(), source };
-        let found = std::fs::metadata(path).map_err(failed)?.len();
-        self.bytes = self.bytes.saturating_add(found);
-        if self.bytes > MOST_BYTES {
-            return Err(OpenError::TooLarge { path: path.to_owned(), found, most: MOST_BYTES });
+    async fn read_beside(
+        &self,
+        base: &PathBuf,
+        path: &str,
+        reading: &mut Reading<'_>,
+    ) -> Result<Option<Vec<u8>>, OpenError> {
+        let relative = Path::new(path);
+        let is_relative = relative
+            .components()
+            .all(|part| matches!(part, Component::Normal(_) | Component::ParentDir | Component::CurDir));
+        let file = base.join(relative);
+        if !is_relative || !file.is_file() {
+            return Ok(None);
         }
-        self.set.insert(name, std::fs::read(path).map_err(failed)?);
-        Ok(())
+        self.read(&Place::Path(file), path, reading).await.map(Some)
+    }
+
+    fn start_decoding(&self, _images: &[Image]) {}
+
+    async fn finish_decoding(&self, _decoding: (), asset: &mut Asset) -> Vec<Option<ImageData>> {
+        decode_images(asset)
+    }
+
+    fn describe_omission(&self, part: &str, error: &OpenError) -> String {
+        format!("{error}; the link's {part} is left out: it has to be a file here")
     }
 }
 
-fn lossy(name: &std::ffi::OsStr) -> String {
+/// Returns the path of the file that is meant: links mark files with `file:`, and a model of several files may go by the name
+/// they share.
+fn existing(path: &Path) -> PathBuf {
+    if path.exists() {
+        return path.to_owned();
+    }
+    if let Some(marked) = path.to_str().and_then(|path| path.strip_prefix("file:")) {
+        return existing(Path::new(marked));
+    }
+    let of_stem = path.file_name().map(|stem| path.with_file_name(lossy(stem) + ".obj"));
+    of_stem.filter(|of_stem| of_stem.is_file()).unwrap_or_else(|| path.to_owned())
+}
+
+/// Adds all files of `folder`, named by their paths inside `root`.
+fn list_folder(root: &Path, folder: &Path, depth: usize, files: &mut Vec<(String, Place)>) -> Result<(), OpenError> {
+    let failed = |source| OpenError::Read { path: folder.to_owned(), source };
+    let entries = std::fs::read_dir(folder).map_err(failed)?;
+    let mut paths = entries.map(|entry| Ok(entry?.path())).collect::<Result<Vec<_>, _>>().map_err(failed)?;
+    paths.sort();
+    for path in paths {
+        if path.is_dir() {
+            // A symbolic link to a folder further up would never end.
+            if depth < MAX_FOLDER_DEPTH && !path.is_symlink() {
+                list_folder(root, &path, depth + 1, files)?;
+            }
+        } else if path.is_file() {
+            if files.len() >= MAX_FILES {
+                return Err(OpenError::TooManyFiles { path: root.to_owned(), max: MAX_FILES });
+            }
+            let name = slashed(path.strip_prefix(root).unwrap_or(&path));
+            files.push((name, Place::Path(path)));
+        }
+    }
+    Ok(())
+}
+
+fn lossy(name: &OsStr) -> String {
     name.to_string_lossy().into_owned()
 }
 
-/// `/` between folders on every system.
+/// The path with `/` between folders on every system.
 fn slashed(path: &Path) -> String {
     path.components().map(|part| lossy(part.as_os_str())).collect::<Vec<_>>().join("/")
 }

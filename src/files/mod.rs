@@ -1,14 +1,20 @@
-//! Getting at bytes: disk, drop, picker, network; sorting files by what they are; decoding images. Produces
-//! [`crate::library::Model`]s and [`crate::library::Motion`]s.
+//! Opening files from disk, network, drop or picker: reads them, sorts them by content and decodes images, which gives
+//! [`crate::editor::Contents`]. [`source::Source`] is what disk and network have in common.
 
 mod address;
 #[cfg(not(target_arch = "wasm32"))]
 mod decode;
 #[cfg(not(target_arch = "wasm32"))]
 mod disk;
-mod image_limit;
+mod error;
+mod images;
+mod open;
+mod origins;
 mod png;
+mod read;
 mod sort;
+mod source;
+mod view;
 #[cfg(target_arch = "wasm32")]
 mod web;
 
@@ -16,9 +22,12 @@ pub use address::raw_address;
 #[cfg(not(target_arch = "wasm32"))]
 pub use decode::decode_images;
 #[cfg(not(target_arch = "wasm32"))]
-pub use disk::{OpenError, Opened, open_bytes, open_paths, read_paths, read_set};
-pub use image_limit::set_largest_image;
+pub use disk::{Opened, open_bytes, open_paths, open_view, read_paths, read_set};
+pub use error::OpenError;
+pub use images::set_largest_image;
 pub use png::encode_png;
+pub use read::Item;
 pub use sort::{Role, SortError, Sorted, read_map, sort};
+pub use source::Progress;
 #[cfg(target_arch = "wasm32")]
-pub use web::{Item, OpenError, open_items, open_view};
+pub use web::{open_items, open_view};

@@ -1,21 +1,22 @@
-//! A set of named files in memory: what was dropped, picked, unzipped, read beside a model or fetched.
+//! A set of named files in memory: dropped, picked, unpacked from an archive, read from disk or fetched.
 
 use std::io::{Cursor, Read};
 use std::sync::Arc;
 
 use super::LoadError;
 
-/// Bounds on what an archive may unpack to.
 const MAX_ARCHIVE_ENTRIES: usize = 10_000;
-const MAX_ARCHIVE_BYTES: u64 = 1 << 30;
+/// All archives of a set together.
+const MAX_UNPACKED_BYTES: u64 = 1 << 30;
 
-/// Files by path, `/` between folders, in the order they were added.
+/// Files by path, with `/` between folders, in the order they were added.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct FileSet {
     files: Vec<(String, Arc<[u8]>)>,
+    unpacked_bytes: u64,
 }
 
-/// A file found for a reference, and whether only its bare name matched.
+/// The file that a reference resolves to, and whether only its bare name matched.
 pub(super) struct Found<'a> {
     pub name: &'a str,
     pub bytes: &'a Arc<[u8]>,
@@ -23,7 +24,21 @@ pub(super) struct Found<'a> {
 }
 
 impl FileSet {
-    /// Adds a file; one of the same name is replaced.
+    /// Adds a file, or the files inside it if it is a zip archive. Returns its normalized name.
+    ///
+    /// # Errors
+    /// If the archive cannot be read, or unpacks to more than is kept in memory. Some of its files may have been added then.
+    pub fn add(&mut self, name: impl Into<String>, bytes: impl Into<Arc<[u8]>>) -> Result<String, LoadError> {
+        let (name, bytes) = (join("", &name.into()), bytes.into());
+        if bytes.starts_with(b"PK\x03\x04") {
+            self.unpack(&name, &bytes)?;
+        } else {
+            self.insert(name.clone(), bytes);
+        }
+        Ok(name)
+    }
+
+    /// Adds a file as it is, replacing any file of the same name. Archives are left packed, and their content is not found.
     pub fn insert(&mut self, name: impl Into<String>, bytes: impl Into<Arc<[u8]>>) {
         let (name, bytes) = (join("", &name.into()), bytes.into());
         match self.files.iter_mut().find(|(other, _)| *other == name) {
@@ -48,8 +63,8 @@ impl FileSet {
         self.files.iter().map(|(name, bytes)| (name.as_str(), bytes))
     }
 
-    /// The file that `uri` (already percent-decoded) means in the file `base`: by its path from there, else by its bare
-    /// name anywhere, since exports often carry paths of another machine.
+    /// Finds the file that `base` refers to as `uri` (already percent-decoded). Falls back to a file of the same bare name in
+    /// any folder, since exporters often write paths of the machine they ran on.
     pub(super) fn resolve(&self, base: &str, uri: &str) -> Option<Found<'_>> {
         let path = join(base, uri);
         if let Some((name, bytes)) = self.files.iter().find(|(name, _)| *name == path) {
@@ -65,55 +80,47 @@ impl FileSet {
             .map(|(name, bytes)| Found { name, bytes, by_bare_name: true })
     }
 
-    /// The set with every .zip replaced by what is in it. Sizes are bounded while unpacking: headers can lie.
-    pub fn unpacked(&self) -> Result<FileSet, LoadError> {
-        let mut unpacked = FileSet::default();
-        let mut budget = MAX_ARCHIVE_BYTES;
-        for (name, bytes) in &self.files {
-            if bytes.starts_with(b"PK\x03\x04") {
-                unpack(name, bytes, &mut budget, &mut unpacked)?;
-            } else {
-                unpacked.insert(name.clone(), bytes.clone());
+    fn unpack(&mut self, archive_name: &str, bytes: &[u8]) -> Result<(), LoadError> {
+        let error = |problem: String| LoadError::Archive { file: archive_name.to_owned(), problem };
+        let mut archive = zip::ZipArchive::new(Cursor::new(bytes))
+            .map_err(|problem| error(format!("not a readable zip: {problem}")))?;
+        let entries = archive.len();
+        if entries > MAX_ARCHIVE_ENTRIES {
+            return Err(error(format!("{entries} files in the archive; at most {MAX_ARCHIVE_ENTRIES} are read")));
+        }
+        for index in 0..entries {
+            let entry = archive.by_index(index).map_err(|problem| error(format!("entry {index}: {problem}")))?;
+            let name = entry.name().map_err(|problem| error(format!("entry {index}: {problem}")))?.into_owned();
+            if entry.is_dir() || name.starts_with("__MACOSX/") || bare_name(&name).starts_with("._") {
+                continue;
             }
+            let too_large =
+                || error(format!("unpacks to more than {} MiB, which is not read", MAX_UNPACKED_BYTES >> 20));
+            // Trusting an oversized header saves work; one that understates the size is caught while unpacking.
+            let bytes_left = MAX_UNPACKED_BYTES.saturating_sub(self.unpacked_bytes);
+            if entry.size() > bytes_left {
+                return Err(too_large());
+            }
+            let mut content = Vec::new();
+            entry
+                .take(bytes_left + 1)
+                .read_to_end(&mut content)
+                .map_err(|problem| error(format!("“{name}” cannot be unpacked: {problem}")))?;
+            if content.len() as u64 > bytes_left {
+                return Err(too_large());
+            }
+            self.unpacked_bytes += content.len() as u64;
+            self.insert(name, content);
         }
-        Ok(unpacked)
+        Ok(())
     }
-}
-
-fn unpack(file: &str, bytes: &[u8], budget: &mut u64, out: &mut FileSet) -> Result<(), LoadError> {
-    let error = |problem: String| LoadError::Archive { file: file.to_owned(), problem };
-    let mut archive =
-        zip::ZipArchive::new(Cursor::new(bytes)).map_err(|problem| error(format!("not a readable zip: {problem}")))?;
-    if archive.len() > MAX_ARCHIVE_ENTRIES {
-        return Err(error(format!("{} files in the archive; at most {MAX_ARCHIVE_ENTRIES} are read", archive.len())));
-    }
-    for index in 0..archive.len() {
-        let entry = archive.by_index(index).map_err(|problem| error(format!("entry {index}: {problem}")))?;
-        let name = entry.name().map_err(|problem| error(format!("entry {index}: {problem}")))?.into_owned();
-        if entry.is_dir() || name.starts_with("__MACOSX/") || bare_name(&name).starts_with("._") {
-            continue;
-        }
-        let too_large = || error(format!("unpacks to more than {} MiB, which is not read", MAX_ARCHIVE_BYTES >> 20));
-        // An honest header saves the work; one that lies is caught while unpacking.
-        if entry.size() > *budget {
-            return Err(too_large());
-        }
-        let mut content = Vec::new();
-        entry
-            .take(*budget + 1)
-            .read_to_end(&mut content)
-            .map_err(|problem| error(format!("“{name}” cannot be unpacked: {problem}")))?;
-        *budget = budget.checked_sub(content.len() as u64).ok_or_else(too_large)?;
-        out.insert(name, content);
-    }
-    Ok(())
 }
 
 pub(super) fn bare_name(path: &str) -> &str {
     path.rsplit(['/', '\\']).next().unwrap_or(path)
 }
 
-/// `uri` as seen from the folder of `base`, with `.` and `..` worked out. An address with a scheme stays as it is.
+/// Resolves `uri` against the folder of `base`, including `.` and `..`. A URL with a scheme is returned unchanged.
 fn join(base: &str, uri: &str) -> String {
     if uri.contains("://") {
         return uri.to_owned();

@@ -45,18 +45,16 @@ use file_set::bare_name;
 const MAX_OBJ_FILES: usize = 256;
 
 /// Returns the relative URIs (percent-decoded) that the models and motions in this set refer to and that are not in the set,
-/// not even by their bare names; for an .obj also the .skel and .attach of the same stem, which need not exist. Empty if the
-/// set is complete, or if it cannot be read at all ([`load`] will say why).
+/// not even by their bare names; for an .obj also the .skel and .attach of the same stem, which need not exist.
 pub fn missing_files(files: &FileSet) -> Vec<String> {
-    let Ok(files) = files.unpacked() else { return Vec::new() };
     let (mut missing, mut known) = (Vec::new(), BTreeSet::new());
     let mut add = |uris: Vec<String>| missing.extend(uris.into_iter().filter(|uri| known.insert(uri.clone())));
     for (name, bytes) in files.iter().filter(|(name, bytes)| is_gltf(name, bytes) && !is_bvh(name, bytes)) {
-        add(gltf::missing_files(&files, name, bytes));
+        add(gltf::missing_files(files, name, bytes));
     }
     let of_obj = || files.iter().filter(|(name, bytes)| is_obj(name, bytes) || obj::is_companion(name));
     if of_obj().count() <= MAX_OBJ_FILES {
-        of_obj().for_each(|(name, bytes)| add(obj::missing_files(&files, name, bytes)));
+        of_obj().for_each(|(name, bytes)| add(obj::missing_files(files, name, bytes)));
     }
     missing
 }
@@ -76,15 +74,13 @@ pub fn load(files: &FileSet) -> Result<Asset, LoadError> {
 }
 
 pub fn load_with(files: &FileSet, options: &LoadOptions) -> Result<Asset, LoadError> {
-    let files = files.unpacked()?;
-    let (name, bytes) = find_model(&files)?;
-    read(&files, name, bytes, options, &mut |_| ())
+    let (name, bytes) = find_model(files)?;
+    read(files, name, bytes, options, &mut |_| ())
 }
 
 /// Returns the names of the files in the set that are models or motions. [`load`] expects exactly one.
-pub fn main_files(files: &FileSet) -> Result<Vec<String>, LoadError> {
-    let files = files.unpacked()?;
-    Ok(files.iter().filter(|(name, bytes)| is_model(name, bytes)).map(|(name, _)| name.to_owned()).collect())
+pub fn main_files(files: &FileSet) -> Vec<String> {
+    files.iter().filter(|(name, bytes)| is_model(name, bytes)).map(|(name, _)| name.to_owned()).collect()
 }
 
 /// Loads one of the set's [`main_files`]. The others may contain its buffers and images.
@@ -100,9 +96,8 @@ pub fn load_noticing_images(
     options: &LoadOptions,
     on_images: &mut dyn FnMut(&[Image]),
 ) -> Result<Asset, LoadError> {
-    let files = files.unpacked()?;
     match files.get(name) {
-        Some(bytes) => read(&files, name, bytes, options, on_images),
+        Some(bytes) => read(files, name, bytes, options, on_images),
         None => Err(LoadError::NoModel { found: files.names().map(str::to_owned).collect() }),
     }
 }
@@ -112,11 +107,10 @@ pub fn load_noticing_images(
 /// first buffer is the beginning of the new one, and its JSON only grows. An .obj takes joint names and rest pose from
 /// `skeleton`.
 pub fn write_model(files: &FileSet, name: &str, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
-    let files = files.unpacked()?;
     if let Some(bytes) = files.get(name).filter(|bytes| is_obj(name, bytes)) {
-        return write_obj(&files, name, bytes, skeleton, clips);
+        return write_obj(files, name, bytes, skeleton, clips);
     }
-    gltf::write_model(&files, name, skeleton, clips)
+    gltf::write_model(files, name, skeleton, clips)
 }
 
 fn write_obj(
@@ -143,16 +137,15 @@ pub fn write_motion(asset: &Asset, skeleton: &Skeleton, clips: &[&Clip]) -> Resu
 /// Converts the only model or motion of a set to GLB: a glTF with everything in it, a .bvh as skeleton and clip, an .obj in its
 /// rest pose.
 pub fn convert(files: &FileSet, options: &LoadOptions) -> Result<Vec<u8>, WriteError> {
-    let files = files.unpacked()?;
-    let (name, bytes) = find_model(&files)?;
-    let asset = read(&files, name, bytes, options, &mut |_| ())?;
+    let (name, bytes) = find_model(files)?;
+    let asset = read(files, name, bytes, options, &mut |_| ())?;
     if is_bvh(name, bytes) {
         return gltf::write_motion(&asset, &asset.skeleton, &asset.clips.iter().collect::<Vec<_>>());
     }
     if is_obj(name, bytes) {
         return gltf::write_asset(&asset, &asset.skeleton, &[]);
     }
-    gltf::write_model(&files, name, &asset.skeleton, &[])
+    gltf::write_model(files, name, &asset.skeleton, &[])
 }
 
 fn read(
@@ -175,13 +168,7 @@ fn find_model(files: &FileSet) -> Result<(&str, &Arc<[u8]>), LoadError> {
     let mut models = files.iter().filter(|(name, bytes)| is_model(name, bytes));
     match (models.next(), models.next()) {
         (Some(model), None) => Ok(model),
-        (Some(_), Some(_)) => Err(LoadError::SeveralModels {
-            found: files
-                .iter()
-                .filter(|(name, bytes)| is_model(name, bytes))
-                .map(|(name, _)| name.to_owned())
-                .collect(),
-        }),
+        (Some(_), Some(_)) => Err(LoadError::SeveralModels { found: main_files(files) }),
         (None, _) => Err(files
             .iter()
             .find_map(|(name, bytes)| {

@@ -195,8 +195,9 @@ async fn show(page: &Rc<Page>, what: What) -> Result<Shown, String> {
             let contents = open_items(items, role, &progress).await;
             contents.map(|contents| (if is_own { contents.owned() } else { contents }, None))
         }
-        What::View { mut state, with_model, held, .. } => {
-            open_view(&mut state, with_model, &held, &progress).await.map(|contents| (contents, Some(state)))
+        What::View { state, with_model, held, .. } => {
+            let opened = open_view(*state, with_model, &held, &progress).await;
+            opened.map(|(contents, state)| (contents, Some(Box::new(state))))
         }
     };
     if page.loads.get() != load {
@@ -236,7 +237,7 @@ pub(super) fn items_of(items: &Array) -> Result<Vec<Item>, String> {
         .iter()
         .map(|item| {
             if let Some(url) = item.as_string() {
-                return Ok(Item::Url(url));
+                return Ok(Item::Address(url.into()));
             }
             let pair: Array = item.dyn_into().map_err(|_| wrong())?;
             let name = pair.get(0).as_string().ok_or_else(wrong)?;

@@ -83,7 +83,7 @@ async fn first_contents(
     is_own: bool,
     shell: &Shell,
 ) -> Result<(Contents, ViewerState, Vec<String>), String> {
-    let mut state = state_of_link(link, shell);
+    let wanted = state_of_link(link, shell);
     let items = super::calls::items_of(items)?;
     let motion_items = super::calls::items_of(motion_items)?;
     let progress = |name: &str, received: u64, total: u64| shell.progress(name, received as f64, total as f64);
@@ -100,22 +100,22 @@ async fn first_contents(
                 Err(error) => problem = Some(error.to_string()),
             }
         }
-        let mut contents = open_view(&mut state, models.is_empty(), &held, &progress).await?;
+        let (mut contents, view) = open_view(wanted.clone(), models.is_empty(), &held, &progress).await?;
         contents.models.extend(models);
         contents.problems.extend(problem);
-        Ok(if is_own { contents.owned() } else { contents })
+        Ok((if is_own { contents.owned() } else { contents }, view))
     };
-    let opened: Result<Contents, OpenError> = opened.await;
+    let opened: Result<(Contents, ViewerState), OpenError> = opened.await;
     match opened {
-        Ok(mut contents) => {
+        Ok((mut contents, view)) => {
             let problems = std::mem::take(&mut contents.problems);
-            Ok((contents, state, problems))
+            Ok((contents, view, problems))
         }
         Err(error) => {
             let mut problems = vec![error.to_string()];
             let mut models = Vec::new();
-            for motion in &state.sources.motion {
-                match open_items(vec![Item::Url(motion.clone())], Role::Model, &progress).await {
+            for motion in &wanted.sources.motion {
+                match open_items(vec![Item::Address(motion.into())], Role::Model, &progress).await {
                     Ok(found) => models.extend(found.models),
                     Err(error) => problems.push(error.to_string()),
                 }
@@ -125,8 +125,8 @@ async fn first_contents(
                 models.extend(samples::load(samples::WALKER).map(OpenedModel::from));
             }
             let model = models.first().ok_or_else(|| problems.join("\n"))?;
-            let state = state.for_model(ViewerState::of_model(model.model.source.clone()));
-            Ok((Contents { models, motions: Some(Vec::new()), ..Contents::default() }, state, problems))
+            let view = wanted.for_model(ViewerState::of_model(model.model.source.clone()));
+            Ok((Contents { models, motions: Some(Vec::new()), ..Contents::default() }, view, problems))
         }
     }
 }

@@ -1,4 +1,4 @@
-//! How a model finds its files: in the same folder, in others, in archives, in data URIs.
+//! How a model finds the files it refers to: next to it, in folders, in archives, embedded in itself.
 
 use std::io::{Cursor, Write};
 
@@ -31,7 +31,13 @@ fn zipped(files: &[(&str, Vec<u8>)]) -> Vec<u8> {
     writer.finish().unwrap().into_inner()
 }
 
-/// Loads without missing files. Returns the codes of the warnings.
+fn unpacked(name: &str, archive: Vec<u8>) -> Result<FileSet, LoadError> {
+    let mut files = FileSet::default();
+    files.add(name, archive)?;
+    Ok(files)
+}
+
+/// Loads a complete set and returns the codes of its warnings.
 #[track_caller]
 fn check(files: &FileSet) -> Vec<&'static str> {
     assert_eq!(missing_files(files), [""; 0]);
@@ -70,14 +76,14 @@ fn relative_paths() {
 }
 
 #[test]
-fn of_two_files_with_the_same_name_the_path_decides() {
+fn of_two_files_with_the_same_name_the_nearer_one_is_used() {
     let files =
         set(&[("b/mesh.bin", vec![0; 4]), ("a/m.gltf", Build::triangle().gltf("mesh.bin")), ("a/mesh.bin", buffer())]);
     assert_eq!(check(&files), [""; 0]);
 }
 
 #[test]
-fn a_match_by_bare_name_is_a_warning() {
+fn a_bare_name_matches_with_a_warning() {
     for uri in ["C:\\export\\Mesh.BIN", "../elsewhere/mesh.bin"] {
         let files = set(&[("m.gltf", Build::triangle().gltf(uri)), ("mesh.bin", buffer())]);
         assert_eq!(check(&files), ["found-by-bare-name"], "{uri}");
@@ -106,27 +112,40 @@ fn archives_with_folders() {
         ("__MACOSX/character/._m.gltf", b"not a model".to_vec()),
         ("character/._m.gltf", b"not a model".to_vec()),
     ];
-    assert_eq!(check(&one("character.zip", zipped(&files))), [""; 0]);
-    // A GLB inside an archive without a file extension.
-    assert_eq!(check(&one("download", zipped(&[("m.glb", Build::triangle().glb())]))), [""; 0]);
+    let files = unpacked("character.zip", zipped(&files)).expect("a readable archive");
+    assert_eq!(files.names().collect::<Vec<_>>(), ["character/m.gltf", "character/mesh.bin"]);
+    assert_eq!(check(&files), [""; 0]);
+    // An archive is recognized without its file extension.
+    let files = unpacked("download", zipped(&[("m.glb", Build::triangle().glb())])).expect("a readable archive");
+    assert_eq!(check(&files), [""; 0]);
 }
 
 #[test]
-fn invalid_archives_are_rejected_with_a_reason() {
+fn an_archive_adds_to_the_other_files() {
+    let mut files = one("mesh.bin", vec![0; 4]);
+    assert_eq!(files.add("./in//m.gltf", Build::triangle().gltf("mesh.bin")).expect("no archive"), "in/m.gltf");
+    assert_eq!(files.add("a.zip", zipped(&[("in/mesh.bin", buffer())])).expect("a readable archive"), "a.zip");
+    assert_eq!(files.names().collect::<Vec<_>>(), ["mesh.bin", "in/m.gltf", "in/mesh.bin"]);
+    assert_eq!(check(&files), [""; 0]);
+}
+
+#[test]
+fn broken_archives_report_the_problem() {
     let whole = zipped(&[("m.glb", Build::triangle().glb())]);
-    let cut = load(&one("a.zip", whole[..whole.len() / 2].to_vec())).unwrap_err();
+    let cut = unpacked("a.zip", whole[..whole.len() / 2].to_vec()).unwrap_err();
     assert!(matches!(cut, LoadError::Archive { .. }) && cut.to_string().contains("a.zip"), "{cut}");
-    let empty = load(&one("a.zip", zipped(&[("readme.txt", b"hello".to_vec())]))).unwrap_err().to_string();
+    let empty = unpacked("a.zip", zipped(&[("readme.txt", b"hello".to_vec())])).expect("a readable archive");
+    let empty = load(&empty).unwrap_err().to_string();
     assert!(empty.contains("no model") && empty.contains("readme.txt"), "{empty}");
 }
 
-/// Rejected by its header, before anything is unpacked.
+/// The header claims a huge file, so it is refused before anything is unpacked.
 #[test]
 fn an_archive_that_is_too_large_is_rejected() {
     let mut archive = zipped(&[("m.glb", Build::triangle().glb())]);
     let central = archive.windows(4).rposition(|window| window == b"PK\x01\x02").expect("a central directory");
     archive[central + 24..central + 28].copy_from_slice(&0x7000_0000_u32.to_le_bytes());
-    let problem = load(&one("bomb.zip", archive)).unwrap_err().to_string();
+    let problem = unpacked("bomb.zip", archive).unwrap_err().to_string();
     assert!(problem.contains("bomb.zip") && problem.contains("more than 1024 MiB"), "{problem}");
 }
 
@@ -134,12 +153,12 @@ fn an_archive_that_is_too_large_is_rejected() {
 fn an_archive_with_too_many_files_is_rejected() {
     let names: Vec<String> = (0..10_001).map(|at| format!("{at}")).collect();
     let files: Vec<(&str, Vec<u8>)> = names.iter().map(|name| (name.as_str(), Vec::new())).collect();
-    let problem = load(&one("many.zip", zipped(&files))).unwrap_err().to_string();
+    let problem = unpacked("many.zip", zipped(&files)).unwrap_err().to_string();
     assert!(problem.contains("many.zip") && problem.contains("at most 10000"), "{problem}");
 }
 
 #[test]
-fn a_model_without_extension_is_recognized_by_content() {
+fn a_model_without_an_extension_is_recognized_by_its_content() {
     assert_eq!(check(&one("blob", Build::triangle().glb())), [""; 0]);
     let files = set(&[("blob", Build::triangle().gltf("mesh.bin")), ("mesh.bin", buffer())]);
     assert_eq!(check(&files), [""; 0]);

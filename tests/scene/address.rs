@@ -1,10 +1,10 @@
-//! Addresses as people copy them from the address bar.
+//! URLs as people copy them from the address bar.
 
 use gaitway::files::raw_address;
 
 fn check(page: &str, raw: &str) {
     assert_eq!(raw_address(page), raw, "{page}");
-    assert_eq!(raw_address(raw), raw, "the raw form stays as it is");
+    assert_eq!(raw_address(raw), raw, "the raw URL is unchanged");
 }
 
 fn check_same(url: &str) {
@@ -12,7 +12,7 @@ fn check_same(url: &str) {
 }
 
 #[test]
-fn a_page_of_github_about_a_file_becomes_the_file() {
+fn a_github_page_about_a_file_becomes_the_raw_file() {
     let fox = "https://raw.githubusercontent.com/KhronosGroup/glTF-Sample-Assets/main/Models/Fox/glTF-Binary/Fox.glb";
     let page = "github.com/KhronosGroup/glTF-Sample-Assets/blob/main/Models/Fox/glTF-Binary/Fox.glb";
     check(&format!("https://{page}"), fox);
@@ -31,7 +31,7 @@ fn a_page_of_github_about_a_file_becomes_the_file() {
 }
 
 #[test]
-fn a_gist_becomes_its_file() {
+fn a_gist_becomes_its_raw_file() {
     let id = "0123456789abcdef0123456789abcdef";
     check(
         &format!("https://gist.github.com/someone/{id}#file-map-json"),
@@ -44,7 +44,7 @@ fn a_gist_becomes_its_file() {
 }
 
 #[test]
-fn other_addresses_stay_as_they_are() {
+fn other_urls_are_unchanged() {
     check_same("");
     check_same("sample:walker");
     check_same("models/blob/main/fox.glb");

@@ -1,4 +1,4 @@
-//! Decoding images of a model: what cannot be read is a warning, never an end.
+//! Decoding a model's images: one that cannot be decoded gives a warning, never an error.
 
 use std::sync::Arc;
 
@@ -27,7 +27,7 @@ fn check_unreadable(bytes: Vec<u8>) {
 }
 
 #[test]
-fn what_is_no_image_is_a_warning() {
+fn undecodable_images_give_a_warning() {
     check_unreadable(Vec::new());
     check_unreadable(b"not an image at all".to_vec());
     let mut cut = png(2, 1, &[255, 0, 0, 255, 0, 255, 0, 128]);
@@ -36,7 +36,7 @@ fn what_is_no_image_is_a_warning() {
 }
 
 #[test]
-fn sizes_in_a_header_are_not_trusted() {
+fn image_sizes_in_headers_are_not_trusted() {
     let mut huge = png(2, 1, &[0; 8]);
     // Width and height are at bytes 16 to 23 of a PNG.
     huge[16..24].copy_from_slice(&[0x7f, 0xff, 0xff, 0xff, 0x7f, 0xff, 0xff, 0xff]);
@@ -44,7 +44,7 @@ fn sizes_in_a_header_are_not_trusted() {
 }
 
 #[test]
-fn pixels_come_back_as_they_were_written() {
+fn pixels_are_decoded_exactly() {
     let pixels = [255, 0, 0, 255, 10, 200, 30, 128];
     let (image, asset) = decode(png(2, 1, &pixels));
     assert!(asset.warnings.is_empty());

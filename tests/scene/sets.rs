@@ -1,8 +1,13 @@
-//! What a set of files is taken for: model, motions, joint map.
+//! Sorting files by content (model, motions, joint map), and opening them from disk.
 
-use gaitway::files::{Role, SortError, sort};
-use gaitway::formats::FileSet;
+use std::io::{Cursor, Write};
+use std::path::{Path, PathBuf};
+
+use gaitway::files::{OpenError, Role, SortError, open_paths, open_view, read_paths, sort};
+use gaitway::formats::{FileSet, LoadError};
 use gaitway::retarget::MapError;
+use gaitway::state::from_link;
+use zip::write::SimpleFileOptions;
 
 const BVH: &str = "HIERARCHY\nROOT hips\n{\n OFFSET 0 0 0\n CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation \
                    Yrotation\n End Site\n {\n OFFSET 0 10 0\n }\n}\nMOTION\nFrames: 2\nFrame Time: 0.1\n0 0 0 0 0 0\n\
@@ -12,6 +17,7 @@ const MESH: &str = r#"{"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"scenes":[
     "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[0,0,0]}],
     "bufferViews":[{"buffer":0,"byteLength":36}],
     "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA"}]}"#;
+const EMBEDDED_BUFFER: &str = "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA";
 const SKELETON: &str = r#"{"asset":{"version":"2.0"},"nodes":[{"name":"hips"}]}"#;
 const MAP: &str = r#"{"gaitway_map":1,"joints":{"hips":{"source":0}}}"#;
 
@@ -19,6 +25,29 @@ fn set(files: &[(&str, &str)]) -> FileSet {
     let mut set = FileSet::default();
     files.iter().for_each(|(name, text)| set.insert(*name, text.as_bytes()));
     set
+}
+
+/// An empty folder of its own for each test.
+fn temporary_folder(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("gaitway-sets-{name}-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("the folder is created");
+    folder
+}
+
+fn write(folder: &Path, name: &str, content: &[u8]) -> PathBuf {
+    let path = folder.join(name);
+    std::fs::create_dir_all(path.parent().expect("a folder")).expect("the folder is created");
+    std::fs::write(&path, content).expect("the file is written");
+    path
+}
+
+fn zipped(files: &[(&str, &str)]) -> Vec<u8> {
+    let mut writer = zip::ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, text) in files {
+        writer.start_file(*name, SimpleFileOptions::default()).expect("in memory");
+        writer.write_all(text.as_bytes()).expect("in memory");
+    }
+    writer.finish().expect("in memory").into_inner()
 }
 
 /// Model, motions and whether there is a map.
@@ -30,7 +59,7 @@ fn check(role: Role, files: &[(&str, &str)], expected: (Option<&str>, &[&str], b
 }
 
 #[test]
-fn what_has_a_mesh_is_the_model() {
+fn a_file_with_a_mesh_is_the_model() {
     let files = [("a.bvh", BVH), ("m.gltf", MESH), ("map.json", MAP), ("s.gltf", SKELETON), ("package.json", "{}")];
     check(Role::Any, &files, (Some("m.gltf"), &["a.bvh", "s.gltf"], true));
     check(Role::Model, &files, (Some("m.gltf"), &["a.bvh", "s.gltf"], true));
@@ -39,28 +68,28 @@ fn what_has_a_mesh_is_the_model() {
 }
 
 #[test]
-fn a_motion_alone_is_what_it_was_opened_for() {
+fn a_motion_alone_takes_the_role_it_was_opened_for() {
     check(Role::Any, &[("a.bvh", BVH)], (None, &["a.bvh"], false));
     check(Role::Model, &[("a.bvh", BVH)], (Some("a.bvh"), &[], false));
     check(Role::Motion, &[("a.bvh", BVH)], (None, &["a.bvh"], false));
 }
 
 #[test]
-fn several_models_are_several_models() {
+fn several_models_are_kept_in_order() {
     let sorted = sort(&set(&[("m.gltf", MESH), ("a.bvh", BVH), ("n.gltf", MESH)]), Role::Any).unwrap();
     let names: Vec<&str> = sorted.models.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!((&names[..], sorted.motions.len()), (&["m.gltf", "n.gltf"][..], 1));
 }
 
 #[test]
-fn what_cannot_be_sorted_says_what_to_do() {
+fn sorting_errors_say_what_to_do() {
     let fails = |role, files: &[(&str, &str)]| match sort(&set(files), role) {
         Ok(sorted) => panic!("{sorted:?}"),
         Err(error) => error,
     };
     let names: Vec<String> = (0..9).map(|index| format!("{index}.gltf")).collect();
     let nine: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), MESH)).collect();
-    assert!(matches!(fails(Role::Any, &nine), SortError::TooManyModels { most: 8 }));
+    assert!(matches!(fails(Role::Any, &nine), SortError::TooManyModels { max: 8 }));
     let none = fails(Role::Model, &[("a.bvh", BVH), ("b.bvh", BVH)]);
     assert!(matches!(&none, SortError::NoModel { .. }), "{none}");
     let maps = fails(Role::Any, &[("a.bvh", BVH), ("a.json", MAP), ("b.json", MAP)]);
@@ -73,4 +102,83 @@ fn what_cannot_be_sorted_says_what_to_do() {
     let many: Vec<(String, &str)> = (0..65).map(|index| (format!("{index}.bvh"), BVH)).collect();
     let many: Vec<(&str, &str)> = many.iter().map(|(name, text)| (name.as_str(), *text)).collect();
     assert!(matches!(fails(Role::Any, &many), SortError::TooManyMotions { found: 65, .. }));
+}
+
+#[test]
+fn files_next_to_a_model_are_read_with_it() {
+    let folder = temporary_folder("beside");
+    let model = write(&folder, "m.gltf", MESH.replace(EMBEDDED_BUFFER, "data/mesh%20a.bin").as_bytes());
+    assert!(matches!(
+        open_paths(std::slice::from_ref(&model)),
+        Err(OpenError::Files(SortError::Load(LoadError::MissingFile { .. })))
+    ));
+    write(&folder, "data/mesh a.bin", &[0; 36]);
+    let opened = open_paths(std::slice::from_ref(&model)).expect("complete");
+    assert_eq!(opened.files, ["m.gltf", "data/mesh a.bin"]);
+    assert_eq!((opened.model.origin.as_str(), opened.model.source.as_str()), ("m.gltf", "m.gltf"));
+    let whole_folder = open_paths(std::slice::from_ref(&folder)).expect("complete");
+    assert_eq!(whole_folder.files, ["data/mesh a.bin", "m.gltf"]);
+    assert_eq!(whole_folder.model.source, "m.gltf");
+    assert_eq!(Path::new(&whole_folder.model.origin), folder.file_name().expect("it has a name"));
+    std::fs::remove_dir_all(&folder).expect("it was created");
+}
+
+#[test]
+fn files_out_of_an_archive_go_by_its_name() {
+    let folder = temporary_folder("archive");
+    let archive = write(&folder, "two.zip", &zipped(&[("a/m.gltf", MESH), ("b/n.gltf", MESH), ("c/a.bvh", BVH)]));
+    let one = write(&folder, "one.zip", &zipped(&[("m.gltf", MESH)]));
+    let map = write(&folder, "map.json", MAP.as_bytes());
+    let contents = read_paths(&[map.clone(), archive.clone()], Role::Any).expect("two models and a motion");
+    let models: Vec<_> =
+        contents.models.iter().map(|opened| (opened.model.source.as_str(), opened.model.origin.as_str())).collect();
+    assert_eq!(models, [("a/m.gltf", "two.zip"), ("b/n.gltf", "two.zip#!/b/n.gltf")]);
+    let motions: Vec<_> =
+        contents.motions.iter().flatten().map(|motion| (motion.source.as_str(), motion.origin.as_str())).collect();
+    assert_eq!(motions, [("c/a.bvh", "two.zip")]);
+    assert!(contents.map.is_some());
+    let files = contents.models[1].files.as_ref().expect("it was read from files");
+    assert_eq!((files.name.as_str(), files.set.get("a/m.gltf").is_some()), ("b/n.gltf", true));
+    assert_eq!(open_paths(&[one]).expect("one model").files, ["one.zip"], "as it was named");
+    let several = open_paths(std::slice::from_ref(&archive)).expect_err("two models").to_string();
+    assert!(several.contains("a/m.gltf, b/n.gltf"), "{several}");
+    let cut = write(&folder, "cut.zip", b"PK\x03\x04 and no more");
+    let cut = open_paths(&[cut]).expect_err("it is no archive").to_string();
+    assert!(cut.starts_with("cut.zip: not a readable zip"), "{cut}");
+    std::fs::remove_dir_all(&folder).expect("it was created");
+}
+
+#[test]
+fn a_view_opens_the_files_it_lists() {
+    let folder = temporary_folder("view");
+    let path = |name: &str, text: &str| write(&folder, name, text.as_bytes()).to_str().expect("Unicode").to_owned();
+    let (model, motion, map) = (path("m.gltf", MESH), path("a.bvh", BVH), path("map.json", MAP));
+    let link = format!(
+        "v=1&model={model}&motion=file:{motion}&motion=nowhere.bvh&motion=sample:walker&map={map}&map=nowhere.json"
+    );
+    let (mut state, errors) = from_link(&link);
+    assert!(errors.is_empty(), "{errors:?}");
+    let contents = open_view(&mut state, true, &[]).expect("the model is there");
+    assert_eq!(contents.models.len(), 1);
+    let origins = |contents: &gaitway::editor::Contents| -> Vec<String> {
+        contents.motions.iter().flatten().map(|motion| motion.origin.clone()).collect()
+    };
+    assert_eq!(origins(&contents), ["a.bvh", "sample:walker"]);
+    let [no_motion, no_map] = &contents.problems[..] else { panic!("{:?}", contents.problems) };
+    assert!(no_motion.contains("nowhere.bvh") && no_map.contains("nowhere.json"), "{:?}", contents.problems);
+    // Maps are not read again, nor motions that are held; the model only if asked for.
+    let held: Vec<_> = contents.motions.into_iter().flatten().collect();
+    std::fs::remove_dir_all(&folder).expect("it was created");
+    let contents = open_view(&mut state, false, &held).expect("no model was asked for");
+    assert_eq!((contents.models.len(), origins(&contents)), (0, vec!["sample:walker".to_owned()]));
+    assert_eq!(contents.problems.len(), 2, "both motions that are files: {:?}", contents.problems);
+    assert!(contents.problems.iter().all(|problem| problem.contains(".bvh")), "{:?}", contents.problems);
+    assert!(matches!(open_view(&mut state, true, &held), Err(OpenError::Read { .. })));
+}
+
+#[test]
+fn unknown_addresses_say_what_was_expected() {
+    let sample = open_paths(&["sample:nobody".into()]).expect_err("no such sample").to_string();
+    assert!(sample.starts_with("sample:nobody: ") && sample.contains("sample:walker"), "{sample}");
+    assert!(matches!(read_paths(&[], Role::Any), Err(OpenError::Nothing)));
 }

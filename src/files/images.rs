@@ -1,0 +1,80 @@
+//! Decoded images: how large they may be on the device that draws them, and what is reported about them. Decoding itself is
+//! up to the platform.
+
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use crate::asset::{Asset, Warning};
+use crate::library::ImageData;
+
+/// Larger images are refused by their header.
+pub(super) const MAX_EDGE: u32 = 16_384;
+/// All images of a model together.
+pub(super) const MAX_BYTES: u64 = 1 << 30;
+
+/// Longest edge in pixels that the device can hold. The page decodes its first model before the device is known, with a size
+/// that every common device supports. The command line keeps images as they are.
+static DEVICE_EDGE: AtomicU32 = AtomicU32::new(if cfg!(target_arch = "wasm32") { 8192 } else { u32::MAX });
+
+/// Limits the edges of images decoded from now on to what the device can hold.
+pub fn set_largest_image(pixels: u32) {
+    DEVICE_EDGE.store(pixels.max(1), Ordering::Relaxed);
+}
+
+/// Returns the size to scale an image down to, or `None` if it fits the device.
+pub(super) fn fitted(width: u32, height: u32) -> Option<[u32; 2]> {
+    let largest = DEVICE_EDGE.load(Ordering::Relaxed);
+    let edge = width.max(height);
+    let scaled = |length: u32| (u64::from(length) * u64::from(largest) / u64::from(edge.max(1))).max(1) as u32;
+    (edge > largest).then(|| [scaled(width), scaled(height)])
+}
+
+/// Bytes of an RGBA8 image.
+pub(super) fn byte_count([width, height]: [u32; 2]) -> u64 {
+    4 * u64::from(width) * u64::from(height)
+}
+
+/// Appends the outcome for the asset's next image, which was `full_size` before it was scaled down, and warns about it.
+pub(super) fn push_decoded(
+    asset: &mut Asset,
+    decoded: &mut Vec<Option<ImageData>>,
+    outcome: Result<(ImageData, [u32; 2]), String>,
+) {
+    let index = decoded.len();
+    let name = asset.images.get(index).map(|image| image.name.clone()).filter(|name| !name.is_empty());
+    let name = name.unwrap_or_else(|| index.to_string());
+    match outcome {
+        Ok((data, full_size)) => {
+            let size: [u32; 2] = data.size().into();
+            if full_size != size {
+                asset.warnings.push(scaled_down(&name, full_size, size));
+            }
+            decoded.push(Some(data));
+        }
+        Err(problem) => {
+            asset.warnings.push(Warning::ImageUnreadable { image: name, problem });
+            decoded.push(None);
+        }
+    }
+}
+
+fn scaled_down(image: &str, [full_width, full_height]: [u32; 2], [width, height]: [u32; 2]) -> Warning {
+    let problem = format!(
+        "{full_width} × {full_height} pixels are more than this device can hold; scaled down to {width} × {height}"
+    );
+    Warning::Other { code: "image-made-smaller", place: image.to_owned(), problem }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scaling_down_keeps_the_aspect() {
+        set_largest_image(1000);
+        assert_eq!(fitted(1000, 1000), None);
+        assert_eq!(fitted(4000, 2000), Some([1000, 500]));
+        assert_eq!(fitted(1, 5000), Some([1, 1000]));
+        set_largest_image(u32::MAX);
+        assert_eq!(fitted(u32::MAX, 1), None);
+    }
+}

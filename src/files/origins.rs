@@ -1,0 +1,83 @@
+//! Where the files of a set came from, which decides what models and motions are called and what a view lists to open them
+//! again.
+
+use super::{Role, Sorted};
+use crate::asset::Asset;
+use crate::editor::{Contents, MEMBER, ModelFiles, OpenedModel, container_of};
+use crate::formats::FileSet;
+use crate::library::{ImageData, Model, Motion};
+
+#[derive(Debug, Default)]
+pub(super) struct Origins {
+    /// Name in the set and origin of each file that was asked for, in that order.
+    pub known: Vec<(String, String)>,
+    /// The origin of all other files: the folder or archive that they came out of.
+    pub container: String,
+}
+
+impl Origins {
+    /// Returns a file's origin and display name. A file out of a folder or an archive is called by its own name.
+    fn origin_and_source(&self, name: &str) -> (String, String) {
+        match self.known.iter().find(|(known, _)| known == name) {
+            Some((_, origin)) => (origin.clone(), origin.clone()),
+            None => (self.container.clone(), name.to_owned()),
+        }
+    }
+
+    pub fn model(&self, set: &FileSet, name: String, asset: Asset, images: Vec<Option<ImageData>>) -> OpenedModel {
+        let (origin, source) = self.origin_and_source(&name);
+        let mut model = Model::new(source, asset, images);
+        model.origin = origin;
+        OpenedModel { model, files: Some(ModelFiles { set: set.clone(), name }) }
+    }
+
+    fn motion(&self, name: &str, asset: Asset) -> Motion {
+        let (origin, source) = self.origin_and_source(name);
+        let mut motion = Motion::new(source, asset.into());
+        motion.origin = origin;
+        motion
+    }
+
+    /// Gathers everything in the order it was asked for. `models` are the models of the set; `samples` join them unless the
+    /// role is [`Role::Motion`].
+    pub fn contents(&self, sorted: Sorted, mut models: Vec<OpenedModel>, samples: Vec<Model>, role: Role) -> Contents {
+        let mut motions: Vec<Motion> =
+            sorted.motions.into_iter().map(|(name, asset)| self.motion(&name, asset)).collect();
+        if role == Role::Motion {
+            motions.extend(samples.into_iter().map(|sample| Motion::new(sample.source, sample.asset)));
+        } else {
+            models.extend(samples.into_iter().map(OpenedModel::from));
+        }
+        name_members(&mut models);
+        let place = |opened: &OpenedModel| self.known.iter().position(|(_, origin)| *origin == opened.model.origin);
+        models.sort_by_key(|opened| place(opened).unwrap_or(usize::MAX));
+        let problems = if role == Role::Motion { Vec::new() } else { self.missing_members(&models) };
+        let motions = (!motions.is_empty()).then_some(motions);
+        Contents { motions, models, map: sorted.map, problems, ..Contents::default() }
+    }
+
+    /// Reports models that were asked for by their path in an archive which has no such model.
+    fn missing_members(&self, models: &[OpenedModel]) -> Vec<String> {
+        let is_missing = |origin: &&String| {
+            container_of(origin) != *origin && !models.iter().any(|opened| opened.model.origin == **origin)
+        };
+        let asked = self.known.iter().map(|(_, origin)| origin);
+        asked
+            .filter(is_missing)
+            .map(|origin| format!("{origin}: there is no such model in this file; its first one is shown"))
+            .collect()
+    }
+}
+
+/// Adds the path inside the archive to the origin of every model but its first, which goes by the archive's name.
+fn name_members(models: &mut [OpenedModel]) {
+    let mut seen: Vec<String> = Vec::new();
+    for OpenedModel { model, files } in models {
+        match files {
+            Some(files) if seen.contains(&model.origin) => {
+                model.origin = format!("{}{MEMBER}{}", model.origin, files.name);
+            }
+            _ => seen.push(model.origin.clone()),
+        }
+    }
+}

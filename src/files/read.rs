@@ -1,0 +1,182 @@
+//! Reads a set of items into memory, together with the files they refer to.
+
+use std::ffi::{OsStr, OsString};
+
+use super::origins::Origins;
+use super::source::{Content, Located, Progress, Reading, Source};
+use super::{OpenError, SortError};
+use crate::editor::container_of;
+use crate::formats::{FileSet, missing_files};
+use crate::library::Model;
+use crate::samples;
+
+/// One part of a set to open.
+#[derive(Debug)]
+pub enum Item {
+    /// A path (not necessarily Unicode), a URL, or `sample:NAME`.
+    Address(OsString),
+    /// A file already in memory: its path, with `/` between folders, and its content.
+    File(String, Vec<u8>),
+}
+
+/// Files in memory, not sorted yet.
+#[derive(Default)]
+pub(super) struct FilesRead {
+    pub set: FileSet,
+    /// Names of the files in the order they were read. An archive appears under its own name.
+    pub names: Vec<String>,
+    /// Samples generated in code.
+    pub samples: Vec<Model>,
+    pub origins: Origins,
+}
+
+/// Files referring to files that refer to files.
+const MAX_ROUNDS: usize = 4;
+/// Tell the model among the items by its name.
+const MODEL_EXTENSIONS: [&str; 7] = [".glb", ".gltf", ".vrm", ".vrma", ".bvh", ".obj", ".zip"];
+
+pub(super) async fn read_items<S: Source>(
+    source: &S,
+    items: Vec<Item>,
+    progress: Progress<'_>,
+) -> Result<FilesRead, OpenError> {
+    if items.is_empty() {
+        return Err(OpenError::Nothing);
+    }
+    let mut reader = Reader {
+        source,
+        reading: Reading::new::<S>(progress),
+        files: FilesRead::default(),
+        bases: Vec::new(),
+        labels: Vec::new(),
+    };
+    for item in items {
+        reader.add(item).await?;
+    }
+    reader.add_missing().await?;
+    reader.files.origins.container = container_of(model_label(&reader.labels)).to_owned();
+    Ok(reader.files)
+}
+
+struct Reader<'a, S: Source> {
+    source: &'a S,
+    reading: Reading<'a>,
+    files: FilesRead,
+    /// Where files that others refer to are looked for.
+    bases: Vec<S::Base>,
+    /// What each item is called.
+    labels: Vec<String>,
+}
+
+impl<S: Source> Reader<'_, S> {
+    async fn add(&mut self, item: Item) -> Result<(), OpenError> {
+        match item {
+            Item::File(name, bytes) => {
+                self.reading.spend(&name, bytes.len() as u64)?;
+                self.labels.push(name.clone());
+                let known = self.keep(name.clone(), bytes)?;
+                self.files.origins.known.push((known, name));
+                Ok(())
+            }
+            Item::Address(address) => match address.to_str().and_then(|address| address.strip_prefix("sample:")) {
+                Some(name) => self.add_sample(name).await,
+                None => self.add_address(&address).await,
+            },
+        }
+    }
+
+    async fn add_sample(&mut self, name: &str) -> Result<(), OpenError> {
+        let origin = format!("sample:{name}");
+        self.labels.push(origin.clone());
+        if let Some(model) = samples::load(name) {
+            self.files.samples.push(model);
+            self.files.origins.known.push((origin.clone(), origin));
+            return Ok(());
+        }
+        for (file, place) in self.source.sample(name)? {
+            let known = self.read(&place, file).await?;
+            self.files.origins.known.push((known, origin.clone()));
+        }
+        Ok(())
+    }
+
+    async fn add_address(&mut self, address: &OsStr) -> Result<(), OpenError> {
+        let Located { content, base, label } = self.source.locate(address)?;
+        self.labels.push(label);
+        if !self.bases.contains(&base) {
+            self.bases.push(base);
+        }
+        match content {
+            Content::File { place, name, full_name, origin } => {
+                let name = if self.files.names.contains(&name) { full_name } else { name };
+                let known = self.read(&place, name).await?;
+                let origin = origin.unwrap_or_else(|| known.clone());
+                self.files.origins.known.push((known, origin));
+            }
+            Content::Folder(files) => {
+                for (name, place) in files {
+                    self.read(&place, name).await?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads the files that the set refers to and that lie next to the named ones. The loader reports those that are not
+    /// there, and whether that matters.
+    async fn add_missing(&mut self) -> Result<(), OpenError> {
+        if self.bases.is_empty() {
+            return Ok(());
+        }
+        let mut tried: Vec<String> = Vec::new();
+        for _ in 0..MAX_ROUNDS {
+            let missing = missing_files(&self.files.set);
+            let missing: Vec<String> = missing.into_iter().filter(|path| !tried.contains(path)).collect();
+            if missing.is_empty() {
+                break;
+            }
+            for path in &missing {
+                if let Some(bytes) = self.read_beside(path).await? {
+                    self.keep(path.clone(), bytes)?;
+                }
+            }
+            tried.extend(missing);
+        }
+        Ok(())
+    }
+
+    async fn read_beside(&mut self, path: &str) -> Result<Option<Vec<u8>>, OpenError> {
+        for base in &self.bases {
+            let found = self.source.read_beside(base, path, &mut self.reading).await?;
+            if found.is_some() {
+                return Ok(found);
+            }
+        }
+        Ok(None)
+    }
+
+    async fn read(&mut self, place: &S::Place, name: String) -> Result<String, OpenError> {
+        let bytes = self.source.read(place, &name, &mut self.reading).await?;
+        self.keep(name, bytes)
+    }
+
+    /// Puts a file into the set and returns its name there.
+    fn keep(&mut self, name: String, bytes: Vec<u8>) -> Result<String, OpenError> {
+        let name = self.files.set.add(name, bytes).map_err(SortError::from)?;
+        if !self.files.names.contains(&name) {
+            self.files.names.push(name.clone());
+        }
+        Ok(name)
+    }
+}
+
+/// Returns the label of the item that looks like the model, otherwise of the first one.
+fn model_label(labels: &[String]) -> &str {
+    let is_model = |label: &&String| {
+        let label = label.to_lowercase();
+        let path = label.split(['?', '#']).next().unwrap_or_default();
+        MODEL_EXTENSIONS.iter().any(|extension| path.ends_with(extension))
+    };
+    let named = || labels.iter().filter(|label| !label.is_empty());
+    named().find(is_model).or_else(|| named().next()).map_or("", String::as_str)
+}

@@ -1,0 +1,104 @@
+//! Opens everything a view lists: its model, the motions it borrows from and its joint maps.
+
+use std::cell::Cell;
+use std::ffi::OsStr;
+use std::io::ErrorKind;
+
+use super::open::open_items;
+use super::read::Item;
+use super::source::{Content, Progress, Reading, Source};
+use super::{OpenError, Role, read_map};
+use crate::editor::{Contents, container_of};
+use crate::library::Motion;
+use crate::retarget::JointMap;
+use crate::state::{MotionMap, RetargetEdits, Sources, ViewerState};
+
+/// Opens the files of a view, except for its model if `with_model` is not set and for motions that are among `held`. A motion
+/// or map that cannot be opened becomes a problem of the contents. Maps that were read take the place of their addresses in
+/// the view. Progress is reported as "2 of 3: walk.bvh".
+pub(super) async fn open_view<S: Source>(
+    source: &S,
+    view: ViewerState,
+    with_model: bool,
+    held: &[Motion],
+    progress: Progress<'_>,
+) -> Result<(Contents, ViewerState), OpenError> {
+    let Sources { model: mut models, motion: motions, scene } = view.sources;
+    let RetargetEdits { map: maps, .. } = view.retarget;
+    let is_held = |origin: &String| held.iter().any(|motion| motion.origin == *origin);
+    let map_files = maps.iter().filter(|map| matches!(map, MotionMap::File(_))).count();
+    let parts = usize::from(with_model) + motions.iter().filter(|origin| !is_held(origin)).count() + map_files;
+    let part = Cell::new(0);
+    let next_part = || part.set(part.get() + 1);
+    let progress = &|name: &str, received: u64, total: u64| match parts {
+        0 | 1 => progress(name, received, total),
+        _ => progress(&format!("{} of {parts}: {name}", part.get()), received, total),
+    };
+    let mut contents = Contents::default();
+    if with_model {
+        next_part();
+        contents = open_models(source, &mut models, progress).await?;
+    }
+    let mut opened = contents.motions.take().unwrap_or_default();
+    // Motions out of the model's own archive are not listed.
+    let is_of_model = |motion: &&Motion| {
+        models.iter().any(|model| container_of(model) == motion.origin) && !motions.contains(&motion.origin)
+    };
+    opened.extend(held.iter().filter(is_of_model).cloned());
+    for origin in &motions {
+        if is_held(origin) {
+            opened.extend(held.iter().filter(|motion| motion.origin == *origin).cloned());
+            continue;
+        }
+        next_part();
+        match open_items(source, vec![Item::Address(origin.into())], Role::Motion, progress).await {
+            Ok(found) => {
+                opened.extend(found.motions.unwrap_or_default());
+                contents.map = contents.map.or(found.map);
+            }
+            Err(error) => contents.problems.push(source.describe_omission("motion", &error)),
+        }
+    }
+    contents.motions = Some(opened);
+    let mut read_maps = Vec::new();
+    for map in maps {
+        let MotionMap::File(address) = &map else {
+            read_maps.push(map);
+            continue;
+        };
+        next_part();
+        match open_map(source, address.as_ref(), progress).await {
+            Ok(map) => read_maps.push(MotionMap::Names(map)),
+            Err(error) => contents.problems.push(source.describe_omission("map", &error)),
+        }
+    }
+    let sources = Sources { model: models, motion: motions, scene };
+    let retarget = RetargetEdits { map: read_maps, ..view.retarget };
+    Ok((contents, ViewerState { sources, retarget, ..view }))
+}
+
+/// Opens the models that a view lists. If the one it names is not in its archive, the archive's first one is named instead.
+async fn open_models<S: Source>(
+    source: &S,
+    models: &mut [String],
+    progress: Progress<'_>,
+) -> Result<Contents, OpenError> {
+    let items = models.iter().map(|model| Item::Address(model.into())).collect();
+    let contents = open_items(source, items, Role::Model, progress).await?;
+    if let [model] = models
+        && !contents.models.iter().any(|opened| opened.model.origin == *model)
+    {
+        *model = container_of(model).to_owned();
+    }
+    Ok(contents)
+}
+
+async fn open_map<S: Source>(source: &S, address: &OsStr, progress: Progress<'_>) -> Result<JointMap, OpenError> {
+    match source.locate(address)?.content {
+        Content::File { place, name, .. } => {
+            let bytes = source.read(&place, &name, &mut Reading::new::<S>(progress)).await?;
+            Ok(read_map(&name, &bytes)?)
+        }
+        Content::Folder(_) => Err(OpenError::Read { path: address.into(), source: ErrorKind::IsADirectory.into() }),
+    }
+}

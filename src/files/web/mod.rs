@@ -1,0 +1,139 @@
+//! Opens files on the page: fetched from a URL, or dropped and already in memory. Nothing is sent anywhere.
+
+mod fetch;
+mod images;
+
+use std::ffi::OsStr;
+
+use js_sys::{Array, Reflect};
+use wasm_bindgen::JsCast;
+
+use super::source::{Content, Located, Progress, Reading, Source};
+use super::{Item, OpenError, Role, open, raw_address, view};
+use crate::asset::{Asset, Image};
+use crate::editor::Contents;
+use crate::library::{ImageData, Motion};
+use crate::samples;
+use crate::state::ViewerState;
+
+/// Opens one set of items.
+pub async fn open_items(items: Vec<Item>, role: Role, progress: Progress<'_>) -> Result<Contents, OpenError> {
+    open::open_items(&Web, items, role, progress).await
+}
+
+/// Opens the files of a view, except for its model if `with_model` is not set and for motions that are among `held`. See
+/// `view` for the details.
+pub async fn open_view(
+    view: ViewerState,
+    with_model: bool,
+    held: &[Motion],
+    progress: Progress<'_>,
+) -> Result<(Contents, ViewerState), OpenError> {
+    view::open_view(&Web, view, with_model, held, progress).await
+}
+
+struct Web;
+
+impl Source for Web {
+    /// The absolute URL.
+    type Place = String;
+    /// The URL of the file that refers to others.
+    type Base = String;
+    type Decoding = Vec<images::Decoding>;
+
+    const MAX_BYTES: u64 = 1 << 30;
+
+    fn locate(&self, address: &OsStr) -> Result<Located<String, String>, OpenError> {
+        let address = address.to_string_lossy().into_owned();
+        let url = absolute(&address, None).ok_or_else(|| OpenError::InvalidUrl { url: address.clone() })?;
+        let content = Content::File {
+            name: file_name(&url),
+            full_name: address.clone(),
+            origin: Some(address.clone()),
+            place: url.clone(),
+        };
+        Ok(Located { content, base: url, label: address })
+    }
+
+    /// The shell lists the samples' files next to the page in `gaitway.samples`.
+    fn sample(&self, name: &str) -> Result<Vec<(String, String)>, OpenError> {
+        let table = Reflect::get(&js_sys::global(), &"gaitway".into())
+            .and_then(|gaitway| Reflect::get(&gaitway, &"samples".into()))
+            .unwrap_or_else(|_| js_sys::Object::new().into());
+        let addresses: Option<Array> = Reflect::get(&table, &name.into()).ok().and_then(|list| list.dyn_into().ok());
+        let Some(addresses) = addresses else {
+            let files = Reflect::own_keys(&table).unwrap_or_default();
+            let known = files.iter().filter_map(|name| name.as_string()).chain([samples::WALKER.to_owned()]);
+            let known = known.map(|name| format!("sample:{name}")).collect();
+            return Err(OpenError::NoSuchSample { name: format!("sample:{name}"), known });
+        };
+        // Addresses contain a hash, but files that belong together are matched by a common name.
+        let file = |address: String| {
+            let extension = address.rsplit('.').next().unwrap_or_default();
+            Some((format!("{name}.{extension}"), absolute(&address, None)?))
+        };
+        Ok(addresses.iter().filter_map(|address| address.as_string().and_then(file)).collect())
+    }
+
+    async fn read(&self, url: &String, name: &str, reading: &mut Reading<'_>) -> Result<Vec<u8>, OpenError> {
+        fetch::fetch(url, name, reading).await
+    }
+
+    async fn read_beside(
+        &self,
+        base: &String,
+        path: &str,
+        reading: &mut Reading<'_>,
+    ) -> Result<Option<Vec<u8>>, OpenError> {
+        let Some(url) = absolute(&escaped(path), Some(base)) else { return Ok(None) };
+        match fetch::fetch(&url, path, reading).await {
+            // Some hosts answer with an HTML page instead of an error.
+            Ok(bytes) => Ok(Some(bytes).filter(|bytes| !is_html(bytes))),
+            Err(error @ OpenError::TooLarge { .. }) => Err(error),
+            Err(error) => {
+                web_sys::console::warn_1(&error.to_string().into());
+                Ok(None)
+            }
+        }
+    }
+
+    fn start_decoding(&self, images: &[Image]) -> Vec<images::Decoding> {
+        images::start(images)
+    }
+
+    async fn finish_decoding(&self, decoding: Vec<images::Decoding>, asset: &mut Asset) -> Vec<Option<ImageData>> {
+        images::finish(decoding, asset).await
+    }
+
+    fn describe_omission(&self, _part: &str, error: &OpenError) -> String {
+        error.to_string()
+    }
+}
+
+fn is_html(bytes: &[u8]) -> bool {
+    let text = bytes.trim_ascii_start();
+    let begins = |with: &[u8]| text.get(..with.len()).is_some_and(|start| start.eq_ignore_ascii_case(with));
+    begins(b"<!doctype html") || begins(b"<html")
+}
+
+/// Escapes everything in a relative path that has a meaning in a URL.
+fn escaped(path: &str) -> String {
+    let segments = path.split('/').map(|segment| String::from(js_sys::encode_uri_component(segment)));
+    let path = segments.collect::<Vec<_>>().join("/");
+    // Without the dot, a colon in the first segment would make it a scheme.
+    format!("./{path}")
+}
+
+/// Resolves `url` against `base`, by default the page, and replaces a web page about a file by the file itself.
+fn absolute(url: &str, base: Option<&str>) -> Option<String> {
+    let page = web_sys::window().and_then(|window| window.location().href().ok());
+    let url = web_sys::Url::new_with_base(url, base.or(page.as_deref())?).ok()?.href();
+    Some(raw_address(&url).into_owned())
+}
+
+/// Returns the last part of a URL's path, unescaped.
+fn file_name(url: &str) -> String {
+    let path = url.split(['?', '#']).next().unwrap_or(url);
+    let last = path.rsplit('/').find(|part| !part.is_empty()).unwrap_or(path);
+    percent_encoding::percent_decode_str(last).decode_utf8_lossy().into_owned()
+}
