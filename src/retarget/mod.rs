@@ -18,7 +18,7 @@
 //! let (model, motion) = (open("mannequin.glb")?, open("walk.bvh")?);
 //!
 //! let proposal = propose(&model, &motion);
-//! let hips = model.skeleton.find("hips").ok_or("no hips")?;
+//! let hips = model.skeleton.find("mixamorig:Hips").ok_or("no hips")?;
 //! let pair = proposal.pairs.iter().find(|pair| pair.target == hips).ok_or("unmapped")?;
 //! assert_eq!(motion.skeleton.name(pair.source), "hip");
 //! println!("{} ({:.0} %)", pair.reason, 100.0 * pair.confidence);
