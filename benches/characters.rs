@@ -94,8 +94,9 @@ fn print(name: &str, rig: &Rig, count: usize, stage: Stage) {
 fn real(path: &str, clip: &str) -> Option<Rig> {
     let files = files_of(&data_folder()?.join(path))?;
     let asset = gaitway::formats::load(&files).expect("a file known to load");
-    let clip = asset.clips.iter().find(|found| found.name() == clip)?.clone();
-    Some(Rig { skin: asset.skins.first()?.clone(), skeleton: asset.skeleton, clip })
+    let parts = asset.into_parts();
+    let clip = parts.clips.into_iter().find(|found| found.name() == clip)?;
+    Some(Rig { skin: parts.skins.into_iter().next()?, skeleton: parts.skeleton, clip })
 }
 
 /// A synthetic walk with the joints, keys and channels of a typical character: translation, rotation and scale on every

@@ -156,9 +156,9 @@ fn a_view_opens_the_files_it_lists() {
     let link = format!(
         "v=1&model={model}&motion=file:{motion}&motion=nowhere.bvh&motion=sample:walker&map={map}&map=nowhere.json"
     );
-    let (mut state, errors) = from_link(&link);
+    let (state, errors) = from_link(&link);
     assert!(errors.is_empty(), "{errors:?}");
-    let contents = open_view(&mut state, true, &[]).expect("the model is there");
+    let (contents, view) = open_view(state, true, &[]).expect("the model is there");
     assert_eq!(contents.models.len(), 1);
     let origins = |contents: &gaitway::editor::Contents| -> Vec<String> {
         contents.motions.iter().flatten().map(|motion| motion.origin.clone()).collect()
@@ -169,11 +169,11 @@ fn a_view_opens_the_files_it_lists() {
     // Maps are not read again, nor motions that are held; the model only if asked for.
     let held: Vec<_> = contents.motions.into_iter().flatten().collect();
     std::fs::remove_dir_all(&folder).expect("it was created");
-    let contents = open_view(&mut state, false, &held).expect("no model was asked for");
+    let (contents, view) = open_view(view, false, &held).expect("no model was asked for");
     assert_eq!((contents.models.len(), origins(&contents)), (0, vec!["sample:walker".to_owned()]));
     assert_eq!(contents.problems.len(), 2, "both motions that are files: {:?}", contents.problems);
     assert!(contents.problems.iter().all(|problem| problem.contains(".bvh")), "{:?}", contents.problems);
-    assert!(matches!(open_view(&mut state, true, &held), Err(OpenError::Read { .. })));
+    assert!(matches!(open_view(view, true, &held), Err(OpenError::Read { .. })));
 }
 
 #[test]
