@@ -4,6 +4,7 @@ use crate::asset::{Asset, Image};
 use crate::formats::{FileSet, LoadError, LoadOptions, load, load_noticing_images, main_files};
 use crate::library::{ImageData, Library, Model, Motion};
 use crate::retarget::{JointMap, MapError};
+use crate::state::MEMBER_SEPARATOR;
 
 /// What the files were chosen for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -173,13 +174,9 @@ pub fn read_map(file: &str, bytes: &[u8]) -> Result<JointMap, SortError> {
         .map_err(|problem| SortError::Map { file: file.to_owned(), problem })
 }
 
-/// Between the folder or archive that a model came out of and its path in there, where that is not its first model. As
-/// between a .jar and what is in it, but in a URL's fragment, which no server sees.
-const MEMBER: &str = "#!/";
-
 /// The folder or archive that one of its models came out of; of anything else, itself.
 pub(super) fn container_of(origin: &str) -> &str {
-    origin.split_once(MEMBER).map_or(origin, |(container, _)| container)
+    origin.split_once(MEMBER_SEPARATOR).map_or(origin, |(container, _)| container)
 }
 
 /// Where the files of a set came from: by their names in it, the path or address that a view lists.
@@ -209,7 +206,7 @@ impl Origins {
         for OpenedModel { model, files } in &mut models {
             match files {
                 Some(files) if seen.contains(&model.origin) => {
-                    model.origin = format!("{}{MEMBER}{}", model.origin, files.name);
+                    model.origin = format!("{}{MEMBER_SEPARATOR}{}", model.origin, files.name);
                 }
                 _ => seen.push(model.origin.clone()),
             }
