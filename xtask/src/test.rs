@@ -10,6 +10,7 @@ use crate::{page, setup, sizes};
 pub fn run() -> anyhow::Result<()> {
     setup::page()?;
     setup::tests()?;
+    check_scripts()?;
     run_cargo()?;
     page::build(&[], None)?;
     sizes::compress_and_print(true)?;
@@ -23,6 +24,11 @@ pub fn run() -> anyhow::Result<()> {
     // One file at a time: each drives a browser that draws on the processor. A file takes minutes; one that hangs is ended.
     let arguments = [&["--test", "--test-concurrency=1", "--test-timeout=1200000"], files.as_slice()].concat();
     run_with("node", &arguments, &[("GAITWAY_CLI", program), ("CHROMIUM", chromium)])
+}
+
+/// Types and lints of the page's, the build's and the tests' scripts.
+fn check_scripts() -> anyhow::Result<()> {
+    process::run(if cfg!(windows) { "npm.cmd" } else { "npm" }, &["run", "check"])
 }
 
 fn run_cargo() -> anyhow::Result<()> {
