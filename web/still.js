@@ -1,28 +1,42 @@
-// The picture that is seen while the page loads: that of the scene that is asked for. It runs before anything is shown, so
-// that nobody sees another scene's first, and has the scene's samples on their way while the program still is.
+// Runs before anything is shown: picks the image that covers the page while it loads, and starts downloading the samples of
+// the link side by side with the program. It only looks for names it knows in the link's text, to guess what is worth
+// having early; the program reads the link.
 
 (() => {
-  const still = document.getElementById("loading-still");
-  /** By the models of a scene's link. */
-  const pictures = JSON.parse(still.dataset.pictures);
-  const modelsOf = (link) => link.split("&").filter((pair) => pair.startsWith("model=")).join("&");
+  const still = /** @type {HTMLImageElement} */ (document.getElementById("loading-still"));
+  /**
+   * Images by the model they show.
+   * @type {Record<string, string>}
+   */
+  const images = JSON.parse(still.dataset.images ?? "{}");
+  /** The link of the first screen. */
+  const first = still.dataset.link ?? "";
 
+  /** @type {(link: string, text: string) => boolean} */
+  const has = (link, text) => `&${link}&`.includes(`${text}&`);
+
+  /**
+   * @param {string} link
+   * @param {boolean} isLocal
+   */
   function show(link, isLocal) {
-    const picture = isLocal ? undefined : link === "" ? still.getAttribute("src") : pictures[modelsOf(link)];
-    still.hidden = picture === undefined;
-    if (!still.hidden && still.getAttribute("src") !== picture) still.src = picture;
+    const models = isLocal ? [] : Object.keys(images).filter((model) => has(link || first, `&model=${model}`));
+    still.hidden = models.length !== 1;
+    if (!still.hidden && still.getAttribute("src") !== images[models[0]]) still.src = images[models[0]];
   }
 
-  function fetchAhead(link) {
-    const samples = JSON.parse(document.querySelector('meta[name="gaitway-samples"]').content);
-    for (const [, name] of link.matchAll(/(?:^|&)(?:model|motion)=sample:(\w+)/g)) {
-      const links = (samples[name] ?? []).map((href) => Object.assign(document.createElement("link"), { rel: "preload", as: "fetch", crossOrigin: "", href }));
-      document.head.append(...links);
-    }
+  /** @param {string} link */
+  function preloadSamples(link) {
+    const meta = /** @type {HTMLMetaElement | null} */ (document.querySelector('meta[name="gaitway-samples"]'));
+    /** @type {Record<string, string[]>} */
+    const samples = JSON.parse(meta?.content ?? "{}");
+    const names = Object.keys(samples).filter((name) => has(link, `=sample:${name}`));
+    const files = names.flatMap((name) => samples[name]);
+    document.head.append(...files.map((href) => Object.assign(document.createElement("link"), { rel: "preload", as: "fetch", crossOrigin: "", href })));
   }
 
   const asked = location.hash.slice(1);
   show(asked, false);
-  fetchAhead(asked || still.dataset.link);
+  preloadSamples(asked || first);
   addEventListener("gaitway:loading", ({ detail: { link, isLocal } }) => show(link, isLocal));
 })();

@@ -1,27 +1,31 @@
-// Keeps the page, its program and the samples for when there is no network. Names have a hash of their content in them, so
-// what has such a name never changes; the page itself comes in one version with this worker. A new version waits until a
-// page asks for it. What is not part of Gaitway is none of its business: other sites, files beside the page, parts of files.
+// Keeps the page, its program and the samples for offline use. Names contain a hash of the content, so whatever has such a
+// name never changes; the page itself has a version, which this worker shares. A new version waits until a page asks for it.
+// Requests for anything else are left alone: other sites, files beside the page, ranges.
 
-/** Both are written by the build. */
+/** The build sets both. */
 const VERSION = "";
+/** @type {string[]} */
 const FILES = [];
 
-const OF_HERE = `gaitway ${registration.scope} `;
-const CACHE = OF_HERE + VERSION;
+const worker = /** @type {ServiceWorkerGlobalScope} */ (/** @type {unknown} */ (self));
+const { scope } = worker.registration;
+const PREFIX = `gaitway ${scope} `;
+const CACHE = PREFIX + VERSION;
 const HASHED = /-[0-9a-f]{16}(_bg)?\.\w+$/;
 
-addEventListener("install", (event) => event.waitUntil(fill()));
+worker.addEventListener("install", (event) => event.waitUntil(fill()));
 
 async function fill() {
   const cache = await caches.open(CACHE);
   const page = await fetch("./", { cache: "reload" });
   const text = await page.text();
-  if (!page.ok || !text.includes(VERSION)) throw new Error("the page is of another version than this service worker; a later visit tries again");
-  // Without the mark of a redirection, which no browser takes for an answer to a navigation.
+  if (!page.ok || !text.includes(VERSION)) throw new Error("the page's version differs from this service worker's; a later visit tries again");
+  // A redirected response can't answer a navigation, so the page is stored as a new one.
   await cache.put("./", new Response(text, { headers: page.headers }));
   await Promise.all(FILES.map(async (file) => cache.put(file, await fetched(file))));
 }
 
+/** @param {string} file */
 async function fetched(file) {
   const isHashed = HASHED.test(file);
   const held = isHashed ? await caches.match(file) : undefined;
@@ -31,25 +35,29 @@ async function fetched(file) {
   return response;
 }
 
-addEventListener("activate", (event) => event.waitUntil(tidy()));
+worker.addEventListener("activate", (event) => event.waitUntil(tidy()));
 
 async function tidy() {
-  await clients.claim();
-  // Another page may still run the version before; the next new version tidies up after it.
-  if ((await clients.matchAll({ type: "window" })).length > 1) return;
-  for (const name of await caches.keys()) if (name.startsWith(OF_HERE) && name !== CACHE) await caches.delete(name);
+  await worker.clients.claim();
+  // Another tab may still run the previous version; the next new version cleans up after it.
+  if ((await worker.clients.matchAll({ type: "window" })).length > 1) return;
+  for (const name of await caches.keys()) if (name.startsWith(PREFIX) && name !== CACHE) await caches.delete(name);
 }
 
-addEventListener("message", ({ data }) => data === "use" && skipWaiting());
+worker.addEventListener("message", ({ data }) => data === "use" && worker.skipWaiting());
 
-addEventListener("fetch", (event) => {
+worker.addEventListener("fetch", (event) => {
   const { method, mode, url, headers } = event.request;
-  if (method !== "GET" || !url.startsWith(registration.scope) || headers.has("range")) return;
-  const path = url.slice(registration.scope.length).split(/[?#]/)[0];
+  if (method !== "GET" || !url.startsWith(scope) || headers.has("range")) return;
+  const path = url.slice(scope.length).split(/[?#]/)[0];
   if (mode === "navigate" ? path === "" || path === "index.html" : FILES.includes(path) || HASHED.test(path))
     event.respondWith(answer(event.request, mode === "navigate" ? "./" : path));
 });
 
+/**
+ * @param {Request} request
+ * @param {string} path
+ */
 async function answer(request, path) {
   const cache = await caches.open(CACHE);
   return (await cache.match(path)) ?? (await caches.match(path)) ?? (await fetch(request));

@@ -1,33 +1,39 @@
-// Measures three.js and Gaitway on the same work in the same headless Chromium, round by round in turn, and prints medians.
-// `node benches/web/run.mjs`, after `cargo xtask build --bench` (or with GAITWAY_DIST). Asserts nothing:
-// figures move from machine to machine, ratios less. `characters`, `retargeting`, `loads` or `frames` on the command line: only these.
+// Measures three.js and Gaitway on the same work in the same headless Chromium, in alternating rounds, and prints medians.
+// Run `node benches/web/run.mjs` after `cargo xtask build --bench` (or with GAITWAY_DIST), with `characters`, `retargeting`,
+// `loads` or `frames` to measure only these. Nothing is asserted: times vary between machines, ratios less so.
 import path from "node:path";
 import { chromium } from "playwright-core";
-import { FLAGS, dist, until } from "../../tests/browser/browser.mjs";
+import { FLAGS, dist, until, whenReady } from "../../tests/browser/browser.mjs";
 import { serve } from "../../tests/browser/server.mjs";
-import { dataFolder, repository } from "../../tests/three/data.mjs";
+import { dataFile, hasData, repository } from "../../tests/three/data.mjs";
 
 const XBOT = "threejs/Xbot.glb";
 const SOLDIER = "threejs/Soldier.glb";
 const LOADED = ["khronos/Fox/glTF-Binary/Fox.glb", "khronos/CesiumMan/glTF-Binary/CesiumMan.glb", SOLDIER, XBOT, "threejs/RobotExpressive.glb"];
 const CROWDS = [1, 100, 1000];
 const ROUNDS = 9;
-/** Character-frames in one round: long enough for the clock, short enough that both sides see the same weather. */
+/** Character-frames per round: long enough for the clock, short enough that both sides run under the same conditions. */
 const CHARACTER_FRAMES = 4000;
 const DRAWN_FRAMES = 40;
 
+/** @typedef {import("playwright-core").Page} Page */
+/** @typedef {Record<string, number[]>} Figures Measurements by what they measure. */
+
+/** @param {string} part */
 const wanted = (part) => process.argv.length < 3 || process.argv.includes(part);
+/** @param {number[]} values */
 const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
+/** @param {...(string | number)} cells */
 const row = (...cells) => console.log(`| ${cells.join(" | ")} |`);
 
-if (dataFolder === null) {
+if (!hasData) {
   console.log("skipped: no test data folder (GAITWAY_DATA)");
   process.exit(0);
 }
 const site = await serve({
   "/three/": path.join(repository, "node_modules/three"),
   "/bench/": path.join(repository, "benches/web"),
-  "/data/": dataFolder,
+  "/data/": dataFile(""),
   "/": dist,
 });
 const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: FLAGS });
@@ -39,11 +45,11 @@ const three = async () => {
   await until(page, () => window.bench !== undefined);
   return page;
 };
+/** @param {string} link */
 const gaitway = async (link) => {
   const page = await context.newPage();
   await page.goto(`${site.origin}/?renderer=webgl2#${link}`);
-  await until(page, () => window.gaitway !== undefined);
-  await page.evaluate(async () => void (await window.gaitway.ready));
+  await whenReady(page);
   return page;
 };
 
@@ -66,14 +72,15 @@ async function measureCharacters() {
     console.log("skipped: the page was built without the feature; run `cargo xtask build --bench`");
     return;
   }
-  await ours.evaluate(async (url) => void (window.bytes = new Uint8Array(await (await fetch(url)).arrayBuffer())), `/data/${XBOT}`);
+  await fetchFiles(ours, XBOT);
   for (const count of CROWDS) {
-    await theirs.evaluate(([url, count]) => window.bench.prepareCharacters(url, "walk", count), [`/data/${XBOT}`, count]);
+    await theirs.evaluate(({ url, count }) => window.bench.prepareCharacters(url, "walk", count), { url: `/data/${XBOT}`, count });
     const frames = Math.max(1, Math.round(CHARACTER_FRAMES / count));
+    /** @type {Figures} */
     const figures = { three: [], gaitway: [] };
     for (let round = 0; round < ROUNDS; round++) {
       figures.three.push(await theirs.evaluate((frames) => window.bench.characters(frames), frames));
-      figures.gaitway.push(await ours.evaluate(([count, frames]) => window.gaitway.benchCharacters(window.bytes, "walk", count, frames), [count, frames]));
+      figures.gaitway.push(await ours.evaluate(({ count, frames }) => window.gaitway.benchCharacters?.(window.fetched[0], "walk", count, frames) ?? NaN, { count, frames }));
     }
     const [slow, fast] = [median(figures.three), median(figures.gaitway)];
     row(count, slow.toFixed(2), fast.toFixed(3), `${(slow / fast).toFixed(1)}×`);
@@ -82,22 +89,32 @@ async function measureCharacters() {
   await ours.close();
 }
 
+/**
+ * Fetches test files into `window.fetched`.
+ * @param {Page} page
+ * @param {...string} names
+ */
+async function fetchFiles(page, ...names) {
+  const urls = names.map((name) => `/data/${name}`);
+  await page.evaluate(async (urls) => {
+    window.fetched = await Promise.all(urls.map(async (url) => new Uint8Array(await (await fetch(url)).arrayBuffer())));
+  }, urls);
+}
+
 async function measureRetargeting() {
-  console.log("\nMaking a clip over for another skeleton, ms\n");
+  console.log("\nRetargeting a clip to another skeleton, ms\n");
   row("clip", "SkeletonUtils.retargetClip", "Gaitway", "ratio");
   row("--", "--", "--", "--");
   const [theirs, ours] = [await three(), await gaitway("play=0")];
   if (!(await ours.evaluate(() => window.gaitway.benchRetarget !== undefined))) return;
   for (const [model, motion, clip] of [[SOLDIER, XBOT, "walk"], [SOLDIER, XBOT, "idle"], [XBOT, SOLDIER, "Walk"], [XBOT, SOLDIER, "Idle"]]) {
-    await theirs.evaluate((pair) => window.bench.prepareRetarget(...pair), [`/data/${model}`, `/data/${motion}`, clip]);
-    await ours.evaluate(
-      async (urls) => void (window.pair = await Promise.all(urls.map(async (url) => new Uint8Array(await (await fetch(url)).arrayBuffer())))),
-      [`/data/${model}`, `/data/${motion}`],
-    );
+    await theirs.evaluate(({ model, motion, clip }) => window.bench.prepareRetarget(`/data/${model}`, `/data/${motion}`, clip), { model, motion, clip });
+    await fetchFiles(ours, model, motion);
+    /** @type {Figures} */
     const figures = { three: [], gaitway: [] };
     for (let round = 0; round < ROUNDS; round++) {
       figures.three.push(await theirs.evaluate(() => window.bench.retarget(5)));
-      figures.gaitway.push(await ours.evaluate((clip) => window.gaitway.benchRetarget(...window.pair, clip, 100), clip));
+      figures.gaitway.push(await ours.evaluate((clip) => window.gaitway.benchRetarget?.(window.fetched[0], window.fetched[1], clip, 100) ?? NaN, clip));
     }
     const [slow, fast] = [median(figures.three), median(figures.gaitway)];
     row(`${path.basename(motion)} ${clip} → ${path.basename(model)}`, slow.toFixed(2), fast.toFixed(3), `${(slow / fast).toFixed(1)}×`);
@@ -107,20 +124,22 @@ async function measureRetargeting() {
 }
 
 async function measureLoads() {
-  console.log("\nLoading from bytes in memory, images decoded, ms; shown: until the call that draws it returns\n");
+  console.log("\nLoading from bytes in memory with images decoded, ms; shown: until the call that draws it returns\n");
   row("file", "GLTFLoader.parse", "Gaitway", "three.js, shown", "Gaitway, shown");
   row("--", "--", "--", "--", "--");
   const pages = await loadPages();
   for (const name of LOADED) {
+    /** @type {Figures} */
     const figures = { parse: [], load: [], render: [], open: [] };
     for (let round = 0; round < ROUNDS; round++) await measureLoad(pages, name, figures);
     row(path.basename(name), ...Object.values(figures).map((values) => median(values).toFixed(1)));
   }
   await closeAll(pages);
-  console.log("\nThe same, first in a fresh page (median of 3 pages)\n");
+  console.log("\nThe same, as the first file of a fresh page (median of 3 pages)\n");
   row("file", "GLTFLoader.parse", "Gaitway");
   row("--", "--", "--");
   for (const name of LOADED) {
+    /** @type {Figures} */
     const figures = { parse: [], load: [] };
     for (let round = 0; round < 3; round++) {
       const pages = await loadPages();
@@ -131,45 +150,53 @@ async function measureLoads() {
   }
 }
 
-/** Small pictures: what drawing them in software takes is measured below. */
+/** Opens both pages in a small viewport, since software rendering is measured separately below. */
 async function loadPages() {
   const pages = [await three(), await gaitway("play=0")];
   for (const page of pages) await page.setViewportSize({ width: 320, height: 240 });
   return pages;
 }
 
+/** @param {Page[]} pages */
 async function closeAll(pages) {
   for (const page of pages) await page.close();
 }
 
-/** Adds one measure of each kind that `figures` asks for. */
+/**
+ * Adds one measurement of each kind that `figures` has.
+ * @param {Page[]} pages
+ * @param {string} name
+ * @param {Figures} figures
+ */
 async function measureLoad([theirs, ours], name, figures) {
   const url = `/data/${name}`;
-  const timed = ([url, work]) =>
+  /** @type {(options: { url: string, work: string }) => Promise<number>} */
+  const timed = ({ url, work }) =>
     fetch(url)
       .then((response) => response.arrayBuffer())
       .then(async (bytes) => {
         const start = performance.now();
-        await (work === "load" ? window.gaitway.benchLoad(bytes) : window.gaitway.open({ "model.glb": bytes }));
+        await (work === "load" ? window.gaitway.benchLoad?.(bytes) : window.gaitway.open({ "model.glb": bytes }));
         return performance.now() - start;
       });
   await theirs.bringToFront();
   figures.parse.push(await theirs.evaluate((url) => window.bench.load(url), url));
   if (figures.render) figures.render.push(await theirs.evaluate((url) => window.bench.open(url), url));
   await ours.bringToFront();
-  figures.load.push(await ours.evaluate(timed, [url, "load"]));
-  if (figures.open) figures.open.push(await ours.evaluate(timed, [url, "open"]));
+  figures.load.push(await ours.evaluate(timed, { url, work: "load" }));
+  if (figures.open) figures.open.push(await ours.evaluate(timed, { url, work: "open" }));
 }
 
 async function measureFrames() {
   console.log("\nA frame of Soldier's walk at 1280×720 on WebGL2 in software, ms (image-based light, one shadow, grid)\n");
-  row("picture", "three.js", "Gaitway");
+  row("image", "three.js", "Gaitway");
   row("--", "--", "--");
+  /** @type {Figures} */
   const figures = { plain: [], smooth: [], gaitway: [] };
   for (let round = 0; round < 5; round++) {
-    for (const [kind, samples] of [["plain", 1], ["smooth", 4]]) {
+    for (const { kind, samples } of [{ kind: "plain", samples: 1 }, { kind: "smooth", samples: 4 }]) {
       const page = await three();
-      await page.evaluate(([url, samples]) => window.bench.draw(url, "Walk", samples), [`/data/${SOLDIER}`, samples]);
+      await page.evaluate(({ url, samples }) => window.bench.draw(url, "Walk", samples), { url: `/data/${SOLDIER}`, samples });
       figures[kind].push(await frameMs(page));
       await page.close();
     }
@@ -178,21 +205,24 @@ async function measureFrames() {
     figures.gaitway.push(await frameMs(page));
     await page.close();
   }
-  row("1 sample a pixel", median(figures.plain).toFixed(1), median(figures.gaitway).toFixed(1));
-  row("4 samples a pixel", median(figures.smooth).toFixed(1), "one sample on a software adapter");
+  row("1 sample per pixel", median(figures.plain).toFixed(1), median(figures.gaitway).toFixed(1));
+  row("4 samples per pixel", median(figures.smooth).toFixed(1), "one sample on a software adapter");
 }
 
 /**
- * Median of frames from the start of the page's own work until everything asked of the graphics process is done, which
- * reading a pixel waits for. What went before is waited for first, and bringing the picture to the screen is left out.
+ * Returns the median time from the start of the page's own work in a frame until the graphics process has finished it, which
+ * reading a pixel waits for. Earlier work is finished first, and presenting the frame is left out.
+ * @param {Page} page
  */
 async function frameMs(page) {
   await page.bringToFront();
   await page.waitForTimeout(1500);
   const frames = await page.evaluate(async (count) => {
-    const context = document.querySelector("canvas").getContext("webgl2");
+    const context = document.querySelector("canvas")?.getContext("webgl2");
+    if (!context) throw new Error("no WebGL2 context");
     const pixel = new Uint8Array(4);
     const finish = () => context.readPixels(0, 0, 1, 1, context.RGBA, context.UNSIGNED_BYTE, pixel);
+    /** @type {number | null} */
     let start = null;
     const request = window.requestAnimationFrame.bind(window);
     window.requestAnimationFrame = (callback) =>
@@ -204,6 +234,7 @@ async function frameMs(page) {
         callback(time);
       });
     const afterCallbacks = new MessageChannel();
+    /** @type {number[]} */
     const frames = [];
     while (frames.length < count) {
       await new Promise((resolve) => request(resolve));

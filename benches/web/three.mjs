@@ -1,33 +1,57 @@
-// The three.js side of the comparison, called by run.mjs through `window.bench`.
+// The three.js side of the comparison, which run.mjs calls through `window.bench`.
 import * as THREE from "three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import { RoomEnvironment } from "three/addons/environments/RoomEnvironment.js";
 import * as SkeletonUtils from "three/addons/utils/SkeletonUtils.js";
 
+/** @typedef {{ model: THREE.Object3D, mixer: THREE.AnimationMixer, skeletons: THREE.Skeleton[] }} Character */
+
+/** @param {string} url */
 const bytesOf = async (url) => await (await fetch(url)).arrayBuffer();
+/** @param {ArrayBuffer} bytes */
 const parse = (bytes) => new GLTFLoader().parseAsync(bytes, "");
 
-/** Characters of one file, each at its own phase of a clip, and the skeletons that one frame has to update. */
+/**
+ * @param {THREE.AnimationClip[]} clips
+ * @param {string} name
+ */
+function clipNamed(clips, name) {
+  const clip = clips.find((clip) => clip.name === name);
+  if (clip === undefined) throw new Error(`no clip ${name}`);
+  return clip;
+}
+
+/**
+ * Returns copies of a file's character, each at its own phase of a clip, with the skeletons that a frame has to update.
+ * @param {string} url
+ * @param {string} clipName
+ * @param {number} count
+ * @returns {Promise<Character[]>}
+ */
 async function crowd(url, clipName, count) {
   const gltf = await parse(await bytesOf(url));
   // Clones bind unnamed nodes by uuid and would stand still.
   let unnamed = 0;
   gltf.scene.traverse((object) => (object.name ||= `unnamed${unnamed++}`));
-  const clip = gltf.animations.find(({ name }) => name === clipName);
+  const clip = clipNamed(gltf.animations, clipName);
   return Array.from({ length: count }, (_, index) => {
     const model = SkeletonUtils.clone(gltf.scene);
     const mixer = new THREE.AnimationMixer(model);
     mixer.clipAction(clip).play();
     mixer.setTime((clip.duration * index) / count);
     // Meshes of one skin share their skeleton in the file; clone() copies it for each, which would count against three.js.
+    /** @type {Map<THREE.Bone, THREE.Skeleton>} */
     const skeletons = new Map();
-    model.traverse((object) => object.isSkinnedMesh && skeletons.set(object.skeleton.bones[0], object.skeleton));
+    model.traverse((object) => object instanceof THREE.SkinnedMesh && skeletons.set(object.skeleton.bones[0], object.skeleton));
     return { model, mixer, skeletons: [...skeletons.values()] };
   });
 }
 
+/** @type {Character[]} */
 let characters = [];
+/** @type {{ target: THREE.SkinnedMesh, source: THREE.SkinnedMesh, clip: THREE.AnimationClip }} */
 let retargeting;
+/** @type {ReturnType<typeof newScreen> | null} */
 let screen = null;
 
 function newScreen() {
@@ -38,16 +62,24 @@ function newScreen() {
   scene.add(new THREE.DirectionalLight(0xffffff, 2));
   const camera = new THREE.PerspectiveCamera(35, innerWidth / innerHeight, 0.1, 1000);
   camera.position.set(1.2, 1.6, 5);
-  return { renderer, scene, camera, shown: [] };
+  return { renderer, scene, camera, shown: /** @type {THREE.Object3D[]} */ ([]) };
 }
 
-window.bench = {
+const bench = {
+  /**
+   * @param {string} url
+   * @param {string} clipName
+   * @param {number} count
+   */
   async prepareCharacters(url, clipName, count) {
     characters = await crowd(url, clipName, count);
     return characters[0].skeletons.reduce((sum, { bones }) => sum + bones.length, 0);
   },
 
-  /** Microseconds per character-frame: AnimationMixer, updateMatrixWorld, Skeleton.update. */
+  /**
+   * Measures AnimationMixer, updateMatrixWorld and Skeleton.update, in microseconds per character-frame.
+   * @param {number} frames
+   */
   characters(frames) {
     const start = performance.now();
     for (let frame = 0; frame < frames; frame++)
@@ -59,18 +91,28 @@ window.bench = {
     return ((performance.now() - start) * 1000) / (frames * characters.length);
   },
 
+  /**
+   * @param {string} modelUrl
+   * @param {string} motionUrl
+   * @param {string} clipName
+   */
   async prepareRetarget(modelUrl, motionUrl, clipName) {
     const [model, motion] = [await parse(await bytesOf(modelUrl)), await parse(await bytesOf(motionUrl))];
+    /** @param {{ scene: THREE.Group }} gltf */
     const largest = ({ scene }) => {
+      /** @type {THREE.SkinnedMesh[]} */
       const meshes = [];
       scene.updateMatrixWorld(true);
-      scene.traverse((object) => object.isSkinnedMesh && meshes.push(object));
+      scene.traverse((object) => object instanceof THREE.SkinnedMesh && meshes.push(object));
       return meshes.sort((a, b) => b.skeleton.bones.length - a.skeleton.bones.length)[0];
     };
-    retargeting = { target: largest(model), source: largest(motion), clip: motion.animations.find(({ name }) => name === clipName) };
+    retargeting = { target: largest(model), source: largest(motion), clip: clipNamed(motion.animations, clipName) };
   },
 
-  /** Milliseconds of SkeletonUtils.retargetClip. */
+  /**
+   * Measures SkeletonUtils.retargetClip, in milliseconds.
+   * @param {number} rounds
+   */
   retarget(rounds) {
     const { target, source, clip } = retargeting;
     const start = performance.now();
@@ -79,7 +121,10 @@ window.bench = {
     return (performance.now() - start) / rounds;
   },
 
-  /** Milliseconds of GLTFLoader.parse from bytes in memory, textures included. */
+  /**
+   * Measures GLTFLoader.parse from bytes in memory, including textures, in milliseconds.
+   * @param {string} url
+   */
   async load(url) {
     const bytes = await bytesOf(url);
     const start = performance.now();
@@ -87,7 +132,10 @@ window.bench = {
     return performance.now() - start;
   },
 
-  /** Milliseconds from bytes in memory to the return of the call that draws them, in an animation frame. */
+  /**
+   * Measures from bytes in memory until the call that draws them in an animation frame returns, in milliseconds.
+   * @param {string} url
+   */
   async open(url) {
     const bytes = await bytesOf(url);
     screen ??= newScreen();
@@ -100,7 +148,12 @@ window.bench = {
     return performance.now() - start;
   },
 
-  /** Draws a file's clip without end: image-based light, a key light with a soft shadow on the ground, neutral tone mapping. */
+  /**
+   * Plays a file's clip in a loop with image-based light, a key light with a soft shadow on the ground and neutral tone mapping.
+   * @param {string} url
+   * @param {string} clipName
+   * @param {number} samples
+   */
   async draw(url, clipName, samples) {
     const renderer = new THREE.WebGLRenderer({ antialias: samples > 1 });
     renderer.setSize(innerWidth, innerHeight);
@@ -111,7 +164,7 @@ window.bench = {
     scene.background = new THREE.Color(0x8a8d92);
     scene.environment = new THREE.PMREMGenerator(renderer).fromScene(new RoomEnvironment()).texture;
     const gltf = await parse(await bytesOf(url));
-    gltf.scene.traverse((object) => (object.castShadow = object.isMesh === true));
+    gltf.scene.traverse((object) => (object.castShadow = object instanceof THREE.Mesh));
     scene.add(gltf.scene, new THREE.GridHelper(10, 10));
     const ground = new THREE.Mesh(new THREE.PlaneGeometry(10, 10).rotateX(-Math.PI / 2), new THREE.ShadowMaterial({ opacity: 0.4 }));
     ground.receiveShadow = true;
@@ -124,7 +177,7 @@ window.bench = {
     camera.position.set(1.2, 1.6, 3.2);
     camera.lookAt(0, 0.9, 0);
     const mixer = new THREE.AnimationMixer(gltf.scene);
-    mixer.clipAction(gltf.animations.find(({ name }) => name === clipName)).play();
+    mixer.clipAction(clipNamed(gltf.animations, clipName)).play();
     const clock = performance.now();
     renderer.setAnimationLoop(() => {
       mixer.setTime((performance.now() - clock) / 1000);
@@ -132,3 +185,7 @@ window.bench = {
     });
   },
 };
+
+/** @typedef {typeof bench} Bench */
+
+window.bench = bench;

@@ -3,6 +3,7 @@
 use crate::formats::FileSet;
 use crate::library::{Model, Motion};
 use crate::retarget::JointMap;
+use crate::state::MEMBER_SEPARATOR;
 
 /// Opened files, ready for the library.
 #[derive(Debug, Default)]
@@ -61,11 +62,7 @@ impl Contents {
     }
 }
 
-/// Separates a folder or archive from the path of a model inside it, for every model but the first. The notation is the
-/// one used for .jar entries, except that `#` makes it the fragment of a URL, which is never sent to the server.
-pub const MEMBER: &str = "#!/";
-
 /// Returns the folder or archive a model came out of: `ARCHIVE` for `ARCHIVE#!/MEMBER`, any other origin unchanged.
 pub fn container_of(origin: &str) -> &str {
-    origin.split_once(MEMBER).map_or(origin, |(container, _)| container)
+    origin.split_once(MEMBER_SEPARATOR).map_or(origin, |(container, _)| container)
 }

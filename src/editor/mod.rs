@@ -12,7 +12,7 @@ mod names;
 mod open;
 mod steps;
 
-pub use contents::{Contents, MEMBER, ModelFiles, OpenedModel, container_of};
+pub use contents::{Contents, ModelFiles, OpenedModel, container_of};
 pub use event::Event;
 pub use export::{Export, ExportedFile};
 pub use names::{name_and_place, short_name};

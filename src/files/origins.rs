@@ -3,9 +3,10 @@
 
 use super::{Role, Sorted};
 use crate::asset::Asset;
-use crate::editor::{Contents, MEMBER, ModelFiles, OpenedModel, container_of};
+use crate::editor::{Contents, ModelFiles, OpenedModel, container_of};
 use crate::formats::FileSet;
 use crate::library::{ImageData, Model, Motion};
+use crate::state::MEMBER_SEPARATOR;
 
 #[derive(Debug, Default)]
 pub(super) struct Origins {
@@ -75,7 +76,7 @@ fn name_members(models: &mut [OpenedModel]) {
     for OpenedModel { model, files } in models {
         match files {
             Some(files) if seen.contains(&model.origin) => {
-                model.origin = format!("{}{MEMBER}{}", model.origin, files.name);
+                model.origin = format!("{}{MEMBER_SEPARATOR}{}", model.origin, files.name);
             }
             _ => seen.push(model.origin.clone()),
         }

@@ -1,11 +1,16 @@
 //! The text form of a view state: `key=value` joined by `&` after the `#`, and the same keys as a JSON object. Old links
 //! keep working: `v=1` fixes the defaults below, keys this version does not know are kept and written back.
 
+mod files;
 mod values;
 
 use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_encode};
 use serde_json::{Map, Value, json};
 
+pub use self::files::{
+    LinkRole, LinkedFile, MEMBER_SEPARATOR, embedded_link, link_with_files, link_without_missing, linked_files,
+    most_similar_link, public_link, shown_files,
+};
 use self::values::*;
 use super::ViewerState;
 

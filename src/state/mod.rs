@@ -23,6 +23,10 @@ pub use framing::{
 };
 pub use history::History;
 pub use link::{LinkError, from_link, from_object, to_link, to_object};
+pub use link::{
+    LinkRole, LinkedFile, MEMBER_SEPARATOR, embedded_link, link_with_files, link_without_missing, linked_files,
+    most_similar_link, public_link, shown_files,
+};
 pub use map_edit::{MapEdit, muted_properties};
 pub use maps::{
     MapProblem, MotionMap, NumberedMap, map_in_force, maps_in_force, named, names_checksum, number_of, numbered,

@@ -4,6 +4,7 @@
 #[cfg(feature = "bench")]
 mod bench;
 mod calls;
+mod links;
 mod page;
 mod shell;
 

@@ -1,14 +1,17 @@
-// Archives made in code: the format's own description is APPNOTE.TXT, sections 4.3.7, 4.3.12 and 4.3.16.
+// Builds .zip archives: see sections 4.3.7, 4.3.12 and 4.3.16 of APPNOTE.TXT.
 import zlib from "node:zlib";
 
-/** A .zip whose files are stored as they are: `files` from name to content. */
+/**
+ * Returns a .zip with uncompressed files.
+ * @param {Record<string, Buffer>} files
+ */
 export function archive(files) {
   const parts = [];
   const directory = [];
   let offset = 0;
   for (const [name, content] of Object.entries(files)) {
     const encoded = Buffer.from(name);
-    // What both headers say: version, flags, method, time, date, checksum, two sizes, length of the name and of what follows it.
+    // Part of both headers: version, flags, method, time, date, checksum, two sizes, lengths of the name and of the extra field.
     const common = Buffer.alloc(26);
     common.writeUInt16LE(20, 0);
     common.writeUInt32LE(zlib.crc32(content), 10);

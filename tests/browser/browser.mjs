@@ -1,16 +1,41 @@
-// Chromium with both back ends in software, and the page as a test sees it.
+// Chromium with both back ends in software, and the page as a test sees it. Tests find the shell's controls by their ids.
 import fs from "node:fs";
 import path from "node:path";
 import { chromium } from "playwright-core";
-import { dataFolder, repository } from "../three/data.mjs";
+import { dataFile, hasData, repository } from "../three/data.mjs";
 import { serve } from "./server.mjs";
 
+/** @typedef {import("playwright-core").Browser} Browser */
+/** @typedef {import("playwright-core").Frame} Frame */
+/** @typedef {import("playwright-core").Page} Page */
+/** @typedef {import("../../web/shell/types.d.ts").Backend} Backend */
+/** @typedef {import("../../web/shell/types.d.ts").PoseDocument} PoseDocument */
+
+/** Pixels with straight alpha. @typedef {{ width: number, height: number, rgba: Buffer }} Image */
+
+/**
+ * A page with what it reported: uncaught errors and messages of level error, and the URLs it requested.
+ * @typedef {Page & { troubles: string[], requests: string[], finish: () => Promise<void> }} TestPage
+ */
+
+/**
+ * @typedef {object} PageOptions
+ * @property {Backend} [renderer]
+ * @property {string} [link] Empty for a first visit; without it, the walker.
+ * @property {{ width: number, height: number }} [viewport]
+ * @property {() => void} [before] Runs in the page before its scripts.
+ * @property {boolean} [ready] False: don't wait for the first image.
+ */
+
+/** @typedef {Awaited<ReturnType<typeof startSite>>} Site */
+
+/** @type {Backend[]} */
 export const BACK_ENDS = ["webgpu", "webgl2"];
 
 /** Small, since a software renderer draws it. */
 export const VIEWPORT = { width: 800, height: 600 };
 
-/** Both back ends on the software renderer; a domain whose GPU process was crashed on purpose may draw again. */
+/** Both back ends on the software renderer. A domain whose GPU process was crashed on purpose may draw again. */
 export const FLAGS = [
   "--enable-unsafe-webgpu",
   "--use-webgpu-adapter=swiftshader",
@@ -21,24 +46,30 @@ export const FLAGS = [
   "--disable-domain-blocking-for-3d-apis",
 ];
 
+const TIMEOUT_MS = 60_000;
+
 export const dist = process.env.GAITWAY_DIST ?? path.join(repository, "dist");
 
 export function launch() {
   return chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: FLAGS });
 }
 
-/** The two servers and one Chromium: `{browser, address, data, page, close}`. */
+/** Starts the two servers and a browser. */
 export async function startSite() {
   if (!fs.existsSync(path.join(dist, "index.html"))) throw new Error(`no built page in ${dist}: run \`cargo xtask build\``);
   const site = await serve({ "/some/folder/": dist });
-  const data = dataFolder === null ? null : await serve({ "/": dataFolder }, { "access-control-allow-origin": "*" });
+  const data = hasData ? await serve({ "/": dataFile("") }, { "access-control-allow-origin": "*" }) : null;
   const browser = await launch();
   return {
     browser,
     /** URL of the page itself. */
     address: `${site.origin}/some/folder/`,
-    /** URL of a file of the data folder, on another origin than the page. */
-    data: (name) => `${data.origin}/${name}`,
+    /**
+     * Returns the URL of a test file, on another origin than the page.
+     * @param {string} name
+     */
+    data: (name) => `${data?.origin}/${name}`,
+    /** @param {PageOptions} options */
     page: (options) => openPage(browser, `${site.origin}/some/folder/`, options),
     close: async () => {
       await browser.close();
@@ -48,41 +79,74 @@ export async function startSite() {
   };
 }
 
-/** A fresh page that is ready, with the walker unless told otherwise (an empty link: as somebody first comes). `page.troubles` collects uncaught errors and messages of level error, `page.requests` all URLs. */
+/**
+ * Records a page's troubles and requests.
+ * @param {Page} page
+ * @returns {TestPage}
+ */
+export function watched(page) {
+  /** @type {string[]} */
+  const troubles = [];
+  /** @type {string[]} */
+  const requests = [];
+  page.on("pageerror", (error) => troubles.push(error.message));
+  page.on("console", (message) => message.type() === "error" && troubles.push(message.text()));
+  page.on("request", (request) => requests.push(request.url()));
+  return Object.assign(page, { troubles, requests, finish: () => page.context().close() });
+}
+
+/**
+ * Opens a fresh page and waits until it is ready.
+ * @param {Browser} browser
+ * @param {string} address
+ * @param {PageOptions} options
+ */
 async function openPage(browser, address, { renderer, link = "model=sample:walker", viewport = VIEWPORT, before, ready = true }) {
-  // What each fresh profile would keep is megabytes; offline.test.mjs looks at it.
+  // Service workers would store megabytes for each fresh profile; offline.test.mjs tests them.
   const context = await browser.newContext({ viewport, serviceWorkers: "block" });
-  const page = await context.newPage();
-  page.setDefaultTimeout(60_000);
-  page.troubles = [];
-  page.requests = [];
-  page.on("pageerror", (error) => page.troubles.push(error.message));
-  page.on("console", (message) => message.type() === "error" && page.troubles.push(message.text()));
-  page.on("request", (request) => page.requests.push(request.url()));
+  const page = watched(await context.newPage());
+  page.setDefaultTimeout(TIMEOUT_MS);
   await page.addInitScript(() => addEventListener("securitypolicyviolation", ({ violatedDirective, blockedURI }) => console.error(`against the content security policy: ${violatedDirective} ${blockedURI}`)));
   if (before !== undefined) await page.addInitScript(before);
   await page.goto(`${address}${renderer === undefined ? "" : `?renderer=${renderer}`}${link === "" ? "" : `#${link}`}`);
   if (ready) await whenReady(page);
-  page.finish = () => context.close();
   return page;
 }
 
-/** What the question gives that was put to a page just as it left for the next. */
-const LEAVING = /Execution context was destroyed/;
+/** The error of a question put to a page that is navigating. */
+const NAVIGATING = /Execution context was destroyed/;
 
-/** Waits until a function of the page, which may be asynchronous, gives something true; a page on its way to the next is asked again there. (Playwright's own wait takes a promise for something true.) */
-export async function until(page, holds, argument) {
-  const deadline = Date.now() + 60_000;
-  const asked = () =>
-    page.evaluate(holds, argument).catch((error) => {
-      if (!LEAVING.test(error.message)) throw error;
-    });
-  while (!(await asked())) {
-    if (Date.now() > deadline) throw new Error(`still not so after a minute: ${holds}`);
-    await page.waitForTimeout(50);
+/**
+ * Polls until a condition holds.
+ * @param {() => unknown} holds May be asynchronous.
+ * @param {string} [what]
+ */
+export async function eventually(holds, what = String(holds)) {
+  const deadline = Date.now() + TIMEOUT_MS;
+  while (!(await holds())) {
+    if (Date.now() > deadline) throw new Error(`still not true after a minute: ${what}`);
+    await new Promise((resolve) => setTimeout(resolve, 50));
   }
 }
 
+/**
+ * Waits until a function in the page, which may be asynchronous, returns something true, also across navigation.
+ * (Playwright's own wait takes a promise for something true.)
+ * @template [A=undefined]
+ * @param {Page | Frame} page
+ * @param {(argument: A) => unknown} holds
+ * @param {A} [argument]
+ */
+export async function until(page, holds, argument) {
+  /** @param {Error} error */
+  const unlessNavigating = (error) => {
+    if (!NAVIGATING.test(error.message)) throw error;
+  };
+  const ask = /** @type {(page: Page | Frame) => Promise<unknown>} */ ((page) => page.evaluate(/** @type {() => unknown} */ (holds), /** @type {undefined} */ (argument)));
+  await eventually(() => ask(page).catch(unlessNavigating), String(holds));
+}
+
+/** @param {Page | Frame} page */
 export async function whenReady(page) {
   await until(page, () => window.gaitway !== undefined);
   await page.evaluate(async () => {
@@ -92,18 +156,28 @@ export async function whenReady(page) {
 
 // The calls of `window.gaitway`, from the test's side.
 
+/** @param {Page | Frame} page */
 export const state = (page) => page.evaluate(async () => await window.gaitway.state());
+/** @param {Page | Frame} page */
 export const stats = (page) => page.evaluate(async () => await window.gaitway.stats());
+/** @param {Page | Frame} page */
 export const pose = (page) => page.evaluate(async () => await window.gaitway.pose());
+/** @type {(page: Page | Frame, partial: object) => Promise<void>} */
 export const apply = (page, partial) => page.evaluate(async (partial) => void (await window.gaitway.apply(partial)), partial);
-export const open = (page, ...items) => page.evaluate(async (items) => await window.gaitway.open(items), items);
+/** @type {(page: Page | Frame, ...urls: string[]) => Promise<import("../../web/shell/types.d.ts").InspectDocument>} */
+export const open = (page, ...urls) => page.evaluate(async (urls) => await window.gaitway.open(urls), urls);
 
-/** The picture that `screenshot()` gives: `{width, height, rgba}`, straight alpha. */
+/**
+ * Returns the image that `screenshot()` gives.
+ * @param {Page} page
+ * @returns {Promise<Image>}
+ */
 export async function picture(page) {
   const { width, height, base64 } = await page.evaluate(async () => {
     const bitmap = await createImageBitmap(await window.gaitway.screenshot(), { premultiplyAlpha: "none" });
     const { width, height } = bitmap;
     const context = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true });
+    if (context === null) throw new Error("no 2D context");
     context.drawImage(bitmap, 0, 0);
     const bytes = context.getImageData(0, 0, width, height).data;
     let text = "";
@@ -113,32 +187,47 @@ export async function picture(page) {
   return { width, height, rgba: Buffer.from(base64, "base64") };
 }
 
-/** Drops files on the middle of the page as a person would: `files` are `{name, url}` or `{name, text}`. */
+/**
+ * Drops files on the middle of the page, as a person would.
+ * @param {Page | Frame} page
+ * @param {{ name: string, url?: string, text?: string }[]} files
+ */
 export function drop(page, files) {
   return page.evaluate(async (files) => {
     const transfer = new DataTransfer();
-    for (const { name, url, text } of files) {
+    for (const { name, url, text = "" } of files) {
       const content = url === undefined ? text : await (await fetch(url)).blob();
       transfer.items.add(new File([content], name));
     }
     const where = { clientX: innerWidth / 2, clientY: innerHeight / 2, bubbles: true, cancelable: true, composed: true };
     const target = document.elementFromPoint(where.clientX, where.clientY);
-    for (const type of ["dragenter", "dragover", "drop"]) target.dispatchEvent(new DragEvent(type, { ...where, dataTransfer: transfer }));
+    for (const type of ["dragenter", "dragover", "drop"]) target?.dispatchEvent(new DragEvent(type, { ...where, dataTransfer: transfer }));
   }, files);
 }
 
-/** The part of an address after the `#`: `parts` are pairs of key and value. */
+/**
+ * Writes the part of an address after the `#`.
+ * @param {[key: string, value: string | number][]} parts
+ */
 export const fragment = (parts) => parts.map(([key, value]) => `${key}=${encodeURIComponent(value)}`).join("&");
 
-/** Opens the dialog with the link, as the keyboard reaches it. */
+/**
+ * Opens the share dialog by keyboard.
+ * @param {Page} page
+ */
 export async function share(page) {
   await page.locator("#do-share").focus();
   await page.keyboard.press("Enter");
   await page.locator("#share").waitFor({ state: "visible" });
 }
 
-/** Waits until what is on the screen has this many vertices. */
+/**
+ * Waits until the screen shows this many vertices.
+ * @param {Page | Frame} page
+ * @param {number} vertices
+ */
 export function whenShown(page, vertices) {
+  /** @param {number} vertices */
   const shows = async (vertices) => {
     const { meshes } = await window.gaitway.pose();
     return meshes.reduce((sum, { positions }) => sum + positions.length / 3, 0) === vertices;
@@ -146,7 +235,32 @@ export function whenShown(page, vertices) {
   return until(page, shows, vertices);
 }
 
-/** Mean absolute difference of two pictures' colours, 0 to 255; they must have the same size. */
+/**
+ * Waits until this is the only model of the view.
+ * @param {Page | Frame} page
+ * @param {string} name
+ */
+export const whenModel = (page, name) => until(page, async (name) => (await window.gaitway.state()).model.join() === name, name);
+
+/**
+ * Waits until this many motions are borrowed.
+ * @param {Page | Frame} page
+ * @param {number} count
+ */
+export const whenBorrowed = (page, count) => until(page, async (count) => (await window.gaitway.state()).motion.length === count, count);
+
+/**
+ * Waits until the picture differs from an earlier one.
+ * @param {Page} page
+ * @param {Image} earlier
+ */
+export const whenPictureDiffers = (page, earlier) => eventually(async () => meanDifference(await picture(page), earlier) > 0, "the picture should change");
+
+/**
+ * Returns the mean absolute difference of two images' colors, 0 to 255. They must have the same size.
+ * @param {Image} a
+ * @param {Image} b
+ */
 export function meanDifference(a, b) {
   if (a.width !== b.width || a.height !== b.height) throw new Error(`sizes differ: ${a.width}×${a.height}, ${b.width}×${b.height}`);
   let sum = 0;
@@ -154,21 +268,50 @@ export function meanDifference(a, b) {
   return sum / a.rgba.length;
 }
 
-/** How many different colours a picture has. */
-export function coloursOf({ rgba }) {
-  const colours = new Set();
-  for (let at = 0; at < rgba.length; at += 4) colours.add(rgba.readUInt32LE(at));
-  return colours.size;
+/**
+ * Counts the different colors of an image.
+ * @param {Image} image
+ */
+export function colorsOf({ rgba }) {
+  const colors = new Set();
+  for (let at = 0; at < rgba.length; at += 4) colors.add(rgba.readUInt32LE(at));
+  return colors.size;
 }
 
-/** Waits until nothing has been drawn for a while: what was resized, pressed or scrolled is in its place. */
+/**
+ * Returns the largest distance between corresponding vertices of two poses, in meters.
+ * @param {PoseDocument} a
+ * @param {PoseDocument} b
+ */
+export function furthest(a, b) {
+  let longest = 0;
+  for (const [mesh, { positions }] of a.meshes.entries())
+    for (let at = 0; at < positions.length; at += 3) {
+      const other = b.meshes[mesh].positions;
+      longest = Math.max(longest, Math.hypot(...[0, 1, 2].map((axis) => positions[at + axis] - other[at + axis])));
+    }
+  return longest;
+}
+
+/**
+ * Returns how many frames the app draws while the browser offers this many.
+ * @param {Page} page
+ * @param {number} count
+ */
+export const framesDrawnDuring = (page, count) =>
+  page.evaluate(async (count) => {
+    const { frames: before } = await window.gaitway.stats();
+    for (let frame = 0; frame < count; frame++) await new Promise(requestAnimationFrame);
+    return (await window.gaitway.stats()).frames - before;
+  }, count);
+
+/** Display frames without one by the app, after which it has come to rest. */
+const STILL_FRAMES = 45;
+
+/**
+ * Waits until the app draws no more frames: it has responded to the last resize, key or click.
+ * @param {Page} page
+ */
 export async function untilStill(page) {
-  const frames = () => page.evaluate(() => window.gaitway.stats().frames);
-  let [before, still] = [await frames(), 0];
-  while (still < 4) {
-    await page.waitForTimeout(200);
-    const now = await frames();
-    still = now === before ? still + 1 : 0;
-    before = now;
-  }
+  await eventually(async () => (await framesDrawnDuring(page, STILL_FRAMES)) === 0, "the app should come to rest");
 }

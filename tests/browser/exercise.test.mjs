@@ -1,20 +1,30 @@
-// The skinning exercise on the page, on each back end: dropped, opened by its address, bent while frames are counted.
+// The skinning exercise on the page, on each back end: dropped, opened by URL, and bent while frames are counted.
 import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
 import { skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, VIEWPORT, apply, drop, meanDifference, open, picture, pose, startSite, state, stats, until, whenShown } from "./browser.mjs";
+import { BACK_ENDS, apply, drop, meanDifference, open, picture, pose, startSite, state, stats, until, untilStill, whenShown } from "./browser.mjs";
 
 const VERTICES = 13336;
-/** Of a slider that is dragged. */
+/** Steps of a dragged slider. */
 const STEPS = 30;
+/** Where the controls of the chosen joint are; egui's panels are pixels to a page. */
+const POSE_MANUALLY = { x: 741, y: 118 };
+const FIRST_SLIDER = { x: 642, y: 216 };
 const KINDS = ["obj", "skel", "attach"];
 
 for (const renderer of BACK_ENDS) {
   describe(`exercise on ${renderer}`, () => {
+    /** @type {import("./browser.mjs").Site} */
     let site;
     before(async () => (site = await startSite()));
     after(() => site?.close());
 
+    /**
+     * Tests on a fresh page, which must report no errors but the forgiven ones.
+     * @param {string} name
+     * @param {{ link?: (site: import("./browser.mjs").Site) => string, forgiven?: RegExp }} options
+     * @param {(page: import("./browser.mjs").TestPage) => Promise<void>} body
+     */
     const onPage = (name, options, body) =>
       test(name, { skip: skipWithoutData }, async () => {
         const page = await site.page({ renderer, ...options, link: options.link?.(site) });
@@ -25,33 +35,33 @@ for (const renderer of BACK_ENDS) {
           await page.finish();
         }
       });
+    /** @type {(page: import("./browser.mjs").TestPage, name: string) => Promise<void>} */
     const dropModel = (page, name) =>
       drop(page, KINDS.map((kind) => ({ name: `${name}.${kind}`, url: site.data(`mit6837/${name}.${kind}`) })));
 
-    onPage("three files are dropped together and bent by a slider without a stutter", {}, async (page) => {
+    onPage("three files dropped together are bent by a slider without stutter", {}, async (page) => {
       await dropModel(page, "Model1");
       await whenShown(page, VERTICES);
       const [rest, restPicture] = [await pose(page), await picture(page)];
       assert.equal(rest.nodes.length, 18);
       assert.deepEqual(rest.meshes.map(({ positions }) => positions.length), [3 * VERTICES]);
-      // The switch “Turn by hand” of the chosen joint, then the knob of the first slider: egui's panels are pixels to a page.
       await apply(page, { joint: 5 });
-      // egui finds what is under the pointer by the frame before.
-      await page.mouse.move(741, 118);
-      await page.waitForTimeout(500);
-      await page.mouse.click(741, 118);
-      await page.waitForTimeout(1000);
-      await page.mouse.move(642, 216);
-      await page.waitForTimeout(500);
+      // egui finds what is under the pointer in the previous frame.
+      await page.mouse.move(POSE_MANUALLY.x, POSE_MANUALLY.y);
+      await untilStill(page);
+      await page.mouse.click(POSE_MANUALLY.x, POSE_MANUALLY.y);
+      await untilStill(page);
+      await page.mouse.move(FIRST_SLIDER.x, FIRST_SLIDER.y);
+      await untilStill(page);
       await page.mouse.down();
-      await page.waitForTimeout(200);
+      await untilStill(page);
       const cpu = [];
       const { frames } = await stats(page);
       let before = (await state(page)).pose;
       for (let step = 1; step <= STEPS; step++) {
-        // egui takes the roundest number within a point to either side: no two steps have one in common.
-        await page.mouse.move(642 + 3 * step, 216);
-        // Each step of the slider is shown before the next one.
+        // egui rounds to the nicest number within a point to either side, which no two steps share.
+        await page.mouse.move(FIRST_SLIDER.x + 3 * step, FIRST_SLIDER.y);
+        // Each step is shown before the next one.
         await until(page, async (before) => (await window.gaitway.state()).pose !== before, before);
         before = (await state(page)).pose;
         cpu.push((await stats(page)).cpu_ms);
@@ -60,7 +70,7 @@ for (const renderer of BACK_ENDS) {
       assert.ok((await stats(page)).frames >= frames + STEPS, "a frame for every step");
       assert.match(before, /^5:[1-9][0-9.]*:-?0:-?0$/, "the slider turns the chosen joint about X");
       cpu.sort((a, b) => a - b);
-      console.log(`${renderer}: ${cpu[STEPS / 2].toFixed(2)} ms of the CPU for a frame with its panels (median of ${STEPS}; ${cpu[0].toFixed(2)} to ${cpu[STEPS - 1].toFixed(2)})`);
+      console.log(`${renderer}: ${cpu[STEPS / 2].toFixed(2)} ms of CPU time per frame with panels (median of ${STEPS}; ${cpu[0].toFixed(2)} to ${cpu[STEPS - 1].toFixed(2)})`);
       const bent = await pose(page);
       const furthest = Math.max(...bent.meshes[0].positions.map((value, at) => Math.abs(value - rest.meshes[0].positions[at])));
       assert.ok(furthest > 0.1, `a leg is up: ${furthest}`);
@@ -80,7 +90,7 @@ for (const renderer of BACK_ENDS) {
     });
 
     onPage(
-      "the address of the mesh is enough",
+      "the URL of the mesh is enough",
       { link: (site) => `model=${encodeURIComponent(site.data("mit6837/Model2.obj"))}&pose=6:60:0:0&show=skeleton,boxes,smooth&vertex=0:0:40` },
       async (page) => {
         await whenShown(page, VERTICES);
@@ -95,21 +105,24 @@ for (const renderer of BACK_ENDS) {
       },
     );
 
-    onPage("a mesh that came first gets its joints from the files that come after it", { forgiven: /Model1/ }, async (page) => {
+    onPage("a mesh that arrives first gets its joints from the files that follow", { forgiven: /Model1/ }, async (page) => {
+      /** @param {string} name */
       const dropped = (name) => drop(page, [{ name, url: site.data(`mit6837/${name}`) }]);
+      /** @param {number} count */
       const whenJoints = (count) => until(page, async (count) => (await window.gaitway.stats()).joints === count, count);
       await dropped("Model1.obj");
       await whenJoints(1);
       await dropped("Model1.skel");
-      await until(page, () => /Model1\.attach/.test(document.querySelector("#problem").textContent));
-      assert.equal((await stats(page)).joints, 1, "the .attach is missing still");
+      await until(page, () => /Model1\.attach/.test(document.querySelector("#problem")?.textContent ?? ""));
+      assert.equal((await stats(page)).joints, 1, "the .attach is still missing");
       await dropped("Model1.attach");
       await whenJoints(18);
     });
 
-    onPage("a set that is not complete says what is missing, and the picture stays", { forgiven: /Model1/ }, async (page) => {
+    onPage("an incomplete set says what is missing, and the viewport stays", { forgiven: /Model1/ }, async (page) => {
       const before = (await pose(page)).meshes.length;
       const problem = await page.evaluate(async ([obj, skel]) => {
+        /** @param {string} url */
         const bytes = async (url) => await (await fetch(url)).arrayBuffer();
         const files = { "Model1.obj": await bytes(obj), "Model1.skel": await bytes(skel) };
         return await window.gaitway.open(files).then(() => "", (error) => error.message);

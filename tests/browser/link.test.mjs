@@ -1,13 +1,13 @@
-// The link on the page: shared and opened elsewhere, parts that cannot be had, back and forward, and the page inside another
-// one, which never gets to know what a person dropped.
+// Links on the page: shared and opened elsewhere, with parts that can't be loaded, back and forward, and the page embedded in
+// another one, which never learns what the user dropped.
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import os from "node:os";
 import path from "node:path";
 import { after, before, describe, test } from "node:test";
-import { dataFolder, skipWithoutData } from "../three/data.mjs";
+import { dataFile, skipWithoutData } from "../three/data.mjs";
 import { archive } from "./archive.mjs";
-import { BACK_ENDS, apply, drop, fragment, meanDifference, open, picture, pose, share, startSite, state, until, whenShown } from "./browser.mjs";
+import { BACK_ENDS, apply, drop, fragment, meanDifference, open, picture, pose, share, startSite, state, until, whenBorrowed, whenModel, whenShown } from "./browser.mjs";
 import { neverAnswers, serve } from "./server.mjs";
 
 const FOX = "khronos/Fox/glTF-Binary/Fox.glb";
@@ -16,35 +16,48 @@ const CESIUM_MAN = "khronos/CesiumMan/glTF-Binary/CesiumMan.glb";
 const CESIUM_MAN_VERTICES = 3273;
 const XBOT = "threejs/Xbot.glb";
 const DANCE = "bvh/cosc422_Dance.bvh";
-/** Nothing listens there: browsers refuse to ask some ports, this is none of those. */
+/** Nothing listens there, and browsers don't block the port. */
 const CLOSED = "http://127.0.0.1:9";
 
-const missing = (page) => page.locator("#missing-parts li").allInnerTexts();
-const whenMissing = (page) => page.locator("#missing").waitFor({ state: "visible" });
-const linkOf = (page) => page.locator("#share-link").inputValue();
+/** @typedef {import("./browser.mjs").TestPage} TestPage */
+/** @typedef {import("../types.d.ts").Reply} Reply */
 
-/** Waits until this is the model that is shown. */
-const whenModel = (page, name) => until(page, async (name) => (await window.gaitway.state()).model.join() === name, name);
+/** @param {TestPage} page */
+const missing = (page) => page.locator("#missing-parts li").allInnerTexts();
+/** @param {TestPage} page */
+const whenMissing = (page) => page.locator("#missing").waitFor({ state: "visible" });
+/** @param {TestPage} page */
+const linkOf = (page) => page.locator("#share-link").inputValue();
 
 for (const renderer of BACK_ENDS)
   describe(`link on ${renderer}`, { skip: skipWithoutData }, () => {
-    let site, strict, own, silent, folder;
+    /** @type {import("./browser.mjs").Site} */
+    let site;
+    /** @type {Record<"strict" | "own" | "silent", import("./server.mjs").Server>} */
+    let servers;
+    /** @type {string} */
+    let folder;
     before(async () => {
       site = await startSite();
-      // Its files are for its own pages alone.
-      strict = await serve({ "/": dataFolder });
-      silent = await neverAnswers();
       folder = fs.mkdtempSync(path.join(os.tmpdir(), "gaitway-link-"));
-      own = await serve({ "/": folder }, { "access-control-allow-origin": "*" });
+      servers = {
+        // Without CORS headers.
+        strict: await serve({ "/": dataFile("") }),
+        own: await serve({ "/": folder }, { "access-control-allow-origin": "*" }),
+        silent: await neverAnswers(),
+      };
     });
     after(async () => {
       await site?.close();
-      await strict?.close();
-      await silent?.close();
-      await own?.close();
+      for (const server of Object.values(servers ?? {})) await server.close();
       if (folder !== undefined) fs.rmSync(folder, { recursive: true });
     });
 
+    /**
+     * @param {string} name
+     * @param {() => string} link
+     * @param {(page: TestPage) => Promise<void>} body
+     */
     const onPage = (name, link, body) =>
       test(name, async () => {
         const page = await site.page({ renderer, link: link() });
@@ -56,12 +69,12 @@ for (const renderer of BACK_ENDS)
       });
 
     onPage(
-      "names the reason for each part that cannot be had and shows the rest",
+      "gives the reason for each part that can't be loaded and shows the rest",
       () =>
         fragment([
           ["model", site.data(FOX)],
           ["motion", site.data("bvh/nothing-here.bvh")],
-          ["motion", `${strict.origin}/${DANCE}`],
+          ["motion", `${servers.strict.origin}/${DANCE}`],
           ["motion", `${CLOSED}/walk.bvh`],
           ["motion", site.data("README.md")],
           ["map", site.data("map-of-nothing.json")],
@@ -74,39 +87,40 @@ for (const renderer of BACK_ENDS)
         assert.match(refused, /cosc422_Dance\.bvh: the site is there.*CORS.*no such file/);
         assert.match(unreachable, /127\.0\.0\.1:9\/walk\.bvh: the site cannot be reached/);
         assert.match(unsupported, /README\.md/);
-        assert.match(unsupported, /\.glb/, "what could be read instead");
+        assert.match(unsupported, /\.glb/, "which types can be read");
         assert.match(map, /map-of-nothing\.json: .*404/);
         assert.deepEqual(others, []);
-        assert.match(await page.locator("#problem").textContent(), /nothing-here\.bvh/);
-        await page.locator("#missing").getByRole("button", { name: "Go on" }).click();
+        assert.match((await page.locator("#problem").textContent()) ?? "", /nothing-here\.bvh/);
+        await page.locator("#missing-continue").click();
         const { clip, meshes } = await pose(page);
         assert.equal(clip, "Run");
         assert.equal(meshes[0].positions.length, 3 * FOX_VERTICES);
-        // Nothing has been set: trying again by reloading is possible.
+        // Nothing has been set, so reloading tries again.
         assert.match(page.url(), /map-of-nothing/);
       },
     );
 
-    onPage("does not wait for a site that never answers", () => fragment([["model", site.data(FOX)], ["motion", `${silent.origin}/walk.bvh`]]), async (page) => {
+    onPage("doesn't wait for a site that never answers", () => fragment([["model", site.data(FOX)], ["motion", `${servers.silent.origin}/walk.bvh`]]), async (page) => {
       await whenMissing(page);
       assert.match((await missing(page)).join(), /walk\.bvh: nothing has come from the site for 20 seconds/);
       assert.equal((await pose(page)).meshes[0].positions.length, 3 * FOX_VERTICES);
     });
 
-    onPage("shows the motion's own skeleton when the model cannot be had", () => fragment([["model", `${CLOSED}/a.glb`], ["motion", site.data(DANCE)], ["embed", "1"]]), async (page) => {
+    onPage("shows the motion's own skeleton when the model can't be loaded", () => fragment([["model", `${CLOSED}/a.glb`], ["motion", site.data(DANCE)], ["embed", "1"]]), async (page) => {
       await whenMissing(page);
+      assert.match(await page.locator("#missing-title").innerText(), /^The model in this link/);
       assert.match((await missing(page)).join(), /^http:\/\/127\.0\.0\.1:9\/a\.glb: the site cannot be reached[^,]*$/);
       const { model, embed } = await state(page);
       assert.deepEqual(model, [site.data(DANCE)]);
       assert.equal(embed, true);
     });
 
-    onPage("tries again", () => fragment([["model", `${own.origin}/late.glb`], ["clip", "Run"], ["t", 0.5], ["play", 0]]), async (page) => {
+    onPage("tries again", () => fragment([["model", `${servers.own.origin}/late.glb`], ["clip", "Run"], ["t", 0.5], ["play", 0]]), async (page) => {
       await whenMissing(page);
       const again = page.locator("#missing-again");
       await again.click();
       await whenMissing(page);
-      fs.copyFileSync(path.join(dataFolder, FOX), path.join(folder, "late.glb"));
+      fs.copyFileSync(dataFile(FOX), path.join(folder, "late.glb"));
       await again.click();
       await whenShown(page, FOX_VERTICES);
       const { clip, time_secs } = await pose(page);
@@ -115,9 +129,9 @@ for (const renderer of BACK_ENDS)
       fs.rmSync(path.join(folder, "late.glb"));
     });
 
-    onPage("takes a page of GitHub for the file that it shows", () => "", async (page) => {
+    onPage("takes a GitHub page for the file that it shows", () => "", async (page) => {
       await page.route("https://raw.githubusercontent.com/**", (route) =>
-        route.fulfill({ path: path.join(dataFolder, FOX), headers: { "access-control-allow-origin": "*" } }),
+        route.fulfill({ path: dataFile(FOX), headers: { "access-control-allow-origin": "*" } }),
       );
       await page.locator("#do-open").focus();
       await page.keyboard.press("Enter");
@@ -125,7 +139,7 @@ for (const renderer of BACK_ENDS)
       await page.keyboard.press("Enter");
       await whenShown(page, FOX_VERTICES);
       assert.ok(page.requests.includes("https://raw.githubusercontent.com/someone/models/main/a%20fox/Fox.glb"), page.requests.join("\n"));
-      assert.match(await page.locator("#news").textContent(), /3 clips/);
+      assert.match((await page.locator("#news").textContent()) ?? "", /3 clips/);
     });
 
     onPage("is the same scene in another browser", () => fragment([["model", site.data(XBOT)]]), async (page) => {
@@ -139,67 +153,67 @@ for (const renderer of BACK_ENDS)
       const snippet = await page.locator("#share-frame").inputValue();
       assert.match(snippet, /^<iframe src="http:.*&amp;embed=1"/);
       await page.locator("#share-close").click();
-      const shown = [await state(page), await pose(page), await picture(page)];
+      const shown = { state: await state(page), pose: await pose(page), picture: await picture(page) };
       const other = await site.page({ renderer, link: link.split("#")[1] });
       try {
-        assert.deepEqual(await state(other), shown[0]);
-        assert.deepEqual(await pose(other), shown[1]);
-        assert.equal(meanDifference(await picture(other), shown[2]), 0);
+        assert.deepEqual(await state(other), shown.state);
+        assert.deepEqual(await pose(other), shown.pose);
+        assert.equal(meanDifference(await picture(other), shown.picture), 0);
       } finally {
         await other.finish();
       }
     });
 
-    onPage("says which parts a link cannot carry", () => fragment([["model", site.data(XBOT)]]), async (page) => {
+    onPage("says which files a link can't include", () => fragment([["model", site.data(XBOT)]]), async (page) => {
       await drop(page, [{ name: "dance.bvh", url: site.data(DANCE) }]);
-      await until(page, async () => (await window.gaitway.state()).motion.length === 1);
+      await whenBorrowed(page, 1);
       await apply(page, { play: 0, t: 1 });
       await share(page);
       assert.match(await page.locator("#share-local").innerText(), /dance\.bvh \(motion\)/);
-      // The code is there when it is asked for.
+      // The code is collapsed, but there.
       assert.equal(await page.locator("#share-qr svg").isVisible(), false);
-      await page.locator("#share-code summary").click();
+      await page.locator("#share-code-toggle").click();
       assert.equal(await page.locator("#share-qr svg").isVisible(), true);
       const link = await linkOf(page);
       assert.ok(link.includes("Xbot.glb") && link.includes("motion=file:dance.bvh"), link);
       await page.locator("#share-close").click();
-      // The address bar keeps to the same.
+      // The address bar shows the same link.
       await until(page, () => location.hash.includes("t=1"));
       assert.ok(page.url().includes("motion=file:dance.bvh"), page.url());
     });
 
     onPage("says when a link is too long for a QR code", () => `model=sample:walker&whatever=${"x".repeat(3000)}`, async (page) => {
       await share(page);
-      assert.match(await page.locator("#share-no-qr").innerText(), /\d{4} characters: too long for a QR code/);
+      assert.match(await page.locator("#share-no-qr").innerText(), /\d{4} characters, too many for a QR code/);
       assert.equal(await page.locator("#share-qr svg").count(), 0);
     });
 
     /** Two models in one file, of which the fox is the first. */
-    const TWO = () => archive({ "a/fox.glb": fs.readFileSync(path.join(dataFolder, FOX)), "b/man.glb": fs.readFileSync(path.join(dataFolder, CESIUM_MAN)) });
+    const TWO = () => archive({ "a/fox.glb": fs.readFileSync(dataFile(FOX)), "b/man.glb": fs.readFileSync(dataFile(CESIUM_MAN)) });
 
-    onPage("names one of the models of an archive", () => (fs.writeFileSync(path.join(folder, "two.zip"), TWO()), fragment([["model", `${own.origin}/two.zip#!/b/man.glb`]])), async (page) => {
+    onPage("names one model of an archive", () => (fs.writeFileSync(path.join(folder, "two.zip"), TWO()), fragment([["model", `${servers.own.origin}/two.zip#!/b/man.glb`]])), async (page) => {
       await whenShown(page, CESIUM_MAN_VERTICES);
-      assert.deepEqual((await state(page)).model, [`${own.origin}/two.zip#!/b/man.glb`]);
+      assert.deepEqual((await state(page)).model, [`${servers.own.origin}/two.zip#!/b/man.glb`]);
       await page.goto(page.url().replace("man.glb", "gone.glb"));
       await page.reload();
       await whenMissing(page);
       assert.match((await missing(page)).join(), /two\.zip#!\/b\/gone\.glb: there is no such model in this file; its first one is shown/);
       await whenShown(page, FOX_VERTICES);
-      // As an address that is opened, too.
+      // Also as a URL that is opened.
       await page.locator("#missing").press("Escape");
-      await open(page, `${own.origin}/two.zip#!/b/man.glb`);
+      await open(page, `${servers.own.origin}/two.zip#!/b/man.glb`);
       await whenShown(page, CESIUM_MAN_VERTICES);
     });
 
-    onPage("waits for an archive that is to be brought and shows its model", () => fragment([["model", "file:two.zip#!/b/man.glb"], ["t", 0.5], ["play", 0]]), async (page) => {
+    onPage("waits for an archive that the user has to bring and shows its model", () => fragment([["model", "file:two.zip#!/b/man.glb"], ["t", 0.5], ["play", 0]]), async (page) => {
       fs.writeFileSync(path.join(folder, "two.zip"), TWO());
-      assert.match(await page.locator("#bring-files").innerText(), /^two\.zip \(the model\)$/);
+      assert.match(await page.locator("#bring-files").innerText(), /^two\.zip \(model\)$/);
       await page.keyboard.press("Escape");
-      await drop(page, [{ name: "two.zip", url: `${own.origin}/two.zip` }]);
+      await drop(page, [{ name: "two.zip", url: `${servers.own.origin}/two.zip` }]);
       await whenShown(page, CESIUM_MAN_VERTICES);
       assert.deepEqual([(await state(page)).model, (await state(page)).t], [["two.zip#!/b/man.glb"], 0.5]);
       await share(page);
-      assert.match(await page.locator("#share-local").innerText(), /two\.zip \(the model\)/);
+      assert.match(await page.locator("#share-local").innerText(), /two\.zip \(model\)/);
       assert.ok((await linkOf(page)).includes("model=file:two.zip%23!%2Fb%2Fman.glb"), await linkOf(page));
     });
 
@@ -212,7 +226,7 @@ for (const renderer of BACK_ENDS)
       await whenShown(page, CESIUM_MAN_VERTICES);
       await apply(page, { t: 0.75, play: 0, exposure: 1 });
       await until(page, () => location.hash.includes("exposure=1"));
-      assert.equal(await entries(), before + 1, "one model, one entry; what is set belongs to it");
+      assert.equal(await entries(), before + 1, "one entry per model, including what is set");
       await open(page, site.data(XBOT));
       await until(page, () => location.hash.includes("Xbot"));
       assert.equal(await entries(), before + 2);
@@ -233,31 +247,33 @@ for (const renderer of BACK_ENDS)
     });
 
     onPage("follows another link in the address bar", () => fragment([["model", site.data(FOX)]]), async (page) => {
-      await page.evaluate((hash) => (location.hash = hash), fragment([["model", site.data(CESIUM_MAN)], ["t", 0.5], ["play", 0]]));
+      await page.evaluate((hash) => void (location.hash = hash), fragment([["model", site.data(CESIUM_MAN)], ["t", 0.5], ["play", 0]]));
       await whenShown(page, CESIUM_MAN_VERTICES);
       assert.equal((await pose(page)).time_secs, 0.5);
-      await page.evaluate((hash) => (location.hash = hash), fragment([["model", site.data("nothing.glb")]]));
+      await page.evaluate((hash) => void (location.hash = hash), fragment([["model", site.data("nothing.glb")]]));
       await whenMissing(page);
       assert.match((await missing(page)).join(), /nothing\.glb: .*404/);
-      await page.locator("#missing").getByRole("button", { name: "Go on" }).click();
-      assert.equal((await pose(page)).meshes[0].positions.length, 3 * CESIUM_MAN_VERTICES, "what was shown stays");
+      await page.locator("#missing-continue").click();
+      assert.equal((await pose(page)).meshes[0].positions.length, 3 * CESIUM_MAN_VERTICES, "the view stays as it was");
       await page.goBack();
       await page.goBack();
       await whenShown(page, FOX_VERTICES);
     });
 
-    test("answers the page around it, but tells it nothing of dropped files", async () => {
+    test("answers the page around it, but tells it nothing about dropped files", async () => {
       fs.writeFileSync(path.join(folder, "index.html"), AROUND);
       const context = await site.browser.newContext({ viewport: { width: 700, height: 500 } });
       try {
         const page = await context.newPage();
         page.setDefaultTimeout(60_000);
         const inside = `${site.address}?renderer=${renderer}#${fragment([["model", site.data(FOX)], ["embed", 1], ["play", 0]])}`;
-        await page.goto(`${own.origin}/#${encodeURIComponent(inside)}`);
+        await page.goto(`${servers.own.origin}/#${encodeURIComponent(inside)}`);
+        /** @type {(...request: unknown[]) => Promise<Reply>} */
         const call = (...request) => page.evaluate((request) => window.call(...request), request);
         await call("ready");
         const frame = page.frames().find((frame) => frame.url().startsWith(site.address));
-        assert.notEqual(new URL(frame.url()).origin, own.origin);
+        assert.ok(frame !== undefined);
+        assert.notEqual(new URL(frame.url()).origin, servers.own.origin);
 
         const { embed, model } = (await call("state")).result;
         assert.deepEqual([embed, model], [true, [site.data(FOX)]]);
@@ -266,9 +282,9 @@ for (const renderer of BACK_ENDS)
         assert.deepEqual([result.clip, result.time_secs, result.meshes[0].positions.length], ["Run", 0.5, 3 * FOX_VERTICES]);
         assert.equal((await call("stats")).result.backend, renderer);
         assert.ok((await call("screenshot")).result > 1000, "bytes of a PNG");
-        assert.match((await call("apply", { speed: "quickly" })).error, /speed/);
-        assert.match((await call("destroy")).error, /there is no such call/);
-        assert.match((await call("open", [site.data("nothing.glb")])).error, /404/);
+        assert.match((await call("apply", { speed: "quickly" })).error ?? "", /speed/);
+        assert.match((await call("destroy")).error ?? "", /there is no such call/);
+        assert.match((await call("open", [site.data("nothing.glb")])).error ?? "", /404/);
         assert.equal((await call("open", site.data(CESIUM_MAN))).result.vertices, CESIUM_MAN_VERTICES);
         await page.waitForFunction(() => window.events.includes("ready") && window.events.includes("change"));
         // Another frame on the page is not the page around.
@@ -281,27 +297,29 @@ for (const renderer of BACK_ENDS)
           for (const name of ["state", "pose", "stats", "screenshot"]) {
             const { result, error } = await call(name);
             assert.equal(result, undefined, name);
-            assert.match(error, /withheld/, name);
+            assert.match(error ?? "", /withheld/, name);
           }
         };
         await withheld();
         assert.deepEqual(await call("apply", { play: 0, exposure: 1 }), nothing);
-        assert.match((await call("apply", { clip: "x", speed: "quickly" })).error, /^withheld/);
-        // Asking for what is shown by its name gives nothing away either, and neither does the address.
+        assert.match((await call("apply", { clip: "x", speed: "quickly" })).error ?? "", /^withheld/);
+        // Asking for the shown files by name gives nothing away either, and neither does the address.
         assert.deepEqual(await call("apply", { model: ["Mine.glb"], motion: [] }), nothing);
         await withheld();
-        await page.evaluate((address) => (document.querySelector("iframe").src = address), `${inside.split("#")[0]}#model=Mine.glb&embed=1`);
-        await page.waitForTimeout(1000);
+        await page.evaluate((address) => document.querySelector("iframe")?.setAttribute("src", address), `${inside.split("#")[0]}#model=Mine.glb&embed=1`);
+        // The address names a file that isn't there.
+        await frame.locator("#missing").waitFor({ state: "visible" });
         await withheld();
-        // A joint map and motion of the person's own stay theirs beside another model.
+        await frame.locator("#missing-continue").click();
+        // Private motion stays private beside another model.
         await call("open", site.data(XBOT));
-        assert.equal((await call("state")).result.model[0], site.data(XBOT), "nothing of the person's is left");
+        assert.equal((await call("state")).result.model[0], site.data(XBOT), "nothing private is left");
         await drop(frame, [{ name: "mine.bvh", url: site.data(DANCE) }]);
         await until(frame, async () => (await window.gaitway.state()).motion.includes("mine.bvh"));
         await withheld();
         assert.deepEqual(await call("open", site.data(XBOT)), nothing);
         await withheld();
-        // Files that come from the page around are its own anyway.
+        // Files from the page around are its own anyway.
         assert.equal((await page.evaluate((url) => window.openBytes("Fox.glb", url), site.data(FOX))).error, undefined);
         await call("apply", { motion: [] });
         assert.equal((await call("pose")).result.meshes[0].positions.length, 3 * FOX_VERTICES);
@@ -311,7 +329,7 @@ for (const renderer of BACK_ENDS)
     });
   });
 
-/** A page with Gaitway in a frame, and another frame beside it. The address of the frame is behind the `#`. */
+/** A page with Gaitway in a frame, at the URL after the `#`, and with another frame beside it. */
 const AROUND = `<!doctype html>
 <title>A page about a fox</title>
 <iframe width="640" height="440"></iframe>
@@ -324,7 +342,7 @@ const AROUND = `<!doctype html>
     if (source !== frame.contentWindow || data?.gaitway !== 1) return;
     if (data.event !== undefined) return void window.events.push(data.event);
     const { result, error } = data;
-    // What Playwright carries over has to be plain.
+    // Playwright returns plain values only.
     waiting.get(data.id)?.({ result: result instanceof Blob ? result.size : result, error });
   });
   let last = 0;
@@ -337,13 +355,16 @@ const AROUND = `<!doctype html>
   const started = new Promise((resolve) => frame.addEventListener("load", resolve, { once: true }));
   window.call = async (call, ...given) => (await started, await post(call, given));
   window.openBytes = async (name, url) => await post("open", [{ [name]: await (await fetch(url)).arrayBuffer() }]);
-  window.askFromAside = (call) =>
-    new Promise((resolve) => {
-      const aside = document.getElementById("aside").contentWindow;
-      aside.addEventListener("message", () => resolve("an answer"));
-      aside.Function("target", "call", "target.postMessage({ gaitway: 1, id: 1, call, arguments: [] }, '*')")(frame.contentWindow, call);
-      setTimeout(() => resolve("no answer"), 1000);
-    });
+  // Answers come in order, so one to the aside would arrive before the one to this page.
+  window.askFromAside = async (call) => {
+    const aside = document.getElementById("aside").contentWindow;
+    let answer = "no answer";
+    aside.addEventListener("message", () => (answer = "an answer"));
+    aside.Function("target", "call", "target.postMessage({ gaitway: 1, id: 1, call, arguments: [] }, '*')")(frame.contentWindow, call);
+    await post(call, []);
+    await new Promise(requestAnimationFrame);
+    return answer;
+  };
   frame.src = decodeURIComponent(location.hash.slice(1));
 </script>
 `;

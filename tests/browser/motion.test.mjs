@@ -1,9 +1,9 @@
-// Borrowed motion on the page: dropped, by script and by link, on each back end; maps in and out; what does not fit.
+// Borrowed motion on the page, dropped, by script and by link, on each back end; joint maps in and out; what doesn't fit.
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import { after, before, describe, test } from "node:test";
 import { skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, apply, drop, meanDifference, open, picture, pose, startSite, state, until, untilStill, whenReady } from "./browser.mjs";
+import { BACK_ENDS, apply, drop, furthest, meanDifference, open, picture, pose, startSite, state, until, untilStill, whenReady } from "./browser.mjs";
 
 const XBOT = "threejs/Xbot.glb";
 const XBOT_CLIPS = 7;
@@ -11,7 +11,9 @@ const SOLDIER = "threejs/Soldier.glb";
 const DANCE = "bvh/cosc422_Dance.bvh";
 const SNAKE = "mesh2motion/snake-animations.glb";
 
-/** Nothing of Xbot's names or shape is in it, and it has no mesh: a worm of three joints. */
+/** @typedef {import("./browser.mjs").TestPage} TestPage */
+
+/** A worm of two joints without a mesh, which shares neither names nor shape with Xbot. */
 const WORM = `HIERARCHY
 ROOT seg0
 {
@@ -37,10 +39,17 @@ Frame Time: 0.5
 describe("borrowed motion", { skip: skipWithoutData }, () => {
   for (const renderer of BACK_ENDS)
     describe(`on ${renderer}`, () => {
+      /** @type {import("./browser.mjs").Site} */
       let site;
       before(async () => (site = await startSite()));
       after(() => site?.close());
 
+      /**
+       * Tests on a fresh page, which must report no errors.
+       * @param {string} name
+       * @param {((site: import("./browser.mjs").Site) => string) | null} link
+       * @param {(page: TestPage) => Promise<void>} body
+       */
       const onPage = (name, link, body) =>
         test(name, async () => {
           const page = await site.page({ renderer, link: link?.(site) ?? "" });
@@ -52,6 +61,7 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
           }
         });
 
+      /** @param {import("./browser.mjs").Site} site */
       const model = (site) => `model=${encodeURIComponent(site.data(XBOT))}`;
 
       onPage("a dropped .bvh plays on the model that is shown", model, async (page) => {
@@ -72,7 +82,7 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
       onPage("another character's clips are borrowed by role", model, async (page) => {
         const document = await page.evaluate(async (url) => await window.gaitway.open(url, { as: "motion" }), site.data(SOLDIER));
         assert.equal(document.clips.length, XBOT_CLIPS);
-        assert.ok(document.borrowed_clips.some(({ name }) => name === "Run"), JSON.stringify(document.borrowed_clips));
+        assert.ok(document.borrowed_clips?.some(({ name }) => name === "Run"), JSON.stringify(document.borrowed_clips));
         await apply(page, { clip: "Run", t: 0.3, play: 0 });
         const run = await pose(page);
         assert.equal(run.clip, "Run");
@@ -87,7 +97,7 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
         const shown = await pose(page);
         const link = await page.evaluate(async () => {
           const { model, motion, map, clip, root, feet } = await window.gaitway.state();
-          const all = Object.entries({ model, motion, map, clip, root, feet, t: 2, play: 0 });
+          const all = Object.entries({ model, motion, map, clip: clip ?? "", root: root ?? "", feet: feet ?? "", t: 2, play: 0 });
           return all.flatMap(([key, value]) => [value].flat().map((value) => `${key}=${encodeURIComponent(value)}`)).join("&");
         });
         const again = await site.page({ renderer, link });
@@ -102,26 +112,26 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
         }
       });
 
-      onPage("what has nothing in common is refused and changes nothing", model, async (page) => {
+      onPage("motion with nothing in common is rejected and changes nothing", model, async (page) => {
         await apply(page, { clip: "walk", t: 0.4, play: 0 });
         const [earlier, before] = [await state(page), await picture(page)];
         const refused = await page.evaluate(async (text) => {
           const bytes = new TextEncoder().encode(text);
-          return await window.gaitway.open({ "worm.bvh": bytes.buffer }).then(() => null, (error) => error.message);
+          return await window.gaitway.open({ "worm.bvh": bytes.buffer }).then(() => "", (error) => error.message);
         }, WORM);
         assert.match(refused, /worm\.bvh.*no joint in common/);
         assert.deepEqual(await state(page), earlier);
         assert.equal(meanDifference(await picture(page), before), 0);
-        // It can still be looked at by itself.
+        // It can still be shown by itself.
         await apply(page, { model: await page.evaluate((text) => URL.createObjectURL(new Blob([text])), WORM) });
         assert.equal((await pose(page)).nodes.length, 2);
         assert.equal((await state(page)).motion.length, 0);
       });
 
-      onPage("a joint map is dropped, changed by script, and kept when it is wrong", model, async (page) => {
+      onPage("a joint map is dropped, changed by script, and kept when a new one is wrong", model, async (page) => {
         const alone = await page.evaluate(async () => {
           const bytes = new TextEncoder().encode('{"gaitway_map":1,"joints":{}}');
-          return await window.gaitway.open({ "map.json": bytes.buffer }).then(() => null, (error) => error.message);
+          return await window.gaitway.open({ "map.json": bytes.buffer }).then(() => "", (error) => error.message);
         });
         assert.match(alone, /no motion/);
         await open(page, site.data(DANCE));
@@ -138,7 +148,7 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
         assert.equal(furthest(await pose(page), automatic), 0);
       });
 
-      onPage("a model and its motion come together, and the motion stays for the next model", null, async (page) => {
+      onPage("a model and its motion arrive together, and the motion stays for the next model", null, async (page) => {
         await drop(page, [
           { name: "Xbot.glb", url: site.data(XBOT) },
           { name: "dance.bvh", url: site.data(DANCE) },
@@ -148,7 +158,7 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
         await drop(page, [{ name: "Soldier.glb", url: site.data(SOLDIER) }]);
         await until(page, async () => (await window.gaitway.state()).model[0] === "Soldier.glb");
         assert.equal((await pose(page)).clip, "dance");
-        // A snake has arms and legs to borrow from nobody.
+        // A snake has no arms or legs to retarget to.
         await drop(page, [{ name: "snake.glb", url: site.data(SNAKE) }]);
         await until(page, async () => (await window.gaitway.state()).model[0] === "snake.glb");
         assert.notEqual((await pose(page)).clip, "dance");
@@ -166,7 +176,7 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
           const shown = await pose(page);
           const session = await own.browser.newBrowserCDPSession();
           await session.send("Browser.crashGpuProcess").catch(() => {});
-          const again = page.getByRole("button", { name: "Start again" });
+          const again = page.locator("#stopped-again");
           await again.waitFor({ state: "visible" });
           await again.click();
           await whenReady(page);
@@ -176,11 +186,11 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
         }
       });
 
-      onPage("the model is handed over with the borrowed clip in it", model, async (page) => {
+      onPage("the model is saved with the borrowed clip", model, async (page) => {
         await open(page, site.data(DANCE));
         await apply(page, { t: 1.5, play: 0 });
         const shown = await pose(page);
-        const file = await handedOver(page, 344);
+        const file = await savedBy(page, 344);
         assert.equal(file.suggestedFilename(), "Xbot-cosc422_Dance.glb");
         const base64 = fs.readFileSync(await file.path()).toString("base64");
         const document = await page.evaluate(async (base64) => {
@@ -192,10 +202,10 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
         assert.ok(furthest(await pose(page), shown) < 1e-6);
       });
 
-      onPage("the map in force is handed over as a file", model, async (page) => {
+      onPage("the active map is saved as a file", model, async (page) => {
         await open(page, site.data(DANCE));
         await apply(page, { play: 0 });
-        const file = await handedOver(page, 200);
+        const file = await savedBy(page, 200);
         assert.equal(file.suggestedFilename(), "Xbot-cosc422_Dance.json");
         const saved = JSON.parse(fs.readFileSync(await file.path(), "utf8"));
         assert.equal(saved.gaitway_map, 1);
@@ -204,8 +214,13 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
     });
 });
 
-/** The file that the button at this height gives: the Motion tab, its Files, then the button. The canvas has no elements to ask for. */
-async function handedOver(page, y) {
+/**
+ * Returns the file that the button at this height saves: the Motion tab, its Files, then the button. The canvas has no
+ * elements to ask for.
+ * @param {TestPage} page
+ * @param {number} y
+ */
+async function savedBy(page, y) {
   await page.setViewportSize({ width: 1280, height: 800 });
   await untilStill(page);
   const download = page.waitForEvent("download");
@@ -215,15 +230,4 @@ async function handedOver(page, y) {
   }
   await page.mouse.click(1125, y);
   return await download;
-}
-
-/** The longest way between two poses' vertices, in metres. */
-function furthest(a, b) {
-  let longest = 0;
-  for (const [mesh, { positions }] of a.meshes.entries())
-    for (let at = 0; at < positions.length; at += 3) {
-      const other = b.meshes[mesh].positions;
-      longest = Math.max(longest, Math.hypot(...[0, 1, 2].map((axis) => positions[at + axis] - other[at + axis])));
-    }
-  return longest;
 }

@@ -1,24 +1,30 @@
-// What stays after a visit: the page and its samples without a network, and new versions that wait until they are wanted.
+// What a visit leaves behind: the page and its samples work offline, and new versions wait until they are wanted.
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import os from "node:os";
 import path from "node:path";
 import { after, before, describe, test } from "node:test";
-import { readScenes } from "../../xtask/site/samples.mjs";
-import { BACK_ENDS, VIEWPORT, dist, launch, state, until, whenReady } from "./browser.mjs";
+import { linkOf, readScenes } from "../../xtask/site/samples.mjs";
+import { BACK_ENDS, VIEWPORT, dist, launch, state, until, watched, whenReady } from "./browser.mjs";
 import { serve } from "./server.mjs";
 
 const FOLDER = "/some/folder/";
 
-/** Waits until everything is kept. */
-const whenKept = (page) =>
+/**
+ * Waits until everything is stored.
+ * @param {import("playwright-core").Page} page
+ */
+const whenStored = (page) =>
   until(page, async () => {
     const registration = await navigator.serviceWorker.getRegistration();
     return registration?.active?.state === "activated" && navigator.serviceWorker.controller !== null;
   });
 
 describe("after a visit", () => {
-  let browser, folder;
+  /** @type {import("./browser.mjs").Browser} */
+  let browser;
+  /** @type {string} */
+  let folder;
   before(async () => {
     browser = await launch();
     folder = fs.mkdtempSync(path.join(os.tmpdir(), "gaitway-site-"));
@@ -28,31 +34,29 @@ describe("after a visit", () => {
     if (folder !== undefined) fs.rmSync(folder, { recursive: true });
   });
 
+  /** @param {string} address */
   async function visit(address) {
     const context = await browser.newContext({ viewport: VIEWPORT });
-    const page = await context.newPage();
-    page.troubles = [];
-    page.on("pageerror", (error) => page.troubles.push(error.message));
-    page.on("console", (message) => message.type() === "error" && page.troubles.push(message.text()));
+    const page = watched(await context.newPage());
     await page.goto(address);
     await whenReady(page);
-    await whenKept(page);
+    await whenStored(page);
     return { context, page };
   }
 
   for (const renderer of BACK_ENDS)
-    test(`the page and every scene work without a network (${renderer})`, async () => {
+    test(`the page and every scene work offline (${renderer})`, async () => {
       const site = await serve({ [FOLDER]: dist });
       const address = `${site.origin}${FOLDER}`;
       const { context, page } = await visit(`${address}?renderer=${renderer}`);
       await site.close();
-      for (const [index, { name, link }] of readScenes().entries()) {
-        // The first as somebody comes, the others from their links.
+      for (const [index, scene] of readScenes().entries()) {
+        // The first as on a first visit, the others from their links.
         const offline = await context.newPage();
-        await offline.goto(`${address}?renderer=${renderer}${index === 0 ? "" : `#${link}`}`);
+        await offline.goto(`${address}?renderer=${renderer}${index === 0 ? "" : `#${linkOf(scene)}`}`);
         await whenReady(offline);
-        assert.deepEqual([(await state(offline)).model].flat(), new URLSearchParams(link).getAll("model"), name);
-        assert.equal(await offline.locator("#missing").isVisible(), false, `${name}: nothing should be missing`);
+        assert.deepEqual((await state(offline)).model, [scene.model], scene.name);
+        assert.equal(await offline.locator("#missing").isVisible(), false, `${scene.name}: nothing should be missing`);
         await offline.close();
       }
       assert.deepEqual(page.troubles, []);
@@ -60,19 +64,20 @@ describe("after a visit", () => {
     });
 
   test("a new version is offered and waits", async () => {
-    // Without the compressed copies, which would not be the new version.
+    // Without the compressed copies, which would stay at the old version.
     fs.cpSync(dist, folder, { recursive: true, filter: (file) => !/\.(br|gz)$/.test(file) });
     const site = await serve({ [FOLDER]: folder }, { "cache-control": "no-cache" });
     const { context, page } = await visit(`${site.origin}${FOLDER}#model=sample:walker&play=0`);
     assert.equal(await page.locator("#update").isVisible(), false);
+    /** @param {string} name */
     const file = (name) => path.join(folder, name);
-    const [, version] = fs.readFileSync(file("index.html"), "utf8").match(/name="gaitway-version" content="([0-9a-f]+)"/);
+    const [, version] = fs.readFileSync(file("index.html"), "utf8").match(/name="gaitway-version" content="([0-9a-f]+)"/) ?? [];
     const next = "0123456789abcdef";
     for (const name of ["index.html", "sw.js"]) fs.writeFileSync(file(name), fs.readFileSync(file(name), "utf8").replaceAll(version, next));
-    const shown = () => page.evaluate(() => document.querySelector('meta[name="gaitway-version"]').content);
+    const shown = () => page.evaluate(() => document.querySelector('meta[name="gaitway-version"]')?.getAttribute("content"));
     await page.reload();
     await whenReady(page);
-    assert.equal(await shown(), version, "what was there is shown at once");
+    assert.equal(await shown(), version, "the stored version is shown at once");
     await page.locator("#update").waitFor({ state: "visible" });
     await page.locator("#update-later").click();
     assert.equal(await page.locator("#update").isVisible(), false);
@@ -80,25 +85,26 @@ describe("after a visit", () => {
     await page.reload();
     await whenReady(page);
     await page.locator("#update").waitFor({ state: "visible" });
-    assert.equal(await shown(), version, "nobody is taken away from anything");
+    assert.equal(await shown(), version, "nobody is interrupted");
     await page.locator("#update-use").click();
-    await until(page, (next) => document.querySelector('meta[name="gaitway-version"]')?.content === next, next);
+    await until(page, (next) => document.querySelector('meta[name="gaitway-version"]')?.getAttribute("content") === next, next);
     await whenReady(page);
     assert.match(await page.evaluate(() => location.hash), /model=sample:walker/, "the view stays");
-    assert.equal((await page.evaluate(() => caches.keys())).length, 1, "the version before is gone");
+    assert.equal((await page.evaluate(() => caches.keys())).length, 1, "the previous version is gone");
     assert.deepEqual(page.troubles, []);
     await context.close();
     await site.close();
   });
 
-  test("other sites, parts of files and frames are left alone", async () => {
+  test("other sites, ranges and frames are left alone", async () => {
     const site = await serve({ [FOLDER]: dist });
     const other = await serve({ [FOLDER]: dist }, { "access-control-allow-origin": "*" });
     const { context, page } = await visit(`${site.origin}${FOLDER}`);
-    const kept = await page.evaluate(async () => (await (await caches.open((await caches.keys())[0])).keys()).map(({ url }) => url));
-    const address = kept.find((url) => url.endsWith(".webp")) ?? kept.find((url) => url.endsWith(".svg"));
+    const stored = await page.evaluate(async () => (await (await caches.open((await caches.keys())[0])).keys()).map(({ url }) => url));
+    const address = stored.find((url) => url.endsWith(".webp")) ?? stored.find((url) => url.endsWith(".svg")) ?? "";
+    /** @type {(url: string, headers: Record<string, string>) => Promise<boolean>} */
     const fromWorker = async (url, headers) => {
-      const [response] = await Promise.all([page.waitForResponse(url), page.evaluate(async ([url, headers]) => void (await (await fetch(url, { headers })).blob()), [url, headers])]);
+      const [response] = await Promise.all([page.waitForResponse(url), page.evaluate(async ({ url, headers }) => void (await (await fetch(url, { headers })).blob()), { url, headers })]);
       return response.fromServiceWorker();
     };
     assert.equal(await fromWorker(address, {}), true);
@@ -111,12 +117,18 @@ describe("after a visit", () => {
     const outside = await serve({ "/": around });
     const frameContext = await browser.newContext({ viewport: VIEWPORT });
     const framing = await frameContext.newPage();
+    await framing.addInitScript(() => {
+      navigator.serviceWorker.register = async () => {
+        document.documentElement.dataset.registered = "";
+        throw new Error("a frame needs no service worker");
+      };
+    });
     await framing.goto(outside.origin);
     const frame = framing.frames()[1];
-    await until(frame, () => window.gaitway !== undefined);
-    await frame.evaluate(async () => await window.gaitway.ready);
-    await framing.waitForTimeout(500);
-    assert.deepEqual(await frame.evaluate(async () => (await navigator.serviceWorker.getRegistrations()).length), 0);
+    await whenReady(frame);
+    // The first image would start the registration.
+    await frame.evaluate(() => new Promise(requestAnimationFrame));
+    assert.equal(await frame.evaluate(() => document.documentElement.dataset.registered), undefined);
     await frameContext.close();
     for (const server of [site, other, outside]) await server.close();
     fs.rmSync(around, { recursive: true });

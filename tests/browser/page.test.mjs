@@ -1,27 +1,35 @@
-// The built page on each back end: it starts, opens real files in every way, and does what a hand or a script asks.
+// The built page on each back end: it starts, opens real files in every way, and responds to users and scripts.
 import assert from "node:assert/strict";
 import path from "node:path";
 import { after, before, describe, test } from "node:test";
-import { dataFolder, skipWithoutData } from "../three/data.mjs";
+import { dataFile, skipWithoutData } from "../three/data.mjs";
 import { loadScene } from "../three/scene.mjs";
-import { BACK_ENDS, VIEWPORT, apply, coloursOf, drop, meanDifference, open, picture, pose, startSite, state, stats, until, whenReady, whenShown } from "./browser.mjs";
+import { BACK_ENDS, VIEWPORT, apply, colorsOf, drop, eventually, framesDrawnDuring, meanDifference, open, picture, pose, startSite, state, stats, until, untilStill, whenPictureDiffers, whenReady, whenShown } from "./browser.mjs";
 
 const FOX = "khronos/Fox/glTF-Binary/Fox.glb";
 const FOX_VERTICES = 1728;
 const CESIUM_MAN = "khronos/CesiumMan/glTF/CesiumMan.gltf";
 const CESIUM_MAN_VERTICES = 3273;
+/** Display frames in an idle second. */
+const IDLE_FRAMES = 60;
 const CENTER = { x: VIEWPORT.width / 2, y: VIEWPORT.height / 2 };
 
-// GLTFLoader's remarks about the reference file.
+// GLTFLoader's warnings about the reference file don't matter here.
 console.warn = () => {};
 
 for (const renderer of BACK_ENDS) {
   describe(`page on ${renderer}`, () => {
+    /** @type {import("./browser.mjs").Site} */
     let site;
     before(async () => (site = await startSite()));
     after(() => site?.close());
 
-    /** One test on a fresh page, which must have reported no error at its end. */
+    /**
+     * Tests on a fresh page, which must report no errors.
+     * @param {string} name
+     * @param {{ data?: boolean, link?: (site: import("./browser.mjs").Site) => string }} options
+     * @param {(page: import("./browser.mjs").TestPage) => Promise<void>} body
+     */
     const onPage = (name, options, body) =>
       test(name, { skip: options.data === true ? skipWithoutData : false }, async () => {
         const page = await site.page({ renderer, ...options, link: options.link?.(site) });
@@ -39,19 +47,18 @@ for (const renderer of BACK_ENDS) {
       const first = await pose(page);
       const firstPicture = await picture(page);
       const firstScreen = await page.screenshot();
-      await page.waitForTimeout(300);
+      await until(page, async (before) => (await window.gaitway.pose()).time_secs !== before, first.time_secs);
       const second = await pose(page);
       assert.ok(first.meshes.length > 0);
-      assert.notEqual(second.time_secs, first.time_secs);
       assert.notDeepEqual(second.meshes[0].positions, first.meshes[0].positions);
-      assert.ok(meanDifference(await picture(page), firstPicture) > 0, "the picture should move");
-      assert.ok(!firstScreen.equals(await page.screenshot()), "the screen should move");
+      await whenPictureDiffers(page, firstPicture);
+      await eventually(async () => !firstScreen.equals(await page.screenshot()), "the screen should move");
     });
 
-    onPage("asks no other host and needs no root folder", {}, async (page) => {
+    onPage("requests nothing from other hosts and works in any folder", {}, async (page) => {
       const { origin } = new URL(page.url());
-      const strangers = page.requests.filter((url) => !/^(data|blob):/.test(url) && !url.startsWith(`${origin}/some/folder/`));
-      assert.deepEqual(strangers, []);
+      const others = page.requests.filter((url) => !/^(data|blob):/.test(url) && !url.startsWith(`${origin}/some/folder/`));
+      assert.deepEqual(others, []);
     });
 
     onPage("opens one dropped file", { data: true }, async (page) => {
@@ -95,8 +102,8 @@ for (const renderer of BACK_ENDS) {
 
     onPage("shows the chosen clip at the chosen time", { data: true }, async (page) => {
       await open(page, site.data(FOX));
-      const reference = await loadScene(path.join(dataFolder, FOX));
-      for (const [clip, t] of [["Survey", 1.25], ["Run", 0.3], ["Walk", 0.6]]) {
+      const reference = await loadScene(dataFile(FOX));
+      for (const { clip, t } of [{ clip: "Survey", t: 1.25 }, { clip: "Run", t: 0.3 }, { clip: "Walk", t: 0.6 }]) {
         await apply(page, { clip, t, play: 0 });
         const shown = await pose(page);
         assert.equal(shown.clip, clip);
@@ -110,7 +117,7 @@ for (const renderer of BACK_ENDS) {
       assert.equal((await pose(page)).clip, null);
     });
 
-    onPage("tells others of a change", {}, async (page) => {
+    onPage("dispatches an event for a change", {}, async (page) => {
       await page.evaluate(() => {
         window.changes = 0;
         window.addEventListener("gaitway:change", () => window.changes++);
@@ -119,7 +126,7 @@ for (const renderer of BACK_ENDS) {
       await until(page, () => window.changes > 0);
     });
 
-    onPage("refuses a wrong value and keeps the state", {}, async (page) => {
+    onPage("rejects a wrong value and keeps the state", {}, async (page) => {
       await apply(page, { play: 0 });
       const earlier = await state(page);
       await assert.rejects(apply(page, { speed: "quickly" }), /speed/);
@@ -134,7 +141,7 @@ for (const renderer of BACK_ENDS) {
       await until(page, async () => Number((await window.gaitway.state()).play ?? 1) === 1);
     });
 
-    onPage("orbits by dragging and comes nearer with the wheel", {}, async (page) => {
+    onPage("orbits by dragging and zooms in with the wheel", {}, async (page) => {
       await apply(page, { play: 0 });
       const before = await picture(page);
       await page.mouse.move(CENTER.x, CENTER.y);
@@ -143,7 +150,7 @@ for (const renderer of BACK_ENDS) {
       await page.mouse.up();
       const orbited = await camera(page);
       assert.ok(orbited.every(Number.isFinite) && orbited.length === 6, `camera: ${orbited}`);
-      assert.ok(meanDifference(await picture(page), before) > 0, "the picture should turn");
+      assert.ok(meanDifference(await picture(page), before) > 0, "the view should turn");
       await page.mouse.wheel(0, -240);
       await until(page, async (distance) => Number(String((await window.gaitway.state()).camera).split(",")[2]) < distance, orbited[2]);
       const nearer = await camera(page);
@@ -155,42 +162,38 @@ for (const renderer of BACK_ENDS) {
       const before = await picture(page);
       await page.setViewportSize({ width: 1000, height: 500 });
       await until(page, () => [...document.querySelectorAll("canvas")].some(({ width }) => width === 1000 * devicePixelRatio));
-      await page.waitForTimeout(300);
+      await untilStill(page);
       const wide = await picture(page);
       assert.ok(wide.width / wide.height > before.width / before.height, `${before.width}×${before.height} → ${wide.width}×${wide.height}`);
       await page.setViewportSize({ width: 390, height: 700 });
       await until(page, () => [...document.querySelectorAll("canvas")].some(({ width }) => width === 390 * devicePixelRatio));
-      await page.waitForTimeout(300);
+      await untilStill(page);
       const narrow = await picture(page);
       assert.ok(narrow.width < wide.width, `${wide.width}×${wide.height} → ${narrow.width}×${narrow.height}`);
-      assert.ok(coloursOf(narrow) > 16, "something should be drawn");
+      assert.ok(colorsOf(narrow) > 16, "something should be drawn");
     });
 
     onPage("draws nothing while nothing changes", {}, async (page) => {
       await apply(page, { play: 0 });
-      // What is still settling, such as a fading tooltip, may finish.
-      await page.waitForTimeout(1500);
-      const { frames: earlier } = await stats(page);
-      assert.equal(typeof earlier, "number");
-      await page.waitForTimeout(1000);
-      const { frames: later } = await stats(page);
-      // Asking takes a frame itself, at most two.
-      assert.ok(later - earlier <= 2, `${later - earlier} frames in an idle second`);
+      // What is in progress, such as a fading tooltip, may finish.
+      await untilStill(page);
+      const drawn = await framesDrawnDuring(page, IDLE_FRAMES);
+      assert.ok(drawn <= 2, `${drawn} frames in an idle second`);
     });
 
     onPage("says that a folder has no files in it", {}, async (page) => {
       await apply(page, { play: 0 });
       const before = await page.screenshot();
-      await page.locator("#do-open").evaluate((button) => button.click());
+      await page.locator("#do-open").evaluate((button) => button instanceof HTMLElement && button.click());
       await page.locator("#open-folder").dispatchEvent("change");
-      await until(page, () => /no files in this folder/.test(document.querySelector("#problem").textContent));
+      await until(page, () => /folder has no files/.test(document.querySelector("#problem")?.textContent ?? ""));
       assert.equal(await page.locator("#open").isVisible(), false);
-      // Answered after the next frame.
+      // Resolves after the next frame.
       await apply(page, { play: 0 });
       assert.ok(!before.equals(await page.screenshot()), "the notice should be on the screen");
     });
 
-    onPage("shows the next model without the weights of a joint of the last", { data: true }, async (page) => {
+    onPage("shows the next model without the weights of the previous model's joint", { data: true }, async (page) => {
       await apply(page, { joint: 5, show: "grid,weights" });
       await drop(page, [{ name: "Fox.glb", url: site.data(FOX) }]);
       await whenShown(page, FOX_VERTICES);
@@ -206,18 +209,16 @@ for (const renderer of BACK_ENDS) {
         const before = await picture(page);
         const refused = await page.evaluate(async () => {
           const bytes = new TextEncoder().encode("glTF but not really, and then some more");
-          return await window.gaitway.open({ "broken.glb": bytes.buffer }).then(() => null, (error) => [error instanceof Error, error.message]);
+          return await window.gaitway.open({ "broken.glb": bytes.buffer }).then(() => null, (error) => (error instanceof Error ? error.message : "not an Error"));
         });
-        assert.ok(refused !== null, "open() should reject");
-        assert.equal(refused[0], true, "with an Error");
-        assert.match(refused[1], /broken\.glb/);
+        assert.match(refused ?? "open() should reject", /broken\.glb/);
         await drop(page, [{ name: "cut.gltf", text: '{"asset":{"version":"2.0"},"buffers":[{"byteLength":12,"uri":"missing.bin"}]}' }]);
-        // What the canvas shows is said to a screen reader too.
-        await until(page, () => /missing\.bin/.test(document.querySelector("#problem").textContent));
+        // Screen readers hear what the canvas shows.
+        await until(page, () => /missing\.bin/.test(document.querySelector("#problem")?.textContent ?? ""));
         await assert.rejects(open(page, site.data("nothing-here.glb")), /nothing-here\.glb/);
         assert.equal((await pose(page)).meshes[0].positions.length, FOX_VERTICES * 3);
         assert.equal((await pose(page)).time_secs, 0.4);
-        assert.equal(meanDifference(await picture(page), before), 0, "the picture should stay");
+        assert.equal(meanDifference(await picture(page), before), 0, "the view should stay as it was");
         await drop(page, [{ name: "CesiumMan.glb", url: site.data("khronos/CesiumMan/glTF-Binary/CesiumMan.glb") }]);
         await whenShown(page, CESIUM_MAN_VERTICES);
       } finally {
@@ -225,7 +226,7 @@ for (const renderer of BACK_ENDS) {
       }
     });
 
-    test("stops when the graphics process dies and starts again with the same view", { skip: skipWithoutData }, async () => {
+    test("stops when the graphics process dies and restarts with the same view", { skip: skipWithoutData }, async () => {
       const own = await startSite();
       try {
         const page = await own.page({ renderer });
@@ -235,9 +236,9 @@ for (const renderer of BACK_ENDS) {
         const before = await picture(page);
         const session = await own.browser.newBrowserCDPSession();
         await session.send("Browser.crashGpuProcess").catch(() => {});
-        const again = page.getByRole("button", { name: "Start again" });
+        const again = page.locator("#stopped-again");
         await again.waitFor({ state: "visible" });
-        assert.match(await page.locator("body").innerText(), /stopped/i);
+        assert.equal(await page.locator("#stopped").isVisible(), true);
         await again.click();
         await whenReady(page);
         await whenShown(page, FOX_VERTICES);
@@ -246,7 +247,7 @@ for (const renderer of BACK_ENDS) {
         assert.deepEqual(String(camera).split(",").map(Number), [40, 15, 250, 0, 40, 0]);
         const { backend } = await stats(page);
         assert.ok(BACK_ENDS.includes(backend));
-        assert.ok(meanDifference(await picture(page), before) < 1, "the picture should come back");
+        assert.ok(meanDifference(await picture(page), before) < 1, "the view should come back");
       } finally {
         await own.close();
       }
@@ -255,6 +256,7 @@ for (const renderer of BACK_ENDS) {
 }
 
 describe("page without graphics", () => {
+  /** @type {import("./browser.mjs").Site} */
   let site;
   before(async () => (site = await startSite()));
   after(() => site?.close());
@@ -264,28 +266,28 @@ describe("page without graphics", () => {
       ready: false,
       before: () => {
         Object.defineProperty(Navigator.prototype, "gpu", { value: undefined });
-        HTMLCanvasElement.prototype.getContext = () => null;
-        OffscreenCanvas.prototype.getContext = () => null;
+        for (const { prototype } of [HTMLCanvasElement, OffscreenCanvas]) Object.assign(prototype, { getContext: () => null });
       },
     });
-    await until(page, () => /cannot run here/i.test(document.body.innerText));
-    assert.match(await page.locator("body").innerText(), /WebGL\s?2/i);
+    await page.locator("#cannot-run").waitFor({ state: "visible" });
+    assert.match(await page.locator("#cannot-run-missing").innerText(), /WebGL\s?2/i);
     await page.finish();
   });
 
   test("falls back to WebGL2 without asking", async () => {
-    const page = await site.page({ before: () => Object.defineProperty(Navigator.prototype, "gpu", { value: undefined }) });
+    const page = await site.page({ before: () => void Object.defineProperty(Navigator.prototype, "gpu", { value: undefined }) });
     assert.equal((await stats(page)).backend, "webgl2");
     await page.finish();
   });
 
-  test("takes WebGPU where there is an adapter", async () => {
+  test("uses WebGPU if there is an adapter", async () => {
     const page = await site.page({});
     assert.equal((await stats(page)).backend, "webgpu");
     await page.finish();
   });
 });
 
+/** @param {import("./browser.mjs").TestPage} page */
 async function camera(page) {
   return String((await state(page)).camera).split(",").map(Number);
 }

@@ -1,9 +1,10 @@
-// Static files over HTTP for the tests: the built page as any host would serve it, from a folder that is not the root, and
-// the data folder from a second origin that allows others to read it.
+// Serves static files for the tests: the built page from a folder that is not the root, as any host would, and the data
+// folder from a second origin that allows cross-origin reads.
 import fs from "node:fs";
 import http from "node:http";
 import path from "node:path";
 
+/** @type {Record<string, string>} */
 const TYPES = {
   ".css": "text/css",
   ".glb": "model/gltf-binary",
@@ -19,47 +20,64 @@ const TYPES = {
   ".wasm": "application/wasm",
 };
 
-/** What the build puts beside a file for hosts that send it compressed. */
+/** Compressed copies that the build puts beside a file. */
 const COPIES = [
-  { encoding: "br", ending: ".br" },
-  { encoding: "gzip", ending: ".gz" },
+  { encoding: "br", extension: ".br" },
+  { encoding: "gzip", extension: ".gz" },
 ];
 
+/** @typedef {{ origin: string, close: () => Promise<unknown> }} Server */
+
 /**
- * Serves `mounts` (`{prefix: folder}`, prefixes with a slash at both ends) on a free port of 127.0.0.1.
- * Gives `{origin, close}`.
+ * Serves folders on a free port of 127.0.0.1.
+ * @param {Record<string, string>} mounts Folders by prefix, with a slash at both ends.
+ * @param {Record<string, string>} [headers]
  */
 export async function serve(mounts, headers = {}) {
   const server = http.createServer((request, response) => {
-    const name = decodeURIComponent(new URL(request.url, "http://host").pathname);
-    const prefix = Object.keys(mounts).find((prefix) => name.startsWith(prefix));
-    const root = prefix === undefined ? null : path.resolve(mounts[prefix]);
-    let file = root === null ? null : path.join(root, name.slice(prefix.length));
-    if (file !== null && name.endsWith("/")) file = path.join(file, "index.html");
-    if (file === null || !file.startsWith(root) || !fs.existsSync(file) || !fs.statSync(file).isFile()) {
+    const name = decodeURIComponent(new URL(request.url ?? "/", "http://host").pathname);
+    const file = fileFor(name, mounts);
+    if (file === null) {
       response.writeHead(404, { "content-type": "text/plain", ...headers }).end("not found");
       return;
     }
     const type = TYPES[path.extname(file)] ?? "application/octet-stream";
-    const copy = COPIES.find(({ encoding, ending }) => (request.headers["accept-encoding"] ?? "").includes(encoding) && fs.existsSync(file + ending));
-    const [sent, compressed] = copy === undefined ? [file, {}] : [file + copy.ending, { "content-encoding": copy.encoding }];
+    const copy = COPIES.find(({ encoding, extension }) => String(request.headers["accept-encoding"]).includes(encoding) && fs.existsSync(file + extension));
+    const [sent, compressed] = copy === undefined ? [file, {}] : [file + copy.extension, { "content-encoding": copy.encoding }];
     response.writeHead(200, { "content-type": type, "content-length": fs.statSync(sent).size, ...compressed, ...headers });
     fs.createReadStream(sent).pipe(response);
   });
   return await listening(server);
 }
 
-/** A server that takes every question and answers none: `{origin, close}`. */
+/**
+ * Returns the file that a path names, or null.
+ * @param {string} name
+ * @param {Record<string, string>} mounts
+ */
+function fileFor(name, mounts) {
+  const prefix = Object.keys(mounts).find((prefix) => name.startsWith(prefix));
+  if (prefix === undefined) return null;
+  const root = path.resolve(mounts[prefix]);
+  const file = path.join(root, name.slice(prefix.length), name.endsWith("/") ? "index.html" : "");
+  return file.startsWith(root) && fs.existsSync(file) && fs.statSync(file).isFile() ? file : null;
+}
+
+/** Starts a server that accepts every request and answers none. */
 export async function neverAnswers() {
   return await listening(http.createServer(() => {}));
 }
 
+/**
+ * @param {http.Server} server
+ * @returns {Promise<Server>}
+ */
 async function listening(server) {
-  await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
-  // A test that fails before it closes its server must not keep the whole run from ending.
+  await new Promise((resolve) => server.listen(0, "127.0.0.1", () => resolve(undefined)));
+  // A test that fails before it closes its server must not keep the run from ending.
   server.unref();
   return {
-    origin: `http://127.0.0.1:${server.address().port}`,
+    origin: `http://127.0.0.1:${/** @type {import("node:net").AddressInfo} */ (server.address()).port}`,
     close: () => {
       server.closeAllConnections();
       return new Promise((resolve) => server.close(resolve));

@@ -1,25 +1,39 @@
-// The silhouette that a model must have, rasterised here from nothing but world positions, the file's index lists and a
-// camera: no code is shared with what draws the page.
+// Rasterizes the silhouette that a model must have from world positions, the file's indices and a camera alone. It shares no
+// code with the renderer.
 import { readGltf } from "../three/data.mjs";
 
+/** @typedef {import("../../web/shell/types.d.ts").PoseDocument} PoseDocument */
+/** @typedef {{ indices: ArrayLike<number> | null, doubleSided: boolean }} Triangles */
+/** @typedef {{ yawDegrees: number, pitchDegrees: number, distance: number, target: number[], fovDegrees: number }} Camera */
+
+/** @type {Record<number, Uint8ArrayConstructor | Uint16ArrayConstructor | Uint32ArrayConstructor>} */
 const INDEX_ARRAYS = { 5121: Uint8Array, 5123: Uint16Array, 5125: Uint32Array };
 
-/** Triangles of every primitive of a GLB, as `"mesh.primitive" → {indices, doubleSided}`; `indices` is null where there are none. */
+/**
+ * Returns the triangles of every primitive of a GLB by `"mesh.primitive"`.
+ * @param {string} file
+ */
 export function trianglesOf(file) {
   const { json, binary } = readGltf(file);
+  /** @type {Map<string, Triangles>} */
   const triangles = new Map();
   json.meshes.forEach((mesh, meshIndex) =>
     mesh.primitives.forEach((primitive, primitiveIndex) => {
-      if ((primitive.mode ?? 4) !== 4) throw new Error("only triangle lists are rasterised");
-      const doubleSided = json.materials?.[primitive.material]?.doubleSided === true;
+      if ((primitive.mode ?? 4) !== 4) throw new Error("only triangle lists can be rasterized");
+      const doubleSided = json.materials?.[primitive.material ?? -1]?.doubleSided === true;
       triangles.set(`${meshIndex}.${primitiveIndex}`, { indices: indicesOf(json, binary, primitive.indices), doubleSided });
     }),
   );
   return triangles;
 }
 
+/**
+ * @param {import("../types.d.ts").GltfJson} json
+ * @param {Buffer | null} binary
+ * @param {number | undefined} accessorIndex
+ */
 function indicesOf(json, binary, accessorIndex) {
-  if (accessorIndex === undefined) return null;
+  if (accessorIndex === undefined || binary === null) return null;
   const accessor = json.accessors[accessorIndex];
   const view = json.bufferViews[accessor.bufferView];
   const Elements = INDEX_ARRAYS[accessor.componentType];
@@ -27,7 +41,14 @@ function indicesOf(json, binary, accessorIndex) {
   return new Elements(Uint8Array.from(binary.subarray(start, start + accessor.count * Elements.BYTES_PER_ELEMENT)).buffer);
 }
 
-/** A camera that sees all of a pose document from `yawDegrees`, `pitchDegrees`: `{yawDegrees, pitchDegrees, distance, target, fovDegrees}`. */
+/**
+ * Returns a camera that sees all of a pose document from the given direction.
+ * @param {PoseDocument} posed
+ * @param {number} yawDegrees
+ * @param {number} pitchDegrees
+ * @param {number} fovDegrees
+ * @returns {Camera}
+ */
 export function cameraFor(posed, yawDegrees, pitchDegrees, fovDegrees) {
   const min = [Infinity, Infinity, Infinity];
   const max = [-Infinity, -Infinity, -Infinity];
@@ -41,18 +62,29 @@ export function cameraFor(posed, yawDegrees, pitchDegrees, fovDegrees) {
   return { yawDegrees, pitchDegrees, distance, target: min.map((low, axis) => (low + max[axis]) / 2), fovDegrees };
 }
 
-/** The camera as the link writes it. */
+/**
+ * The camera as the link has it.
+ * @param {Camera} camera
+ */
 export const cameraText = ({ yawDegrees, pitchDegrees, distance, target }) => [yawDegrees, pitchDegrees, distance, ...target].join(",");
 
-/** One byte a pixel, 1 where a triangle covers the pixel's centre. Rows from the top. */
-export function rasterise(posed, triangles, camera, width, height) {
+/**
+ * Returns one byte per pixel, 1 where a triangle covers the pixel's center. Rows run from the top.
+ * @param {PoseDocument} posed
+ * @param {Map<string, Triangles>} triangles
+ * @param {Camera} camera
+ * @param {number} width
+ * @param {number} height
+ */
+export function rasterize(posed, triangles, camera, width, height) {
   const mask = new Uint8Array(width * height);
   const project = projector(camera, width, height);
   for (const { mesh, primitive, positions } of posed.meshes) {
-    const { indices, doubleSided } = triangles.get(`${mesh}.${primitive}`);
+    const { indices, doubleSided } = triangles.get(`${mesh}.${primitive}`) ?? { indices: null, doubleSided: false };
     const screen = new Float64Array((positions.length / 3) * 2);
     for (let vertex = 0; vertex * 3 < positions.length; vertex++) screen.set(project(positions, vertex * 3), vertex * 2);
     const count = indices === null ? positions.length / 3 : indices.length;
+    /** @param {number} at */
     const corner = (at) => 2 * (indices === null ? at : indices[at]);
     for (let at = 0; at + 2 < count; at += 3) {
       const [a, b, c] = [corner(at), corner(at + 1), corner(at + 2)];
@@ -62,7 +94,13 @@ export function rasterise(posed, triangles, camera, width, height) {
   return mask;
 }
 
-/** World position → pixels from the top left. Yaw 0 looks from +Z, 90 from +X; positive pitch from above. */
+/**
+ * Projects world positions to pixels from the top left. Yaw 0 looks from +Z, 90 from +X; positive pitch from above.
+ * @param {Camera} camera
+ * @param {number} width
+ * @param {number} height
+ * @returns {(positions: number[], at: number) => [number, number]}
+ */
 function projector({ yawDegrees, pitchDegrees, distance, target, fovDegrees }, width, height) {
   const [yaw, pitch] = [(yawDegrees * Math.PI) / 180, (pitchDegrees * Math.PI) / 180];
   const back = [Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch), Math.cos(yaw) * Math.cos(pitch)];
@@ -78,7 +116,19 @@ function projector({ yawDegrees, pitchDegrees, distance, target, fovDegrees }, w
   };
 }
 
-/** Front faces are counter-clockwise, which on a screen with Y down is a negative area. */
+/**
+ * Fills a triangle. Front faces are counterclockwise, so their area is negative on a screen with Y down.
+ * @param {Uint8Array} mask
+ * @param {number} width
+ * @param {number} height
+ * @param {boolean} doubleSided
+ * @param {number} ax
+ * @param {number} ay
+ * @param {number} bx
+ * @param {number} by
+ * @param {number} cx
+ * @param {number} cy
+ */
 function fill(mask, width, height, doubleSided, ax, ay, bx, by, cx, cy) {
   const area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
   if (area === 0 || (area > 0 && !doubleSided)) return;
@@ -99,10 +149,17 @@ function fill(mask, width, height, doubleSided, ax, ay, bx, by, cx, cy) {
     }
 }
 
-/** Where a picture with a transparent background shows something. */
+/**
+ * Returns where an image with a transparent background shows something.
+ * @param {import("./browser.mjs").Image} image
+ */
 export const maskOf = ({ rgba }) => Uint8Array.from({ length: rgba.length / 4 }, (_, pixel) => (rgba[pixel * 4 + 3] >= 128 ? 1 : 0));
 
-/** Intersection over union of two masks; 0 when both are empty, so that a picture of nothing proves nothing. */
+/**
+ * Returns the intersection over union of two masks; 0 if both are empty, so that an empty image proves nothing.
+ * @param {Uint8Array} a
+ * @param {Uint8Array} b
+ */
 export function overlap(a, b) {
   let both = 0;
   let either = 0;

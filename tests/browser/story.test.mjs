@@ -1,8 +1,8 @@
-// Whole stories on both back ends: what somebody brings along, mends and hands on, and what the other sees of it.
+// Whole stories on both back ends: what one person drops, corrects and shares, and what the other one sees of it.
 import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
 import { skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, apply, drop, fragment, meanDifference, picture, pose, share, startSite, state, stats, until, untilStill, whenReady, whenShown } from "./browser.mjs";
+import { BACK_ENDS, apply, drop, fragment, meanDifference, picture, pose, share, startSite, state, stats, until, untilStill, whenBorrowed, whenModel, whenReady, whenShown } from "./browser.mjs";
 
 const SOLDIER = "threejs/Soldier.glb";
 const FOX = "khronos/Fox/glTF-Binary/Fox.glb";
@@ -13,7 +13,7 @@ const WALK = "bvh/cmu_01_01.bvh";
 const DWARF = "cosc422/dwarf.glb";
 const AVATAR_WALK = "cosc422/original/Dwarf/avatar_walk.bvh";
 
-/** Which of the dwarf's joints follow which channel of the walk; its arms and the rest do what its own clip has. */
+/** Maps some of the dwarf's joints to channels of the walk; the arms and the rest play its own clip. */
 const DWARF_MAP = {
   gaitway_map: 1,
   joints: {
@@ -25,8 +25,13 @@ const DWARF_MAP = {
   unmapped: { clip: 0 },
 };
 
+/** @typedef {import("./browser.mjs").TestPage} TestPage */
+/** @typedef {Awaited<ReturnType<typeof shown>>} Shown */
+
+/** @param {string} address */
 const afterHash = (address) => address.split("#")[1];
 
+/** @param {TestPage} page */
 async function sharedLink(page) {
   await share(page);
   const link = await page.locator("#share-link").inputValue();
@@ -34,25 +39,34 @@ async function sharedLink(page) {
   return link;
 }
 
-/** All that two pages show alike: the state, the numbers, the picture. */
+/**
+ * Returns everything that two pages with the same view have in common.
+ * @param {TestPage} page
+ */
 async function shown(page) {
   await untilStill(page);
   return { state: await state(page), pose: await pose(page), picture: await picture(page) };
 }
 
+/**
+ * @param {Shown} found
+ * @param {Shown} expected
+ */
 function assertSame(found, expected) {
   assert.deepEqual(found.state, expected.state);
   assert.deepEqual(found.pose, expected.pose);
   assert.equal(meanDifference(found.picture, expected.picture), 0);
 }
 
+/** @param {TestPage} page */
 const whenAsked = (page) => page.locator("#bring").waitFor({ state: "visible" });
 
-/** Waits until as many motions are borrowed from. */
-const whenBorrowed = (page, count) => until(page, async (count) => (await window.gaitway.state()).motion.length === count, count);
-
-/** Chains of 300 joints that know each other by name. */
+/**
+ * Returns a BVH with a chain of 300 joints.
+ * @param {number} bend Degrees per joint in the second frame.
+ */
 function longChain(bend) {
+  /** @param {number} index */
   const joint = (index) => {
     const head = index === 0 ? "ROOT" : "JOINT";
     const channels = index === 0 ? "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation" : "CHANNELS 3 Zrotation Xrotation Yrotation";
@@ -61,16 +75,24 @@ function longChain(bend) {
   const count = 300;
   const hierarchy = Array.from({ length: count }, (_, index) => joint(index)).join("");
   const ends = `End Site\n{\nOFFSET 0 1 0\n}\n${"}\n".repeat(count)}`;
+  /** @param {number} angle */
   const frame = (angle) => ["0 0 0 0 0 0", ...Array.from({ length: count - 1 }, () => `${angle} 0 0`)].join(" ");
   return `HIERARCHY\n${hierarchy}${ends}MOTION\nFrames: 2\nFrame Time: 0.5\n${frame(0)}\n${frame(bend)}\n`;
 }
 
 for (const renderer of BACK_ENDS)
   describe(`story on ${renderer}`, { skip: skipWithoutData }, () => {
+    /** @type {import("./browser.mjs").Site} */
     let site;
     before(async () => (site = await startSite()));
     after(async () => await site?.close());
 
+    /**
+     * Tests on a fresh page, which must report no errors.
+     * @param {string} name
+     * @param {() => string} link
+     * @param {(page: TestPage) => Promise<void>} body
+     */
     const onPage = (name, link, body) =>
       test(name, async () => {
         const page = await site.page({ renderer, link: link() });
@@ -82,7 +104,7 @@ for (const renderer of BACK_ENDS)
         }
       });
 
-    onPage("a soldier and a walk are dropped, mended, and handed on by a link to somebody who has the same files", () => "", async (page) => {
+    onPage("a soldier and a walk are dropped, corrected, and shared by a link with somebody who has the same files", () => "", async (page) => {
       const files = [
         { name: "Soldier.glb", url: site.data(SOLDIER) },
         { name: "cmu_01_01.bvh", url: site.data(WALK) },
@@ -91,14 +113,14 @@ for (const renderer of BACK_ENDS)
       await whenBorrowed(page, 1);
       const { map } = await state(page);
       assert.equal(map.length, 1, "a map is proposed");
-      // The left hand is to follow the right: two pairs of the compact form are changed.
+      // Makes the left hand follow the right: changes two pairs of the compact form.
       const pairs = map[0].split(",");
-      const mended = [...pairs.slice(0, -2), ...pairs.slice(-2).map((pair) => pair.replace(/-\d+$/, "-3"))].join(",");
-      assert.notEqual(mended, map[0]);
-      await apply(page, { map: [mended], feet: "plant", play: 0, t: 1.5, camera: "40,12,4,0,1,0", show: "grid,skeleton", exposure: 0.5 });
-      assert.deepEqual((await state(page)).map, [mended]);
+      const corrected = [...pairs.slice(0, -2), ...pairs.slice(-2).map((pair) => pair.replace(/-\d+$/, "-3"))].join(",");
+      assert.notEqual(corrected, map[0]);
+      await apply(page, { map: [corrected], feet: "plant", play: 0, t: 1.5, camera: "40,12,4,0,1,0", show: "grid,skeleton", exposure: 0.5 });
+      assert.deepEqual((await state(page)).map, [corrected]);
       const before = await shown(page);
-      assert.ok(before.pose.clip.length > 0);
+      assert.ok(before.pose.clip);
       const link = await sharedLink(page);
       assert.match(link, /model=file:Soldier\.glb/);
       assert.match(link, /motion=file:cmu_01_01\.bvh/);
@@ -106,21 +128,21 @@ for (const renderer of BACK_ENDS)
       const other = await site.page({ renderer, link: afterHash(link) });
       try {
         await whenAsked(other);
-        assert.deepEqual(await other.locator("#bring-files li").allInnerTexts(), ["Soldier.glb (the model)", "cmu_01_01.bvh (motion)"]);
-        await other.getByRole("button", { name: "Not now" }).click();
-        assert.match((await state(other)).model.join(), /^(sample:.*)?$/, "the sample meanwhile");
+        assert.deepEqual(await other.locator("#bring-files li").allInnerTexts(), ["Soldier.glb (model)", "cmu_01_01.bvh (motion)"]);
+        await other.locator("#bring-later").click();
+        assert.match((await state(other)).model.join(), /^(sample:.*)?$/, "the sample serves as a placeholder");
         // One after the other is as good as both at once.
         await drop(other, files.slice(0, 1));
-        await until(other, async () => (await window.gaitway.state()).model.join() === "Soldier.glb");
+        await whenModel(other, "Soldier.glb");
         await drop(other, files.slice(1));
         await until(other, async () => (await window.gaitway.state()).t === 1.5);
         assertSame(await shown(other), before);
-        // The address asks again for what nobody keeps.
+        // After a reload, the address asks for the files again.
         await until(other, () => location.hash.includes("model=file:Soldier.glb") && location.hash.includes("t=1.5"));
         await other.reload();
         await whenReady(other);
         await whenAsked(other);
-        await other.getByRole("button", { name: "Not now" }).click();
+        await other.locator("#bring-later").click();
         await drop(other, files);
         await until(other, async () => (await window.gaitway.state()).t === 1.5);
         assertSame(await shown(other), before);
@@ -130,20 +152,20 @@ for (const renderer of BACK_ENDS)
       }
     });
 
-    onPage("somebody who opens something else is not asked any more", () => fragment([["model", "file:Soldier.glb"], ["exposure", 1]]), async (page) => {
+    onPage("somebody who opens something else isn't asked any more", () => fragment([["model", "file:Soldier.glb"], ["exposure", 1]]), async (page) => {
       await whenAsked(page);
-      await page.getByRole("button", { name: "Not now" }).click();
-      assert.equal((await state(page)).exposure, 1, "what does not hang on the model is there");
+      await page.locator("#bring-later").click();
+      assert.equal((await state(page)).exposure, 1, "what doesn't depend on the model is applied");
       await drop(page, [{ name: "Fox.glb", url: site.data(FOX) }]);
       await whenShown(page, FOX_VERTICES);
       await drop(page, [{ name: "Soldier.glb", url: site.data(SOLDIER) }]);
-      await until(page, async () => (await window.gaitway.state()).model.join() === "Soldier.glb");
+      await whenModel(page, "Soldier.glb");
       await until(page, () => location.hash.includes("Soldier.glb"));
       assert.equal(await page.locator("#bring").isVisible(), false);
     });
 
     onPage(
-      "the dwarf walks like the avatar, given as a link, while its arms do their own",
+      "the dwarf walks like the avatar from a link, while its arms play its own clip",
       () => fragment([["model", site.data(DWARF)], ["motion", site.data(AVATAR_WALK)], ["map", JSON.stringify(DWARF_MAP)], ["t", 0.4], ["play", 0], ["camera", "30,5,4,0,0.8,0"]]),
       async (page) => {
         const own = await pose(page);
@@ -162,7 +184,7 @@ for (const renderer of BACK_ENDS)
       },
     );
 
-    onPage("what was opened is taken back and done again", () => fragment([["model", site.data(FOX)], ["clip", "Run"], ["t", 0.25], ["play", 0]]), async (page) => {
+    onPage("opening is undone and redone", () => fragment([["model", site.data(FOX)], ["clip", "Run"], ["t", 0.25], ["play", 0]]), async (page) => {
       const fox = await shown(page);
       await drop(page, [{ name: "CesiumMan.glb", url: site.data(CESIUM_MAN) }]);
       await whenShown(page, CESIUM_MAN_VERTICES);
@@ -178,7 +200,7 @@ for (const renderer of BACK_ENDS)
       assert.deepEqual([model, t], [["CesiumMan.glb"], 1]);
     });
 
-    onPage("motions add up, and two models come at once", () => fragment([["model", site.data("threejs/Xbot.glb")]]), async (page) => {
+    onPage("motions add up, and two models arrive at once", () => fragment([["model", site.data("threejs/Xbot.glb")]]), async (page) => {
       await drop(page, [{ name: "a.bvh", url: site.data(WALK) }]);
       await whenBorrowed(page, 1);
       await drop(page, [{ name: "b.bvh", url: site.data("bvh/cosc422_Dance.bvh") }]);
@@ -190,10 +212,10 @@ for (const renderer of BACK_ENDS)
         { name: "CesiumMan.glb", url: site.data(CESIUM_MAN) },
       ]);
       await whenShown(page, FOX_VERTICES);
-      assert.match(await page.locator("#news").textContent(), /Fox/);
+      assert.match((await page.locator("#news").textContent()) ?? "", /Fox/);
     });
 
-    onPage("fifty edits are taken back one by one", () => "play=0", async (page) => {
+    onPage("fifty edits are undone one by one", () => "play=0", async (page) => {
       await page.locator("canvas").focus();
       const steps = [await state(page)];
       for (let edit = 0; edit < 50; edit++) {
@@ -211,8 +233,10 @@ for (const renderer of BACK_ENDS)
       await until(page, async (last) => JSON.stringify(await window.gaitway.state()) === last, JSON.stringify(last));
     });
 
-    onPage("a map of 300 joints is proposed, edited and handed on", () => "play=0", async (page) => {
+    onPage("a map of 300 joints is proposed, edited and shared", () => "play=0", async (page) => {
+      /** @type {Record<string, string>} */
       const chains = { "model.bvh": longChain(1), "motion.bvh": longChain(2) };
+      /** @param {TestPage} page */
       const serveChains = (page) =>
         page.route("https://chains.example/**", (route) =>
           route.fulfill({ body: chains[new URL(route.request().url()).pathname.slice(1)], headers: { "access-control-allow-origin": "*" } }),
@@ -225,14 +249,14 @@ for (const renderer of BACK_ENDS)
       assert.notEqual(edited, map[0]);
       await apply(page, { map: [edited], clip: "1", t: 0.5, joint: 5 });
       const before = await shown(page);
-      console.log(`# ${renderer}, 300 joints: ${(await stats(page)).cpu_ms.toFixed(1)} ms of the processor in a frame`);
+      console.log(`# ${renderer}, 300 joints: ${(await stats(page)).cpu_ms.toFixed(1)} ms of CPU time per frame`);
       const link = await sharedLink(page);
       assert.ok(link.length < 4000, `${link.length} characters`);
-      // Any link, so that there is no gallery.
+      // Any link, so that the gallery stays hidden.
       const other = await site.page({ renderer, link: "play=0" });
       try {
         await serveChains(other);
-        await other.evaluate((link) => (location.hash = link), afterHash(link));
+        await other.evaluate((link) => void (location.hash = link), afterHash(link));
         await until(other, async () => (await window.gaitway.state()).joint === 5);
         assertSame(await shown(other), before);
       } finally {

@@ -22,6 +22,7 @@ mod framing;
 mod generator_animations;
 mod history;
 mod link;
+mod link_files;
 mod link_properties;
 mod map_edits;
 mod motion;

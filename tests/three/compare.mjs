@@ -1,23 +1,38 @@
-// What three.js shows against what a pose document says.
+// Compares a scene in three.js with a pose document.
 import assert from "node:assert/strict";
 
-/** What differs most between what three.js shows now and a pose document: `{difference, what, vertices}`. Both must draw the same things. */
+/** @typedef {import("../../web/shell/types.d.ts").PoseDocument} PoseDocument */
+/** @typedef {Awaited<ReturnType<typeof import("./scene.mjs").loadScene>>} Scene */
+/** @typedef {ArrayLike<number> & { slice(start: number, end: number): ArrayLike<number> }} Numbers */
+
+/**
+ * Returns the largest difference between the scene's current pose and a pose document. Both must draw the same things.
+ * @param {Scene} scene
+ * @param {PoseDocument} posed
+ * @param {number} diagonal Of the rest bounds.
+ */
 export function largestDifference(scene, posed, diagonal) {
   const worst = { difference: 0, what: "nothing", vertices: 0 };
-  const note = (difference, what) => !(difference <= worst.difference) && Object.assign(worst, { difference, what });
+  /** @type {(difference: number, what: string) => void} */
+  const note = (difference, what) => {
+    // NaN is worse than any number.
+    if (!(difference <= worst.difference)) Object.assign(worst, { difference, what });
+  };
 
   const world = new Map(posed.nodes.map((entry) => [entry.node, entry.world]));
   for (const reference of scene.nodes()) {
-    assert.ok(world.has(reference.node), `node ${reference.node} is missing`);
-    note(matrixDifference(world.get(reference.node), reference.world, diagonal), `matrix of node ${reference.node}`);
+    const found = world.get(reference.node);
+    assert.ok(found !== undefined, `node ${reference.node} is missing`);
+    note(matrixDifference(found, reference.world, diagonal), `matrix of node ${reference.node}`);
   }
 
+  /** @type {(drawn: { node: number, mesh: number, primitive: number }) => string} */
   const key = ({ node, mesh, primitive }) => `mesh ${mesh}.${primitive} on node ${node}`;
   const positions = new Map(posed.meshes.map((entry) => [key(entry), entry.positions]));
   const references = scene.meshes();
   assert.deepEqual([...positions.keys()].sort(), references.map(key).sort(), "what is drawn");
   for (const reference of references) {
-    const found = positions.get(key(reference));
+    const found = positions.get(key(reference)) ?? [];
     assert.equal(found.length, reference.positions.length, `number of vertices of ${key(reference)}`);
     note(largestDistance(found, reference.positions) / diagonal, key(reference));
     worst.vertices += found.length / 3;
@@ -25,7 +40,11 @@ export function largestDifference(scene, posed, diagonal) {
   return worst;
 }
 
-/** NaN where either holds one, so that every comparison with it fails. */
+/**
+ * Returns the largest distance between two lists of points; NaN if either contains one, so that every comparison fails.
+ * @param {ArrayLike<number>} a
+ * @param {ArrayLike<number>} b
+ */
 export function largestDistance(a, b) {
   let largest = 0;
   for (let at = 0; at < b.length; at += 3) {
@@ -36,7 +55,12 @@ export function largestDistance(a, b) {
   return largest;
 }
 
-/** The origin in diagonals, the axes in lengths of the longest one. */
+/**
+ * Measures the origin in diagonals, and the axes relative to the longest one.
+ * @param {Numbers} a
+ * @param {Numbers} b
+ * @param {number} diagonal
+ */
 function matrixDifference(a, b, diagonal) {
   const longest = Math.max(...[0, 4, 8].map((at) => Math.hypot(b[at], b[at + 1], b[at + 2])), 1e-6);
   return Math.max(
@@ -45,7 +69,10 @@ function matrixDifference(a, b, diagonal) {
   );
 }
 
-/** The box around lists of points. */
+/**
+ * Returns the bounding box of lists of points.
+ * @param {ArrayLike<number>[]} lists
+ */
 export function boundsOf(lists) {
   const min = [Infinity, Infinity, Infinity];
   const max = [-Infinity, -Infinity, -Infinity];

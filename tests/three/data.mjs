@@ -1,22 +1,33 @@
-// Where the real test files are, and which of them a glTF reader of the core specification can be asked to read.
-// They are not part of the repository: `../shared/data` beside it, or the folder named by GAITWAY_DATA.
+// Finds the real test files, and tells which of them a reader of the core specification can read. They are not part of the
+// repository: `../shared/data` beside it, or the folder that GAITWAY_DATA names.
 import fs from "node:fs";
 import path from "node:path";
 import { fileURLToPath } from "node:url";
 
 export const repository = path.resolve(path.dirname(fileURLToPath(import.meta.url)), "../..");
 
-/** The data folder, or null where there is none. */
-export const dataFolder = (() => {
+/** The data folder, or null without one. */
+const dataFolder = (() => {
   const folder = process.env.GAITWAY_DATA ?? path.resolve(repository, "../shared/data");
   return fs.existsSync(folder) ? folder : null;
 })();
 
-/** A reason to skip tests that need real files, or false. With GAITWAY_REQUIRE_DATA=1 there is no reason: they fail. */
+export const hasData = dataFolder !== null;
+
+/** Why tests that need real files are skipped, or false. With GAITWAY_REQUIRE_DATA=1 they run and fail instead. */
 export const skipWithoutData =
   dataFolder === null && process.env.GAITWAY_REQUIRE_DATA !== "1" ? "skipped: no test data folder (GAITWAY_DATA)" : false;
 
-/** What a reader of the core specification also reads; anything else that a file requires is refused. */
+/**
+ * Returns the path of a file or folder in the data folder.
+ * @param {string} name
+ */
+export function dataFile(name) {
+  if (dataFolder === null) throw new Error("there is no test data folder (GAITWAY_DATA)");
+  return path.join(dataFolder, name);
+}
+
+/** Extensions that are supported; a file that requires any other is rejected. */
 const SUPPORTED = [
   "EXT_texture_webp",
   "KHR_lights_punctual",
@@ -27,26 +38,35 @@ const SUPPORTED = [
 ];
 
 /**
- * Every glTF of the folder as `{name, file, refused}`, names relative and sorted; `refused` is null, or the version or
- * extension that the file requires and that is not supported.
+ * A glTF of the data folder. `rejected` is null, or the version or extension that it requires and that is not supported.
+ * @typedef {{ name: string, file: string, rejected: string | null }} GltfFile
+ */
+
+/**
+ * Returns every valid glTF of the data folder, sorted by name.
+ * @returns {GltfFile[]}
  */
 export function gltfFiles() {
-  if (dataFolder === null) throw new Error("GAITWAY_REQUIRE_DATA=1, but there is no test data folder");
+  const folder = dataFile("");
   const files = fs
-    .readdirSync(dataFolder, { recursive: true })
+    .readdirSync(folder, { recursive: true, encoding: "utf8" })
     .map((name) => name.replaceAll("\\", "/"))
     .filter((name) => /\.(glb|gltf|vrm|vrma)$/.test(name))
     .filter((name) => !/^(validator-invalid|khronos\/v1\.0-unsupported|asset-generator\/Negative)\//.test(name))
     .sort();
   return files.map((name) => {
-    const file = path.join(dataFolder, name);
+    const file = path.join(folder, name);
     const { asset, extensionsRequired = [] } = readGltf(file).json;
-    const newer = asset.minVersion > "2.0" ? asset.minVersion : undefined;
-    return { name, file, refused: newer ?? extensionsRequired.find((extension) => !SUPPORTED.includes(extension)) ?? null };
+    const newer = asset.minVersion !== undefined && asset.minVersion > "2.0" ? asset.minVersion : undefined;
+    return { name, file, rejected: newer ?? extensionsRequired.find((extension) => !SUPPORTED.includes(extension)) ?? null };
   });
 }
 
-/** The two parts of a GLB or a .gltf: `{json, binary}`; `binary` is null without a BIN chunk. */
+/**
+ * Reads the document and the BIN chunk, if any, of a GLB or .gltf.
+ * @param {string} file
+ * @returns {{ json: import("../types.d.ts").GltfJson, binary: Buffer | null }}
+ */
 export function readGltf(file) {
   const bytes = fs.readFileSync(file);
   if (bytes.toString("latin1", 0, 4) !== "glTF") return { json: JSON.parse(bytes.toString("utf8")), binary: null };

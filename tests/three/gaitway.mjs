@@ -1,10 +1,10 @@
-// The command line as the tests call it: one JSON document on standard output.
+// Runs the command line for the tests.
 import { execFile } from "node:child_process";
 import fs from "node:fs";
 import path from "node:path";
 import { repository } from "./data.mjs";
 
-/** The binary: GAITWAY_CLI, else what cargo built last in the usual place. */
+/** The binary: GAITWAY_CLI, or whatever cargo built last. */
 export const program = (() => {
   if (process.env.GAITWAY_CLI) return process.env.GAITWAY_CLI;
   const target = process.env.CARGO_TARGET_DIR ?? path.join(repository, "target");
@@ -14,16 +14,23 @@ export const program = (() => {
   return built.sort((a, b) => fs.statSync(b).mtimeMs - fs.statSync(a).mtimeMs)[0];
 })();
 
-/** Runs `gaitway …`; gives `{status, stdout, stderr}` whatever the outcome. */
+/**
+ * Runs `gaitway …`, whatever the outcome.
+ * @param {...string} args
+ * @returns {Promise<{ status: number | string, stdout: string, stderr: string }>}
+ */
 export function run(...args) {
   return new Promise((resolve) => {
     execFile(program, args, { maxBuffer: 1 << 28, timeout: 60_000 }, (error, stdout, stderr) => {
-      resolve({ status: error === null ? 0 : (error.code ?? error.signal), stdout, stderr });
+      resolve({ status: error === null ? 0 : (error.code ?? error.signal ?? "unknown"), stdout, stderr });
     });
   });
 }
 
-/** The JSON that `gaitway … --json` prints; an Error with its message when it fails. */
+/**
+ * Returns the document that `gaitway … --json` prints, or throws the program's error.
+ * @param {...string} args
+ */
 export async function document(...args) {
   const { status, stdout, stderr } = await run(...args, "--json");
   if (status !== 0) throw new Error(`gaitway ${args.join(" ")}: status ${status}: ${stderr.trim()}`);

@@ -1,11 +1,11 @@
-// Borrowed clips in exported files: what three.js makes of the file is what `gaitway pose` says, of the file as of the pair.
+// Borrowed clips in exported files: three.js and `gaitway pose` agree on the file, and the file agrees with the pair.
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import os from "node:os";
 import path from "node:path";
 import { after, before, describe, test } from "node:test";
 import { boundsOf, largestDifference } from "./compare.mjs";
-import { dataFolder, skipWithoutData } from "./data.mjs";
+import { dataFile, skipWithoutData } from "./data.mjs";
 import { document, run } from "./gaitway.mjs";
 import { loadScene } from "./scene.mjs";
 
@@ -30,15 +30,17 @@ console.warn = () => {};
 
 describe("exported borrowed clips agree with three.js", { skip: skipWithoutData }, () => {
   if (skipWithoutData) return;
+  /** @type {string} */
   let folder;
   before(() => (folder = fs.mkdtempSync(path.join(os.tmpdir(), "gaitway-"))));
   after(() => fs.rmSync(folder, { recursive: true, force: true }));
 
   for (const [at, [model, motion, ...options]] of PAIRS.entries()) {
     const name = [path.basename(model), "←", path.basename(motion), ...options].join(" ");
-    const [modelFile, motionFile] = [model, motion].map((file) => path.join(dataFolder, file));
+    const [modelFile, motionFile] = [model, motion].map((file) => dataFile(file));
     test(name, async () => {
       const out = path.join(folder, `${at}.glb`);
+      /** @type {import("../types.d.ts").RetargetReport} */
       const report = await document("retarget", "--model", modelFile, "--motion", motionFile, ...options, "--out", out);
       assert.ok(report.figures.orientation_error_degrees_mean < 0.5, JSON.stringify(report.figures));
       const own = (await document("inspect", modelFile)).clips.length;
@@ -61,11 +63,12 @@ describe("exported borrowed clips agree with three.js", { skip: skipWithoutData 
       const { status, stderr } = await run("retarget", "--model", modelFile, "--motion", motionFile, ...options, "--clip-only", "--out", out);
       assert.equal(status, 0, stderr);
       const clips = (await document("inspect", whole)).clips;
+      /** @type {import("../../web/shell/types.d.ts").PoseDocument[]} */
       const [alone, inModel] = [await document("pose", out, "--clip", "0", "--time", "0.3"), await document("pose", whole, "--clip", String(clips.length - 1), "--time", "0.3")];
       const world = new Map(inModel.nodes.map((entry) => [entry.node, entry.world]));
-      // A node's matrix may be written as translation, rotation and scale: the last digit is another.
+      // A node's matrix may be written as translation, rotation and scale, which changes the last digit.
       for (const { node, world: found } of alone.nodes) {
-        const wanted = world.get(node);
+        const wanted = world.get(node) ?? [];
         const size = Math.max(...wanted.map(Math.abs));
         found.forEach((number, index) => assert.ok(Math.abs(number - wanted[index]) <= 1e-5 * size, `node ${node}: ${found}, in the model ${wanted}`));
       }
@@ -74,7 +77,7 @@ describe("exported borrowed clips agree with three.js", { skip: skipWithoutData 
   }
 
   test("without options the pair itself is posed the same", async () => {
-    const [model, motion] = [PAIRS[0][0], PAIRS[0][1]].map((file) => path.join(dataFolder, file));
+    const [model, motion] = [PAIRS[0][0], PAIRS[0][1]].map((file) => dataFile(file));
     const live = await document("pose", model, "--motion", motion, "--clip", "walk", "--time", "0.4");
     const own = (await document("inspect", model)).clips.length;
     const written = await document("pose", path.join(folder, "0.glb"), "--clip", String(own), "--time", "0.4");

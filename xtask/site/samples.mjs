@@ -1,33 +1,52 @@
-// The sample characters and the scenes made of them: what lies in assets/samples, and what gallery.json shows of it.
+// The samples in assets/samples, and scenes made of them: those of the gallery (gallery.json) and of the documentation
+// (docs/pictures.json).
 import fs from "node:fs";
 import path from "node:path";
 import { fileURLToPath } from "node:url";
 
 const FOLDER = fileURLToPath(new URL("../../assets/samples", import.meta.url));
-/** Part of every program, the page's too. */
-const MADE_IN_CODE = "walker";
-const ENDINGS = [".glb", ".bvh", ".obj", ".skel", ".attach"];
+/** Generated in code, so part of every program and of the page. */
+const GENERATED = "walker";
+const EXTENSIONS = [".glb", ".bvh", ".obj", ".skel", ".attach"];
 
-/** The files of each sample, by the name after `sample:`. (build.rs finds the same for the programs.) */
+/**
+ * What a link consists of: its model, a motion to borrow, and the rest of it.
+ * @typedef {{ model: string, motion?: string, view: string }} LinkParts
+ */
+
+/** @typedef {LinkParts & { name: string, title: string, text: string }} Scene */
+
+/**
+ * Returns the files of each sample by the name after `sample:`; build.rs embeds the same ones in the programs.
+ * @returns {Record<string, string[]>}
+ */
 export function readSamples() {
+  /** @type {Record<string, string[]>} */
   const samples = {};
   for (const file of fs.readdirSync(FOLDER).sort())
-    if (ENDINGS.includes(path.extname(file))) (samples[path.parse(file).name] ??= []).push(path.join(FOLDER, file));
+    if (EXTENSIONS.includes(path.extname(file))) (samples[path.parse(file).name] ??= []).push(path.join(FOLDER, file));
   return samples;
 }
 
-/** What stands for a key in a link, as often as it does. */
-export const valuesOf = (link, key) => new URLSearchParams(link).getAll(key);
+/** @param {LinkParts} parts */
+export const linkOf = ({ model, motion, view }) => `v=1&model=${model}${motion === undefined ? "" : `&motion=${motion}`}&${view}`;
 
-/** Names of the samples that a link shows or borrows from. */
-export const samplesOf = (link) => [...valuesOf(link, "model"), ...valuesOf(link, "motion")].filter((source) => source.startsWith("sample:")).map((source) => source.slice("sample:".length));
+/**
+ * Returns the names of the samples that a scene uses.
+ * @param {LinkParts} parts
+ */
+export const samplesOf = ({ model, motion }) => [model, motion ?? ""].filter((source) => source.startsWith("sample:")).map((source) => source.slice("sample:".length));
 
-/** The scenes, `{name, title, text, link}`, as far as their samples are there. */
+/**
+ * Returns the gallery's scenes, leaving out those whose samples are missing.
+ * @returns {Scene[]}
+ */
 export function readScenes(samples = readSamples()) {
+  /** @type {Scene[]} */
   const scenes = JSON.parse(fs.readFileSync(path.join(FOLDER, "gallery.json"), "utf8"));
-  return scenes.filter(({ name, link }) => {
-    const missing = samplesOf(link).filter((sample) => !(sample in samples) && sample !== MADE_IN_CODE);
-    if (missing.length > 0) console.error(`the scene “${name}” is left out: assets/samples has no ${missing.join(", ")}`);
+  return scenes.filter((scene) => {
+    const missing = samplesOf(scene).filter((sample) => !(sample in samples) && sample !== GENERATED);
+    if (missing.length > 0) console.error(`skipping the scene “${scene.name}”: assets/samples has no ${missing.join(", ")}`);
     return missing.length === 0;
   });
 }

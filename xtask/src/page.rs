@@ -1,4 +1,4 @@
-//! The page: trunk compiles and binds, wasm-opt and terser make it smaller, the length of the program is written down so that
+//! The page: trunk compiles and binds, wasm-opt and esbuild make it smaller, the length of the program is written down so that
 //! the page can show how far its loading has got, and `xtask/site` puts samples, pictures and the service worker beside it.
 
 use std::fs;
@@ -35,10 +35,10 @@ pub fn build(features: &[&str], url: Option<&str>) -> anyhow::Result<()> {
     let wasm = file_with_suffix("_bg.wasm")?;
     optimise(&wasm)?;
     rename_imports(&wasm)?;
-    shorten_scripts()?;
     write_length(&wasm)?;
     let dist = dist();
     let folder = dist.to_str().context("the repository's path is not UTF-8")?;
+    run("node", &["xtask/site/scripts.mjs", folder])?;
     let mut arguments = vec!["xtask/site/finish.mjs", folder];
     arguments.extend(url);
     run("node", &arguments)
@@ -57,15 +57,6 @@ fn rename_imports(wasm: &Path) -> anyhow::Result<()> {
     let program = wasm.to_str().context("the repository's path is not UTF-8")?;
     let script = program.replace("_bg.wasm", ".js");
     run("node", &["xtask/site/imports.mjs", program, &script])
-}
-
-/// Trunk's own way of doing this gives up on what it cannot parse.
-fn shorten_scripts() -> anyhow::Result<()> {
-    for script in files()?.iter().filter_map(|path| path.to_str()).filter(|path| path.ends_with(".js")) {
-        let terser = ["node_modules/terser/bin/terser", "--module", "--compress", "--mangle", "--output", script];
-        run("node", &[&terser[..], &["--", script]].concat())?;
-    }
-    Ok(())
 }
 
 /// If the host sends the program compressed, its Content-Length isn't the length that the page counts up to.

@@ -12,10 +12,16 @@ use crate::{page, setup, sizes};
 pub fn run() -> anyhow::Result<()> {
     setup::page()?;
     setup::tests()?;
+    check_scripts()?;
     cargo_checks()?;
     page::build(&[], None)?;
     sizes::compress_and_print(true)?;
     node_tests()
+}
+
+/// Types and lints of the page's, the build's and the tests' scripts.
+fn check_scripts() -> anyhow::Result<()> {
+    process::run(if cfg!(windows) { "npm.cmd" } else { "npm" }, &["run", "check"])
 }
 
 fn cargo_checks() -> anyhow::Result<()> {

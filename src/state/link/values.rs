@@ -6,6 +6,7 @@ use std::fmt::Display;
 use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_encode};
 use serde_json::Value;
 
+use super::files::MEMBER_SEPARATOR;
 use super::{Read, Written};
 use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
@@ -125,13 +126,17 @@ pub(super) fn finite<T: std::str::FromStr + Copy + Into<f64>>(text: &str) -> Opt
 }
 
 /// A model inside an archive is `ARCHIVE#!/MEMBER`; an early version wrote `ARCHIVE#/MEMBER`.
-pub(super) fn read_source(text: &str) -> Option<String> {
-    Some(match text.split_once("#/") {
+pub(super) fn with_current_member(text: &str) -> String {
+    match text.split_once("#/") {
         Some((file, member)) if file.contains("://") || file.to_lowercase().ends_with(".zip") => {
-            format!("{file}#!/{member}")
+            format!("{file}{MEMBER_SEPARATOR}{member}")
         }
         _ => text.to_owned(),
-    })
+    }
+}
+
+pub(super) fn read_source(text: &str) -> Option<String> {
+    Some(with_current_member(text))
 }
 
 pub(super) fn map_text(map: &MotionMap) -> String {

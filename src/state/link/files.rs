@@ -1,0 +1,184 @@
+//! The files that a link names, as text operations on the link itself: which they are, the link to hand to others, and the
+//! link while some of its files are missing. The page's scripts call these through `web::links` and never split a link
+//! themselves. Parts that this version cannot read pass through unchanged, so the result is never parsed into a view.
+
+use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_decode_str, utf8_percent_encode};
+
+use super::values::with_current_member;
+
+/// Separates an archive from the path of one of its models, as in the URL of an entry of a .jar. In a URL it is part of the
+/// fragment, which no server sees.
+pub const MEMBER_SEPARATOR: &str = "#!/";
+
+/// Precedes the name of a file that whoever opens the link has to supply.
+const TO_BRING: &str = "file:";
+
+/// What the page shows when a link names no model.
+const DEFAULT_MODEL: &str = "sample:walker";
+
+/// Keys that still apply while the model itself is missing.
+const KEYS_WITHOUT_MODEL: [&str; 5] = ["v", "embed", "background", "exposure", "environment"];
+
+/// What JavaScript's `encodeURIComponent` escapes.
+const COMPONENT: &AsciiSet = &NON_ALPHANUMERIC
+    .remove(b'-')
+    .remove(b'_')
+    .remove(b'.')
+    .remove(b'!')
+    .remove(b'~')
+    .remove(b'*')
+    .remove(b'\'')
+    .remove(b'(')
+    .remove(b')');
+
+/// What a linked file is used for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LinkRole {
+    Model,
+    Motion,
+}
+
+impl LinkRole {
+    /// The link's key.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Model => "model",
+            Self::Motion => "motion",
+        }
+    }
+
+    fn from_key(key: &str) -> Option<Self> {
+        [Self::Model, Self::Motion].into_iter().find(|role| role.key() == key)
+    }
+}
+
+/// A `model=` or `motion=` part of a link.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LinkedFile {
+    pub role: LinkRole,
+    /// URL, `sample:NAME` or the name of a local file; for a model inside an archive, that of the archive. Without `file:`.
+    pub name: String,
+    /// Path of the model inside its archive, from [`MEMBER_SEPARATOR`] on; empty for anything else.
+    pub member: String,
+    /// Marked `file:`: whoever opens the link has to supply it.
+    pub is_to_bring: bool,
+}
+
+/// Returns the files that a link names, in its order.
+pub fn linked_files(link: &str) -> Vec<LinkedFile> {
+    pairs(link).filter_map(linked_file).collect()
+}
+
+/// Identifies what a link shows, whatever its view: two links with the same value show the same files.
+pub fn shown_files(link: &str) -> String {
+    let mut files: Vec<String> = Vec::new();
+    let mut has_model = false;
+    for pair in pairs(link) {
+        let Some(role) = LinkRole::from_key(key_of(pair)) else { continue };
+        has_model |= role == LinkRole::Model;
+        files.push(format!("{}={}", role.key(), value_of(pair)));
+    }
+    if !has_model {
+        files.insert(0, format!("{}={DEFAULT_MODEL}", LinkRole::Model.key()));
+    }
+    files.join("\n")
+}
+
+/// Returns the link to hand to others: files of this computer, by their names in `local`, are marked as ones to bring.
+pub fn public_link(link: &str, local: &[String]) -> String {
+    rewrite(link, &mut |pair| {
+        let file = linked_file(pair).filter(|file| !file.is_to_bring && local.contains(&file.name));
+        Some(file.map_or(pair.to_owned(), |file| file_pair(file.role, TO_BRING, &value_of(pair))))
+    })
+}
+
+/// Returns the public link of a page that is embedded in another one.
+pub fn embedded_link(link: &str) -> String {
+    let others = rewrite(link, &mut |pair| (key_of(pair) != "embed").then(|| pair.to_owned()));
+    others + "&embed=1"
+}
+
+/// Returns the part of a link that can be shown before its missing files arrive; without any, the link itself. Without its
+/// model, only what applies to every model stays. Clips and maps go with their motions.
+pub fn link_without_missing(link: &str) -> String {
+    let files = linked_files(link);
+    let is_missing = |role| files.iter().any(|file| file.is_to_bring && file.role == role);
+    let (lacks_model, lacks_motion) = (is_missing(LinkRole::Model), is_missing(LinkRole::Motion));
+    if !lacks_model && !lacks_motion {
+        return link.to_owned();
+    }
+    rewrite(link, &mut |pair| {
+        let key = key_of(pair);
+        let is_kept = if lacks_model {
+            KEYS_WITHOUT_MODEL.contains(&key)
+        } else {
+            key != "clip" && key != "map" && linked_file(pair).is_none_or(|file| !file.is_to_bring)
+        };
+        is_kept.then(|| pair.to_owned())
+    })
+}
+
+/// Returns the link once its missing files are there: `names` are theirs, in the order of [`linked_files`]. Members of
+/// archives stay.
+pub fn link_with_files(link: &str, names: &[String]) -> String {
+    let mut names = names.iter();
+    rewrite(link, &mut |pair| {
+        let found = linked_file(pair).filter(|file| file.is_to_bring).and_then(|file| Some((file, names.next()?)));
+        Some(found.map_or(pair.to_owned(), |(file, name)| file_pair(file.role, "", &format!("{name}{}", file.member))))
+    })
+}
+
+/// Index of the link in `others` that shows the same files in the most similar view; `None` if none shows the same files.
+pub fn most_similar_link(link: &str, others: &[String]) -> Option<usize> {
+    let wanted = shown_files(link);
+    let shows_same = |other: &str| {
+        let shown = shown_files(other);
+        shown.len() == wanted.len() && shown.split('\n').all(|file| wanted.split('\n').any(|other| other == file))
+    };
+    let mut best = None;
+    for (index, other) in others.iter().enumerate().filter(|(_, other)| shows_same(other)) {
+        let shared_pairs = pairs(other).filter(|&pair| pairs(link).any(|own| own == pair)).count();
+        if best.is_none_or(|(_, most)| shared_pairs > most) {
+            best = Some((index, shared_pairs));
+        }
+    }
+    best.map(|(index, _)| index)
+}
+
+fn pairs(link: &str) -> impl Iterator<Item = &str> {
+    link.split('&').filter(|pair| !pair.is_empty())
+}
+
+fn key_of(pair: &str) -> &str {
+    pair.split_once('=').map_or(pair, |(key, _)| key)
+}
+
+fn value_of(pair: &str) -> String {
+    let value = pair.split_once('=').map_or("", |(_, value)| value);
+    percent_decode_str(value).decode_utf8_lossy().into_owned()
+}
+
+fn linked_file(pair: &str) -> Option<LinkedFile> {
+    let role = LinkRole::from_key(key_of(pair))?;
+    let value = value_of(pair);
+    let (value, is_to_bring) = value.strip_prefix(TO_BRING).map_or((value.as_str(), false), |value| (value, true));
+    let value = with_current_member(value);
+    let (name, member) = value.split_at(value.find(MEMBER_SEPARATOR).unwrap_or(value.len()));
+    Some(LinkedFile { role, name: name.to_owned(), member: member.to_owned(), is_to_bring })
+}
+
+fn file_pair(role: LinkRole, mark: &str, value: &str) -> String {
+    format!("{}={mark}{}", role.key(), utf8_percent_encode(value, COMPONENT))
+}
+
+/// Joins what `replacement` returns for each pair; `None` removes the pair.
+fn rewrite(link: &str, replacement: &mut dyn FnMut(&str) -> Option<String>) -> String {
+    let mut text = String::new();
+    for pair in pairs(link).filter_map(replacement) {
+        if !text.is_empty() {
+            text.push('&');
+        }
+        text += &pair;
+    }
+    text
+}

@@ -1,0 +1,52 @@
+//! The text form of links for the page's scripts: pure functions that need no running app. Lists cross as JSON text.
+
+use serde_json::json;
+use wasm_bindgen::prelude::*;
+
+use crate::state;
+
+/// Returns the files that a link names, as a JSON list of `{role, name, member, isToBring}`; see [`state::LinkedFile`].
+#[wasm_bindgen]
+pub fn linked_files(link: &str) -> String {
+    let files = state::linked_files(link);
+    let json = files.iter().map(|file| {
+        json!({ "role": file.role.key(), "name": file.name, "member": file.member, "isToBring": file.is_to_bring })
+    });
+    json!(json.collect::<Vec<_>>()).to_string()
+}
+
+/// Returns the same text for any two links that show the same files.
+#[wasm_bindgen]
+pub fn shown_files(link: &str) -> String {
+    state::shown_files(link)
+}
+
+/// Returns the link to hand to others: the files named in `local` are marked as ones to bring along.
+#[wasm_bindgen]
+pub fn public_link(link: &str, local: Vec<String>) -> String {
+    state::public_link(link, &local)
+}
+
+/// Returns a link for a page that is embedded in another one.
+#[wasm_bindgen]
+pub fn embedded_link(link: &str) -> String {
+    state::embedded_link(link)
+}
+
+/// Returns the part of a link that can be shown before its missing files arrive.
+#[wasm_bindgen]
+pub fn link_without_missing(link: &str) -> String {
+    state::link_without_missing(link)
+}
+
+/// Returns the link with its missing files under the names they arrived with, in the order of [`linked_files`].
+#[wasm_bindgen]
+pub fn link_with_files(link: &str, names: Vec<String>) -> String {
+    state::link_with_files(link, &names)
+}
+
+/// Returns the index of the link in `others` that shows the same files in the most similar view.
+#[wasm_bindgen]
+pub fn most_similar_link(link: &str, others: Vec<String>) -> Option<usize> {
+    state::most_similar_link(link, &others)
+}

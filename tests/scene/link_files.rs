@@ -1,0 +1,118 @@
+//! The files that a link names: found, marked for others to bring, left out while missing, and put back.
+
+use gaitway::state::{
+    LinkRole, LinkedFile, embedded_link, link_with_files, link_without_missing, linked_files, most_similar_link,
+    public_link, shown_files,
+};
+
+fn file(role: LinkRole, name: &str, member: &str, is_to_bring: bool) -> LinkedFile {
+    LinkedFile { role, name: name.to_owned(), member: member.to_owned(), is_to_bring }
+}
+
+fn owned(texts: &[&str]) -> Vec<String> {
+    texts.iter().map(|&text| text.to_owned()).collect()
+}
+
+#[track_caller]
+fn check_file(pair: &str, expected: LinkedFile) {
+    assert_eq!(linked_files(&format!("v=1&{pair}&t=1")), [expected], "{pair}");
+}
+
+#[test]
+fn a_file_is_a_url_a_sample_or_a_name_to_bring() {
+    check_file("model=sample:pilot", file(LinkRole::Model, "sample:pilot", "", false));
+    check_file("motion=https://a.example/x%20y.bvh", file(LinkRole::Motion, "https://a.example/x y.bvh", "", false));
+    check_file("model=file:S%C3%B6ldner.glb", file(LinkRole::Model, "Söldner.glb", "", true));
+    check_file("model=100%", file(LinkRole::Model, "100%", "", false));
+    check_file("model=", file(LinkRole::Model, "", "", false));
+    assert_eq!(linked_files("v=1&map=https://a.example/map.json&models=x&t=1"), []);
+    assert_eq!(linked_files(""), []);
+}
+
+#[test]
+fn a_model_in_an_archive_belongs_to_the_archive() {
+    check_file("model=two.zip%23!%2Fb%2Fman.glb", file(LinkRole::Model, "two.zip", "#!/b/man.glb", false));
+    check_file("model=file:two.zip%23!/man.glb", file(LinkRole::Model, "two.zip", "#!/man.glb", true));
+    check_file("model=a-folder%23!/man.glb", file(LinkRole::Model, "a-folder", "#!/man.glb", false));
+    // As an early version wrote it.
+    check_file("model=Two.ZIP%23/man.glb", file(LinkRole::Model, "Two.ZIP", "#!/man.glb", false));
+    check_file("model=odd%23/man.glb", file(LinkRole::Model, "odd#/man.glb", "", false));
+}
+
+#[test]
+fn links_that_show_the_same_files_are_recognized() {
+    let same = |link: &str, other: &str| assert_eq!(shown_files(link), shown_files(other), "{link}, {other}");
+    let differ = |link: &str, other: &str| assert_ne!(shown_files(link), shown_files(other), "{link}, {other}");
+    same("v=1&model=sample:pilot&t=1", "model=sample%3Apilot&clip=run");
+    same("", "v=1&model=sample:walker");
+    same("motion=a.bvh", "model=sample:walker&motion=a.bvh");
+    differ("model=a.glb", "model=b.glb");
+    differ("model=a.glb", "model=a.glb&motion=a.bvh");
+    differ("model=a.glb&model=b.glb", "model=b.glb&model=a.glb");
+    differ("model=a.zip%23!/a.glb", "model=a.zip%23!/b.glb");
+}
+
+#[test]
+fn a_public_link_marks_local_files_alone() {
+    let check = |link: &str, local: &[&str], expected: &str| {
+        assert_eq!(public_link(link, &owned(local)), expected, "{link}");
+    };
+    check("v=1&model=sample:pilot&t=1", &["fox.glb"], "v=1&model=sample:pilot&t=1");
+    check("v=1&model=fox.glb&motion=fox.glb", &["fox.glb"], "v=1&model=file:fox.glb&motion=file:fox.glb");
+    check("model=a/b%20c.glb&names=4:fox.glb", &["a/b c.glb"], "model=file:a%2Fb%20c.glb&names=4:fox.glb");
+    check("model=two.zip%23!/b/man.glb", &["two.zip"], "model=file:two.zip%23!%2Fb%2Fman.glb");
+    check("model=file:fox.glb", &["fox.glb"], "model=file:fox.glb");
+    check("model=S%C3%B6ldner!.glb", &["Söldner!.glb"], "model=file:S%C3%B6ldner!.glb");
+}
+
+#[test]
+fn an_embedded_link_says_so_once() {
+    assert_eq!(embedded_link("v=1&embed=0&t=1"), "v=1&t=1&embed=1");
+    assert_eq!(embedded_link("v=1"), "v=1&embed=1");
+}
+
+#[test]
+fn while_files_are_missing_only_what_applies_without_them_is_shown() {
+    let check = |link: &str, expected: &str| assert_eq!(link_without_missing(link), expected, "{link}");
+    check("v=1&model=a.glb&clip=run&&t=1", "v=1&model=a.glb&clip=run&&t=1");
+    check("v=1&model=file:a.glb&motion=b.bvh&t=1&exposure=1&embed=1&show=grid", "v=1&exposure=1&embed=1");
+    check("v=1&model=a.glb&motion=file:b.bvh&map=x.json&clip=run&t=1", "v=1&model=a.glb&t=1");
+    check("model=a.glb&motion=b.bvh&motion=file:c.bvh&play=0", "model=a.glb&motion=b.bvh&play=0");
+}
+
+#[test]
+fn files_that_were_brought_take_their_places() {
+    let check = |link: &str, names: &[&str], expected: &str| {
+        assert_eq!(link_with_files(link, &owned(names)), expected, "{link}");
+    };
+    check("v=1&model=file:a.glb&t=1", &["in/a b.glb"], "v=1&model=in%2Fa%20b.glb&t=1");
+    check("model=file:two.zip%23!/man.glb&motion=c.bvh", &["two.zip"], "model=two.zip%23!%2Fman.glb&motion=c.bvh");
+    check("model=file:a.glb&motion=file:b.bvh", &["x/a.glb", "b.bvh"], "model=x%2Fa.glb&motion=b.bvh");
+    check("model=a.glb", &[], "model=a.glb");
+}
+
+#[test]
+fn what_is_shared_and_brought_along_is_the_link_again() {
+    let link = "v=1&model=two.zip%23!%2Fman.glb&motion=d%20e.bvh&clip=run";
+    let shared = public_link(link, &owned(&["two.zip", "d e.bvh"]));
+    let files = linked_files(&shared);
+    assert!(files.iter().all(|file| file.is_to_bring), "{shared}");
+    let names: Vec<String> = files.into_iter().map(|file| file.name).collect();
+    assert_eq!(link_with_files(&shared, &names), link);
+}
+
+#[test]
+fn the_most_similar_link_shows_the_same_files() {
+    let scenes = owned(&[
+        "v=1&model=sample:pilot&clip=run&t=0.27",
+        "v=1&model=sample:pilot&clip=idle&show=grid,split",
+        "v=1&model=sample:mannequin&motion=sample:run",
+    ]);
+    let check = |link: &str, expected| assert_eq!(most_similar_link(link, &scenes), expected, "{link}");
+    check("v=1&model=sample:pilot&clip=run&t=3", Some(0));
+    check("v=1&model=sample:pilot&clip=idle&t=3", Some(1));
+    check("v=1&model=sample:pilot", Some(0));
+    check("motion=sample:run&model=sample:mannequin&speed=2", Some(2));
+    check("v=1&model=sample:mannequin", None);
+    check("v=1", None);
+}

@@ -1,0 +1,53 @@
+// Types that only the tests and benchmarks need.
+
+/** The parts of a glTF document that the tests look at. */
+export interface GltfJson {
+  asset: { version: string; minVersion?: string };
+  extensionsRequired?: string[];
+  accessors: { count: number; bufferView: number; componentType: number; byteOffset?: number }[];
+  animations: object[];
+  buffers: { byteLength: number; uri?: string }[];
+  bufferViews: { byteOffset?: number }[];
+  images?: object[];
+  materials?: { doubleSided?: boolean }[];
+  textures?: object[];
+  meshes: { primitives: GltfPrimitive[] }[];
+  nodes: { name?: string; rotation?: number[]; extensions?: object }[];
+}
+
+export interface GltfPrimitive {
+  attributes: Record<string, number>;
+  indices?: number;
+  material?: number;
+  mode?: number;
+  extras?: { name?: string };
+}
+
+/** What `gaitway retarget --json` prints. */
+export interface RetargetReport {
+  clip: string;
+  duration_secs: number;
+  figures: { orientation_error_degrees_mean: number };
+}
+
+/** An answer of an embedded frame; its result depends on the call. */
+export interface Reply {
+  result?: any;
+  error?: string;
+}
+
+declare global {
+  interface Window {
+    /** The three.js side of benches/web. */
+    bench: import("../benches/web/three.mjs").Bench;
+    /** Files of benches/web. */
+    fetched: Uint8Array[];
+    /** Changes counted by page.test.mjs. */
+    changes: number;
+    /** Of the page around an embedded one in link.test.mjs. */
+    call(...request: unknown[]): Promise<Reply>;
+    events: string[];
+    askFromAside(call: string): Promise<string>;
+    openBytes(name: string, url: string): Promise<Reply>;
+  }
+}

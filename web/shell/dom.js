@@ -1,0 +1,53 @@
+// Small helpers for the page's elements.
+
+/**
+ * Returns the element with this id; it has to be of the given type.
+ * @template {HTMLElement} [T=HTMLElement]
+ * @param {string} id
+ * @param {{ new (): T }} [type]
+ * @returns {T}
+ */
+export function byId(id, type) {
+  const element = document.getElementById(id);
+  if (!(element instanceof (type ?? HTMLElement))) throw new Error(`index.html: #${id}: expected ${type?.name ?? "an element"}`);
+  return /** @type {T} */ (element);
+}
+
+/** @param {string} id */
+export const button = (id) => byId(id, HTMLButtonElement);
+
+/** @param {string} id */
+export const dialog = (id) => byId(id, HTMLDialogElement);
+
+/** @param {string} id */
+export const field = (id) => byId(id, HTMLInputElement);
+
+/**
+ * Fills a list with one item per text.
+ * @param {string} id
+ * @param {string[]} texts
+ */
+export function showList(id, texts) {
+  byId(id).replaceChildren(
+    ...texts.map((text) => {
+      const item = document.createElement("li");
+      item.textContent = text;
+      return item;
+    }),
+  );
+}
+
+export const canvas = () => byId("stage").querySelector("canvas");
+
+export const focusCanvas = () => canvas()?.focus({ preventScroll: true });
+
+/**
+ * Waits for animation frames. A hidden page draws none, so each is waited for only briefly.
+ * @param {number} count
+ */
+export async function frames(count) {
+  for (let frame = 0; frame < count; frame++) await Promise.race([new Promise(requestAnimationFrame), new Promise((done) => setTimeout(done, 200))]);
+}
+
+/** @param {unknown} error */
+export const messageOf = (error) => (error instanceof Error ? error.message : String(error));

@@ -1,0 +1,111 @@
+// Following links: back and forward, another link typed into the address bar, and what of a link could not be loaded.
+import { awaitFiles, showAwaited } from "./awaited.js";
+import { cancelSummary, summarizeSoon } from "./changes.js";
+import { button, byId, dialog, messageOf, showList } from "./dom.js";
+import { heldItems, heldMotions, localFiles } from "./held.js";
+import { beginFollowing, endFollowing, keepTypedAddress, moveToEntry, showInEntry } from "./history.js";
+import { linkWithoutMissing, linkedFiles } from "./links.js";
+import { load, takeNews } from "./load.js";
+import { panel, sayProblem } from "./panels.js";
+import { arePrivate, rememberPrivateVisit } from "./privacy.js";
+import { linkOfAddress, session, unlessStopped } from "./session.js";
+
+/** @typedef {import("./types.d.ts").Item} Item */
+
+/**
+ * What the followed entry of the history showed.
+ * @typedef {object} Followed
+ * @property {Item[]} [items] Local files of the model.
+ * @property {Item[]} [motionItems] Local files of the motions.
+ * @property {string} [link] The link that names them, where the address has `file:`.
+ * @property {boolean} [wasPrivate]
+ */
+
+let lastFollow = 0;
+
+/**
+ * Shows what a link says, with the local files that its entry of the history held.
+ * @param {string} link
+ * @param {Followed} [entry]
+ * @param {boolean} [again] Read all of it again.
+ */
+export async function follow(link, { items = [], motionItems = [], link: heldLink = link, wasPrivate = false } = {}, again = false) {
+  const app = session.app;
+  if (app === null) return;
+  lastFollow += 1;
+  const number = lastFollow;
+  const isLatest = () => number === lastFollow && session.app === app;
+  beginFollowing();
+  dialog("missing").close();
+  if (wasPrivate) rememberPrivateVisit();
+  awaitFiles(heldLink);
+  const linkForNow = linkWithoutMissing(heldLink);
+  showInEntry(linkForNow);
+  /** @type {(problems: string[], isUnchanged?: boolean) => void} */
+  const report = (problems, isUnchanged) => {
+    if (!isLatest() || problems.length === 0) return;
+    // The address still has what the screen lacks.
+    keepTypedAddress();
+    showMissing(problems, link, isUnchanged);
+  };
+  try {
+    const before = { items: heldItems(session.link), motionItems: heldMotions(session.link) };
+    if (items.length > 0 && !areSame(items, before.items)) await load(items, undefined, arePrivate(items));
+    if (motionItems.length > 0 && !areSame(motionItems, before.motionItems)) await load(motionItems, "motion", arePrivate(motionItems));
+    if (number !== lastFollow) return;
+    // The same names now mean other files.
+    const meansOthers = (items.length === 0 && before.items.length > 0) || (motionItems.length === 0 && before.motionItems.length > 0);
+    if (again || meansOthers || linkForNow !== session.link) {
+      const readAll = again || (meansOthers && items.length + motionItems.length === 0);
+      report(takeNews(await unlessStopped(app, app.follow_link(linkForNow, readAll))).problems);
+    }
+    if (number === lastFollow) showAwaited();
+  } catch (error) {
+    report([messageOf(error)], true);
+  } finally {
+    endFollowing();
+    summarizeSoon();
+  }
+}
+
+/**
+ * @param {Item[]} items
+ * @param {Item[]} others
+ */
+const areSame = (items, others) => items.length === others.length && items.every((item, index) => item === others[index]);
+
+/**
+ * Says what of a link could not be loaded, and offers to try again.
+ * @param {string[]} problems
+ * @param {string} link
+ * @param {boolean} [isUnchanged] Nothing of the link is shown.
+ */
+export function showMissing(problems, link, isUnchanged = false) {
+  if (problems.length === 0) return;
+  sayProblem(problems.join(" "));
+  showList("missing-parts", problems);
+  const models = linkedFiles(link).filter(({ role }) => role === "model");
+  const isModel = models.some(({ name }) => problems.some((problem) => problem.startsWith(`${name}:`)));
+  byId("missing-title").textContent = `${isModel ? "The model in" : "Part of"} this link couldn't be loaded`;
+  byId("missing-rest").textContent = isUnchanged ? "The current view stays as it was." : "Everything that could be loaded is shown.";
+  button("missing-again").onclick = () => {
+    dialog("missing").close();
+    if (heldItems(session.link).length + heldMotions(session.link).length === 0) {
+      follow(link, {}, true);
+    } else {
+      session.link = link;
+      session.isLocal = localFiles(link).length > 0;
+      session.restart();
+    }
+  };
+  if (panel() === null && !dialog("missing").open) dialog("missing").showModal();
+}
+
+addEventListener("popstate", ({ state }) => {
+  cancelSummary();
+  const visit = moveToEntry(state);
+  const link = linkOfAddress();
+  // An instance that is starting shows this link instead.
+  if (session.app === null) session.askedLink = session.link = link;
+  else follow(link, { wasPrivate: state?.own === true, ...visit });
+});

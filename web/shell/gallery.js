@@ -1,0 +1,43 @@
+// The samples below the viewport: cards that are plain links. The first screen shows them; a link, an embedding page and
+// opening local files hide them until they are asked for.
+import { byId, button, focusCanvas } from "./dom.js";
+import { mostSimilarLink } from "./links.js";
+
+const gallery = byId("gallery");
+const cards = /** @type {HTMLAnchorElement[]} */ ([...gallery.querySelectorAll("a.card")]);
+
+export function showGallery() {
+  setShown(true);
+  const first = cards.find((card) => card.ariaCurrent === "true") ?? gallery.querySelector(".card");
+  /** @type {HTMLElement | null} */ (first)?.focus();
+}
+
+/** @param {boolean} isShown */
+function setShown(isShown) {
+  if (gallery.hidden !== isShown) return;
+  const hadFocus = gallery.contains(document.activeElement);
+  gallery.hidden = !isShown;
+  if (hadFocus && !isShown) focusCanvas();
+}
+
+/**
+ * Marks the card of the current view, if it is one of the scenes.
+ * @param {string} link
+ * @param {boolean} isLocal
+ */
+export function markCard(link, isLocal) {
+  if (isLocal) setShown(false);
+  const shown = mostSimilarLink(link, cards.map(({ hash }) => hash.slice(1)));
+  for (const [index, card] of cards.entries()) card.setAttribute("aria-current", String(index === shown));
+}
+
+setShown(location.hash.length < 2 && parent === window && cards.length > 0);
+
+button("gallery-close").addEventListener("click", () => setShown(false));
+// In the viewport, Escape belongs to what is chosen there.
+addEventListener("keydown", ({ key, target }) => {
+  if (key === "Escape" && (target === document.body || gallery.contains(/** @type {Node} */ (target)))) setShown(false);
+});
+// After a click the keyboard controls the viewport; whoever came by keyboard continues from here.
+for (const card of cards)
+  card.addEventListener("click", ({ detail, ctrlKey, metaKey, shiftKey }) => detail > 0 && !(ctrlKey || metaKey || shiftKey) && focusCanvas());

@@ -1,0 +1,126 @@
+// Files that were dropped or chosen. The page holds on to them, so that a new instance, back and forward can show them
+// again; a link only has their names.
+import { linkedFiles, publicLink } from "./links.js";
+
+/** @typedef {import("./types.d.ts").Item} Item */
+/** @typedef {import("./types.d.ts").LinkedFile} LinkedFile */
+
+const MAX_HELD = 32;
+
+/**
+ * Sets of files that were opened together, the most recent last.
+ * @type {Item[][]}
+ */
+const held = [];
+
+/** @param {Item} item */
+export const nameOf = (item) => (typeof item === "string" ? item : item.name);
+
+/** @param {string} name */
+export const extensionOf = (name) => /** @type {string} */ (name.split(".").pop()).toLowerCase();
+
+/** @param {Item[]} items */
+export function hold(items) {
+  release(items);
+  held.push(items);
+  if (held.length > MAX_HELD) held.shift();
+}
+
+/** @param {Item[]} items */
+export function release(items) {
+  const at = held.indexOf(items);
+  if (at >= 0) held.splice(at, 1);
+}
+
+/**
+ * Holds on to files that couldn't be shown, without hiding files of the same names that are shown.
+ * @param {Item[]} items
+ */
+export function holdLast(items) {
+  release(items);
+  held.unshift(items);
+}
+
+/**
+ * Drops sets with a file of this name, which was read from its URL meanwhile.
+ * @param {string} name
+ */
+export function releaseNamed(name) {
+  for (let at = held.length - 1; at >= 0; at--) if (held[at].some((item) => nameOf(item) === name)) held.splice(at, 1);
+}
+
+/**
+ * Returns the most recent set with a file of this name.
+ * @param {string} name
+ */
+export const setWith = (name) => held.findLast((items) => items.some((item) => nameOf(item) === name));
+
+/**
+ * Returns the most recent file of this name.
+ * @param {string} name
+ */
+export const itemNamed = (name) => held.flat().findLast((item) => nameOf(item) === name);
+
+/**
+ * Returns the sets that hold a link's files.
+ * @param {string} link
+ * @param {LinkedFile["role"]} role
+ */
+function setsOf(link, role) {
+  const files = linkedFiles(link).filter((file) => file.role === role && !file.isToBring);
+  return [...new Set(files.map(({ name }) => setWith(name)))].filter((set) => set !== undefined);
+}
+
+/**
+ * Returns what a link's model is opened from, besides URLs.
+ * @param {string} link
+ */
+export const heldItems = (link) => setsOf(link, "model").flat();
+
+/**
+ * Returns what a link's motions are opened from, besides the model's own files.
+ * @param {string} link
+ */
+export function heldMotions(link) {
+  const models = setsOf(link, "model");
+  return setsOf(link, "motion").filter((set) => !models.includes(set)).flat();
+}
+
+/** @param {LinkedFile} file */
+const isLocalFile = ({ name, isToBring }) => !isToBring && held.some((items) => items.some((item) => typeof item !== "string" && item.name === name));
+
+/**
+ * Returns the files of a link that exist only on this computer.
+ * @param {string} link
+ */
+export const localFiles = (link) => linkedFiles(link).filter(isLocalFile);
+
+/**
+ * Returns the link to hand to others.
+ * @param {string} link
+ */
+export const shareableLink = (link) => publicLink(link, localFiles(link).map(({ name }) => name));
+
+/**
+ * What a file consists of besides itself, which a link doesn't name.
+ * @type {Record<string, { words: string, extension: RegExp }>}
+ */
+const COMPANIONS = {
+  gltf: { words: "its .bin and images", extension: /\.(bin|png|jpe?g|webp)$/i },
+  obj: { words: "its .skel and .attach", extension: /\.(skel|attach|mtl|png|jpe?g)$/i },
+};
+
+/**
+ * Describes what belongs to a file besides itself, if anything does.
+ * @param {string} name
+ */
+export const companionWords = (name) => COMPANIONS[extensionOf(name)]?.words;
+
+/**
+ * Returns the names of such files that were opened together with one.
+ * @param {string} name
+ */
+export function companionsOf(name) {
+  const extension = COMPANIONS[extensionOf(name)]?.extension;
+  return (setWith(name) ?? []).map(nameOf).filter((other) => extension?.test(other));
+}

@@ -1,0 +1,107 @@
+// The address bar and the browser's history: opening other files adds an entry, everything else changes the current one.
+// Entries with local files keep them as long as the page lives.
+import { awaited } from "./awaited.js";
+import { heldItems, heldMotions, shareableLink } from "./held.js";
+import { shownFiles } from "./links.js";
+import { isPrivate } from "./privacy.js";
+import { session } from "./session.js";
+
+/** @typedef {import("./types.d.ts").Item} Item */
+
+/**
+ * What an entry of the history showed.
+ * @typedef {{ link: string, items: Item[], motionItems: Item[] }} Visit
+ */
+
+/** What an entry's state holds. Older versions of the page wrote it too, so its keys stay. */
+/** @typedef {{ gaitway?: number, own?: boolean } | null} EntryState */
+
+const MAX_VISITS = 16;
+
+/** The current entry: its number, the files it shows, and the link that was typed, kept until something is set. */
+const entry = {
+  number: /** @type {number} */ (history.state?.gaitway ?? 0),
+  files: /** @type {string | null} */ (null),
+  typed: /** @type {string | null} */ (null),
+};
+let lastNumber = entry.number;
+
+/**
+ * Entries with local files, by number.
+ * @type {Map<number, Visit>}
+ */
+const visits = new Map();
+
+/** Links being followed now. What the app shows on the way is no entry. */
+let followingCount = 0;
+
+export function beginFollowing() {
+  followingCount += 1;
+}
+
+export function endFollowing() {
+  followingCount -= 1;
+}
+
+/** Writes the current view to the address bar. */
+export function recordView() {
+  const files = shownFiles(session.link);
+  // While files are missing, the address stays as it was until something else is shown.
+  if (followingCount > 0 || session.link === entry.typed || (awaited() !== null && files === entry.files)) return;
+  entry.typed = null;
+  const address = `#${shareableLink(session.link)}`;
+  if (files === entry.files) {
+    history.replaceState({ gaitway: entry.number, own: isPrivate() }, "", address);
+  } else {
+    lastNumber += 1;
+    [entry.number, entry.files] = [lastNumber, files];
+    history.pushState({ gaitway: entry.number, own: isPrivate() }, "", address);
+  }
+  remember();
+}
+
+/** Leaves the address alone until something is set. */
+export function keepTypedAddress() {
+  [entry.files, entry.typed] = [shownFiles(session.link), session.link];
+}
+
+/** Does so at the first change only. */
+export function keepTypedAddressOnce() {
+  if (entry.files === null) keepTypedAddress();
+}
+
+/**
+ * Makes the current entry show these files.
+ * @param {string} link
+ */
+export function showInEntry(link) {
+  [entry.files, entry.typed] = [shownFiles(link), null];
+}
+
+function remember() {
+  visits.delete(entry.number);
+  const [items, motionItems] = [heldItems(session.link), heldMotions(session.link)];
+  if (items.length + motionItems.length === 0) return;
+  visits.set(entry.number, { link: session.link, items, motionItems });
+  const [oldest] = visits.keys();
+  if (visits.size > MAX_VISITS) visits.delete(oldest);
+}
+
+/**
+ * Moves to the entry that the browser shows now and returns what it showed, if it had local files.
+ * @param {EntryState} state
+ */
+export function moveToEntry(state) {
+  // The entry's link lags behind the latest changes.
+  const left = visits.get(entry.number);
+  if (followingCount === 0 && left !== undefined) left.link = session.link;
+  if (state?.gaitway === undefined) {
+    lastNumber += 1;
+    entry.number = lastNumber;
+    history.replaceState({ gaitway: entry.number }, "");
+  } else {
+    entry.number = state.gaitway;
+    lastNumber = Math.max(lastNumber, entry.number);
+  }
+  return visits.get(entry.number);
+}

@@ -1,0 +1,216 @@
+// Instances of the program. Each is one wasm instance on one canvas; when one ends, another starts on a new canvas with the
+// same files and view.
+import { awaitFiles, awaited, showAwaited } from "./awaited.js";
+import { BACKEND_NAMES, TRY_GRAPHICS, hasBackend, missingCapabilities, otherBackend } from "./capabilities.js";
+import { summarize, viewChanged } from "./changes.js";
+import { button, byId, frames, messageOf } from "./dom.js";
+import { drawOffScreen } from "./first-frame.js";
+import { follow, showMissing } from "./following.js";
+import { showGallery } from "./gallery.js";
+import { heldItems, heldMotions } from "./held.js";
+import { linkWithoutMissing, readLinksWith } from "./links.js";
+import { readOrReport } from "./load.js";
+import { showOpenDialog } from "./open-dialog.js";
+import { panel, sayProblem, showCannotRun, showPanel, showProgress } from "./panels.js";
+import { arePrivate } from "./privacy.js";
+import { loadProgram } from "./program.js";
+import { download, startRecording, stopRecording } from "./recording.js";
+import { session } from "./session.js";
+import { share } from "./share.js";
+
+/** @typedef {import("./types.d.ts").Backend} Backend */
+/** @typedef {import("./types.d.ts").Bindings} Bindings */
+/** @typedef {import("./types.d.ts").ReadItem} ReadItem */
+/** @typedef {import("./types.d.ts").ShellCalls} ShellCalls */
+
+/**
+ * The back end that the last instance asked for or got.
+ * @type {Backend | null}
+ */
+let backend = null;
+const usedBackend = () => backend ?? (hasBackend("webgpu") ? "webgpu" : "webgl2");
+
+/**
+ * Aborts a start that is under way.
+ * @type {((reason: Error) => void) | null}
+ */
+let abortStart = null;
+
+/**
+ * Starts an instance that shows the current view.
+ * @param {Backend | null} renderer Null: whichever works.
+ */
+export function launch(renderer) {
+  session.started = start(renderer);
+  // `ready` passes the error on; the panel shows it in any case.
+  session.started.catch(() => {});
+  return session.started;
+}
+
+/** @param {Backend | null} renderer */
+async function start(renderer) {
+  session.stopReason = null;
+  showPanel("loading");
+  dispatchEvent(new CustomEvent("gaitway:loading", { detail: { link: session.link, isLocal: session.isLocal } }));
+  showProgress("Loading Gaitway", 0, 0);
+  const lacking = missingCapabilities();
+  if (lacking !== null) {
+    showCannotRun(lacking.missing, lacking.attempts);
+    throw new Error(lacking.missing.join(" "));
+  }
+  const bindings = await loadProgram();
+  readLinksWith(bindings);
+  session.link = awaited()?.link ?? session.link;
+  awaitFiles(session.link);
+  session.askedLink = null;
+  const files = await Promise.all([heldItems(session.link), heldMotions(session.link)].map((items) => readOrReport(items, sayProblem)));
+  const problems = [];
+  /** @type {(Backend | null)[]} */
+  const attempts = renderer === null ? [null, "webgl2"] : [renderer];
+  for (const attempt of attempts) {
+    const problem = await startOn(bindings, attempt, files);
+    if (problem === null) return;
+    problems.push(problem);
+  }
+  const other = renderer === null ? null : otherBackend(renderer);
+  showCannotRun(problems, other !== null && hasBackend(other) ? [`Open this page with ?renderer=${other} instead.`, ...TRY_GRAPHICS] : TRY_GRAPHICS);
+  throw new Error(problems.join(" "));
+}
+
+/**
+ * Starts on one back end; returns the problem if it can't be used.
+ * @param {Bindings} bindings
+ * @param {Backend | null} renderer
+ * @param {ReadItem[][]} files Local files of the model, and of its motions.
+ */
+async function startOn(bindings, renderer, [items, motionItems]) {
+  const canvas = newCanvas();
+  byId("stage").replaceChildren(canvas);
+  backend = renderer;
+  /** @type {Promise<never>} */
+  const aborted = new Promise((_, reject) => (abortStart = reject));
+  aborted.catch(() => {});
+  const link = linkWithoutMissing(session.link);
+  /** @type {string[]} */
+  let missing;
+  try {
+    const isPrivate = arePrivate([...heldItems(link), ...heldMotions(link)]);
+    const run = bindings.run(canvas, renderer ?? undefined, link, items, motionItems, isPrivate, callsFor(bindings));
+    missing = JSON.parse(await Promise.race([run, aborted]));
+  } catch (error) {
+    if (panel() === "stopped") throw error;
+    return `${renderer === null ? "Graphics" : BACKEND_NAMES[renderer]}: ${messageOf(error)}`;
+  }
+  session.app = bindings;
+  backend = /** @type {Backend} */ (JSON.parse(bindings.stats()).backend);
+  canvas.addEventListener("webglcontextlost", () => stopped("The browser took the graphics context away."));
+  await showFirstFrame(canvas, aborted, bindings);
+  showPanel(null);
+  summarize();
+  showMissing(missing, awaited()?.link ?? link);
+  showAwaited();
+  if (session.askedLink !== null) follow(session.askedLink);
+  return null;
+}
+
+function newCanvas() {
+  const canvas = document.createElement("canvas");
+  canvas.setAttribute("role", "application");
+  canvas.setAttribute("aria-label", "The model and its controls. Ctrl+O opens files.");
+  // A visible canvas would make the whole page wait for the device until the first frame is drawn.
+  canvas.style.visibility = "hidden";
+  return canvas;
+}
+
+/**
+ * Draws the first frame and then shows the canvas.
+ * @param {HTMLCanvasElement} canvas
+ * @param {Promise<never>} aborted
+ * @param {Bindings} bindings
+ */
+async function showFirstFrame(canvas, aborted, bindings) {
+  const presentFrames = drawOffScreen(canvas, usedBackend());
+  // One for the panels, one for the scene, and one to be sure that both came before it.
+  await frames(3);
+  await Promise.race([bindings.begin(), aborted]);
+  presentFrames();
+  // The first presented frame, before it is seen.
+  await frames(2);
+  if (session.stopReason !== null) throw new Error(session.stopReason);
+  canvas.style.visibility = "";
+  // egui types through a hidden field.
+  byId("stage").querySelector("input")?.setAttribute("aria-label", "Text input of the viewport");
+}
+
+/**
+ * What an instance calls; one that has been replaced no longer changes anything.
+ * @param {Bindings} bindings
+ * @returns {ShellCalls}
+ */
+function callsFor(bindings) {
+  const isCurrent = () => session.app === bindings || session.app === null;
+  return {
+    choose: showOpenDialog,
+    gallery: showGallery,
+    save: download,
+    startRecording,
+    stopRecording,
+    share,
+    progress: showProgress,
+    changed: (link) => isCurrent() && viewChanged(link),
+    warn: (message) => {
+      console.warn(message);
+      sayProblem(message);
+    },
+    stopped: (message) => isCurrent() && stopped(message),
+  };
+}
+
+/** @param {string} message */
+function stopped(message) {
+  if (panel() === "stopped" || panel() === "cannot-run") return;
+  abortStart?.(new Error(message));
+  session.stopReason = message;
+  byId("stopped-why").textContent = message.charAt(0).toUpperCase() + message.slice(1);
+  const other = otherBackend(usedBackend());
+  button("stopped-other").textContent = `Use ${BACKEND_NAMES[other]} instead`;
+  button("stopped-other").onclick = () => launch(other);
+  button("stopped-other").hidden = !hasBackend(other);
+  const ended = session.app;
+  session.app = null;
+  showPanel("stopped");
+  for (const dialog of document.querySelectorAll("dialog")) dialog.close();
+  button("stopped-again").focus();
+  // Not from inside the instance's own call.
+  setTimeout(() => {
+    end(ended);
+    byId("stage").replaceChildren();
+  });
+}
+
+/** @param {Bindings | null} instance */
+function end(instance) {
+  stopRecording();
+  if (session.app === instance) session.app = null;
+  try {
+    instance?.destroy();
+  } catch {
+    // After a panic nothing in the instance answers any more.
+  }
+}
+
+session.restart = () => {
+  end(session.app);
+  launch(usedBackend());
+};
+
+/** @param {unknown} error */
+function stopOnTrap(error) {
+  // An instance that runs out of memory or stack can't report it.
+  if (typeof WebAssembly === "object" && error instanceof WebAssembly.RuntimeError) stopped(`An error inside Gaitway: ${error.message}`);
+}
+
+addEventListener("error", ({ error }) => stopOnTrap(error));
+addEventListener("unhandledrejection", ({ reason }) => stopOnTrap(reason));
+button("stopped-again").addEventListener("click", () => launch(usedBackend()));
+for (const id of ["stopped-reload", "cannot-run-reload"]) button(id).addEventListener("click", () => location.reload());

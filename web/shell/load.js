@@ -1,0 +1,79 @@
+// Getting files into the app: read, handed over, and held on to.
+import { messageOf } from "./dom.js";
+import { hold, holdLast, releaseNamed } from "./held.js";
+import { beginPrivate, endPrivate, forgetRejected, rememberRejected } from "./privacy.js";
+import { running, unlessStopped } from "./session.js";
+
+/** @typedef {import("./types.d.ts").InspectDocument} InspectDocument */
+/** @typedef {import("./types.d.ts").Item} Item */
+/** @typedef {import("./types.d.ts").ReadItem} ReadItem */
+/** @typedef {import("./types.d.ts").Role} Role */
+
+/**
+ * Reads items into the form that the app takes.
+ * @param {Item[]} items
+ * @returns {Promise<ReadItem[]>}
+ */
+export async function read(items) {
+  return await Promise.all(
+    items.map(async (item) => {
+      if (typeof item === "string") return item;
+      try {
+        return [item.name, new Uint8Array(item.content instanceof Blob ? await item.content.arrayBuffer() : item.content)];
+      } catch {
+        throw new Error(`${item.name}: the browser can't read it; it may have been moved or changed, or it isn't a file`);
+      }
+    }),
+  );
+}
+
+/**
+ * Reads and shows items, and holds on to local ones.
+ * @param {Item[]} items
+ * @param {Role} as
+ * @param {boolean} isPrivate The local files among them are the user's own.
+ * @returns {Promise<{ shown: "model" | "motion" | "map", document: InspectDocument }>}
+ */
+export async function load(items, as, isPrivate) {
+  // A link has URLs in full; other files have to be held.
+  const isLocal = items.some((item) => typeof item !== "string");
+  const isPrivateNow = isLocal && isPrivate;
+  if (isPrivateNow) beginPrivate(items);
+  if (isLocal) hold(items);
+  try {
+    const app = await running();
+    const { shown, document } = JSON.parse(await unlessStopped(app, (async () => await app.open(await read(items), as, isPrivateNow))()));
+    forgetRejected();
+    return { shown, document };
+  } catch (error) {
+    // Undo and the missing files of a link may show it yet.
+    if (isLocal) holdLast(items);
+    if (isPrivateNow) rememberRejected();
+    throw error;
+  } finally {
+    if (isPrivateNow) endPrivate();
+  }
+}
+
+/**
+ * Reads the app's news of a followed link or an applied state. Files read from URLs replace held ones of the same names.
+ * @param {string} answer
+ * @returns {{ loaded: string[], problems: string[] }}
+ */
+export function takeNews(answer) {
+  const news = JSON.parse(answer);
+  news.loaded.forEach(releaseNamed);
+  if (news.loaded.length > 0) forgetRejected();
+  return news;
+}
+
+/**
+ * Reads held files for a new instance; one that can't be read any more is announced and left out.
+ * @param {Item[]} items
+ * @param {(message: string) => void} report
+ */
+export const readOrReport = (items, report) =>
+  read(items).catch((error) => {
+    report(messageOf(error));
+    return /** @type {ReadItem[]} */ ([]);
+  });

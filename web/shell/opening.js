@@ -1,0 +1,146 @@
+// Opening: files and URLs from a script, a dialog or a drop become items, which the app shows. Files that a link waits for
+// complete it.
+import { awaited, forgetAwaited, showAwaited } from "./awaited.js";
+import { summarize } from "./changes.js";
+import { focusCanvas, frames, messageOf } from "./dom.js";
+import { extensionOf, heldItems, heldMotions, itemNamed, nameOf, setWith } from "./held.js";
+import { follow } from "./following.js";
+import { linkWithFiles, linkWithoutMissing, linkedFiles } from "./links.js";
+import { load } from "./load.js";
+import { sayNews, sayProblem } from "./panels.js";
+import { running, session } from "./session.js";
+
+/** @typedef {import("./types.d.ts").InspectDocument} InspectDocument */
+/** @typedef {import("./types.d.ts").Item} Item */
+/** @typedef {import("./types.d.ts").Openable} Openable */
+/** @typedef {import("./types.d.ts").Role} Role */
+
+/**
+ * Opens what a script or the user gives. `isPrivate`: local files among it are the user's own, of which a page around this
+ * one learns nothing.
+ * @param {Openable | Openable[] | FileList} items
+ * @param {{ as?: Role, isPrivate?: boolean }} [options]
+ * @returns {Promise<InspectDocument>}
+ */
+export async function open(items, { as, isPrivate = true } = {}) {
+  const wanted = withCompanions(toItems(items));
+  await running();
+  try {
+    const { shown, document } = await load(wanted, as, isPrivate);
+    announce(shown, document);
+    await completeLink(wanted, true);
+    summarize();
+    return document;
+  } catch (error) {
+    // A motion may have arrived before its model.
+    await completeLink(wanted, false);
+    throw error;
+  }
+}
+
+/**
+ * Opens what the user dropped or chose. The app shows errors itself.
+ * @param {Openable[]} items
+ * @param {{ as?: Role }} [options]
+ */
+export async function openByHand(items, options) {
+  if (items.length === 0) return;
+  try {
+    await open(items, options);
+  } catch (error) {
+    // The app learns of it in its next frame and may announce an older error first.
+    await frames(2);
+    sayProblem(messageOf(error));
+  }
+  focusCanvas();
+}
+
+/**
+ * Turns anything that `gaitway.open` takes, alone or in a list, into items.
+ * @param {Openable | Openable[] | FileList} items
+ * @returns {Item[]}
+ */
+function toItems(items) {
+  const isList = Array.isArray(items) || items instanceof FileList;
+  return (isList ? [...items] : [items]).flatMap(/** @returns {Item[]} */ (item) => {
+    if (typeof item === "string") return [item];
+    if (item instanceof URL) return [item.href];
+    if (item instanceof File) return [{ name: item.webkitRelativePath || item.name, content: item }];
+    if (isNamedFile(item)) return [item];
+    if (item === null || typeof item !== "object") throw new Error("open: expected URLs, files, or an object with a buffer for each name");
+    return Object.entries(item).map(([name, content]) => {
+      if (content instanceof Blob || content instanceof ArrayBuffer) return { name, content };
+      if (ArrayBuffer.isView(content)) return { name, content: new Uint8Array(/** @type {ArrayBuffer} */ (content.buffer), content.byteOffset, content.byteLength) };
+      throw new Error(`open: ${name}: expected an ArrayBuffer`);
+    });
+  });
+}
+
+/**
+ * @param {Openable} item
+ * @returns {item is import("./types.d.ts").NamedFile}
+ */
+const isNamedFile = (item) => item !== null && typeof item === "object" && "name" in item && typeof item.name === "string" && "content" in item && item.content instanceof Blob;
+
+/**
+ * Adds what was opened before to a .skel or .attach that comes after its .obj.
+ * @param {Item[]} items
+ * @returns {Item[]}
+ */
+function withCompanions(items) {
+  if (items.length === 0 || !items.every((item) => ["skel", "attach"].includes(extensionOf(nameOf(item))))) return items;
+  const stem = nameOf(items[0]).replace(/\.[^.]*$/, "");
+  const mesh = setWith(`${stem}.obj`);
+  if (mesh === undefined) return items;
+  const others = ["skel", "attach"].map((extension) => itemNamed(`${stem}.${extension}`)).filter((item) => item !== undefined);
+  const all = [...mesh, ...others, ...items];
+  return [...new Map(all.map((item) => [nameOf(item), item])).values()];
+}
+
+/**
+ * @param {"model" | "motion" | "map"} shown
+ * @param {InspectDocument} document
+ */
+function announce(shown, { files, clips, borrowed_clips: borrowed, joints, triangles }) {
+  /** @type {(count: number, noun: string) => string} */
+  const counted = (count, noun) => `${count} ${noun}${count === 1 ? "" : "s"}`;
+  const texts = {
+    model: `Opened ${files.join(", ")}: ${counted(clips.length, "clip")}, ${counted(joints, "joint")}, ${counted(triangles, "triangle")}.`,
+    motion: `Borrowed motion: ${counted(borrowed?.length ?? 0, "clip")} available.`,
+    map: "Joint map applied.",
+  };
+  sayNews(texts[shown]);
+}
+
+/** @param {string} path */
+const lastPart = (path) => path.split("/").pop();
+
+/**
+ * Takes a set of files towards the link that waits for files, and shows the link once it has all of them.
+ * @param {Item[]} items
+ * @param {boolean} isShown The app shows the set.
+ */
+async function completeLink(items, isShown) {
+  const waiting = awaited();
+  if (waiting === null) return;
+  waiting.sets.push(items);
+  const { link, wanted, sets } = waiting;
+  const found = wanted.map((file) => {
+    /** @type {(item: Item) => boolean} */
+    const isIt = (item) => lastPart(nameOf(item)) === lastPart(file.name);
+    const set = sets.findLast((items) => items.some(isIt));
+    return { file, set, item: set?.find(isIt) };
+  });
+  const missing = found.filter(({ item }) => item === undefined);
+  if (missing.length > 0) {
+    // The user opened something else instead and wants to see that.
+    if (isShown && !found.some(({ set }) => set === items)) return forgetAwaited();
+    waiting.missing = missing.map(({ file }) => file);
+    return showAwaited();
+  }
+  const names = found.flatMap(({ item }) => (item === undefined ? [] : [nameOf(item)]));
+  const complete = linkWithFiles(link, names);
+  forgetAwaited();
+  await follow(complete, { link: complete, items: heldItems(complete), motionItems: heldMotions(complete) });
+  if (!linkedFiles(linkWithoutMissing(link)).some(({ role }) => role === "model")) session.app?.close_stand_in();
+}

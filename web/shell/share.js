@@ -1,0 +1,99 @@
+// The share dialog: the link to copy, as a QR code, and as HTML that embeds it in another page.
+import { byId, button, dialog, field, showList } from "./dom.js";
+import { companionsOf, localFiles, shareableLink } from "./held.js";
+import { embeddedLink } from "./links.js";
+import { session } from "./session.js";
+
+/** Companions of a file that are listed by name. */
+const MAX_COMPANIONS = 4;
+
+/**
+ * Shows the dialog for a link and copies it.
+ * @param {string} link
+ */
+export function share(link) {
+  if (session.app === null) return;
+  const page = new URL(location.href);
+  // The back end is a matter of this machine.
+  page.searchParams.delete("renderer");
+  page.hash = "";
+  const address = `${page.href}#${shareableLink(link)}`;
+  const local = localFiles(link);
+  byId("share-local").hidden = local.length === 0;
+  showList("share-files", local.map(({ role, name }) => `${name} (${role})${companionList(companionsOf(name))}`));
+  field("share-link").value = address;
+  field("share-frame").value = frameHtml(`${page.href}#${embeddedLink(shareableLink(link))}`);
+  // A phone that scans the code hardly has the files, and there is no room for both.
+  byId("share-code", HTMLDetailsElement).open = local.length === 0;
+  showCode(address, session.app.qr(address));
+  byId("share-said").textContent = "";
+  if (!dialog("share").open) dialog("share").showModal();
+  copy("share-link", "Link copied.", "");
+}
+
+/** @param {string[]} names */
+function companionList(names) {
+  const [listed, more] = [names.slice(0, MAX_COMPANIONS), names.length - MAX_COMPANIONS];
+  return listed.length === 0 ? "" : `, with ${listed.join(", ")}${more > 0 ? ` and ${more} more` : ""}`;
+}
+
+/**
+ * Returns the HTML of a frame that shows an address.
+ * @param {string} address
+ */
+function frameHtml(address) {
+  const escaped = address.replaceAll("&", "&amp;").replaceAll('"', "&quot;");
+  return `<iframe src="${escaped}" title="Gaitway" width="640" height="480" style="border: 0"></iframe>`;
+}
+
+/**
+ * @param {string} address
+ * @param {string | undefined} code
+ */
+function showCode(address, code) {
+  byId("share-no-qr").hidden = code !== undefined;
+  byId("share-no-qr").textContent = `This link has ${address.length} characters, too many for a QR code that a camera can read.`;
+  byId("share-qr").replaceChildren(...(code === undefined ? [] : [codeImage(code)]));
+  byId("share-qr").hidden = code === undefined;
+}
+
+/** The quiet zone that the standard asks for, in modules. */
+const QUIET = 4;
+
+/**
+ * Draws a QR code given as rows of `0` and `1`.
+ * @param {string} code
+ */
+function codeImage(code) {
+  const rows = code.split("\n");
+  const size = rows.length + 2 * QUIET;
+  const dark = rows.flatMap((row, y) => [...row.matchAll(/1+/g)].map(({ index, 0: run }) => `M${index + QUIET} ${y + QUIET}h${run.length}v1h-${run.length}z`));
+  const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+  svg.setAttribute("viewBox", `0 0 ${size} ${size}`);
+  svg.setAttribute("shape-rendering", "crispEdges");
+  const path = document.createElementNS("http://www.w3.org/2000/svg", "path");
+  path.setAttribute("d", dark.join(""));
+  svg.append(path);
+  return svg;
+}
+
+/**
+ * Copies a field and says so.
+ * @param {string} id
+ * @param {string} done
+ * @param {string} failed Empty: don't insist.
+ */
+async function copy(id, done, failed) {
+  field(id).select();
+  try {
+    await navigator.clipboard.writeText(field(id).value);
+    byId("share-said").textContent = done;
+  } catch {
+    // Not allowed, or the page was not served over HTTPS.
+    byId("share-said").textContent = failed !== "" && document.execCommand("copy") ? done : failed;
+  }
+}
+
+button("share-copy").addEventListener("click", () => copy("share-link", "Link copied.", "Couldn't copy the link. It is selected: copy it with the keyboard."));
+button("share-copy-frame").addEventListener("click", () => copy("share-frame", "Embed code copied.", "Couldn't copy the embed code. It is selected: copy it with the keyboard."));
+byId("share-code-toggle").addEventListener("click", () => requestAnimationFrame(() => byId("share-code").scrollIntoView({ block: "center" })));

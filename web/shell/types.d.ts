@@ -1,0 +1,162 @@
+// Types shared by the page's scripts: the program's exports, what it calls back, and `window.gaitway`.
+
+/** What the program is asked to open: a URL, or a named file. */
+export type Item = string | NamedFile;
+
+export interface NamedFile {
+  /** Path inside the folder that was chosen or dropped, or the file's own name. */
+  name: string;
+  content: Blob | ArrayBuffer | Uint8Array<ArrayBuffer>;
+}
+
+/** Anything `gaitway.open` takes. */
+export type Openable = string | URL | File | NamedFile | Record<string, Blob | ArrayBuffer | ArrayBufferView>;
+
+/** An item as the program takes it. */
+export type ReadItem = string | [name: string, bytes: Uint8Array<ArrayBuffer>];
+
+/** `motion`: borrow from the files, whatever they are. */
+export type Role = "motion" | undefined;
+
+export type Backend = "webgpu" | "webgl2";
+
+/** A `model` or `motion` of a link; see `LinkedFile` in src/state/link/files.rs. */
+export interface LinkedFile {
+  role: "model" | "motion";
+  name: string;
+  member: string;
+  isToBring: boolean;
+}
+
+/** What the program calls; see src/web/shell.rs. */
+export interface ShellCalls {
+  choose(role: "any" | "motion"): void;
+  gallery(): void;
+  save(name: string, bytes: Uint8Array<ArrayBuffer>): void;
+  startRecording(): boolean;
+  stopRecording(name?: string): void;
+  share(link: string): void;
+  progress(name: string, received: number, total: number): void;
+  changed(link: string): void;
+  warn(message: string): void;
+  stopped(message: string): void;
+}
+
+/** The program's exports as wasm-bindgen writes them; see src/web. Documents are JSON text. */
+export interface Bindings {
+  default(options: { module_or_path: WebAssembly.Module }): Promise<unknown>;
+  run(
+    canvas: HTMLCanvasElement,
+    renderer: Backend | undefined,
+    link: string,
+    items: ReadItem[],
+    motionItems: ReadItem[],
+    isPrivate: boolean,
+    shell: ShellCalls,
+  ): Promise<string>;
+  begin(): Promise<void>;
+  destroy(): void;
+  open(items: ReadItem[], role: Role, isPrivate: boolean): Promise<string>;
+  follow_link(link: string, again: boolean): Promise<string>;
+  apply(partial: string): Promise<string>;
+  close_stand_in(): void;
+  refuse(problem: string): void;
+  is_private(): boolean;
+  qr(text: string): string | undefined;
+  state(): string;
+  pose(): string;
+  stats(): string;
+  summary(): string;
+  screenshot(): Promise<Uint8Array<ArrayBuffer>>;
+  linked_files(link: string): string;
+  shown_files(link: string): string;
+  public_link(link: string, local: string[]): string;
+  embedded_link(link: string): string;
+  link_without_missing(link: string): string;
+  link_with_files(link: string, names: string[]): string;
+  most_similar_link(link: string, others: string[]): number | undefined;
+  /** Only in a build for benches/web. */
+  bench_characters?(bytes: Uint8Array, clip: string, characters: number, frames: number): number;
+  bench_load?(bytes: Uint8Array): Promise<void>;
+  bench_retarget?(model: Uint8Array, motion: Uint8Array, clip: string, rounds: number): number;
+}
+
+/** The document that `gaitway inspect --json` prints. */
+export interface InspectDocument {
+  files: string[];
+  format: string;
+  joints: number;
+  vertices: number;
+  triangles: number;
+  clips: { index: number; name: string; duration_secs: number; channels: number }[];
+  borrowed_clips?: { name: string }[];
+  bounds: { min: number[]; max: number[] };
+}
+
+/** The document that `gaitway pose --json` prints. */
+export interface PoseDocument {
+  clip: string | null;
+  time_secs: number;
+  nodes: { node: number; name: string; world: number[] }[];
+  meshes: { node: number; mesh: number; primitive: number; positions: number[]; normals: number[] }[];
+}
+
+export interface Stats {
+  backend: Backend;
+  frame_ms: number;
+  cpu_ms: number;
+  draw_calls: number;
+  triangles: number;
+  joints: number;
+  characters: number;
+  frames: number;
+}
+
+/** Keys of the link. */
+export interface State {
+  model: string[];
+  motion: string[];
+  map: string[];
+  clip: string | null;
+  t: number;
+  play: boolean;
+  show: string;
+  camera: string;
+  pose: string;
+  names: string;
+  embed: boolean;
+  exposure: number;
+  root: string | null;
+  feet: string | null;
+  joint: number | null;
+}
+
+/** `window.gaitway`, the script interface. */
+export interface Gaitway {
+  /** Files of each sample by the name after `sample:`, as URLs relative to the page. */
+  samples: Record<string, string[]>;
+  /** Resolves once the first image is on screen; a new promise after each restart. */
+  readonly ready: Promise<void>;
+  open(items: Openable | Openable[] | FileList, options?: { as?: Role }): Promise<InspectDocument>;
+  apply(partial: object): Promise<void>;
+  screenshot(): Promise<Blob>;
+  /** Answered at once while the program runs, otherwise as a promise. */
+  state(): State | Promise<State>;
+  pose(): PoseDocument | Promise<PoseDocument>;
+  stats(): Stats | Promise<Stats>;
+  benchCharacters?(bytes: Uint8Array, clip: string, characters: number, frames: number): number;
+  benchLoad?(bytes: ArrayBuffer): Promise<void>;
+  benchRetarget?(model: Uint8Array, motion: Uint8Array, clip: string, rounds: number): number;
+}
+
+declare global {
+  interface Window {
+    gaitway: Gaitway;
+    /** Files that the system opens with the installed page. */
+    launchQueue?: { setConsumer(consumer: (launch: { files: FileSystemFileHandle[] }) => void): void };
+  }
+  interface WindowEventMap {
+    "gaitway:loading": CustomEvent<{ link: string; isLocal: boolean }>;
+    "gaitway:change": CustomEvent<null>;
+  }
+}
