@@ -140,11 +140,17 @@ impl Geometry {
                 return Err(GeometryError::Count { attribute: "influences", expected, found });
             }
         }
-        if let Some(&index) = self.indices.iter().find(|&&index| index as usize >= vertices) {
+        // The folds come first because, without early exit, they are vectorized.
+        let is_outside = |index: &u32| *index as usize >= vertices;
+        if self.indices.iter().fold(false, |found, index| found | is_outside(index))
+            && let Some(&index) = self.indices.iter().find(|&index| is_outside(index))
+        {
             return Err(GeometryError::IndexOutOfRange { index, vertices });
         }
+        let joints_of_vertices = &self.influences.joints;
         if let Some(joints) = skin_joints
-            && let Some(at) = self.influences.joints.iter().position(|&joint| joint as usize >= joints)
+            && joints_of_vertices.iter().fold(false, |found, &joint| found | (usize::from(joint) >= joints))
+            && let Some(at) = joints_of_vertices.iter().position(|&joint| usize::from(joint) >= joints)
         {
             let (vertex, joint) = (at / self.influences.stride, self.influences.joints[at]);
             return Err(GeometryError::JointOutOfRange { vertex, joint, joints });
