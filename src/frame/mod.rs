@@ -121,7 +121,7 @@ impl Character {
 /// A mesh instance. The palette of an unskinned mesh has a single entry, its node.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Draw {
-    /// Index into [`crate::asset::Asset::instances`].
+    /// Index into [`crate::asset::AssetParts::instances`].
     pub instance: usize,
     pub mesh: usize,
     /// Range in [`Character::palette`].

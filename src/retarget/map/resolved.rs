@@ -34,7 +34,7 @@ pub struct Pair {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Layer {
     pub joint: JointIndex,
-    /// Index into [`crate::asset::Asset::clips`] of the model.
+    /// Index into [`crate::asset::AssetParts::clips`] of the model.
     pub clip: usize,
     /// Holds the clip's first key.
     pub frozen: bool,
