@@ -14,9 +14,9 @@ impl App {
         // In the page, an image arrives in a later turn of the event loop.
         #[cfg(target_arch = "wasm32")]
         if let Saved::Picture { size, transparent } = what {
-            let (picture, name, inbox) = (self.picture(size, transparent), self.picture_name(), self.inbox.clone());
+            let (image, name, inbox) = (self.image(size, transparent), self.image_name(), self.inbox.clone());
             wasm_bindgen_futures::spawn_local(async move {
-                inbox.send(match picture.await {
+                inbox.send(match image.await {
                     Ok(bytes) => Message::Save(name, bytes),
                     Err(error) => Message::Failed(error),
                 });
@@ -52,13 +52,13 @@ impl App {
             Saved::Picture { .. } => Err("images are saved once they have been read back".to_owned()),
             #[cfg(not(target_arch = "wasm32"))]
             Saved::Picture { size, transparent } => {
-                let bytes = pollster::block_on(self.picture(size, transparent))?;
-                Ok(ExportedFile { name: self.picture_name(), bytes, remark: None })
+                let bytes = pollster::block_on(self.image(size, transparent))?;
+                Ok(ExportedFile { name: self.image_name(), bytes, remark: None })
             }
         }
     }
 
-    fn picture_name(&self) -> String {
+    fn image_name(&self) -> String {
         format!("{}.png", self.editor.file_stem())
     }
 
@@ -67,7 +67,7 @@ impl App {
     }
 
     /// Renders the current view at another size as a PNG.
-    fn picture(&mut self, size: [u32; 2], transparent: bool) -> impl Future<Output = Result<Vec<u8>, String>> + use<> {
+    fn image(&mut self, size: [u32; 2], transparent: bool) -> impl Future<Output = Result<Vec<u8>, String>> + use<> {
         let (device, queue, texture) = self.viewport.draw_to_texture(&self.editor, size, transparent);
         async move { read_png(&device, &queue, &texture).await }
     }

@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Error, bail};
 
-use super::borrow::{Borrowing, apply_link, open_editor};
+use super::motion::{MotionArguments, apply_link, open_editor};
 use super::{ConvertArguments, open};
 use crate::editor::Export;
 use crate::files::read_set;
@@ -26,7 +26,7 @@ fn posed(arguments: &ConvertArguments, link: &str) -> anyhow::Result<Vec<u8>> {
     if opened.model.asset.format != "obj" {
         bail!("{}: --view: expected an .obj; a glTF file is written unchanged", opened.model.source);
     }
-    let mut editor = open_editor(opened, &Borrowing::default())?;
-    apply_link(&mut editor, link, &Borrowing::default())?;
+    let mut editor = open_editor(opened, &MotionArguments::default())?;
+    apply_link(&mut editor, link, &MotionArguments::default())?;
     Ok(editor.export(Export::Whole { posed: true }).map_err(Error::msg)?.bytes)
 }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use anyhow::{Context, bail};
 use serde_json::{Value, json};
 
-use super::borrow::{joint_name, open_motion};
+use super::motion::{joint_name, open_motion};
 use super::{MapArguments, open, print_bytes, print_json};
 use crate::retarget::{Contradiction, Proposal, propose};
 

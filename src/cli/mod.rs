@@ -1,9 +1,9 @@
 //! The command line: thin wrappers around the functions that the page uses.
 
-mod borrow;
 mod convert;
 mod inspect;
 mod map;
+mod motion;
 mod pose;
 #[cfg(feature = "render")]
 mod render;
@@ -23,7 +23,7 @@ use crate::library::Model;
 use crate::mesh::SkinningMode;
 use crate::retarget::{Feet, Keep, RestChoice, RootPart};
 use crate::state::{ClipChoice, Command, active_clip, choice_of_clip};
-use borrow::Borrowing;
+use motion::MotionArguments;
 
 /// Drop in a glTF character, watch it move, and see why it bends the way it does.
 #[derive(Debug, Parser)]
@@ -239,7 +239,7 @@ struct PoseArguments {
     #[command(flatten)]
     input: Files,
     #[command(flatten)]
-    borrowing: Borrowing,
+    motion: MotionArguments,
     #[command(flatten)]
     moment: Moment,
     /// A link of the page, or its part after `#`, with the pose to evaluate. Other options override it.
@@ -256,7 +256,7 @@ struct RenderArguments {
     #[command(flatten)]
     input: Files,
     #[command(flatten)]
-    borrowing: Borrowing,
+    motion: MotionArguments,
     /// The image to write.
     #[arg(long, value_name = "PNG")]
     out: PathBuf,

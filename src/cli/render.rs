@@ -2,7 +2,7 @@
 
 use anyhow::{Context, bail};
 
-use super::borrow::{apply_link, open_editor};
+use super::motion::{apply_link, open_editor};
 use super::{RenderArguments, apply_moment, open};
 use crate::editor::Editor;
 use crate::files::encode_png;
@@ -35,14 +35,14 @@ pub(super) fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
 
 /// Opens the link's view, overridden by the other options.
 fn open_view(arguments: &RenderArguments) -> anyhow::Result<Editor> {
-    let mut editor = open_editor(open(&arguments.input.files)?, &arguments.borrowing)?;
+    let mut editor = open_editor(open(&arguments.input.files)?, &arguments.motion)?;
     let [width, height] = arguments.size;
     let aspect = width as f32 / height as f32;
     editor.set_aspect(aspect);
     if let Some(link) = &arguments.view {
-        apply_link(&mut editor, link, &arguments.borrowing)?;
+        apply_link(&mut editor, link, &arguments.motion)?;
     }
-    apply_moment(&mut editor, &arguments.moment, arguments.borrowing.motion.is_some())?;
+    apply_moment(&mut editor, &arguments.moment, arguments.motion.motion.is_some())?;
     if let Some([yaw_degrees, pitch_degrees, distance]) = arguments.camera {
         let orbit = OrbitCamera {
             yaw_radians: yaw_degrees.to_radians(),

@@ -3,7 +3,7 @@
 use anyhow::{Context, bail};
 use serde_json::{Value, json};
 
-use super::borrow::{joint_name, open_map, open_motion};
+use super::motion::{joint_name, open_map, open_motion};
 use super::{RetargetArguments, open, print_bytes, print_json};
 use crate::anim::{Clip, JointIndex};
 use crate::asset::Asset;

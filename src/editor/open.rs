@@ -103,9 +103,7 @@ impl Editor {
         self.state.retarget.map.extend(map.map(MotionMap::Names));
         let problems = self.retarget();
         let about_motions = if keeps_motions {
-            let dropped = self.drop_incompatible_motions();
-            self.choose_retargeted(playing);
-            dropped
+            self.carry_motions_over(playing)
         } else {
             if is_view || !self.library.motions().is_empty() || has_map {
                 self.report(problems);
@@ -131,6 +129,13 @@ impl Editor {
         let motion = Contents::motion_sources(self.library.motions(), Some(&origin));
         let sources = Sources { model: vec![origin], motion, scene: None };
         old.for_model(ViewerState { sources, retarget, ..ViewerState::default() })
+    }
+
+    /// Keeps the loaded motions that fit the new model, and keeps playing their clip; returns the notice about dropped ones.
+    fn carry_motions_over(&mut self, playing: Option<ClipIdentity>) -> Option<String> {
+        let dropped = self.drop_incompatible_motions();
+        self.choose_retargeted(playing);
+        dropped
     }
 
     /// Plays the first retargeted clip, unless a view chooses the clip; returns the notice about the motions.

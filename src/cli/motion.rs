@@ -14,7 +14,7 @@ use crate::state::{ClipChoice, Command, Sources, ViewerState, from_link};
 
 /// A motion to retarget to the model, and its joint map.
 #[derive(Debug, Default, Args)]
-pub(super) struct Borrowing {
+pub(super) struct MotionArguments {
     /// A motion to retarget to the model: .glb, .gltf, .vrma, .bvh.
     #[arg(long, value_name = "FILE")]
     pub motion: Option<PathBuf>,
@@ -48,16 +48,16 @@ pub(super) fn open_map(path: &Path) -> anyhow::Result<JointMap> {
 
 /// Opens model, motions and map in an editor, paused in the rest pose. The options' motion and map override those that came
 /// with the model.
-pub(super) fn open_editor(opened: Opened, borrowing: &Borrowing) -> anyhow::Result<Editor> {
+pub(super) fn open_editor(opened: Opened, arguments: &MotionArguments) -> anyhow::Result<Editor> {
     let Opened { model, model_files, mut motions, map, .. } = opened;
-    let map = match &borrowing.map {
+    let map = match &arguments.map {
         Some(path) => Some(open_map(path)?),
         None => map,
     };
-    if let Some(path) = &borrowing.motion {
+    if let Some(path) = &arguments.motion {
         motions = vec![open_motion(path)?];
     }
-    if motions.is_empty() && borrowing.map.is_some() {
+    if motions.is_empty() && arguments.map.is_some() {
         bail!("--map: expected a motion to apply the map to; add --motion FILE");
     }
     if let Some(map) = &map {
@@ -81,14 +81,14 @@ pub(super) fn open_editor(opened: Opened, borrowing: &Borrowing) -> anyhow::Resu
 
 /// Applies the view of a link to the open model, with those of its motions and maps that are files on disk. Command-line options
 /// override the link. Warns about anything unused.
-pub(super) fn apply_link(editor: &mut Editor, link: &str, borrowing: &Borrowing) -> anyhow::Result<()> {
+pub(super) fn apply_link(editor: &mut Editor, link: &str, arguments: &MotionArguments) -> anyhow::Result<()> {
     let fragment = link.split_once('#').map_or(link, |(_, fragment)| fragment);
     let (view, errors) = from_link(fragment);
     errors.iter().for_each(|error| eprintln!("warning: {error}"));
     let now = editor.state().clone();
-    let keeps_motions = borrowing.motion.is_some() || view.sources.motion.is_empty();
+    let keeps_motions = arguments.motion.is_some() || view.sources.motion.is_empty();
     let motion = if keeps_motions { now.sources.motion } else { view.sources.motion };
-    let retarget = if borrowing.map.is_some() { now.retarget } else { view.retarget };
+    let retarget = if arguments.map.is_some() { now.retarget } else { view.retarget };
     let sources = Sources { model: now.sources.model, motion, ..view.sources };
     let held = if keeps_motions { editor.library().motions().to_vec() } else { Vec::new() };
     let (mut contents, view) = open_view(ViewerState { sources, retarget, ..view }, false, &held)?;
