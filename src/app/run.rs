@@ -110,7 +110,7 @@ impl App {
         opened
     }
 
-    /// Closes the placeholder that stood in for a link's missing files.
+    /// Closes the placeholder for a link's missing files.
     #[cfg(target_arch = "wasm32")]
     pub fn close_placeholder(&mut self) {
         self.editor.close_placeholder(&format!("sample:{}", crate::samples::WALKER));

@@ -23,7 +23,7 @@ pub struct Contents {
 #[derive(Debug)]
 pub struct OpenedModel {
     pub model: Model,
-    /// The model's own files, needed to write it with another clip. `None` for samples made in code.
+    /// The model's own files, needed to write it with another clip. `None` for generated samples.
     pub files: Option<ModelFiles>,
 }
 

@@ -37,7 +37,7 @@ impl ExportedFile {
     }
 }
 
-/// A clip with its layers baked in, where it has any.
+/// A clip with its layers baked in, if it has any.
 struct BakedClip {
     clip: Option<Clip>,
     remark: Option<String>,

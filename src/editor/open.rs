@@ -13,7 +13,7 @@ use crate::state::{Command, MotionMap, RetargetEdits, Sources, ViewerState, appl
 /// What is kept of a loaded model besides the model.
 #[derive(Debug, Default)]
 pub(super) struct Shelved {
-    /// The files it was read from; `None` for samples made in code.
+    /// The files it was read from; `None` for generated samples.
     pub files: Option<ModelFiles>,
     /// The view and motions it had when another model was activated.
     last_view: Option<(ViewerState, Vec<Motion>)>,
