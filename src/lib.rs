@@ -1,15 +1,15 @@
 //! Gaitway: drop in a glTF character, watch it move, and see why it bends the way it does.
 //!
-//! One core with three faces: a web page, a native window and a command line. A module uses only the layers below it;
+//! One core with three front ends: a web page, a native window and a command line. A module uses only the layers below it;
 //! ARCHITECTURE.md lists them and `tests/core/layering.rs` enforces them.
 //!
 //! Units are metres, seconds and radians; right-handed, Y up, column vectors, quaternions x y z w, as in glTF. Transforms are
-//! named `to_from_from`, so that neighbours in a product match: `model_from_joint * joint_from_bind`.
+//! named `target_from_source`, so that adjacent names in a product match: `model_from_joint * joint_from_bind`.
 //!
 //! # The main path
 //!
-//! Load two files, propose which joint follows which, retarget a clip, sample it, and write the model with the new clip.
-//! `examples/` has the same as programs.
+//! Load two files, propose a joint map, retarget a clip, sample it, and write the model with the new clip. `examples/` has the
+//! same steps as programs.
 //!
 //! ```
 //! use gaitway::anim::SampleCursor;
@@ -17,14 +17,14 @@
 //! use gaitway::retarget::{Body, Retargeting, propose};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! // Loaders never touch the disk: they read a set of files in memory, by name.
+//! // Loaders never touch the disk: they read an in-memory set of named files.
 //! let mut model_files = FileSet::default();
 //! model_files.insert("dwarf.glb", std::fs::read("assets/samples/dwarf.glb")?);
 //! let mut motion_files = FileSet::default();
 //! motion_files.insert("walk.bvh", std::fs::read("assets/samples/walk.bvh")?);
 //! let (model, motion) = (load(&model_files)?, load(&motion_files)?);
 //!
-//! // A map by joint names, which could also come from a file, resolved against these two skeletons.
+//! // A map uses joint names and could also come from a file; resolving it binds it to these two skeletons.
 //! let proposal = propose(&model, &motion);
 //! let map = proposal.to_map(&model, &motion).resolve(&model, &motion)?;
 //!
@@ -39,7 +39,7 @@
 //! clip.sample(&model.skeleton, 0.5, &mut SampleCursor::default(), &mut pose);
 //! assert_ne!(pose, *model.skeleton.rest());
 //!
-//! // The new file holds everything the old one did.
+//! // The new file keeps everything in the old one.
 //! let glb = write_model(&model_files, "dwarf.glb", &model.skeleton, &[&clip])?;
 //! let mut written = FileSet::default();
 //! written.insert("new.glb", glb);
@@ -49,7 +49,7 @@
 //! ```
 
 #![forbid(unsafe_code)]
-// Files come from anyone. Whatever is wrong with them must be reported, not panic.
+// Files are untrusted: whatever is wrong with them must be reported, never panic.
 #![warn(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
 pub mod anim;

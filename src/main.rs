@@ -1,4 +1,4 @@
-//! The one binary: the command line natively, the page in wasm32.
+//! The only binary: the command line natively, the page on wasm32.
 
 #![forbid(unsafe_code)]
 

@@ -1,23 +1,23 @@
-//! Which adapter and device the app runs on, and what happens when it breaks.
+//! Choosing the graphics adapter and device, and reporting when the device is lost.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
 use eframe::egui_wgpu;
 
-/// The page's two ways to draw.
+/// The page's graphics APIs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Backend {
     WebGpu,
     WebGl2,
 }
 
-/// Told once what ended the drawing for good; see [`set_fatal_hook`].
+/// Called with the message of a fatal graphics error; see [`set_fatal_hook`].
 pub type FatalHook = fn(&str);
 
 static FATAL_HOOK: Mutex<Option<FatalHook>> = Mutex::new(None);
 
-/// Sets who is told when the device is lost or a drawing call fails: nothing can be drawn after that.
+/// Sets the hook that is called when the device is lost or a drawing call fails. Nothing can be drawn after that.
 pub fn set_fatal_hook(hook: FatalHook) {
     if let Ok(mut slot) = FATAL_HOOK.lock() {
         *slot = Some(hook);
@@ -32,8 +32,7 @@ fn fatal(message: &str) {
     }
 }
 
-/// Reports a lost device and errors nobody asked for. Nothing is reported once `closing` is set: closing the app drops
-/// its device, which is no news.
+/// Reports a lost device and uncaptured errors, until `closing` is set: closing the app drops its device.
 pub(super) fn watch(device: &wgpu::Device, closing: &Arc<AtomicBool>) {
     let closed = closing.clone();
     device.set_device_lost_callback(move |_, message| {
@@ -49,19 +48,19 @@ pub(super) fn watch(device: &wgpu::Device, closing: &Arc<AtomicBool>) {
     }));
 }
 
-/// Samples per pixel for an adapter: where the CPU draws, four samples cost twice the frame.
+/// Returns the samples per pixel for an adapter: one for software rendering, where four samples double the frame time.
 pub(super) fn samples(info: &wgpu::AdapterInfo) -> u32 {
-    if draws_on_cpu(info) { 1 } else { 4 }
+    if is_software(info) { 1 } else { 4 }
 }
 
-/// A browser does not say what kind of adapter it has, but names software ones.
-fn draws_on_cpu(info: &wgpu::AdapterInfo) -> bool {
+/// Whether the adapter renders on the CPU. Browsers hide the adapter's type, but name software adapters.
+fn is_software(info: &wgpu::AdapterInfo) -> bool {
     let names = format!("{} {} {}", info.name, info.driver, info.driver_info).to_lowercase();
     info.device_type == wgpu::DeviceType::Cpu
         || ["swiftshader", "llvmpipe", "lavapipe", "software"].iter().any(|name| names.contains(name))
 }
 
-/// `webgpu`, `webgl2`, or natively `vulkan`, `metal`, `dx12`, `gl`.
+/// Returns `webgpu` or `webgl2` in the page; `vulkan`, `metal`, `dx12` or `gl` natively.
 pub(super) fn backend_name(info: &wgpu::AdapterInfo) -> &'static str {
     match info.backend {
         wgpu::Backend::BrowserWebGpu => "webgpu",
@@ -74,7 +73,7 @@ pub(super) fn backend_name(info: &wgpu::AdapterInfo) -> &'static str {
     }
 }
 
-/// WebGL2's limits on every device, so that what works on one works on all; only textures may be as large as they can.
+/// Requests WebGL2's limits on every device, so that what works on one works on all; only texture sizes use the adapter's.
 fn configuration(backends: Option<wgpu::Backends>) -> egui_wgpu::WgpuConfiguration {
     let mut setup = egui_wgpu::WgpuSetupCreateNew::without_display_handle();
     if let Some(backends) = backends {
@@ -88,7 +87,7 @@ fn configuration(backends: Option<wgpu::Backends>) -> egui_wgpu::WgpuConfigurati
     egui_wgpu::WgpuConfiguration { wgpu_setup: setup.into(), ..Default::default() }
 }
 
-/// How the window is opened.
+/// Returns the options of the native window.
 #[cfg(not(target_arch = "wasm32"))]
 pub fn native_options() -> eframe::NativeOptions {
     eframe::NativeOptions {
@@ -103,7 +102,7 @@ pub fn native_options() -> eframe::NativeOptions {
     }
 }
 
-/// How the page's canvas is taken over. No back end: WebGPU when there is an adapter, else WebGL2.
+/// Returns the options for the page's canvas. Without a backend, WebGPU is used if there is an adapter, otherwise WebGL2.
 #[cfg(target_arch = "wasm32")]
 pub fn web_options(backend: Option<Backend>) -> eframe::WebOptions {
     let backends = match backend {

@@ -1,16 +1,15 @@
-//! What the frame loop leaves to the platform: choosing files, links, and news for whoever embeds the page.
+//! What the frame loop leaves to the platform: file dialogs, links, recording, and change notifications.
 
 use super::Inbox;
 use crate::files::Role;
 use crate::state::ViewerState;
 
-/// Implemented once for the page and once for the window. All calls come from the loop's thread; answers arrive
-/// through the inbox.
+/// Implemented by the page and by the window. All calls come from the loop's thread; results arrive through the inbox.
 pub trait Host {
-    /// Lets the person choose files; false when there is no way to on this platform.
+    /// Lets the user choose files; returns false if the platform has no file dialog.
     fn choose_files(&self, role: Role, inbox: &Inbox) -> bool;
 
-    /// Opens a path that was typed, on platforms where [`Host::choose_files`] cannot help.
+    /// Opens a path the user typed, on platforms without [`Host::choose_files`].
     fn open_path(&self, path: &str, role: Role, inbox: &Inbox) {
         let _ = (path, role, inbox);
     }
@@ -22,44 +21,44 @@ pub trait Host {
 
     fn show_gallery(&self) {}
 
-    /// Gives a file to the person; false when that needs a path, which [`Host::save_path`] then gets.
+    /// Saves a file for the user; returns false if that takes a path, which is then passed to [`Host::save_path`].
     fn save_file(&self, name: &str, bytes: &[u8]) -> bool;
 
-    /// Writes a file where the person said.
+    /// Writes a file to the path the user typed.
     ///
     /// # Errors
-    /// What the person sees when it cannot be written.
+    /// The message for the user if it cannot be written.
     fn save_path(&self, path: &str, bytes: &[u8]) -> Result<(), String> {
         let _ = (path, bytes);
         Ok(())
     }
 
-    /// Begins to record what is on the canvas.
+    /// Starts recording the canvas.
     ///
     /// # Errors
-    /// What the person sees where that is not possible.
+    /// The message for the user if that is unsupported.
     fn start_recording(&self) -> Result<(), String> {
-        Err("videos are recorded in the browser; open this view there, or save pictures".to_owned())
+        Err("Couldn't record a video: only the page can. Open this link there, or save images instead.".to_owned())
     }
 
-    /// Ends the recording and gives the person the file; without a name it is thrown away.
+    /// Stops the recording and saves it under this name; without a name, discards it.
     fn stop_recording(&self, name: Option<&str>) {
         let _ = name;
     }
 
-    /// Opens files that were dropped on the canvas or the window, as one set.
+    /// Opens files dropped on the window, as one set.
     fn open_dropped(&self, files: Vec<egui::DroppedFileHandle>, inbox: &Inbox);
 
-    /// Shows the link, from the part after `#`, with all that can be done with it; false where it can only be copied.
+    /// Shows the share dialog for a link, given the part after `#`; returns false if the link can only be copied.
     fn share(&self, fragment: &str) -> bool {
         let _ = fragment;
         false
     }
 
-    /// A link that a person can pass on, from the part after `#`.
+    /// Returns the full link to share, given the part after `#`.
     fn link(&self, fragment: &str) -> String;
 
-    /// Something was set, other than the playhead moving on by itself.
+    /// Called when the state has changed other than by time passing.
     fn state_changed(&self, state: &ViewerState);
 
     /// Called at the start of every frame, before the inbox is read.

@@ -1,5 +1,5 @@
-//! Messages from outside the frame loop: finished loads, the script interface, the HTML shell. Handled in order at the
-//! start of the next frame; sending one wakes the app up.
+//! Messages from outside the frame loop: finished loads, the script interface, the HTML shell. They are handled in order at the
+//! start of the next frame; sending one wakes the app.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
@@ -7,25 +7,24 @@ use std::sync::{Arc, Mutex};
 use crate::editor::Contents;
 use crate::state::{Command, ViewerState};
 
-/// What the loop is told.
+/// A message to the frame loop.
 pub enum Message {
-    /// A load has begun or got further; shown until `Opened` or `OpenFailed`.
+    /// A load has started or progressed; displayed until `Opened` or `OpenFailed`.
     OpenProgress(Opening),
-    /// What was opened is ready to be shown instead of the present model, or to be borrowed from. With `state`, that state
-    /// is taken over too (a link).
+    /// Files are ready: models to activate, motions to retarget. With `state` (a link), that replaces the state too.
     Opened {
         contents: Box<Contents>,
         state: Option<Box<ViewerState>>,
         reply: Option<Reply<serde_json::Value>>,
     },
-    /// What is on the screen stays; the message is shown.
+    /// Nothing was opened; shows the message.
     OpenFailed(String),
-    /// As `OpenFailed`, but whoever asked for it says what was wrong.
-    OpenGivenUp,
+    /// Nothing was opened; the caller reports why.
+    OpenFailedSilently,
     Commands(Vec<Command>),
-    /// Something that was asked for cannot be had; the message is shown.
+    /// A request failed; shows the message.
     Failed(String),
-    /// A file that took its time is there, under this name.
+    /// A file written in the background is ready to save under this name.
     Save(String, Vec<u8>),
     Script(ScriptCall),
 }
@@ -34,27 +33,27 @@ pub enum Message {
 pub struct Opening {
     pub name: String,
     pub received_bytes: u64,
-    /// 0: not known.
+    /// 0 if unknown.
     pub total_bytes: u64,
 }
 
-/// Called once with the answer, or the message a person sees.
+/// Called once with the result, or with the message for the user.
 pub type Reply<T> = Box<dyn FnOnce(Result<T, String>)>;
 
-/// Calls of `window.gaitway` that need the loop's own data.
+/// Calls of `window.gaitway` that need the loop's data.
 pub enum ScriptCall {
-    /// The keys of the link as an object.
+    /// Returns the keys of the link as an object.
     State(Reply<serde_json::Value>),
-    /// Some keys of the link as an object; answered after the frame that shows it.
+    /// Sets some keys of the link, given as an object; answered after the frame that shows the result.
     Apply(serde_json::Value, Reply<()>),
-    /// The pose document of what is on the screen.
+    /// Returns the pose document of the current pose.
     Pose(Reply<serde_json::Value>),
-    /// PNG bytes of the picture alone.
+    /// Returns the viewport as PNG bytes.
     Screenshot(Reply<Vec<u8>>),
     Stats(Reply<serde_json::Value>),
 }
 
-/// A queue that can be filled from anywhere on the loop's thread.
+/// A queue that any code can send to.
 #[derive(Clone)]
 pub struct Inbox {
     queue: Arc<Mutex<VecDeque<Message>>>,
@@ -73,7 +72,7 @@ impl Inbox {
         self.context.request_repaint();
     }
 
-    /// The oldest message not yet handled.
+    /// Removes the oldest message.
     pub fn take(&self) -> Option<Message> {
         self.queue.lock().ok()?.pop_front()
     }

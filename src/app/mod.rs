@@ -1,4 +1,4 @@
-//! The frame loop: owns the state, the library, the renderer and the panels.
+//! The frame loop: connects the editor, the viewport and the panels to a window or a page.
 
 mod device;
 mod host;

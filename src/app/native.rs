@@ -1,4 +1,4 @@
-//! The window: files from the command line or dropped onto it, read in the background.
+//! The native window. Opens files from the command line, typed paths and dropped files; reads them in the background.
 
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -9,7 +9,7 @@ use crate::files::{OpenError, Role, read_paths};
 use crate::samples;
 use crate::state::ViewerState;
 
-/// Why there is no window, or no longer.
+/// Why the window could not be opened, or stopped.
 #[derive(Debug, thiserror::Error)]
 pub enum WindowError {
     #[error(transparent)]
@@ -18,10 +18,10 @@ pub enum WindowError {
     Window(#[from] eframe::Error),
 }
 
-/// Opens the window and returns when it is closed. Several files are one set; without any it is the first sample.
+/// Opens the window and returns when it is closed. The files are opened as one set; without any, the first sample is.
 ///
 /// # Errors
-/// When the first files cannot be read, or no window or graphics device is to be had.
+/// If the files cannot be read, or no window or graphics device is available.
 pub fn run_native(files: Vec<PathBuf>) -> Result<(), WindowError> {
     let files = if files.is_empty() { vec![samples::FIRST.into()] } else { files };
     let contents = read_paths(&files, Role::Model)?;
@@ -44,7 +44,7 @@ impl Window {
         Self { context, loaded, sender }
     }
 
-    /// Reads in the background; the answer comes with a later frame.
+    /// Reads files in the background; the result arrives in a later frame.
     fn open(&self, paths: Vec<PathBuf>, role: Role, inbox: &Inbox) {
         let name = paths.first().and_then(|path| path.file_name()).map(|name| name.to_string_lossy().into_owned());
         let opening = Opening { name: name.unwrap_or_default(), received_bytes: 0, total_bytes: 0 };
@@ -52,7 +52,7 @@ impl Window {
         let (sender, context) = (self.sender.clone(), self.context.clone());
         std::thread::spawn(move || {
             let opened = read_paths(&paths, role).map(Box::new).map_err(|error| error.to_string());
-            // Nobody waits any more when the window was closed meanwhile.
+            // Fails only if the window was closed in the meantime.
             let _ = sender.send(opened);
             context.request_repaint();
         });

@@ -1,18 +1,18 @@
-//! What the user is told: errors until they are dismissed, notices for a while.
+//! Messages for the user: errors stay until dismissed, notices for a few seconds.
 
 use super::App;
 use crate::editor::Event;
 use crate::ui::{Tab, Toast};
 
 impl App {
-    /// Shows an error instead of earlier ones.
-    pub(super) fn fail(&mut self, error: String) {
+    /// Shows an error, replacing earlier ones.
+    pub(super) fn replace_error(&mut self, error: String) {
         self.panels.motion_refused = false;
         self.panels.error = Some(error);
     }
 
-    /// Shows an error besides earlier ones.
-    pub(super) fn tell(&mut self, problem: &str) {
+    /// Shows an error below earlier ones.
+    pub(super) fn add_error(&mut self, problem: &str) {
         let error = self.panels.error.get_or_insert_default();
         if !error.is_empty() {
             error.push('\n');
@@ -26,28 +26,28 @@ impl App {
 
     fn show_toast(&mut self, text: String, undoable: bool) {
         const SECS: f64 = 2.5;
-        const SECS_PER_LETTER: f64 = 0.03;
-        let secs = SECS + SECS_PER_LETTER * text.len() as f64 + if undoable { Toast::UNDOABLE_SECS } else { 0.0 };
+        const SECS_PER_BYTE: f64 = 0.03;
+        let secs = SECS + SECS_PER_BYTE * text.len() as f64 + if undoable { Toast::UNDOABLE_SECS } else { 0.0 };
         let until_secs = self.context.input(|input| input.time) + secs;
         self.panels.toast = Some(Toast { text, until_secs, undoable });
-        self.toasted_steps = self.editor.undo_steps();
+        self.toast_steps = self.editor.undo_steps();
     }
 
-    /// A toast's button undoes what the toast says: the toast goes once that is no longer the last step.
-    pub(super) fn watch_toast(&mut self) {
+    /// Hides an undoable toast once its step is no longer the last, since that is what its button undoes.
+    pub(super) fn expire_toast(&mut self) {
         let steps = self.editor.undo_steps();
-        self.panels.toast.take_if(|toast| toast.undoable && steps != self.toasted_steps);
+        self.panels.toast.take_if(|toast| toast.undoable && steps != self.toast_steps);
     }
 
-    /// Shows what happened in the editor.
+    /// Shows the editor's events.
     pub(super) fn show_events(&mut self) {
         for event in self.editor.take_events() {
             match event {
                 Event::Notice { text, undoable } => self.show_toast(text, undoable),
-                Event::Problem(problem) => self.tell(&problem),
+                Event::Problem(problem) => self.add_error(&problem),
                 Event::ViewOpened => {
                     self.panels.turn_to_link(self.editor.state());
-                    // Space is for the new view, not for a button that was pressed before.
+                    // Space plays and pauses the new view, instead of pressing the button that had focus.
                     if let Some(focused) = self.context.memory(|memory| memory.focused()) {
                         self.context.memory_mut(|memory| memory.surrender_focus(focused));
                     }

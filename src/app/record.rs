@@ -1,22 +1,22 @@
-//! A video of one round of the clip: the panels go, the clip plays from its start, what the canvas shows is recorded.
+//! Recording a video of one loop of the clip: hides the panels, plays from the start, and records the canvas.
 
 use super::App;
 use crate::state::{Command, active_clip, play_range};
 
 pub(super) struct Recording {
-    /// egui's time at which it began; none while the panels are still on the canvas.
+    /// egui's time at the start; `None` while the panels are still on the canvas.
     start_secs: Option<f64>,
-    /// Frames without panels that have been laid out.
+    /// Number of frames laid out without panels.
     bare_frames: u32,
     length_secs: f64,
-    /// Put back afterwards.
+    /// Restored afterwards.
     was_playing: bool,
     time_secs: f64,
 }
 
 impl App {
-    /// Clears the canvas for it; the recording begins when nothing but the picture is there.
-    pub(super) fn record(&mut self) {
+    /// Hides the panels; recording starts once only the viewport is on the canvas.
+    pub(super) fn prepare_recording(&mut self) {
         let Some(model) = self.editor.library().active() else { return };
         let Some(clip) = active_clip(model, self.editor.state()) else { return };
         let range = play_range(model, clip, self.editor.state());
@@ -32,12 +32,12 @@ impl App {
         self.apply(Command::Seek(range.start_secs));
     }
 
-    pub(super) fn go_on_recording(&mut self, context: &egui::Context) {
+    pub(super) fn update_recording(&mut self, context: &egui::Context) {
         let Some(recording) = &mut self.recording else { return };
         context.request_repaint();
         let now_secs = context.input(|input| input.time);
         let Some(start_secs) = recording.start_secs else {
-            // The first of these is the frame in which the button was pressed.
+            // The first one counted is the frame in which the button was pressed.
             recording.bare_frames += 1;
             if recording.bare_frames > 2 {
                 recording.start_secs = Some(now_secs);
@@ -45,7 +45,7 @@ impl App {
                     Ok(()) => self.apply(Command::SetPlaying(true)),
                     Err(error) => {
                         self.end_recording();
-                        self.tell(&error);
+                        self.add_error(&error);
                     }
                 }
             }
@@ -56,15 +56,15 @@ impl App {
         }
     }
 
-    /// `whole`: the round is over; else what there is of it is thrown away.
-    pub(super) fn stop_recording(&mut self, whole: bool) {
+    /// Stops recording; discards the video unless the loop is complete.
+    pub(super) fn stop_recording(&mut self, is_complete: bool) {
         let name = self.video_name();
-        self.host.stop_recording(whole.then_some(name.as_str()));
+        self.host.stop_recording(is_complete.then_some(name.as_str()));
         self.end_recording();
-        self.toast(if whole { format!("Saved {name}.") } else { "The recording was ended.".to_owned() });
+        self.toast(if is_complete { format!("Saved {name}.") } else { "Recording cancelled.".to_owned() });
     }
 
-    /// The panels come back, and what was playing before.
+    /// Restores the panels and the playback.
     fn end_recording(&mut self) {
         let Some(recording) = self.recording.take() else { return };
         self.panels.recording = false;

@@ -1,4 +1,4 @@
-//! One turn of the loop: read the inbox, show the panels, apply what was pressed, advance time, draw what changed.
+//! One frame: reads the inbox, lays out the panels, applies the user's input, advances time, and draws what changed.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -22,17 +22,17 @@ pub struct App {
     pub(super) inbox: Inbox,
     pub(super) context: egui::Context,
     pub(super) host: Box<dyn Host>,
-    /// Time stands still until the first picture is seen: where that takes long, the next ones would wait in a queue.
-    begun: bool,
+    /// Time is stopped until the first image is on screen: on slow devices, further frames would queue up behind it.
+    has_begun: bool,
     /// The panels have been laid out once.
-    laid_out: bool,
-    /// Called once the picture shows what they asked for.
+    is_laid_out: bool,
+    /// Replies to send once the viewport shows what was requested.
     after_draw: Vec<Box<dyn FnOnce()>>,
     pub(super) screenshots: Vec<Reply<Vec<u8>>>,
     pub(super) recording: Option<Recording>,
-    /// How many steps could be undone when the toast was shown.
-    pub(super) toasted_steps: usize,
-    /// The motions of the last frame.
+    /// Undo steps when the toast appeared.
+    pub(super) toast_steps: usize,
+    /// Motions loaded in the last frame.
     last_motions: Vec<ModelId>,
     timing: Timing,
     backend: &'static str,
@@ -40,11 +40,11 @@ pub struct App {
 }
 
 impl App {
-    /// Shows `contents`, which has a model, at first: in `view`, if there is one. `inbox_ready` gets the queue through which
-    /// everything else arrives.
+    /// Opens `contents`, which has a model, in `view` if given. `inbox_ready` receives the queue through which everything else
+    /// arrives.
     ///
     /// # Errors
-    /// When there is no wgpu device, or the model does not fit on it.
+    /// If there is no wgpu device, or the model doesn't fit on it.
     pub fn new(
         cc: &eframe::CreationContext<'_>,
         host: Box<dyn Host>,
@@ -69,12 +69,12 @@ impl App {
             inbox: inbox.clone(),
             context: cc.egui_ctx.clone(),
             host,
-            begun: cfg!(not(target_arch = "wasm32")),
-            laid_out: cfg!(not(target_arch = "wasm32")),
+            has_begun: cfg!(not(target_arch = "wasm32")),
+            is_laid_out: cfg!(not(target_arch = "wasm32")),
             after_draw: Vec::new(),
             screenshots: Vec::new(),
             recording: None,
-            toasted_steps: 0,
+            toast_steps: 0,
             last_motions: Vec::new(),
             timing: Timing::default(),
             backend: device::backend_name(&info),
@@ -110,7 +110,7 @@ impl App {
         opened
     }
 
-    /// Closes the placeholder that stood in for a link's missing files.
+    /// Closes the placeholder for a link's missing files.
     #[cfg(target_arch = "wasm32")]
     pub fn close_placeholder(&mut self) {
         self.editor.close_placeholder(&format!("sample:{}", crate::samples::WALKER));
@@ -132,10 +132,10 @@ impl App {
             }
             Message::OpenFailed(error) => {
                 self.panels.progress = None;
-                self.fail(error);
+                self.replace_error(error);
             }
-            Message::OpenGivenUp => self.panels.progress = None,
-            Message::Failed(error) => self.fail(error),
+            Message::OpenFailedSilently => self.panels.progress = None,
+            Message::Failed(error) => self.replace_error(error),
             Message::Save(name, bytes) => {
                 self.host.save_file(&name, &bytes);
                 self.toast(format!("Saved {name}."));
@@ -167,17 +167,17 @@ impl App {
         }
     }
 
-    /// The first picture is drawn and seen.
+    /// Starts time: the first image is on screen.
     #[cfg(target_arch = "wasm32")]
     pub fn begin(&mut self) {
-        self.begun = true;
+        self.has_begun = true;
         self.context.request_repaint();
     }
 
-    /// Resolves when the device has drawn all that was asked of it so far.
+    /// Resolves when the device has finished all drawing submitted so far.
     #[cfg(target_arch = "wasm32")]
     pub fn drawn(&self) -> impl Future<Output = ()> + use<> {
-        let (device, queue, _) = self.viewport.scene.last_picture();
+        let (device, queue, _) = self.viewport.scene.last_image();
         async move { crate::render::finished(&device, &queue).await }
     }
 
@@ -204,7 +204,7 @@ impl App {
 
     fn act(&mut self, action: UiAction) {
         let admit = &mut |model: &_| self.viewport.admit(model);
-        let done = match action {
+        let result = match action {
             UiAction::ShowModel(id) => self.editor.activate(id, admit),
             UiAction::CloseModel(id) => self.editor.close(id, admit),
             UiAction::ShowMotionAlone(index) => self.editor.open_motion_alone(index, admit),
@@ -234,13 +234,13 @@ impl App {
             }
             UiAction::UsePath(PathPurpose::Save(what), path) => return self.save_to(what, &path),
             UiAction::Save(what) => return self.save(what),
-            UiAction::Record => return self.record(),
+            UiAction::Record => return self.prepare_recording(),
             UiAction::StopRecording => return self.stop_recording(false),
             UiAction::ShareLink => return self.share(),
         };
         self.show_events();
-        if let Err(error) = done {
-            self.tell(&error);
+        if let Err(error) = result {
+            self.add_error(&error);
         }
     }
 
@@ -252,8 +252,8 @@ impl App {
         }
     }
 
-    /// Ends in the panels what was begun about a motion when the motions are others.
-    fn watch_motions(&mut self) {
+    /// Resets the panels' state about motions when the loaded motions change.
+    fn update_motions(&mut self) {
         let motions = || self.editor.library().motions().iter().map(Motion::id);
         if !motions().eq(self.last_motions.iter().copied()) {
             self.last_motions = motions().collect();
@@ -271,25 +271,25 @@ impl App {
         Shown { library: self.editor.library(), state: self.editor.state(), frame: &self.viewport.frame }
     }
 
-    /// Lets time go by while something moves by itself; asks for no frame otherwise.
+    /// Advances time while something moves, and requests the next frame; otherwise does neither.
     fn advance(&mut self, context: &egui::Context) {
-        /// A pause (a hidden page, a long load) is not made up for.
+        /// Pauses (a hidden page, a long load) are skipped, not caught up.
         const MAX_STEP_SECS: f32 = 0.25;
-        let moves = self.shown().clip().is_some_and(|clip| clip.duration_secs() > 0.0);
+        let has_motion = self.shown().clip().is_some_and(|clip| clip.duration_secs() > 0.0);
         let state = self.editor.state();
-        let is_moving = (state.playback.playing && moves) || state.is_turning();
-        if !self.begun || !is_moving || self.panels.holds_time {
+        let is_moving = (state.playback.playing && has_motion) || state.is_turning();
+        if !self.has_begun || !is_moving || self.panels.holds_time {
             return;
         }
         let (secs, unsmoothed_secs) = context.input(|input| (input.stable_dt, input.unstable_dt));
         self.apply(Command::Advance(f64::from(secs.min(MAX_STEP_SECS))));
-        self.timing.count(unsmoothed_secs);
+        self.timing.record(unsmoothed_secs);
         context.request_repaint();
     }
 
     fn draw(&mut self, rect: egui::Rect, pixels_per_point: f32) {
-        let max = self.viewport.scene.largest_size() as f32;
-        // As egui rounds the rectangle that the picture is painted into: it fits pixel for pixel.
+        let max = self.viewport.scene.max_size() as f32;
+        // Rounded as egui rounds the rectangle it paints into, so that pixels match one to one.
         let pixels = |from: f32, to: f32| {
             ((to * pixels_per_point).round() - (from * pixels_per_point).round()).clamp(1.0, max) as u32
         };
@@ -297,15 +297,16 @@ impl App {
         self.viewport.draw(&mut self.editor, size);
     }
 
-    /// Lays out the panels and the viewport, and applies what was pressed; returns whether anything was.
+    /// Lays out the panels and the viewport, and applies the user's input. Returns whether there was any, the viewport's
+    /// rectangle, and where to paint the scene.
     fn lay_out(&mut self, ui: &mut egui::Ui, output: &mut Output) -> (bool, egui::Rect, ui::PictureSlot) {
         let shown = Shown { library: self.editor.library(), state: self.editor.state(), frame: &self.viewport.frame };
         let rect = ui::panels(ui, shown, &mut self.panels, output);
         let slot = ui::picture(ui, rect, shown, &mut self.panels, output);
         ui::overlays(ui, rect, shown, &mut self.panels, output);
-        let acted = !output.commands.is_empty() || !output.actions.is_empty();
+        let has_input = !output.commands.is_empty() || !output.actions.is_empty();
         self.editor.set_aspect(self.panels.aspect);
-        // On a slow machine one key goes up in the frame in which the next goes down.
+        // On a slow machine, one key is released in the same frame as the next is pressed.
         let is_press = |event: &egui::Event| matches!(event, egui::Event::Key { pressed: true, repeat: false, .. });
         if ui.input(|input| input.events.iter().any(is_press)) {
             self.editor.end_gesture();
@@ -315,7 +316,7 @@ impl App {
         if ui.input(|input| !input.pointer.any_down() && input.keys_down.is_empty()) {
             self.editor.end_gesture();
         }
-        (acted, rect, slot)
+        (has_input, rect, slot)
     }
 }
 
@@ -342,15 +343,15 @@ impl eframe::App for App {
             self.host.open_dropped(dropped, &self.inbox);
         }
         (self.panels.can_undo, self.panels.can_redo) = (self.editor.can_undo(), self.editor.can_redo());
-        self.watch_toast();
-        self.watch_motions();
+        self.expire_toast();
+        self.update_motions();
         let mut output = std::mem::take(&mut self.output);
-        let (acted, rect, slot) = self.lay_out(ui, &mut output);
+        let (has_input, rect, slot) = self.lay_out(ui, &mut output);
         self.output = output;
         self.advance(&context);
-        self.go_on_recording(&context);
-        if !std::mem::replace(&mut self.laid_out, true) {
-            // The panels alone, then the scene: both in one frame would keep a page from answering for too long.
+        self.update_recording(&context);
+        if !std::mem::replace(&mut self.is_laid_out, true) {
+            // The panels come first, the scene a frame later: both in one frame would block the page for too long.
             context.request_repaint();
         } else if rect.is_positive() {
             self.draw(rect, context.pixels_per_point());
@@ -361,7 +362,7 @@ impl eframe::App for App {
         }
         self.after_draw.drain(..).for_each(|reply| reply());
         self.answer_screenshots();
-        if acted {
+        if has_input {
             // The panels were laid out before the commands were applied.
             context.request_repaint();
         }

@@ -1,4 +1,4 @@
-//! Files for the user: what the editor writes, and pictures, which take the graphics device.
+//! Saving files for the user: the editor's exports, and images, which take the graphics device.
 
 use super::App;
 #[cfg(target_arch = "wasm32")]
@@ -9,14 +9,14 @@ use crate::render::read_pixels;
 use crate::ui::{PathPrompt, PathPurpose, Saved};
 
 impl App {
-    /// Gives the user a file, or asks for its path where the platform needs one.
+    /// Saves a file, or asks for its path if the platform needs one.
     pub(super) fn save(&mut self, what: Saved) {
-        // On the page a picture arrives in a later turn of the event loop.
+        // In the page, an image arrives in a later turn of the event loop.
         #[cfg(target_arch = "wasm32")]
         if let Saved::Picture { size, transparent } = what {
-            let (picture, name, inbox) = (self.picture(size, transparent), self.picture_name(), self.inbox.clone());
+            let (image, name, inbox) = (self.image(size, transparent), self.image_name(), self.inbox.clone());
             wasm_bindgen_futures::spawn_local(async move {
-                inbox.send(match picture.await {
+                inbox.send(match image.await {
                     Ok(bytes) => Message::Save(name, bytes),
                     Err(error) => Message::Failed(error),
                 });
@@ -25,7 +25,7 @@ impl App {
         }
         match self.file(what) {
             Ok(file) => self.deliver(what, file),
-            Err(error) => self.tell(&error),
+            Err(error) => self.add_error(&error),
         }
     }
 
@@ -41,7 +41,7 @@ impl App {
     pub(super) fn save_to(&mut self, what: Saved, path: &str) {
         match self.file(what).and_then(|file| self.host.save_path(path, &file.bytes)) {
             Ok(()) => self.toast(format!("Saved as {path}.")),
-            Err(error) => self.tell(&error),
+            Err(error) => self.add_error(&error),
         }
     }
 
@@ -49,16 +49,16 @@ impl App {
         match what {
             Saved::File(export) => self.editor.export(export),
             #[cfg(target_arch = "wasm32")]
-            Saved::Picture { .. } => Err("a picture is saved once it has been read back".to_owned()),
+            Saved::Picture { .. } => Err("images are saved once they have been read back".to_owned()),
             #[cfg(not(target_arch = "wasm32"))]
             Saved::Picture { size, transparent } => {
-                let bytes = pollster::block_on(self.picture(size, transparent))?;
-                Ok(ExportedFile { name: self.picture_name(), bytes, remark: None })
+                let bytes = pollster::block_on(self.image(size, transparent))?;
+                Ok(ExportedFile { name: self.image_name(), bytes, remark: None })
             }
         }
     }
 
-    fn picture_name(&self) -> String {
+    fn image_name(&self) -> String {
         format!("{}.png", self.editor.file_stem())
     }
 
@@ -66,16 +66,16 @@ impl App {
         format!("{}.webm", self.editor.file_stem())
     }
 
-    /// The current view at another size as a PNG.
-    fn picture(&mut self, size: [u32; 2], transparent: bool) -> impl Future<Output = Result<Vec<u8>, String>> + use<> {
-        let (device, queue, texture) = self.viewport.draw_apart(&self.editor, size, transparent);
+    /// Renders the current view at another size as a PNG.
+    fn image(&mut self, size: [u32; 2], transparent: bool) -> impl Future<Output = Result<Vec<u8>, String>> + use<> {
+        let (device, queue, texture) = self.viewport.draw_to_texture(&self.editor, size, transparent);
         async move { read_png(&device, &queue, &texture).await }
     }
 
-    /// Starts to read the viewport back as a PNG for each script that asked for it.
+    /// Starts reading the viewport back as a PNG for each script that requested it.
     pub(super) fn answer_screenshots(&mut self) {
         for reply in self.screenshots.drain(..) {
-            let (device, queue, texture) = self.viewport.scene.last_picture();
+            let (device, queue, texture) = self.viewport.scene.last_image();
             let screenshot = async move { reply(read_png(&device, &queue, &texture).await) };
             #[cfg(target_arch = "wasm32")]
             wasm_bindgen_futures::spawn_local(screenshot);
@@ -88,5 +88,5 @@ impl App {
 async fn read_png(device: &wgpu::Device, queue: &wgpu::Queue, texture: &wgpu::Texture) -> Result<Vec<u8>, String> {
     let pixels = read_pixels(device, queue, texture).await;
     let png = encode_png(texture.width(), texture.height(), &pixels);
-    png.ok_or_else(|| "the picture could not be read back from the graphics device".to_owned())
+    png.ok_or_else(|| "couldn't read the image back from the graphics device".to_owned())
 }

@@ -1,4 +1,4 @@
-//! The scene in its own texture, drawn only when something it depends on has changed.
+//! The scene, rendered to a texture of its own.
 
 use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait, RenderState};
 
@@ -10,8 +10,8 @@ use crate::state::Background;
 pub(super) struct SceneTexture {
     gpu: RenderState,
     renderer: Renderer,
-    /// Size of the texture on the screen, and whether it is opaque.
-    shown: Option<([u32; 2], bool)>,
+    /// Size of the texture on screen, and whether it is opaque.
+    displayed: Option<([u32; 2], bool)>,
 }
 
 impl SceneTexture {
@@ -19,10 +19,10 @@ impl SceneTexture {
         let renderer = Renderer::new(&gpu.device, &gpu.queue, RendererOptions { samples });
         let blit = Blit::new(&gpu.device, gpu.target_format);
         gpu.renderer.write().callback_resources.insert(blit);
-        Self { gpu, renderer, shown: None }
+        Self { gpu, renderer, displayed: None }
     }
 
-    /// Brings a model to the device, and with it what else may be drawn; everything else is let go.
+    /// Uploads a model, and optionally the source beside it; evicts all others.
     pub fn upload(&mut self, model: &Model, beside: Option<&Model>) -> Result<(), UploadError> {
         self.renderer.upload(&self.gpu.device, &self.gpu.queue, model)?;
         if let Some(beside) = beside {
@@ -36,25 +36,26 @@ impl SceneTexture {
     pub fn draw(&mut self, frame: &Frame, size: [u32; 2]) {
         let device = &self.gpu.device;
         let view = self.renderer.draw(device, &self.gpu.queue, frame, size);
-        let shown = Some((size, frame.look.background != Background::Transparent));
-        if self.shown != shown
+        let is_opaque = frame.look.background != Background::Transparent;
+        let displayed = Some((size, is_opaque));
+        if self.displayed != displayed
             && let Some(blit) = self.gpu.renderer.write().callback_resources.get_mut::<Blit>()
         {
-            blit.show(device, view, frame.look.background != Background::Transparent);
-            self.shown = shown;
+            blit.show(device, view, is_opaque);
+            self.displayed = displayed;
         }
     }
 
-    /// Draws a picture that is not for the screen, into a texture that nothing else will be drawn into.
-    pub fn draw_apart(&mut self, frame: &Frame, size: [u32; 2]) -> (wgpu::Device, wgpu::Queue, wgpu::Texture) {
+    /// Draws an image that is not for the screen, to a texture that is not drawn to again.
+    pub fn draw_to_texture(&mut self, frame: &Frame, size: [u32; 2]) -> (wgpu::Device, wgpu::Queue, wgpu::Texture) {
         self.renderer.draw(&self.gpu.device, &self.gpu.queue, frame, size);
-        let picture = self.last_picture();
+        let image = self.last_image();
         self.renderer.give_output_away(&self.gpu.device);
-        self.shown = None;
-        picture
+        self.displayed = None;
+        image
     }
 
-    /// What paints the last picture into a rectangle of its size.
+    /// Returns the callback that paints the last image into a rectangle of its size.
     pub fn paint(&self, rect: egui::Rect) -> egui::PaintCallback {
         Callback::new_paint_callback(rect, Paint)
     }
@@ -63,17 +64,17 @@ impl SceneTexture {
         self.renderer.stats()
     }
 
-    pub fn largest_size(&self) -> u32 {
+    pub fn max_size(&self) -> u32 {
         self.gpu.device.limits().max_texture_dimension_2d
     }
 
-    /// What is needed to read the last picture back, free of this struct's lifetime.
-    pub fn last_picture(&self) -> (wgpu::Device, wgpu::Queue, wgpu::Texture) {
+    /// Returns what reading the last image back takes, independent of this struct's lifetime.
+    pub fn last_image(&self) -> (wgpu::Device, wgpu::Queue, wgpu::Texture) {
         (self.gpu.device.clone(), self.gpu.queue.clone(), self.renderer.output().clone())
     }
 }
 
-/// The [`Blit`] is kept by egui's renderer, since it may not go to another thread.
+/// Paints with the [`Blit`], which egui's renderer keeps because it is not `Send` on the web.
 struct Paint;
 
 impl CallbackTrait for Paint {

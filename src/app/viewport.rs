@@ -1,4 +1,4 @@
-//! The viewport: what the editor's state looks like, evaluated and drawn only when something it depends on has changed.
+//! The viewport: evaluates and draws the editor's state, but only when something it depends on has changed.
 
 use eframe::egui_wgpu::RenderState;
 
@@ -11,10 +11,10 @@ use crate::state::{Background, Display, ViewerState, source_on_stage};
 pub(super) struct Viewport {
     pub scene: SceneTexture,
     pub frame: Frame,
-    /// Size in pixels of the last picture; none: nothing drawn yet.
+    /// Size in pixels of the last image; `None` before the first.
     drawn_size: Option<[u32; 2]>,
     needs_redraw: bool,
-    /// What is on the device: the model, and the source beside it.
+    /// The model on the device, and the source beside it.
     uploaded: Option<(ModelId, Option<ModelId>)>,
 }
 
@@ -40,7 +40,7 @@ impl Viewport {
         let source = source_on_stage(library, state).map(|source| source.model);
         let key = library.active().map(|model| (model.id, source.map(|source| source.id)));
         if let Some(model) = library.active().filter(|_| self.uploaded != key) {
-            // A source too large for the device is shown by its bones alone.
+            // A source too large for the device shows only its bones.
             let _ = self.scene.upload(model, source);
             self.uploaded = key;
         }
@@ -50,14 +50,14 @@ impl Viewport {
         self.needs_redraw = false;
     }
 
-    /// Draws the current view at another size, into a texture of its own. The viewport is drawn again afterwards.
-    pub fn draw_apart(
+    /// Draws the current view at another size, to a texture of its own. The viewport is redrawn afterwards.
+    pub fn draw_to_texture(
         &mut self,
         editor: &Editor,
         [width, height]: [u32; 2],
         transparent: bool,
     ) -> (wgpu::Device, wgpu::Queue, wgpu::Texture) {
-        let max = self.scene.largest_size();
+        let max = self.scene.max_size();
         let size = [width.clamp(1, max), height.clamp(1, max)];
         let state = editor.state();
         let background = if transparent { Background::Transparent } else { state.display.background };
@@ -65,7 +65,7 @@ impl Viewport {
         let mut frame = Frame::default();
         evaluate(editor.library(), &state, aspect(size), &mut frame);
         self.needs_redraw = true;
-        self.scene.draw_apart(&frame, size)
+        self.scene.draw_to_texture(&frame, size)
     }
 }
 

@@ -1,8 +1,8 @@
-//! `gaitway convert`: any readable model as one GLB.
+//! `gaitway convert`: converts any supported model to a single GLB.
 
 use anyhow::{Context, Error, bail};
 
-use super::borrow::{Borrowing, apply_link, open_editor};
+use super::motion::{MotionArguments, apply_link, open_editor};
 use super::{ConvertArguments, open};
 use crate::editor::Export;
 use crate::files::read_set;
@@ -20,13 +20,13 @@ pub(super) fn run(arguments: &ConvertArguments) -> anyhow::Result<()> {
     std::fs::write(&arguments.out, bytes).with_context(|| format!("{}", arguments.out.display()))
 }
 
-/// A model of another format as it stands in a view.
+/// Writes a model of another format in the pose of a link.
 fn posed(arguments: &ConvertArguments, link: &str) -> anyhow::Result<Vec<u8>> {
     let opened = open(&arguments.input.files)?;
     if opened.model.asset.format != "obj" {
-        bail!("{}: --view is for .obj: a file that is a glTF already is written as it is", opened.model.source);
+        bail!("{}: --view: expected an .obj; a glTF file is written unchanged", opened.model.source);
     }
-    let mut editor = open_editor(opened, &Borrowing::default())?;
-    apply_link(&mut editor, link, &Borrowing::default())?;
+    let mut editor = open_editor(opened, &MotionArguments::default())?;
+    apply_link(&mut editor, link, &MotionArguments::default())?;
     Ok(editor.export(Export::Whole { posed: true }).map_err(Error::msg)?.bytes)
 }

@@ -1,4 +1,4 @@
-//! `gaitway inspect`: what is in a model.
+//! `gaitway inspect`: summarizes a model.
 
 use std::fmt::Write;
 
@@ -17,7 +17,7 @@ pub(super) fn run(arguments: &InspectArguments) -> anyhow::Result<()> {
     print_bytes(text(&opened, &document).as_bytes())
 }
 
-/// For people; scripts read the JSON.
+/// Formats the summary for people; scripts read the JSON.
 fn text(opened: &Opened, document: &Value) -> String {
     let asset = &opened.model.asset;
     let mut text = String::new();

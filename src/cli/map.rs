@@ -1,11 +1,11 @@
-//! `gaitway map`: proposes which joint follows which, and says why.
+//! `gaitway map`: proposes a joint map and explains it.
 
 use std::fmt::Write;
 
 use anyhow::{Context, bail};
 use serde_json::{Value, json};
 
-use super::borrow::{joint_name, open_motion};
+use super::motion::{joint_name, open_motion};
 use super::{MapArguments, open, print_bytes, print_json};
 use crate::retarget::{Contradiction, Proposal, propose};
 
@@ -21,8 +21,8 @@ pub(super) fn run(arguments: &MapArguments) -> anyhow::Result<()> {
     }
     if proposal.pairs.is_empty() {
         bail!(
-            "no joint of the model and of the motion could be brought together by name, body part or place; write a map by \
-             hand (docs/joint-maps.md)"
+            "no joint of the model matches the motion by name, body part or position; write a map manually \
+             (docs/joint-maps.md)"
         );
     }
     if let Some(path) = &arguments.out {
@@ -72,13 +72,13 @@ fn place(contradiction: &Contradiction) -> &str {
     name
 }
 
-/// All contradictions of one file in one sentence; none when there are none.
+/// Describes all contradictions of one file in one sentence; `None` if there are none.
 fn contradictions_text(contradictions: &[Contradiction]) -> Option<String> {
     let names: Vec<&str> = contradictions.iter().map(place).collect();
     let (first, last) = (names.first()?, names.last()?);
     Some(format!(
-        "{} joints from “{first}” to “{last}” are named for one side and lie on the other as the toes point: the model is \
-         mirrored, or its names are swapped",
+        "{} joints from “{first}” to “{last}” have left/right names on the opposite side, judging by the direction of the toes: \
+         the model is mirrored, or its names are swapped",
         names.len()
     ))
 }

@@ -1,9 +1,9 @@
-//! The command line: thin entries over the same functions as the page.
+//! The command line: thin wrappers around the functions that the page uses.
 
-mod borrow;
 mod convert;
 mod inspect;
 mod map;
+mod motion;
 mod pose;
 #[cfg(feature = "render")]
 mod render;
@@ -23,32 +23,32 @@ use crate::library::Model;
 use crate::mesh::SkinningMode;
 use crate::retarget::{Feet, Keep, RestChoice, RootPart};
 use crate::state::{ClipChoice, Command, active_clip, choice_of_clip};
-use borrow::Borrowing;
+use motion::MotionArguments;
 
-/// Drop in a glTF character, watch it move, and see why it bends as it does.
+/// Drop in a glTF character, watch it move, and see why it bends the way it does.
 #[derive(Debug, Parser)]
 #[command(name = "gaitway", version, about, args_conflicts_with_subcommands = true)]
 struct Arguments {
     #[command(subcommand)]
     action: Option<Action>,
-    /// Opens the window with these files: a model with its parts (none: a sample).
+    /// Opens these files in a window: a model with its parts [default: a sample].
     #[arg(value_name = "FILE")]
     files: Vec<PathBuf>,
 }
 
 #[derive(Debug, Subcommand)]
 enum Action {
-    /// Says what is in a model: nodes, skins, clips, warnings.
+    /// Summarizes a model: nodes, skins, clips, warnings.
     Inspect(InspectArguments),
-    /// Prints the numbers that would be drawn: joints and skinned vertices in world space.
+    /// Prints a pose as numbers: joints and skinned vertices in world space.
     Pose(PoseArguments),
-    /// Proposes which joints of a model follow which joints of a motion.
+    /// Proposes a joint map from a motion to a model.
     Map(MapArguments),
-    /// Writes a model with a borrowed clip behind its own, and says how well it fits.
+    /// Retargets a clip to a model, appends it to the model's own clips, and reports how well it fits.
     Retarget(Box<RetargetArguments>),
-    /// Writes any readable model as one .glb.
+    /// Converts any supported model to a single .glb.
     Convert(ConvertArguments),
-    /// Draws the same picture as the page, without a window.
+    /// Renders the same image as the page, without a window.
     #[cfg(feature = "render")]
     Render(RenderArguments),
 }
@@ -64,22 +64,22 @@ struct Files {
 struct InspectArguments {
     #[command(flatten)]
     input: Files,
-    /// Prints one JSON document on standard output.
+    /// Prints a JSON document to standard output.
     #[arg(long)]
     json: bool,
 }
 
-/// Which moment of the model is meant.
+/// The pose to evaluate.
 #[derive(Debug, Args)]
 struct Moment {
-    /// A clip's name or index (none: the rest pose). With --motion: a clip of the motion (none: its first), else one of the
-    /// model.
+    /// A clip's name or index [default: the rest pose]. With --motion, clips of the motion come first, and the default is its
+    /// first clip.
     #[arg(long, value_name = "CLIP")]
     clip: Option<String>,
-    /// Seconds into the clip; past its end: its end.
+    /// Seconds into the clip, clamped to its end.
     #[arg(long, value_name = "SECS", allow_negative_numbers = true)]
     time: Option<f64>,
-    /// How vertices follow several joints.
+    /// The skinning method.
     #[arg(long, value_enum)]
     skinning: Option<Skinning>,
 }
@@ -93,65 +93,66 @@ enum Skinning {
 
 #[derive(Debug, Args)]
 struct MapArguments {
-    /// The model whose joints are to move.
+    /// The model to animate.
     #[arg(long, value_name = "FILE")]
     model: PathBuf,
-    /// The motion that moves them.
+    /// The motion to map from.
     #[arg(long, value_name = "FILE")]
     motion: PathBuf,
-    /// Writes the map here, to be changed by hand.
+    /// Writes the map to this file, for manual editing.
     #[arg(long, value_name = "MAP.json")]
     out: Option<PathBuf>,
-    /// Prints the map with slot, reason and confidence of each joint.
+    /// Prints the map as JSON, with each joint's slot, reason and confidence.
     #[arg(long)]
     json: bool,
 }
 
 #[derive(Debug, Args)]
 struct RetargetArguments {
-    /// The model that is to move.
+    /// The model to animate.
     #[arg(long, value_name = "FILE")]
     model: PathBuf,
-    /// The file whose clip it borrows: .glb, .gltf, .vrma, .bvh.
+    /// The file with the clip to retarget: .glb, .gltf, .vrma, .bvh.
     #[arg(long, value_name = "FILE")]
     motion: PathBuf,
-    /// A clip's name or index in the motion (none: its first).
+    /// A clip's name or index in the motion [default: its first].
     #[arg(long, value_name = "CLIP")]
     clip: Option<String>,
-    /// Which joints follow which (none: as `gaitway map` proposes).
+    /// The joint map [default: as `gaitway map` proposes].
     #[arg(long, value_name = "MAP.json")]
     map: Option<PathBuf>,
     #[command(flatten)]
     options: RetargetOptions,
-    /// Rounds of the clip that are written (none: as few as make the model's own clips below it come out even).
+    /// Number of loops to write [default: as few as let layered clips of the model loop seamlessly].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
     loops: Option<u16>,
     /// The file to write.
     #[arg(long, value_name = "OUT.glb")]
     out: PathBuf,
-    /// Writes skeleton and clip alone, without meshes.
+    /// Writes only the skeleton and the clip, without meshes.
     #[arg(long)]
     clip_only: bool,
-    /// Prints what was mapped and the quality figures as one JSON document.
+    /// Prints the mapped joints and the quality figures as a JSON document.
     #[arg(long)]
     json: bool,
 }
 
-/// Each wins over what the map says.
+/// Options that override the map.
 #[derive(Debug, Args)]
 struct RetargetOptions {
-    /// Travel over the ground.
+    /// Horizontal root motion.
     #[arg(long, value_enum)]
     horizontal: Option<RootPartArgument>,
-    /// Travel up and down.
+    /// Vertical root motion.
     #[arg(long, value_enum)]
     vertical: Option<RootPartArgument>,
-    /// Turning about the vertical.
+    /// Root turn about the vertical axis.
     #[arg(long, value_enum)]
     yaw: Option<RootPartArgument>,
-    /// Moves travel to the joint above the hips.
+    /// Extracts root motion to the joint above the hips.
     #[arg(long)]
     extract_root: bool,
+    /// Foot planting.
     #[arg(long, value_enum)]
     feet: Option<FeetArgument>,
     /// Translations of joints other than the hips.
@@ -160,13 +161,13 @@ struct RetargetOptions {
     /// Scales of joints other than the hips.
     #[arg(long, value_enum)]
     scales: Option<KeepArgument>,
-    /// What counts as the model's rest.
+    /// The rest pose of the model.
     #[arg(long, value_enum)]
     rest_model: Option<RestArgument>,
-    /// What counts as the motion's rest.
+    /// The rest pose of the motion.
     #[arg(long, value_enum)]
     rest_motion: Option<RestArgument>,
-    /// What joints without a source do: `rest`, or play the model's own clip of this name or index.
+    /// What unmapped joints do: `rest`, or play the model's own clip of this name or index.
     #[arg(long, value_name = "rest|CLIP")]
     unmapped: Option<String>,
 }
@@ -204,11 +205,10 @@ struct ConvertArguments {
     /// The file to write.
     #[arg(long, value_name = "OUT.glb")]
     out: PathBuf,
-    /// The unit of a .bvh (none: guessed by the size of its skeleton).
+    /// The unit of a .bvh [default: guessed from the size of its skeleton].
     #[arg(long, value_enum)]
     unit: Option<Unit>,
-    /// A link of the page, or its part after `#`: an .obj is written with the joints turned and named as there (none: at
-    /// rest).
+    /// A link of the page, or its part after `#`: writes an .obj with the link's pose and joint names [default: the rest pose].
     #[arg(long, value_name = "LINK")]
     view: Option<String>,
 }
@@ -239,13 +239,13 @@ struct PoseArguments {
     #[command(flatten)]
     input: Files,
     #[command(flatten)]
-    borrowing: Borrowing,
+    motion: MotionArguments,
     #[command(flatten)]
     moment: Moment,
-    /// A link of the page, or its part after `#`: how the model is bent there. Other options win over it.
+    /// A link of the page, or its part after `#`, with the pose to evaluate. Other options override it.
     #[arg(long, value_name = "LINK")]
     view: Option<String>,
-    /// Prints one JSON document on standard output.
+    /// Prints a JSON document to standard output.
     #[arg(long)]
     json: bool,
 }
@@ -256,29 +256,30 @@ struct RenderArguments {
     #[command(flatten)]
     input: Files,
     #[command(flatten)]
-    borrowing: Borrowing,
-    /// The picture to write.
+    motion: MotionArguments,
+    /// The image to write.
     #[arg(long, value_name = "PNG")]
     out: PathBuf,
-    /// Its width and height in pixels.
+    /// Width and height in pixels.
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = read_size)]
     size: [u32; 2],
     #[command(flatten)]
     moment: Moment,
-    /// Degrees and metres; the camera looks at the middle of the model.
+    /// Angles in degrees and distance in metres; the camera looks at the centre of the model.
     #[arg(long, value_name = "YAW,PITCH,DISTANCE", allow_hyphen_values = true, value_parser = read_camera)]
     camera: Option<[f32; 3]>,
-    /// A link of the page, or its part after `#`: the same view. Other options win over it.
+    /// A link of the page, or its part after `#`, with the view to render. Other options override it.
     #[arg(long, value_name = "LINK")]
     view: Option<String>,
 }
 
-/// Runs the program; the result is its exit status.
+/// Runs the command line and returns its exit status.
 pub fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
-            // Help and version are not errors; everything else is wrong usage. Nobody is left to tell when this fails.
+            // Help and version go to stdout and are not errors; everything else is incorrect usage. If printing fails, there is
+            // nowhere left to report it.
             let _ = error.print();
             return if error.use_stderr() { ExitCode::from(2) } else { ExitCode::SUCCESS };
         }
@@ -315,7 +316,7 @@ fn open_window(_files: Vec<PathBuf>) -> anyhow::Result<()> {
     bail!("this gaitway was built without the viewer; build it with the feature `viewer` to open a window")
 }
 
-/// Reads the model and says what was odd about it.
+/// Opens a model and prints its warnings.
 fn open(files: &[PathBuf]) -> anyhow::Result<Opened> {
     let opened = open_paths(files)?;
     for warning in opened.model.asset.warnings.iter() {
@@ -324,11 +325,11 @@ fn open(files: &[PathBuf]) -> anyhow::Result<Opened> {
     Ok(opened)
 }
 
-/// Goes to the wanted moment; what is not given stays. If `has_motion`, a motion was named, whose clips come first.
-fn set_moment(editor: &mut Editor, moment: &Moment, has_motion: bool) -> anyhow::Result<()> {
+/// Applies the given options and keeps the rest. With `has_motion`, retargeted clips come first.
+fn apply_moment(editor: &mut Editor, moment: &Moment, has_motion: bool) -> anyhow::Result<()> {
     editor.apply(Command::SetPlaying(false));
     if let Some(model) = editor.library().active() {
-        let retargeted = |name: &str| borrowed_clip(model, name).filter(|_| has_motion);
+        let retargeted = |name: &str| retargeted_clip(model, name).filter(|_| has_motion);
         let choice = match &moment.clip {
             Some(name) => Some(retargeted(name).unwrap_or(ClipChoice::Named(name.clone()))),
             None => retargeted("0"),
@@ -340,7 +341,7 @@ fn set_moment(editor: &mut Editor, moment: &Moment, has_motion: bool) -> anyhow:
     if let (Some(name), Some(model)) = (&moment.clip, editor.library().active())
         && active_clip(model, editor.state()).is_none()
     {
-        bail!("there is no clip “{name}”; {}", clips_text(model));
+        bail!("expected the name or index of a clip, found “{name}”; {}", clips_text(model));
     }
     if let Some(time_secs) = moment.time {
         if !time_secs.is_finite() {
@@ -360,11 +361,11 @@ fn set_moment(editor: &mut Editor, moment: &Moment, has_motion: bool) -> anyhow:
     Ok(())
 }
 
-/// A borrowed clip by name, or by its index among the borrowed ones.
-fn borrowed_clip(model: &Model, name: &str) -> Option<ClipChoice> {
-    let borrowed: Vec<usize> = (0..model.clip_count()).filter(|&clip| model.borrowed(clip).is_some()).collect();
-    let by_name = borrowed.iter().find(|&&clip| model.clip(clip).is_some_and(|clip| clip.name() == name));
-    let found = by_name.or_else(|| borrowed.get(name.parse::<usize>().ok()?))?;
+/// Finds a retargeted clip by name, or by index among the retargeted ones.
+fn retargeted_clip(model: &Model, name: &str) -> Option<ClipChoice> {
+    let retargeted: Vec<usize> = (0..model.clip_count()).filter(|&clip| model.borrowed(clip).is_some()).collect();
+    let by_name = retargeted.iter().find(|&&clip| model.clip(clip).is_some_and(|clip| clip.name() == name));
+    let found = by_name.or_else(|| retargeted.get(name.parse::<usize>().ok()?))?;
     Some(choice_of_clip(model, *found))
 }
 
@@ -372,11 +373,11 @@ fn clips_text(model: &Model) -> String {
     let titles = model.clip_titles();
     match titles {
         [] => "the model has no clips".to_owned(),
-        titles => format!("the clips are: {}", titles.join(", ")),
+        titles => format!("its clips are {}", titles.join(", ")),
     }
 }
 
-/// One document on standard output. A reader that has gone away is no error.
+/// Prints a document to standard output. A closed pipe is not an error.
 fn print_json(document: &serde_json::Value) -> anyhow::Result<()> {
     let mut text = serde_json::to_vec(document).context("the document cannot be written as JSON")?;
     text.push(b'\n');

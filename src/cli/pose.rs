@@ -1,17 +1,17 @@
-//! `gaitway pose`: the numbers that would be drawn.
+//! `gaitway pose`: prints a pose as numbers.
 
 use std::fmt::Write;
 
-use super::borrow::{apply_link, open_editor};
-use super::{PoseArguments, open, print_bytes, print_json, set_moment};
+use super::motion::{apply_link, open_editor};
+use super::{PoseArguments, apply_moment, open, print_bytes, print_json};
 use crate::frame::pose_document;
 
 pub(super) fn run(arguments: &PoseArguments) -> anyhow::Result<()> {
-    let mut editor = open_editor(open(&arguments.input.files)?, &arguments.borrowing)?;
+    let mut editor = open_editor(open(&arguments.input.files)?, &arguments.motion)?;
     if let Some(link) = &arguments.view {
-        apply_link(&mut editor, link, &arguments.borrowing)?;
+        apply_link(&mut editor, link, &arguments.motion)?;
     }
-    set_moment(&mut editor, &arguments.moment, arguments.borrowing.motion.is_some())?;
+    apply_moment(&mut editor, &arguments.moment, arguments.motion.motion.is_some())?;
     let document = pose_document(editor.library(), editor.state());
     if arguments.json {
         return print_json(&document);

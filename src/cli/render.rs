@@ -1,9 +1,9 @@
-//! `gaitway render`: the same picture as the page, without a window.
+//! `gaitway render`: renders the same image as the page, without a window.
 
 use anyhow::{Context, bail};
 
-use super::borrow::{apply_link, open_editor};
-use super::{RenderArguments, open, set_moment};
+use super::motion::{apply_link, open_editor};
+use super::{RenderArguments, apply_moment, open};
 use crate::editor::Editor;
 use crate::files::encode_png;
 use crate::frame::{Frame, evaluate};
@@ -18,7 +18,7 @@ pub(super) fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     evaluate(library, state, width as f32 / height as f32, &mut frame);
 
     let (device, queue, adapter) = headless_device()?;
-    eprintln!("drawing with {} ({})", adapter.name, adapter.backend);
+    eprintln!("rendering with {} ({})", adapter.name, adapter.backend);
     let mut renderer = Renderer::new(&device, &queue, RendererOptions { samples: 4 });
     let source = source_on_stage(library, state).map(|source| source.model);
     for model in library.models().iter().chain(source) {
@@ -27,22 +27,22 @@ pub(super) fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     renderer.draw(&device, &queue, &frame, arguments.size);
     let pixels = pollster::block_on(read_pixels(&device, &queue, renderer.output()));
     let Some(png) = encode_png(width, height, &pixels) else {
-        bail!("the picture could not be read back from the graphics device");
+        bail!("couldn't read the image back from the graphics device");
     };
     let out = &arguments.out;
     std::fs::write(out, png).with_context(|| format!("{}", out.display()))
 }
 
-/// The link's view, overridden by the other options.
+/// Opens the link's view, overridden by the other options.
 fn open_view(arguments: &RenderArguments) -> anyhow::Result<Editor> {
-    let mut editor = open_editor(open(&arguments.input.files)?, &arguments.borrowing)?;
+    let mut editor = open_editor(open(&arguments.input.files)?, &arguments.motion)?;
     let [width, height] = arguments.size;
     let aspect = width as f32 / height as f32;
     editor.set_aspect(aspect);
     if let Some(link) = &arguments.view {
-        apply_link(&mut editor, link, &arguments.borrowing)?;
+        apply_link(&mut editor, link, &arguments.motion)?;
     }
-    set_moment(&mut editor, &arguments.moment, arguments.borrowing.motion.is_some())?;
+    apply_moment(&mut editor, &arguments.moment, arguments.motion.motion.is_some())?;
     if let Some([yaw_degrees, pitch_degrees, distance]) = arguments.camera {
         let orbit = OrbitCamera {
             yaw_radians: yaw_degrees.to_radians(),

@@ -1,9 +1,9 @@
-//! `gaitway retarget`: a model with a borrowed clip behind its own, and how well it fits.
+//! `gaitway retarget`: appends a retargeted clip to a model, and reports how well it fits.
 
 use anyhow::{Context, bail};
 use serde_json::{Value, json};
 
-use super::borrow::{joint_name, open_map, open_motion};
+use super::motion::{joint_name, open_map, open_motion};
 use super::{RetargetArguments, open, print_bytes, print_json};
 use crate::anim::{Clip, JointIndex};
 use crate::asset::Asset;
@@ -22,24 +22,24 @@ pub(super) fn run(arguments: &RetargetArguments) -> anyhow::Result<()> {
     let (mut map, proposal) = map_for(&model.asset, &motion.asset, given.as_ref());
     if proposal.is_some_and(|proposal| proposal.pairs.is_empty()) {
         bail!(
-            "{}: no joint in common with {}: neither names nor body parts agree. Write a map by hand and pass it with --map \
+            "{}: no joint in common with {}, neither by name nor by body part; write a map manually and pass it with --map \
              (docs/joint-maps.md)",
             motion.source,
             model.source
         );
     }
-    set_options(&mut map, arguments);
+    apply_options(&mut map, arguments);
     let resolved = map.resolve(&model.asset, &motion.asset)?;
-    let source_clip = choose_clip(&motion, arguments.clip.as_deref())?;
+    let source_clip = find_clip(&motion, arguments.clip.as_deref())?;
     let pair = Retargeting::new(model.body(), motion.body(), source_clip, &resolved)?;
-    let made = pair.bake()?;
-    let figures = pair.figures(&made);
+    let retargeted = pair.bake()?;
+    let figures = pair.figures(&retargeted);
     let mut warnings = Vec::new();
-    if made.nowhere_to_extract {
-        let message = "no joint above the hips is free to carry the travel; it stays with the hips".to_owned();
+    if retargeted.nowhere_to_extract {
+        let message = "no joint above the hips is free for the extracted root motion; it stays on the hips".to_owned();
         warnings.push(("nowhere-to-extract", message));
     }
-    let clip = with_layers(&model.asset, &resolved, &made, arguments.loops.map(usize::from), &mut warnings);
+    let clip = with_layers(&model.asset, &resolved, &retargeted, arguments.loops.map(usize::from), &mut warnings);
 
     let bytes = if arguments.clip_only {
         write_motion(&model.asset, &model.asset.skeleton, &[&clip])?
@@ -47,7 +47,7 @@ pub(super) fn run(arguments: &RetargetArguments) -> anyhow::Result<()> {
         let set = read_set(files)?;
         if set.is_empty() {
             bail!(
-                "{}: a sample is made in code and has no file to add a clip to; --clip-only writes skeleton and clip",
+                "{}: this sample is generated and has no file to add a clip to; use --clip-only to write skeleton and clip",
                 model.source
             );
         }
@@ -62,13 +62,13 @@ pub(super) fn run(arguments: &RetargetArguments) -> anyhow::Result<()> {
         eprintln!("warning: {message}");
     }
     if arguments.json {
-        return print_json(&document(&model.asset, &motion, &resolved, &made, &clip, &figures, &warnings));
+        return print_json(&document(&model.asset, &motion, &resolved, &retargeted, &clip, &figures, &warnings));
     }
-    print_bytes(text(&resolved, &made, &figures).as_bytes())
+    print_bytes(text(&resolved, &retargeted, &figures).as_bytes())
 }
 
-/// What the command line says wins over the map.
-fn set_options(map: &mut JointMap, arguments: &RetargetArguments) {
+/// Applies the command line's options, which override the map.
+fn apply_options(map: &mut JointMap, arguments: &RetargetArguments) {
     let options = &arguments.options;
     let set = |slot: &mut crate::retarget::RootPart, part: Option<super::RootPartArgument>| {
         *slot = part.map_or(*slot, Into::into);
@@ -91,50 +91,54 @@ fn set_options(map: &mut JointMap, arguments: &RetargetArguments) {
     }
 }
 
-/// By name, else by index; the first when none is asked for.
-fn choose_clip(motion: &Motion, wanted: Option<&str>) -> anyhow::Result<usize> {
+/// Finds a clip by name or index; the first if none was requested.
+fn find_clip(motion: &Motion, requested: Option<&str>) -> anyhow::Result<usize> {
     let clips = &motion.asset.clips;
     if clips.is_empty() {
-        bail!("{}: it has no clip to borrow", motion.source);
+        bail!("{}: expected a clip to retarget, found none", motion.source);
     }
-    let Some(wanted) = wanted else { return Ok(0) };
-    let by_name = clips.iter().position(|clip| clip.name() == wanted);
-    let found = by_name.or_else(|| wanted.parse().ok().filter(|&index: &usize| index < clips.len()));
+    let Some(requested) = requested else { return Ok(0) };
+    let by_name = clips.iter().position(|clip| clip.name() == requested);
+    let found = by_name.or_else(|| requested.parse().ok().filter(|&index: &usize| index < clips.len()));
     found.with_context(|| {
         let names: Vec<&str> = clips.iter().map(Clip::name).collect();
-        format!("{}: there is no clip “{wanted}”; the clips are: {}", motion.source, names.join(", "))
+        format!(
+            "{}: expected the name or index of a clip, found “{requested}”; its clips are {}",
+            motion.source,
+            names.join(", ")
+        )
     })
 }
 
-/// The clip as it is written: with what the model's own clips do on joints without a source.
+/// Returns the clip to write: with layers of the model's own clips on unmapped joints.
 fn with_layers(
     model: &Asset,
     map: &ResolvedMap,
-    made: &Retargeted,
+    retargeted: &Retargeted,
     loops: Option<usize>,
     warnings: &mut Vec<(&'static str, String)>,
 ) -> Clip {
     let layers = layer_clips(model, map);
     if layers.is_empty() && loops.is_none_or(|loops| loops == 1) {
-        return made.clip.clone();
+        return retargeted.clip.clone();
     }
-    let baking = baking(&made.clip, &layers, loops);
+    let baking = baking(&retargeted.clip, &layers, loops);
     if !baking.seamless {
         let message = format!(
-            "the model's own clip on unmapped joints does not come out even with {} rounds of the borrowed one: the loop shows \
-             a seam (--loops chooses another number)",
+            "the loop has a seam: {} loops of the retargeted clip don't end on a whole loop of the model's own clip on unmapped \
+             joints; try another number with --loops",
             baking.loops
         );
         warnings.push(("loop-seam", message));
     }
-    bake_layers(model, &made.clip, &layers, &baking)
+    bake_layers(model, &retargeted.clip, &layers, &baking)
 }
 
 fn document(
     model: &Asset,
     motion: &Motion,
     map: &ResolvedMap,
-    made: &Retargeted,
+    retargeted: &Retargeted,
     clip: &Clip,
     figures: &Figures,
     warnings: &[(&'static str, String)],
@@ -145,62 +149,62 @@ fn document(
         .iter()
         .map(|pair| json!({ "target": joint_name(target, pair.target), "source": joint_name(source, pair.source) }))
         .collect();
-    let in_skin = |joint: &JointIndex| model.skins.iter().any(|skin| skin.joints().contains(joint));
+    let is_in_skin = |joint: &JointIndex| model.skins.iter().any(|skin| skin.joints().contains(joint));
     let has_skins = !model.skins.is_empty();
     let unmapped: Vec<String> = target
         .joints()
-        .filter(|joint| (!has_skins || in_skin(joint)) && map.source_of(*joint).is_none())
+        .filter(|joint| (!has_skins || is_in_skin(joint)) && map.source_of(*joint).is_none())
         .map(|joint| joint_name(target, joint))
         .collect();
-    let moved =
+    let is_animated =
         |joint: &JointIndex| motion.asset.clips.iter().flat_map(Clip::channels).any(|channel| channel.joint == *joint);
     let unused: Vec<String> = source
         .joints()
-        .filter(|joint| moved(joint) && !map.pairs.iter().any(|pair| pair.source == *joint))
+        .filter(|joint| is_animated(joint) && !map.pairs.iter().any(|pair| pair.source == *joint))
         .map(|joint| joint_name(source, joint))
         .collect();
-    let resampled: Vec<String> = made.resampled.iter().map(|&joint| joint_name(target, joint)).collect();
-    let of_clip =
+    let resampled: Vec<String> = retargeted.resampled.iter().map(|&joint| joint_name(target, joint)).collect();
+    let clip_warnings =
         warnings.iter().map(|(code, message)| json!({ "code": code, "message": message, "where": clip.name() }));
-    let of_files = [model, &motion.asset].map(|asset| warning_documents(&asset.warnings));
+    let file_warnings = [model, &motion.asset].map(|asset| warning_documents(&asset.warnings));
     let warnings: Vec<Value> =
-        of_files.into_iter().filter_map(|list| list.as_array().cloned()).flatten().chain(of_clip).collect();
+        file_warnings.into_iter().filter_map(|list| list.as_array().cloned()).flatten().chain(clip_warnings).collect();
     json!({
         "clip": clip.name(),
         "mapped": mapped,
         "unmapped_targets": unmapped,
         "unused_sources": unused,
-        "hips_scale": made.hips_scale,
+        "hips_scale": retargeted.hips_scale,
         "duration_secs": clip.duration_secs(),
-        "keys_in": made.keys_in,
-        "keys_out": made.keys_out,
-        "resampled": !made.resampled.is_empty(),
+        "keys_in": retargeted.keys_in,
+        "keys_out": retargeted.keys_out,
+        "resampled": !retargeted.resampled.is_empty(),
         "resampled_joints": resampled,
         "figures": figures,
         "warnings": warnings,
     })
 }
 
-/// For people; scripts read the JSON.
-fn text(map: &ResolvedMap, made: &Retargeted, figures: &Figures) -> String {
+/// Formats the result for people; scripts read the JSON.
+fn text(map: &ResolvedMap, retargeted: &Retargeted, figures: &Figures) -> String {
     let number = |value: Option<f64>, unit: &str| value.map_or("–".to_owned(), |value| format!("{value:.3}{unit}"));
-    let kept = match made.resampled.len() {
-        0 => "every key is the source's own".to_owned(),
-        joints => format!("keys of {joints} joints were put anew"),
+    let kept = match retargeted.resampled.len() {
+        0 => "all keys are the source's".to_owned(),
+        joints => format!("{joints} joints resampled"),
     };
     format!(
-        "joints            {} mapped, {} of what both have\n\
+        "joints            {} mapped, {} of the body parts both have\n\
          keys              {} → {}: {kept}\n\
          hips              × {}\n\
-         orientation       {} off on average, {} at most\n\
-         limb directions   {} off on average, {} at most\n\
-         feet slide        {} (the source's: {})\n\
-         below the ground  {}\n",
+         orientation       mean error {}, max. {}\n\
+         limb directions   mean error {}, max. {}\n\
+         foot slide        {} (source: {})\n\
+         below ground      {}\n",
         map.pairs.len(),
         figures.coverage.map_or("–".to_owned(), |coverage| format!("{:.0} %", 100.0 * coverage)),
-        made.keys_in,
-        made.keys_out,
-        number(made.hips_scale, ""),
+        retargeted.keys_in,
+        retargeted.keys_out,
+        number(retargeted.hips_scale, ""),
         number(figures.orientation_error_degrees_mean, "°"),
         number(figures.orientation_error_degrees_max, "°"),
         number(figures.limb_direction_error_degrees_mean, "°"),

@@ -1,28 +1,28 @@
-//! Commands that need to know the viewport, or that keep on the screen what was on it.
+//! Camera rules: commands that depend on the viewport's shape, or that must not change what is in view.
 
 use super::Editor;
 use crate::frame::travelled;
 use crate::state::{CameraChoice, Command, OrbitCamera, frame_all, resolve_camera, split_ratio};
 
 impl Editor {
-    /// Applies what has to happen to the camera before the command, and returns the command to apply.
+    /// Prepares the camera for a command, and returns the command to apply.
     pub(super) fn prepare_camera(&mut self, command: Command) -> Command {
         let is_auto = self.state.camera == CameraChoice::Auto;
-        let turns = self.state.camera_options.turntable != 0.0;
+        let has_turntable = self.state.camera_options.turntable != 0.0;
         // Grabbing the scene or a joint stops the turntable.
         let grabs = matches!(command, Command::Orbit { .. } | Command::Pan { .. } | Command::SetPose { .. });
-        if grabs && turns {
+        if grabs && has_turntable {
             self.record(Command::SetTurntable(0.0));
         }
-        if let Some(orbit) = self.kept_camera(&command) {
+        if let Some(orbit) = self.compensated_camera(&command) {
             self.record(Command::SetCamera(CameraChoice::Orbit(orbit)));
         }
-        // The automatic camera depends on the viewport's shape, which commands do not know.
+        // The automatic camera depends on the viewport's shape, which commands don't know.
         if matches!(command, Command::FrameAll) && !is_auto {
             return Command::SetCamera(CameraChoice::Orbit(frame_all(&self.library, &self.state, self.aspect)));
         }
         let is_relative = matches!(command, Command::Orbit { .. } | Command::Pan { .. } | Command::Zoom { .. })
-            || (turns && is_auto && matches!(command, Command::Advance(_)));
+            || (has_turntable && is_auto && matches!(command, Command::Advance(_)));
         if is_relative && !matches!(self.state.camera, CameraChoice::Orbit(_)) {
             let orbit = resolve_camera(&self.library, &self.state, self.aspect);
             self.record(Command::SetCamera(CameraChoice::Orbit(orbit)));
@@ -30,8 +30,8 @@ impl Editor {
         command
     }
 
-    /// The manual camera that shows after the command what the current one shows now; none where the current one does.
-    fn kept_camera(&self, command: &Command) -> Option<OrbitCamera> {
+    /// Returns the orbit camera that keeps the view unchanged by the command; `None` if the current one does.
+    fn compensated_camera(&self, command: &Command) -> Option<OrbitCamera> {
         let CameraChoice::Orbit(orbit) = self.state.camera else { return None };
         match *command {
             Command::SetInspect(inspect) if inspect.split != self.state.inspect.split => {
@@ -47,7 +47,7 @@ impl Editor {
         }
     }
 
-    pub(super) fn tell_about_follow(&mut self, command: &Command) {
+    pub(super) fn notify_follow(&mut self, command: &Command) {
         if let Command::SetFollow(follow) = *command
             && follow != self.state.camera_options.follow
         {

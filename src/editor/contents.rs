@@ -1,4 +1,4 @@
-//! The result of opening files, before anything is done with it.
+//! The result of opening files, before it enters the library.
 
 use crate::formats::FileSet;
 use crate::library::{Model, Motion};
@@ -8,14 +8,14 @@ use crate::state::MEMBER_SEPARATOR;
 /// Opened files, ready for the library.
 #[derive(Debug, Default)]
 pub struct Contents {
-    /// The first is shown; the others join the list of models.
+    /// The first becomes active; the others join the model list.
     pub models: Vec<OpenedModel>,
     /// `None` keeps the motions already loaded.
     pub motions: Option<Vec<Motion>>,
     pub map: Option<JointMap>,
     /// The map is one of the user's local files.
-    pub has_own_map: bool,
-    /// Parts that could not be opened although the rest could.
+    pub is_map_private: bool,
+    /// What could not be opened although the rest could.
     pub problems: Vec<String>,
 }
 
@@ -23,7 +23,7 @@ pub struct Contents {
 #[derive(Debug)]
 pub struct OpenedModel {
     pub model: Model,
-    /// The model's own files, needed to write it with another clip. `None` for samples made in code.
+    /// The model's own files, needed to write it with another clip. `None` for generated samples.
     pub files: Option<ModelFiles>,
 }
 
@@ -42,15 +42,15 @@ impl From<Model> for OpenedModel {
 
 impl Contents {
     /// Marks everything as the user's local files.
-    pub fn owned(mut self) -> Self {
+    pub fn into_private(mut self) -> Self {
         self.models.iter_mut().for_each(|opened| opened.model.is_own = true);
         self.motions.iter_mut().flatten().for_each(|motion| motion.is_own = true);
-        self.has_own_map = self.map.is_some();
+        self.is_map_private = self.map.is_some();
         self
     }
 
-    /// Origins a view must list to load these motions again. Motions from the model's own archive are left out, since they
-    /// come with it.
+    /// Returns the origins that a view must list to load these motions again. Motions from the model's own archive are left out,
+    /// since they are loaded with it.
     pub fn motion_sources(motions: &[Motion], model: Option<&str>) -> Vec<String> {
         let mut sources: Vec<String> = Vec::new();
         for motion in motions {

@@ -1,18 +1,18 @@
-//! What a shell should know about.
+//! Events that a shell presents to the user.
 
 /// Drained with [`super::Editor::take_events`].
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Event {
-    /// Something was done. If `undoable`, undo takes exactly that back.
+    /// Something was done. If `undoable`, the next undo reverts exactly that.
     Notice { text: String, undoable: bool },
-    /// Something went wrong, although the rest worked.
+    /// Part of an operation failed, although the rest worked.
     Problem(String),
     /// A whole view, such as a link's, is active.
     ViewOpened,
     /// Another model was opened and is active.
     ModelOpened,
-    /// None of the opened motions fits the model: [`super::Editor::open_refused_alone`] and
-    /// [`super::Editor::map_refused_manually`] say what can be done with them.
+    /// None of the opened motions fits the model. [`super::Editor::open_refused_alone`] and
+    /// [`super::Editor::map_refused_manually`] are the alternatives.
     MotionsRefused,
     /// The user is about to edit a joint map.
     MapStarted,

@@ -1,5 +1,5 @@
-//! Files for the user: the active joint map, the model with a retargeted clip, a clip alone. Pictures are the shell's, which has
-//! the graphics device.
+//! Exports: the active joint map, the model with a retargeted clip, a clip alone. Images are up to the shell, which has the
+//! graphics device.
 
 use super::names::stem;
 use super::{Editor, ModelFiles};
@@ -19,11 +19,11 @@ pub enum Export {
     Model { clip: usize },
     /// The skeleton with one of the clips, without meshes.
     Clip { clip: usize },
-    /// The whole model as a .glb: in its current pose, or at rest.
+    /// The whole model as a .glb, in its current pose or in its rest pose.
     Whole { posed: bool },
 }
 
-/// A file for the user, and what to say about it.
+/// An exported file, with a remark for the user.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ExportedFile {
     pub name: String,
@@ -37,7 +37,7 @@ impl ExportedFile {
     }
 }
 
-/// A clip with its layers baked in, where it has any.
+/// A clip with its layers baked in, if it has any.
 struct BakedClip {
     clip: Option<Clip>,
     remark: Option<String>,
@@ -47,7 +47,7 @@ impl Editor {
     /// Writes a file.
     ///
     /// # Errors
-    /// What the user sees when there is nothing to write, or when it cannot be written.
+    /// The message for the user if there is nothing to write or writing fails.
     pub fn export(&self, what: Export) -> Result<ExportedFile, String> {
         match what {
             Export::Map { motion } => self.export_map(motion),
@@ -57,7 +57,7 @@ impl Editor {
         }
     }
 
-    /// A name for a file of the current view: the model's, and the clip's when one plays. Without extension.
+    /// Returns a file name for the current view, without extension: the model's and, if one is active, the clip's.
     pub fn file_stem(&self) -> String {
         let model = self.library.active();
         let clip = model.and_then(|model| model.clip_titles().get(active_clip(model, &self.state)?));
@@ -71,7 +71,7 @@ impl Editor {
         self.library.active().ok_or_else(|| "there is no model".to_owned())
     }
 
-    /// With names instead of numbers, for people to read.
+    /// Writes joint names instead of numbers, for people to read.
     fn export_map(&self, motion: usize) -> Result<ExportedFile, String> {
         let model = self.model()?;
         let about = self.library.motions().get(motion).ok_or("this motion was removed")?;
@@ -84,7 +84,7 @@ impl Editor {
         self.shelf.get(&model.id)?.files.as_ref()
     }
 
-    /// A model in another format as glTF.
+    /// Writes a model of another format as glTF.
     fn export_whole(&self, posed: bool) -> Result<ExportedFile, String> {
         let model = self.model()?;
         let ModelFiles { set, name } = self.files_of(model).ok_or("this model has no file")?;
@@ -95,7 +95,7 @@ impl Editor {
         Ok(ExportedFile::new(format!("{}.glb", stem(&model.source)), bytes))
     }
 
-    /// One clip with the skeleton it moves.
+    /// Writes one clip with its skeleton.
     fn export_clip(&self, clip: usize) -> Result<ExportedFile, String> {
         let model = self.model()?;
         let baked = self.baked_clip(clip)?;
@@ -105,7 +105,7 @@ impl Editor {
         Ok(ExportedFile { remark: baked.remark, ..ExportedFile::new(format!("{}.glb", self.file_stem()), bytes) })
     }
 
-    /// The model's own file with the clip appended; skeleton and clip alone where there is no file.
+    /// Writes the model's own file with the clip appended; without a file, only skeleton and clip.
     fn export_model(&self, clip: usize) -> Result<ExportedFile, String> {
         let model = self.model()?;
         let borrowed = model.borrowed(clip).ok_or("this clip is one of the model's own")?;

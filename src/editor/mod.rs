@@ -1,7 +1,7 @@
-//! The editor owns what is loaded and what is set, and is the only way to change either. It knows no UI, GPU or I/O: the page,
-//! the window, the command line and the tests are shells around it.
+//! The editor owns the library, the state and the history, and is the only way to change them. It has no UI, GPU or I/O: the
+//! page, the window, the command line and the tests are shells around it.
 //!
-//! Everything that happens is a call (`open`, `apply`, `undo`, …); what the shell should tell the user about it is an [`Event`].
+//! Shells call it (`open`, `apply`, `undo`, …) and present the resulting [`Event`]s to the user.
 
 mod camera;
 mod contents;
@@ -25,7 +25,7 @@ use crate::library::{Library, ModelId, Motion};
 use crate::state::{Command, History, ViewerState, from_object};
 use open::Shelved;
 
-/// Says whether a model can be shown, for example whether it fits on the graphics device; the error is what the user sees.
+/// Decides whether a model can be shown, for example whether it fits on the graphics device. The error is for the user.
 pub type Admit<'a> = &'a mut dyn FnMut(&crate::library::Model) -> Result<(), String>;
 
 #[derive(Debug)]
@@ -33,12 +33,12 @@ pub struct Editor {
     library: Library,
     state: ViewerState,
     history: History,
-    /// What is kept of each model besides the model itself.
+    /// What is kept of each loaded model besides the model itself.
     shelf: BTreeMap<ModelId, Shelved>,
-    /// Motions that did not fit the model, until the user says what to do with them.
+    /// Motions that don't fit the model, until the user decides what to do with them.
     refused: Vec<Motion>,
-    /// A local joint map was opened.
-    has_own_map: bool,
+    /// A joint map was opened from the user's local files.
+    has_private_map: bool,
     /// Errors about retargeted clips that have been reported.
     reported: Vec<String>,
     /// Width over height of the viewport, which some camera commands depend on.
@@ -55,8 +55,8 @@ impl Default for Editor {
 }
 
 impl Editor {
-    /// For most windows; shells that know theirs call [`Editor::set_aspect`].
-    const USUAL_ASPECT: f32 = 1.6;
+    /// Suits most windows; shells with a viewport call [`Editor::set_aspect`].
+    const DEFAULT_ASPECT: f32 = 1.6;
 
     pub fn new(library: Library, state: ViewerState) -> Self {
         let mut editor = Self {
@@ -65,9 +65,9 @@ impl Editor {
             history: History::default(),
             shelf: BTreeMap::new(),
             refused: Vec::new(),
-            has_own_map: false,
+            has_private_map: false,
             reported: Vec::new(),
-            aspect: Self::USUAL_ASPECT,
+            aspect: Self::DEFAULT_ASPECT,
             events: Vec::new(),
             needs_redraw: true,
             is_changed: false,
@@ -84,17 +84,17 @@ impl Editor {
         &self.state
     }
 
-    /// What happened since the last call, oldest first.
+    /// Returns the events since the last call, oldest first.
     pub fn take_events(&mut self) -> Vec<Event> {
         std::mem::take(&mut self.events)
     }
 
-    /// Whether the picture may differ from that at the last call.
+    /// Whether the viewport may look different than at the last call.
     pub fn take_needs_redraw(&mut self) -> bool {
         std::mem::take(&mut self.needs_redraw)
     }
 
-    /// Whether anything was set since the last call; time going by does not count.
+    /// Whether the state has changed since the last call, other than by time passing.
     pub fn take_changed(&mut self) -> bool {
         std::mem::take(&mut self.is_changed)
     }
@@ -103,32 +103,32 @@ impl Editor {
         self.aspect = aspect;
     }
 
-    /// Applies a command, keeping the camera where the user expects it. A replacement state that names other files than the
-    /// loaded ones is ignored: something else was opened since it was asked for.
+    /// Applies a command, keeping the camera where the user expects it. Ignores a replacement state whose files are not the
+    /// loaded ones: something else was opened after it was requested.
     pub fn apply(&mut self, command: Command) {
         if matches!(&command, Command::Replace(state) if !self.has_files_of(state)) {
             return;
         }
         self.is_changed |= !matches!(command, Command::Advance(_));
         self.needs_redraw = true;
-        let is_about_motion = is_about_motion(&command);
-        let refits = matches!(command, Command::SetUp(_));
-        self.tell_about_follow(&command);
+        let affects_retargeting = affects_retargeting(&command);
+        let reframes = matches!(command, Command::SetUp(_));
+        self.notify_follow(&command);
         let command = self.prepare_camera(command);
         self.record(command);
-        if refits {
+        if reframes {
             self.apply(Command::FrameAll);
         }
-        if is_about_motion {
+        if affects_retargeting {
             let problems = self.retarget();
             self.report(problems);
         }
     }
 
-    /// Sets some keys of the link, all or none.
+    /// Sets some keys of the link; all or none.
     ///
     /// # Errors
-    /// What is wrong with the values, or with the joint maps among them.
+    /// The message for the user if a value or a joint map is invalid.
     pub fn apply_partial(&mut self, partial: &Value) -> Result<(), String> {
         let (state, errors) = from_object(&self.state, partial);
         if !errors.is_empty() {
@@ -151,17 +151,17 @@ impl Editor {
 
     /// Whether anything loaded is one of the user's local files.
     pub fn is_private(&self) -> bool {
-        self.has_own_map
+        self.has_private_map
             || self.library.active().is_some_and(|model| model.is_own)
             || self.library.motions().iter().any(|motion| motion.is_own)
     }
 
-    /// Changes the state through the history, without any of the rules of [`Editor::apply`].
+    /// Applies a command through the history, without the additional rules of [`Editor::apply`].
     fn record(&mut self, command: Command) {
         self.history.apply(&mut self.state, &self.library, command);
     }
 
-    /// A replacement state must name the files that are loaded, since it loads none.
+    /// Whether the state names the loaded files. Replacing the state loads none.
     fn has_files_of(&self, state: &ViewerState) -> bool {
         let (new, now) = (&state.sources, &self.state.sources);
         new.model == now.model && new.motion == now.motion
@@ -182,8 +182,8 @@ impl Editor {
 
 const OTHER_FILES: &str = "something else was opened in the meantime";
 
-/// Whether retargeted clips depend on what the command sets.
-fn is_about_motion(command: &Command) -> bool {
+/// Whether the command changes what retargeted clips depend on.
+fn affects_retargeting(command: &Command) -> bool {
     matches!(
         command,
         Command::Replace(_)

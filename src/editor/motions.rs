@@ -1,5 +1,5 @@
-//! What becomes of opened motions and joint maps: clips are retargeted to the active model. What fails leaves everything as it
-//! was; what works can be undone.
+//! Opening and removing motions and joint maps, and retargeting their clips to the active model. Operations that fail change
+//! nothing; those that succeed can be undone.
 
 use super::{Admit, Contents, Editor, Event, short_name};
 use crate::library::{BorrowError, BorrowedClip, Library, Motion};
@@ -9,7 +9,7 @@ use crate::state::{
     maps_in_force, names_checksum, numbered, settled_maps,
 };
 
-/// A motion's clip, whichever model it is retargeted to, and the place in it.
+/// Identifies a motion's clip across models, with the time in it.
 pub(super) struct ClipIdentity {
     origin: String,
     source: String,
@@ -28,8 +28,8 @@ impl ClipIdentity {
 }
 
 impl Editor {
-    /// Adds motions; one that is loaded already is replaced. Without a view the state stays, and the first new clip plays. When
-    /// no motion fits, everything stays as it was.
+    /// Adds motions, replacing those that are already loaded. Without a view, keeps the state and plays the first new clip. If
+    /// none of them fits the model, nothing changes.
     pub(super) fn open_motions(
         &mut self,
         motions: Vec<Motion>,
@@ -58,13 +58,13 @@ impl Editor {
         self.remember(before);
         self.report(problems);
         self.choose_retargeted(motions.first().map(ClipIdentity::first_of));
-        // The new clip may lead away from where the camera points.
+        // The new clip may leave the camera's view.
         self.apply(Command::FrameAll);
         self.notify_undoable(added_from(clips, &motions));
         Ok(())
     }
 
-    /// Appends motions, with maps for them; those from the same origins are replaced. Returns what does not work.
+    /// Appends motions with their maps, replacing motions of the same origins. Returns the problems.
     fn add_motions(
         &mut self,
         motions: Vec<Motion>,
@@ -88,7 +88,8 @@ impl Editor {
         self.library.set_motions(motions);
     }
 
-    /// Shells offer what can be done instead, where the error of the command line says how to write a map.
+    /// Returns why motions were refused. Unlike the command line's error, it doesn't explain how to write a map: shells offer
+    /// alternatives.
     fn why_refused(&self, problems: &[String]) -> String {
         if let (Some(model), [motion]) = (self.library.active(), &self.refused[..])
             && !motion.asset.clips.is_empty()
@@ -100,7 +101,7 @@ impl Editor {
         problems.join("\n")
     }
 
-    /// Applies an opened joint map to every motion that it fits.
+    /// Applies a joint map file to every motion it fits.
     pub(super) fn apply_map_file(&mut self, map: &JointMap) -> Result<(), String> {
         let Some(model) = self.library.active() else { return Ok(()) };
         if self.library.motions().is_empty() {
@@ -132,13 +133,12 @@ impl Editor {
         Ok(())
     }
 
-    /// Retargets the motions' clips again if anything they depend on has changed; returns what does not work and has not been
-    /// reported.
+    /// Retargets the motions' clips if anything they depend on has changed; returns problems not reported before.
     pub(super) fn retarget(&mut self) -> Vec<String> {
         let (maps, problems) = settled_maps(&self.library, &self.state);
         let mut new: Vec<String> = problems.iter().map(ToString::to_string).collect();
         if maps != self.state.retarget.map {
-            self.record(Command::SettleMaps);
+            self.record(Command::ReconcileMaps);
             self.is_changed = true;
         }
         let maps = maps_in_force(&self.library, &self.state);
@@ -152,7 +152,7 @@ impl Editor {
         new
     }
 
-    /// The retargeted clip that plays, if one does.
+    /// Returns the active clip if it is retargeted.
     pub(super) fn retargeted_clip(&self) -> Option<ClipIdentity> {
         let model = self.library.active()?;
         let borrowed = model.borrowed(active_clip(model, &self.state)?)?;
@@ -161,14 +161,14 @@ impl Editor {
         Some(ClipIdentity { source_clip: borrowed.source_clip, time_secs, ..first })
     }
 
-    /// Plays this clip, else the first retargeted one; does nothing for none.
+    /// Plays this clip if the model has it, otherwise the first retargeted one; does nothing for `None`.
     pub(super) fn choose_retargeted(&mut self, choice: Option<ClipIdentity>) {
         let (Some(choice), Some(model)) = (choice, self.library.active()) else { return };
-        let is_it = |borrowed: &BorrowedClip| {
+        let is_choice = |borrowed: &BorrowedClip| {
             let motion = self.library.motions().get(borrowed.motion);
             borrowed.source_clip == choice.source_clip && motion.is_some_and(|motion| choice.is_of(motion))
         };
-        let found = model.borrowed_clips().find(|(_, borrowed)| is_it(borrowed));
+        let found = model.borrowed_clips().find(|(_, borrowed)| is_choice(borrowed));
         if let Some((clip, _)) = found.or_else(|| model.borrowed_clips().next()) {
             let found = found.is_some();
             let clip = choice_of_clip(model, clip);
@@ -179,7 +179,8 @@ impl Editor {
         }
     }
 
-    /// Drops motions that do not fit the active model; not an error, since nobody asked for them. Returns what to say about it.
+    /// Drops motions that don't fit the active model. Returns a notice instead of an error, since the user didn't request them
+    /// for this model.
     pub(super) fn drop_incompatible_motions(&mut self) -> Option<String> {
         let model = self.library.active()?;
         let fits = |motion: usize| model.borrowed_clips().any(|(_, borrowed)| borrowed.motion == motion);
@@ -204,7 +205,7 @@ impl Editor {
         (self.needs_redraw, self.is_changed) = (true, true);
     }
 
-    /// Removes a motion, and what came with it out of the same archive.
+    /// Removes a motion and all others from the same archive.
     pub fn remove_motion(&mut self, index: usize) {
         let Some(motion) = self.library.motions().get(index) else { return };
         let (origin, name) = (motion.origin.clone(), short_name(&motion.origin));
@@ -223,7 +224,7 @@ impl Editor {
     /// Opens the first refused motion as the model.
     ///
     /// # Errors
-    /// Why it cannot be shown.
+    /// The message for the user if it cannot be shown.
     pub fn open_refused_alone(&mut self, admit: Admit<'_>) -> Result<(), String> {
         match std::mem::take(&mut self.refused).first() {
             Some(motion) => self.open_alone(motion, admit),
@@ -256,14 +257,14 @@ impl Editor {
     }
 }
 
-/// Says how many clips came from motions.
+/// Returns the notice for clips that were retargeted from motions.
 pub(super) fn added_from(clips: usize, motions: &[Motion]) -> String {
     let names: Vec<String> = motions.iter().map(|motion| short_name(&motion.source)).collect();
     let plural = if clips == 1 { "" } else { "s" };
     format!("Added {clips} clip{plural} from {}.", names.join(", "))
 }
 
-/// A map without any pair is one that the user has just started.
+/// Whether the map has no pairs yet: the user has just started it.
 fn is_unfinished(error: &BorrowError) -> bool {
     matches!(error, BorrowError::Map { problem: MapError::NothingMapped, .. })
 }

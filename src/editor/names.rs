@@ -1,8 +1,8 @@
-//! What files are called where there is no room for their whole path.
+//! Short display names for files.
 
 use crate::samples;
 
-/// The last part of a path or URL, and where it is.
+/// Returns the last part of a path or URL, and where it is.
 pub fn name_and_place(source: &str) -> (String, String) {
     if let Some(sample) = source.strip_prefix("sample:") {
         return (samples::title(sample).to_owned(), "Sample".to_owned());
@@ -15,12 +15,12 @@ pub fn name_and_place(source: &str) -> (String, String) {
     }
 }
 
-/// The last part of a path or URL.
+/// Returns the last part of a path or URL.
 pub fn short_name(source: &str) -> String {
     name_and_place(source).0
 }
 
-/// A file's short name without its extension.
+/// Returns a file's short name without its extension.
 pub(super) fn stem(source: &str) -> String {
     let name = short_name(source);
     name.rsplit_once('.').map_or(name.clone(), |(stem, _)| stem.to_owned())

@@ -1,5 +1,5 @@
-//! What becomes of opened models: one is active, the others wait in the list. What fails leaves everything as it was; what
-//! works can be undone. Motions and maps that came along: see `motions`.
+//! Opening, activating and closing models: one is active, the others are in the model list. Operations that fail change
+//! nothing; those that succeed can be undone. For motions and maps, see `motions`.
 
 use std::sync::Arc;
 
@@ -13,20 +13,20 @@ use crate::state::{Command, MotionMap, RetargetEdits, Sources, ViewerState, appl
 /// What is kept of a loaded model besides the model.
 #[derive(Debug, Default)]
 pub(super) struct Shelved {
-    /// What it was read from; none for a sample made in code.
+    /// The files it was read from; `None` for generated samples.
     pub files: Option<ModelFiles>,
-    /// How it was shown when another was activated, and its motions at that time.
-    left: Option<(ViewerState, Vec<Motion>)>,
+    /// The view and motions it had when another model was activated.
+    last_view: Option<(ViewerState, Vec<Motion>)>,
 }
 
-/// What came along with opened models.
+/// What was opened together with models.
 struct Companions {
     motions: Option<Vec<Motion>>,
     map: Option<JointMap>,
     view: Option<ViewerState>,
 }
 
-/// What the notice about an opened model says.
+/// The contents of the notice about an opened model.
 struct Opened {
     name: String,
     is_new: bool,
@@ -37,14 +37,13 @@ struct Opened {
 }
 
 impl Editor {
-    /// Takes in opened files. With `view`, a whole view of them (a link), that replaces the state; otherwise the state is kept
-    /// as far as it fits.
+    /// Adds opened files to the library. A `view` (a link) replaces the state; otherwise as much of the state as fits is kept.
     ///
     /// # Errors
-    /// What the user sees when nothing could be done with the files; everything is then as it was.
+    /// The message for the user if none of the files can be used; nothing has changed then.
     pub fn open(&mut self, contents: Contents, view: Option<ViewerState>, admit: Admit<'_>) -> Result<(), String> {
-        let Contents { models, motions, map, has_own_map, problems } = contents;
-        self.has_own_map |= has_own_map;
+        let Contents { models, motions, map, is_map_private, problems } = contents;
+        self.has_private_map |= is_map_private;
         self.refused.clear();
         let opened = match motions {
             motions if !models.is_empty() => self.open_models(models, Companions { motions, map, view }, admit),
@@ -56,8 +55,8 @@ impl Editor {
         opened
     }
 
-    /// Activates the first of some models, or the one that the view names, and lists the others. The current one is listed too,
-    /// and stays active when the new one is not admitted. Without motions, those that are loaded are tried on the new model.
+    /// Activates the first model, or the one that the view names, and lists the others. The current one stays in the list, and
+    /// stays active if the new one is not admitted. Without new motions, the loaded ones are retargeted to the new model.
     fn open_models(
         &mut self,
         mut models: Vec<OpenedModel>,
@@ -84,7 +83,7 @@ impl Editor {
         let others = models.map(|other| (short_name(&other.model.source), self.add(other)));
         let others: Vec<String> = others.map(|(name, _)| name).collect();
         self.library.show(id);
-        self.close_incomplete(id);
+        self.close_jointless(id);
         let (is_view, was_loaded) = (view.is_some(), before.is_some());
         self.remember(before);
         let evicted = self.evict();
@@ -104,9 +103,7 @@ impl Editor {
         self.state.retarget.map.extend(map.map(MotionMap::Names));
         let problems = self.retarget();
         let about_motions = if keeps_motions {
-            let dropped = self.drop_incompatible_motions();
-            self.choose_retargeted(playing);
-            dropped
+            self.carry_motions_over(playing)
         } else {
             if is_view || !self.library.motions().is_empty() || has_map {
                 self.report(problems);
@@ -120,12 +117,12 @@ impl Editor {
         Ok(())
     }
 
-    /// Replaces the state, each value checked as if it had been set alone. Opening is the step of the history, not this.
+    /// Replaces the state, checking each value as if it had been set alone. Adds no step to the history: opening is the step.
     fn set_view(&mut self, view: ViewerState) {
         apply(&mut self.state, &self.library, Command::Replace(Box::new(view)));
     }
 
-    /// The default view of a new model, with what a new model does not reset.
+    /// Returns the default view of a new model, with the settings that a new model keeps.
     fn view_of_new_model(&mut self, origin: String, keeps_motions: bool) -> ViewerState {
         let old = std::mem::take(&mut self.state);
         let retarget = if keeps_motions { old.retarget.clone() } else { RetargetEdits::default() };
@@ -134,7 +131,14 @@ impl Editor {
         old.for_model(ViewerState { sources, retarget, ..ViewerState::default() })
     }
 
-    /// Plays the first clip of motions that came with the model, unless a view says what plays; returns what to say about them.
+    /// Keeps the loaded motions that fit the new model, and keeps playing their clip; returns the notice about dropped ones.
+    fn carry_motions_over(&mut self, playing: Option<ClipIdentity>) -> Option<String> {
+        let dropped = self.drop_incompatible_motions();
+        self.choose_retargeted(playing);
+        dropped
+    }
+
+    /// Plays the first retargeted clip, unless a view chooses the clip; returns the notice about the motions.
     fn choose_first_motion(&mut self, is_view: bool) -> Option<String> {
         if let Some(motion) = self.library.motions().first().filter(|_| !is_view) {
             let first = ClipIdentity::first_of(motion);
@@ -144,19 +148,19 @@ impl Editor {
         (clips > 0).then(|| added_from(clips, self.library.motions()))
     }
 
-    /// A model that has come with its joints replaces the one that its .obj alone was.
-    fn close_incomplete(&mut self, id: ModelId) {
-        let Some(whole) = self.library.get(id).filter(|model| !model.asset.skins.is_empty()) else { return };
-        let is_part = |known: &&Model| {
-            let is_same = known.source == whole.source && known.is_own == whole.is_own;
+    /// Closes the jointless model of an .obj once it has been opened again with its joints.
+    fn close_jointless(&mut self, id: ModelId) {
+        let Some(complete) = self.library.get(id).filter(|model| !model.asset.skins.is_empty()) else { return };
+        let is_jointless = |known: &&Model| {
+            let is_same = known.source == complete.source && known.is_own == complete.is_own;
             is_same && is_obj(&known.source) && known.asset.skins.is_empty()
         };
-        if let Some(part) = self.library.models().iter().find(is_part).map(|part| part.id) {
-            self.library.close(part);
+        if let Some(id) = self.library.models().iter().find(is_jointless).map(|known| known.id) {
+            self.library.close(id);
         }
     }
 
-    /// Asks whether the active model can be shown; if not, activates what was active before.
+    /// Checks that the active model can be shown; if not, restores what was active before.
     pub(super) fn admit(&mut self, before: &Option<(ViewerState, Loaded)>, admit: Admit<'_>) -> Result<(), String> {
         let Some(Err(error)) = self.library.active().map(admit) else { return Ok(()) };
         if let Some((_, loaded)) = before {
@@ -166,28 +170,28 @@ impl Editor {
         Err(error)
     }
 
-    /// What undo leads back to; none before anything is loaded.
+    /// Returns what undo restores; `None` before anything is loaded.
     pub(super) fn snapshot(&self) -> Option<(ViewerState, Loaded)> {
         self.library.active().map(|_| (self.state.clone(), self.library.loaded()))
     }
 
-    /// Makes a step of what was done since the snapshot, and keeps the view of the model that was active.
+    /// Adds the changes since the snapshot to the history as a step, and shelves the view of the previously active model.
     pub(super) fn remember(&mut self, before: Option<(ViewerState, Loaded)>) {
         let Some((state, loaded)) = before else { return };
         if loaded.model != self.library.loaded().model
             && let Some(shelved) = self.shelf.get_mut(&loaded.model)
         {
-            shelved.left = Some((state.clone(), loaded.motions.clone()));
+            shelved.last_view = Some((state.clone(), loaded.motions.clone()));
         }
         self.history.opened(state, loaded);
     }
 
-    /// Adds a model to the library and activates it; the same file again is the model that is there already.
+    /// Adds a model to the library and activates it; if the same file is already loaded, activates that model.
     fn add(&mut self, opened: OpenedModel) -> ModelId {
         let OpenedModel { model, files } = opened;
         let is_same = |known: &&Model| {
             let same_files = self.shelf.get(&known.id).is_some_and(|shelved| shelved.files == files);
-            // Models that were not read from a file are told apart by their asset; a sample is always the same.
+            // Models not read from a file are identified by their asset; a sample is always the same.
             let same_asset =
                 files.is_some() || model.source.starts_with("sample:") || Arc::ptr_eq(&known.asset, &model.asset);
             known.source == model.source && known.is_own == model.is_own && same_files && same_asset
@@ -197,11 +201,11 @@ impl Editor {
             return id;
         }
         let id = self.library.add(model);
-        self.shelf.insert(id, Shelved { files, left: None });
+        self.shelf.insert(id, Shelved { files, last_view: None });
         id
     }
 
-    /// Evicts models for which there is no room, with what is kept of them; returns their names.
+    /// Evicts models to make room, with everything kept about them; returns their names.
     fn evict(&mut self) -> Vec<String> {
         let evicted = self.library.trim();
         let library: &Library = &self.library;
@@ -212,10 +216,10 @@ impl Editor {
 
     /// Whether a view's model is loaded, active or not.
     pub fn holds(&self, view: &ViewerState) -> bool {
-        view.sources.model == self.state.sources.model || self.held(view).is_some()
+        view.sources.model == self.state.sources.model || self.find_loaded(view).is_some()
     }
 
-    fn held(&self, view: &ViewerState) -> Option<ModelId> {
+    fn find_loaded(&self, view: &ViewerState) -> Option<ModelId> {
         let [name] = &view.sources.model[..] else { return None };
         let known = self.library.models().iter().rev().find(|model| model.origin == *name)?;
         Some(known.id)
@@ -231,8 +235,8 @@ impl Editor {
     ) -> Result<(), String> {
         let before = self.snapshot();
         if view.sources.model != self.state.sources.model {
-            let held = self.held(&view).ok_or(OTHER_FILES)?;
-            self.library.show(held);
+            let id = self.find_loaded(&view).ok_or(OTHER_FILES)?;
+            self.library.show(id);
             self.admit(&before, admit)?;
         }
         self.remember(before);
@@ -244,11 +248,11 @@ impl Editor {
         Ok(())
     }
 
-    /// Activates another loaded model, as it was left. Motions that came since are tried on it, and the retargeted clip that
-    /// plays goes on.
+    /// Activates another loaded model with the view it had. Motions added since then are retargeted to it, and the active
+    /// retargeted clip keeps playing.
     ///
     /// # Errors
-    /// Why it cannot be shown; what was active stays.
+    /// The message for the user if it cannot be shown; nothing changes then.
     pub fn activate(&mut self, id: ModelId, admit: Admit<'_>) -> Result<(), String> {
         let before = self.snapshot();
         let Some((_, loaded)) = before.as_ref().filter(|(_, loaded)| loaded.model != id) else { return Ok(()) };
@@ -259,16 +263,16 @@ impl Editor {
         }
         self.admit(&before, admit)?;
         self.remember(before);
-        let left = self.shelf.get(&id).and_then(|shelved| shelved.left.clone());
+        let last_view = self.shelf.get(&id).and_then(|shelved| shelved.last_view.clone());
         let origin = self.library.active().map(|model| model.origin.clone()).unwrap_or_default();
-        let (left, mut motions) = left.unwrap_or_else(|| (ViewerState::of_model(origin.clone()), Vec::new()));
-        // What has been read since wins.
+        let (last_view, mut motions) = last_view.unwrap_or_else(|| (ViewerState::of_model(origin.clone()), Vec::new()));
+        // Motions loaded since then take precedence.
         motions.retain(|known| !current.iter().any(|motion| motion.origin == known.origin));
         motions.extend(current);
         motions.truncate(Library::MAX_MOTIONS);
         let motion = Contents::motion_sources(&motions, Some(&origin));
         let old = std::mem::take(&mut self.state);
-        self.state = old.for_model(ViewerState { sources: Sources { motion, ..left.sources }, ..left });
+        self.state = old.for_model(ViewerState { sources: Sources { motion, ..last_view.sources }, ..last_view });
         self.library.set_motions(motions);
         self.retarget();
         if let Some(dropped) = self.drop_incompatible_motions() {
@@ -279,7 +283,7 @@ impl Editor {
         Ok(())
     }
 
-    /// Closes the placeholder that stood in for a link's missing files, once those are there.
+    /// Closes the placeholder for a link's missing files, once those have been opened.
     pub fn close_placeholder(&mut self, origin: &str) {
         let placeholder = self.library.models().iter().find(|model| model.origin == origin).map(|model| model.id);
         if let Some(id) = placeholder {
@@ -287,11 +291,11 @@ impl Editor {
         }
     }
 
-    /// Takes a model off the list. When it is the active one, its neighbour is activated, and undo puts it back on the list;
-    /// the only one stays.
+    /// Removes a model from the list. If it is active, its neighbour is activated; the only model cannot be closed. Undo brings
+    /// it back.
     ///
     /// # Errors
-    /// Why the neighbour cannot be shown; nothing is closed then.
+    /// The message for the user if the neighbour cannot be shown; nothing is closed then.
     pub fn close(&mut self, id: ModelId, admit: Admit<'_>) -> Result<(), String> {
         let Some(name) = self.library.get(id).map(|model| short_name(&model.source)) else { return Ok(()) };
         if self.library.active().is_some_and(|active| active.id == id) {
@@ -311,7 +315,7 @@ impl Editor {
     /// Opens a motion's own skeleton as the model, without motions.
     ///
     /// # Errors
-    /// Why it cannot be shown.
+    /// The message for the user if it cannot be shown.
     pub fn open_motion_alone(&mut self, index: usize, admit: Admit<'_>) -> Result<(), String> {
         match self.library.motions().get(index).cloned() {
             Some(motion) => self.open_alone(&motion, admit),

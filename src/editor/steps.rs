@@ -1,5 +1,5 @@
-//! Undo and redo. That another model becomes active, or that a motion goes or comes back, is said: it may have been opened long
-//! before.
+//! Undo and redo. A notice says when that activates another model, or removes or restores a motion: the user may have opened it
+//! long ago.
 
 use super::short_name;
 use super::{Editor, Event};
@@ -14,7 +14,7 @@ impl Editor {
         self.history.can_redo()
     }
 
-    /// How many steps can be undone.
+    /// Number of steps that can be undone.
     pub fn undo_steps(&self) -> usize {
         self.history.steps()
     }
@@ -24,7 +24,7 @@ impl Editor {
         self.history.end_gesture();
     }
 
-    /// Undoes the last step; false when there is none.
+    /// Undoes the last step; returns false if there is none.
     pub fn undo(&mut self) -> bool {
         let before = self.loaded_names();
         let done = self.history.undo(&mut self.state, &mut self.library);
@@ -34,7 +34,7 @@ impl Editor {
         done
     }
 
-    /// Redoes the last undone step; false when there is none.
+    /// Redoes the last undone step; returns false if there is none.
     pub fn redo(&mut self) -> bool {
         let before = self.loaded_names();
         let done = self.history.redo(&mut self.state, &mut self.library);
@@ -76,7 +76,7 @@ struct LoadedNames {
     motions: Vec<String>,
 }
 
-/// The names that the others lack, separated by commas.
+/// Returns the names that are not in `others`, separated by commas.
 fn missing_from(names: &[String], others: &[String]) -> String {
     let missing: Vec<&str> = names.iter().filter(|name| !others.contains(name)).map(String::as_str).collect();
     missing.join(", ")

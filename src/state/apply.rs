@@ -1,4 +1,4 @@
-//! The only way to change a view state.
+//! Applies commands to the view state.
 
 use std::f32::consts::{PI, TAU};
 
@@ -10,54 +10,34 @@ use super::playhead::{active_clip, choice_of_clip, clip_of, clip_secs, play_rang
 use super::{CameraChoice, ClipChoice, Command, Fade, OrbitCamera, RetargetEdits, VertexChoice, ViewerState};
 use crate::anim::{LoopMode, TimeRange};
 use crate::library::{Library, Model};
+use crate::retarget::JointMap;
 
-/// For commands that need the automatic camera without knowing the picture: wide enough for most windows. Who knows the
-/// real shape sends `SetCamera` with [`resolve_camera`] first.
-const USUAL_ASPECT: f32 = 16.0 / 9.0;
+/// Aspect ratio that resolves the automatic camera here, where the viewport is unknown; wide enough for most windows. Callers
+/// that know the viewport send `SetCamera` with [`resolve_camera`] first.
+const DEFAULT_ASPECT: f32 = 16.0 / 9.0;
 
-const MOST_NAME_LETTERS: usize = 80;
+const MAX_NAME_CHARS: usize = 80;
 
-const MOST_PITCH_RADIANS: f32 = 89.9 * PI / 180.0;
+const MAX_PITCH_RADIANS: f32 = 89.9 * PI / 180.0;
 
-/// The only way to change a view state. Values out of range are clamped, numbers that are not finite are ignored.
+/// Applies a command; nothing else changes a view state. Values out of range are clamped; numbers that aren't finite and
+/// indices that the model doesn't have are ignored.
 pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
     let model = library.active();
     match command {
         Command::Replace(new) => replace(state, *new),
-        Command::SetScene(scene) => {
-            let known = |scene: usize| model.is_none_or(|model| scene < model.asset.scenes.len());
-            if scene.is_none_or(known) {
-                state.sources.scene = scene;
-            }
-        }
-        Command::SetClip(clip) => {
-            let before = model.map(|model| (model, active_clip(model, state)));
-            let time_secs = state.playhead.time_secs;
-            state.playhead.clip = clip;
-            state.playhead.fade = before.filter(|_| state.playback.playing).and_then(|(model, from)| {
-                let fades = model.crossfade_secs(from, active_clip(model, state)) > 0.0;
-                let clip = from.map_or(ClipChoice::RestPose, |from| choice_of_clip(model, from));
-                fades.then_some(Fade { clip, time_secs, elapsed_secs: 0.0 })
-            });
-            state.playhead.time_secs = 0.0;
-            state.playhead.range = None;
-        }
+        Command::SetScene(scene) => set_scene(state, model, scene),
+        Command::SetClip(clip) => set_clip(state, model, clip),
         Command::SetPlaying(playing) => set_playing(state, model, playing),
         Command::TogglePlaying => set_playing(state, model, !state.playback.playing),
         Command::Seek(time_secs) => seek(state, model, time_secs),
         Command::Advance(clock_secs) => {
-            turn(state, library, clock_secs);
+            advance_turntable(state, library, clock_secs);
             advance(state, model, clock_secs);
         }
         Command::StepFrames(frames) => step(state, model, frames),
         Command::SetSpeed(speed) => set_f64(&mut state.playback.speed, speed, 0.1, 4.0),
-        Command::SetLoopMode(mode) => {
-            // What is on the screen stays: the new mode would fold a playhead that has run on in its own way.
-            if let Some((model, clip)) = active(state, model) {
-                state.playhead.time_secs = clip_secs(model, clip, state);
-            }
-            state.playback.loop_mode = mode;
-        }
+        Command::SetLoopMode(mode) => set_loop_mode(state, model, mode),
         Command::SetRange(range) => set_range(state, model, range),
         Command::SetSkinning(mode) => state.display.skinning = mode,
         Command::SetMorph { index, weight } => set_morph(state, model, index, weight),
@@ -67,76 +47,33 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::RenameJoint { joint, name } => rename(state, model, joint, &name),
         Command::SetShow(show) => state.display.show = show,
         Command::SetInspect(inspect) => state.inspect = inspect,
-        Command::SelectJoint(joint) => {
-            let known = |joint: usize| model.is_none_or(|model| joint < model.asset.skeleton.len());
-            if joint.is_none_or(known) {
-                state.selection.joint = joint;
-            }
-        }
-        Command::SelectVertex(vertex) => {
-            let known = |choice: VertexChoice| {
-                model.is_none_or(|model| model.has_vertex(choice.instance, choice.primitive, choice.vertex))
-            };
-            if vertex.is_none_or(known) {
-                state.selection.vertex = vertex;
-            }
-        }
+        Command::SelectJoint(joint) => select_joint(state, model, joint),
+        Command::SelectVertex(vertex) => select_vertex(state, model, vertex),
         Command::SetCamera(choice) => set_camera(state, model, choice),
-        Command::Orbit { yaw_radians, pitch_radians } => {
-            let mut orbit = resolve_camera(library, state, USUAL_ASPECT);
-            orbit.yaw_radians += yaw_radians;
-            orbit.pitch_radians += pitch_radians;
-            set_camera(state, model, CameraChoice::Orbit(orbit));
-        }
-        Command::Pan { right, up } => {
-            let mut orbit = resolve_camera(library, state, USUAL_ASPECT);
-            orbit.target += in_picture(&orbit, state.camera_options.fov_degrees, right, up);
-            set_camera(state, model, CameraChoice::Orbit(orbit));
-        }
-        Command::Zoom { factor, right, up } => {
-            let mut orbit = resolve_camera(library, state, USUAL_ASPECT);
-            let size = model.map_or(1.0, |_| resolved_bounds(library, state).diagonal().max(1e-6));
-            if factor > 0.0 {
-                let distance = (orbit.distance * factor).clamp(0.01 * size, 100.0 * size);
-                if state.camera_options.turntable == 0.0 {
-                    let part = 1.0 - distance / orbit.distance;
-                    orbit.target += in_picture(&orbit, state.camera_options.fov_degrees, part * right, part * up);
-                }
-                orbit.distance = distance;
-                set_camera(state, model, CameraChoice::Orbit(orbit));
-            }
-        }
-        Command::FrameAll => {
-            if state.camera != CameraChoice::Auto {
-                let orbit = frame_all(library, state, 1.0);
-                set_camera(state, model, CameraChoice::Orbit(orbit));
-            }
-        }
+        Command::Orbit { yaw_radians, pitch_radians } => orbit(state, library, yaw_radians, pitch_radians),
+        Command::Pan { right, up } => pan(state, library, right, up),
+        Command::Zoom { factor, right, up } => zoom(state, library, factor, right, up),
+        Command::FrameAll => frame(state, library),
         Command::SetFov(degrees) => set_f32(&mut state.camera_options.fov_degrees, degrees, 5.0, 120.0),
         Command::SetFollow(follow) => state.camera_options.follow = follow,
         Command::SetTurntable(speed) => set_f32(&mut state.camera_options.turntable, speed, -360.0, 360.0),
         Command::SetUp(up) => state.edits.up = up,
         Command::SetExposure(stops) => set_f32(&mut state.display.exposure, stops, -10.0, 10.0),
-        Command::SetEnvironment(degrees) => set_turn(&mut state.display.environment_degrees, degrees),
+        Command::SetEnvironment(degrees) => set_rotation(&mut state.display.environment_degrees, degrees),
         Command::SetBackground(background) => state.display.background = background,
         Command::SetEmbed(embed) => state.page.embed = embed,
-        Command::SetMap { motion, map } => {
-            if let (Some(model), Some(about)) = (model, library.motions().get(motion)) {
-                let map = map.map(|map| *map).or_else(|| maps::proposed(library, motion));
-                maps::set_map(state, &model.asset, about, map);
-            }
-        }
+        Command::SetMap { motion, map } => set_map(state, library, motion, map.map(|map| *map)),
         Command::SetSource { motion, target, source } => set_source(state, library, motion, target, source),
         Command::EditMap { motion, edit } => super::map_edit::edit_map(state, library, motion, edit),
         Command::SetUnmapped(unmapped) => state.retarget.unmapped = unmapped,
         Command::SetRoot(root) => state.retarget.root = root,
         Command::SetFeet(feet) => state.retarget.feet = feet,
-        Command::SettleMaps => state.retarget.map = settled_maps(library, state).0,
+        Command::ReconcileMaps => state.retarget.map = settled_maps(library, state).0,
     }
 }
 
-/// Takes over a whole state, each number checked as if it had been set by itself. What depends on a model is left: the
-/// model may still be on its way, and an index that it does not have is shown as if it were not set.
+/// Replaces the whole state, checking each number as if it had been set alone. Indices are not checked against the model, which
+/// may still be loading; those out of range have no effect.
 fn replace(state: &mut ViewerState, new: ViewerState) {
     let default = ViewerState::default();
     let wanted = new.clone();
@@ -153,7 +90,7 @@ fn replace(state: &mut ViewerState, new: ViewerState) {
     state.display.exposure = default.display.exposure;
     set_f32(&mut state.display.exposure, wanted.display.exposure, -10.0, 10.0);
     state.display.environment_degrees = default.display.environment_degrees;
-    set_turn(&mut state.display.environment_degrees, wanted.display.environment_degrees);
+    set_rotation(&mut state.display.environment_degrees, wanted.display.environment_degrees);
     state.playhead.range = None;
     set_range(state, None, wanted.playhead.range);
     state.edits.morph.clear();
@@ -179,12 +116,65 @@ fn active<'a>(state: &ViewerState, model: Option<&'a Model>) -> Option<(&'a Mode
     Some((model, active_clip(model, state)?))
 }
 
-/// Numbers that the files do not have are left alone.
+fn set_scene(state: &mut ViewerState, model: Option<&Model>, scene: Option<usize>) {
+    let exists = |scene: usize| model.is_none_or(|model| scene < model.asset.scenes.len());
+    if scene.is_none_or(exists) {
+        state.sources.scene = scene;
+    }
+}
+
+/// Starts a clip from its beginning, with a crossfade if the current one is playing.
+fn set_clip(state: &mut ViewerState, model: Option<&Model>, clip: ClipChoice) {
+    let before = model.map(|model| (model, active_clip(model, state)));
+    let time_secs = state.playhead.time_secs;
+    state.playhead.clip = clip;
+    state.playhead.fade = before.filter(|_| state.playback.playing).and_then(|(model, from)| {
+        let fades = model.crossfade_secs(from, active_clip(model, state)) > 0.0;
+        let clip = from.map_or(ClipChoice::RestPose, |from| choice_of_clip(model, from));
+        fades.then_some(Fade { clip, time_secs, elapsed_secs: 0.0 })
+    });
+    state.playhead.time_secs = 0.0;
+    state.playhead.range = None;
+}
+
+/// Keeps the current pose: the new mode would fold a playhead beyond the range differently.
+fn set_loop_mode(state: &mut ViewerState, model: Option<&Model>, mode: LoopMode) {
+    if let Some((model, clip)) = active(state, model) {
+        state.playhead.time_secs = clip_secs(model, clip, state);
+    }
+    state.playback.loop_mode = mode;
+}
+
+fn select_joint(state: &mut ViewerState, model: Option<&Model>, joint: Option<usize>) {
+    let exists = |joint: usize| model.is_none_or(|model| joint < model.asset.skeleton.len());
+    if joint.is_none_or(exists) {
+        state.selection.joint = joint;
+    }
+}
+
+fn select_vertex(state: &mut ViewerState, model: Option<&Model>, vertex: Option<VertexChoice>) {
+    let exists = |choice: VertexChoice| {
+        model.is_none_or(|model| model.has_vertex(choice.instance, choice.primitive, choice.vertex))
+    };
+    if vertex.is_none_or(exists) {
+        state.selection.vertex = vertex;
+    }
+}
+
+/// Sets the map of a motion; `None` sets the proposed one.
+fn set_map(state: &mut ViewerState, library: &Library, motion: usize, map: Option<JointMap>) {
+    if let (Some(model), Some(about)) = (library.active(), library.motions().get(motion)) {
+        let map = map.or_else(|| maps::proposed(library, motion));
+        maps::set_map(state, &model.asset, about, map);
+    }
+}
+
+/// Ignores joints that the files don't have.
 fn set_source(state: &mut ViewerState, library: &Library, motion: usize, target: usize, source: Option<usize>) {
     let (Some(model), Some(about)) = (library.active(), library.motions().get(motion)) else { return };
     let has_target = model.asset.skeleton.joint_of_source(target).is_some();
     if has_target && source.is_none_or(|source| about.asset.skeleton.joint_of_source(source).is_some()) {
-        // What is set besides the map stays beside it.
+        // The overrides in `retarget` stay out of the map.
         let bare = ViewerState {
             retarget: RetargetEdits { map: state.retarget.map.clone(), ..RetargetEdits::default() },
             ..ViewerState::default()
@@ -195,25 +185,25 @@ fn set_source(state: &mut ViewerState, library: &Library, motion: usize, target:
     }
 }
 
-fn set_f64(slot: &mut f64, value: f64, least: f64, most: f64) {
+fn set_f64(slot: &mut f64, value: f64, min: f64, max: f64) {
     if value.is_finite() {
-        *slot = value.clamp(least, most);
+        *slot = value.clamp(min, max);
     }
 }
 
-fn set_f32(slot: &mut f32, value: f32, least: f32, most: f32) {
+fn set_f32(slot: &mut f32, value: f32, min: f32, max: f32) {
     if value.is_finite() {
-        *slot = value.clamp(least, most);
+        *slot = value.clamp(min, max);
     }
 }
 
-fn set_turn(slot: &mut f32, degrees: f32) {
+fn set_rotation(slot: &mut f32, degrees: f32) {
     if degrees.is_finite() {
         *slot = if (-360.0..=360.0).contains(&degrees) { degrees } else { degrees.rem_euclid(360.0) };
     }
 }
 
-/// Starting again at the end of a clip that plays once starts it over.
+/// Restarts a clip that plays once and has ended.
 fn set_playing(state: &mut ViewerState, model: Option<&Model>, playing: bool) {
     state.playback.playing = playing;
     if playing
@@ -258,8 +248,8 @@ fn advance(state: &mut ViewerState, model: Option<&Model>, clock_secs: f64) {
             state.playhead.time_secs = range.end_secs;
             state.playback.playing = false;
         }
-        // Whole rounds are taken off, so that the playhead stays a small number however long it runs; but not where layers
-        // loop on durations of their own, which one round of the clip would cut off.
+        // Whole loops are subtracted to keep the playhead small, however long it runs. Not below layers: they loop with
+        // durations of their own and would jump.
         _ if !model.layers(clip).is_empty() => {}
         LoopMode::Loop if length > 0.0 && state.playhead.time_secs > range.end_secs => {
             state.playhead.time_secs =
@@ -276,7 +266,7 @@ fn advance(state: &mut ViewerState, model: Option<&Model>, clock_secs: f64) {
     }
 }
 
-/// Where the playhead happens to be has few digits in a link. What is set is not touched: a key's own time is met exactly.
+/// Keeps the running playhead short in links. Times that are set are not rounded, so that they hit keys exactly.
 fn whole_microseconds(secs: f64) -> f64 {
     (secs * 1e6).round() / 1e6
 }
@@ -287,11 +277,11 @@ fn step(state: &mut ViewerState, model: Option<&Model>, frames: i32) {
     let range = play_range(model, clip, state);
     let rate = model.frames_per_sec(clip);
     let stepped = ((clip_secs(model, clip, state) * rate).round() + f64::from(frames)) / rate;
-    // Half a frame of slack: the last frame may lie a rounding error past the end.
-    let slack = 0.5 / rate;
-    state.playhead.time_secs = if state.playback.loop_mode == LoopMode::Loop && stepped > range.end_secs + slack {
+    // Half a frame of tolerance: rounding may put the last frame slightly past the end.
+    let tolerance = 0.5 / rate;
+    state.playhead.time_secs = if state.playback.loop_mode == LoopMode::Loop && stepped > range.end_secs + tolerance {
         range.start_secs
-    } else if state.playback.loop_mode == LoopMode::Loop && stepped < range.start_secs - slack {
+    } else if state.playback.loop_mode == LoopMode::Loop && stepped < range.start_secs - tolerance {
         range.end_secs
     } else {
         stepped.clamp(range.start_secs, range.end_secs)
@@ -315,12 +305,12 @@ fn set_range(state: &mut ViewerState, model: Option<&Model>, range: Option<TimeR
 }
 
 fn set_morph(state: &mut ViewerState, model: Option<&Model>, index: usize, weight: Option<f32>) {
-    let known = model.is_none_or(|model| index < model.asset.skeleton.rest().morph_weights.len());
+    let exists = model.is_none_or(|model| index < model.asset.skeleton.rest().morph_weights.len());
     match weight {
         None => {
             state.edits.morph.remove(&index);
         }
-        Some(weight) if known && weight.is_finite() => {
+        Some(weight) if exists && weight.is_finite() => {
             state.edits.morph.insert(index, weight.clamp(-10.0, 10.0));
         }
         Some(_) => {}
@@ -328,21 +318,21 @@ fn set_morph(state: &mut ViewerState, model: Option<&Model>, index: usize, weigh
 }
 
 fn set_pose(state: &mut ViewerState, model: Option<&Model>, joint: usize, degrees: Option<[f32; 3]>) {
-    let known = model.is_none_or(|model| model.asset.skeleton.joint_of_source(joint).is_some());
+    let exists = model.is_none_or(|model| model.asset.skeleton.joint_of_source(joint).is_some());
     match degrees {
         None => {
             state.edits.pose.remove(&joint);
         }
-        Some(degrees) if known && degrees.iter().all(|angle| angle.is_finite()) => {
-            state.edits.pose.insert(joint, degrees.map(half_turn));
+        Some(degrees) if exists && degrees.iter().all(|angle| angle.is_finite()) => {
+            state.edits.pose.insert(joint, degrees.map(wrap_degrees));
         }
         Some(_) => {}
     }
 }
 
-/// A name is a line of at most [`MOST_NAME_LETTERS`]; nothing, or what the file says, is no name of its own.
+/// Keeps one line of at most [`MAX_NAME_CHARS`]. An empty name, or the file's own, removes the custom one.
 fn rename(state: &mut ViewerState, model: Option<&Model>, joint: usize, name: &str) {
-    let line: String = name.chars().filter(|letter| !letter.is_control()).take(MOST_NAME_LETTERS).collect();
+    let line: String = name.chars().filter(|char| !char.is_control()).take(MAX_NAME_CHARS).collect();
     let name = line.trim();
     let in_file = model.map(|model| {
         let skeleton = &model.asset.skeleton;
@@ -359,27 +349,65 @@ fn rename(state: &mut ViewerState, model: Option<&Model>, joint: usize, name: &s
     }
 }
 
-/// From −180° to 180°.
-fn half_turn(degrees: f32) -> f32 {
+/// Wraps an angle to −180°…180°.
+fn wrap_degrees(degrees: f32) -> f32 {
     if (-180.0..=180.0).contains(&degrees) { degrees } else { (degrees + 180.0).rem_euclid(360.0) - 180.0 }
 }
 
-/// The turntable. A file's own camera stays where it is.
-fn turn(state: &mut ViewerState, library: &Library, clock_secs: f64) {
+/// Turns the turntable. A file's own camera stays where it is.
+fn advance_turntable(state: &mut ViewerState, library: &Library, clock_secs: f64) {
     let radians = f64::from(state.camera_options.turntable).to_radians() * clock_secs;
     if radians != 0.0 && radians.is_finite() && !matches!(state.camera, CameraChoice::File(_)) {
-        let mut orbit = resolve_camera(library, state, USUAL_ASPECT);
-        orbit.yaw_radians += radians as f32;
+        orbit(state, library, radians as f32, 0.0);
+    }
+}
+
+fn orbit(state: &mut ViewerState, library: &Library, yaw_radians: f32, pitch_radians: f32) {
+    let mut orbit = resolve_camera(library, state, DEFAULT_ASPECT);
+    orbit.yaw_radians += yaw_radians;
+    orbit.pitch_radians += pitch_radians;
+    set_camera(state, library.active(), CameraChoice::Orbit(orbit));
+}
+
+fn pan(state: &mut ViewerState, library: &Library, right: f32, up: f32) {
+    let mut orbit = resolve_camera(library, state, DEFAULT_ASPECT);
+    orbit.target += world_from_viewport(&orbit, state.camera_options.fov_degrees, right, up);
+    set_camera(state, library.active(), CameraChoice::Orbit(orbit));
+}
+
+fn zoom(state: &mut ViewerState, library: &Library, factor: f32, right: f32, up: f32) {
+    let model = library.active();
+    let mut orbit = resolve_camera(library, state, DEFAULT_ASPECT);
+    let size = model.map_or(1.0, |_| resolved_bounds(library, state).diagonal().max(1e-6));
+    if factor > 0.0 {
+        let distance = (orbit.distance * factor).clamp(0.01 * size, 100.0 * size);
+        if state.camera_options.turntable == 0.0 {
+            let part = 1.0 - distance / orbit.distance;
+            orbit.target += world_from_viewport(&orbit, state.camera_options.fov_degrees, part * right, part * up);
+        }
+        orbit.distance = distance;
+        set_camera(state, model, CameraChoice::Orbit(orbit));
+    }
+}
+
+fn frame(state: &mut ViewerState, library: &Library) {
+    if state.camera != CameraChoice::Auto {
+        let orbit = frame_all(library, state, 1.0);
         set_camera(state, library.active(), CameraChoice::Orbit(orbit));
     }
 }
 
-/// A way in the plane of the target, in fractions of the picture's height.
-fn in_picture(orbit: &OrbitCamera, fov_degrees: f32, right: f32, up: f32) -> Vec3 {
-    let picture_height = 2.0 * orbit.distance * (0.5 * fov_degrees.to_radians()).tan();
+/// Converts an offset in the plane through the target, in fractions of the viewport's height, to world space.
+fn world_from_viewport(orbit: &OrbitCamera, fov_degrees: f32, right: f32, up: f32) -> Vec3 {
+    let height = 2.0 * orbit.distance * (0.5 * fov_degrees.to_radians()).tan();
     let back = orbit.direction();
     let to_right = Vec3::Y.cross(back).normalize_or(Vec3::X);
-    picture_height * (right * to_right + up * back.cross(to_right))
+    height * (right * to_right + up * back.cross(to_right))
+}
+
+/// Wraps an angle to −π…π.
+fn wrap_radians(radians: f32) -> f32 {
+    if (-PI..=PI).contains(&radians) { radians } else { (radians + PI).rem_euclid(TAU) - PI }
 }
 
 fn set_camera(state: &mut ViewerState, model: Option<&Model>, choice: CameraChoice) {
@@ -394,14 +422,9 @@ fn set_camera(state: &mut ViewerState, model: Option<&Model>, choice: CameraChoi
             let OrbitCamera { yaw_radians, pitch_radians, distance, target } = orbit;
             let finite = yaw_radians.is_finite() && pitch_radians.is_finite() && distance.is_finite();
             if finite && target.is_finite() && distance > 0.0 {
-                let turn = if (-PI..=PI).contains(&yaw_radians) {
-                    yaw_radians
-                } else {
-                    (yaw_radians + PI).rem_euclid(TAU) - PI
-                };
                 state.camera = CameraChoice::Orbit(OrbitCamera {
-                    yaw_radians: turn,
-                    pitch_radians: pitch_radians.clamp(-MOST_PITCH_RADIANS, MOST_PITCH_RADIANS),
+                    yaw_radians: wrap_radians(yaw_radians),
+                    pitch_radians: pitch_radians.clamp(-MAX_PITCH_RADIANS, MAX_PITCH_RADIANS),
                     distance: distance.clamp(1e-6, 1e7),
                     target,
                 });

@@ -1,4 +1,4 @@
-//! Where the scene is looked at from.
+//! The viewport's camera.
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CameraChoice {
-    /// Frames the whole clip from the front, a little from the side and above.
+    /// Frames the whole clip from the front, slightly from the side and above.
     #[default]
     Auto,
     Orbit(OrbitCamera),

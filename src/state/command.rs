@@ -1,4 +1,4 @@
-//! Everything a person can do to the view. Menu, keys, links, scripts and tests all use this list.
+//! Everything the user can do to the view. Menus, keys, links, scripts and tests all send these commands.
 
 use super::{Background, CameraChoice, ClipChoice, MapEdit, UpAxis, ViewerState};
 use crate::anim::{LoopMode, TimeRange};
@@ -7,17 +7,17 @@ use crate::retarget::{Feet, JointMap, RootOptions, Unmapped};
 
 #[derive(Debug, Clone, PartialEq)]
 pub enum Command {
-    /// Takes over a whole state (a link, undo, the script interface).
+    /// Replaces the whole state (a link, the script interface).
     Replace(Box<ViewerState>),
     SetScene(Option<usize>),
     SetClip(ClipChoice),
     SetPlaying(bool),
     TogglePlaying,
-    /// Puts the playhead somewhere, in clip seconds.
+    /// Moves the playhead, in clip seconds.
     Seek(f64),
-    /// Time went by while playing, in seconds of the clock; speed is applied here.
+    /// Advances time by seconds of the clock; playback speed is applied here.
     Advance(f64),
-    /// To the next (+1) or previous (−1) frame of `1 / frames_per_sec`; pauses.
+    /// Steps forwards (+1) or backwards (−1) by frames of `1 / frames_per_sec`, and pauses.
     StepFrames(i32),
     SetSpeed(f64),
     SetLoopMode(LoopMode),
@@ -28,13 +28,13 @@ pub enum Command {
         weight: Option<f32>,
     },
     ClearMorphs,
-    /// Turns a joint by hand (its number in the file; Euler angles in degrees from its rest), or lets the clip have it.
+    /// Poses a joint manually (index in the file; Euler angles in degrees from its rest pose); `None` returns it to the clip.
     SetPose {
         joint: usize,
         degrees: Option<[f32; 3]>,
     },
     ClearPose,
-    /// Calls a joint (its number in the file) something else; an empty name: as the file does.
+    /// Renames a joint (index in the file); an empty name restores the file's.
     RenameJoint {
         joint: usize,
         name: String,
@@ -44,47 +44,46 @@ pub enum Command {
     SelectJoint(Option<usize>),
     SelectVertex(Option<super::VertexChoice>),
     SetCamera(CameraChoice),
-    /// Turns about the target, radians.
+    /// Orbits the target.
     Orbit {
         yaw_radians: f32,
         pitch_radians: f32,
     },
-    /// Moves the target in the picture plane, in fractions of the picture's height.
+    /// Moves the target parallel to the viewport, in fractions of its height.
     Pan {
         right: f32,
         up: f32,
     },
-    /// Multiplies the distance. What is that far right of and above the picture's middle, in fractions of its height, stays
-    /// where it is; while the camera turns by itself, its middle does.
+    /// Multiplies the distance. The point at this offset from the viewport's centre, in fractions of its height, stays where
+    /// it is; with a running turntable, the centre does.
     Zoom {
         factor: f32,
         right: f32,
         up: f32,
     },
-    /// Back to automatic framing, keeping the direction.
+    /// Frames everything, keeping the direction.
     FrameAll,
     SetFov(f32),
     SetFollow(bool),
-    /// Degrees per second; 0: the camera stands.
+    /// Degrees per second; 0 stops the turntable.
     SetTurntable(f32),
     SetUp(UpAxis),
     SetExposure(f32),
     SetEnvironment(f32),
     SetBackground(Background),
     SetEmbed(bool),
-    /// Replaces the map for a motion of the library (and all that share its skeleton) by one in joint numbers; none:
-    /// what is proposed.
+    /// Replaces the joint map of a motion in the library, and of all that share its skeleton; `None` restores the proposed map.
     SetMap {
         motion: usize,
         map: Option<Box<JointMap>>,
     },
-    /// Lets one joint of the model follow another joint of a motion, or none; both as their files number them.
+    /// Maps a joint of the model to a joint of a motion, or to none; both by index in their files.
     SetSource {
         motion: usize,
         target: usize,
         source: Option<usize>,
     },
-    /// Changes the map for a motion in another way.
+    /// Edits the map of a motion in another way.
     EditMap {
         motion: usize,
         edit: MapEdit,
@@ -92,6 +91,6 @@ pub enum Command {
     SetUnmapped(Option<Unmapped>),
     SetRoot(Option<RootOptions>),
     SetFeet(Option<Feet>),
-    /// Maps that fit the loaded files are turned to numbers, missing ones filled in, others dropped.
-    SettleMaps,
+    /// Reconciles the maps with the loaded files: names become joint numbers, missing maps are proposed, others are dropped.
+    ReconcileMaps,
 }

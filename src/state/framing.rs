@@ -1,4 +1,4 @@
-//! Where the camera goes by itself: the whole clip in the picture, from the front, a little from the side and above.
+//! Automatic camera framing: the whole clip in view, from the front, slightly from the side and above.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 
@@ -13,12 +13,11 @@ use crate::mesh::Bounds;
 
 const AUTO_YAW_RADIANS: f32 = 0.44;
 const AUTO_PITCH_RADIANS: f32 = 0.17;
-/// Room around what is framed.
+/// Margin around the framed bounds.
 const MARGIN: f32 = 1.08;
 
-/// World-space box of all that the chosen clip shows, as the camera, the grid and the shadow see it: with the up axis
-/// turned, without the root's travel while the camera follows, and with the source where that is shown too. A unit box
-/// when there is nothing.
+/// Returns the world-space bounds of the active clip for the camera, the grid and the shadow: with the up axis applied, without
+/// root travel while the camera follows, and with the source if that is visible too. A unit box if there is nothing.
 pub fn resolved_bounds(library: &Library, state: &ViewerState) -> Bounds {
     let bounds = library.active().map_or(Bounds::EMPTY, |model| {
         let bounds = model.clip_bounds(state.sources.scene, active_clip(model, state), state.camera_options.follow);
@@ -36,8 +35,8 @@ pub fn resolved_bounds(library: &Library, state: &ViewerState) -> Bounds {
     }
 }
 
-/// How a picture of this aspect ratio is divided: columns and rows. The compared skinning modes are side by side, or one
-/// above the other where there is more room for that.
+/// Returns the columns and rows of panes in a viewport of this aspect ratio. The comparison of skinning methods is laid out
+/// along the longer side.
 pub fn panes(state: &ViewerState, aspect: f32) -> [u32; 2] {
     if state.inspect.split { split_panes(aspect) } else { [1, 1] }
 }
@@ -46,22 +45,22 @@ fn split_panes(aspect: f32) -> [u32; 2] {
     if aspect >= 1.0 { [3, 1] } else { [1, 3] }
 }
 
-/// Width over height of one pane of a picture of this aspect ratio.
+/// Returns the aspect ratio of one pane of a viewport of this aspect ratio.
 pub fn pane_aspect(state: &ViewerState, aspect: f32) -> f32 {
     let [columns, rows] = panes(state, aspect);
     aspect * rows as f32 / columns as f32
 }
 
-/// What to multiply the camera's distance by when comparing begins, or ends, in a picture of this aspect ratio: each of the
-/// narrower panes then shows what was in the middle of the whole picture.
+/// Returns the factor for the camera's distance when the comparison starts or ends in a viewport of this aspect ratio, so that
+/// each of the narrower panes shows what was in the centre of the whole viewport.
 pub fn split_ratio(state: &ViewerState, aspect: f32) -> f32 {
     let [columns, rows] = split_panes(aspect);
-    let farther = (aspect.min(1.0) / (aspect * rows as f32 / columns as f32).min(1.0)).max(1.0);
-    if state.inspect.split { 1.0 / farther } else { farther }
+    let zoom_out = (aspect.min(1.0) / (aspect * rows as f32 / columns as f32).min(1.0)).max(1.0);
+    if state.inspect.split { 1.0 / zoom_out } else { zoom_out }
 }
 
-/// The orbit camera that shows what the state asks for in a picture of this aspect ratio (width over height). A camera of the
-/// file becomes the orbit camera nearest to it: same place and direction, no roll.
+/// Returns the orbit camera for the state in a viewport of this aspect ratio (width over height). A camera of the file becomes
+/// the closest orbit camera: same position and direction, no roll.
 pub fn resolve_camera(library: &Library, state: &ViewerState, aspect: f32) -> OrbitCamera {
     let aspect = pane_aspect(state, aspect);
     let auto = || {
@@ -84,8 +83,8 @@ pub fn resolve_camera(library: &Library, state: &ViewerState, aspect: f32) -> Or
     }
 }
 
-/// From where the model is seen from the front. glTF 2.0 §3.4 has it face +Z; a body that plainly faces another way at rest is
-/// looked at from there, in quarter turns.
+/// Returns the yaw from which the model is seen from the front. glTF 2.0 §3.4 has it face +Z; for a body that clearly faces
+/// another way at rest, this is the nearest quarter turn.
 pub fn front_yaw_radians(library: &Library, state: &ViewerState) -> f32 {
     let forward = library.active().and_then(Model::forward);
     let Some(forward) = forward.map(|forward| world_from_model(state.edits.up).transform_vector3(forward)) else {
@@ -96,11 +95,11 @@ pub fn front_yaw_radians(library: &Library, state: &ViewerState) -> f32 {
         return 0.0;
     }
     let quarters = (level.x.atan2(level.y) / FRAC_PI_2).round();
-    // Half a turn is the same either way, and −0 is 0.
+    // −180° is 180°, and −0 is 0.
     if quarters == -2.0 { PI } else { quarters * FRAC_PI_2 + 0.0 }
 }
 
-/// Everything in the picture, seen from where the camera is now.
+/// Fits everything into the viewport, keeping the current direction.
 pub fn frame_all(library: &Library, state: &ViewerState, aspect: f32) -> OrbitCamera {
     let now = resolve_camera(library, state, aspect);
     match library.active() {
@@ -118,7 +117,7 @@ pub fn frame_all(library: &Library, state: &ViewerState, aspect: f32) -> OrbitCa
     }
 }
 
-/// The nearest place from which all corners of a box are in the picture.
+/// Returns the closest camera that sees all corners of a box.
 fn fit(bounds: Bounds, yaw_radians: f32, pitch_radians: f32, fov_degrees: f32, aspect: f32) -> OrbitCamera {
     let mut orbit = OrbitCamera { yaw_radians, pitch_radians, distance: 1.0, target: bounds.center() };
     let towards_eye = orbit.direction();
@@ -132,12 +131,12 @@ fn fit(bounds: Bounds, yaw_radians: f32, pitch_radians: f32, fov_degrees: f32, a
         let across = (corner.dot(right).abs() / tan_right).max(corner.dot(up).abs() / tan_up);
         distance = distance.max(corner.dot(towards_eye) + across);
     }
-    // A single point has no size to frame: look at it from a metre.
+    // A single point has no size to fit: view it from one metre.
     orbit.distance = if distance > 0.0 && distance.is_finite() { distance } else { 1.0 };
     orbit
 }
 
-/// A camera's place and axes without scale: −Z looks ahead, Y is up. None when its matrix is singular.
+/// Returns a camera's position and axes without scale: −Z is forward, Y is up. `None` if its matrix is singular.
 pub fn world_from_file_camera(world_from_joint: &Affine3A) -> Option<Affine3A> {
     let back = world_from_joint.matrix3.z_axis.try_normalize()?;
     let right = world_from_joint.matrix3.y_axis.cross(back).try_normalize()?;
@@ -160,8 +159,8 @@ fn file_orbit(library: &Library, state: &ViewerState, index: usize) -> Option<Or
     let towards_eye = world_from_camera.matrix3.z_axis;
     let eye = world_from_camera.translation;
     let bounds = resolved_bounds(library, state);
-    let to_middle = (eye - Vec3A::from(bounds.center())).dot(towards_eye);
-    let distance = to_middle.max(0.1 * bounds.diagonal()).max(1e-4);
+    let to_center = (eye - Vec3A::from(bounds.center())).dot(towards_eye);
+    let distance = to_center.max(0.1 * bounds.diagonal()).max(1e-4);
     Some(OrbitCamera {
         yaw_radians: towards_eye.x.atan2(towards_eye.z),
         pitch_radians: towards_eye.y.clamp(-1.0, 1.0).asin(),

@@ -1,38 +1,37 @@
-//! Undo and redo: of edits (how the model is bent and shown) and of what is opened, not of time or camera; one step per
-//! gesture.
+//! Undo and redo of edits and of opened files, but not of time, selection or camera. One gesture is one step.
 
 use std::mem::Discriminant;
 
 use super::{Command, ViewerState, apply};
 use crate::library::{Library, Loaded, ModelId};
 
-/// What was there before each step, newest last.
+/// The undo and redo stacks, newest step last.
 #[derive(Debug, Default)]
 pub struct History {
     past: Vec<Step>,
     future: Vec<Step>,
-    /// The kind of command the present gesture consists of.
+    /// The kind of command that the current gesture repeats.
     gesture: Option<Discriminant<Command>>,
 }
 
 #[derive(Debug)]
 enum Step {
-    /// Edits bring back themselves alone.
+    /// Restores edits alone.
     Edits(ViewerState),
-    /// What was opened: with it the whole view comes back.
+    /// Restores what was loaded, with its whole view.
     View(ViewerState, Loaded),
-    /// Which models were on the list.
+    /// Restores the list of models.
     Listed(Vec<ModelId>),
 }
 
 impl History {
-    const MOST_STEPS: usize = 200;
+    const MAX_STEPS: usize = 200;
 
-    /// Applies a command and remembers what was before if it was an edit that changed something. Commands of one kind
-    /// in a row are one step until [`History::end_gesture`].
+    /// Applies a command, and adds a step if it was an edit that changed something. Consecutive commands of one kind are one
+    /// step until [`History::end_gesture`].
     pub fn apply(&mut self, state: &mut ViewerState, library: &Library, command: Command) {
         if !is_edit(&command) {
-            // Time goes by and the camera moves while a slider is dragged: that does not end the gesture.
+            // Time and camera advance while a slider is dragged; that doesn't end the gesture.
             apply(state, library, command);
             return;
         }
@@ -48,17 +47,17 @@ impl History {
         }
     }
 
-    /// The pointer went up, or the key: the next edit is a step of its own.
+    /// The pointer or the key was released: the next edit is a step of its own.
     pub fn end_gesture(&mut self) {
         self.gesture = None;
     }
 
-    /// Remembers what was shown before something was opened, borrowed or taken away.
+    /// Adds a step with what was loaded before something was opened, retargeted or removed.
     pub fn opened(&mut self, state: ViewerState, loaded: Loaded) {
         self.begin(Step::View(state, loaded));
     }
 
-    /// Remembers which models were on the list before one was closed.
+    /// Adds a step with the list of models before one was closed.
     pub fn closed(&mut self, listed: Vec<ModelId>) {
         self.begin(Step::Listed(listed));
     }
@@ -70,13 +69,13 @@ impl History {
     }
 
     fn push(&mut self, step: Step) {
-        if self.past.len() == Self::MOST_STEPS {
+        if self.past.len() == Self::MAX_STEPS {
             self.past.remove(0);
         }
         self.past.push(step);
     }
 
-    /// Forgets the steps that lead back over a model which has gone.
+    /// Drops the steps that depend on evicted models.
     pub fn forget_gone(&mut self, library: &Library) {
         let is_gone = |step: &Step| matches!(step, Step::View(_, loaded) if library.get(loaded.model).is_none());
         let is_whole = |ids: &[ModelId]| ids.iter().all(|&id| library.get(id).is_some());
@@ -88,7 +87,7 @@ impl History {
         }
     }
 
-    /// How many steps lead back.
+    /// Number of steps that can be undone.
     pub fn steps(&self) -> usize {
         self.past.len()
     }
@@ -101,7 +100,7 @@ impl History {
         !self.future.is_empty()
     }
 
-    /// Takes the last step back; false when there is none.
+    /// Undoes the last step; returns false if there is none.
     pub fn undo(&mut self, state: &mut ViewerState, library: &mut Library) -> bool {
         self.gesture = None;
         let Some(step) = self.past.pop() else { return false };
@@ -109,7 +108,7 @@ impl History {
         true
     }
 
-    /// Takes back the last undo; false when there is none.
+    /// Redoes the last undone step; returns false if there is none.
     pub fn redo(&mut self, state: &mut ViewerState, library: &mut Library) -> bool {
         self.gesture = None;
         let Some(step) = self.future.pop() else { return false };
@@ -119,7 +118,7 @@ impl History {
 }
 
 impl Step {
-    /// Puts what it remembers in force; gives back the step the other way.
+    /// Restores what the step holds; returns the step in the opposite direction.
     fn take(self, state: &mut ViewerState, library: &mut Library) -> Self {
         match self {
             Self::Edits(edits) => {

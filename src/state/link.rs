@@ -1,5 +1,5 @@
-//! The text form of a view state: `key=value` joined by `&` after the `#`, and the same keys as a JSON object. Old links
-//! keep working: `v=1` fixes the defaults below, keys this version does not know are kept and written back.
+//! The text form of a view state: `key=value` pairs joined by `&` after the `#`, and the same keys as a JSON object. Old links
+//! keep working: `v=1` fixes the defaults, and unknown keys are preserved when the link is written again.
 
 mod files;
 mod values;
@@ -18,27 +18,27 @@ use super::ViewerState;
 pub enum LinkError {
     #[error("{key}={value}: expected {expected}")]
     BadValue { key: String, value: String, expected: &'static str },
-    #[error("{key}: this version does not know it; it is kept in the link")]
+    #[error("{key}: unknown key, kept in the link")]
     UnknownKey { key: String },
-    #[error("show={value}: this version does not know it; it is kept in the link")]
+    #[error("show={value}: unknown word, kept in the link")]
     UnknownShow { value: String },
 }
 
-/// How one key of the link is read and written. One row of [`KEYS`] is all there is to know about a key.
+/// How one key of the link is read and written: a row of [`KEYS`].
 struct Key {
     name: &'static str,
-    /// May appear several times in a link, and is an array as JSON.
+    /// May appear several times in a link; an array in JSON.
     repeatable: bool,
     read: fn(&mut ViewerState, &str) -> Read,
     write: fn(&ViewerState) -> Written,
-    /// Sets the field back to its default.
+    /// Resets the field to its default.
     reset: fn(&mut ViewerState),
 }
 
 /// The value of a key, as text for the link and as JSON for scripts.
 #[derive(PartialEq)]
 enum Written {
-    /// Not in the link; null as JSON.
+    /// Not in the link; null in JSON.
     Unset,
     Flag(bool),
     Number(String, Value),
@@ -67,7 +67,7 @@ impl Written {
     }
 }
 
-/// A key with one value. `$read` turns its text into the field's value, or into nothing where the text is not `$expected`.
+/// A key with one value. `$read` returns the field's value, or `None` if the text is not what `$expected` says.
 macro_rules! key {
     ($name:literal, $group:ident $(.$field:ident)?, $read:expr, $write:expr, $expected:literal) => {
         Key {
@@ -86,7 +86,7 @@ macro_rules! key {
     };
 }
 
-/// A key with any number of values, each read and written by itself.
+/// A key with any number of values.
 macro_rules! list {
     ($name:literal, $group:ident.$field:ident, $read:expr, $write:expr, $expected:literal) => {
         Key {
@@ -105,11 +105,11 @@ macro_rules! list {
     };
 }
 
-/// In the order they are written.
+/// All keys, in the order they are written.
 const KEYS: &[Key] = &[
     list!("model", sources.model, read_source, String::clone, "a URL, sample:NAME or a file name"),
     list!("motion", sources.motion, read_source, String::clone, "a URL, sample:NAME or a file name"),
-    list!("map", retarget.map, read_map, map_text, "a URL, the compact form of a copied link, or a joint map in JSON"),
+    list!("map", retarget.map, read_map, map_text, "a URL, the compact form of a copied link, or a joint map as JSON"),
     key!(
         "unmapped",
         retarget.unmapped,
@@ -162,13 +162,13 @@ const KEYS: &[Key] = &[
     key!("pose", edits.pose, read_pose, write_pose, "joints with three angles in degrees: 4:30:0:-15,7:0:90:0"),
     key!("names", edits.names, read_names, write_names, "joints with their names: 4:Left%20knee,7:Hand"),
     Key { name: "show", repeatable: false, read: read_show, write: write_show, reset: reset_show },
-    key!("joint", selection.joint, read_index, write_index, "a joint's number in the file"),
+    key!("joint", selection.joint, read_index, write_index, "a joint's index in the file"),
     key!(
         "vertex",
         selection.vertex,
         read_unless_empty(read_vertex),
         write_some(vertex_text),
-        "INSTANCE:PIECE:VERTEX, from 0"
+        "INSTANCE:PRIMITIVE:VERTEX, counting from 0"
     ),
     key!(
         "camera",
@@ -191,11 +191,11 @@ fn key(name: &str) -> Option<&'static Key> {
     KEYS.iter().find(|key| key.name == name)
 }
 
-/// Kept readable: `/`, `:`, `,` and the like need no escape in a fragment.
+/// Links stay readable: `/`, `:`, `,` and the like need no escaping in a fragment.
 const ESCAPED: &AsciiSet =
     &CONTROLS.add(b' ').add(b'"').add(b'#').add(b'%').add(b'&').add(b'+').add(b'<').add(b'=').add(b'>').add(b'`');
 
-/// The part after `#`; only what differs from the default is written.
+/// Returns the part after `#`, with only what differs from the default.
 pub fn to_link(state: &ViewerState) -> String {
     let default = ViewerState::default();
     let mut text = "v=1".to_owned();
@@ -219,7 +219,7 @@ pub fn to_link(state: &ViewerState) -> String {
     text
 }
 
-/// Reads a link's part after `#` (a leading `#` is fine). Bad values are reported and skipped, unknown keys kept.
+/// Reads the part after `#`, with or without a leading `#`. Bad values are reported and skipped; unknown keys are kept.
 pub fn from_link(fragment: &str) -> (ViewerState, Vec<LinkError>) {
     let mut state = ViewerState::default();
     let mut errors = Vec::new();
@@ -231,7 +231,7 @@ pub fn from_link(fragment: &str) -> (ViewerState, Vec<LinkError>) {
     (state, errors)
 }
 
-/// All keys of the link with their values, as plain JSON: flags are booleans, numbers numbers, what is not set null.
+/// Returns all keys of the link as JSON: flags are booleans, numbers are numbers, unset keys are null.
 pub fn to_object(state: &ViewerState) -> Value {
     let mut object = Map::new();
     object.insert("v".to_owned(), json!(1));
@@ -246,7 +246,7 @@ pub fn to_object(state: &ViewerState) -> Value {
     Value::Object(object)
 }
 
-/// A state with some keys of the link set anew; null sets a key back to its default. Bad values are reported and skipped.
+/// Returns a state with some keys of the link replaced; null resets a key to its default. Bad values are reported and skipped.
 pub fn from_object(base: &ViewerState, partial: &Value) -> (ViewerState, Vec<LinkError>) {
     let mut state = base.clone();
     let mut errors = Vec::new();
@@ -291,7 +291,7 @@ fn set_value(state: &mut ViewerState, key: &str, value: &str, errors: &mut Vec<L
     let read = match self::key(key) {
         Some(key) => (key.read)(state, value),
         None if key == "v" && value == "1" => Read::Done,
-        None if key == "v" => Read::Bad("1, the only version there is"),
+        None if key == "v" => Read::Bad("1, the only version"),
         None => Read::Unknown,
     };
     let expected = match read {
@@ -314,9 +314,9 @@ fn set_value(state: &mut ViewerState, key: &str, value: &str, errors: &mut Vec<L
 
 enum Read {
     Done,
-    /// What was expected.
+    /// Holds what was expected.
     Bad(&'static str),
     Unknown,
-    /// Words of `show` that are not known; the others are set.
+    /// Unknown words of `show`; the others are set.
     UnknownShow(Vec<String>),
 }

@@ -1,4 +1,4 @@
-//! What a person has set, as plain data, and the one way to change it. Knows no user interface, GPU or clock.
+//! The view state, everything the user can set, as plain data, and the commands that change it. No UI, GPU or clock.
 
 mod apply;
 mod camera;
@@ -34,8 +34,7 @@ pub use maps::{
 };
 pub use names::{title, written_skeleton};
 pub use playhead::{
-    PoseSampler, active_clip, choice_of_clip, clip_secs, degrees_by_hand, play_range, rotation_by_hand,
-    world_from_model,
+    PoseSampler, active_clip, choice_of_clip, clip_secs, manual_degrees, manual_rotation, play_range, world_from_model,
 };
 pub use stage::{SourceOnStage, source_on_stage};
 pub use view::{

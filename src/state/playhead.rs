@@ -1,4 +1,4 @@
-//! Which clip is meant, and at which time of it: the step from a view state to a pose.
+//! From a view state to a pose: the active clip, its time, and the sampled pose.
 
 use glam::{Affine3A, EulerRot, Quat};
 
@@ -6,37 +6,37 @@ use super::{ClipChoice, UpAxis, ViewerState};
 use crate::anim::{Pose, SampleCursor, TimeRange, clip_time};
 use crate::library::Model;
 
-/// The clip that plays, by index; none for the rest pose, for a model without clips, or when no clip is called that.
+/// Returns the index of the active clip; `None` for the rest pose, a model without clips, or an unknown name.
 pub fn active_clip(model: &Model, state: &ViewerState) -> Option<usize> {
     clip_of(model, &state.playhead.clip)
 }
 
-/// The clip that a choice stands for.
+/// Returns the index of the chosen clip.
 pub(super) fn clip_of(model: &Model, choice: &ClipChoice) -> Option<usize> {
     match choice {
         ClipChoice::First => (model.clip_count() > 0).then_some(0),
         ClipChoice::RestPose => None,
-        ClipChoice::Named(name) => clip_called(model, name),
+        ClipChoice::Named(name) => find_clip(model, name),
     }
 }
 
-/// A clip by its name, by the title it is shown under, or by its index in decimal.
-fn clip_called(model: &Model, name: &str) -> Option<usize> {
+/// Finds a clip by its name, its display title, or its index in decimal.
+fn find_clip(model: &Model, name: &str) -> Option<usize> {
     let by_name = model.clips().position(|clip| !name.is_empty() && clip.name() == name);
     let by_title = || model.clip_titles().iter().position(|title| title == name);
     let by_index = || name.parse::<usize>().ok().filter(|&index| index < model.clip_count());
     by_name.or_else(by_title).or_else(by_index)
 }
 
-/// How a state names a clip: by name when that is enough, else by index.
+/// Returns how a state refers to a clip: by name if that is unambiguous, otherwise by index.
 pub fn choice_of_clip(model: &Model, clip: usize) -> ClipChoice {
     let name = model.clip(clip).map_or("", |clip| clip.name());
-    let found = clip_called(model, name);
+    let found = find_clip(model, name);
     let unique = model.clips().filter(|other| other.name() == name).count() == 1;
     ClipChoice::Named(if unique && found == Some(clip) { name.to_owned() } else { clip.to_string() })
 }
 
-/// In and out points within a clip, in seconds.
+/// Returns the in and out points, clamped to the clip.
 pub fn play_range(model: &Model, clip: usize, state: &ViewerState) -> TimeRange {
     let duration_secs = model.clip(clip).map_or(0.0, |clip| f64::from(clip.duration_secs()));
     match state.playhead.range {
@@ -48,12 +48,12 @@ pub fn play_range(model: &Model, clip: usize, state: &ViewerState) -> TimeRange 
     }
 }
 
-/// The time of the clip that is shown: the playhead, folded into the range by the loop mode.
+/// Returns the clip time of the current pose: the playhead, folded into the range by the loop mode.
 pub fn clip_secs(model: &Model, clip: usize, state: &ViewerState) -> f64 {
     clip_time(state.playhead.time_secs, play_range(model, clip, state), state.playback.loop_mode)
 }
 
-/// A pose, and what it takes to sample the next one without allocating.
+/// A pose, with the buffers to sample the next one without allocating.
 #[derive(Debug, Default)]
 pub struct PoseSampler {
     pub pose: Pose,
@@ -63,8 +63,8 @@ pub struct PoseSampler {
 }
 
 impl PoseSampler {
-    /// The pose that is shown: rest, then what plays below the clip, then the clip, blended with the one before while that
-    /// fades, then the joints and morph weights set by hand. Allocates nothing once it has grown.
+    /// Samples the current pose: rest pose, layers below the clip, the clip, the crossfade from the previous one, then joints and
+    /// morph weights set manually. Allocates nothing once the buffers have grown.
     pub fn sample(&mut self, model: &Model, state: &ViewerState) {
         let clip = active_clip(model, state);
         let time_secs = clip.map_or(0.0, |clip| clip_secs(model, clip, state));
@@ -79,13 +79,13 @@ impl PoseSampler {
             let range = TimeRange { start_secs: 0.0, end_secs: duration_secs };
             let time_secs = clip_time(elapsed_secs, range, state.playback.loop_mode);
             sample_clip(model, from, time_secs, elapsed_secs, &mut self.before_cursor, &mut self.before);
-            // Slow at both ends, so that nothing starts or stops at once.
+            // Smoothstep: eases in and out.
             self.pose.blend(&self.before, (weight * weight * (3.0 - 2.0 * weight)) as f32);
         }
         for (&joint, &degrees) in &state.edits.pose {
             if let Some(joint) = model.asset.skeleton.joint_of_source(joint) {
                 let rest = model.asset.skeleton.rest().locals[joint.get()].rotation;
-                self.pose.locals[joint.get()].rotation = rotation_by_hand(rest, degrees);
+                self.pose.locals[joint.get()].rotation = manual_rotation(rest, degrees);
             }
         }
         for (&index, &weight) in &state.edits.morph {
@@ -96,19 +96,19 @@ impl PoseSampler {
     }
 }
 
-/// A joint's local rotation when it is turned by hand: about its own X, then its new Y, then its new Z, from its rest.
-pub fn rotation_by_hand(rest: Quat, degrees: [f32; 3]) -> Quat {
+/// Returns a manually posed joint's local rotation: from its rest rotation about its own X, then its new Y, then its new Z.
+pub fn manual_rotation(rest: Quat, degrees: [f32; 3]) -> Quat {
     let [x, y, z] = degrees.map(f32::to_radians);
     (rest * Quat::from_euler(EulerRot::XYZ, x, y, z)).normalize()
 }
 
-/// The angles of [`rotation_by_hand`] for a local rotation.
-pub fn degrees_by_hand(rest: Quat, rotation: Quat) -> [f32; 3] {
+/// Returns the angles of [`manual_rotation`] for a local rotation.
+pub fn manual_degrees(rest: Quat, rotation: Quat) -> [f32; 3] {
     let (x, y, z) = (rest.conjugate() * rotation).normalize().to_euler(EulerRot::XYZ);
     [x, y, z].map(f32::to_degrees)
 }
 
-/// A clip at a time over the rest, what plays below it at a time of its own; no clip: the rest.
+/// Samples a clip over the rest pose, and its layers at `elapsed_secs`; without a clip, the rest pose.
 fn sample_clip(
     model: &Model,
     clip: Option<usize>,
@@ -126,7 +126,7 @@ fn sample_clip(
     clip.sample(skeleton, time_secs as f32, cursor, pose);
 }
 
-/// Turns the file's up axis to +Y by quarter turns.
+/// Returns the quarter turns that bring the file's up axis to +Y.
 pub fn world_from_model(up: UpAxis) -> Affine3A {
     use std::f32::consts::{FRAC_PI_2, PI};
     Affine3A::from_quat(match up {

@@ -1,4 +1,4 @@
-//! The file that the playing clip is borrowed from, shown beside the model or in its place.
+//! The source of the active retargeted clip, displayed beside the model or overlaid on it.
 
 use glam::{Affine3A, Vec3};
 
@@ -7,17 +7,17 @@ use super::playhead::{active_clip, world_from_model};
 use crate::library::{BorrowedClip, Library, Model};
 use crate::mesh::Bounds;
 
-/// What is played as it is in its own file.
+/// A motion's own skeleton, playing the original clip.
 #[derive(Debug, Clone, Copy)]
 pub struct SourceOnStage<'a> {
     pub model: &'a Model,
-    /// Of its own clips.
+    /// Index among its own clips.
     pub clip: usize,
     pub borrowed: &'a BorrowedClip,
     pub world_from_source: Affine3A,
 }
 
-/// None when the state does not ask for it, or the clip is the model's own.
+/// Returns the source on stage; `None` if the state hides it or the clip is not retargeted.
 pub fn source_on_stage<'a>(library: &'a Library, state: &ViewerState) -> Option<SourceOnStage<'a>> {
     let model = library.active().filter(|_| state.display.show.source)?;
     let borrowed = model.borrowed(active_clip(model, state)?)?;
@@ -28,11 +28,11 @@ pub fn source_on_stage<'a>(library: &'a Library, state: &ViewerState) -> Option<
         model.rest_bounds().transformed(&world_from_model(state.edits.up)),
         source.rest_bounds().transformed(&in_place),
     ];
-    let apart = match state.display.show.over {
+    let distance = match state.display.show.over {
         true => 0.0,
         false => 1.15 * (half_width(sizes[0]) + half_width(sizes[1])),
     };
-    let world_from_source = Affine3A::from_translation(apart * Vec3::NEG_X) * in_place;
+    let world_from_source = Affine3A::from_translation(distance * Vec3::NEG_X) * in_place;
     world_from_source.is_finite().then_some(SourceOnStage {
         model: source,
         clip: borrowed.source_clip,

@@ -1,4 +1,4 @@
-//! The view state: together with the library it determines the picture completely.
+//! The view state. Together with the library, it completely determines the image.
 
 use std::collections::BTreeMap;
 
@@ -37,20 +37,20 @@ pub struct ViewerState {
 }
 
 impl ViewerState {
-    /// The view of another model: everything about the model is taken from `model`, the rest stays. A crossfade ends.
+    /// Returns the view of another model: everything about the model comes from `model`, the rest is kept. Ends a crossfade.
     pub fn for_model(self, model: Self) -> Self {
         let Self { playback, display, camera_options, page, .. } = self;
         let playhead = Playhead { fade: None, ..model.playhead };
         Self { playhead, playback, display, camera_options, page, ..model }
     }
 
-    /// The default view of a model from this source.
+    /// Returns the default view of a model from this source.
     pub fn of_model(source: String) -> Self {
         let sources = Sources { model: vec![source], ..Sources::default() };
         Self { sources, ..Self::default() }
     }
 
-    /// The same view, of a sample if it names no model.
+    /// Returns the view with a sample as its model if it names none.
     pub fn or_sample(mut self, name: &str) -> Self {
         if self.sources.model.is_empty() {
             self.sources.model.push(format!("sample:{name}"));
@@ -58,25 +58,25 @@ impl ViewerState {
         self
     }
 
-    /// Whether the camera orbits by itself. A file's own camera stays where it is.
+    /// Whether the turntable moves the camera. A file's own camera stays where it is.
     pub fn is_turning(&self) -> bool {
         self.camera_options.turntable != 0.0 && !matches!(self.camera, CameraChoice::File(_))
     }
 
-    /// The same view without anything that moves by itself, for users who prefer reduced motion.
+    /// Returns the view paused and without turntable, for users who prefer reduced motion.
     pub fn calmed(mut self) -> Self {
         self.playback.playing = false;
         self.camera_options.turntable = 0.0;
         self
     }
 
-    /// What undo covers.
+    /// Returns the groups that undo covers.
     pub fn undoable(&self) -> UndoableEdits<'_> {
         let Self { retarget, edits, inspect, display, .. } = self;
         UndoableEdits { retarget, edits, inspect, display }
     }
 
-    /// Takes over from another state what undo covers.
+    /// Copies the groups that undo covers from another state.
     pub fn restore_undoable(&mut self, from: &Self) {
         let UndoableEdits { retarget, edits, inspect, display } = from.undoable();
         self.retarget.clone_from(retarget);
@@ -94,15 +94,15 @@ pub struct UndoableEdits<'a> {
     display: &'a Display,
 }
 
-/// The files.
+/// The files and the scene.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Sources {
     /// Where the active model comes from: URLs, `sample:NAME`, or names of local files.
     pub model: Vec<String>,
-    /// Files whose clips are retargeted, besides those that come with the model: as for `model`.
+    /// Files whose clips are retargeted, besides those in the model's own archive; written like `model`.
     pub motion: Vec<String>,
-    /// Scene of the file; none: the file's default.
+    /// Scene of the file; `None` is the file's default.
     pub scene: Option<usize>,
 }
 
@@ -110,9 +110,9 @@ pub struct Sources {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct RetargetEdits {
-    /// One joint map per pair of skeletons; a missing one is proposed.
+    /// One joint map per pair of skeletons; a missing map is proposed.
     pub map: Vec<MotionMap>,
-    /// These three override the maps; none: as the map says.
+    /// Override the maps; `None` leaves it to the map.
     pub unmapped: Option<Unmapped>,
     pub root: Option<RootOptions>,
     pub feet: Option<Feet>,
@@ -124,11 +124,11 @@ pub struct RetargetEdits {
 pub struct Edits {
     /// Morph weights by index in `Pose::morph_weights`; they override the clip.
     pub morph: BTreeMap<usize, f32>,
-    /// Joints posed manually, by index in the file: Euler angles in degrees, see [`super::rotation_by_hand`]. They override
+    /// Joints posed manually, by index in the file: Euler angles in degrees, see [`super::manual_rotation`]. They override
     /// the clip.
     pub pose: BTreeMap<usize, [f32; 3]>,
-    /// Custom joint names, by index in the file; never empty. They are shown instead of the file's, and written except
-    /// where a glTF file is written as it was.
+    /// Custom joint names, by index in the file; never empty. They replace the file's names on screen and in exported files,
+    /// except where a glTF file is copied unchanged.
     pub names: BTreeMap<usize, String>,
     pub up: UpAxis,
 }
@@ -143,7 +143,7 @@ pub struct Inspect {
     pub split: bool,
 }
 
-/// The clip and the place in it.
+/// The active clip and the time in it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Playhead {
@@ -151,14 +151,14 @@ pub struct Playhead {
     /// In clip seconds; runs on beyond the range while looping.
     pub time_secs: f64,
     pub fade: Option<Fade>,
-    /// In and out points; none: the whole clip.
+    /// In and out points; `None` is the whole clip.
     pub range: Option<TimeRange>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Selection {
-    /// By index in the file: its transforms are shown, and its influence with `inspect.weights`.
+    /// Joint by index in the file: displays its transforms and, with `inspect.weights`, its influence.
     pub joint: Option<usize>,
     /// The vertex whose skinning is explained.
     pub vertex: Option<VertexChoice>,
@@ -185,9 +185,9 @@ impl Default for Playback {
 pub struct Display {
     pub skinning: SkinningMode,
     pub show: Show,
-    /// In stops: the picture is multiplied by 2^exposure.
+    /// In stops: the image is multiplied by 2^exposure.
     pub exposure: f32,
-    /// Rotation of the lighting about the vertical.
+    /// Rotation of the lighting about the vertical axis.
     pub environment_degrees: f32,
     pub background: Background,
 }
@@ -204,15 +204,15 @@ impl Default for Display {
     }
 }
 
-/// How any camera behaves; where it is depends on the model and is [`ViewerState::camera`].
+/// How any camera behaves. Its position depends on the model: see [`ViewerState::camera`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct CameraOptions {
-    /// Vertical.
+    /// Vertical field of view.
     pub fov_degrees: f32,
     /// The camera travels with the character's root.
     pub follow: bool,
-    /// How fast the camera orbits by itself, degrees per second of the clock.
+    /// Speed of the turntable in degrees per second of the clock.
     pub turntable: f32,
 }
 
@@ -232,7 +232,7 @@ pub struct PageOptions {
     pub unknown: BTreeMap<String, String>,
 }
 
-/// A vertex of one piece of a mesh, where that mesh hangs on a node: all as indices into the asset's lists.
+/// A vertex of a primitive of a mesh instance; all are indices into the asset's lists.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct VertexChoice {
     pub instance: usize,
@@ -244,9 +244,9 @@ pub struct VertexChoice {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Fade {
     pub clip: ClipChoice,
-    /// Where the clip was then, in its own seconds; it goes on from there.
+    /// Clip time when the crossfade started; the clip plays on from there.
     pub time_secs: f64,
-    /// Since the change, in clip seconds.
+    /// Time since then, in clip seconds.
     pub elapsed_secs: f64,
 }
 
@@ -256,11 +256,11 @@ pub enum ClipChoice {
     #[default]
     First,
     RestPose,
-    /// A clip's name, or its index in decimal when the name is empty or not unique.
+    /// A clip's name, or its index in decimal if the name is empty or not unique.
     Named(String),
 }
 
-/// What is drawn besides the model. The skeleton is drawn anyway when there is no mesh.
+/// What is drawn. A model without meshes always shows its skeleton.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Show {
@@ -270,15 +270,15 @@ pub struct Show {
     pub wireframe: bool,
     pub grid: bool,
     pub shadow: bool,
-    /// The file that the clip is borrowed from, beside the model.
+    /// The source of a retargeted clip, beside the model.
     pub source: bool,
-    /// The same, in the model's own place.
+    /// The source, overlaid on the model.
     pub over: bool,
-    /// With the source: bones are coloured by how far their turns away from the rest differ from the source's.
+    /// With the source: colours bones by their rotation error relative to it.
     pub error: bool,
-    /// The skeleton as spheres and boxes instead of pointed bones.
+    /// Draws the skeleton as spheres and boxes instead of octahedral bones.
     pub boxes: bool,
-    /// Meshes without normals are smooth instead of flat.
+    /// Shades meshes without normals smooth instead of flat.
     pub smooth: bool,
 }
 

@@ -6,7 +6,7 @@ use glam::{Quat, Vec3};
 use super::picture::{pane_at, to_screen};
 use super::{Output, Shown, UiState, style};
 use crate::anim::Transform;
-use crate::state::{Command, degrees_by_hand};
+use crate::state::{Command, manual_degrees};
 
 const RADIUS_POINTS: f32 = 72.0;
 /// The disc for free turning, as a share of the rings.
@@ -67,7 +67,7 @@ pub(super) fn show(
         local.grab = Some(grab);
         let world = (turn * handle.world).normalize();
         let parent = handle.world * handle.local.conjugate();
-        let degrees = degrees_by_hand(handle.rest, parent.conjugate() * world);
+        let degrees = manual_degrees(handle.rest, parent.conjugate() * world);
         // Tenths of a degree are finer than a pointer, and keep the link short.
         let degrees = degrees.map(|angle| (10.0 * angle).round() / 10.0);
         out.commands.push(Command::SetPose { joint: handle.joint, degrees: Some(degrees) });

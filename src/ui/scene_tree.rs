@@ -9,7 +9,7 @@ use super::{Output, Shown, UiState, clips, controls, formula, style};
 use crate::anim::{JointIndex, Transform};
 use crate::asset::Asset;
 use crate::library::Model;
-use crate::state::{Command, ViewerState, degrees_by_hand, title};
+use crate::state::{Command, ViewerState, manual_degrees, title};
 
 const ROW_HEIGHT: f32 = 26.0;
 const LEAST_TREE_HEIGHT: f32 = 8.0 * ROW_HEIGHT;
@@ -368,7 +368,7 @@ fn name(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, panel:
 fn by_hand(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, rotation: Quat, out: &mut Output) {
     let number = asset.skeleton.source_index(joint);
     let rest = asset.skeleton.rest().locals.get(joint.get()).map_or(Quat::IDENTITY, |local| local.rotation);
-    let now = shown.state.edits.pose.get(&number).copied().unwrap_or_else(|| degrees_by_hand(rest, rotation));
+    let now = shown.state.edits.pose.get(&number).copied().unwrap_or_else(|| manual_degrees(rest, rotation));
     // Never minus nothing.
     let now = now.map(|angle| angle + 0.0);
     controls::hint(ui, "From its rest: about its X, then its Y, then its Z. Or drag the rings in the picture.");

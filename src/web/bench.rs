@@ -1,4 +1,4 @@
-//! Work that is measured in the page, for benches/web.
+//! Benchmarks that run in the page, for benches/web.
 
 use glam::Affine3A;
 use wasm_bindgen::prelude::*;
@@ -22,10 +22,10 @@ extern "C" {
     fn now() -> f64;
 }
 
-/// Reads a .glb with its images, up to what can be shown, but shows nothing: what GLTFLoader.parse does.
+/// Loads a .glb with its images without showing it, like `GLTFLoader.parse`.
 ///
 /// # Errors
-/// When the file cannot be read.
+/// If the file cannot be read.
 #[wasm_bindgen]
 pub async fn bench_load(bytes: Vec<u8>) -> Result<(), JsError> {
     let items = vec![Item::File("model.glb".to_owned(), bytes)];
@@ -35,11 +35,11 @@ pub async fn bench_load(bytes: Vec<u8>) -> Result<(), JsError> {
     Ok(())
 }
 
-/// µs per character and frame to sample a clip of a .glb, go to model space and write the skins' palettes. Each character
-/// has its own phase.
+/// Returns the µs per character and frame to sample a clip of a .glb, convert it to model space and write the skins' palettes.
+/// Each character has its own phase.
 ///
 /// # Errors
-/// When the file cannot be read or has no clip of that name.
+/// If the file cannot be read or has no clip of that name.
 #[wasm_bindgen]
 pub fn bench_characters(bytes: &[u8], clip: &str, characters: u32, frames: u32) -> Result<f64, JsError> {
     let asset = read(bytes)?;
@@ -71,10 +71,10 @@ pub fn bench_characters(bytes: &[u8], clip: &str, characters: u32, frames: u32) 
     Ok(1000.0 * (now() - start_ms) / (f64::from(frames.max(1)) * f64::from(characters.max(1))))
 }
 
-/// ms to make a clip of one .glb over for another, by the map that is proposed (which is not timed).
+/// Returns the ms to retarget a clip of one .glb to another with the proposed map, excluding the proposal.
 ///
 /// # Errors
-/// When a file cannot be read, has no clip of that name, or nothing in common with the other.
+/// If a file cannot be read, the motion has no clip of that name, or the two have nothing in common.
 #[wasm_bindgen]
 pub fn bench_retarget(model: &[u8], motion: &[u8], clip: &str, rounds: u32) -> Result<f64, JsError> {
     let error = |message: &dyn std::fmt::Display| JsError::new(&message.to_string());
@@ -85,8 +85,8 @@ pub fn bench_retarget(model: &[u8], motion: &[u8], clip: &str, rounds: u32) -> R
     let start_ms = now();
     for _ in 0..rounds {
         let bodies = [Body { asset: &model, slots: &slots[0] }, Body { asset: &motion, slots: &slots[1] }];
-        let made = Retargeting::new(bodies[0], bodies[1], clip, &map).and_then(|pair| pair.bake());
-        std::hint::black_box(made.map_err(|e| error(&e))?);
+        let retargeted = Retargeting::new(bodies[0], bodies[1], clip, &map).and_then(|pair| pair.bake());
+        std::hint::black_box(retargeted.map_err(|e| error(&e))?);
     }
     Ok((now() - start_ms) / f64::from(rounds.max(1)))
 }

@@ -1,4 +1,4 @@
-//! What the shell's `window.gaitway` and dialog call. Documents cross as JSON text, errors as the message a person sees.
+//! Functions for the shell's `window.gaitway` and dialogs. Documents are passed as JSON text, errors as messages for the user.
 
 use std::rc::Rc;
 
@@ -15,29 +15,28 @@ use crate::library::Motion;
 use crate::samples;
 use crate::state::{Command, MotionMap, ViewerState, active_clip, from_object, to_object};
 
-/// Opens one set: an array of addresses and of `[name, Uint8Array]`. A model takes the place of what is shown; motions and
-/// joint maps are used for it. With the role `motion` everything is borrowed from, models too. Resolves to
-/// `{shown, document}` once it is on the screen: which of `model`, `motion` and `map` it was, and the inspect document.
-/// What is shown stays when that fails.
+/// Opens one set: an array of URLs and `[name, Uint8Array]` pairs. A model becomes the active one; motions and joint maps are
+/// applied to the active model. With the role `motion`, models are opened as motions too. Resolves once it is on screen, to
+/// `{shown, document}`: which of `model`, `motion` and `map` it was, and the inspect document. Changes nothing on failure.
 #[wasm_bindgen]
-pub async fn open(items: Array, role: Option<String>, is_own: bool) -> Result<String, JsError> {
+pub async fn open(items: Array, role: Option<String>, is_private: bool) -> Result<String, JsError> {
     let page = page().map_err(error)?;
     let items = items_of(&items).map_err(error)?;
     let role = if role.as_deref() == Some("motion") { Role::Motion } else { Role::Any };
-    let shown = show(&page, What::Items { items, role, is_own }).await.map_err(error)?;
-    Ok(json!({ "shown": shown.what, "document": shown.document }).to_string())
+    let opened = load(&page, Request::Items { items, role, is_private }).await.map_err(error)?;
+    Ok(json!({ "shown": opened.kind, "document": opened.document }).to_string())
 }
 
-/// Takes over another part after `#`, with its files when they are others than those shown, or when all is to be read
-/// `again`. Resolves to `{loaded, problems}`: the addresses that were read, and what of the link could not be had.
+/// Opens a link, given the part after `#`. Loads its files if they differ from the loaded ones, or all of them with `reload`.
+/// Resolves to `{loaded, problems}`: the sources that were read, and what could not be opened.
 #[wasm_bindgen]
-pub async fn follow_link(link: String, again: bool) -> Result<String, JsError> {
+pub async fn follow_link(link: String, reload: bool) -> Result<String, JsError> {
     let page = page().map_err(error)?;
     let state = state_of_link(&link, &page.shell);
-    take_over(&page, state, again, true).await.map_err(error)
+    open_state(&page, state, reload, true).await.map_err(error)
 }
 
-/// Sets some keys of the link; resolves after the frame that shows them, to the same as [`follow_link`].
+/// Sets some keys of the link; resolves like [`follow_link`], after the frame that shows the result.
 #[wasm_bindgen]
 pub async fn apply(partial: String) -> Result<String, JsError> {
     let page = page().map_err(error)?;
@@ -47,51 +46,53 @@ pub async fn apply(partial: String) -> Result<String, JsError> {
     if !errors.is_empty() || !needs_files(&before, &state) {
         let (promise, reply) = promise::<()>(|()| JsValue::UNDEFINED);
         page.inbox.send(Message::Script(ScriptCall::Apply(partial, reply)));
-        return settled(promise).await.map(|_| news(&[], &[])).map_err(error);
+        return settled(promise).await.map(|_| report(&[], &[])).map_err(error);
     }
-    take_over(&page, state.or_sample(samples::WALKER), false, false).await.map_err(error)
+    open_state(&page, state.or_sample(samples::WALKER), false, false).await.map_err(error)
 }
 
-/// Takes the model off the list that was shown while a link's own files were waited for.
+/// Closes the placeholder for a link's missing files.
 #[wasm_bindgen]
-pub fn close_stand_in() -> Result<(), JsError> {
+pub fn close_placeholder() -> Result<(), JsError> {
     let page = page().map_err(error)?;
     with_app(&page, App::close_placeholder).map_err(error)
 }
 
-/// Shows why something that was asked of the shell cannot be had.
+/// Shows why the shell refused a request.
 #[wasm_bindgen]
 pub fn refuse(problem: String) -> Result<(), JsError> {
     page().map_err(error)?.inbox.send(Message::Failed(problem));
     Ok(())
 }
 
-/// Whether anything that is shown or borrowed from is a person's own.
+/// Whether anything loaded is one of the user's local files.
 #[wasm_bindgen]
 pub fn is_private() -> Result<bool, JsError> {
     let page = page().map_err(error)?;
     with_app(&page, |app| app.editor().is_private()).map_err(error)
 }
 
-/// The picture of a QR code: a line of `0` and `1` for each row. None for a text too long to be read off a screen.
+/// Returns a QR code as a line of `0` and `1` per row; `None` if the text is too long to scan off a screen.
 #[wasm_bindgen]
 pub fn qr(text: &str) -> Option<String> {
-    let largest = qrcodegen::Version::new(30);
+    let max_version = qrcodegen::Version::new(30);
     let segments = qrcodegen::QrSegment::make_segments(text);
-    let (least, smallest) = (qrcodegen::QrCodeEcc::Low, qrcodegen::Version::MIN);
-    let code = qrcodegen::QrCode::encode_segments_advanced(&segments, least, smallest, largest, None, true).ok()?;
+    let (min_correction, min_version) = (qrcodegen::QrCodeEcc::Low, qrcodegen::Version::MIN);
+    let code =
+        qrcodegen::QrCode::encode_segments_advanced(&segments, min_correction, min_version, max_version, None, true)
+            .ok()?;
     let row = |y| (0..code.size()).map(|x| if code.get_module(x, y) { '1' } else { '0' }).collect();
     Some((0..code.size()).map(row).collect::<Vec<String>>().join("\n"))
 }
 
-/// The link's keys as JSON.
+/// Returns the link's keys as JSON.
 #[wasm_bindgen]
 pub fn state() -> Result<String, JsError> {
     let page = page().map_err(error)?;
     with_app(&page, |app| to_object(app.state()).to_string()).map_err(error)
 }
 
-/// The pose document of what is on the screen.
+/// Returns the pose document of the current pose.
 #[wasm_bindgen]
 pub fn pose() -> Result<String, JsError> {
     let page = page().map_err(error)?;
@@ -104,7 +105,7 @@ pub fn stats() -> Result<String, JsError> {
     with_app(&page, |app| app.stats().to_string()).map_err(error)
 }
 
-/// PNG bytes of the picture alone.
+/// Returns the viewport as PNG bytes.
 #[wasm_bindgen]
 pub async fn screenshot() -> Result<Uint8Array, JsError> {
     let page = page().map_err(error)?;
@@ -113,7 +114,7 @@ pub async fn screenshot() -> Result<Uint8Array, JsError> {
     settled(promise).await.map(JsValue::unchecked_into).map_err(error)
 }
 
-/// Resolves when the first picture is drawn. From then on time goes by.
+/// Resolves when the first image has been drawn, and starts time.
 #[wasm_bindgen]
 pub async fn begin() -> Result<(), JsError> {
     let page = page().map_err(error)?;
@@ -121,7 +122,7 @@ pub async fn begin() -> Result<(), JsError> {
     with_app(&page, App::begin).map_err(error)
 }
 
-/// What the live regions say: `{model, clip, playing, problem}`; no clip is the rest pose.
+/// Returns the contents of the live regions as `{model, clip, playing, problem}`; no clip means the rest pose.
 #[wasm_bindgen]
 pub fn summary() -> Result<String, JsError> {
     let page = page().map_err(error)?;
@@ -135,113 +136,124 @@ pub fn summary() -> Result<String, JsError> {
     with_app(&page, summary).map_err(error)
 }
 
-/// Whether files have to be read before `state` can be shown instead of `before`.
+/// Whether files must be read to go from `before` to `state`.
 fn needs_files(before: &ViewerState, state: &ViewerState) -> bool {
     let has_map_file = || state.retarget.map.iter().any(|map| matches!(map, MotionMap::File(_)));
     state.sources.model != before.sources.model || state.sources.motion != before.sources.motion || has_map_file()
 }
 
-/// Shows a state, with its files where they are others than those shown, or in any case. What a link lacks is for the shell
-/// to say.
-async fn take_over(page: &Rc<Page>, state: ViewerState, again: bool, is_link: bool) -> Result<String, String> {
+/// Opens a state. Loads its files if they differ from the loaded ones, or all of them with `reload`. For a link, the shell
+/// reports what is missing.
+async fn open_state(page: &Rc<Page>, state: ViewerState, reload: bool, is_link: bool) -> Result<String, String> {
     let before = with_app(page, |app| app.state().clone())?;
-    if !again && !needs_files(&before, &state) {
+    if !reload && !needs_files(&before, &state) {
         page.inbox.send(Message::Commands(vec![Command::Replace(Box::new(state))]));
-        return Ok(news(&[], &[]));
+        return Ok(report(&[], &[]));
     }
-    let with_model = again || !with_app(page, |app| app.editor().holds(&state))?;
-    let held = if again { Vec::new() } else { with_app(page, |app| app.library().motions().to_vec())? };
+    let with_model = reload || !with_app(page, |app| app.editor().holds(&state))?;
+    let current_motions = if reload { Vec::new() } else { with_app(page, |app| app.library().motions().to_vec())? };
     let models = state.sources.model.iter().filter(|_| with_model);
-    let motions = state.sources.motion.iter().filter(|source| !held.iter().any(|motion| motion.origin == **source));
+    let motions =
+        state.sources.motion.iter().filter(|source| !current_motions.iter().any(|motion| motion.origin == **source));
     let loaded: Vec<String> = models.chain(motions).cloned().collect();
-    let shown = show(page, What::View { state: Box::new(state), with_model, held, is_link }).await?;
-    Ok(news(&loaded, &shown.problems))
+    let request = Request::View { state: Box::new(state), with_model, current_motions, is_link };
+    let opened = load(page, request).await?;
+    Ok(report(&loaded, &opened.problems))
 }
 
-fn news(loaded: &[String], problems: &[String]) -> String {
+fn report(loaded: &[String], problems: &[String]) -> String {
     json!({ "loaded": loaded, "problems": problems }).to_string()
 }
 
-/// What is to be opened.
-enum What {
-    /// The present state is kept as far as it fits.
-    Items { items: Vec<Item>, role: Role, is_own: bool },
-    /// A whole view, with its model or with the one that is shown; of a link, the shell says what is missing.
-    View { state: Box<ViewerState>, with_model: bool, held: Vec<Motion>, is_link: bool },
+/// What to open.
+enum Request {
+    /// Files; as much of the current state as fits is kept.
+    Items { items: Vec<Item>, role: Role, is_private: bool },
+    /// A whole view, with its model or on the active one. For a link, the shell reports what is missing.
+    View { state: Box<ViewerState>, with_model: bool, current_motions: Vec<Motion>, is_link: bool },
 }
 
-struct Shown {
+/// What was opened.
+struct Opened {
     /// `model`, `motion` or `map`.
-    what: &'static str,
+    kind: &'static str,
     /// The inspect document.
     document: Value,
-    /// What could not be had.
+    /// What could not be opened.
     problems: Vec<String>,
 }
 
-/// Loads and shows.
-async fn show(page: &Rc<Page>, what: What) -> Result<Shown, String> {
-    let load = page.loads.get() + 1;
-    page.loads.set(load);
+/// Loads what was requested and shows it, unless another load starts in the meantime.
+async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, String> {
+    let number = page.loads.get() + 1;
+    page.loads.set(number);
     let progress = |name: &str, received_bytes: u64, total_bytes: u64| {
-        if page.loads.get() == load {
+        if page.loads.get() == number {
             let opening = Opening { name: name.to_owned(), received_bytes, total_bytes };
             page.inbox.send(Message::OpenProgress(opening));
         }
     };
-    let shell_tells = matches!(what, What::View { is_link: true, .. });
-    let opened: Result<(Contents, Option<Box<ViewerState>>), OpenError> = match what {
-        What::Items { items, role, is_own } => {
+    let shell_reports = matches!(request, Request::View { is_link: true, .. });
+    let opened: Result<(Contents, Option<Box<ViewerState>>), OpenError> = match request {
+        Request::Items { items, role, is_private } => {
             let contents = open_items(items, role, &progress).await;
-            contents.map(|contents| (if is_own { contents.owned() } else { contents }, None))
+            contents.map(|contents| (if is_private { contents.into_private() } else { contents }, None))
         }
-        What::View { state, with_model, held, .. } => {
-            let opened = open_view(*state, with_model, &held, &progress).await;
+        Request::View { state, with_model, current_motions, .. } => {
+            let opened = open_view(*state, with_model, &current_motions, &progress).await;
             opened.map(|(contents, state)| (contents, Some(Box::new(state))))
         }
     };
-    if page.loads.get() != load {
-        return Err("something else was opened meanwhile".to_owned());
+    if page.loads.get() != number {
+        return Err("something else was opened in the meantime".to_owned());
     }
     match opened {
-        Ok((mut contents, state)) => {
-            let what = match &contents {
-                Contents { models, .. } if !models.is_empty() => "model",
-                Contents { motions: Some(_), .. } => "motion",
-                _ => "map",
-            };
-            let problems = contents.problems.clone();
-            if shell_tells {
-                contents.problems.clear();
-            } else {
-                problems.iter().for_each(|problem| page.shell.warn(problem));
-            }
-            let (promise, reply) = promise::<Value>(|document| JsValue::from_str(&document.to_string()));
-            page.inbox.send(Message::Opened { contents: Box::new(contents), state, reply: Some(reply) });
-            let text = settled(promise).await?.as_string().unwrap_or_default();
-            let document = serde_json::from_str(&text).map_err(|error| error.to_string())?;
-            Ok(Shown { what, document, problems })
-        }
+        Ok((contents, state)) => show(page, contents, state, shell_reports).await,
         Err(problem) => {
             let problem = problem.to_string();
-            let told = if shell_tells { Message::OpenGivenUp } else { Message::OpenFailed(problem.clone()) };
-            page.inbox.send(told);
+            let failed = if shell_reports { Message::OpenFailedSilently } else { Message::OpenFailed(problem.clone()) };
+            page.inbox.send(failed);
             Err(problem)
         }
     }
 }
 
+/// Hands opened files to the app; resolves once they are on screen.
+async fn show(
+    page: &Rc<Page>,
+    mut contents: Contents,
+    state: Option<Box<ViewerState>>,
+    shell_reports: bool,
+) -> Result<Opened, String> {
+    let kind = match &contents {
+        Contents { models, .. } if !models.is_empty() => "model",
+        Contents { motions: Some(_), .. } => "motion",
+        _ => "map",
+    };
+    let problems = contents.problems.clone();
+    if shell_reports {
+        contents.problems.clear();
+    } else {
+        problems.iter().for_each(|problem| page.shell.warn(problem));
+    }
+    let (promise, reply) = promise::<Value>(|document| JsValue::from_str(&document.to_string()));
+    page.inbox.send(Message::Opened { contents: Box::new(contents), state, reply: Some(reply) });
+    let text = settled(promise).await?.as_string().unwrap_or_default();
+    let document = serde_json::from_str(&text).map_err(|error| error.to_string())?;
+    Ok(Opened { kind, document, problems })
+}
+
 pub(super) fn items_of(items: &Array) -> Result<Vec<Item>, String> {
-    let wrong = || "expected addresses, files, or one object with a buffer for each name".to_owned();
+    let invalid = || "expected URLs, files, or one object with a buffer for each name".to_owned();
     items
         .iter()
         .map(|item| {
             if let Some(url) = item.as_string() {
                 return Ok(Item::Address(url.into()));
             }
-            let pair: Array = item.dyn_into().map_err(|_| wrong())?;
-            let name = pair.get(0).as_string().ok_or_else(wrong)?;
-            let bytes: Uint8Array = pair.get(1).dyn_into().map_err(|_| wrong())?;
+            let pair: Array = item.dyn_into().map_err(|_| invalid())?;
+            let name = pair.get(0).as_string().ok_or_else(invalid)?;
+            let bytes: Uint8Array = pair.get(1).dyn_into().map_err(|_| invalid())?;
             Ok(Item::File(name, bytes.to_vec()))
         })
         .collect()
@@ -252,13 +264,13 @@ fn with_app<T>(page: &Page, read: impl FnOnce(&mut App) -> T) -> Result<T, Strin
     Ok(read(&mut app))
 }
 
-/// A promise, and the reply that settles it.
+/// Returns a promise with the reply that settles it.
 fn promise<T: 'static>(into: impl FnOnce(T) -> JsValue + 'static) -> (Promise, Reply<T>) {
     let mut functions = None;
     let promise = Promise::new(&mut |resolve, reject| functions = Some((resolve, reject)));
     let reply: Reply<T> = Box::new(move |answer| {
         let call = |function: &Function, value: &JsValue| {
-            // Settling a promise runs nothing at once and cannot fail.
+            // Settling a promise only queues its callbacks; it cannot fail.
             let _ = function.call1(&JsValue::UNDEFINED, value);
         };
         match (answer, functions) {

@@ -1,4 +1,4 @@
-//! The text form of links for the page's scripts: pure functions that need no running app. Lists cross as JSON text.
+//! The text form of links for the page's scripts: pure functions that need no running app. Lists are passed as JSON text.
 
 use serde_json::json;
 use wasm_bindgen::prelude::*;
@@ -15,19 +15,19 @@ pub fn linked_files(link: &str) -> String {
     json!(json.collect::<Vec<_>>()).to_string()
 }
 
-/// Returns the same text for any two links that show the same files.
+/// Returns a key for the files of a link: links with the same key show the same files.
 #[wasm_bindgen]
 pub fn shown_files(link: &str) -> String {
     state::shown_files(link)
 }
 
-/// Returns the link to hand to others: the files named in `local` are marked as ones to bring along.
+/// Returns the link to share: the files named in `local` are marked for the recipient to supply.
 #[wasm_bindgen]
 pub fn public_link(link: &str, local: Vec<String>) -> String {
     state::public_link(link, &local)
 }
 
-/// Returns a link for a page that is embedded in another one.
+/// Returns the link of a page that is embedded in another one.
 #[wasm_bindgen]
 pub fn embedded_link(link: &str) -> String {
     state::embedded_link(link)
@@ -39,7 +39,7 @@ pub fn link_without_missing(link: &str) -> String {
     state::link_without_missing(link)
 }
 
-/// Returns the link with its missing files under the names they arrived with, in the order of [`linked_files`].
+/// Returns the link with its missing files renamed to `names`, in the order of [`linked_files`].
 #[wasm_bindgen]
 pub fn link_with_files(link: &str, names: Vec<String>) -> String {
     state::link_with_files(link, &names)

@@ -1,5 +1,5 @@
-//! The page: what the HTML shell (web/shell.js) calls. The shell owns the canvas, the dropped files, the messages and
-//! `window.gaitway`; everything here lives in one wasm instance that the shell may throw away and start again.
+//! The page: functions for the HTML shell (web/shell/). The shell owns the canvas, dropped files, messages and
+//! `window.gaitway`; everything here lives in one wasm instance, which the shell can discard and restart.
 
 #[cfg(feature = "bench")]
 mod bench;

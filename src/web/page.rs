@@ -1,4 +1,4 @@
-//! Starting an instance on a canvas, and its end.
+//! Starting and destroying an instance on a canvas.
 
 use std::cell::{Cell, RefCell};
 
@@ -12,12 +12,12 @@ use crate::files::{Item, OpenError, Role, open_items, open_view};
 use crate::samples;
 use crate::state::{ViewerState, from_link, to_link};
 
-/// One instance draws on one canvas.
+/// A running instance on its canvas.
 pub(super) struct Page {
     pub runner: eframe::WebRunner,
     pub inbox: Inbox,
     pub shell: Shell,
-    /// Loads begun so far: of several under way only the last is shown.
+    /// Loads started so far: of several in progress, only the last is shown.
     pub loads: Cell<u32>,
 }
 
@@ -25,22 +25,22 @@ thread_local! {
     static PAGE: RefCell<Option<std::rc::Rc<Page>>> = const { RefCell::new(None) };
 }
 
-/// Nothing is drawn before the shell calls [`run`].
+/// Installs the panic and device hooks. Nothing is drawn before the shell calls [`run`].
 pub fn start() {
     let before = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |info| {
         before(info);
-        let message = info.payload_as_str().unwrap_or("an error without a message");
+        let message = info.payload_as_str().unwrap_or("unknown error");
         let place = info.location().map(|place| format!(" ({place})")).unwrap_or_default();
         shell::stopped(&format!("An error inside Gaitway: {message}{place}"));
     }));
     set_fatal_hook(shell::stopped);
 }
 
-/// Shows what the link says, or `items` (see [`super::calls::open`]) in the link's view, borrowing from `motion_items` and
-/// what else the link lists; `is_own`: these are a person's own files. Resolves when the first picture is on its way, to a
-/// JSON list of what could not be had; [`super::calls::begin`] comes next. `renderer` is `webgpu`, `webgl2` or nothing.
-/// Rejects when no device is to be had; call again with a new canvas then.
+/// Opens the link's files, or `items` (see [`super::calls::open`]) in the link's view, with the motions in `motion_items` and
+/// those that the link lists. `is_private` marks the items as the user's local files. Resolves once the first image has been
+/// requested, to a JSON list of problems; call [`super::calls::begin`] next. `renderer` is `webgpu`, `webgl2` or nothing.
+/// Rejects if no device is available; retry with a new canvas.
 #[wasm_bindgen]
 pub async fn run(
     canvas: web_sys::HtmlCanvasElement,
@@ -48,11 +48,11 @@ pub async fn run(
     link: String,
     items: Array,
     motion_items: Array,
-    is_own: bool,
+    is_private: bool,
     shell: Shell,
 ) -> Result<String, JsError> {
-    shell::keep(shell.clone());
-    let first = first_contents(&link, &items, &motion_items, is_own, &shell).await;
+    shell::set_shell(shell.clone());
+    let first = first_contents(&link, &items, &motion_items, is_private, &shell).await;
     let (contents, state, problems) = first.map_err(|error| JsError::new(&error))?;
     let backend = match renderer.as_deref() {
         Some("webgpu") => Some(Backend::WebGpu),
@@ -60,78 +60,88 @@ pub async fn run(
         _ => None,
     };
     let runner = eframe::WebRunner::new();
-    let made = std::rc::Rc::new(RefCell::new(None));
-    let inbox_slot = made.clone();
+    let inbox_cell = std::rc::Rc::new(RefCell::new(None));
+    let app_inbox_cell = inbox_cell.clone();
     let host = Box::new(PageHost { shell: shell.clone() });
     let create: eframe::AppCreator<'static> = Box::new(move |cc| {
-        let app = App::new(cc, host, contents, Some(state), |inbox| *inbox_slot.borrow_mut() = Some(inbox))?;
+        let app = App::new(cc, host, contents, Some(state), |inbox| *app_inbox_cell.borrow_mut() = Some(inbox))?;
         Ok(Box::new(app))
     });
     runner.start(canvas, web_options(backend), create).await.map_err(|error| JsError::new(&text_of(&error)))?;
-    let inbox = made.borrow_mut().take().ok_or_else(|| JsError::new("the app did not start"))?;
+    let inbox = inbox_cell.borrow_mut().take().ok_or_else(|| JsError::new("Gaitway couldn't start"))?;
     let page = Page { runner, inbox, shell, loads: Cell::new(0) };
     PAGE.with_borrow_mut(|slot| *slot = Some(std::rc::Rc::new(page)));
     Ok(serde_json::json!(problems).to_string())
 }
 
-/// What is shown first: the items, else what the link lists, and what of that could not be had. A model that cannot be had
-/// gives way to the skeleton of the first motion that can, else to the sample.
+/// Loads the first contents: the items, otherwise the files of the link. Returns them with their view and the problems. If the
+/// model cannot be opened, falls back to the skeleton of the first motion that can, then to the sample.
 async fn first_contents(
     link: &str,
     items: &Array,
     motion_items: &Array,
-    is_own: bool,
+    is_private: bool,
     shell: &Shell,
 ) -> Result<(Contents, ViewerState, Vec<String>), String> {
     let wanted = state_of_link(link, shell);
     let items = super::calls::items_of(items)?;
     let motion_items = super::calls::items_of(motion_items)?;
     let progress = |name: &str, received: u64, total: u64| shell.progress(name, received as f64, total as f64);
-    let opened = async {
-        let (mut models, mut held, mut problem) = (Vec::new(), Vec::new(), None);
-        if !items.is_empty() {
-            let found = open_items(items, Role::Model, &progress).await?;
-            models = found.models;
-            held.extend(found.motions.into_iter().flatten());
-        }
-        if !motion_items.is_empty() {
-            match open_items(motion_items, Role::Motion, &progress).await {
-                Ok(found) => held.extend(found.motions.into_iter().flatten()),
-                Err(error) => problem = Some(error.to_string()),
-            }
-        }
-        let (mut contents, view) = open_view(wanted.clone(), models.is_empty(), &held, &progress).await?;
-        contents.models.extend(models);
-        contents.problems.extend(problem);
-        Ok((if is_own { contents.owned() } else { contents }, view))
-    };
-    let opened: Result<(Contents, ViewerState), OpenError> = opened.await;
-    match opened {
+    match open_wanted(&wanted, items, motion_items, &progress).await {
         Ok((mut contents, view)) => {
             let problems = std::mem::take(&mut contents.problems);
-            Ok((contents, view, problems))
+            Ok((if is_private { contents.into_private() } else { contents }, view, problems))
         }
-        Err(error) => {
-            let mut problems = vec![error.to_string()];
-            let mut models = Vec::new();
-            for motion in &wanted.sources.motion {
-                match open_items(vec![Item::Address(motion.into())], Role::Model, &progress).await {
-                    Ok(found) => models.extend(found.models),
-                    Err(error) => problems.push(error.to_string()),
-                }
-            }
-            models.truncate(1);
-            if models.is_empty() {
-                models.extend(samples::load(samples::WALKER).map(OpenedModel::from));
-            }
-            let model = models.first().ok_or_else(|| problems.join("\n"))?;
-            let view = wanted.for_model(ViewerState::of_model(model.model.source.clone()));
-            Ok((Contents { models, motions: Some(Vec::new()), ..Contents::default() }, view, problems))
-        }
+        Err(error) => open_fallback(wanted, vec![error.to_string()], &progress).await,
     }
 }
 
-/// A link as a state; what it gets wrong is said.
+async fn open_wanted(
+    wanted: &ViewerState,
+    items: Vec<Item>,
+    motion_items: Vec<Item>,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<(Contents, ViewerState), OpenError> {
+    let (mut models, mut motions, mut problem) = (Vec::new(), Vec::new(), None);
+    if !items.is_empty() {
+        let found = open_items(items, Role::Model, progress).await?;
+        models = found.models;
+        motions.extend(found.motions.into_iter().flatten());
+    }
+    if !motion_items.is_empty() {
+        match open_items(motion_items, Role::Motion, progress).await {
+            Ok(found) => motions.extend(found.motions.into_iter().flatten()),
+            Err(error) => problem = Some(error.to_string()),
+        }
+    }
+    let (mut contents, view) = open_view(wanted.clone(), models.is_empty(), &motions, progress).await?;
+    contents.models.extend(models);
+    contents.problems.extend(problem);
+    Ok((contents, view))
+}
+
+async fn open_fallback(
+    wanted: ViewerState,
+    mut problems: Vec<String>,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<(Contents, ViewerState, Vec<String>), String> {
+    let mut models = Vec::new();
+    for motion in &wanted.sources.motion {
+        match open_items(vec![Item::Address(motion.into())], Role::Model, progress).await {
+            Ok(found) => models.extend(found.models),
+            Err(error) => problems.push(error.to_string()),
+        }
+    }
+    models.truncate(1);
+    if models.is_empty() {
+        models.extend(samples::load(samples::WALKER).map(OpenedModel::from));
+    }
+    let model = models.first().ok_or_else(|| problems.join("\n"))?;
+    let view = wanted.for_model(ViewerState::of_model(model.model.source.clone()));
+    Ok((Contents { models, motions: Some(Vec::new()), ..Contents::default() }, view, problems))
+}
+
+/// Reads a link; shows its errors as warnings.
 pub(super) fn state_of_link(link: &str, shell: &Shell) -> ViewerState {
     let (state, errors) = from_link(link);
     errors.iter().for_each(|error| shell.warn(&error.to_string()));
@@ -149,7 +159,7 @@ pub(super) fn page() -> Result<std::rc::Rc<Page>, String> {
     PAGE.with_borrow(Clone::clone).ok_or_else(|| "Gaitway has not started yet".to_owned())
 }
 
-/// Ends this instance and lets go of its canvas.
+/// Destroys this instance and releases its canvas.
 #[wasm_bindgen]
 pub fn destroy() {
     if let Some(page) = PAGE.with_borrow_mut(Option::take) {
@@ -185,15 +195,15 @@ impl Host for PageHost {
     }
 
     fn start_recording(&self) -> Result<(), String> {
-        let lacking = "this browser cannot record a canvas as WebM; Chrome, Edge and Firefox can, or save pictures";
-        if self.shell.start_recording() { Ok(()) } else { Err(lacking.to_owned()) }
+        let unsupported = "Couldn't record a video: this browser can't write WebM. Use Chrome, Edge or Firefox, or save images instead.";
+        if self.shell.start_recording() { Ok(()) } else { Err(unsupported.to_owned()) }
     }
 
     fn stop_recording(&self, name: Option<&str>) {
         self.shell.stop_recording(name);
     }
 
-    /// The shell takes every drop before the canvas sees it, since it keeps the files and reads folders.
+    /// Does nothing: the shell handles drops before the canvas does, since it keeps the files and reads folders.
     fn open_dropped(&self, _files: Vec<egui::DroppedFileHandle>, _inbox: &Inbox) {}
 
     fn share(&self, fragment: &str) -> bool {

@@ -1,4 +1,4 @@
-//! What the app tells the HTML shell.
+//! Calls from the app to the HTML shell.
 
 use std::cell::RefCell;
 
@@ -6,11 +6,11 @@ use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
 extern "C" {
-    /// The object that the shell hands over when it starts an instance.
+    /// The object that the shell passes in when it starts an instance.
     #[derive(Clone)]
     pub type Shell;
 
-    /// Shows the dialog in which files are chosen: `any`, or `motion` for files to borrow from.
+    /// Shows the file dialog, for `any` files or for `motion` files.
     #[wasm_bindgen(method)]
     pub fn choose(this: &Shell, role: &str);
 
@@ -18,35 +18,35 @@ extern "C" {
     #[wasm_bindgen(method)]
     pub fn gallery(this: &Shell);
 
-    /// Gives the person a file, as a download.
+    /// Downloads a file.
     #[wasm_bindgen(method)]
     pub fn save(this: &Shell, name: &str, bytes: &[u8]);
 
-    /// Begins to record the canvas; false where the browser cannot.
+    /// Starts recording the canvas; returns false if the browser cannot.
     #[wasm_bindgen(method, js_name = startRecording)]
     pub fn start_recording(this: &Shell) -> bool;
 
-    /// Ends the recording and gives the person the video under this name; without one it is thrown away.
+    /// Stops the recording and downloads the video under this name; without a name, discards it.
     #[wasm_bindgen(method, js_name = stopRecording)]
     pub fn stop_recording(this: &Shell, name: Option<&str>);
 
-    /// Bytes of a file that have arrived before there is anything to see; a total of 0 is not known.
+    /// Reports the progress of a download before anything is on screen; a total of 0 is unknown.
     #[wasm_bindgen(method)]
     pub fn progress(this: &Shell, name: &str, received_bytes: f64, total_bytes: f64);
 
-    /// Something was set; the text is the new part after `#`.
+    /// Reports a change of state, with the new part after `#`.
     #[wasm_bindgen(method)]
     pub fn changed(this: &Shell, link: &str);
 
-    /// Shows what there is to pass on: the text is the part after `#`.
+    /// Shows the share dialog for a link, given the part after `#`.
     #[wasm_bindgen(method)]
     pub fn share(this: &Shell, link: &str);
 
-    /// Something a person should know, though nothing is lost.
+    /// Shows a warning.
     #[wasm_bindgen(method)]
     pub fn warn(this: &Shell, message: &str);
 
-    /// Nothing more can be drawn or called.
+    /// Reports that the instance has stopped: nothing more can be drawn or called.
     #[wasm_bindgen(method)]
     pub fn stopped(this: &Shell, message: &str);
 }
@@ -55,13 +55,13 @@ thread_local! {
     static SHELL: RefCell<Option<Shell>> = const { RefCell::new(None) };
 }
 
-/// The hooks for panics and lost devices know nothing but their message: this is where they find the shell.
-pub(super) fn keep(shell: Shell) {
+/// Makes the shell available to the hooks for panics and lost devices, which receive nothing but a message.
+pub(super) fn set_shell(shell: Shell) {
     SHELL.with_borrow_mut(|slot| *slot = Some(shell));
 }
 
 pub(super) fn stopped(message: &str) {
-    // A panic may come while the slot is borrowed; there is nothing better to do then than to be silent.
+    // If the panic happened while the slot was borrowed, it cannot be reported.
     let shell = SHELL.with(|slot| slot.try_borrow().ok().and_then(|slot| slot.clone()));
     if let Some(shell) = shell {
         shell.stopped(message);

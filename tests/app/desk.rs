@@ -1,4 +1,4 @@
-//! The app in a harness, drawing on whatever adapter there is, with files opened as if they had been dropped.
+//! The app in a test harness on any available adapter, with files opened as if dropped.
 
 use std::cell::RefCell;
 use std::path::PathBuf;
@@ -17,12 +17,12 @@ use crate::adapter::or_skipped;
 use crate::data_folder::data_folder;
 
 pub struct Desk {
-    /// The app begins with the first frame, which has what it is made of.
+    /// The first frame creates the app from these contents.
     harness: Harness<'static, Option<App>>,
     inbox: Inbox,
 }
 
-/// None where there is no adapter.
+/// Returns `None` if there is no adapter.
 pub fn desk(first: &str) -> Option<Desk> {
     let gpu = or_skipped(gpu())?;
     let mut contents = Some(read_paths(&[first.into()], Role::Model).expect("is there"));
@@ -37,7 +37,7 @@ pub fn desk(first: &str) -> Option<Desk> {
             let ready = move |inbox| *ready.borrow_mut() = Some(inbox);
             App::new(&cc, Box::new(Window), contents, None, ready).expect("starts")
         });
-        // The harness leaves a margin around what it shows; the window has none.
+        // The harness adds a margin around its contents; the window has none.
         let whole = ui.ctx().content_rect();
         let mut ui = ui.new_child(egui::UiBuilder::new().max_rect(whole));
         ui.set_clip_rect(whole);
@@ -53,7 +53,7 @@ pub fn desk(first: &str) -> Option<Desk> {
     Some(desk)
 }
 
-/// The path of a real file; none, with a line that says so, where there are none.
+/// Returns the path of a real file; prints a notice and returns `None` if the data is missing.
 pub fn real(name: &str) -> Option<PathBuf> {
     Some(data_folder()?.join(name))
 }
@@ -65,32 +65,32 @@ impl Desk {
             Ok(contents) => Message::Opened { contents: Box::new(contents), state: None, reply: None },
             Err(error) => Message::OpenFailed(error.to_string()),
         });
-        self.settle();
+        self.run_frames();
     }
 
     pub fn command(&mut self, command: Command) {
         self.inbox.send(Message::Commands(vec![command]));
-        self.settle();
+        self.run_frames();
     }
 
-    /// Presses what bears this label.
+    /// Presses the control with this label.
     pub fn press(&mut self, label: &str) {
         self.harness.get_by_label(label).click();
-        self.settle();
+        self.run_frames();
     }
 
     pub fn undo(&mut self) {
         self.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
-        self.settle();
+        self.run_frames();
     }
 
     pub fn redo(&mut self) {
         self.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Y);
-        self.settle();
+        self.run_frames();
     }
 
-    /// A few frames: the panels are laid out before what was asked for is done.
-    fn settle(&mut self) {
+    /// Runs a few frames: the panels are laid out before input takes effect.
+    fn run_frames(&mut self) {
         self.harness.run_steps(4);
     }
 
@@ -110,22 +110,22 @@ impl Desk {
         self.app().problem()
     }
 
-    /// What the shown model was opened from.
-    pub fn shown(&self) -> &str {
+    /// The source of the active model.
+    pub fn active(&self) -> &str {
         &self.library().active().expect("a model").source
     }
 
-    /// What all models on the list were opened from.
+    /// The sources of all listed models.
     pub fn models(&self) -> Vec<&str> {
         self.library().models().iter().map(|model| &*model.source).collect()
     }
 
-    pub fn borrowed_clips(&self) -> usize {
+    pub fn retargeted_clips(&self) -> usize {
         self.library().active().expect("a model").borrowed_clips().count()
     }
 
-    /// Whether this can be read somewhere.
-    pub fn says(&self, text: &str) -> bool {
+    /// Whether a text is visible.
+    pub fn shows(&self, text: &str) -> bool {
         self.harness.query_all_by_label_contains(text).next().is_some()
     }
 }

@@ -1,4 +1,4 @@
-//! The app without a window: what is opened, closed, borrowed, taken back, and what is said about it.
+//! The app without a window: opening, closing, retargeting and undoing, with their notices.
 
 #[path = "../support/gpu.rs"]
 mod adapter;

@@ -1,4 +1,4 @@
-//! What becomes of opened files, and that all of it can be taken back.
+//! Opening files, and undoing all of it.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -9,96 +9,96 @@ use gaitway::state::{ClipChoice, Command, to_link};
 use crate::desk::{desk, real};
 
 #[test]
-fn a_second_model_is_shown_and_the_first_waits() {
+fn a_second_model_becomes_active_and_the_first_stays_listed() {
     let Some(mut desk) = desk("sample:pilot") else { return };
     desk.command(Command::SetClip(ClipChoice::Named("run".to_owned())));
     desk.open(&["sample:creature".into()]);
-    assert_eq!(desk.shown(), "sample:creature");
+    assert_eq!(desk.active(), "sample:creature");
     assert_eq!(desk.models(), ["sample:pilot", "sample:creature"]);
-    assert!(desk.says("Opened Fox"), "it is said");
+    assert!(desk.shows("Opened Fox"), "a notice says so");
     desk.press("Pilot");
-    assert_eq!(desk.shown(), "sample:pilot");
-    assert_eq!(desk.state().playhead.clip, ClipChoice::Named("run".to_owned()), "as it was left");
+    assert_eq!(desk.active(), "sample:pilot");
+    assert_eq!(desk.state().playhead.clip, ClipChoice::Named("run".to_owned()), "its view is restored");
 }
 
 #[test]
-fn what_was_opened_can_be_taken_back() {
+fn opening_can_be_undone() {
     let Some(mut desk) = desk("sample:pilot") else { return };
     let before = desk.state().clone();
     desk.open(&["sample:creature".into()]);
     desk.press("Undo");
-    assert_eq!((desk.shown(), desk.state()), ("sample:pilot", &before));
-    assert!(desk.says("Back to Pilot. Ctrl+Y returns to Fox."));
+    assert_eq!((desk.active(), desk.state()), ("sample:pilot", &before));
+    assert!(desk.shows("Back to Pilot. Ctrl+Y returns to Fox."));
     desk.redo();
-    assert_eq!(desk.shown(), "sample:creature");
+    assert_eq!(desk.active(), "sample:creature");
 }
 
 #[test]
-fn the_same_file_again_is_the_model_that_is_there() {
+fn opening_the_same_file_again_activates_the_loaded_model() {
     let Some(mut desk) = desk("sample:pilot") else { return };
     desk.open(&["sample:creature".into()]);
     desk.open(&["sample:pilot".into()]);
     assert_eq!(desk.models(), ["sample:pilot", "sample:creature"]);
-    assert_eq!(desk.shown(), "sample:pilot");
-    assert!(desk.says("Reopened Pilot."));
+    assert_eq!(desk.active(), "sample:pilot");
+    assert!(desk.shows("Reopened Pilot."));
 }
 
 #[test]
-fn a_closed_model_gives_way_to_its_neighbour_and_comes_back() {
+fn closing_activates_the_neighbour_and_can_be_undone() {
     let Some(mut desk) = desk("sample:pilot") else { return };
     desk.open(&["sample:creature".into()]);
     desk.open(&["sample:dwarf".into()]);
     desk.press("Close Dwarf");
-    assert_eq!((desk.shown(), desk.models()), ("sample:creature", vec!["sample:pilot", "sample:creature"]));
+    assert_eq!((desk.active(), desk.models()), ("sample:creature", vec!["sample:pilot", "sample:creature"]));
     desk.undo();
-    assert_eq!(desk.shown(), "sample:dwarf");
+    assert_eq!(desk.active(), "sample:dwarf");
     assert_eq!(desk.models().len(), 3);
-    // One that is not shown only leaves the list.
+    // Closing an inactive model only removes it from the list.
     desk.press("Close Pilot");
-    assert_eq!((desk.shown(), desk.models()), ("sample:dwarf", vec!["sample:creature", "sample:dwarf"]));
+    assert_eq!((desk.active(), desk.models()), ("sample:dwarf", vec!["sample:creature", "sample:dwarf"]));
     desk.undo();
     assert_eq!(desk.models().len(), 3);
 }
 
 #[test]
-fn a_motion_is_borrowed_from_and_goes_and_comes_with_undo() {
+fn a_motion_is_retargeted_and_follows_undo_and_redo() {
     let Some(mut desk) = desk("sample:pilot") else { return };
     desk.open(&["sample:walk".into()]);
-    assert_eq!(desk.shown(), "sample:pilot", "a motion does not replace the model");
-    assert_eq!(desk.borrowed_clips(), 1);
-    assert!(desk.says("Added 1 clip from Walk."));
+    assert_eq!(desk.active(), "sample:pilot", "a motion does not replace the model");
+    assert_eq!(desk.retargeted_clips(), 1);
+    assert!(desk.shows("Added 1 clip from Walk."));
     let clip = desk.state().playhead.clip.clone();
-    assert_ne!(clip, ClipChoice::First, "it plays");
+    assert_ne!(clip, ClipChoice::First, "the new clip plays");
     desk.undo();
-    assert_eq!((desk.borrowed_clips(), desk.library().motions().len()), (0, 0));
-    assert!(desk.says("Removed motion Walk. Ctrl+Y brings it back."));
+    assert_eq!((desk.retargeted_clips(), desk.library().motions().len()), (0, 0));
+    assert!(desk.shows("Removed motion Walk. Ctrl+Y brings it back."));
     desk.redo();
-    assert_eq!((desk.borrowed_clips(), &desk.state().playhead.clip), (1, &clip));
-    assert!(desk.says("Added motion Walk again."));
-    assert!(!desk.says("Search joints of the model"), "the tab stays");
+    assert_eq!((desk.retargeted_clips(), &desk.state().playhead.clip), (1, &clip));
+    assert!(desk.shows("Added motion Walk again."));
+    assert!(!desk.shows("Search joints of the model"), "the tab stays");
     desk.press("Motion");
-    assert!(desk.says("Search joints of the model"));
+    assert!(desk.shows("Search joints of the model"));
     desk.undo();
     desk.redo();
-    assert!(desk.says("Search joints of the model"), "back in the tab that was open");
+    assert!(desk.shows("Search joints of the model"), "back in the tab that was open");
 }
 
 #[test]
-fn a_motion_goes_along_to_a_model_that_it_fits_and_quietly_leaves_another() {
+fn a_motion_stays_with_a_model_it_fits_and_is_dropped_without_an_error_otherwise() {
     let Some(mut desk) = desk("sample:pilot") else { return };
     desk.open(&["sample:walk".into()]);
     desk.open(&["sample:mannequin".into()]);
-    assert_eq!((desk.shown(), desk.borrowed_clips()), ("sample:mannequin", 1));
+    assert_eq!((desk.active(), desk.retargeted_clips()), ("sample:mannequin", 1));
     desk.open(&["sample:morphs".into()]);
-    assert_eq!((desk.borrowed_clips(), desk.library().motions().len()), (0, 0));
-    assert!(desk.says("it doesn't fit this model"), "and says so");
-    assert_eq!(desk.problem(), None, "nobody asked for it: no error");
+    assert_eq!((desk.retargeted_clips(), desk.library().motions().len()), (0, 0));
+    assert!(desk.shows("it doesn't fit this model"), "a notice says so");
+    assert_eq!(desk.problem(), None, "the user didn't request it: no error");
     desk.press("Mannequin");
-    assert_eq!(desk.borrowed_clips(), 1);
+    assert_eq!(desk.retargeted_clips(), 1);
 }
 
 #[test]
-fn a_motion_that_fits_nowhere_changes_nothing_and_can_be_mapped_by_hand() {
+fn an_incompatible_motion_changes_nothing_and_can_be_mapped_manually() {
     let Some(mut desk) = desk("sample:morphs") else { return };
     let before = desk.state().clone();
     desk.open(&["sample:walk".into()]);
@@ -112,7 +112,7 @@ fn a_motion_that_fits_nowhere_changes_nothing_and_can_be_mapped_by_hand() {
 }
 
 #[test]
-fn a_joint_map_without_a_motion_is_refused_and_with_one_is_a_step() {
+fn a_joint_map_needs_a_motion_and_is_an_undo_step() {
     let Some(mut desk) = desk("sample:pilot") else { return };
     let map = std::env::temp_dir().join(format!("gaitway-app-map-{}.json", std::process::id()));
     std::fs::write(&map, r#"{"gaitway_map": 1, "joints": {"mixamorig:Hips": {"source": "hip"}}}"#).expect("written");
@@ -127,13 +127,13 @@ fn a_joint_map_without_a_motion_is_refused_and_with_one_is_a_step() {
     std::fs::remove_file(&map).expect("was there");
     assert_eq!(desk.problem(), None);
     assert_ne!(desk.state().retarget.map, proposed);
-    assert!(desk.says("Applied the joint map to Walk."));
+    assert!(desk.shows("Applied the joint map to Walk."));
     desk.undo();
     assert_eq!(desk.state().retarget.map, proposed);
 }
 
 #[test]
-fn a_file_that_cannot_be_read_loses_nothing() {
+fn an_unreadable_file_changes_nothing() {
     let Some(mut desk) = desk("sample:pilot") else { return };
     let file = std::env::temp_dir().join(format!("gaitway-app-{}.glb", std::process::id()));
     std::fs::write(&file, b"glTF").expect("written");
@@ -141,13 +141,13 @@ fn a_file_that_cannot_be_read_loses_nothing() {
     desk.open(std::slice::from_ref(&file));
     std::fs::remove_file(&file).expect("was there");
     assert!(desk.problem().is_some_and(|problem| problem.contains(".glb")), "{:?}", desk.problem());
-    assert_eq!((desk.shown(), desk.state()), ("sample:pilot", &before));
+    assert_eq!((desk.active(), desk.state()), ("sample:pilot", &before));
     desk.press("Dismiss the error");
     assert_eq!(desk.problem(), None);
 }
 
 #[test]
-fn of_an_archive_a_link_names_the_model_that_is_shown() {
+fn the_link_names_the_active_model_of_an_archive() {
     let Some(mut desk) = desk("sample:pilot") else { return };
     let archive = std::env::temp_dir().join(format!("gaitway-app-{}.zip", std::process::id()));
     let mut writer = zip::ZipWriter::new(std::fs::File::create(&archive).expect("created"));
@@ -168,18 +168,18 @@ fn of_an_archive_a_link_names_the_model_that_is_shown() {
 }
 
 #[test]
-fn real_files_are_put_where_they_belong() {
+fn real_files_get_the_right_roles() {
     let (Some(soldier), Some(walk), Some(obj)) =
         (real("threejs/Soldier.glb"), real("bvh/cmu_01_01.bvh"), real("mit6837/Model1.obj"))
     else {
         return;
     };
     let Some(mut desk) = desk("sample:pilot") else { return };
-    // All at once: one is the model, the other its motion.
+    // Opened together, one becomes the model and the other its motion.
     desk.open(&[soldier, walk]);
-    assert!(desk.shown().ends_with("Soldier.glb") && desk.borrowed_clips() == 1, "{}", desk.shown());
-    assert!(desk.says("Opened Soldier.glb. Added 1 clip from cmu_01_01.bvh."));
-    // Where nothing lies beside it, and then does.
+    assert!(desk.active().ends_with("Soldier.glb") && desk.retargeted_clips() == 1, "{}", desk.active());
+    assert!(desk.shows("Opened Soldier.glb. Added 1 clip from cmu_01_01.bvh."));
+    // First without its companion files, then with them.
     let folder = std::env::temp_dir().join(format!("gaitway-app-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("made");
     let copies = ["obj", "skel", "attach"].map(|ending| folder.join("Model1").with_extension(ending));
@@ -189,11 +189,11 @@ fn real_files_are_put_where_they_belong() {
     copied(&copies[0]);
     desk.open(&copies[..1]);
     assert!(desk.library().active().expect("a model").asset.skins.is_empty());
-    assert!(desk.says("Open its .skel and .attach as well to add its joints."));
+    assert!(desk.shows("Open its .skel and .attach as well to add its joints."));
     copies[1..].iter().for_each(copied);
     desk.open(&copies);
     std::fs::remove_dir_all(&folder).expect("was there");
     assert!(!desk.library().active().expect("a model").asset.skins.is_empty());
     let objs = desk.models().iter().filter(|name| name.ends_with(".obj")).count();
-    assert_eq!(objs, 1, "the whole one takes the place of the bare one");
+    assert_eq!(objs, 1, "the complete model replaces the jointless one");
 }

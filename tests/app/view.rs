@@ -1,4 +1,4 @@
-//! What the view keeps while settings change that the commands alone could not keep.
+//! Camera rules that involve the viewport: what stays in view while settings change.
 
 use gaitway::frame::travelled;
 use gaitway::state::{CameraChoice, Command, Inspect, OrbitCamera, Show};
@@ -12,35 +12,35 @@ fn orbit(desk: &Desk) -> OrbitCamera {
 }
 
 #[test]
-fn comparing_keeps_what_is_in_the_middle_and_gives_it_back() {
+fn comparing_keeps_the_centre_in_view_and_restores_the_camera() {
     let Some(mut desk) = desk("sample:pilot") else { return };
     desk.command(Command::Orbit { yaw_radians: 0.4, pitch_radians: 0.1 });
     let before = orbit(&desk);
     let inspect = desk.state().inspect;
     desk.command(Command::SetInspect(Inspect { split: true, ..inspect }));
     let compared = orbit(&desk);
-    assert!(compared.distance > 1.2 * before.distance, "each pane is narrower than high");
+    assert!(compared.distance > 1.2 * before.distance, "panes are narrower than high");
     assert_eq!(compared.target, before.target);
     desk.command(Command::SetInspect(inspect));
     assert!((orbit(&desk).distance / before.distance - 1.0).abs() < 1e-5);
 }
 
 #[test]
-fn the_next_model_is_seen_whole_and_the_last_one_as_it_was_left() {
+fn a_new_model_is_framed_and_a_previous_one_keeps_its_camera() {
     let Some(mut desk) = desk("sample:pilot") else { return };
     let show = Show { wireframe: true, ..desk.state().display.show };
     desk.command(Command::SetShow(show));
     let inspect = Inspect { split: true, ..desk.state().inspect };
     desk.command(Command::SetInspect(inspect));
     desk.open(&["sample:creature".into()]);
-    assert_eq!(desk.state().display.show, show, "what is not about the model stays");
+    assert_eq!(desk.state().display.show, show, "display settings are kept");
     assert_eq!(desk.state().inspect, Inspect::default());
     desk.press("Pilot");
     assert_eq!((desk.state().display.show, desk.state().inspect), (show, inspect));
 }
 
 #[test]
-fn going_along_begins_and_ends_where_the_camera_is() {
+fn following_starts_and_stops_without_a_jump() {
     let Some(mut desk) = desk("sample:mannequin") else { return };
     desk.open(&["sample:mannequin_run".into()]);
     desk.command(Command::Orbit { yaw_radians: 0.4, pitch_radians: 0.1 });
@@ -49,9 +49,9 @@ fn going_along_begins_and_ends_where_the_camera_is() {
     assert!(travel.length() > 0.5, "it runs: {travel}");
     let before = orbit(&desk).target;
     desk.command(Command::SetFollow(true));
-    assert!((orbit(&desk).target + travel).distance(before) < 1e-4, "what is added while it follows");
+    assert!((orbit(&desk).target + travel).distance(before) < 1e-4, "the travel is added while following");
     desk.command(Command::Seek(0.0));
     desk.command(Command::SetFollow(false));
     assert!(orbit(&desk).target.distance(before - travel) < 1e-4);
-    assert_eq!(travelled(desk.library(), desk.state()), Vec3::ZERO, "nowhere yet");
+    assert_eq!(travelled(desk.library(), desk.state()), Vec3::ZERO, "no travel yet");
 }

@@ -12,7 +12,7 @@ fn check_same(url: &str) {
 }
 
 #[test]
-fn a_github_page_about_a_file_becomes_the_raw_file() {
+fn the_github_page_of_a_file_becomes_the_raw_file() {
     let fox = "https://raw.githubusercontent.com/KhronosGroup/glTF-Sample-Assets/main/Models/Fox/glTF-Binary/Fox.glb";
     let page = "github.com/KhronosGroup/glTF-Sample-Assets/blob/main/Models/Fox/glTF-Binary/Fox.glb";
     check(&format!("https://{page}"), fox);

@@ -1,4 +1,4 @@
-//! The command line as a script sees it: exit status, one document on standard output, everything else on standard error.
+//! The command line as scripts use it: exit status, one document on standard output, everything else on standard error.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -15,7 +15,7 @@ fn document(arguments: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).expect("one JSON document")
 }
 
-/// Fails with this status; says this on standard error, and nothing on standard output.
+/// Checks the status, that the error contains this text, and that nothing is printed to standard output.
 fn check_fails(arguments: &[&str], status: i32, says: &str) {
     let output = run(arguments);
     let error = String::from_utf8_lossy(&output.stderr);
@@ -34,7 +34,7 @@ fn positions(document: &Value) -> Vec<f64> {
 }
 
 #[test]
-fn wrong_usage_is_status_2() {
+fn incorrect_usage_is_status_2() {
     check_fails(&["inspect"], 2, "FILE");
     check_fails(&["inspect", "sample:walker", "--jason"], 2, "--jason");
     check_fails(&["pose", "sample:walker", "--skinning", "soft"], 2, "dual-quaternion");
@@ -51,13 +51,13 @@ fn failures_are_status_1_and_say_what_to_do() {
 }
 
 #[test]
-fn help_and_version_are_no_failures() {
+fn help_and_version_are_not_failures() {
     assert_eq!(run(&["--help"]).status.code(), Some(0));
     assert_eq!(run(&["--version"]).status.code(), Some(0));
 }
 
 #[test]
-fn inspect_is_the_document_that_scripts_rely_on() {
+fn inspect_prints_the_documented_keys() {
     let document = document(&["inspect", "sample:walker", "--json"]);
     let expected = [
         "files",
@@ -90,7 +90,7 @@ fn inspect_is_the_document_that_scripts_rely_on() {
 }
 
 #[test]
-fn pose_is_the_document_that_scripts_rely_on() {
+fn pose_prints_the_documented_keys() {
     let document = document(&["pose", "sample:walker", "--clip", "Walk", "--time", "0.5", "--json"]);
     assert_eq!(keys(&document), ["clip", "time_secs", "nodes", "meshes", "warnings"]);
     assert_eq!((&document["clip"], &document["time_secs"]), (&"Walk".into(), &0.5.into()));
@@ -109,7 +109,7 @@ fn pose_is_the_document_that_scripts_rely_on() {
 fn no_clip_is_the_rest_pose_and_times_clamp() {
     let rest = document(&["pose", "sample:walker", "--json"]);
     assert_eq!((&rest["clip"], &rest["time_secs"]), (&Value::Null, &0.0.into()));
-    // Arms out to the sides.
+    // T-pose.
     assert!(positions(&rest).into_iter().step_by(3).fold(0.0, f64::max) > 0.8);
     let end = document(&["pose", "sample:walker", "--clip", "2", "--time", "99", "--json"]);
     let before = document(&["pose", "sample:walker", "--clip", "2", "--time", "-1", "--json"]);
@@ -140,7 +140,7 @@ fn skinning_modes_differ_where_joints_bend() {
 }
 
 #[test]
-fn people_get_text() {
+fn the_default_output_is_text() {
     let text = String::from_utf8(run(&["inspect", "sample:walker"]).stdout).expect("text");
     assert!(text.contains("Wave, 2.800 s") && serde_json::from_str::<Value>(&text).is_err(), "{text}");
     let text = String::from_utf8(run(&["pose", "sample:walker"]).stdout).expect("text");
@@ -148,7 +148,7 @@ fn people_get_text() {
 }
 
 #[test]
-fn parts_are_found_beside_the_model_and_in_folders() {
+fn companion_files_are_found_beside_the_model_and_in_folders() {
     let Some(data) = crate::data_folder::data_folder() else { return };
     let of = |path: &Path| document(&["inspect", path.to_str().expect("a plain path"), "--json"]);
     let folder = data.join("khronos/CesiumMan/glTF");

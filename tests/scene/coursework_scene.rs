@@ -1,4 +1,4 @@
-//! The skinning exercise as a scene: bent by hand, read from the command line, its formula laid open, written as GLB.
+//! The skinning exercise as a scene: manual poses, the command line, the skinning formula, and GLB export.
 
 use std::path::PathBuf;
 use std::process::Command as Process;
@@ -25,7 +25,7 @@ fn bent() -> ViewerState {
     from_link(BENT).0
 }
 
-/// The same turns as the exercise has them.
+/// The same rotations for the reference implementation of the exercise.
 fn rotations(state: &ViewerState) -> Vec<DQuat> {
     let of = |joint: usize| {
         let [x, y, z] =
@@ -55,7 +55,7 @@ fn furthest(a: &[DVec3], b: &[DVec3]) -> f64 {
 }
 
 #[test]
-fn sliders_bend_the_models_as_the_formula_says() {
+fn manual_poses_match_the_formula() {
     for name in ["Model1", "Model2", "Model3", "Model4"] {
         let (Some(exercise), Some(library)) = (exercise(name), open(&format!("mit6837/{name}.obj"))) else { return };
         let state = bent();
@@ -71,7 +71,7 @@ fn sliders_bend_the_models_as_the_formula_says() {
 }
 
 #[test]
-fn a_set_is_opened_by_any_of_its_names() {
+fn any_file_of_a_set_opens_the_whole_set() {
     let Some(folder) = data_folder() else { return };
     let folder = folder.join("mit6837");
     for name in ["Model2.obj", "Model2.skel", "Model2.attach", "Model2"] {
@@ -93,7 +93,7 @@ fn run(arguments: &[&str]) -> Vec<u8> {
 }
 
 #[test]
-fn the_command_line_reads_bends_and_writes_them() {
+fn the_command_line_opens_poses_and_converts_exercises() {
     let (Some(folder), Some(exercise)) = (data_folder(), exercise("Model1")) else { return };
     let model = folder.join("mit6837/Model1.obj");
     let model = model.to_str().expect("a plain path");
@@ -104,8 +104,8 @@ fn the_command_line_reads_bends_and_writes_them() {
     assert_eq!((inspected["format"].as_str(), inspected["warnings"].as_array().map(Vec::len)), (Some("obj"), Some(0)));
     let posed = |arguments: &[&str]| positions(&serde_json::from_slice(&run(arguments)).expect("JSON"));
     assert!(furthest(&posed(&["pose", model, "--json"]), &exercise.vertices) < 1e-6);
-    let wanted = exercise.skinned(&rotations(&bent()));
-    assert!(furthest(&posed(&["pose", model, "--view", BENT, "--json"]), &wanted) < 1e-6);
+    let expected = exercise.skinned(&rotations(&bent()));
+    assert!(furthest(&posed(&["pose", model, "--view", BENT, "--json"]), &expected) < 1e-6);
 
     let out = std::env::temp_dir().join(format!("gaitway-coursework-{}.glb", std::process::id()));
     let out_name = out.to_str().expect("a plain path");
@@ -115,7 +115,7 @@ fn the_command_line_reads_bends_and_writes_them() {
     run(&["convert", model, "--view", &named, "--out", out_name]);
     let document: Value = serde_json::from_slice(&run(&["pose", out_name, "--json"])).expect("JSON");
     std::fs::remove_file(&out).expect("it was written");
-    assert!(furthest(&positions(&document), &wanted) < 1e-6, "written as it stands");
+    assert!(furthest(&positions(&document), &expected) < 1e-6, "written in its current pose");
     assert_eq!(document["nodes"][5]["name"], "Left thigh");
 }
 
@@ -126,22 +126,22 @@ fn evaluated(library: &Library, state: &ViewerState) -> Frame {
 }
 
 #[test]
-fn the_formula_adds_up_to_what_is_drawn() {
+fn the_terms_of_the_formula_add_up_to_the_drawn_position() {
     let (Some(library), Some(exercise)) = (open("mit6837/Model1.obj"), exercise("Model1")) else { return };
     let model = library.active().expect("a model");
     for up in [UpAxis::Y, UpAxis::Z] {
         let state = ViewerState { edits: Edits { up, ..bent().edits }, ..bent() };
         let frame = evaluated(&library, &state);
-        let wanted = exercise.skinned(&rotations(&state));
+        let expected = exercise.skinned(&rotations(&state));
         let mut formula = VertexFormula::default();
-        let mut most = 0;
+        let mut max_influences = 0;
         for vertex in (0..13336).step_by(37) {
             let choice = VertexChoice { instance: 0, primitive: 0, vertex };
             assert!(vertex_formula(model, &frame.characters[0], choice, &mut formula));
-            most = most.max(formula.terms.len());
+            max_influences = max_influences.max(formula.terms.len());
             assert!(formula.sum.distance(formula.drawn) < 1e-6);
             if up == UpAxis::Y {
-                assert!(formula.sum.as_dvec3().distance(wanted[vertex]) < 1e-6);
+                assert!(formula.sum.as_dvec3().distance(expected[vertex]) < 1e-6);
             }
             assert!((formula.terms.iter().map(|part| part.weight).sum::<f32>() - 1.0).abs() < 1e-6);
             for part in &formula.terms {
@@ -150,7 +150,7 @@ fn the_formula_adds_up_to_what_is_drawn() {
                 assert!(alone.distance(part.alone) < 1e-6 && part.share == part.weight * part.alone);
             }
         }
-        assert!(most > 8, "vertices with many influences were looked at: {most}");
+        assert!(max_influences > 8, "vertices with many influences were checked: {max_influences}");
     }
     let nowhere = VertexChoice { instance: 0, primitive: 0, vertex: 13336 };
     let frame = evaluated(&library, &bent());
@@ -186,7 +186,7 @@ fn any_skinned_model_has_a_formula() {
 }
 
 #[test]
-fn a_vertex_is_found_where_it_is_seen() {
+fn picking_a_visible_vertex_finds_it() {
     let Some(library) = open("mit6837/Model1.obj") else { return };
     let model = library.active().expect("a model");
     let state = bent();
@@ -203,7 +203,7 @@ fn a_vertex_is_found_where_it_is_seen() {
         match pick_vertex(model, &frame, character, at.truncate(), &mut scratch) {
             Some(picked) if picked == choice => found += 1,
             Some(picked) => {
-                // In front of it, or a neighbour where it is seen from its edge.
+                // A vertex in front of it, or a neighbour at a silhouette.
                 vertex_formula(model, character, picked, &mut formula);
                 let other = projection.project_point3(formula.drawn);
                 assert!(other.z <= at.z + 2e-3, "vertex {vertex}: {picked:?}");
@@ -213,7 +213,7 @@ fn a_vertex_is_found_where_it_is_seen() {
             None => hidden += 1,
         }
     }
-    assert!(found > 30 && hidden > 30, "{found} seen, {hidden} hidden");
+    assert!(found > 30 && hidden > 30, "{found} visible, {hidden} hidden");
     assert_eq!(pick_vertex(model, &frame, character, Vec2::new(-0.99, 0.99), &mut scratch), None);
 }
 
@@ -233,7 +233,7 @@ fn joints_can_be_renamed() {
     assert_eq!(from_link(&to_link(&state)).0.edits.names, state.edits.names);
     assert_eq!(rename(&mut state, &"x".repeat(500)).len(), 80);
     assert_eq!(rename(&mut state, ""), before);
-    assert_eq!(rename(&mut state, &before.clone()), before, "as the file says is no name of its own");
+    assert_eq!(rename(&mut state, &before.clone()), before, "the file's own name is not a custom name");
     assert!(state.edits.names.is_empty());
     assert!(history.undo(&mut state, &mut library));
     assert_eq!(state.edits.names[&5].len(), 80);
@@ -248,8 +248,8 @@ fn joints_can_be_renamed() {
 }
 
 #[test]
-fn smooth_normals_are_the_mean_by_angle() {
-    // A cube of triangles: however its sides are cut, a corner's normal points along its diagonal.
+fn smooth_normals_are_weighted_by_angle() {
+    // However the faces of a cube are triangulated, a corner's normal points along its diagonal.
     let side = |corner: usize, bit: usize| if corner & bit == 0 { -1.0 } else { 1.0 };
     let positions: Vec<Vec3> = (0..8).map(|at| Vec3::new(side(at, 4), side(at, 2), side(at, 1))).collect();
     let quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
@@ -258,7 +258,7 @@ fn smooth_normals_are_the_mean_by_angle() {
     for (normal, at) in smooth_normals(from_ref(&cube))[0].iter().zip(&positions) {
         assert!(normal.distance(at.normalize()) < 1e-6, "{at}: {normal}");
     }
-    // Every triangle with vertices of its own: the same.
+    // The same with unshared vertices.
     let split: Vec<Vec3> = indices.iter().map(|&index| positions[index as usize]).collect();
     let split = Geometry { indices: (0..36).collect(), positions: split, ..Geometry::default() };
     for (normal, at) in smooth_normals(from_ref(&split))[0].iter().zip(&split.positions) {
@@ -268,7 +268,7 @@ fn smooth_normals_are_the_mean_by_angle() {
 }
 
 #[test]
-fn a_surface_is_smooth_from_part_to_part() {
+fn a_surface_is_smooth_across_parts() {
     let normals = |between: &str| -> Vec<f64> {
         let mut files = gaitway::formats::FileSet::default();
         // Two triangles at a right angle along the second axis.
@@ -284,15 +284,15 @@ fn a_surface_is_smooth_from_part_to_part() {
         normals.iter().filter_map(Value::as_f64).collect()
     };
     let half = f64::from(0.5_f32.sqrt());
-    let wanted = [half, 0.0, half, 0.0, 0.0, 1.0, half, 0.0, half, 1.0, 0.0, 0.0];
+    let expected = [half, 0.0, half, 0.0, 0.0, 1.0, half, 0.0, half, 1.0, 0.0, 0.0];
     for between in ["", "g b\n", "usemtl other\n"] {
-        let off = normals(between).iter().zip(wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let off = normals(between).iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(off < 1e-6, "{between:?}: {:?}", normals(between));
     }
 }
 
 #[test]
-fn normals_are_in_the_pose_where_the_surface_is_smooth() {
+fn the_pose_document_has_normals_of_smooth_surfaces() {
     let Some(library) = open("mit6837/Model4.obj") else { return };
     let normals = |smooth: bool| {
         let state =
@@ -303,14 +303,14 @@ fn normals_are_in_the_pose_where_the_surface_is_smooth() {
 }
 
 #[test]
-fn several_parts_are_one_mesh_in_the_order_of_the_file() {
+fn several_parts_are_one_mesh_in_file_order() {
     let mut files = gaitway::formats::FileSet::default();
     let obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 5 5 5\ng a\nf 3 4 1\ng b\nf 1 2 3\n";
     files.insert("parts.obj", obj.as_bytes().to_vec());
     let library = library_of(gaitway::files::open_bytes(&files, "parts.obj".to_owned()).expect("it opens").model);
-    let wanted = [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y, DVec3::splat(5.0)];
+    let expected = [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y, DVec3::splat(5.0)];
     let document = pose_document(&library, &ViewerState::default());
-    assert_eq!(positions(&document), wanted);
+    assert_eq!(positions(&document), expected);
     assert_eq!(document["meshes"][0]["normals"].as_array().map(Vec::len), Some(0));
     let model = library.active().expect("a model");
     assert_eq!(gaitway::library::inspect(model, &[])["vertices"], 5);
@@ -318,9 +318,9 @@ fn several_parts_are_one_mesh_in_the_order_of_the_file() {
     assert_eq!(gaitway::library::inspect(model, &[])["parts"], serde_json::json!(["a", "b"]));
 }
 
-/// The joints have no names, so the map is written by hand.
+/// The joints have no names, so the map is written manually.
 #[test]
-fn a_motion_can_be_lent_to_them() {
+fn a_motion_can_be_retargeted_to_an_exercise() {
     let Some(folder) = data_folder() else { return };
     let (model, motion) = (folder.join("mit6837/Model1.obj"), folder.join("cosc422/original/Dwarf/avatar_walk.bvh"));
     let scratch = |name: &str| std::env::temp_dir().join(format!("gaitway-lent-{}-{name}", std::process::id()));

@@ -1,4 +1,4 @@
-//! One clip blends into another for as long as the joint map says.
+//! Crossfades between clips, with the duration from the joint map.
 
 use gaitway::library::{Library, Motion};
 use gaitway::retarget::{JointMap, propose};
@@ -6,8 +6,8 @@ use gaitway::state::{ClipChoice, Command, Playback, Playhead, PoseSampler, Viewe
 
 use crate::data::walker;
 
-/// The walker, which borrows its own clips with a crossfade of 0.4 s.
-fn dancing() -> Library {
+/// The walker with its own clips retargeted to itself and a crossfade of 0.4 s.
+fn walker_with_crossfade() -> Library {
     let mut library = walker();
     let asset = library.active().expect("a model").asset.clone();
     let map = JointMap { crossfade_secs: 0.4, ..propose(&asset, &asset).to_map(&asset, &asset) };
@@ -24,8 +24,8 @@ fn pose(library: &Library, state: &ViewerState) -> gaitway::anim::Pose {
 }
 
 #[test]
-fn a_change_of_clip_takes_its_time_and_no_longer() {
-    let library = dancing();
+fn changing_the_clip_fades_for_exactly_the_duration() {
+    let library = walker_with_crossfade();
     let own = library.active().expect("a model").asset.clips.len();
     let mut state = ViewerState {
         playhead: Playhead { clip: ClipChoice::Named("0".to_owned()), ..Playhead::default() },
@@ -51,8 +51,8 @@ fn a_change_of_clip_takes_its_time_and_no_longer() {
 }
 
 #[test]
-fn nothing_fades_at_rest_or_between_own_clips() {
-    let library = dancing();
+fn nothing_fades_while_paused_or_between_the_models_own_clips() {
+    let library = walker_with_crossfade();
     let change = |state: &mut ViewerState, clip: usize| {
         apply(state, &library, Command::SetClip(ClipChoice::Named(clip.to_string())));
         state.playhead.fade.clone()

@@ -1,4 +1,4 @@
-//! Models for the tests: the walker, small ones made in code, and real files where they are at hand.
+//! Models for the tests: the walker, small generated ones, and real files if they are available.
 
 use gaitway::anim::{ClipBuilder, Interpolation, Joint, Keys, Skeleton, Transform};
 use gaitway::asset::{Asset, AssetParts, MeshInstance};
@@ -20,7 +20,7 @@ pub fn walker() -> Library {
     library_of(samples::load("walker").expect("the walker is built in"))
 }
 
-/// A box of the given half size on one node, with these keys of its translation as the clip "Move".
+/// A box of the given half size on one node, with a clip "Move" of these translation keys.
 pub fn moving_box(half: f32, times_secs: &[f32], places: &[Vec3]) -> Library {
     let joint = Joint { name: "Box".to_owned(), rest: Transform::IDENTITY, ..Joint::default() };
     let skeleton = Skeleton::new(vec![joint]).expect("one joint");

@@ -1,4 +1,4 @@
-//! The editor without any shell: what opening, activating, closing and undoing do, and what is said about it.
+//! The editor without a shell: opening, activating, closing and undoing, with their notices.
 
 use std::path::PathBuf;
 
@@ -22,7 +22,7 @@ fn editor(first: &str) -> Editor {
     editor
 }
 
-/// Returns what was said.
+/// Returns the events.
 fn open(editor: &mut Editor, file: &str) -> Vec<Event> {
     editor.open(contents(&[file]), None, &mut any).expect("fits");
     editor.take_events()
@@ -56,7 +56,7 @@ fn a_model_that_is_not_admitted_changes_nothing() {
     assert_eq!(error, "sample:creature is too large");
     assert_eq!((active(&editor), editor.state(), editor.can_undo()), ("sample:pilot", &before, false));
     assert_eq!(editor.library().models().len(), 1);
-    // Nor does one that is loaded already.
+    // Nor does activating a loaded one.
     open(&mut editor, "sample:creature");
     let pilot = editor.library().models()[0].id;
     let before = editor.state().clone();
@@ -65,7 +65,7 @@ fn a_model_that_is_not_admitted_changes_nothing() {
 }
 
 #[test]
-fn another_model_resets_what_is_about_the_model_and_keeps_the_rest() {
+fn another_model_resets_model_settings_and_keeps_the_rest() {
     let mut editor = editor("sample:pilot");
     let show = Show { wireframe: true, ..Show::default() };
     let commands = [
@@ -89,7 +89,7 @@ fn another_model_resets_what_is_about_the_model_and_keeps_the_rest() {
 }
 
 #[test]
-fn notices_name_the_way_back() {
+fn notices_say_how_to_go_back() {
     let mut editor = editor("sample:pilot");
     assert_eq!(notices(&open(&mut editor, "sample:creature")), ["Opened Fox."]);
     assert_eq!(notices(&open(&mut editor, "sample:pilot")), ["Reopened Pilot."]);
@@ -103,7 +103,7 @@ fn notices_name_the_way_back() {
     editor.undo();
     let undone = editor.take_events();
     assert_eq!(notices(&undone), ["Removed motion Walk. Ctrl+Y brings it back."]);
-    assert_eq!(undone[0], Event::Stepped, "earlier notices no longer hold");
+    assert_eq!(undone[0], Event::Stepped, "earlier notices are outdated");
 }
 
 #[test]
@@ -114,14 +114,14 @@ fn motions_without_a_joint_in_common_are_refused_until_the_user_maps_them() {
     assert!(error.contains("no joint in common with Goblin"), "{error}");
     assert_eq!((editor.take_events().last(), editor.state()), (Some(&Event::MotionsRefused), &before));
     editor.map_refused_manually();
-    assert_eq!(editor.take_events(), [Event::MapStarted], "an empty map is a start, not a problem");
+    assert_eq!(editor.take_events(), [Event::MapStarted], "an empty map is not a problem");
     assert_eq!(editor.library().motions().len(), 1);
     editor.undo();
     assert!(editor.library().motions().is_empty());
 }
 
 #[test]
-fn the_camera_knows_the_viewport() {
+fn framing_uses_the_viewports_aspect() {
     let mut editor = editor("sample:pilot");
     let framed = |editor: &mut Editor, aspect: f32| {
         editor.set_aspect(aspect);

@@ -1,4 +1,4 @@
-//! Boxes around poses hold every vertex, and not much more.
+//! Bounds of clips contain every vertex, without much slack.
 
 use gaitway::frame::{Frame, evaluate, pose_document};
 use gaitway::library::Library;
@@ -8,7 +8,7 @@ use glam::Vec3;
 
 use crate::data::{open, walker};
 
-/// The exact box of what the reference implementation draws.
+/// The exact bounds of what the reference implementation draws.
 fn exact(library: &Library, state: &ViewerState) -> Bounds {
     let document = pose_document(library, state);
     let meshes = document["meshes"].as_array().expect("meshes");
@@ -22,7 +22,7 @@ fn check(library: &Library, clip: usize) {
     let duration_secs = f64::from(model.asset.clips[clip].duration_secs());
     let whole = model.clip_bounds(None, Some(clip), false);
     let mut union = Bounds::EMPTY;
-    // The times that the box is made from.
+    // The times that the bounds are computed from.
     for sample in 0..=24 {
         let time_secs = duration_secs * f64::from(sample) / 24.0;
         let state = ViewerState {
@@ -48,12 +48,12 @@ fn check(library: &Library, clip: usize) {
 }
 
 #[test]
-fn of_the_walker() {
+fn bounds_of_the_walker() {
     (0..3).for_each(|clip| check(&walker(), clip));
 }
 
 #[test]
-fn of_real_characters() {
+fn bounds_of_real_characters() {
     for path in ["khronos/Fox/glTF-Binary/Fox.glb", "threejs/Soldier.glb", "threejs/Flamingo.glb", "cosc422/dwarf.glb"]
     {
         if let Some(library) = open(path) {

@@ -1,4 +1,4 @@
-//! What a frame says about models, overlays and clicks.
+//! The contents of frames: models, overlays and picking.
 
 use gaitway::anim::{Pose, model_from_joint};
 use gaitway::frame::{Frame, PickedJoint, evaluate, pick_joint};
@@ -21,11 +21,11 @@ fn showing(change: impl Fn(&mut Show)) -> ViewerState {
     state
 }
 
-/// Joint of the walker as the file numbers it.
+/// A joint of the walker, by index in the file.
 const HEAD: usize = 5;
 
 #[test]
-fn without_a_model_there_is_an_empty_picture() {
+fn without_a_model_the_frame_is_empty() {
     let state = ViewerState {
         display: Display { background: Background::Color([1, 2, 3]), ..Display::default() },
         ..ViewerState::default()
@@ -37,7 +37,7 @@ fn without_a_model_there_is_an_empty_picture() {
 }
 
 #[test]
-fn the_same_state_is_the_same_frame() {
+fn equal_states_give_equal_frames() {
     let library = walker();
     let state = ViewerState {
         playhead: Playhead { time_secs: 0.3, ..showing(|show| show.skeleton = true).playhead },
@@ -77,7 +77,7 @@ fn the_frame_carries_the_pose_and_clip_it_was_made_from() {
 }
 
 #[test]
-fn each_instance_has_its_palette() {
+fn each_instance_has_its_own_palette() {
     for skinning in [SkinningMode::Linear, SkinningMode::Rigid, SkinningMode::DualQuaternion] {
         let frame = frame_of(
             &walker(),
@@ -95,7 +95,7 @@ fn each_instance_has_its_palette() {
 }
 
 #[test]
-fn weights_set_by_hand_win_over_the_clip() {
+fn manual_morph_weights_override_the_clip() {
     let mut state = ViewerState::default();
     state.edits.morph.insert(0, 0.75);
     // Neither a panic nor an effect: the link may be from another model.
@@ -104,7 +104,7 @@ fn weights_set_by_hand_win_over_the_clip() {
 }
 
 #[test]
-fn the_heat_map_is_of_the_chosen_joint() {
+fn the_heat_map_shows_the_selected_joint() {
     let selection = Selection { joint: Some(HEAD), ..Selection::default() };
     let state = ViewerState { selection, inspect: Inspect { weights: true, split: false }, ..ViewerState::default() };
     assert_eq!(frame_of(&walker(), &state).characters[0].draws[0].heat_joint, Some(HEAD as u32));
@@ -132,7 +132,7 @@ fn the_heat_map_is_of_the_chosen_joint() {
 }
 
 #[test]
-fn bones_are_joints_of_the_skin_and_end_in_stubs() {
+fn bones_join_the_skins_joints_and_end_in_stubs() {
     let frame = frame_of(&walker(), &showing(|show| show.skeleton = true));
     // 22 joints: 21 of them hang on another; the ends are head, hands and toes. The meshes' nodes are no joints. Bones
     // from Root to Hips and so on; none has no length.
@@ -142,7 +142,7 @@ fn bones_are_joints_of_the_skin_and_end_in_stubs() {
 }
 
 #[test]
-fn a_click_finds_the_nearest_bone() {
+fn picking_finds_the_nearest_bone() {
     let frame = frame_of(&walker(), &showing(|show| show.skeleton = true));
     let shin = frame.bones.iter().find(|bone| bone.joint == 15).copied().expect("the left shin");
     let projection_from_world = frame.view.projection_from_view * frame.view.view_from_world;
@@ -153,7 +153,7 @@ fn a_click_finds_the_nearest_bone() {
 }
 
 #[test]
-fn overlays_are_drawn_when_asked_for() {
+fn overlays_are_drawn_if_enabled() {
     assert!(frame_of(&walker(), &ViewerState::default()).lines.is_empty());
     assert_eq!(frame_of(&walker(), &showing(|show| show.bounds = true)).lines.len(), 12);
     assert_eq!(

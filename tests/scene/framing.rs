@@ -1,4 +1,4 @@
-//! Everything a clip shows is in the picture, at any size and shape of the picture.
+//! The camera frames the whole clip in viewports of any size and shape.
 
 use gaitway::frame::{Frame, evaluate};
 use gaitway::state::{
@@ -9,19 +9,19 @@ use glam::{Vec2, Vec3, Vec4Swizzles};
 
 use crate::data::{moving_box, walker};
 
-/// The furthest corner of the clip's box from the middle of the picture: 1 at the edge.
+/// Returns how far the clip's bounds extend from the centre of the viewport; 1 is the edge.
 fn reach(library: &gaitway::library::Library, state: &ViewerState, aspect: f32) -> f32 {
     let mut frame = Frame::default();
     evaluate(library, state, aspect, &mut frame);
     let projection_from_world = frame.view.projection_from_view * frame.view.view_from_world;
     let corners = resolved_bounds(library, state).corners();
-    let on_picture = corners.map(|corner| projection_from_world * corner.extend(1.0));
-    assert!(on_picture.iter().all(|corner| (0.0..=corner.w).contains(&corner.z)), "out of the depth range");
-    on_picture.iter().map(|corner| (corner.xy() / corner.w).abs().max_element()).fold(0.0, f32::max)
+    let clip_corners = corners.map(|corner| projection_from_world * corner.extend(1.0));
+    assert!(clip_corners.iter().all(|corner| (0.0..=corner.w).contains(&corner.z)), "out of the depth range");
+    clip_corners.iter().map(|corner| (corner.xy() / corner.w).abs().max_element()).fold(0.0, f32::max)
 }
 
 #[test]
-fn the_whole_clip_is_in_the_picture() {
+fn the_whole_clip_is_in_view() {
     let far = moving_box(0.5, &[0.0, 1.0], &[Vec3::ZERO, Vec3::X * 10.0]);
     for library in [walker(), far] {
         for aspect in [0.4, 1.0, 16.0 / 9.0, 3.0] {
@@ -59,17 +59,17 @@ fn a_following_camera_stays_with_the_character() {
     let (mut start, mut end) = (Frame::default(), Frame::default());
     evaluate(&library, &follow(0.0), 1.0, &mut start);
     evaluate(&library, &follow(1.0), 1.0, &mut end);
-    // Over the ground only: a jump is still seen as one.
+    // Only horizontally: a jump stays visible.
     assert!((end.view.eye - start.view.eye).distance(Vec3::new(10.0, 0.0, -5.0)) < 1e-4);
     assert!((end.bounds.min - start.bounds.min).distance(Vec3::new(10.0, 0.0, -5.0)) < 1e-4);
-    // Without the travel there is less to frame.
+    // Without root travel, the bounds are smaller.
     let near = resolve_camera(&library, &follow(0.0), 1.0).distance;
     let far = resolve_camera(&library, &ViewerState::default(), 1.0).distance;
     assert!(near < 0.6 * far, "{near} {far}");
 }
 
 #[test]
-fn up_axes_end_up() {
+fn the_chosen_axis_points_up() {
     let library = moving_box(0.5, &[0.0], &[Vec3::new(1.0, 2.0, 3.0)]);
     for (up, expected) in [
         (UpAxis::X, 1.0),
@@ -93,9 +93,9 @@ fn up_axes_end_up() {
 }
 
 #[test]
-fn zooming_keeps_what_is_under_the_pointer() {
+fn zooming_keeps_the_point_under_the_pointer() {
     let library = walker();
-    // Of the picture's height, right of its middle and above it.
+    // Offset from the viewport's centre, in fractions of its height.
     let (pointer, aspect) = (Vec2::new(0.31, -0.22), 1.6);
     let mut state =
         ViewerState { playback: Playback { playing: false, ..Playback::default() }, ..ViewerState::default() };
@@ -107,7 +107,7 @@ fn zooming_keeps_what_is_under_the_pointer() {
     };
     let before = view(&state);
     let ndc = Vec2::new(2.0 * pointer.x / aspect, 2.0 * pointer.y);
-    // In the plane of the target.
+    // The point in the plane of the target.
     let target = resolve_camera(&library, &state, aspect).target;
     let depth = (before.projection_from_view * before.view_from_world * target.extend(1.0)).xyzw();
     let projection_from_world = before.projection_from_view * before.view_from_world;
@@ -119,7 +119,7 @@ fn zooming_keeps_what_is_under_the_pointer() {
         let seen = now.projection_from_view * now.view_from_world * point.extend(1.0);
         assert!((seen.xy() / seen.w).distance(ndc) < 1e-3, "{factor}: {:?} {ndc:?}", seen.xy() / seen.w);
     }
-    // A camera that turns by itself keeps to what it turns about.
+    // With a running turntable, the target is kept.
     state.camera_options.turntable = 6.0;
     let target = resolve_camera(&library, &state, aspect).target;
     apply(&mut state, &library, Command::Zoom { factor: 0.5, right: pointer.x, up: pointer.y });
@@ -127,7 +127,7 @@ fn zooming_keeps_what_is_under_the_pointer() {
 }
 
 #[test]
-fn a_pane_shows_what_the_middle_of_the_picture_showed() {
+fn a_pane_shows_what_was_in_the_centre_of_the_viewport() {
     for aspect in [0.5, 1.0, 1.6] {
         let mut state = ViewerState::default();
         let there = split_ratio(&state, aspect);
@@ -135,5 +135,5 @@ fn a_pane_shows_what_the_middle_of_the_picture_showed() {
         let back = split_ratio(&state, aspect);
         assert!(there >= 1.0 && (there * back - 1.0).abs() < 1e-6, "{aspect}: {there} {back}");
     }
-    assert!((split_ratio(&ViewerState::default(), 1.5) - 2.0).abs() < 1e-6, "half as wide as high");
+    assert!((split_ratio(&ViewerState::default(), 1.5) - 2.0).abs() < 1e-6, "panes are half as wide as high");
 }

@@ -1,4 +1,4 @@
-//! Khronos's glTF Asset Generator: `Animation_*` move as the table in each folder's README says.
+//! Khronos's glTF Asset Generator: `Animation_*` files match the tables in their READMEs.
 
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 
@@ -31,7 +31,7 @@ fn world_from_node(library: &Library, node: usize, state: &ViewerState) -> Affin
     frame.characters[0].world_from_joint[joint.get()]
 }
 
-/// Node 0 of the file is here, turned so, at a time of the first clip.
+/// Checks the translation and rotation of node 0 at a time of the first clip.
 fn check(name: &str, time_secs: f64, translation: Vec3, rotation: Quat) {
     check_clip(name, 0, time_secs, translation, rotation);
 }
@@ -43,7 +43,7 @@ fn check_clip(name: &str, clip: usize, time_secs: f64, translation: Vec3, rotati
     assert!(found.abs_diff_eq(expected, 2e-5), "{name} at {time_secs} s: {found:?} instead of {expected:?}");
 }
 
-/// Positions of one mesh instance, by its node in the file.
+/// Returns the positions of one mesh instance, by the index of its node.
 fn positions(library: &Library, node: usize, state: &ViewerState) -> Vec<Vec3> {
     let document = pose_document(library, state);
     let meshes = document["meshes"].as_array().expect("meshes");
@@ -105,7 +105,7 @@ fn node_04_translation_cubic_spline() {
     check("Animation_Node_04", 0.5, along_x(0.0), Quat::IDENTITY);
     check("Animation_Node_04", 1.0, along_x(0.1), Quat::IDENTITY);
     check("Animation_Node_04", 1.5, Vec3::new(0.0, -0.3 / 8.0, 0.0), Quat::IDENTITY);
-    // A quarter in: h00 = 27/32.
+    // At a quarter: h00 = 27/32.
     check("Animation_Node_04", 0.25, along_x(-0.1 * 27.0 / 32.0 + 0.1 * 5.0 / 32.0), Quat::IDENTITY);
 }
 
@@ -140,7 +140,7 @@ fn misc_02_channels_hold_outside_their_own_keys() {
 }
 
 #[test]
-fn misc_03_one_key_holds_for_ever() {
+fn misc_03_a_single_key_holds_forever() {
     check("Animation_NodeMisc_03", 0.0, along_x(-0.1), Quat::IDENTITY);
     check("Animation_NodeMisc_03", 9.0, along_x(-0.1), Quat::IDENTITY);
 }
@@ -156,31 +156,31 @@ fn misc_04_two_nodes() {
 }
 
 #[test]
-fn misc_05_a_channel_replaces_the_nodes_value() {
+fn misc_05_a_channel_overrides_the_nodes_value() {
     check("Animation_NodeMisc_05", 0.0, STILL, about_y(-60_f32.to_radians()));
     check("Animation_NodeMisc_05", 4.0, STILL, about_y(-60_f32.to_radians()));
 }
 
 #[test]
-fn misc_06_what_no_channel_drives_stays() {
+fn misc_06_properties_without_a_channel_keep_their_value() {
     check("Animation_NodeMisc_06", 1.0, along_x(0.0), about_y(60_f32.to_radians()));
     check("Animation_NodeMisc_06", 2.0, along_x(0.1), about_y(60_f32.to_radians()));
 }
 
 #[test]
-fn misc_07_two_clips_play_apart() {
+fn misc_07_two_clips_play_independently() {
     check_clip("Animation_NodeMisc_07", 0, 2.0, STILL, about_y(-FRAC_PI_2));
     check_clip("Animation_NodeMisc_07", 1, 2.0, along_x(0.1), Quat::IDENTITY);
 }
 
 #[test]
-fn misc_08_a_channel_without_a_node_is_left_out() {
+fn misc_08_a_channel_without_a_node_is_ignored() {
     check("Animation_NodeMisc_08", 0.5, STILL, Quat::from_rotation_x(FRAC_PI_4));
     check("Animation_NodeMisc_08", 2.0, STILL, Quat::from_rotation_x(-FRAC_PI_2));
 }
 
 #[test]
-fn sampler_types_are_the_same_motion() {
+fn sampler_types_give_the_same_motion() {
     for name in ["Animation_SamplerType_00", "Animation_SamplerType_01", "Animation_SamplerType_02"] {
         for (time_secs, turn) in [(0.0, 1.0), (0.5, 0.5), (1.0, 0.0), (2.0, -1.0)] {
             check(name, time_secs, STILL, about_y(turn * FRAC_PI_2));
@@ -199,7 +199,7 @@ fn skin_02_ignores_the_transforms_of_the_skinned_node_and_its_parent() {
 }
 
 #[test]
-fn skin_03_without_inverse_bind_matrices_is_placed_by_its_joints_alone() {
+fn skin_03_without_inverse_bind_matrices_only_its_joints_place_it() {
     let Some(library) = file("Animation_Skin_03") else { return };
     let rest = ViewerState {
         playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
@@ -219,7 +219,7 @@ fn skin_03_without_inverse_bind_matrices_is_placed_by_its_joints_alone() {
 }
 
 #[test]
-fn skin_04_a_mesh_on_a_joint_goes_with_it() {
+fn skin_04_a_mesh_on_a_joint_moves_with_it() {
     let Some(library) = file("Animation_Skin_04") else { return };
     let geometry = &library.active().expect("a model").asset.meshes[1].primitives[0].positions;
     for time_secs in [0.0, 0.5, 1.0] {
@@ -238,14 +238,14 @@ fn skin_05_and_07_share_skins_and_joints() {
     }
     if let Some(library) = file("Animation_Skin_07") {
         assert_eq!(draws(&library), [2, 2]);
-        // Both prisms bend with the joint that they share.
+        // Both prisms bend with the joint they share.
         for node in [0, 3] {
             assert!(apart(&positions(&library, node, &at(0, 0.0)), &positions(&library, node, &at(0, 1.0))) > 0.05);
         }
     }
 }
 
-/// Palette entries of each draw.
+/// Returns the number of palette entries of each draw.
 fn draws(library: &Library) -> Vec<usize> {
     let mut frame = Frame::default();
     evaluate(library, &ViewerState::default(), 1.0, &mut frame);
@@ -259,12 +259,12 @@ fn skin_06_joints_need_no_common_root() {
         playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
         ..ViewerState::default()
     };
-    // The second joint is at the same place, given in world space instead.
+    // The second joint is at the same position, but given in world space.
     assert!(apart(&positions(&chain, 0, &rest), &positions(&roots, 0, &rest)) < 1e-5);
 }
 
 #[test]
-fn skin_09_a_node_that_is_no_joint_carries_the_joint_below_it() {
+fn skin_09_a_node_that_is_not_a_joint_moves_the_joint_below_it() {
     let Some(library) = file("Animation_Skin_09") else { return };
     let at_rest = world_from_node(&library, 5, &at(0, 0.0)).translation;
     let bent = world_from_node(&library, 5, &at(0, 1.0)).translation;
@@ -286,13 +286,13 @@ fn skin_11_one_mesh_with_two_skins() {
 }
 
 #[test]
-fn skin_types_are_the_same_shape() {
+fn weight_types_give_the_same_shape() {
     let Some(expected) = file("Animation_SkinType_00") else { return };
     for name in ["Animation_SkinType_01", "Animation_SkinType_02", "Animation_SkinType_03"] {
         let Some(library) = file(name) else { return };
         for time_secs in [0.0, 0.5, 1.0] {
             let state = at(0, time_secs);
-            // Weights in bytes are steps of 1/255.
+            // Byte weights have steps of 1/255.
             assert!(
                 apart(&positions(&library, 0, &state), &positions(&expected, 0, &state)) < 2e-3,
                 "{name} {time_secs}"

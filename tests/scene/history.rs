@@ -11,7 +11,7 @@ fn a_gesture_is_one_step() {
     let (mut state, mut history) = (ViewerState::default(), History::default());
     for stops in [0.1, 0.2, 0.3] {
         history.apply(&mut state, &library, Command::SetExposure(stops));
-        // Time goes by while a slider is dragged.
+        // Time advances while a slider is dragged.
         history.apply(&mut state, &library, Command::Advance(0.01));
     }
     history.end_gesture();
@@ -30,7 +30,7 @@ fn a_gesture_is_one_step() {
 }
 
 #[test]
-fn time_and_camera_stay_where_they_are() {
+fn undo_keeps_time_and_camera() {
     let mut library = walker();
     let (mut state, mut history) = (ViewerState::default(), History::default());
     history.apply(&mut state, &library, Command::SetUp(UpAxis::Z));
@@ -43,7 +43,7 @@ fn time_and_camera_stay_where_they_are() {
 }
 
 #[test]
-fn a_new_edit_forgets_what_was_undone() {
+fn a_new_edit_discards_undone_steps() {
     let mut library = walker();
     let (mut state, mut history) = (ViewerState::default(), History::default());
     history.apply(&mut state, &library, Command::SetExposure(1.0));
@@ -53,14 +53,14 @@ fn a_new_edit_forgets_what_was_undone() {
 }
 
 #[test]
-fn what_changes_nothing_is_no_step() {
+fn a_command_that_changes_nothing_is_not_a_step() {
     let library = walker();
     let (mut state, mut history) = (ViewerState::default(), History::default());
     history.apply(&mut state, &library, Command::SetExposure(0.0));
     assert!(!history.can_undo());
 }
 
-/// A library with two models; the second is shown.
+/// A library with two models; the second is active.
 fn two_models() -> (Library, ModelId, ModelId) {
     let mut library = Library::default();
     let model = |source: &str| Model::new(source.to_owned(), walker().active().unwrap().asset.clone(), Vec::new());
@@ -70,7 +70,7 @@ fn two_models() -> (Library, ModelId, ModelId) {
 }
 
 #[test]
-fn what_was_opened_is_a_step_between_edits() {
+fn opening_is_a_step_between_edits() {
     let (mut library, first, second) = two_models();
     let mut history = History::default();
     library.show(first);
@@ -88,20 +88,20 @@ fn what_was_opened_is_a_step_between_edits() {
     history.end_gesture();
     history.apply(&mut state, &library, Command::SetExposure(2.0));
 
-    let shown = |library: &Library| library.active().map(|model| model.id);
+    let active = |library: &Library| library.active().map(|model| model.id);
     assert!(history.undo(&mut state, &mut library));
-    assert_eq!((shown(&library), state.display.exposure, state.sources.motion.len()), (Some(second), 0.0, 1));
+    assert_eq!((active(&library), state.display.exposure, state.sources.motion.len()), (Some(second), 0.0, 1));
     assert!(history.undo(&mut state, &mut library));
-    assert_eq!((shown(&library), state.display.exposure, state.playhead.time_secs), (Some(first), 1.0, 0.7));
+    assert_eq!((active(&library), state.display.exposure, state.playhead.time_secs), (Some(first), 1.0, 0.7));
     assert!(library.motions().is_empty() && state.sources.motion.is_empty());
     assert!(history.undo(&mut state, &mut library));
     assert_eq!(state.display.exposure, 0.0);
     while history.redo(&mut state, &mut library) {}
-    assert_eq!((shown(&library), state.display.exposure, library.motions().len()), (Some(second), 2.0, 1));
+    assert_eq!((active(&library), state.display.exposure, library.motions().len()), (Some(second), 2.0, 1));
 }
 
 #[test]
-fn no_step_leads_to_a_model_that_has_gone() {
+fn steps_to_an_evicted_model_are_dropped() {
     let (mut library, first, second) = two_models();
     let (mut state, mut history) = (ViewerState::default(), History::default());
     history.apply(&mut state, &library, Command::SetExposure(1.0));
@@ -117,12 +117,12 @@ fn no_step_leads_to_a_model_that_has_gone() {
 }
 
 #[test]
-fn a_closed_model_comes_back_and_the_view_stays() {
+fn undo_relists_a_closed_model_and_keeps_the_view() {
     let (mut library, first, second) = two_models();
     let (mut state, mut history) = (ViewerState::default(), History::default());
     history.closed(library.listed());
     library.close(second);
-    assert_eq!(library.listed(), [first, second], "what is shown stays");
+    assert_eq!(library.listed(), [first, second], "the active model stays");
     library.close(first);
     assert_eq!(library.listed(), [second]);
     state.playhead.time_secs = 0.7;
@@ -131,12 +131,12 @@ fn a_closed_model_comes_back_and_the_view_stays() {
     assert!(history.redo(&mut state, &mut library));
     assert_eq!(library.listed(), [second]);
     assert_eq!(library.active().map(|model| model.id), Some(second));
-    assert!(library.show(first), "a step may lead to a closed model");
+    assert!(library.show(first), "a step may activate a closed model");
     assert_eq!(library.listed(), [second, first]);
 }
 
 #[test]
-fn closed_models_go_first() {
+fn closed_models_are_evicted_first() {
     let (mut library, first, second) = two_models();
     let (mut state, mut history) = (ViewerState::default(), History::default());
     let asset = library.active().unwrap().asset.clone();
@@ -145,14 +145,14 @@ fn closed_models_go_first() {
     for index in 1..Library::MAX_MODELS {
         library.add(Model::new(format!("{index}.glb"), asset.clone(), Vec::new()));
     }
-    assert!(library.trim().is_empty(), "nobody has to hear of it");
+    assert!(library.trim().is_empty(), "evicting closed models is not reported");
     assert!(library.get(first).is_none() && library.get(second).is_some());
     history.forget_gone(&library);
-    assert!(!history.undo(&mut state, &mut library), "no step leads to a list with it");
+    assert!(!history.undo(&mut state, &mut library), "the steps to lists with it are dropped");
 }
 
 #[test]
-fn the_oldest_model_goes_and_never_the_shown_one() {
+fn the_oldest_model_is_evicted_but_never_the_active_one() {
     let (mut library, first, second) = two_models();
     let asset = library.active().unwrap().asset.clone();
     for index in library.models().len()..Library::MAX_MODELS {
@@ -165,7 +165,7 @@ fn the_oldest_model_goes_and_never_the_shown_one() {
     assert_eq!((gone, library.models().len()), (vec![second], Library::MAX_MODELS));
     assert_eq!(library.active().map(|model| model.id), Some(first));
     library.remove(first);
-    assert!(library.get(first).is_some(), "what is shown stays");
+    assert!(library.get(first).is_some(), "the active model stays");
     library.remove(newest);
     assert!(library.get(newest).is_none());
 }

@@ -1,4 +1,4 @@
-//! The text form of a view: what is written is read back, whatever is set.
+//! The text form of a view: every state round-trips.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -41,7 +41,7 @@ fn check_bad(link: &str, key: &str) {
     assert_eq!(state, ViewerState::default(), "{link}");
 }
 
-/// One of each kind, with everything that a map can say.
+/// One map of each kind, with every member set.
 fn some_maps() -> Vec<MotionMap> {
     let entry = |source| MapEntry { source, correction: glam::Quat::IDENTITY, unmapped: None };
     let number = |number| Some(SourceRef::Number(number));
@@ -80,7 +80,7 @@ fn some_maps() -> Vec<MotionMap> {
     ]
 }
 
-/// A state that differs from the default in one field each; the name is the field's.
+/// States that differ from the default in one field each, with the field's name.
 fn one_field_each() -> Vec<(&'static str, ViewerState)> {
     let orbit =
         OrbitCamera { yaw_radians: 0.7, pitch_radians: -0.3, distance: 2.5, target: Vec3::new(0.1, -2.0, 3e-5) };
@@ -173,7 +173,7 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
     ]
 }
 
-/// Where each field of the state is: its group, and its name in there. The camera is a group and a field at once.
+/// The path of each field in the state: group and name. The camera is both a group and a field.
 fn fields() -> Vec<Vec<String>> {
     let state = serde_json::to_value(ViewerState::default()).expect("plain data");
     let of_group = |(group, value): (&String, &serde_json::Value)| -> Vec<Vec<String>> {
@@ -197,7 +197,7 @@ fn every_field_of_the_state_has_a_key() {
 }
 
 #[test]
-fn all_fields_at_once_come_back() {
+fn all_fields_at_once_round_trip() {
     let mut all = serde_json::to_value(ViewerState::default()).expect("plain data");
     for (field, state) in one_field_each() {
         let pointer = format!("/{}", field.replace('.', "/"));
@@ -208,7 +208,7 @@ fn all_fields_at_once_come_back() {
 }
 
 #[test]
-fn any_camera_comes_back_exactly() {
+fn any_camera_round_trips_exactly() {
     let mut random = Random(1);
     let mut next = |scale: f32| scale * (2.0 * random.f32() - 1.0);
     for _ in 0..500 {
@@ -233,7 +233,7 @@ fn defaults_are_left_out() {
 }
 
 #[test]
-fn links_read_as_written_down() {
+fn links_read_as_documented() {
     let default = ViewerState::default();
     check_read("", default.clone());
     check_read(
@@ -288,7 +288,7 @@ fn links_read_as_written_down() {
 }
 
 #[test]
-fn what_is_no_name_and_no_vertex_is_told_of() {
+fn invalid_names_and_vertices_are_reported() {
     check_bad("names=3", "names");
     check_bad("names=3:", "names");
     check_bad("names=3: ", "names");
@@ -299,7 +299,7 @@ fn what_is_no_name_and_no_vertex_is_told_of() {
     check_bad("vertex=0:0:-1", "vertex");
 }
 
-/// What a plain map looks like in a link is part of what old links rely on.
+/// Old links depend on the text form of a plain map.
 #[test]
 fn a_plain_map_is_short_and_readable() {
     let maps = some_maps();
@@ -312,7 +312,7 @@ fn a_plain_map_is_short_and_readable() {
 }
 
 #[test]
-fn parts_of_a_map_are_easy_to_write_by_hand() {
+fn parts_of_a_map_are_easy_to_write_manually() {
     let default = ViewerState::default();
     let root = |root| ViewerState {
         retarget: RetargetEdits { root: Some(root), ..default.retarget.clone() },
@@ -342,7 +342,7 @@ fn parts_of_a_map_are_easy_to_write_by_hand() {
 }
 
 #[test]
-fn bad_values_are_named_and_skipped() {
+fn bad_values_are_reported_and_skipped() {
     check_bad("t=soon", "t");
     check_bad("t=inf", "t");
     check_bad("play=yes", "play");
@@ -374,7 +374,7 @@ fn bad_values_are_named_and_skipped() {
 }
 
 #[test]
-fn keys_of_other_versions_are_kept() {
+fn unknown_keys_are_kept() {
     let link = "v=1&show=skeleton,fur&crowd=b&crowd=c&zoo=1%262";
     let (state, errors) = from_link(link);
     assert_eq!(errors.len(), 4, "{errors:?}");

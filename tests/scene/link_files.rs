@@ -1,4 +1,5 @@
-//! The files that a link names: found, marked for others to bring, left out while missing, and put back.
+//! The files that a link names: listing them, marking local ones for the recipient to supply, leaving out missing ones, and
+//! adding them again.
 
 use gaitway::state::{
     LinkRole, LinkedFile, embedded_link, link_with_files, link_without_missing, linked_files, most_similar_link,
@@ -19,7 +20,7 @@ fn check_file(pair: &str, expected: LinkedFile) {
 }
 
 #[test]
-fn a_file_is_a_url_a_sample_or_a_name_to_bring() {
+fn a_file_is_a_url_a_sample_or_a_local_name() {
     check_file("model=sample:pilot", file(LinkRole::Model, "sample:pilot", "", false));
     check_file("motion=https://a.example/x%20y.bvh", file(LinkRole::Motion, "https://a.example/x y.bvh", "", false));
     check_file("model=file:S%C3%B6ldner.glb", file(LinkRole::Model, "Söldner.glb", "", true));
@@ -34,13 +35,13 @@ fn a_model_in_an_archive_belongs_to_the_archive() {
     check_file("model=two.zip%23!%2Fb%2Fman.glb", file(LinkRole::Model, "two.zip", "#!/b/man.glb", false));
     check_file("model=file:two.zip%23!/man.glb", file(LinkRole::Model, "two.zip", "#!/man.glb", true));
     check_file("model=a-folder%23!/man.glb", file(LinkRole::Model, "a-folder", "#!/man.glb", false));
-    // As an early version wrote it.
+    // The separator of an early version.
     check_file("model=Two.ZIP%23/man.glb", file(LinkRole::Model, "Two.ZIP", "#!/man.glb", false));
     check_file("model=odd%23/man.glb", file(LinkRole::Model, "odd#/man.glb", "", false));
 }
 
 #[test]
-fn links_that_show_the_same_files_are_recognized() {
+fn links_to_the_same_files_are_recognized() {
     let same = |link: &str, other: &str| assert_eq!(shown_files(link), shown_files(other), "{link}, {other}");
     let differ = |link: &str, other: &str| assert_ne!(shown_files(link), shown_files(other), "{link}, {other}");
     same("v=1&model=sample:pilot&t=1", "model=sample%3Apilot&clip=run");
@@ -53,7 +54,7 @@ fn links_that_show_the_same_files_are_recognized() {
 }
 
 #[test]
-fn a_public_link_marks_local_files_alone() {
+fn a_public_link_marks_only_local_files() {
     let check = |link: &str, local: &[&str], expected: &str| {
         assert_eq!(public_link(link, &owned(local)), expected, "{link}");
     };
@@ -66,13 +67,13 @@ fn a_public_link_marks_local_files_alone() {
 }
 
 #[test]
-fn an_embedded_link_says_so_once() {
+fn an_embedded_link_has_one_embed_key() {
     assert_eq!(embedded_link("v=1&embed=0&t=1"), "v=1&t=1&embed=1");
     assert_eq!(embedded_link("v=1"), "v=1&embed=1");
 }
 
 #[test]
-fn while_files_are_missing_only_what_applies_without_them_is_shown() {
+fn only_keys_that_apply_without_the_missing_files_are_kept() {
     let check = |link: &str, expected: &str| assert_eq!(link_without_missing(link), expected, "{link}");
     check("v=1&model=a.glb&clip=run&&t=1", "v=1&model=a.glb&clip=run&&t=1");
     check("v=1&model=file:a.glb&motion=b.bvh&t=1&exposure=1&embed=1&show=grid", "v=1&exposure=1&embed=1");
@@ -81,7 +82,7 @@ fn while_files_are_missing_only_what_applies_without_them_is_shown() {
 }
 
 #[test]
-fn files_that_were_brought_take_their_places() {
+fn supplied_files_replace_the_missing_ones() {
     let check = |link: &str, names: &[&str], expected: &str| {
         assert_eq!(link_with_files(link, &owned(names)), expected, "{link}");
     };
@@ -92,7 +93,7 @@ fn files_that_were_brought_take_their_places() {
 }
 
 #[test]
-fn what_is_shared_and_brought_along_is_the_link_again() {
+fn sharing_a_link_and_supplying_its_files_restores_it() {
     let link = "v=1&model=two.zip%23!%2Fman.glb&motion=d%20e.bvh&clip=run";
     let shared = public_link(link, &owned(&["two.zip", "d e.bvh"]));
     let files = linked_files(&shared);

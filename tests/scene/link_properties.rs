@@ -1,5 +1,5 @@
-//! What holds for every link: old ones keep their meaning, any state comes back from its link, and any text has a link that
-//! stands for what was understood of it.
+//! Properties of all links: old ones keep their meaning, every state round-trips, and any text becomes a stable link of its
+//! valid parts.
 
 use std::collections::BTreeMap;
 
@@ -24,7 +24,7 @@ impl Random {
         self.below(2) == 0
     }
 
-    /// Any finite number, the common ones more often.
+    /// Returns any finite number, preferring common ones.
     fn number(&mut self) -> f32 {
         match self.below(4) {
             0 => self.below(9) as f32 * 0.25 - 1.0,
@@ -37,7 +37,7 @@ impl Random {
         values[self.below(values.len())].clone()
     }
 
-    /// Names with everything in them that a link has to escape.
+    /// Returns text with characters that a link has to escape.
     fn text(&mut self) -> String {
         const LETTERS: [&str; 24] = [
             "a", "B", "7", " ", "&", "=", "#", "%", "%20", "+", ",", ":", "/", "?", "\"", "'", "<", "ü", "歩", "🦊",
@@ -46,7 +46,7 @@ impl Random {
         (0..1 + self.below(12)).map(|_| self.one(&LETTERS)).collect()
     }
 
-    /// As joints may be called: one line, with something on it.
+    /// Returns a joint name: one line that is not empty.
     fn name(&mut self) -> String {
         let line: String = self.text().chars().filter(|letter| !letter.is_control()).collect();
         format!("{}x", line.trim_start())
@@ -57,7 +57,7 @@ impl Random {
     }
 
     fn clip(&mut self) -> ClipRef {
-        // Names that could be taken for numbers, too.
+        // Including names that look like numbers.
         if self.often() {
             ClipRef::Index(self.below(300))
         } else {
@@ -180,7 +180,7 @@ fn is_bad(error: &LinkError) -> bool {
 }
 
 #[test]
-fn any_state_comes_back_from_its_link() {
+fn any_state_round_trips_through_its_link() {
     let mut random = Random(1);
     for _ in 0..2000 {
         let state = random.state();
@@ -192,13 +192,13 @@ fn any_state_comes_back_from_its_link() {
         let object = to_object(&state);
         let (back, errors) = from_object(&random.state(), &object);
         assert_eq!(errors, [], "{object}");
-        assert_eq!(back, state, "an object says all of it, whatever was there: {object}");
+        assert_eq!(back, state, "an object sets every key, whatever the state was: {object}");
     }
 }
 
-/// What cannot be read is reported once; the link of the rest means the rest.
+/// Invalid parts are reported once; the link of the remaining state round-trips.
 #[test]
-fn any_text_settles_into_a_link() {
+fn any_text_normalizes_to_a_stable_link() {
     let mut random = Random(2);
     let words = [
         "v",
@@ -270,7 +270,7 @@ fn old_links_keep_working() {
     }
 }
 
-/// Beside the addresses, of a character with as many joints as fingers make of it.
+/// A typical character with fingers.
 #[test]
 fn a_map_of_sixty_joints_is_short() {
     let entry =

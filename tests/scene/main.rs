@@ -1,12 +1,12 @@
-//! From a model and a view state to a picture's numbers: library, state, link, frame, and the command line. No GPU.
+//! From a model and a view state to the numbers of a frame: library, state, link, frame, and the command line. No GPU.
 
 mod address;
 mod allocation;
 #[path = "../support/allocations.rs"]
 mod allocations;
-mod by_hand;
+
 mod cli;
-mod cli_borrow;
+mod cli_motion;
 #[path = "../support/coursework.rs"]
 mod coursework;
 mod coursework_scene;
@@ -24,6 +24,7 @@ mod history;
 mod link;
 mod link_files;
 mod link_properties;
+mod manual_pose;
 mod map_edits;
 mod motion;
 #[path = "../support/random.rs"]

@@ -1,4 +1,4 @@
-//! Edits of the joint map: what each does, that each can be taken back, and that the link holds all of it.
+//! Edits of the joint map: their effect, their undo, and that links hold them completely.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -20,8 +20,8 @@ use glam::{Quat, Vec3};
 use crate::data::walker;
 use crate::skeletons;
 
-/// The walker with its own clips to borrow, the first of them playing, a bit after its start.
-fn dancing() -> (Library, ViewerState) {
+/// The walker with its own clips retargeted to itself, shortly after the start of the first of them.
+fn walker_with_motion() -> (Library, ViewerState) {
     let mut library = walker();
     let asset = library.active().expect("a model").asset.clone();
     library.set_motions(vec![Motion::new("dance.glb".to_owned(), asset)]);
@@ -31,12 +31,12 @@ fn dancing() -> (Library, ViewerState) {
         playhead: Playhead { time_secs: 0.3, clip, ..Playhead::default() },
         ..ViewerState::default()
     };
-    settle(&mut library, &mut state);
+    reconcile(&mut library, &mut state);
     (library, state)
 }
 
-fn settle(library: &mut Library, state: &mut ViewerState) {
-    apply(state, library, Command::SettleMaps);
+fn reconcile(library: &mut Library, state: &mut ViewerState) {
+    apply(state, library, Command::ReconcileMaps);
     library.borrow_each(maps_in_force(library, state));
 }
 
@@ -63,7 +63,7 @@ fn turn() -> Quat {
     Quat::from_rotation_z(0.6)
 }
 
-/// One of each kind.
+/// One edit of each kind.
 fn all_edits(library: &Library) -> Vec<MapEdit> {
     let [neck, head, hips] = ["Neck", "Head", "Hips"].map(|name| number(library, name));
     let frozen = Unmapped::Clip { clip: ClipRef::Index(1), frozen: true };
@@ -92,7 +92,7 @@ fn all_edits(library: &Library) -> Vec<MapEdit> {
 
 #[test]
 fn sides_are_swapped_and_swapped_back() {
-    let (library, state) = dancing();
+    let (library, state) = walker_with_motion();
     let swapped = edited(&library, &state, MapEdit::SwapSides);
     let now = map(&library, &swapped);
     for (target, expected) in
@@ -105,7 +105,7 @@ fn sides_are_swapped_and_swapped_back() {
 }
 
 /// All joints are children of the first.
-fn beast(names: &[&str]) -> Arc<Asset> {
+fn animal(names: &[&str]) -> Arc<Asset> {
     let joint = |(index, name): (usize, &&str)| {
         let rest = Transform::from_translation(Vec3::new(index as f32, 1.0, 0.0));
         skeletons::joint(name, (index > 0).then_some(0), rest)
@@ -113,11 +113,11 @@ fn beast(names: &[&str]) -> Arc<Asset> {
     Arc::new(skeletons::asset(names.iter().enumerate().map(joint).collect()))
 }
 
-/// Which source each target follows, both by their numbers in the file, after the sides were swapped.
+/// Checks the pairs of target and source after swapping sides; all are indices in the file.
 fn check_swapped(model: &[&str], motion: &[&str], pairs: &[(usize, usize)], expected: &[(usize, usize)]) {
     let mut library = Library::default();
-    library.set(Model::new("beast.glb".to_owned(), beast(model), Vec::new()));
-    library.set_motions(vec![Motion::new("run.bvh".to_owned(), beast(motion))]);
+    library.set(Model::new("beast.glb".to_owned(), animal(model), Vec::new()));
+    library.set_motions(vec![Motion::new("run.bvh".to_owned(), animal(motion))]);
     let mut state = ViewerState::default();
     apply(&mut state, &library, Command::EditMap { motion: 0, edit: MapEdit::Clear });
     for &(target, source) in pairs {
@@ -134,12 +134,12 @@ fn check_swapped(model: &[&str], motion: &[&str], pairs: &[(usize, usize)], expe
     assert_eq!(now, expected, "{model:?} {motion:?}");
 }
 
-/// What is no human body has sides all the same, where names differ in nothing else.
+/// Bodies that aren't humanoid have sides too, if names differ only in left and right.
 #[test]
-fn sides_of_beasts_are_told_by_their_names() {
+fn sides_of_animals_are_recognized_by_name() {
     let wings = ["trunk", "wing_l", "wing_r", "tail"];
     check_swapped(&wings, &wings, &[(0, 0), (1, 1), (2, 2), (3, 3)], &[(0, 0), (1, 2), (2, 1), (3, 3)]);
-    // The motion's names say no side: the model's joints trade what they follow.
+    // The motion's names have no sides: the model's joints swap their sources.
     let numbered = ["a", "b", "c", "d"];
     check_swapped(&wings, &numbered, &[(0, 0), (1, 1), (2, 3)], &[(0, 0), (1, 3), (2, 1)]);
     check_swapped(&wings, &numbered, &[(0, 0), (1, 1)], &[(0, 0), (2, 1)]);
@@ -147,8 +147,8 @@ fn sides_of_beasts_are_told_by_their_names() {
 }
 
 #[test]
-fn a_correction_turns_the_playing_joint() {
-    let (mut library, mut state) = dancing();
+fn a_rotation_offset_turns_the_playing_joint() {
+    let (mut library, mut state) = walker_with_motion();
     let before = pose_document(&library, &state);
     let neck = number(&library, "Neck");
     apply(
@@ -157,8 +157,8 @@ fn a_correction_turns_the_playing_joint() {
         Command::EditMap { motion: 0, edit: MapEdit::Correction { target: neck, correction: turn() * 3.0 } },
     );
     let correction = map(&library, &state).joints[&format!("#{neck}")].correction;
-    assert!(correction.abs_diff_eq(turn(), 1e-6), "as long as one: {correction}");
-    settle(&mut library, &mut state);
+    assert!(correction.abs_diff_eq(turn(), 1e-6), "it is normalized: {correction}");
+    reconcile(&mut library, &mut state);
     assert_ne!(pose_document(&library, &state), before);
     for bad in [Quat::from_xyzw(0.0, 0.0, 0.0, 0.0), Quat::from_xyzw(f32::NAN, 0.0, 0.0, 1.0)] {
         assert_eq!(edited(&library, &state, MapEdit::Correction { target: neck, correction: bad }), state);
@@ -167,7 +167,7 @@ fn a_correction_turns_the_playing_joint() {
 
 #[test]
 fn channels_are_muted_one_by_one() {
-    let (mut library, state) = dancing();
+    let (mut library, state) = walker_with_motion();
     let arm = number(&library, "LeftUpperArm");
     let mute =
         |state: &ViewerState, property, muted| edited(&library, state, MapEdit::Mute { source: arm, property, muted });
@@ -178,27 +178,27 @@ fn channels_are_muted_one_by_one() {
     let all = mute(&two, MutedProperty::Translation, true);
     let whole = MutedChannel { source: SourceRef::Number(arm), property: None };
     assert_eq!(map(&library, &all).muted_channels, [whole]);
-    // One of a joint that is left out as a whole comes back alone.
+    // Unmuting one channel of an entirely muted joint leaves the others muted.
     let back = mute(&all, MutedProperty::Rotation, false);
     assert_eq!(muted_properties(&map(&library, &back), arm), [true, false, true]);
     assert_eq!(edited(&library, &back, MapEdit::UnmuteAll), state);
 
     let before = pose_document(&library, &state);
     let mut rotation = rotation;
-    settle(&mut library, &mut rotation);
-    assert_ne!(pose_document(&library, &rotation), before, "the arm hangs still");
+    reconcile(&mut library, &mut rotation);
+    assert_ne!(pose_document(&library, &rotation), before, "the arm is still");
 }
 
 #[test]
-fn a_cleared_map_is_a_start_to_go_on_from() {
-    let (mut library, state) = dancing();
+fn a_cleared_map_stays_empty_until_edited() {
+    let (mut library, state) = walker_with_motion();
     let mut cleared = edited(&library, &state, MapEdit::Clear);
     assert_eq!(map(&library, &cleared).joints.len(), 0);
-    settle(&mut library, &mut cleared);
-    assert_eq!(map(&library, &cleared).joints.len(), 0, "it is not filled up again");
+    reconcile(&mut library, &mut cleared);
+    assert_eq!(map(&library, &cleared).joints.len(), 0, "no map is proposed again");
     let hips = number(&library, "Hips");
     apply(&mut cleared, &library, Command::SetSource { motion: 0, target: hips, source: Some(hips) });
-    settle(&mut library, &mut cleared);
+    reconcile(&mut library, &mut cleared);
     assert_eq!(library.borrow_errors(), []);
     let mut again = cleared.clone();
     apply(&mut again, &library, Command::SetMap { motion: 0, map: None });
@@ -206,8 +206,8 @@ fn a_cleared_map_is_a_start_to_go_on_from() {
 }
 
 #[test]
-fn all_of_a_loaded_map_counts() {
-    let (library, mut state) = dancing();
+fn every_member_of_a_loaded_map_is_applied() {
+    let (library, mut state) = walker_with_motion();
     apply(&mut state, &library, Command::SetFeet(Some(Feet::Off)));
     apply(&mut state, &library, Command::SetRoot(Some(RootOptions { yaw: RootPart::Freeze, ..Default::default() })));
     let new = JointMap { feet: Feet::Plant, ..map(&library, &state) };
@@ -217,8 +217,8 @@ fn all_of_a_loaded_map_counts() {
 }
 
 #[test]
-fn what_is_not_there_changes_nothing() {
-    let (library, state) = dancing();
+fn edits_of_missing_joints_change_nothing() {
+    let (library, state) = walker_with_motion();
     let nothing = [
         MapEdit::Correction { target: 9999, correction: turn() },
         MapEdit::Unmapped { target: 9999, unmapped: Some(Unmapped::Rest) },
@@ -234,10 +234,10 @@ fn what_is_not_there_changes_nothing() {
     assert_eq!(other, state);
 }
 
-/// With the borrowed clips made anew after each step, as the page does it.
+/// Retargets the clips after each step, as the editor does.
 #[test]
-fn fifty_edits_are_undone_and_done_again() {
-    let (mut library, mut state) = dancing();
+fn fifty_edits_are_undone_and_redone() {
+    let (mut library, mut state) = walker_with_motion();
     let mut history = History::default();
     let edits = all_edits(&library);
     let first = state.clone();
@@ -253,7 +253,7 @@ fn fifty_edits_are_undone_and_done_again() {
         };
         history.apply(&mut state, &library, command);
         history.end_gesture();
-        settle(&mut library, &mut state);
+        reconcile(&mut library, &mut state);
         if state != seen[seen.len() - 1] {
             seen.push(state.clone());
         }
@@ -263,14 +263,14 @@ fn fifty_edits_are_undone_and_done_again() {
     let last = pose_document(&library, &state);
     for expected in seen.iter().rev().skip(1) {
         assert!(history.undo(&mut state, &mut library));
-        settle(&mut library, &mut state);
+        reconcile(&mut library, &mut state);
         assert_eq!(&state, expected);
     }
     assert_eq!(state, first);
     assert!(!history.can_undo());
     for expected in &seen[1..] {
         assert!(history.redo(&mut state, &mut library));
-        settle(&mut library, &mut state);
+        reconcile(&mut library, &mut state);
         assert_eq!(&state, expected);
     }
     assert!(!history.can_redo());
@@ -279,7 +279,7 @@ fn fifty_edits_are_undone_and_done_again() {
 
 #[test]
 fn a_drag_is_one_step() {
-    let (mut library, mut state) = dancing();
+    let (mut library, mut state) = walker_with_motion();
     let mut history = History::default();
     let before = state.clone();
     let neck = number(&library, "Neck");
@@ -296,20 +296,20 @@ fn a_drag_is_one_step() {
 }
 
 #[test]
-fn every_edit_is_in_the_link() {
-    let (mut library, state) = dancing();
+fn every_edit_round_trips_through_the_link() {
+    let (mut library, state) = walker_with_motion();
     for edit in all_edits(&library) {
         let mut state = edited(&library, &state, edit.clone());
-        settle(&mut library, &mut state);
+        reconcile(&mut library, &mut state);
         let (mut back, errors) = from_link(&to_link(&state));
         assert_eq!(errors, [], "{edit:?}");
         assert_eq!(settled_maps(&library, &back).1, [], "{edit:?}");
-        settle(&mut library, &mut back);
+        reconcile(&mut library, &mut back);
         assert_eq!(back, state, "{edit:?}");
     }
 }
 
-/// Maps that differ from the default in one member each; a member that is added has to be added here.
+/// Maps that differ from the default in one member each. Add new members here.
 fn one_member_each() -> Vec<(&'static str, JointMap)> {
     let JointMap {
         gaitway_map: _,
@@ -386,7 +386,7 @@ fn the_map_key_holds_every_member() {
     }
 }
 
-/// Sixty joints, ten of them turned further, muted channels, and every option.
+/// Sixty joints, ten of them with rotation offsets, muted channels, and every option.
 #[test]
 fn a_large_map_stays_short() {
     let mut map = JointMap {

@@ -1,4 +1,4 @@
-//! Motions and maps in a view: what is filled in, what is kept, what a link brings back.
+//! Motions and maps in a view: maps are proposed, kept, and restored by links.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -17,8 +17,8 @@ use glam::{Quat, Vec3};
 use crate::data::walker;
 use crate::skeletons;
 
-/// The walker, and its own clips to borrow.
-fn dancing() -> Library {
+/// The walker with its own clips as a motion.
+fn walker_with_motion() -> Library {
     let mut library = walker();
     let asset = library.active().expect("a model").asset.clone();
     library.set_motions(vec![Motion::new("dance.glb".to_owned(), asset)]);
@@ -30,9 +30,9 @@ fn chain(names: &[&str]) -> Asset {
     skeletons::asset(skeletons::chain(names.iter().copied(), Vec3::Y))
 }
 
-fn settled(library: &mut Library, state: &mut ViewerState) -> Vec<MapProblem> {
+fn reconcile(library: &mut Library, state: &mut ViewerState) -> Vec<MapProblem> {
     let (_, problems) = settled_maps(library, state);
-    apply(state, library, Command::SettleMaps);
+    apply(state, library, Command::ReconcileMaps);
     library.borrow_each(maps_in_force(library, state));
     problems
 }
@@ -50,7 +50,7 @@ fn name(name: &str) -> Option<SourceRef> {
     Some(SourceRef::Name(name.to_owned()))
 }
 
-/// By name: the neck follows the head, the head nothing.
+/// A map by name: the neck follows the head, the head is unmapped.
 fn by_name() -> JointMap {
     let joints = [("Hips", name("Hips")), ("Neck", name("Head")), ("Head", None)];
     JointMap {
@@ -61,10 +61,10 @@ fn by_name() -> JointMap {
 }
 
 #[test]
-fn a_map_is_filled_in_for_every_motion() {
-    let mut library = dancing();
+fn a_map_is_proposed_for_every_motion() {
+    let mut library = walker_with_motion();
     let mut state = ViewerState::default();
-    assert_eq!(settled(&mut library, &mut state), []);
+    assert_eq!(reconcile(&mut library, &mut state), []);
     let [MotionMap::Numbers(map)] = &state.retarget.map[..] else { panic!("{:?}", state.retarget.map) };
     let asset = &library.active().expect("a model").asset;
     assert_eq!(map.checksum, names_checksum(asset, asset));
@@ -72,32 +72,32 @@ fn a_map_is_filled_in_for_every_motion() {
     assert_eq!(map.map.joints[&format!("#{hips}")].source, Some(SourceRef::Number(hips)));
     assert_eq!(library.borrow_errors(), []);
     assert_eq!(library.active().expect("a model").clip_count(), 6);
-    // Once there, it is left alone.
+    // An existing map is kept.
     let before = state.clone();
-    assert_eq!(settled(&mut library, &mut state), []);
+    assert_eq!(reconcile(&mut library, &mut state), []);
     assert_eq!(state, before);
 }
 
 #[test]
-fn without_motions_nothing_is_filled_in_and_nothing_lost() {
+fn without_motions_no_map_is_proposed_or_lost() {
     let mut library = walker();
     let map = vec![MotionMap::Names(by_name()), MotionMap::File("map.json".to_owned())];
     let mut state = ViewerState {
         retarget: RetargetEdits { map: map.clone(), ..RetargetEdits::default() },
         ..ViewerState::default()
     };
-    assert_eq!(settled(&mut library, &mut state), []);
+    assert_eq!(reconcile(&mut library, &mut state), []);
     assert_eq!(state.retarget.map, map);
 }
 
 #[test]
-fn a_map_by_name_becomes_numbers_and_comes_back() {
-    let mut library = dancing();
+fn a_map_by_name_becomes_numbers_and_round_trips() {
+    let mut library = walker_with_motion();
     let mut state = ViewerState {
         retarget: RetargetEdits { map: vec![MotionMap::Names(by_name())], ..RetargetEdits::default() },
         ..ViewerState::default()
     };
-    assert_eq!(settled(&mut library, &mut state), []);
+    assert_eq!(reconcile(&mut library, &mut state), []);
     let map = map_in_force(&library, &state, 0).expect("the given map");
     let (neck, head) = (number(&library, "Neck"), number(&library, "Head"));
     assert_eq!(map.joints[&format!("#{neck}")].source, Some(SourceRef::Number(head)));
@@ -110,26 +110,26 @@ fn a_map_by_name_becomes_numbers_and_comes_back() {
 }
 
 #[test]
-fn a_map_that_fits_nothing_is_named_and_replaced() {
-    let mut library = dancing();
+fn a_map_that_fits_no_motion_is_reported_and_replaced() {
+    let mut library = walker_with_motion();
     let wrong =
         JointMap { joints: BTreeMap::from([("Hips".to_owned(), follows(name("Pelvis")))]), ..JointMap::default() };
     let mut state = ViewerState {
         retarget: RetargetEdits { map: vec![MotionMap::Names(wrong)], ..RetargetEdits::default() },
         ..ViewerState::default()
     };
-    let problems = settled(&mut library, &mut state);
+    let problems = reconcile(&mut library, &mut state);
     assert!(matches!(&problems[..], [MapProblem::NoFit { motion, .. }] if motion == "dance.glb"), "{problems:?}");
     assert!(problems[0].to_string().contains("Pelvis"), "{}", problems[0]);
     assert!(map_in_force(&library, &state, 0).expect("an automatic map").joints.len() > 10);
 }
 
-/// Names that changed under a link: its numbers may mean other joints now.
+/// If joint names changed since a link was made, its numbers may identify other joints.
 #[test]
 fn numbers_for_other_names_are_not_used() {
-    let mut library = dancing();
+    let mut library = walker_with_motion();
     let mut state = ViewerState::default();
-    settled(&mut library, &mut state);
+    reconcile(&mut library, &mut state);
     let link = to_link(&state);
     let (mut other, errors) = from_link(&link);
     assert_eq!(errors, []);
@@ -137,15 +137,15 @@ fn numbers_for_other_names_are_not_used() {
     let mut names: Vec<&str> = asset.skeleton.joints().map(|joint| asset.skeleton.name(joint)).collect();
     names[3] = "Else";
     library.set_motions(vec![Motion::new("else.bvh".to_owned(), Arc::new(chain(&names)))]);
-    assert_eq!(settled(&mut library, &mut other), [MapProblem::OtherFiles]);
+    assert_eq!(reconcile(&mut library, &mut other), [MapProblem::OtherFiles]);
     assert_ne!(other.retarget.map, state.retarget.map);
 }
 
 #[test]
-fn one_source_is_changed_and_taken_back() {
-    let mut library = dancing();
+fn a_source_can_be_changed_and_restored() {
+    let mut library = walker_with_motion();
     let (mut state, mut history) = (ViewerState::default(), History::default());
-    settled(&mut library, &mut state);
+    reconcile(&mut library, &mut state);
     let before = state.clone();
     let (neck, head) = (number(&library, "Neck"), number(&library, "Head"));
     let change = Command::SetSource { motion: 0, target: neck, source: Some(head) };
@@ -163,17 +163,17 @@ fn one_source_is_changed_and_taken_back() {
     for (target, source) in [(9999, None), (neck, Some(9999))] {
         let now = state.clone();
         apply(&mut state, &library, Command::SetSource { motion: 0, target, source });
-        assert_eq!(state, now, "numbers that are not there change nothing");
+        assert_eq!(state, now, "missing joints change nothing");
     }
     apply(&mut state, &library, Command::SetMap { motion: 0, map: None });
-    assert_eq!(state.retarget.map, before.retarget.map, "automatic again");
+    assert_eq!(state.retarget.map, before.retarget.map, "the proposed map is back");
 }
 
 #[test]
-fn what_is_set_besides_wins_over_the_map() {
-    let mut library = dancing();
+fn overrides_take_precedence_over_the_map() {
+    let mut library = walker_with_motion();
     let mut state = ViewerState::default();
-    settled(&mut library, &mut state);
+    reconcile(&mut library, &mut state);
     let root = RootOptions { vertical: RootPart::Freeze, ..RootOptions::default() };
     let unmapped = Unmapped::Clip { clip: ClipRef::Index(1), frozen: true };
     let own = map_in_force(&library, &state, 0).expect("a map");
@@ -186,7 +186,7 @@ fn what_is_set_besides_wins_over_the_map() {
     }
     let map = map_in_force(&library, &state, 0).expect("a map");
     assert_eq!(map, JointMap { root, unmapped, feet: Feet::Plant, ..own.clone() });
-    // A joint that is changed now does not write them into the map.
+    // Editing a joint doesn't write them into the map.
     let head = number(&library, "Head");
     apply(&mut state, &library, Command::SetSource { motion: 0, target: head, source: None });
     for command in [Command::SetRoot(None), Command::SetUnmapped(None), Command::SetFeet(None)] {
@@ -201,46 +201,46 @@ fn a_motion_without_anything_in_common_has_no_map() {
     let mut library = walker();
     library.set_motions(vec![Motion::new("snake.bvh".to_owned(), Arc::new(chain(&["s1", "s2", "s3"])))]);
     let mut state = ViewerState::default();
-    assert_eq!(settled(&mut library, &mut state), []);
+    assert_eq!(reconcile(&mut library, &mut state), []);
     assert_eq!(state.retarget.map, []);
     let [error] = library.borrow_errors() else { panic!("{:?}", library.borrow_errors()) };
     assert!(error.to_string().starts_with("snake.bvh: "), "{error}");
     assert!(error.to_string().contains("no joint in common"), "{error}");
     assert_eq!(library.active().expect("a model").clip_count(), 3);
-    // By hand it can still be mapped.
+    // It can still be mapped manually.
     let head = number(&library, "Head");
     apply(&mut state, &library, Command::SetSource { motion: 0, target: head, source: Some(1) });
     let map = map_in_force(&library, &state, 0).expect("a map");
     assert_eq!(map.joints.len(), 1);
     let before = state.retarget.map.clone();
-    settled(&mut library, &mut state);
-    assert_eq!(state.retarget.map, before, "what was begun by hand is not filled up");
+    reconcile(&mut library, &mut state);
+    assert_eq!(state.retarget.map, before, "a manual map is not replaced by a proposal");
 }
 
-/// The link says all: whoever opens it with the same files has the same pose.
+/// A link is complete: with the same files, it gives the same pose.
 #[test]
-fn a_link_brings_the_same_pose_back() {
-    let mut library = dancing();
+fn a_link_restores_the_same_pose() {
+    let mut library = walker_with_motion();
     let mut state = ViewerState {
         playback: Playback { playing: false, ..Playback::default() },
         playhead: Playhead { time_secs: 0.3, ..Playhead::default() },
         ..ViewerState::default()
     };
-    settled(&mut library, &mut state);
+    reconcile(&mut library, &mut state);
     let arm = number(&library, "LeftUpperArm");
     state.playhead.clip = ClipChoice::Named("3".to_owned());
     apply(&mut state, &library, Command::SetSource { motion: 0, target: arm, source: None });
     apply(&mut state, &library, Command::SetUnmapped(Some(Unmapped::Clip { clip: ClipRef::Index(2), frozen: false })));
     let root = RootOptions { horizontal: RootPart::InPlace, ..RootOptions::default() };
     apply(&mut state, &library, Command::SetRoot(Some(root)));
-    assert_eq!(settled(&mut library, &mut state), []);
+    assert_eq!(reconcile(&mut library, &mut state), []);
     let pose = pose_document(&library, &state);
     assert_eq!(library.active().expect("a model").clip(3).map(Clip::name), Some("Walk"));
 
     let (mut back, errors) = from_link(&to_link(&state));
     assert_eq!(errors, []);
-    let mut fresh = dancing();
-    assert_eq!(settled(&mut fresh, &mut back), []);
+    let mut fresh = walker_with_motion();
+    assert_eq!(reconcile(&mut fresh, &mut back), []);
     assert_eq!(back, state);
     assert_eq!(pose_document(&fresh, &back), pose);
     let plain = ViewerState {
@@ -252,6 +252,6 @@ fn a_link_brings_the_same_pose_back() {
         playhead: Playhead { time_secs: 0.3, ..plain.playhead },
         ..plain
     };
-    settled(&mut fresh, &mut plain);
-    assert_ne!(pose_document(&fresh, &plain), pose, "and it is not what comes without them");
+    reconcile(&mut fresh, &mut plain);
+    assert_ne!(pose_document(&fresh, &plain), pose, "and it differs from the pose without them");
 }

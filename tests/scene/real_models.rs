@@ -1,4 +1,4 @@
-//! Facts about real files that other programs and the files' own pages give.
+//! Facts about real files, from other programs and the files' own pages.
 
 use gaitway::asset::Asset;
 use gaitway::frame::{Frame, evaluate, pose_document};
@@ -23,7 +23,7 @@ fn check(facts: &Facts) {
         let clips = document["clips"].as_array().expect("clips");
         let clip = clips.iter().find(|clip| clip["name"] == *name).unwrap_or_else(|| panic!("{name}: {clips:?}"));
         let found = clip["duration_secs"].as_f64().expect("a number");
-        // The facts are written down to a thousandth of a second.
+        // The facts are rounded to milliseconds.
         assert!((found - duration_secs).abs() < 6e-4 + 1e-3 * duration_secs, "{} {name}: {found}", facts.path);
     }
 }
@@ -66,8 +66,8 @@ fn counts_and_durations() {
 }
 
 #[test]
-fn a_skinned_mesh_ignores_the_node_it_hangs_on() {
-    // ArmyPilot's mesh hangs on the joint Pelvis: moved by that node's own transform it would be far above its skeleton.
+fn a_skinned_mesh_ignores_its_nodes_transform() {
+    // ArmyPilot's mesh is attached to the joint Pelvis: moved by that node's own transform it would be far above its skeleton.
     let Some(library) = open("cosc422/ArmyPilot.glb") else { return };
     let bounds = library.active().expect("a model").rest_bounds();
     let (mut frame, rest) = (
@@ -80,7 +80,7 @@ fn a_skinned_mesh_ignores_the_node_it_hangs_on() {
     evaluate(&library, &rest, 1.0, &mut frame);
     let slack = 0.02 * bounds.diagonal();
     let skeleton = &asset(&library).skeleton;
-    // Joints that lie inside a limb, and so inside the surface that they bend.
+    // Joints inside a limb, hence inside the surface that they deform.
     for name in
         ["Pelvis", "LLegUpper", "LLegCalf", "LLegAnkle", "Spine1", "Spine2", "Neck1", "RArmForearm1", "RArmHand"]
     {
@@ -92,7 +92,7 @@ fn a_skinned_mesh_ignores_the_node_it_hangs_on() {
 }
 
 #[test]
-fn frames_of_a_clip_are_found_from_its_keys() {
+fn the_frame_rate_is_detected_from_the_keys() {
     for (path, clip, expected) in
         [("cosc422/ArmyPilot.glb", "Walk", 30.0), ("khronos/Fox/glTF-Binary/Fox.glb", "Walk", 24.0)]
     {
@@ -116,7 +116,7 @@ fn nodes_are_numbered_as_in_the_file() {
 }
 
 #[test]
-fn a_skeleton_without_mesh_is_drawn_by_itself() {
+fn a_skeleton_without_a_mesh_is_drawn() {
     let Some(library) = open("cosc422/mannequin_run.glb") else { return };
     let mut frame = Frame::default();
     evaluate(&library, &ViewerState::default(), 1.0, &mut frame);
@@ -125,8 +125,8 @@ fn a_skeleton_without_mesh_is_drawn_by_itself() {
 }
 
 #[test]
-fn following_keeps_a_runner_in_the_picture() {
-    // Root motion above the skin: the run leaves the picture unless the camera goes with it.
+fn following_keeps_a_runner_in_view() {
+    // Root motion above the skin: the runner leaves the view unless the camera follows.
     let Some(library) = open("cosc422/mannequin_run.glb") else { return };
     let model = library.active().expect("a model");
     assert!(model.root_of_clip(0).is_some());
@@ -135,9 +135,9 @@ fn following_keeps_a_runner_in_the_picture() {
     assert!(in_place.max_element() < 0.9 * whole.max_element(), "{in_place} {whole}");
 }
 
-/// By their own pages' pictures, and by VRM 0's rule that avatars face −Z.
+/// Expected values are from the images on the files' pages, and from VRM 0's rule that avatars face −Z.
 #[test]
-fn bodies_are_looked_at_from_the_front() {
+fn bodies_are_framed_from_the_front() {
     let fronts = [
         ("threejs/Soldier.glb", 180.0),
         ("vrm/vrm0_cryptovoxels.vrm", 180.0),

@@ -1,4 +1,4 @@
-//! The samples that come along, and the scenes of the gallery made of them.
+//! The included samples, and the gallery's scenes.
 
 use gaitway::files::{Role, open_paths, read_paths};
 use gaitway::samples;
@@ -12,14 +12,14 @@ fn scenes() -> Vec<Value> {
     serde_json::from_str(text).expect("a list of scenes")
 }
 
-/// The link that a scene's card leads to, as the page's build composes it (xtask/site/samples.mjs).
+/// Returns the link of a scene's card, composed as in the page's build (xtask/site/samples.mjs).
 fn link_of(scene: &Value) -> String {
     let text = |key: &str| scene[key].as_str();
     let motion = text("motion").map(|motion| format!("&motion={motion}")).unwrap_or_default();
     format!("v=1&model={}{motion}&{}", text("model").expect("a model"), text("view").expect("a view"))
 }
 
-/// Opens everything that a scene lists, as the page does, and gives its view.
+/// Opens all files of a scene and applies its view, as the page does.
 fn check(scene: &Value) {
     let link = &link_of(scene);
     let (wanted, errors) = from_link(link);
@@ -51,7 +51,7 @@ fn check(scene: &Value) {
     assert!(camera.distance.is_finite() && camera.distance > 0.0, "{link}: {camera:?}");
 }
 
-/// Scenes whose samples are not there are left out of the gallery; the first, which is the first screen, has to be there.
+/// The gallery leaves out scenes whose samples are missing. The first is the start screen and must be available.
 #[test]
 fn every_scene_opens() {
     let known = samples::names();
@@ -65,7 +65,7 @@ fn every_scene_opens() {
 }
 
 #[test]
-fn what_the_window_begins_with_is_there() {
+fn the_windows_first_sample_exists() {
     open_paths(&[samples::FIRST.into()]).expect("the first sample");
 }
 

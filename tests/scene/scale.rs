@@ -1,4 +1,4 @@
-//! A model of 2 mm and one of 200 m are the same picture.
+//! Models of 2 mm and of 200 m look the same.
 
 use gaitway::frame::{Frame, evaluate};
 use gaitway::library::Library;
@@ -21,7 +21,7 @@ fn projected(library: &Library, size: f32) -> Vec<Vec3> {
         .map(|corner| projection_from_world.project_point3(corner))
         .into_iter()
         .chain([
-            // The ground under the model, towards the horizon.
+            // Points on the ground, from under the model towards the horizon.
             projection_from_world.project_point3(frame.look.grid.expect("a grid").center),
             Vec3::new(0.0, frame.look.grid.expect("a grid").radius / size, 0.0),
         ])
@@ -29,7 +29,7 @@ fn projected(library: &Library, size: f32) -> Vec<Vec3> {
 }
 
 #[test]
-fn pictures_do_not_depend_on_size() {
+fn the_image_does_not_depend_on_size() {
     let expected = projected(&of_size(2.0), 2.0);
     for size in [0.002, 200.0] {
         for (point, expected) in projected(&of_size(size), size).into_iter().zip(&expected) {
@@ -39,7 +39,7 @@ fn pictures_do_not_depend_on_size() {
 }
 
 #[test]
-fn depth_tells_a_thousandth_of_the_model_apart() {
+fn depth_resolves_a_thousandth_of_the_model() {
     for size in [0.002, 2.0, 200.0] {
         let library = of_size(size);
         let mut frame = Frame::default();

@@ -27,7 +27,7 @@ fn set(files: &[(&str, &str)]) -> FileSet {
     set
 }
 
-/// An empty folder of its own for each test.
+/// Creates an empty folder for one test.
 fn temporary_folder(name: &str) -> PathBuf {
     let folder = std::env::temp_dir().join(format!("gaitway-sets-{name}-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("the folder is created");
@@ -50,7 +50,7 @@ fn zipped(files: &[(&str, &str)]) -> Vec<u8> {
     writer.finish().expect("in memory").into_inner()
 }
 
-/// Model, motions and whether there is a map.
+/// Checks the model, the motions and whether there is a map.
 fn check(role: Role, files: &[(&str, &str)], expected: (Option<&str>, &[&str], bool)) {
     let sorted = sort(&set(files), role).unwrap_or_else(|error| panic!("{error}"));
     let model = sorted.models.first().map(|(name, _)| name.as_str());
@@ -68,7 +68,7 @@ fn a_file_with_a_mesh_is_the_model() {
 }
 
 #[test]
-fn a_motion_alone_takes_the_role_it_was_opened_for() {
+fn a_lone_motion_takes_the_requested_role() {
     check(Role::Any, &[("a.bvh", BVH)], (None, &["a.bvh"], false));
     check(Role::Model, &[("a.bvh", BVH)], (Some("a.bvh"), &[], false));
     check(Role::Motion, &[("a.bvh", BVH)], (None, &["a.bvh"], false));
@@ -124,7 +124,7 @@ fn files_next_to_a_model_are_read_with_it() {
 }
 
 #[test]
-fn files_out_of_an_archive_go_by_its_name() {
+fn files_from_an_archive_have_its_name_as_origin() {
     let folder = temporary_folder("archive");
     let archive = write(&folder, "two.zip", &zipped(&[("a/m.gltf", MESH), ("b/n.gltf", MESH), ("c/a.bvh", BVH)]));
     let one = write(&folder, "one.zip", &zipped(&[("m.gltf", MESH)]));
@@ -166,7 +166,7 @@ fn a_view_opens_the_files_it_lists() {
     assert_eq!(origins(&contents), ["a.bvh", "sample:walker"]);
     let [no_motion, no_map] = &contents.problems[..] else { panic!("{:?}", contents.problems) };
     assert!(no_motion.contains("nowhere.bvh") && no_map.contains("nowhere.json"), "{:?}", contents.problems);
-    // Maps are not read again, nor motions that are held; the model only if asked for.
+    // Maps and loaded motions are not read again; the model only on request.
     let held: Vec<_> = contents.motions.into_iter().flatten().collect();
     std::fs::remove_dir_all(&folder).expect("it was created");
     let (contents, view) = open_view(view, false, &held).expect("no model was asked for");
@@ -177,7 +177,7 @@ fn a_view_opens_the_files_it_lists() {
 }
 
 #[test]
-fn unknown_addresses_say_what_was_expected() {
+fn unknown_sources_say_what_was_expected() {
     let sample = open_paths(&["sample:nobody".into()]).expect_err("no such sample").to_string();
     assert!(sample.starts_with("sample:nobody: ") && sample.contains("sample:walker"), "{sample}");
     assert!(matches!(read_paths(&[], Role::Any), Err(OpenError::Nothing)));

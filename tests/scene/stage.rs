@@ -1,4 +1,4 @@
-//! Skinning modes side by side, and the source of a borrowed clip beside the model.
+//! The side-by-side comparison of skinning methods, and the source of a retargeted clip beside the model.
 
 use std::sync::Arc;
 
@@ -21,11 +21,11 @@ fn frame_of(library: &Library, state: &ViewerState, aspect: f32) -> Frame {
     frame
 }
 
-/// The walker borrowing from a copy of itself, twice as large.
-fn borrowing() -> (Library, ViewerState) {
+/// The walker with a clip retargeted from a copy of itself of twice the size.
+fn walker_with_larger_source() -> (Library, ViewerState) {
     let mut library = walker();
     let asset = library.active().expect("a model").asset.clone();
-    library.set_motions(vec![Motion::new("twice.glb".to_owned(), Arc::new(twice(&asset)))]);
+    library.set_motions(vec![Motion::new("twice.glb".to_owned(), Arc::new(doubled(&asset)))]);
     library.borrow(None);
     assert_eq!(library.borrow_errors(), []);
     let model = library.active().expect("a model");
@@ -36,8 +36,8 @@ fn borrowing() -> (Library, ViewerState) {
     )
 }
 
-/// The same skeleton with all lengths doubled, and its first clip with the translations doubled too.
-fn twice(asset: &Asset) -> Asset {
+/// Doubles all lengths of a skeleton, and the translations of its first clip.
+fn doubled(asset: &Asset) -> Asset {
     let skeleton = &asset.skeleton;
     let joints = skeleton.joints().map(|joint| {
         let rest = skeleton.rest().locals[joint.get()];
@@ -71,7 +71,7 @@ fn showing(base: &ViewerState, change: impl Fn(&mut Show)) -> ViewerState {
 }
 
 #[test]
-fn compared_modes_have_a_pane_each_and_one_pose() {
+fn compared_methods_have_one_pane_each_and_the_same_pose() {
     let library = walker();
     let inspect = Inspect { split: true, ..Inspect::default() };
     let playhead = Playhead { time_secs: 0.3, ..Playhead::default() };
@@ -87,13 +87,13 @@ fn compared_modes_have_a_pane_each_and_one_pose() {
         let alone = frame_of(&library, &ViewerState { display, inspect: Inspect::default(), ..state.clone() }, 0.5);
         let compared = frame.characters.iter().find(|character| character.skinning == mode).expect("a pane");
         assert_eq!(compared.palette, alone.characters[0].palette);
-        // A pane is as high as a picture of its own shape.
+        // A pane is as high as a viewport of its own shape.
         assert_eq!(frame.view.projection_from_view, alone.view.projection_from_view);
     }
 }
 
 #[test]
-fn numbers_are_of_the_chosen_mode_alone() {
+fn the_pose_document_has_only_the_selected_method() {
     let library = walker();
     let plain = ViewerState {
         display: Display { skinning: SkinningMode::Rigid, ..Display::default() },
@@ -105,8 +105,8 @@ fn numbers_are_of_the_chosen_mode_alone() {
 }
 
 #[test]
-fn the_source_stands_beside_in_the_models_size_and_does_the_same() {
-    let (library, state) = borrowing();
+fn the_source_is_beside_the_model_at_its_size_in_the_same_pose() {
+    let (library, state) = walker_with_larger_source();
     let model = library.active().expect("a model");
     let state = showing(&state, |show| show.source = true);
     let frame = frame_of(&library, &state, 1.5);
@@ -123,16 +123,16 @@ fn the_source_stands_beside_in_the_models_size_and_does_the_same() {
 }
 
 #[test]
-fn over_means_in_the_same_place() {
-    let (library, state) = borrowing();
+fn over_overlays_the_source() {
+    let (library, state) = walker_with_larger_source();
     let frame = frame_of(&library, &showing(&state, |show| (show.source, show.over) = (true, true)), 1.5);
     let roots = [0, 1].map(|character: usize| frame.characters[character].world_from_joint[0].translation);
     assert!((roots[0] - roots[1]).length() < 1e-3, "{roots:?}");
 }
 
 #[test]
-fn a_clip_of_the_models_own_has_no_source() {
-    let (library, state) = borrowing();
+fn the_models_own_clips_have_no_source() {
+    let (library, state) = walker_with_larger_source();
     let own =
         showing(&ViewerState { playhead: Playhead { clip: ClipChoice::First, ..state.playhead }, ..state }, |show| {
             show.source = true
@@ -142,8 +142,8 @@ fn a_clip_of_the_models_own_has_no_source() {
 }
 
 #[test]
-fn the_chosen_joint_and_its_partner_are_lit_and_both_can_be_clicked() {
-    let (library, state) = borrowing();
+fn the_selected_joint_and_its_counterpart_are_highlighted_and_pickable() {
+    let (library, state) = walker_with_larger_source();
     let chosen = 15;
     let state = ViewerState {
         selection: Selection { joint: Some(chosen), ..showing(&state, |show| show.source = true).selection },
@@ -153,25 +153,25 @@ fn the_chosen_joint_and_its_partner_are_lit_and_both_can_be_clicked() {
     let plain = |of_source| {
         frame.bones.iter().find(|bone| bone.of_source == of_source && bone.joint != 15).map(|bone| bone.color)
     };
-    assert_ne!(plain(false), plain(true), "the two sides can be told apart");
+    assert_ne!(plain(false), plain(true), "the two sides look different");
     let lit: Vec<_> = frame.bones.iter().filter(|bone| bone.joint == 15).collect();
     assert_eq!((lit.len(), lit[0].color), (2, lit[1].color));
     assert_ne!(Some(lit[0].color), plain(false));
     let projection_from_world = frame.view.projection_from_view * frame.view.view_from_world;
-    let on_picture = |place: Vec3| {
+    let project = |place: Vec3| {
         let middle = projection_from_world * place.extend(1.0);
         Vec2::new(middle.x, middle.y) / middle.w
     };
     for bone in lit {
-        let picked = pick_joint(&frame, on_picture(bone.head.midpoint(bone.tail)), 0.02);
+        let picked = pick_joint(&frame, project(bone.head.midpoint(bone.tail)), 0.02);
         let expected = if bone.of_source { PickedJoint::Source(chosen) } else { PickedJoint::Model(chosen) };
         assert_eq!(picked, Some(expected));
     }
 }
 
 #[test]
-fn errors_colour_the_bones_and_grow_with_a_turn_by_hand() {
-    let (library, state) = borrowing();
+fn bones_are_coloured_by_rotation_error() {
+    let (library, state) = walker_with_larger_source();
     let state = showing(&state, |show| (show.source, show.error) = (true, true));
     let color = |state: &ViewerState| {
         let frame = frame_of(&library, state, 1.5);
@@ -187,8 +187,8 @@ fn errors_colour_the_bones_and_grow_with_a_turn_by_hand() {
 }
 
 #[test]
-fn the_source_moves_with_the_time() {
-    let (library, state) = borrowing();
+fn the_source_plays_along() {
+    let (library, state) = walker_with_larger_source();
     let state = showing(&state, |show| show.source = true);
     let early = frame_of(&library, &state, 1.5);
     let late =

@@ -1,4 +1,4 @@
-//! What commands do to a view.
+//! The effect of commands on a view.
 
 use std::f32::consts::PI;
 
@@ -18,12 +18,12 @@ fn after(library: &Library, commands: impl IntoIterator<Item = Command>) -> View
     state
 }
 
-/// One second long, ten metres far.
+/// A box that moves ten metres in one second.
 fn one_second() -> Library {
     moving_box(0.5, &[0.0, 1.0], &[Vec3::ZERO, Vec3::X * 10.0])
 }
 
-fn shown_secs(library: &Library, state: &ViewerState) -> f64 {
+fn current_secs(library: &Library, state: &ViewerState) -> f64 {
     clip_secs(library.active().expect("a model"), 0, state)
 }
 
@@ -83,7 +83,7 @@ fn values_out_of_range_are_clamped() {
 }
 
 #[test]
-fn time_goes_by_at_the_chosen_speed() {
+fn time_advances_at_the_playback_speed() {
     let library = one_second();
     assert_eq!(after(&library, [Command::SetSpeed(0.5), Command::Advance(0.5)]).playhead.time_secs, 0.25);
     assert_eq!(after(&library, [Command::SetPlaying(false), Command::Advance(0.5)]).playhead.time_secs, 0.0);
@@ -94,7 +94,7 @@ fn time_goes_by_at_the_chosen_speed() {
 }
 
 #[test]
-fn once_stops_at_the_end_and_starts_over() {
+fn playing_once_stops_at_the_end_and_restarts() {
     let library = one_second();
     let mut state =
         after(&library, [Command::SetLoopMode(LoopMode::Once), Command::Advance(0.75), Command::Advance(0.75)]);
@@ -112,13 +112,13 @@ fn loops_fold_the_playhead_into_the_range() {
         for _ in 0..6 {
             apply(&mut state, &library, Command::Advance(0.1));
         }
-        assert!((shown_secs(&library, &state) - expected).abs() < 1e-9, "{mode:?}: {}", state.playhead.time_secs);
-        // However long it plays the playhead stays near the range.
+        assert!((current_secs(&library, &state) - expected).abs() < 1e-9, "{mode:?}: {}", state.playhead.time_secs);
+        // However long it plays, the playhead stays near the range.
         for _ in 0..1000 {
             apply(&mut state, &library, Command::Advance(0.1));
         }
         assert!(state.playhead.time_secs < 2.0, "{mode:?}");
-        assert!((shown_secs(&library, &state) - expected).abs() < 1e-6, "{mode:?}: {}", state.playhead.time_secs);
+        assert!((current_secs(&library, &state) - expected).abs() < 1e-6, "{mode:?}: {}", state.playhead.time_secs);
     }
 }
 
@@ -135,7 +135,7 @@ fn steps_are_whole_frames_and_pause() {
 }
 
 #[test]
-fn another_clip_starts_at_its_beginning() {
+fn a_new_clip_starts_at_its_beginning() {
     let library = walker();
     let range = Some(TimeRange { start_secs: 0.25, end_secs: 0.75 });
     let wave = ClipChoice::Named("Wave".to_owned());
@@ -162,18 +162,18 @@ fn clips_are_found_by_name_and_by_index() {
 }
 
 #[test]
-fn turning_starts_from_where_the_camera_is() {
+fn orbiting_starts_from_the_current_camera() {
     let library = walker();
     let auto = resolve_camera(&library, &ViewerState::default(), 16.0 / 9.0);
     let state = after(&library, [Command::Orbit { yaw_radians: 0.5, pitch_radians: 0.1 }]);
-    let CameraChoice::Orbit(turned) = state.camera else { panic!("{:?}", state.camera) };
-    assert_eq!((turned.distance, turned.target), (auto.distance, auto.target));
-    assert!((turned.yaw_radians - auto.yaw_radians - 0.5).abs() < 1e-6);
-    assert!((turned.pitch_radians - auto.pitch_radians - 0.1).abs() < 1e-6);
+    let CameraChoice::Orbit(orbit) = state.camera else { panic!("{:?}", state.camera) };
+    assert_eq!((orbit.distance, orbit.target), (auto.distance, auto.target));
+    assert!((orbit.yaw_radians - auto.yaw_radians - 0.5).abs() < 1e-6);
+    assert!((orbit.pitch_radians - auto.pitch_radians - 0.1).abs() < 1e-6);
 }
 
 #[test]
-fn the_camera_never_tips_over_and_yaw_stays_small() {
+fn pitch_is_clamped_and_yaw_wraps() {
     let library = walker();
     let state = after(&library, [Command::Orbit { yaw_radians: 100.0, pitch_radians: 100.0 }]);
     let CameraChoice::Orbit(orbit) = state.camera else { panic!("{:?}", state.camera) };
@@ -182,7 +182,7 @@ fn the_camera_never_tips_over_and_yaw_stays_small() {
 }
 
 #[test]
-fn panning_by_a_picture_height_moves_by_what_the_picture_shows() {
+fn panning_by_a_viewport_height_moves_by_the_visible_height() {
     let library = walker();
     let camera = OrbitCamera { yaw_radians: 0.0, pitch_radians: 0.0, distance: 2.0, target: Vec3::ZERO };
     let state =

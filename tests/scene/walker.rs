@@ -1,4 +1,4 @@
-//! The built-in character is sound, and walks as one does.
+//! The built-in character is valid and walks plausibly.
 
 use gaitway::anim::JointIndex;
 use gaitway::frame::{Frame, evaluate, pose_document};
@@ -22,7 +22,7 @@ fn joint_place(library: &Library, frame: &Frame, name: &str) -> Vec3 {
 }
 
 #[test]
-fn it_is_complete() {
+fn the_walker_is_complete() {
     let library = walker();
     let asset = &library.active().expect("a model").asset;
     assert_eq!(asset.skins[0].joints().len(), 22);
@@ -39,7 +39,7 @@ fn it_is_complete() {
 }
 
 #[test]
-fn faces_look_outwards() {
+fn faces_point_outwards() {
     // The signed volume of a closed surface is positive when its triangles wind counter-clockwise seen from outside.
     let library = walker();
     let asset = &library.active().expect("a model").asset;
@@ -57,7 +57,7 @@ fn faces_look_outwards() {
 }
 
 #[test]
-fn a_standing_foot_goes_with_the_ground() {
+fn a_foot_in_contact_moves_with_the_ground() {
     // From flat foot to heel-off the ankle neither rises nor changes its speed.
     let library = walker();
     let mut frame = Frame::default();

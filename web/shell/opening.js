@@ -142,5 +142,5 @@ async function completeLink(items, isShown) {
   const complete = linkWithFiles(link, names);
   forgetAwaited();
   await follow(complete, { link: complete, items: heldItems(complete), motionItems: heldMotions(complete) });
-  if (!linkedFiles(linkWithoutMissing(link)).some(({ role }) => role === "model")) session.app?.close_stand_in();
+  if (!linkedFiles(linkWithoutMissing(link)).some(({ role }) => role === "model")) session.app?.close_placeholder();
 }

@@ -59,7 +59,7 @@ export interface Bindings {
   open(items: ReadItem[], role: Role, isPrivate: boolean): Promise<string>;
   follow_link(link: string, again: boolean): Promise<string>;
   apply(partial: string): Promise<string>;
-  close_stand_in(): void;
+  close_placeholder(): void;
   refuse(problem: string): void;
   is_private(): boolean;
   qr(text: string): string | undefined;

@@ -1,6 +1,6 @@
-//! The files that a link names, as text operations on the link itself: which they are, the link to hand to others, and the
-//! link while some of its files are missing. The page's scripts call these through `web::links` and never split a link
-//! themselves. Parts that this version cannot read pass through unchanged, so the result is never parsed into a view.
+//! Text operations on the files that a link names: listing them, making the link to share, and the link while some files are
+//! missing. The page's scripts call these through `web::links` and never split a link themselves. Links are never parsed into
+//! a view here, so that parts this version doesn't understand pass through unchanged.
 
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_decode_str, utf8_percent_encode};
 
@@ -10,16 +10,16 @@ use super::values::with_current_member;
 /// fragment, which no server sees.
 pub const MEMBER_SEPARATOR: &str = "#!/";
 
-/// Precedes the name of a file that whoever opens the link has to supply.
+/// Precedes the name of a file that the recipient of the link has to supply.
 const TO_BRING: &str = "file:";
 
-/// What the page shows when a link names no model.
+/// The model of a link that names none.
 const DEFAULT_MODEL: &str = "sample:walker";
 
 /// Keys that still apply while the model itself is missing.
 const KEYS_WITHOUT_MODEL: [&str; 5] = ["v", "embed", "background", "exposure", "environment"];
 
-/// What JavaScript's `encodeURIComponent` escapes.
+/// The characters that JavaScript's `encodeURIComponent` escapes.
 const COMPONENT: &AsciiSet = &NON_ALPHANUMERIC
     .remove(b'-')
     .remove(b'_')
@@ -60,16 +60,16 @@ pub struct LinkedFile {
     pub name: String,
     /// Path of the model inside its archive, from [`MEMBER_SEPARATOR`] on; empty for anything else.
     pub member: String,
-    /// Marked `file:`: whoever opens the link has to supply it.
+    /// Marked `file:`: the recipient of the link has to supply it.
     pub is_to_bring: bool,
 }
 
-/// Returns the files that a link names, in its order.
+/// Returns the files that a link names, in order.
 pub fn linked_files(link: &str) -> Vec<LinkedFile> {
     pairs(link).filter_map(linked_file).collect()
 }
 
-/// Identifies what a link shows, whatever its view: two links with the same value show the same files.
+/// Returns a key for the files of a link, whatever its view: links with the same key show the same files.
 pub fn shown_files(link: &str) -> String {
     let mut files: Vec<String> = Vec::new();
     let mut has_model = false;
@@ -84,7 +84,7 @@ pub fn shown_files(link: &str) -> String {
     files.join("\n")
 }
 
-/// Returns the link to hand to others: files of this computer, by their names in `local`, are marked as ones to bring.
+/// Returns the link to share: files of this computer, whose names are in `local`, are marked for the recipient to supply.
 pub fn public_link(link: &str, local: &[String]) -> String {
     rewrite(link, &mut |pair| {
         let file = linked_file(pair).filter(|file| !file.is_to_bring && local.contains(&file.name));
@@ -92,14 +92,14 @@ pub fn public_link(link: &str, local: &[String]) -> String {
     })
 }
 
-/// Returns the public link of a page that is embedded in another one.
+/// Returns the link of a page that is embedded in another one.
 pub fn embedded_link(link: &str) -> String {
     let others = rewrite(link, &mut |pair| (key_of(pair) != "embed").then(|| pair.to_owned()));
     others + "&embed=1"
 }
 
-/// Returns the part of a link that can be shown before its missing files arrive; without any, the link itself. Without its
-/// model, only what applies to every model stays. Clips and maps go with their motions.
+/// Returns the part of a link that can be shown before its missing files arrive; the whole link if none are missing. If the
+/// model is missing, only keys that apply to any model are kept. Clips and maps are dropped with their motions.
 pub fn link_without_missing(link: &str) -> String {
     let files = linked_files(link);
     let is_missing = |role| files.iter().any(|file| file.is_to_bring && file.role == role);
@@ -118,8 +118,7 @@ pub fn link_without_missing(link: &str) -> String {
     })
 }
 
-/// Returns the link once its missing files are there: `names` are theirs, in the order of [`linked_files`]. Members of
-/// archives stay.
+/// Returns the link with its missing files renamed to `names`, in the order of [`linked_files`]. Archive members are kept.
 pub fn link_with_files(link: &str, names: &[String]) -> String {
     let mut names = names.iter();
     rewrite(link, &mut |pair| {
@@ -128,7 +127,7 @@ pub fn link_with_files(link: &str, names: &[String]) -> String {
     })
 }
 
-/// Index of the link in `others` that shows the same files in the most similar view; `None` if none shows the same files.
+/// Returns the index of the link in `others` that shows the same files in the most similar view; `None` if none does.
 pub fn most_similar_link(link: &str, others: &[String]) -> Option<usize> {
     let wanted = shown_files(link);
     let shows_same = |other: &str| {
@@ -137,8 +136,8 @@ pub fn most_similar_link(link: &str, others: &[String]) -> Option<usize> {
     };
     let mut best = None;
     for (index, other) in others.iter().enumerate().filter(|(_, other)| shows_same(other)) {
-        let shared_pairs = pairs(other).filter(|&pair| pairs(link).any(|own| own == pair)).count();
-        if best.is_none_or(|(_, most)| shared_pairs > most) {
+        let shared_pairs = pairs(other).filter(|&pair| pairs(link).any(|other| other == pair)).count();
+        if best.is_none_or(|(_, max)| shared_pairs > max) {
             best = Some((index, shared_pairs));
         }
     }
@@ -171,7 +170,7 @@ fn file_pair(role: LinkRole, mark: &str, value: &str) -> String {
     format!("{}={mark}{}", role.key(), utf8_percent_encode(value, COMPONENT))
 }
 
-/// Joins what `replacement` returns for each pair; `None` removes the pair.
+/// Replaces each pair by what `replacement` returns; `None` removes it.
 fn rewrite(link: &str, replacement: &mut dyn FnMut(&str) -> Option<String>) -> String {
     let mut text = String::new();
     for pair in pairs(link).filter_map(replacement) {

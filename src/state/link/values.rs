@@ -1,4 +1,4 @@
-//! What stands after a key of the link, written and read: each as short as it can be and still be read back the same.
+//! Reading and writing the values of link keys: each as short as possible while reading back exactly.
 
 use std::collections::BTreeMap;
 use std::fmt::Display;
@@ -47,19 +47,19 @@ pub(super) fn from_word<T: Copy>(words: &[(&str, T)], text: &str) -> Option<T> {
     words.iter().find(|(word, _)| *word == text).map(|(_, value)| *value)
 }
 
-/// Separators between names, and the escape character.
+/// Escaped in joint names: the separators between them, and the escape character.
 const IN_NAMES: &AsciiSet = &CONTROLS.add(b'%').add(b',').add(b':');
 
 pub(super) fn write_word<T: PartialEq>(words: &[(&str, T)], value: &T) -> Written {
     Written::Text(word_of(words, value))
 }
 
-/// An optional field whose text is never empty.
+/// Reads an optional field whose text is never empty.
 pub(super) fn read_some<T>(read: fn(&str) -> Option<T>) -> impl Fn(&str) -> Option<Option<T>> {
     move |text| read(text).map(Some)
 }
 
-/// An optional field; empty text unsets it.
+/// Reads an optional field; empty text unsets it.
 pub(super) fn read_unless_empty<T>(read: fn(&str) -> Option<T>) -> impl Fn(&str) -> Option<Option<T>> {
     move |text| if text.is_empty() { Some(None) } else { read(text).map(Some) }
 }
@@ -120,12 +120,13 @@ fn joined<T: Display>(parts: impl Iterator<Item = T>) -> String {
     parts.map(|part| part.to_string()).collect::<Vec<_>>().join(",")
 }
 
-/// A number with a point; infinities and NaN are refused.
+/// Reads a decimal number; rejects infinities and NaN.
 pub(super) fn finite<T: std::str::FromStr + Copy + Into<f64>>(text: &str) -> Option<T> {
     text.trim().parse::<T>().ok().filter(|&value| Into::<f64>::into(value).is_finite())
 }
 
-/// A model inside an archive is `ARCHIVE#!/MEMBER`; an early version wrote `ARCHIVE#/MEMBER`.
+/// Returns a source with the current separator: a model inside an archive is `ARCHIVE#!/MEMBER`, but an early version wrote
+/// `ARCHIVE#/MEMBER`.
 pub(super) fn with_current_member(text: &str) -> String {
     match text.split_once("#/") {
         Some((file, member)) if file.contains("://") || file.to_lowercase().ends_with(".zip") => {
@@ -142,13 +143,13 @@ pub(super) fn read_source(text: &str) -> Option<String> {
 pub(super) fn map_text(map: &MotionMap) -> String {
     match map {
         MotionMap::Numbers(map) => map_code::encode(map),
-        // A map is plain data: it can always be written.
+        // A map is plain data, so this cannot fail.
         MotionMap::Names(map) => serde_json::to_string(map).unwrap_or_default(),
-        MotionMap::File(address) => address.clone(),
+        MotionMap::File(url) => url.clone(),
     }
 }
 
-/// The compact form, JSON, or an address.
+/// Reads the compact form, JSON, or a URL.
 pub(super) fn read_map(text: &str) -> Option<MotionMap> {
     if text.starts_with('{') {
         JointMap::from_json(text).ok().map(MotionMap::Names)
@@ -159,7 +160,7 @@ pub(super) fn read_map(text: &str) -> Option<MotionMap> {
     }
 }
 
-/// `rest`, `clip:CLIP` or `first-key:CLIP`; a clip's name that could be taken for its index stands in quotation marks.
+/// Writes `rest`, `clip:CLIP` or `first-key:CLIP`; a clip name that looks like an index is quoted.
 pub(super) fn unmapped_text(unmapped: &Unmapped) -> String {
     let Unmapped::Clip { clip, frozen } = unmapped else { return "rest".to_owned() };
     let clip = match clip {
@@ -189,7 +190,7 @@ pub(super) fn read_unmapped(text: &str) -> Option<Unmapped> {
     Some(Unmapped::Clip { clip, frozen })
 }
 
-/// `horizontal:PART,vertical:PART,yaw:PART,extract`, each where it is not the default; `keep` when nothing else is left.
+/// Writes `horizontal:PART,vertical:PART,yaw:PART,extract`, leaving out defaults; `keep` if nothing is left.
 pub(super) fn root_text(root: &RootOptions) -> String {
     let parts = [("horizontal", root.horizontal), ("vertical", root.vertical), ("yaw", root.yaw)];
     let parts = parts.into_iter().filter(|(_, part)| *part != RootPart::Keep);
@@ -198,7 +199,7 @@ pub(super) fn root_text(root: &RootOptions) -> String {
     if text.is_empty() { "keep".to_owned() } else { text }
 }
 
-/// As [`root_text`] writes it. `in-place` or `freeze` alone is about the travel over the ground.
+/// Reads what [`root_text`] writes. A lone `in-place` or `freeze` applies to horizontal motion.
 pub(super) fn read_root(text: &str) -> Option<RootOptions> {
     let mut root = RootOptions::default();
     for word in text.split(',').map(str::trim) {
@@ -228,7 +229,7 @@ pub(super) fn read_range(text: &str) -> Option<TimeRange> {
     (start_secs <= end_secs).then_some(TimeRange { start_secs, end_secs })
 }
 
-/// Since the change, where the clip was, its name: nothing for the rest pose.
+/// Writes the elapsed time, the clip's time and the clip's name, which is empty for the rest pose.
 pub(super) fn fade_text(fade: &Fade) -> String {
     let clip = match &fade.clip {
         ClipChoice::Named(name) => name,
@@ -247,7 +248,7 @@ pub(super) fn read_fade(text: &str) -> Option<Fade> {
     Some(Fade { clip, time_secs, elapsed_secs })
 }
 
-/// The entries between commas, each read by itself; nothing where one cannot be read.
+/// Reads comma-separated entries; `None` if any of them is invalid.
 fn each<K: Ord, V>(text: &str, read: impl Fn(&str) -> Option<(K, V)>) -> Option<BTreeMap<K, V>> {
     text.split(',').filter(|part| !part.is_empty()).map(read).collect()
 }
@@ -269,13 +270,13 @@ pub(super) fn write_pose(pose: &BTreeMap<usize, [f32; 3]>) -> Written {
 }
 
 pub(super) fn read_pose(text: &str) -> Option<BTreeMap<usize, [f32; 3]>> {
-    let turned = |part: &str| {
+    let rotation = |part: &str| {
         let (joint, angles) = part.split_once(':')?;
         let mut angles = angles.split(':').map(finite::<f32>);
         let degrees = [angles.next()??, angles.next()??, angles.next()??];
         angles.next().is_none().then_some((joint.trim().parse().ok()?, degrees))
     };
-    each(text, turned)
+    each(text, rotation)
 }
 
 pub(super) fn write_names(names: &BTreeMap<usize, String>) -> Written {
@@ -283,7 +284,7 @@ pub(super) fn write_names(names: &BTreeMap<usize, String>) -> Written {
     Written::Text(joined(names.iter().map(name)))
 }
 
-/// Names are escaped once more because of the separators between them.
+/// Names are escaped a second time because of the separators between them.
 pub(super) fn read_names(text: &str) -> Option<BTreeMap<usize, String>> {
     let named = |part: &str| {
         let (joint, name) = part.split_once(':')?;
@@ -304,8 +305,8 @@ pub(super) fn read_vertex(text: &str) -> Option<VertexChoice> {
     numbers.next().is_none().then_some(choice)
 }
 
-/// The words of `show`, each with its flag and the flag's value when the word is present. The mesh and its shadow belong to
-/// every picture, so their words hide them.
+/// Returns the words of `show`, each with its flag and the flag's value if the word is present. The mesh and its shadow are on
+/// by default, so their words hide them.
 fn show_flags<'a>(show: &'a mut Show, inspect: &'a mut Inspect) -> [(&'static str, &'a mut bool, bool); 13] {
     [
         ("no-mesh", &mut show.mesh, false),
@@ -361,7 +362,7 @@ pub(super) fn write_camera(camera: &CameraChoice) -> Written {
     })
 }
 
-/// The shortest decimal that reads back as the same angle.
+/// Writes the shortest decimal that reads back as the same angle.
 fn degrees_text(radians: f32) -> String {
     let degrees = f64::from(radians).to_degrees();
     let reads_back = |text: &String| text.parse::<f64>().is_ok_and(|degrees| degrees.to_radians() as f32 == radians);

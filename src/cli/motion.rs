@@ -1,4 +1,4 @@
-//! Shared by the subcommands that borrow motion: opening motions, maps and links, and naming joints.
+//! Shared by the subcommands: opening motions, maps and links, and naming joints.
 
 use std::path::{Path, PathBuf};
 
@@ -12,13 +12,13 @@ use crate::library::Motion;
 use crate::retarget::JointMap;
 use crate::state::{ClipChoice, Command, Sources, ViewerState, from_link};
 
-/// A motion to borrow, and by which map.
+/// A motion to retarget to the model, and its joint map.
 #[derive(Debug, Default, Args)]
-pub(super) struct Borrowing {
-    /// A file whose motion the model borrows: .glb, .gltf, .vrma, .bvh.
+pub(super) struct MotionArguments {
+    /// A motion to retarget to the model: .glb, .gltf, .vrma, .bvh.
     #[arg(long, value_name = "FILE")]
     pub motion: Option<PathBuf>,
-    /// Which joints follow which (none: as `gaitway map` proposes).
+    /// The joint map [default: as `gaitway map` proposes].
     #[arg(long, value_name = "MAP.json")]
     pub map: Option<PathBuf>,
 }
@@ -46,19 +46,19 @@ pub(super) fn open_map(path: &Path) -> anyhow::Result<JointMap> {
     Ok(read_map(&path.display().to_string(), &bytes)?)
 }
 
-/// Opens model, motions and map in an editor, at rest and not playing. Motions and map of the options override those that came
+/// Opens model, motions and map in an editor, paused in the rest pose. The options' motion and map override those that came
 /// with the model.
-pub(super) fn open_editor(opened: Opened, borrowing: &Borrowing) -> anyhow::Result<Editor> {
+pub(super) fn open_editor(opened: Opened, arguments: &MotionArguments) -> anyhow::Result<Editor> {
     let Opened { model, model_files, mut motions, map, .. } = opened;
-    let map = match &borrowing.map {
+    let map = match &arguments.map {
         Some(path) => Some(open_map(path)?),
         None => map,
     };
-    if let Some(path) = &borrowing.motion {
+    if let Some(path) = &arguments.motion {
         motions = vec![open_motion(path)?];
     }
-    if motions.is_empty() && borrowing.map.is_some() {
-        bail!("--map says how a motion is retargeted; name the motion with --motion FILE");
+    if motions.is_empty() && arguments.map.is_some() {
+        bail!("--map: expected a motion to apply the map to; add --motion FILE");
     }
     if let Some(map) = &map {
         for motion in &motions {
@@ -79,16 +79,16 @@ pub(super) fn open_editor(opened: Opened, borrowing: &Borrowing) -> anyhow::Resu
     Ok(editor)
 }
 
-/// Applies the view of a link to the model that is open, with the motions and maps it lists that are files on disk. Options of
-/// the command line override those of the link. Warns about anything that is not used.
-pub(super) fn apply_link(editor: &mut Editor, link: &str, borrowing: &Borrowing) -> anyhow::Result<()> {
+/// Applies the view of a link to the open model, with those of its motions and maps that are files on disk. Command-line options
+/// override the link. Warns about anything unused.
+pub(super) fn apply_link(editor: &mut Editor, link: &str, arguments: &MotionArguments) -> anyhow::Result<()> {
     let fragment = link.split_once('#').map_or(link, |(_, fragment)| fragment);
     let (view, errors) = from_link(fragment);
     errors.iter().for_each(|error| eprintln!("warning: {error}"));
     let now = editor.state().clone();
-    let keeps_motions = borrowing.motion.is_some() || view.sources.motion.is_empty();
+    let keeps_motions = arguments.motion.is_some() || view.sources.motion.is_empty();
     let motion = if keeps_motions { now.sources.motion } else { view.sources.motion };
-    let retarget = if borrowing.map.is_some() { now.retarget } else { view.retarget };
+    let retarget = if arguments.map.is_some() { now.retarget } else { view.retarget };
     let sources = Sources { model: now.sources.model, motion, ..view.sources };
     let held = if keeps_motions { editor.library().motions().to_vec() } else { Vec::new() };
     let (mut contents, view) = open_view(ViewerState { sources, retarget, ..view }, false, &held)?;
@@ -110,6 +110,6 @@ pub(super) fn apply_link(editor: &mut Editor, link: &str, borrowing: &Borrowing)
 /// Returns a joint's name, or `#NODE` if the name is empty or not unique.
 pub(super) fn joint_name(skeleton: &Skeleton, joint: JointIndex) -> String {
     let name = skeleton.name(joint);
-    let alone = skeleton.joints().filter(|&other| skeleton.name(other) == name).count() == 1;
-    if alone && !name.is_empty() { name.to_owned() } else { format!("#{}", skeleton.source_index(joint)) }
+    let is_unique = skeleton.joints().filter(|&other| skeleton.name(other) == name).count() == 1;
+    if is_unique && !name.is_empty() { name.to_owned() } else { format!("#{}", skeleton.source_index(joint)) }
 }

@@ -1,17 +1,17 @@
-//! Joints turned by hand, and the turntable.
+//! Manually posed joints, and the turntable.
 
 use gaitway::anim::JointIndex;
 use gaitway::frame::{Frame, evaluate};
 use gaitway::library::Library;
 use gaitway::state::{
     CameraChoice, CameraOptions, ClipChoice, Command, History, Playback, Playhead, PoseSampler, ViewerState, apply,
-    degrees_by_hand, rotation_by_hand,
+    manual_degrees, manual_rotation,
 };
 use glam::{EulerRot, Quat, Vec3};
 
 use crate::data::walker;
 
-/// Joints of the walker as the file numbers them.
+/// Joints of the walker, by index in the file.
 const HEAD: usize = 5;
 const SHIN: usize = 15;
 
@@ -28,7 +28,7 @@ fn rest_rotation(library: &Library, joint: usize) -> Quat {
 }
 
 #[test]
-fn a_turn_wins_over_the_clip_and_begins_at_the_rest() {
+fn a_manual_pose_overrides_the_clip_and_starts_from_the_rest_pose() {
     let library = walker();
     let mut state =
         ViewerState { playhead: Playhead { time_secs: 0.3, ..Playhead::default() }, ..ViewerState::default() };
@@ -43,7 +43,7 @@ fn a_turn_wins_over_the_clip_and_begins_at_the_rest() {
 }
 
 #[test]
-fn a_turned_joint_takes_along_what_hangs_on_it() {
+fn posing_a_joint_moves_its_descendants() {
     let library = walker();
     let foot = |state: &ViewerState| {
         let mut frame = Frame::default();
@@ -57,23 +57,23 @@ fn a_turned_joint_takes_along_what_hangs_on_it() {
         playhead: Playhead { clip: ClipChoice::RestPose, ..Playhead::default() },
         ..ViewerState::default()
     };
-    let mut turned = rest.clone();
-    apply(&mut turned, &library, Command::SetPose { joint: SHIN, degrees: Some([90.0, 0.0, 0.0]) });
-    assert!(foot(&rest).distance(foot(&turned)) > 0.2);
+    let mut posed = rest.clone();
+    apply(&mut posed, &library, Command::SetPose { joint: SHIN, degrees: Some([90.0, 0.0, 0.0]) });
+    assert!(foot(&rest).distance(foot(&posed)) > 0.2);
 }
 
 #[test]
-fn angles_there_and_back_are_the_same_turn() {
+fn angles_and_rotations_convert_both_ways() {
     let rest = Quat::from_euler(EulerRot::ZXY, 0.4, -1.0, 2.0);
     for degrees in [[0.0, 0.0, 0.0], [10.0, -70.0, 160.0], [-120.0, 35.0, 5.0], [90.0, 90.0, -30.0]] {
-        let rotation = rotation_by_hand(rest, degrees);
-        let again = rotation_by_hand(rest, degrees_by_hand(rest, rotation));
+        let rotation = manual_rotation(rest, degrees);
+        let again = manual_rotation(rest, manual_degrees(rest, rotation));
         assert!(rotation.angle_between(again) < 2e-3, "{degrees:?}");
     }
 }
 
 #[test]
-fn joints_that_are_not_there_and_numbers_that_are_none_change_nothing() {
+fn missing_joints_and_angles_that_are_not_finite_change_nothing() {
     let library = walker();
     for (joint, degrees) in [(4000, [1.0, 2.0, 3.0]), (HEAD, [f32::NAN, 0.0, 0.0]), (HEAD, [0.0, f32::INFINITY, 0.0])] {
         let mut state = ViewerState::default();
@@ -86,7 +86,7 @@ fn joints_that_are_not_there_and_numbers_that_are_none_change_nothing() {
 }
 
 #[test]
-fn turns_are_undone_one_gesture_at_a_time() {
+fn manual_poses_are_undone_one_gesture_at_a_time() {
     let mut library = walker();
     let (mut state, mut history) = (ViewerState::default(), History::default());
     for angle in [5.0, 10.0, 15.0] {
@@ -102,7 +102,7 @@ fn turns_are_undone_one_gesture_at_a_time() {
 }
 
 #[test]
-fn the_turntable_turns_while_paused_and_a_camera_of_the_file_stays() {
+fn the_turntable_turns_while_paused_unless_the_camera_is_the_files() {
     let library = walker();
     let mut state = ViewerState {
         playback: Playback { playing: false, ..Playback::default() },

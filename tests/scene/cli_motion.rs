@@ -1,11 +1,11 @@
-//! The subcommands that borrow motion, as a script sees them.
+//! The subcommands that use motions, as scripts use them.
 
 use std::path::PathBuf;
 use std::process::{Command, Output};
 
 use serde_json::{Value, json};
 
-/// A person of nine joints in BVH, walking on the spot, in centimetres.
+/// A humanoid of nine joints in BVH, walking in place, in centimetres.
 const BVH: &str = "HIERARCHY\nROOT Hips\n{\nOFFSET 0 90 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n\
 JOINT Spine\n{\nOFFSET 0 15 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nJOINT Head\n{\nOFFSET 0 45 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 20 0\n}\n}\n}\n\
 JOINT LeftUpLeg\n{\nOFFSET 10 -5 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nJOINT LeftLeg\n{\nOFFSET 0 -40 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nJOINT LeftFoot\n{\nOFFSET 0 -40 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 -5 15\n}\n}\n}\n}\n\
@@ -32,7 +32,7 @@ fn check_fails(arguments: &[&str], status: i32, says: &str) {
     assert!(output.stdout.is_empty(), "{arguments:?}");
 }
 
-/// A folder of this test's own with the walking person in it.
+/// Creates a folder for one test with the BVH file in it.
 fn folder(name: &str) -> (PathBuf, String) {
     let folder = std::env::temp_dir().join(format!("gaitway-{name}-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
@@ -42,7 +42,7 @@ fn folder(name: &str) -> (PathBuf, String) {
 }
 
 #[test]
-fn a_map_is_proposed_explained_and_used_again() {
+fn a_proposed_map_is_explained_and_can_be_reused() {
     let (folder, motion) = folder("map");
     let out = folder.join("map.json");
     let out = out.to_str().expect("a plain path");
@@ -54,7 +54,7 @@ fn a_map_is_proposed_explained_and_used_again() {
     let leg = joints.values().find(|entry| entry["slot"] == "leftLowerLeg").expect("a shin");
     assert_eq!(leg["source"], "LeftLeg");
     assert!(leg["confidence"].as_f64().expect("a number") > 0.5 && leg["reason"].is_string());
-    // What was written, and what was printed, are both maps.
+    // Both the written file and the printed document are maps.
     let printed = folder.join("printed.json");
     std::fs::write(&printed, proposed.to_string()).expect("a file");
     let pose =
@@ -67,7 +67,7 @@ fn a_map_is_proposed_explained_and_used_again() {
 }
 
 #[test]
-fn a_link_brings_its_motion_and_its_map() {
+fn a_link_loads_its_motion_and_map() {
     let (folder, motion) = folder("linked");
     let named = document(&["pose", "sample:walker", "--motion", &motion, "--time", "0.3", "--json"]);
     let unposed = document(&["pose", "sample:walker", "--json"]);
@@ -76,7 +76,7 @@ fn a_link_brings_its_motion_and_its_map() {
     let linked = document(&["pose", "sample:walker", "--view", &link, "--json"]);
     assert_eq!(linked["nodes"], named["nodes"]);
     assert_ne!(linked["nodes"], unposed["nodes"]);
-    // An exercise model, whose joints have no names, turns with its map.
+    // The joints of an exercise model have generated names, which its map refers to.
     let file = |name: &str, text: &str| {
         let path = folder.join(name);
         std::fs::write(&path, text).expect("a file");
@@ -88,23 +88,23 @@ fn a_link_brings_its_motion_and_its_map() {
     let map = file("m.json", r#"{ "gaitway_map": 1, "joints": { "joint 1": { "source": "LeftUpLeg" } } }"#);
     let out = folder.join("out.glb");
     let out = out.to_str().expect("a plain path");
-    let turned = |link: &str| {
+    let convert = |link: &str| {
         let done = run(&["convert", &model, "--view", link, "--out", out]);
         assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
-        let told = String::from_utf8_lossy(&done.stderr).into_owned();
-        (document(&["pose", out, "--json"])["nodes"][1]["world"].clone(), told)
+        let stderr = String::from_utf8_lossy(&done.stderr).into_owned();
+        (document(&["pose", out, "--json"])["nodes"][1]["world"].clone(), stderr)
     };
-    let (still, told) = turned("v=1");
-    assert_eq!(told, "");
-    let (moved, told) = turned(&format!("v=1&motion=file:{motion}&map={map}&clip=walk&t=0"));
-    assert_ne!(moved, still, "{told}");
-    let (left_out, told) = turned("v=1&motion=file:nowhere.bvh&map=nowhere.json&clip=walk");
+    let (still, stderr) = convert("v=1");
+    assert_eq!(stderr, "");
+    let (moved, stderr) = convert(&format!("v=1&motion=file:{motion}&map={map}&clip=walk&t=0"));
+    assert_ne!(moved, still, "{stderr}");
+    let (left_out, stderr) = convert("v=1&motion=file:nowhere.bvh&map=nowhere.json&clip=walk");
     assert_eq!(left_out, still);
-    assert!(told.contains("nowhere.bvh") && told.contains("nowhere.json"), "{told}");
+    assert!(stderr.contains("nowhere.bvh") && stderr.contains("nowhere.json"), "{stderr}");
 }
 
 #[test]
-fn retarget_reports_what_scripts_rely_on() {
+fn retarget_reports_the_documented_keys() {
     let (folder, motion) = folder("retarget");
     let out = folder.join("out.glb");
     let out = out.to_str().expect("a plain path");
@@ -145,7 +145,7 @@ fn retarget_reports_what_scripts_rely_on() {
 }
 
 #[test]
-fn convert_makes_a_glb_of_a_motion_in_the_unit_asked_for() {
+fn convert_writes_a_motion_in_the_requested_unit() {
     let (folder, motion) = folder("convert");
     let out = folder.join("out.glb");
     let out = out.to_str().expect("a plain path");
@@ -184,6 +184,6 @@ fn errors_say_what_to_do() {
     let retarget = ["retarget", "--model", "sample:walker", "--motion", &motion, "--out", out];
     check_fails(&[&retarget[..], &["--clip", "Fly"]].concat(), 1, "walk");
     check_fails(&retarget, 1, "--clip-only");
-    assert!(!std::path::Path::new(out).exists(), "nothing is written when something fails");
+    assert!(!std::path::Path::new(out).exists(), "a failed command writes nothing");
     check_fails(&["retarget", "--model", "sample:walker", "--out", out], 2, "--motion");
 }
