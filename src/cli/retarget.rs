@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use super::borrow::{joint_name, open_map, open_motion};
 use super::{RetargetArguments, open, print_bytes, print_json};
-use crate::anim::{Clip, JointIndex};
+use crate::anim::{Clip, ClipQuery, JointIndex, find_clip};
 use crate::asset::Asset;
 use crate::files::read_set;
 use crate::formats::{main_files, write_model, write_motion};
@@ -91,16 +91,14 @@ fn set_options(map: &mut JointMap, arguments: &RetargetArguments) {
     }
 }
 
-/// By name, else by index; the first when none is asked for.
+/// Finds a clip by name, else by index; without either, the first.
 fn choose_clip(motion: &Motion, wanted: Option<&str>) -> anyhow::Result<usize> {
     let clips = &motion.asset.clips;
     if clips.is_empty() {
         bail!("{}: it has no clip to borrow", motion.source);
     }
     let Some(wanted) = wanted else { return Ok(0) };
-    let by_name = clips.iter().position(|clip| clip.name() == wanted);
-    let found = by_name.or_else(|| wanted.parse().ok().filter(|&index: &usize| index < clips.len()));
-    found.with_context(|| {
+    find_clip(clips.iter(), ClipQuery::NameOrIndex(wanted)).with_context(|| {
         let names: Vec<&str> = clips.iter().map(Clip::name).collect();
         format!("{}: there is no clip “{wanted}”; the clips are: {}", motion.source, names.join(", "))
     })

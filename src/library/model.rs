@@ -83,7 +83,7 @@ impl Model {
         own.get(index).or_else(|| Some(&self.borrowed.get(index.checked_sub(own.len())?)?.clip))
     }
 
-    pub fn clips(&self) -> impl Iterator<Item = &Clip> {
+    pub fn clips(&self) -> impl Iterator<Item = &Clip> + Clone {
         self.asset.clips.iter().chain(self.borrowed.iter().map(|borrowed| &borrowed.clip))
     }
 
@@ -93,7 +93,7 @@ impl Model {
     }
 
     /// Returns the borrowed clips with their indices among all clips.
-    pub fn borrowed_clips(&self) -> impl Iterator<Item = (usize, &BorrowedClip)> {
+    pub fn borrowed_clips(&self) -> impl Iterator<Item = (usize, &BorrowedClip)> + Clone {
         self.borrowed.iter().enumerate().map(|(at, borrowed)| (self.asset.clips.len() + at, borrowed))
     }
 

@@ -3,7 +3,7 @@
 use glam::{Affine3A, EulerRot, Quat};
 
 use super::{ClipChoice, UpAxis, ViewerState};
-use crate::anim::{Pose, SampleCursor, TimeRange, clip_time};
+use crate::anim::{ClipQuery, Pose, SampleCursor, TimeRange, clip_time, find_clip};
 use crate::library::Model;
 
 /// The clip that plays, by index; none for the rest pose, for a model without clips, or when no clip is called that.
@@ -20,12 +20,14 @@ pub(super) fn clip_of(model: &Model, choice: &ClipChoice) -> Option<usize> {
     }
 }
 
-/// A clip by its name, by the title it is shown under, or by its index in decimal.
+/// Finds a clip by its name, its index in decimal, or the title it is shown under.
 fn clip_called(model: &Model, name: &str) -> Option<usize> {
-    let by_name = model.clips().position(|clip| !name.is_empty() && clip.name() == name);
+    if name.is_empty() {
+        return None;
+    }
+    // Titles never look like an index unless a clip has that very name.
     let by_title = || model.clip_titles().iter().position(|title| title == name);
-    let by_index = || name.parse::<usize>().ok().filter(|&index| index < model.clip_count());
-    by_name.or_else(by_title).or_else(by_index)
+    find_clip(model.clips(), ClipQuery::NameOrIndex(name)).or_else(by_title)
 }
 
 /// How a state names a clip: by name when that is enough, else by index.

@@ -9,6 +9,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use super::error::MapError;
 use super::options::{Feet, Keep, RestChoices, RootOptions};
+use crate::anim::ClipQuery;
 
 /// A whole map, as written. Joints that it does not name have no source.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -68,6 +69,15 @@ pub enum SourceRef {
 pub enum ClipRef {
     Index(usize),
     Name(String),
+}
+
+impl ClipRef {
+    pub fn query(&self) -> ClipQuery<'_> {
+        match self {
+            Self::Index(index) => ClipQuery::Index(*index),
+            Self::Name(name) => ClipQuery::Name(name),
+        }
+    }
 }
 
 /// What joints without a source do: the word `"rest"`, or one of the model's own clips.

@@ -7,7 +7,7 @@ use glam::{DQuat, Quat};
 use super::error::MapError;
 use super::file::{ClipRef, JointMap, MutedChannel, MutedProperty, SourceRef, Unmapped};
 use super::resolved::{Layer, Pair, ResolvedMap};
-use crate::anim::{JointIndex, Property, Skeleton};
+use crate::anim::{JointIndex, Property, Skeleton, find_clip};
 use crate::asset::Asset;
 
 /// Maximum number of similar names to suggest for one that is not found.
@@ -95,11 +95,7 @@ fn resolve_joints(map: &JointMap, model: &Asset, source_names: &Names) -> Result
 
 fn resolve_layer(model: &Asset, unmapped: &Unmapped, path: &str) -> Result<LayerChoice, MapError> {
     let Unmapped::Clip { clip, frozen } = unmapped else { return Ok(None) };
-    let found = match clip {
-        ClipRef::Index(index) => (*index < model.clips.len()).then_some(*index),
-        ClipRef::Name(name) => model.clips.iter().position(|clip| clip.name() == name),
-    };
-    let index = found.ok_or_else(|| MapError::NoClip {
+    let index = find_clip(model.clips.iter(), clip.query()).ok_or_else(|| MapError::NoClip {
         path: format!("{path}.clip"),
         clip: match clip {
             ClipRef::Index(index) => index.to_string(),

@@ -18,7 +18,7 @@ use egui::{RichText, Ui};
 use self::rows::Row;
 use super::icons::{Icon, icon_button_sized};
 use super::{Output, Shown, UiAction, UiState, clips, controls, style};
-use crate::anim::JointIndex;
+use crate::anim::{JointIndex, find_clip};
 use crate::asset::Asset;
 use crate::library::{Model, ModelId, Motion};
 use crate::retarget::{ClipRef, Contradiction, JointMap, Proposal, SourceRef, Unmapped};
@@ -123,12 +123,8 @@ impl<'a> Pairing<'a> {
     /// Which of the model's clips joints without a source play, and whether it stands still; none: they rest.
     fn own_clip(&self, unmapped: &Unmapped) -> Option<(usize, bool)> {
         let Unmapped::Clip { clip, frozen } = unmapped else { return None };
-        let clips = &self.model.asset.clips;
-        let index = match clip {
-            ClipRef::Index(index) => *index,
-            ClipRef::Name(name) => clips.iter().position(|clip| clip.name() == name).unwrap_or(usize::MAX),
-        };
-        Some((index, *frozen))
+        let missing = if let ClipRef::Index(index) = clip { *index } else { usize::MAX };
+        Some((find_clip(self.model.asset.clips.iter(), clip.query()).unwrap_or(missing), *frozen))
     }
 
     /// What a joint of the model is called.
