@@ -19,6 +19,7 @@ pub(super) fn run(arguments: &RetargetArguments) -> anyhow::Result<()> {
     let model = open(files)?.model;
     let motion = open_motion(&arguments.motion)?;
     let given = arguments.map.as_deref().map(open_map).transpose()?;
+    let given = given.map(|file| file.look_up_joints(&model.asset, &motion.asset)).transpose()?;
     let (mut map, proposal) = map_for(&model.asset, &motion.asset, given.as_ref());
     if proposal.is_some_and(|proposal| proposal.pairs.is_empty()) {
         bail!(

@@ -3,10 +3,10 @@
 
 use super::{Admit, Contents, Editor, Event, short_name};
 use crate::library::{BorrowError, BorrowedClip, Library, Motion};
-use crate::retarget::{JointMap, MapError, propose};
+use crate::retarget::{JointMap, JointMapFile, MapError, propose};
 use crate::state::{
     ClipChoice, Command, MapEdit, MotionMap, NumberedMap, RetargetEdits, ViewerState, active_clip, choice_of_clip,
-    maps_in_force, names_checksum, numbered, settled_maps,
+    maps_in_force, names_checksum, settled_maps,
 };
 
 /// A motion's clip, whichever model it is retargeted to, and the place in it.
@@ -33,7 +33,7 @@ impl Editor {
     pub(super) fn open_motions(
         &mut self,
         motions: Vec<Motion>,
-        map: Option<JointMap>,
+        map: Option<JointMapFile>,
         view: Option<ViewerState>,
         admit: Admit<'_>,
     ) -> Result<(), String> {
@@ -101,7 +101,7 @@ impl Editor {
     }
 
     /// Applies an opened joint map to every motion that it fits.
-    pub(super) fn apply_map_file(&mut self, map: &JointMap) -> Result<(), String> {
+    pub(super) fn apply_map_file(&mut self, map: &JointMapFile) -> Result<(), String> {
         let Some(model) = self.library.active() else { return Ok(()) };
         if self.library.motions().is_empty() {
             let problem = "this is a joint map, but no motion is loaded; open the motion first, or both together";
@@ -110,7 +110,7 @@ impl Editor {
         let mut fitting = Vec::new();
         let mut problem = None;
         for (index, motion) in self.library.motions().iter().enumerate() {
-            match numbered(map, &model.asset, &motion.asset) {
+            match map.to_joint_map(&model.asset, &motion.asset) {
                 Ok(map) => fitting.push((index, short_name(&motion.source), map)),
                 Err(error) => problem = problem.or(Some(format!("{}: {error}", motion.source))),
             }

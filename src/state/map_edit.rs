@@ -9,7 +9,7 @@ use super::{RetargetEdits, ViewerState};
 use crate::asset::Asset;
 use crate::library::Library;
 use crate::retarget::{
-    JointMap, Keep, MapEntry, MutedChannel, MutedProperty, Proposal, RestChoices, SourceRef, Unmapped, opposite_joints,
+    JointMap, Keep, MapEntry, MutedChannel, MutedProperty, Proposal, RestChoices, Unmapped, opposite_joints,
 };
 
 /// Joints are named by their numbers in their own files.
@@ -100,13 +100,12 @@ pub(super) fn edit_map(state: &mut ViewerState, library: &Library, motion: usize
 }
 
 fn entry(map: &mut JointMap, target: usize) -> &mut MapEntry {
-    let nothing = MapEntry { source: None, correction: Quat::IDENTITY, unmapped: None };
-    map.joints.entry(format!("#{target}")).or_insert(nothing)
+    map.joints.entry(target).or_insert(MapEntry::following(None))
 }
 
 /// Which of a source joint's channels a map in numbers leaves out, in the order translation, rotation, scale.
 pub fn muted_properties(map: &JointMap, source: usize) -> [bool; 3] {
-    let about = map.muted_channels.iter().filter(|channel| channel.source == SourceRef::Number(source));
+    let about = map.muted_channels.iter().filter(|channel| channel.source == source);
     let mut muted = [false; 3];
     for channel in about {
         for (muted, property) in muted.iter_mut().zip(PROPERTIES) {
@@ -121,13 +120,12 @@ fn mute(map: &mut JointMap, source: usize, property: MutedProperty, muted: bool)
     for (now, other) in now.iter_mut().zip(PROPERTIES) {
         *now = if other == property { muted } else { *now };
     }
-    let source = SourceRef::Number(source);
     map.muted_channels.retain(|channel| channel.source != source);
     if now == [true; 3] {
         map.muted_channels.push(MutedChannel { source, property: None });
     } else {
         let muted = PROPERTIES.into_iter().zip(now).filter(|(_, muted)| *muted);
-        let channel = |(property, _)| MutedChannel { source: source.clone(), property: Some(property) };
+        let channel = |(property, _)| MutedChannel { source, property: Some(property) };
         map.muted_channels.extend(muted.map(channel));
     }
 }
@@ -137,7 +135,7 @@ fn swap_sides(map: &mut JointMap, model: &Asset, motion: &Asset, proposal: &Prop
     let opposite = opposite_joints(&motion.skeleton, &proposal.motion);
     let mut swapped = false;
     for entry in map.joints.values_mut() {
-        let Some(SourceRef::Number(number)) = &mut entry.source else { continue };
+        let Some(number) = &mut entry.source else { continue };
         let joint = motion.skeleton.joint_of_source(*number);
         if let Some(other) = joint.and_then(|joint| opposite[joint.get()]) {
             *number = motion.skeleton.source_index(other);
@@ -148,13 +146,13 @@ fn swap_sides(map: &mut JointMap, model: &Asset, motion: &Asset, proposal: &Prop
         return;
     }
     let opposite = opposite_joints(&model.skeleton, &proposal.model);
-    let old: BTreeMap<String, Option<SourceRef>> =
-        map.joints.iter().map(|(key, entry)| (key.clone(), entry.source.clone())).collect();
+    let old: BTreeMap<usize, Option<usize>> =
+        map.joints.iter().map(|(&target, entry)| (target, entry.source)).collect();
     for joint in model.skeleton.joints() {
         let Some(other) = opposite[joint.get()] else { continue };
-        let other = old.get(&format!("#{}", model.skeleton.source_index(other))).cloned().flatten();
+        let other = old.get(&model.skeleton.source_index(other)).copied().flatten();
         let target = model.skeleton.source_index(joint);
-        if other.is_some() || old.contains_key(&format!("#{target}")) {
+        if other.is_some() || old.contains_key(&target) {
             entry(map, target).source = other;
         }
     }

@@ -6,10 +6,9 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::ViewerState;
-use crate::anim::{JointIndex, Skeleton};
 use crate::asset::Asset;
 use crate::library::{Library, Motion};
-use crate::retarget::{JointMap, MapEntry, MapError, SourceRef};
+use crate::retarget::{JointMap, JointMapFile, MapEntry, MapError};
 
 /// A joint map of a view.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -17,12 +16,12 @@ use crate::retarget::{JointMap, MapEntry, MapError, SourceRef};
 pub enum MotionMap {
     Numbers(NumberedMap),
     /// As a file has it, for whichever motions it fits: becomes [`MotionMap::Numbers`] as soon as those are there.
-    Names(JointMap),
+    Names(JointMapFile),
     /// The address of a map that has not been read yet.
     File(String),
 }
 
-/// A joint map for one model and one motion, in joint numbers: keys are `#NODE`, sources are numbers.
+/// A joint map for one model and one motion.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NumberedMap {
     /// See [`names_checksum`].
@@ -90,7 +89,7 @@ pub fn settled_maps(library: &Library, state: &ViewerState) -> (Vec<MotionMap>, 
         let mut found = None;
         for (at, map) in state.retarget.map.iter().enumerate() {
             if let MotionMap::Names(map) = map {
-                match numbered(map, &model.asset, &motion.asset) {
+                match map.to_joint_map(&model.asset, &motion.asset) {
                     Ok(map) => found = found.or(Some((at, map))),
                     Err(problem) => {
                         let problem = MapProblem::NoFit { motion: motion.source.clone(), problem };
@@ -131,79 +130,7 @@ pub fn settled_maps(library: &Library, state: &ViewerState) -> (Vec<MotionMap>, 
 pub fn proposed(library: &Library, motion: usize) -> Option<JointMap> {
     let proposal = library.proposal(motion).filter(|proposal| !proposal.pairs.is_empty())?;
     let (model, motion) = (library.active()?, library.motions().get(motion)?);
-    numbered(&proposal.to_map(&model.asset, &motion.asset), &model.asset, &motion.asset).ok()
-}
-
-/// A map that fits both files, with numbers for all names of joints.
-///
-/// # Errors
-/// As [`JointMap::resolve`].
-pub fn numbered(map: &JointMap, model: &Asset, motion: &Asset) -> Result<JointMap, MapError> {
-    // An empty map is a start to go on from; everything else is checked.
-    if !map.joints.is_empty() {
-        match map.resolve(model, motion) {
-            Ok(_) | Err(MapError::NothingMapped) => {}
-            Err(problem) => return Err(problem),
-        }
-    }
-    let mut joints = BTreeMap::new();
-    for (name, entry) in &map.joints {
-        let key = match model.skeleton.find(name) {
-            Some(joint) => format!("#{}", model.skeleton.source_index(joint)),
-            None => name.clone(),
-        };
-        let source = entry.source.as_ref().map(|source| match source {
-            SourceRef::Name(name) => match motion.skeleton.find(name) {
-                Some(joint) => SourceRef::Number(motion.skeleton.source_index(joint)),
-                None => source.clone(),
-            },
-            SourceRef::Number(_) => source.clone(),
-        });
-        joints.insert(key, MapEntry { source, ..entry.clone() });
-    }
-    let muted_channels = map.muted_channels.iter().map(|channel| {
-        let number = match &channel.source {
-            SourceRef::Name(name) => motion.skeleton.find(name).map(|joint| motion.skeleton.source_index(joint)),
-            SourceRef::Number(number) => Some(*number),
-        };
-        let source = number.map_or_else(|| channel.source.clone(), SourceRef::Number);
-        crate::retarget::MutedChannel { source, ..channel.clone() }
-    });
-    Ok(JointMap { joints, muted_channels: muted_channels.collect(), ..map.clone() })
-}
-
-/// A map in numbers with names for people to read, wherever a name stands for one joint.
-pub fn named(map: &JointMap, model: &Asset, motion: &Asset) -> JointMap {
-    let source_name = |number: usize| {
-        let joint = motion.skeleton.joint_of_source(number)?;
-        only_name(&motion.skeleton, joint).map(|name| SourceRef::Name(name.to_owned()))
-    };
-    let source = |source: &SourceRef| match source {
-        SourceRef::Number(number) => source_name(*number).unwrap_or_else(|| source.clone()),
-        SourceRef::Name(_) => source.clone(),
-    };
-    let joints = map.joints.iter().map(|(key, entry)| {
-        let joint = number_of(key).and_then(|number| model.skeleton.joint_of_source(number));
-        let name = joint.and_then(|joint| only_name(&model.skeleton, joint)).filter(|name| !name.starts_with('#'));
-        let entry = MapEntry { source: entry.source.as_ref().map(source), ..entry.clone() };
-        (name.map_or_else(|| key.clone(), str::to_owned), entry)
-    });
-    let muted = map
-        .muted_channels
-        .iter()
-        .map(|channel| crate::retarget::MutedChannel { source: source(&channel.source), ..channel.clone() });
-    JointMap { joints: joints.collect(), muted_channels: muted.collect(), ..map.clone() }
-}
-
-/// The joint number in a key of a numbered map.
-pub fn number_of(key: &str) -> Option<usize> {
-    key.strip_prefix('#')?.parse().ok()
-}
-
-fn only_name(skeleton: &Skeleton, joint: JointIndex) -> Option<&str> {
-    let name = skeleton.name(joint);
-    let same = skeleton.joints().filter(|&other| skeleton.name(other) == name).count();
-    (same == 1 && !name.is_empty()).then_some(name)
+    Some(proposal.to_map(&model.asset, &motion.asset))
 }
 
 fn numbered_for(maps: &[MotionMap], checksum: u32) -> Option<&NumberedMap> {
@@ -230,11 +157,6 @@ pub(super) fn set_map(state: &mut ViewerState, model: &Asset, motion: &Motion, m
 
 /// Lets one joint follow another source, or none.
 pub(super) fn set_source(map: &mut JointMap, target: usize, source: Option<usize>) {
-    let source = source.map(SourceRef::Number);
-    let entry = map.joints.entry(format!("#{target}"));
-    entry.and_modify(|entry| entry.source.clone_from(&source)).or_insert(MapEntry {
-        source,
-        correction: glam::Quat::IDENTITY,
-        unmapped: None,
-    });
+    let entry = map.joints.entry(target);
+    entry.and_modify(|entry| entry.source = source).or_insert(MapEntry::following(source));
 }

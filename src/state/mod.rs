@@ -25,8 +25,7 @@ pub use history::History;
 pub use link::{LinkError, from_link, from_object, to_link, to_object};
 pub use map_edit::{MapEdit, muted_properties};
 pub use maps::{
-    MapProblem, MotionMap, NumberedMap, map_in_force, maps_in_force, named, names_checksum, number_of, numbered,
-    proposed, settled_maps,
+    MapProblem, MotionMap, NumberedMap, map_in_force, maps_in_force, names_checksum, proposed, settled_maps,
 };
 pub use names::{title, written_skeleton};
 pub use playhead::{

@@ -7,12 +7,14 @@ use gaitway::anim::Clip;
 use gaitway::asset::Asset;
 use gaitway::frame::pose_document;
 use gaitway::library::{Library, Motion};
-use gaitway::retarget::{ClipRef, Feet, JointMap, MapEntry, MutedChannel, RootOptions, RootPart, SourceRef, Unmapped};
+use gaitway::retarget::{
+    ClipRef, Feet, JointMap, JointMapFile, MapEntry, MutedChannel, RootOptions, RootPart, SourceRef, Unmapped,
+};
 use gaitway::state::{
     ClipChoice, Command, History, MapProblem, MotionMap, Playback, Playhead, RetargetEdits, ViewerState, apply,
-    from_link, map_in_force, maps_in_force, named, names_checksum, numbered, settled_maps, to_link,
+    from_link, map_in_force, maps_in_force, names_checksum, settled_maps, to_link,
 };
-use glam::{Quat, Vec3};
+use glam::Vec3;
 
 use crate::data::walker;
 use crate::skeletons;
@@ -42,21 +44,17 @@ fn number(library: &Library, name: &str) -> usize {
     skeleton.source_index(skeleton.find(name).expect("a joint of the walker"))
 }
 
-fn follows(source: Option<SourceRef>) -> MapEntry {
-    MapEntry { source, correction: Quat::IDENTITY, unmapped: None }
-}
-
 fn name(name: &str) -> Option<SourceRef> {
     Some(SourceRef::Name(name.to_owned()))
 }
 
 /// By name: the neck follows the head, the head nothing.
-fn by_name() -> JointMap {
+fn by_name() -> JointMapFile {
     let joints = [("Hips", name("Hips")), ("Neck", name("Head")), ("Head", None)];
-    JointMap {
-        joints: joints.into_iter().map(|(target, source)| (target.to_owned(), follows(source))).collect(),
+    JointMapFile {
+        joints: joints.into_iter().map(|(target, source)| (target.to_owned(), MapEntry::following(source))).collect(),
         muted_channels: vec![MutedChannel { source: SourceRef::Name("Hips".to_owned()), property: None }],
-        ..JointMap::default()
+        ..JointMapFile::default()
     }
 }
 
@@ -69,7 +67,7 @@ fn a_map_is_filled_in_for_every_motion() {
     let asset = &library.active().expect("a model").asset;
     assert_eq!(map.checksum, names_checksum(asset, asset));
     let hips = number(&library, "Hips");
-    assert_eq!(map.map.joints[&format!("#{hips}")].source, Some(SourceRef::Number(hips)));
+    assert_eq!(map.map.joints[&hips].source, Some(hips));
     assert_eq!(library.borrow_errors(), []);
     assert_eq!(library.active().expect("a model").clip_count(), 6);
     // Once there, it is left alone.
@@ -100,20 +98,22 @@ fn a_map_by_name_becomes_numbers_and_comes_back() {
     assert_eq!(settled(&mut library, &mut state), []);
     let map = map_in_force(&library, &state, 0).expect("the given map");
     let (neck, head) = (number(&library, "Neck"), number(&library, "Head"));
-    assert_eq!(map.joints[&format!("#{neck}")].source, Some(SourceRef::Number(head)));
-    assert_eq!(map.joints[&format!("#{head}")].source, None);
+    assert_eq!(map.joints[&neck].source, Some(head));
+    assert_eq!(map.joints[&head].source, None);
     assert_eq!(map.joints.len(), 3);
-    assert_eq!(map.muted_channels[0].source, SourceRef::Number(number(&library, "Hips")));
+    assert_eq!(map.muted_channels[0].source, number(&library, "Hips"));
     let asset = &library.active().expect("a model").asset;
-    assert_eq!(named(&map, asset, asset), by_name());
-    assert_eq!(numbered(&named(&map, asset, asset), asset, asset), Ok(map));
+    assert_eq!(map.to_file(asset, asset), by_name());
+    assert_eq!(by_name().to_joint_map(asset, asset), Ok(map));
 }
 
 #[test]
 fn a_map_that_fits_nothing_is_named_and_replaced() {
     let mut library = dancing();
-    let wrong =
-        JointMap { joints: BTreeMap::from([("Hips".to_owned(), follows(name("Pelvis")))]), ..JointMap::default() };
+    let wrong = JointMapFile {
+        joints: BTreeMap::from([("Hips".to_owned(), MapEntry::following(name("Pelvis")))]),
+        ..JointMapFile::default()
+    };
     let mut state = ViewerState {
         retarget: RetargetEdits { map: vec![MotionMap::Names(wrong)], ..RetargetEdits::default() },
         ..ViewerState::default()
@@ -150,16 +150,15 @@ fn one_source_is_changed_and_taken_back() {
     let (neck, head) = (number(&library, "Neck"), number(&library, "Head"));
     let change = Command::SetSource { motion: 0, target: neck, source: Some(head) };
     history.apply(&mut state, &library, change);
-    let source = |library: &Library, state: &ViewerState| {
-        map_in_force(library, state, 0).expect("a map").joints[&format!("#{neck}")].source.clone()
-    };
-    assert_eq!(source(&library, &state), Some(SourceRef::Number(head)));
+    let source =
+        |library: &Library, state: &ViewerState| map_in_force(library, state, 0).expect("a map").joints[&neck].source;
+    assert_eq!(source(&library, &state), Some(head));
     history.end_gesture();
     history.apply(&mut state, &library, Command::SetFeet(Some(Feet::Plant)));
     assert!(history.undo(&mut state, &mut library) && history.undo(&mut state, &mut library) && !history.can_undo());
     assert_eq!(state, before);
     assert!(history.redo(&mut state, &mut library));
-    assert_eq!(source(&library, &state), Some(SourceRef::Number(head)));
+    assert_eq!(source(&library, &state), Some(head));
     for (target, source) in [(9999, None), (neck, Some(9999))] {
         let now = state.clone();
         apply(&mut state, &library, Command::SetSource { motion: 0, target, source });

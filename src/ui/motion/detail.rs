@@ -77,7 +77,7 @@ pub(super) fn show(
                 out.commands.extend(muting(ui, pairing, map, source).map(edit));
             }
             None => {
-                let own = map.joints.get(&format!("#{}", row.number)).and_then(|entry| entry.unmapped.clone());
+                let own = map.joints.get(&row.number).and_then(|entry| entry.unmapped.clone());
                 if let Some(unmapped) = own_policy(ui, pairing, map, own) {
                     out.commands.push(edit(MapEdit::Unmapped { target: row.number, unmapped }));
                 }
@@ -169,7 +169,7 @@ fn find_source(pairing: &Pairing<'_>, text: &str) -> Result<Option<usize>, Strin
 impl Turn {
     /// What was typed as long as it is what the map says.
     fn of(map: &JointMap, target: usize, typed: Option<Self>) -> Self {
-        let rotation = map.joints.get(&format!("#{target}")).map_or(Quat::IDENTITY, |entry| entry.correction);
+        let rotation = map.joints.get(&target).map_or(Quat::IDENTITY, |entry| entry.correction);
         let same = |turn: &Self| turn.target == target && turn.rotation.abs_diff_eq(rotation, 1e-6);
         typed.filter(same).unwrap_or_else(|| {
             let (x, y, z) = rotation.to_euler(EulerRot::XYZ);

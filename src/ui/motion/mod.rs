@@ -21,7 +21,7 @@ use super::{Output, Shown, UiAction, UiState, clips, controls, style};
 use crate::anim::{JointIndex, find_clip};
 use crate::asset::Asset;
 use crate::library::{Model, ModelId, Motion};
-use crate::retarget::{ClipRef, Contradiction, JointMap, Proposal, SourceRef, Unmapped};
+use crate::retarget::{ClipRef, Contradiction, JointMap, Proposal, Unmapped};
 use crate::state::{Command, MapEdit, ViewerState, active_clip, choice_of_clip, map_in_force, title};
 
 pub(super) use clicking::{banner, show as clicking, stop as stop_clicking};
@@ -138,12 +138,8 @@ impl<'a> Pairing<'a> {
 
     /// The source that a map gives to a target. None: the map does not speak of it; `Some(None)`: deliberately none.
     fn source_in(&self, map: &JointMap, target: usize) -> Option<Option<JointIndex>> {
-        let entry = map.joints.get(&format!("#{target}"))?;
-        let skeleton = &self.motion.asset.skeleton;
-        Some(entry.source.as_ref().and_then(|source| match source {
-            SourceRef::Number(number) => skeleton.joint_of_source(*number),
-            SourceRef::Name(name) => skeleton.find(name),
-        }))
+        let source = map.source_of(target)?;
+        Some(source.and_then(|source| self.motion.asset.skeleton.joint_of_source(source)))
     }
 }
 

@@ -1,5 +1,7 @@
 //! How the motion is carried over: what becomes of its travel, of joints that follow nothing, of the feet. And the files.
 
+use std::collections::BTreeSet;
+
 use egui::{RichText, Ui};
 
 use super::Pairing;
@@ -78,8 +80,7 @@ pub(super) fn show(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, out: &mut
     }
 
     controls::section(ui, "LEFT OUT OF THE MOTION");
-    let joints: std::collections::BTreeSet<_> =
-        map.muted_channels.iter().map(|channel| format!("{:?}", channel.source)).collect();
+    let joints: BTreeSet<usize> = map.muted_channels.iter().map(|channel| channel.source).collect();
     match joints.len() {
         0 => controls::hint(ui, "Nothing. Choose a joint in the table to leave out channels of its source."),
         count => {

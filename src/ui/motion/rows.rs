@@ -308,7 +308,7 @@ impl Whole {
                     Some(*other) == slot && !self.followers.contains_key(source)
                 };
                 look = given.is_none() && self.source_slots.iter().any(is_free);
-                let own = map.joints.get(&format!("#{number}")).and_then(|entry| entry.unmapped.as_ref());
+                let own = map.joints.get(&number).and_then(|entry| entry.unmapped.as_ref());
                 match pairing.own_clip(own.unwrap_or(&map.unmapped)) {
                     Some((clip, true)) => why.push(format!("first key of {}", pairing.clip_title(clip))),
                     Some((clip, false)) => why.push(format!("plays {}", pairing.clip_title(clip))),
@@ -325,7 +325,7 @@ impl Whole {
                 } else if as_proposed.is_some_and(|pair| pair.confidence < UNSURE) {
                     (state, look) = (State::Guess, true);
                 }
-                let turned = map.joints.get(&format!("#{number}"));
+                let turned = map.joints.get(&number);
                 let turned = turned.is_some_and(|entry| entry.correction != glam::Quat::IDENTITY);
                 why.extend(conflict);
                 why.extend(muted);
