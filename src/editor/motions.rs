@@ -2,11 +2,11 @@
 //! was; what works can be undone.
 
 use super::{Admit, Contents, Editor, Event, short_name};
-use crate::library::{BorrowError, BorrowedClip, Library, Motion};
+use crate::library::{BorrowError, BorrowedClip, Library, Motion, names_checksum};
 use crate::retarget::{JointMap, JointMapFile, MapError, propose};
 use crate::state::{
-    ClipChoice, Command, MapEdit, MotionMap, NumberedMap, RetargetEdits, ViewerState, active_clip, choice_of_clip,
-    maps_in_force, names_checksum, settled_maps,
+    ClipChoice, Command, MapEdit, MotionMap, NumberedMap, RetargetEdits, ViewerState, active_clip, active_maps,
+    choice_of_clip, reconciled_maps,
 };
 
 /// A motion's clip, whichever model it is retargeted to, and the place in it.
@@ -135,13 +135,13 @@ impl Editor {
     /// Retargets the motions' clips again if anything they depend on has changed; returns what does not work and has not been
     /// reported.
     pub(super) fn retarget(&mut self) -> Vec<String> {
-        let (maps, problems) = settled_maps(&self.library, &self.state);
+        let (maps, problems) = reconciled_maps(&self.library, &self.state);
         let mut new: Vec<String> = problems.iter().map(ToString::to_string).collect();
         if maps != self.state.retarget.map {
-            self.record(Command::SettleMaps);
+            self.record(Command::ReconcileMaps);
             self.is_changed = true;
         }
-        let maps = maps_in_force(&self.library, &self.state);
+        let maps = active_maps(&self.library, &self.state);
         if self.library.borrow_each(maps) {
             self.needs_redraw = true;
             let errors = self.library.borrow_errors().iter().filter(|error| !is_unfinished(error));

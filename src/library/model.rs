@@ -109,6 +109,11 @@ impl Model {
         secs(from).max(secs(to))
     }
 
+    /// Removes the borrowed clips, until [`Model::set_borrowed`] sets new ones.
+    pub(super) fn take_borrowed(&mut self) -> Vec<BorrowedClip> {
+        std::mem::take(&mut self.borrowed)
+    }
+
     /// Replaces the borrowed clips.
     pub(super) fn set_borrowed(&mut self, borrowed: Vec<BorrowedClip>) {
         self.borrowed = borrowed;

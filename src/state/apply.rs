@@ -5,9 +5,9 @@ use std::f32::consts::{PI, TAU};
 use glam::Vec3;
 
 use super::framing::{frame_all, resolve_camera, resolved_bounds};
-use super::maps::{self, map_in_force, settled_maps};
+use super::maps::{self, reconciled_maps};
 use super::playhead::{active_clip, choice_of_clip, clip_of, clip_secs, play_range};
-use super::{CameraChoice, ClipChoice, Command, Fade, OrbitCamera, RetargetEdits, VertexChoice, ViewerState};
+use super::{CameraChoice, ClipChoice, Command, Fade, OrbitCamera, VertexChoice, ViewerState};
 use crate::anim::{LoopMode, TimeRange};
 use crate::library::{Library, Model};
 
@@ -121,17 +121,15 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::SetBackground(background) => state.display.background = background,
         Command::SetEmbed(embed) => state.page.embed = embed,
         Command::SetMap { motion, map } => {
-            if let (Some(model), Some(about)) = (model, library.motions().get(motion)) {
-                let map = map.map(|map| *map).or_else(|| maps::proposed(library, motion));
-                maps::set_map(state, &model.asset, about, map);
-            }
+            let map = map.map(|map| *map).or_else(|| maps::proposed(library, motion));
+            maps::set_map(state, library, motion, map);
         }
         Command::SetSource { motion, target, source } => set_source(state, library, motion, target, source),
         Command::EditMap { motion, edit } => super::map_edit::edit_map(state, library, motion, edit),
         Command::SetUnmapped(unmapped) => state.retarget.unmapped = unmapped,
         Command::SetRoot(root) => state.retarget.root = root,
         Command::SetFeet(feet) => state.retarget.feet = feet,
-        Command::SettleMaps => state.retarget.map = settled_maps(library, state).0,
+        Command::ReconcileMaps => state.retarget.map = reconciled_maps(library, state).0,
     }
 }
 
@@ -184,14 +182,9 @@ fn set_source(state: &mut ViewerState, library: &Library, motion: usize, target:
     let (Some(model), Some(about)) = (library.active(), library.motions().get(motion)) else { return };
     let has_target = model.asset.skeleton.joint_of_source(target).is_some();
     if has_target && source.is_none_or(|source| about.asset.skeleton.joint_of_source(source).is_some()) {
-        // What is set besides the map stays beside it.
-        let bare = ViewerState {
-            retarget: RetargetEdits { map: state.retarget.map.clone(), ..RetargetEdits::default() },
-            ..ViewerState::default()
-        };
-        let mut map = map_in_force(library, &bare, motion).unwrap_or_default();
+        let mut map = maps::own_map(library, state, motion).cloned().unwrap_or_default();
         maps::set_source(&mut map, target, source);
-        maps::set_map(state, &model.asset, about, Some(map));
+        maps::set_map(state, library, motion, Some(map));
     }
 }
 

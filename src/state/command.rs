@@ -92,6 +92,6 @@ pub enum Command {
     SetUnmapped(Option<Unmapped>),
     SetRoot(Option<RootOptions>),
     SetFeet(Option<Feet>),
-    /// Maps that fit the loaded files are turned to numbers, missing ones filled in, others dropped.
-    SettleMaps,
+    /// Converts maps that fit the loaded files to numbers, proposes missing ones, drops the others.
+    ReconcileMaps,
 }

@@ -24,9 +24,7 @@ pub use framing::{
 pub use history::History;
 pub use link::{LinkError, from_link, from_object, to_link, to_object};
 pub use map_edit::{MapEdit, muted_properties};
-pub use maps::{
-    MapProblem, MotionMap, NumberedMap, map_in_force, maps_in_force, names_checksum, proposed, settled_maps,
-};
+pub use maps::{MapProblem, MotionMap, NumberedMap, active_map, active_maps, proposed, reconciled_maps};
 pub use names::{title, written_skeleton};
 pub use playhead::{
     PoseSampler, active_clip, choice_of_clip, clip_secs, degrees_by_hand, play_range, rotation_by_hand,

@@ -13,7 +13,7 @@ use gaitway::retarget::{
 };
 use gaitway::state::{
     ClipChoice, Command, History, MapEdit, MotionMap, NumberedMap, Playback, Playhead, RetargetEdits, ViewerState,
-    apply, from_link, map_in_force, maps_in_force, muted_properties, settled_maps, to_link,
+    active_map, active_maps, apply, from_link, muted_properties, reconciled_maps, to_link,
 };
 use glam::{Quat, Vec3};
 
@@ -31,13 +31,13 @@ fn dancing() -> (Library, ViewerState) {
         playhead: Playhead { time_secs: 0.3, clip, ..Playhead::default() },
         ..ViewerState::default()
     };
-    settle(&mut library, &mut state);
+    reconcile(&mut library, &mut state);
     (library, state)
 }
 
-fn settle(library: &mut Library, state: &mut ViewerState) {
-    apply(state, library, Command::SettleMaps);
-    library.borrow_each(maps_in_force(library, state));
+fn reconcile(library: &mut Library, state: &mut ViewerState) {
+    apply(state, library, Command::ReconcileMaps);
+    library.borrow_each(active_maps(library, state));
 }
 
 fn number(library: &Library, name: &str) -> usize {
@@ -46,7 +46,7 @@ fn number(library: &Library, name: &str) -> usize {
 }
 
 fn map(library: &Library, state: &ViewerState) -> JointMap {
-    map_in_force(library, state, 0).expect("a map")
+    active_map(library, state, 0).expect("a map")
 }
 
 fn source(map: &JointMap, target: usize) -> Option<usize> {
@@ -151,7 +151,7 @@ fn a_correction_turns_the_playing_joint() {
     );
     let correction = map(&library, &state).joints[&neck].correction;
     assert!(correction.abs_diff_eq(turn(), 1e-6), "as long as one: {correction}");
-    settle(&mut library, &mut state);
+    reconcile(&mut library, &mut state);
     assert_ne!(pose_document(&library, &state), before);
     for bad in [Quat::from_xyzw(0.0, 0.0, 0.0, 0.0), Quat::from_xyzw(f32::NAN, 0.0, 0.0, 1.0)] {
         assert_eq!(edited(&library, &state, MapEdit::Correction { target: neck, correction: bad }), state);
@@ -178,7 +178,7 @@ fn channels_are_muted_one_by_one() {
 
     let before = pose_document(&library, &state);
     let mut rotation = rotation;
-    settle(&mut library, &mut rotation);
+    reconcile(&mut library, &mut rotation);
     assert_ne!(pose_document(&library, &rotation), before, "the arm hangs still");
 }
 
@@ -187,11 +187,11 @@ fn a_cleared_map_is_a_start_to_go_on_from() {
     let (mut library, state) = dancing();
     let mut cleared = edited(&library, &state, MapEdit::Clear);
     assert_eq!(map(&library, &cleared).joints.len(), 0);
-    settle(&mut library, &mut cleared);
+    reconcile(&mut library, &mut cleared);
     assert_eq!(map(&library, &cleared).joints.len(), 0, "it is not filled up again");
     let hips = number(&library, "Hips");
     apply(&mut cleared, &library, Command::SetSource { motion: 0, target: hips, source: Some(hips) });
-    settle(&mut library, &mut cleared);
+    reconcile(&mut library, &mut cleared);
     assert_eq!(library.borrow_errors(), []);
     let mut again = cleared.clone();
     apply(&mut again, &library, Command::SetMap { motion: 0, map: None });
@@ -246,7 +246,7 @@ fn fifty_edits_are_undone_and_done_again() {
         };
         history.apply(&mut state, &library, command);
         history.end_gesture();
-        settle(&mut library, &mut state);
+        reconcile(&mut library, &mut state);
         if state != seen[seen.len() - 1] {
             seen.push(state.clone());
         }
@@ -256,14 +256,14 @@ fn fifty_edits_are_undone_and_done_again() {
     let last = pose_document(&library, &state);
     for expected in seen.iter().rev().skip(1) {
         assert!(history.undo(&mut state, &mut library));
-        settle(&mut library, &mut state);
+        reconcile(&mut library, &mut state);
         assert_eq!(&state, expected);
     }
     assert_eq!(state, first);
     assert!(!history.can_undo());
     for expected in &seen[1..] {
         assert!(history.redo(&mut state, &mut library));
-        settle(&mut library, &mut state);
+        reconcile(&mut library, &mut state);
         assert_eq!(&state, expected);
     }
     assert!(!history.can_redo());
@@ -293,11 +293,11 @@ fn every_edit_is_in_the_link() {
     let (mut library, state) = dancing();
     for edit in all_edits(&library) {
         let mut state = edited(&library, &state, edit.clone());
-        settle(&mut library, &mut state);
+        reconcile(&mut library, &mut state);
         let (mut back, errors) = from_link(&to_link(&state));
         assert_eq!(errors, [], "{edit:?}");
-        assert_eq!(settled_maps(&library, &back).1, [], "{edit:?}");
-        settle(&mut library, &mut back);
+        assert_eq!(reconciled_maps(&library, &back).1, [], "{edit:?}");
+        reconcile(&mut library, &mut back);
         assert_eq!(back, state, "{edit:?}");
     }
 }

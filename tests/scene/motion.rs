@@ -6,13 +6,13 @@ use std::sync::Arc;
 use gaitway::anim::Clip;
 use gaitway::asset::Asset;
 use gaitway::frame::pose_document;
-use gaitway::library::{Library, Motion};
+use gaitway::library::{Library, Motion, names_checksum};
 use gaitway::retarget::{
     ClipRef, Feet, JointMap, JointMapFile, MapEntry, MutedChannel, RootOptions, RootPart, SourceRef, Unmapped,
 };
 use gaitway::state::{
-    ClipChoice, Command, History, MapProblem, MotionMap, Playback, Playhead, RetargetEdits, ViewerState, apply,
-    from_link, map_in_force, maps_in_force, names_checksum, settled_maps, to_link,
+    ClipChoice, Command, History, MapProblem, MotionMap, Playback, Playhead, RetargetEdits, ViewerState, active_map,
+    active_maps, apply, from_link, reconciled_maps, to_link,
 };
 use glam::Vec3;
 
@@ -32,10 +32,10 @@ fn chain(names: &[&str]) -> Asset {
     skeletons::asset(skeletons::chain(names.iter().copied(), Vec3::Y))
 }
 
-fn settled(library: &mut Library, state: &mut ViewerState) -> Vec<MapProblem> {
-    let (_, problems) = settled_maps(library, state);
-    apply(state, library, Command::SettleMaps);
-    library.borrow_each(maps_in_force(library, state));
+fn reconcile(library: &mut Library, state: &mut ViewerState) -> Vec<MapProblem> {
+    let (_, problems) = reconciled_maps(library, state);
+    apply(state, library, Command::ReconcileMaps);
+    library.borrow_each(active_maps(library, state));
     problems
 }
 
@@ -62,7 +62,7 @@ fn by_name() -> JointMapFile {
 fn a_map_is_filled_in_for_every_motion() {
     let mut library = dancing();
     let mut state = ViewerState::default();
-    assert_eq!(settled(&mut library, &mut state), []);
+    assert_eq!(reconcile(&mut library, &mut state), []);
     let [MotionMap::Numbers(map)] = &state.retarget.map[..] else { panic!("{:?}", state.retarget.map) };
     let asset = &library.active().expect("a model").asset;
     assert_eq!(map.checksum, names_checksum(asset, asset));
@@ -72,8 +72,35 @@ fn a_map_is_filled_in_for_every_motion() {
     assert_eq!(library.active().expect("a model").clip_count(), 6);
     // Once there, it is left alone.
     let before = state.clone();
-    assert_eq!(settled(&mut library, &mut state), []);
+    assert_eq!(reconcile(&mut library, &mut state), []);
     assert_eq!(state, before);
+}
+
+#[test]
+fn only_motions_whose_map_changed_are_baked_again() {
+    let mut library = dancing();
+    let asset = library.active().expect("a model").asset.clone();
+    let mut names: Vec<&str> = asset.skeleton.joints().map(|joint| asset.skeleton.name(joint)).collect();
+    names[3] = "Else";
+    let other = Motion::new("else.bvh".to_owned(), Arc::new(chain(&names)));
+    library.set_motions(vec![Motion::new("dance.glb".to_owned(), asset), other]);
+    let mut state = ViewerState::default();
+    assert_eq!(reconcile(&mut library, &mut state), []);
+    let baked = |library: &Library| [0, 1].map(|motion| library.baked_map(motion).expect("a map").clone());
+    let motions = |library: &Library| -> Vec<usize> {
+        library.active().expect("a model").borrowed_clips().map(|(_, borrowed)| borrowed.motion).collect()
+    };
+    let (first, order) = (baked(&library), motions(&library));
+    reconcile(&mut library, &mut state);
+    assert!(baked(&library).iter().zip(&first).all(|(now, first)| Arc::ptr_eq(now, first)), "nothing changed");
+    let (neck, head) = (number(&library, "Neck"), number(&library, "Head"));
+    apply(&mut state, &library, Command::SetSource { motion: 0, target: neck, source: Some(head) });
+    reconcile(&mut library, &mut state);
+    let [changed, same] = baked(&library);
+    assert_eq!(changed.joints[&neck].source, Some(head));
+    assert!(Arc::ptr_eq(&same, &first[1]));
+    assert_eq!(motions(&library), order);
+    assert_eq!(order, [0, 0, 0, 1]);
 }
 
 #[test]
@@ -84,7 +111,7 @@ fn without_motions_nothing_is_filled_in_and_nothing_lost() {
         retarget: RetargetEdits { map: map.clone(), ..RetargetEdits::default() },
         ..ViewerState::default()
     };
-    assert_eq!(settled(&mut library, &mut state), []);
+    assert_eq!(reconcile(&mut library, &mut state), []);
     assert_eq!(state.retarget.map, map);
 }
 
@@ -95,8 +122,8 @@ fn a_map_by_name_becomes_numbers_and_comes_back() {
         retarget: RetargetEdits { map: vec![MotionMap::Names(by_name())], ..RetargetEdits::default() },
         ..ViewerState::default()
     };
-    assert_eq!(settled(&mut library, &mut state), []);
-    let map = map_in_force(&library, &state, 0).expect("the given map");
+    assert_eq!(reconcile(&mut library, &mut state), []);
+    let map = active_map(&library, &state, 0).expect("the given map");
     let (neck, head) = (number(&library, "Neck"), number(&library, "Head"));
     assert_eq!(map.joints[&neck].source, Some(head));
     assert_eq!(map.joints[&head].source, None);
@@ -118,10 +145,10 @@ fn a_map_that_fits_nothing_is_named_and_replaced() {
         retarget: RetargetEdits { map: vec![MotionMap::Names(wrong)], ..RetargetEdits::default() },
         ..ViewerState::default()
     };
-    let problems = settled(&mut library, &mut state);
+    let problems = reconcile(&mut library, &mut state);
     assert!(matches!(&problems[..], [MapProblem::NoFit { motion, .. }] if motion == "dance.glb"), "{problems:?}");
     assert!(problems[0].to_string().contains("Pelvis"), "{}", problems[0]);
-    assert!(map_in_force(&library, &state, 0).expect("an automatic map").joints.len() > 10);
+    assert!(active_map(&library, &state, 0).expect("an automatic map").joints.len() > 10);
 }
 
 /// Names that changed under a link: its numbers may mean other joints now.
@@ -129,7 +156,7 @@ fn a_map_that_fits_nothing_is_named_and_replaced() {
 fn numbers_for_other_names_are_not_used() {
     let mut library = dancing();
     let mut state = ViewerState::default();
-    settled(&mut library, &mut state);
+    reconcile(&mut library, &mut state);
     let link = to_link(&state);
     let (mut other, errors) = from_link(&link);
     assert_eq!(errors, []);
@@ -137,7 +164,7 @@ fn numbers_for_other_names_are_not_used() {
     let mut names: Vec<&str> = asset.skeleton.joints().map(|joint| asset.skeleton.name(joint)).collect();
     names[3] = "Else";
     library.set_motions(vec![Motion::new("else.bvh".to_owned(), Arc::new(chain(&names)))]);
-    assert_eq!(settled(&mut library, &mut other), [MapProblem::OtherFiles]);
+    assert_eq!(reconcile(&mut library, &mut other), [MapProblem::OtherFiles]);
     assert_ne!(other.retarget.map, state.retarget.map);
 }
 
@@ -145,13 +172,13 @@ fn numbers_for_other_names_are_not_used() {
 fn one_source_is_changed_and_taken_back() {
     let mut library = dancing();
     let (mut state, mut history) = (ViewerState::default(), History::default());
-    settled(&mut library, &mut state);
+    reconcile(&mut library, &mut state);
     let before = state.clone();
     let (neck, head) = (number(&library, "Neck"), number(&library, "Head"));
     let change = Command::SetSource { motion: 0, target: neck, source: Some(head) };
     history.apply(&mut state, &library, change);
     let source =
-        |library: &Library, state: &ViewerState| map_in_force(library, state, 0).expect("a map").joints[&neck].source;
+        |library: &Library, state: &ViewerState| active_map(library, state, 0).expect("a map").joints[&neck].source;
     assert_eq!(source(&library, &state), Some(head));
     history.end_gesture();
     history.apply(&mut state, &library, Command::SetFeet(Some(Feet::Plant)));
@@ -172,10 +199,10 @@ fn one_source_is_changed_and_taken_back() {
 fn what_is_set_besides_wins_over_the_map() {
     let mut library = dancing();
     let mut state = ViewerState::default();
-    settled(&mut library, &mut state);
+    reconcile(&mut library, &mut state);
     let root = RootOptions { vertical: RootPart::Freeze, ..RootOptions::default() };
     let unmapped = Unmapped::Clip { clip: ClipRef::Index(1), frozen: true };
-    let own = map_in_force(&library, &state, 0).expect("a map");
+    let own = active_map(&library, &state, 0).expect("a map");
     for command in [
         Command::SetRoot(Some(root)),
         Command::SetUnmapped(Some(unmapped.clone())),
@@ -183,7 +210,7 @@ fn what_is_set_besides_wins_over_the_map() {
     ] {
         apply(&mut state, &library, command);
     }
-    let map = map_in_force(&library, &state, 0).expect("a map");
+    let map = active_map(&library, &state, 0).expect("a map");
     assert_eq!(map, JointMap { root, unmapped, feet: Feet::Plant, ..own.clone() });
     // A joint that is changed now does not write them into the map.
     let head = number(&library, "Head");
@@ -191,7 +218,7 @@ fn what_is_set_besides_wins_over_the_map() {
     for command in [Command::SetRoot(None), Command::SetUnmapped(None), Command::SetFeet(None)] {
         apply(&mut state, &library, command);
     }
-    let map = map_in_force(&library, &state, 0).expect("a map");
+    let map = active_map(&library, &state, 0).expect("a map");
     assert_eq!((map.root, map.unmapped, map.feet), (own.root, own.unmapped, own.feet));
 }
 
@@ -200,7 +227,7 @@ fn a_motion_without_anything_in_common_has_no_map() {
     let mut library = walker();
     library.set_motions(vec![Motion::new("snake.bvh".to_owned(), Arc::new(chain(&["s1", "s2", "s3"])))]);
     let mut state = ViewerState::default();
-    assert_eq!(settled(&mut library, &mut state), []);
+    assert_eq!(reconcile(&mut library, &mut state), []);
     assert_eq!(state.retarget.map, []);
     let [error] = library.borrow_errors() else { panic!("{:?}", library.borrow_errors()) };
     assert!(error.to_string().starts_with("snake.bvh: "), "{error}");
@@ -209,10 +236,10 @@ fn a_motion_without_anything_in_common_has_no_map() {
     // By hand it can still be mapped.
     let head = number(&library, "Head");
     apply(&mut state, &library, Command::SetSource { motion: 0, target: head, source: Some(1) });
-    let map = map_in_force(&library, &state, 0).expect("a map");
+    let map = active_map(&library, &state, 0).expect("a map");
     assert_eq!(map.joints.len(), 1);
     let before = state.retarget.map.clone();
-    settled(&mut library, &mut state);
+    reconcile(&mut library, &mut state);
     assert_eq!(state.retarget.map, before, "what was begun by hand is not filled up");
 }
 
@@ -225,21 +252,21 @@ fn a_link_brings_the_same_pose_back() {
         playhead: Playhead { time_secs: 0.3, ..Playhead::default() },
         ..ViewerState::default()
     };
-    settled(&mut library, &mut state);
+    reconcile(&mut library, &mut state);
     let arm = number(&library, "LeftUpperArm");
     state.playhead.clip = ClipChoice::Named("3".to_owned());
     apply(&mut state, &library, Command::SetSource { motion: 0, target: arm, source: None });
     apply(&mut state, &library, Command::SetUnmapped(Some(Unmapped::Clip { clip: ClipRef::Index(2), frozen: false })));
     let root = RootOptions { horizontal: RootPart::InPlace, ..RootOptions::default() };
     apply(&mut state, &library, Command::SetRoot(Some(root)));
-    assert_eq!(settled(&mut library, &mut state), []);
+    assert_eq!(reconcile(&mut library, &mut state), []);
     let pose = pose_document(&library, &state);
     assert_eq!(library.active().expect("a model").clip(3).map(Clip::name), Some("Walk"));
 
     let (mut back, errors) = from_link(&to_link(&state));
     assert_eq!(errors, []);
     let mut fresh = dancing();
-    assert_eq!(settled(&mut fresh, &mut back), []);
+    assert_eq!(reconcile(&mut fresh, &mut back), []);
     assert_eq!(back, state);
     assert_eq!(pose_document(&fresh, &back), pose);
     let plain = ViewerState {
@@ -251,6 +278,6 @@ fn a_link_brings_the_same_pose_back() {
         playhead: Playhead { time_secs: 0.3, ..plain.playhead },
         ..plain
     };
-    settled(&mut fresh, &mut plain);
+    reconcile(&mut fresh, &mut plain);
     assert_ne!(pose_document(&fresh, &plain), pose, "and it is not what comes without them");
 }

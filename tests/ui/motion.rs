@@ -5,7 +5,7 @@ use egui_kittest::kittest::Queryable;
 use gaitway::editor::Export;
 use gaitway::library::{Library, Model, Motion};
 use gaitway::retarget::{ClipRef, Feet, JointMap, Keep, MutedProperty, RestChoice, RootOptions, RootPart, Unmapped};
-use gaitway::state::{ClipChoice, Command, MapEdit, map_in_force, muted_properties};
+use gaitway::state::{ClipChoice, Command, MapEdit, active_map, muted_properties};
 use gaitway::ui::{PathPrompt, PathPurpose, Saved, UiAction};
 
 use crate::bench::{Bench, NARROW, WIDE, bench_of, drag, motion_bench, press, press_key, sample_bench};
@@ -13,7 +13,7 @@ use crate::skeletons;
 
 fn map(harness: &Harness<'_, Bench>, motion: usize) -> JointMap {
     let bench = harness.state();
-    map_in_force(bench.library(), bench.state(), motion).expect("a map for the motion")
+    active_map(bench.library(), bench.state(), motion).expect("a map for the motion")
 }
 
 fn number(harness: &Harness<'_, Bench>, name: &str) -> usize {
