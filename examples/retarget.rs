@@ -26,7 +26,7 @@ fn main() -> anyhow::Result<()> {
         println!("{:24} follows {:24} {:3.0} %  {}", names[0], names[1], 100.0 * pair.confidence, pair.reason);
     }
 
-    // The same map as a file would hold it; edit its entries to correct it.
+    // Edit the map's entries to correct it; `JointMap::to_file` gives the form to save.
     let map = proposal.to_map(&model, &motion).resolve(&model, &motion)?;
     let (model_slots, motion_slots) = (proposal.model.humanoid(), proposal.motion.humanoid());
     let target = Body { asset: &model, slots: &model_slots };

@@ -16,6 +16,26 @@ pub struct Clip {
     sampler: Sampler,
 }
 
+/// How a clip is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ClipQuery<'a> {
+    Index(usize),
+    Name(&'a str),
+    /// A name, or an index in decimal if no clip has that name.
+    NameOrIndex(&'a str),
+}
+
+/// Finds a clip in a list; of several with the same name, the first.
+pub fn find_clip<'a>(clips: impl Iterator<Item = &'a Clip> + Clone, query: ClipQuery<'_>) -> Option<usize> {
+    let by_index = |index: usize| clips.clone().nth(index).map(|_| index);
+    let by_name = |name: &str| clips.clone().position(|clip| clip.name() == name);
+    match query {
+        ClipQuery::Index(index) => by_index(index),
+        ClipQuery::Name(name) => by_name(name),
+        ClipQuery::NameOrIndex(text) => by_name(text).or_else(|| by_index(text.parse().ok()?)),
+    }
+}
+
 /// Caches the last segment of each timeline to make forward playback cheap. It never affects the result.
 #[derive(Debug, Clone, Default)]
 pub struct SampleCursor {

@@ -30,7 +30,7 @@ mod skeleton;
 mod transform;
 
 pub use channel::{Channel, ChannelError, Interpolation, Keys, Property};
-pub use clip::{Clip, ClipBuilder, SampleCursor};
+pub use clip::{Clip, ClipBuilder, ClipQuery, SampleCursor, find_clip};
 pub use playback::{LoopMode, TimeRange, clip_time};
 pub use polar::nearest_rotation;
 pub use pose::{Pose, model_from_joint};

@@ -13,7 +13,7 @@ pub(super) fn run(arguments: &MapArguments) -> anyhow::Result<()> {
     let model = open(std::slice::from_ref(&arguments.model))?.model.asset;
     let motion = open_motion(&arguments.motion)?.asset;
     let proposal = propose(&model, &motion);
-    let map = proposal.to_map(&model, &motion);
+    let map = proposal.to_map(&model, &motion).to_file(&model, &motion);
     for (file, found) in [(&arguments.model, &proposal.model), (&arguments.motion, &proposal.motion)] {
         if let Some(text) = contradictions_text(&found.contradictions) {
             eprintln!("warning: {}: {text}", file.display());

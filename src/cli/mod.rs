@@ -16,7 +16,7 @@ use std::process::ExitCode;
 use anyhow::{Context, bail};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use crate::anim::LoopMode;
+use crate::anim::{ClipQuery, LoopMode, find_clip};
 use crate::editor::Editor;
 use crate::files::{Opened, open_paths};
 use crate::library::Model;
@@ -363,10 +363,9 @@ fn apply_moment(editor: &mut Editor, moment: &Moment, has_motion: bool) -> anyho
 
 /// Finds a retargeted clip by name, or by index among the retargeted ones.
 fn retargeted_clip(model: &Model, name: &str) -> Option<ClipChoice> {
-    let retargeted: Vec<usize> = (0..model.clip_count()).filter(|&clip| model.borrowed(clip).is_some()).collect();
-    let by_name = retargeted.iter().find(|&&clip| model.clip(clip).is_some_and(|clip| clip.name() == name));
-    let found = by_name.or_else(|| retargeted.get(name.parse::<usize>().ok()?))?;
-    Some(choice_of_clip(model, *found))
+    let clips = model.borrowed_clips().map(|(_, borrowed)| &borrowed.clip);
+    let (clip, _) = model.borrowed_clips().nth(find_clip(clips, ClipQuery::NameOrIndex(name))?)?;
+    Some(choice_of_clip(model, clip))
 }
 
 fn clips_text(model: &Model) -> String {

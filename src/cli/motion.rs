@@ -9,7 +9,7 @@ use crate::anim::{JointIndex, Skeleton};
 use crate::editor::{Contents, Editor, Event, OpenedModel};
 use crate::files::{Opened, Role, open_view, read_map, read_paths};
 use crate::library::Motion;
-use crate::retarget::JointMap;
+use crate::retarget::JointMapFile;
 use crate::state::{ClipChoice, Command, Sources, ViewerState, from_link};
 
 /// A motion to retarget to the model, and its joint map.
@@ -41,7 +41,7 @@ fn print_warnings(motion: &Motion) {
     }
 }
 
-pub(super) fn open_map(path: &Path) -> anyhow::Result<JointMap> {
+pub(super) fn open_map(path: &Path) -> anyhow::Result<JointMapFile> {
     let bytes = std::fs::read(path).with_context(|| format!("{}", path.display()))?;
     Ok(read_map(&path.display().to_string(), &bytes)?)
 }

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use super::motion::{joint_name, open_map, open_motion};
 use super::{RetargetArguments, open, print_bytes, print_json};
-use crate::anim::{Clip, JointIndex};
+use crate::anim::{Clip, ClipQuery, JointIndex, find_clip};
 use crate::asset::Asset;
 use crate::files::read_set;
 use crate::formats::{main_files, write_model, write_motion};
@@ -19,6 +19,7 @@ pub(super) fn run(arguments: &RetargetArguments) -> anyhow::Result<()> {
     let model = open(files)?.model;
     let motion = open_motion(&arguments.motion)?;
     let given = arguments.map.as_deref().map(open_map).transpose()?;
+    let given = given.map(|file| file.look_up_joints(&model.asset, &motion.asset)).transpose()?;
     let (mut map, proposal) = map_for(&model.asset, &motion.asset, given.as_ref());
     if proposal.is_some_and(|proposal| proposal.pairs.is_empty()) {
         bail!(
@@ -30,7 +31,7 @@ pub(super) fn run(arguments: &RetargetArguments) -> anyhow::Result<()> {
     }
     apply_options(&mut map, arguments);
     let resolved = map.resolve(&model.asset, &motion.asset)?;
-    let source_clip = find_clip(&motion, arguments.clip.as_deref())?;
+    let source_clip = choose_clip(&motion, arguments.clip.as_deref())?;
     let pair = Retargeting::new(model.body(), motion.body(), source_clip, &resolved)?;
     let retargeted = pair.bake()?;
     let figures = pair.figures(&retargeted);
@@ -92,15 +93,13 @@ fn apply_options(map: &mut JointMap, arguments: &RetargetArguments) {
 }
 
 /// Finds a clip by name or index; the first if none was requested.
-fn find_clip(motion: &Motion, requested: Option<&str>) -> anyhow::Result<usize> {
+fn choose_clip(motion: &Motion, requested: Option<&str>) -> anyhow::Result<usize> {
     let clips = &motion.asset.clips;
     if clips.is_empty() {
         bail!("{}: expected a clip to retarget, found none", motion.source);
     }
     let Some(requested) = requested else { return Ok(0) };
-    let by_name = clips.iter().position(|clip| clip.name() == requested);
-    let found = by_name.or_else(|| requested.parse().ok().filter(|&index: &usize| index < clips.len()));
-    found.with_context(|| {
+    find_clip(clips.iter(), ClipQuery::NameOrIndex(requested)).with_context(|| {
         let names: Vec<&str> = clips.iter().map(Clip::name).collect();
         format!(
             "{}: expected the name or index of a clip, found “{requested}”; its clips are {}",

@@ -2,7 +2,7 @@
 
 use crate::formats::FileSet;
 use crate::library::{Model, Motion};
-use crate::retarget::JointMap;
+use crate::retarget::JointMapFile;
 use crate::state::MEMBER_SEPARATOR;
 
 /// Opened files, ready for the library.
@@ -12,7 +12,7 @@ pub struct Contents {
     pub models: Vec<OpenedModel>,
     /// `None` keeps the motions already loaded.
     pub motions: Option<Vec<Motion>>,
-    pub map: Option<JointMap>,
+    pub map: Option<JointMapFile>,
     /// The map is one of the user's local files.
     pub is_map_private: bool,
     /// What could not be opened although the rest could.

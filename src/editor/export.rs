@@ -8,7 +8,7 @@ use crate::formats::{write_model, write_motion};
 use crate::frame::{Frame, evaluate};
 use crate::library::Model;
 use crate::retarget::{bake_layers, baking};
-use crate::state::{active_clip, map_in_force, named, written_skeleton};
+use crate::state::{active_clip, active_map, written_skeleton};
 
 /// What to write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -75,8 +75,8 @@ impl Editor {
     fn export_map(&self, motion: usize) -> Result<ExportedFile, String> {
         let model = self.model()?;
         let about = self.library.motions().get(motion).ok_or("this motion was removed")?;
-        let map = map_in_force(&self.library, &self.state, motion).unwrap_or_default();
-        let json = named(&map, &model.asset, &about.asset).to_json().map_err(|error| error.to_string())?;
+        let map = active_map(&self.library, &self.state, motion).unwrap_or_default();
+        let json = map.to_file(&model.asset, &about.asset).to_json().map_err(|error| error.to_string())?;
         Ok(ExportedFile::new(format!("{}-{}.json", stem(&model.source), stem(&about.source)), json.into_bytes()))
     }
 

@@ -2,11 +2,11 @@
 //! nothing; those that succeed can be undone.
 
 use super::{Admit, Contents, Editor, Event, short_name};
-use crate::library::{BorrowError, BorrowedClip, Library, Motion};
-use crate::retarget::{JointMap, MapError, propose};
+use crate::library::{BorrowError, BorrowedClip, Library, Motion, names_checksum};
+use crate::retarget::{JointMap, JointMapFile, MapError, propose};
 use crate::state::{
-    ClipChoice, Command, MapEdit, MotionMap, NumberedMap, RetargetEdits, ViewerState, active_clip, choice_of_clip,
-    maps_in_force, names_checksum, numbered, settled_maps,
+    ClipChoice, Command, MapEdit, MotionMap, NumberedMap, RetargetEdits, ViewerState, active_clip, active_maps,
+    choice_of_clip, reconciled_maps,
 };
 
 /// Identifies a motion's clip across models, with the time in it.
@@ -33,7 +33,7 @@ impl Editor {
     pub(super) fn open_motions(
         &mut self,
         motions: Vec<Motion>,
-        map: Option<JointMap>,
+        map: Option<JointMapFile>,
         view: Option<ViewerState>,
         admit: Admit<'_>,
     ) -> Result<(), String> {
@@ -102,7 +102,7 @@ impl Editor {
     }
 
     /// Applies a joint map file to every motion it fits.
-    pub(super) fn apply_map_file(&mut self, map: &JointMap) -> Result<(), String> {
+    pub(super) fn apply_map_file(&mut self, map: &JointMapFile) -> Result<(), String> {
         let Some(model) = self.library.active() else { return Ok(()) };
         if self.library.motions().is_empty() {
             let problem = "this is a joint map, but no motion is loaded; open the motion first, or both together";
@@ -111,7 +111,7 @@ impl Editor {
         let mut fitting = Vec::new();
         let mut problem = None;
         for (index, motion) in self.library.motions().iter().enumerate() {
-            match numbered(map, &model.asset, &motion.asset) {
+            match map.to_joint_map(&model.asset, &motion.asset) {
                 Ok(map) => fitting.push((index, short_name(&motion.source), map)),
                 Err(error) => problem = problem.or(Some(format!("{}: {error}", motion.source))),
             }
@@ -135,13 +135,13 @@ impl Editor {
 
     /// Retargets the motions' clips if anything they depend on has changed; returns problems not reported before.
     pub(super) fn retarget(&mut self) -> Vec<String> {
-        let (maps, problems) = settled_maps(&self.library, &self.state);
+        let (maps, problems) = reconciled_maps(&self.library, &self.state);
         let mut new: Vec<String> = problems.iter().map(ToString::to_string).collect();
         if maps != self.state.retarget.map {
             self.record(Command::ReconcileMaps);
             self.is_changed = true;
         }
-        let maps = maps_in_force(&self.library, &self.state);
+        let maps = active_maps(&self.library, &self.state);
         if self.library.borrow_each(maps) {
             self.needs_redraw = true;
             let errors = self.library.borrow_errors().iter().filter(|error| !is_unfinished(error));

@@ -7,7 +7,7 @@ use super::motions::{ClipIdentity, added_from};
 use super::names::is_obj;
 use super::{Admit, Contents, Editor, Event, ModelFiles, OTHER_FILES, OpenedModel, short_name};
 use crate::library::{Library, Loaded, Model, ModelId, Motion};
-use crate::retarget::JointMap;
+use crate::retarget::JointMapFile;
 use crate::state::{Command, MotionMap, RetargetEdits, Sources, ViewerState, apply};
 
 /// What is kept of a loaded model besides the model.
@@ -22,7 +22,7 @@ pub(super) struct Shelved {
 /// What was opened together with models.
 struct Companions {
     motions: Option<Vec<Motion>>,
-    map: Option<JointMap>,
+    map: Option<JointMapFile>,
     view: Option<ViewerState>,
 }
 
@@ -230,7 +230,7 @@ impl Editor {
         &mut self,
         view: ViewerState,
         motions: Vec<Motion>,
-        map: Option<JointMap>,
+        map: Option<JointMapFile>,
         admit: Admit<'_>,
     ) -> Result<(), String> {
         let before = self.snapshot();

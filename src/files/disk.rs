@@ -14,7 +14,7 @@ use crate::asset::{Asset, Image};
 use crate::editor::{Contents, ModelFiles, OpenedModel};
 use crate::formats::FileSet;
 use crate::library::{ImageData, Model, Motion};
-use crate::retarget::JointMap;
+use crate::retarget::JointMapFile;
 use crate::samples;
 use crate::state::ViewerState;
 
@@ -25,7 +25,7 @@ pub struct Opened {
     /// `None` for a sample generated in code.
     pub model_files: Option<ModelFiles>,
     pub motions: Vec<Motion>,
-    pub map: Option<JointMap>,
+    pub map: Option<JointMapFile>,
     /// Names of all files that were read.
     pub files: Vec<String>,
 }

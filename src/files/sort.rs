@@ -3,7 +3,7 @@
 use crate::asset::{Asset, Image};
 use crate::formats::{FileSet, LoadError, LoadOptions, load, load_noticing_images, main_files};
 use crate::library::Library;
-use crate::retarget::{JointMap, MapError};
+use crate::retarget::{JointMapFile, MapError};
 
 /// What the user opens the files for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -22,7 +22,7 @@ pub enum Role {
 pub struct Sorted {
     pub models: Vec<(String, Asset)>,
     pub motions: Vec<(String, Asset)>,
-    pub map: Option<JointMap>,
+    pub map: Option<JointMapFile>,
 }
 
 /// Why a set of files cannot be used.
@@ -98,8 +98,8 @@ fn few_names(files: &[(String, Asset)]) -> Vec<String> {
 }
 
 /// Finds the joint map among the files: JSON with the key `gaitway_map`. Other JSON is ignored.
-fn find_map(files: &FileSet) -> Result<Option<JointMap>, SortError> {
-    let mut found: Option<(String, JointMap)> = None;
+fn find_map(files: &FileSet) -> Result<Option<JointMapFile>, SortError> {
+    let mut found: Option<(String, JointMapFile)> = None;
     for (name, bytes) in files.iter() {
         let has_key = || bytes.windows(13).any(|window| window == b"\"gaitway_map\"");
         if !name.to_lowercase().ends_with(".json") || !has_key() {
@@ -115,7 +115,7 @@ fn find_map(files: &FileSet) -> Result<Option<JointMap>, SortError> {
 }
 
 /// Parses a joint map; errors refer to it as `file`.
-pub fn read_map(file: &str, bytes: &[u8]) -> Result<JointMap, SortError> {
-    JointMap::from_json(&String::from_utf8_lossy(bytes))
+pub fn read_map(file: &str, bytes: &[u8]) -> Result<JointMapFile, SortError> {
+    JointMapFile::from_json(&String::from_utf8_lossy(bytes))
         .map_err(|problem| SortError::Map { file: file.to_owned(), problem })
 }

@@ -10,7 +10,7 @@ use super::source::{Content, Progress, Reading, Source};
 use super::{OpenError, Role, read_map};
 use crate::editor::{Contents, container_of};
 use crate::library::Motion;
-use crate::retarget::JointMap;
+use crate::retarget::JointMapFile;
 use crate::state::{MotionMap, RetargetEdits, Sources, ViewerState};
 
 /// Opens the files of a view, except for its model if `with_model` is not set and for motions that are among `held`. A motion
@@ -93,7 +93,7 @@ async fn open_models<S: Source>(
     Ok(contents)
 }
 
-async fn open_map<S: Source>(source: &S, address: &OsStr, progress: Progress<'_>) -> Result<JointMap, OpenError> {
+async fn open_map<S: Source>(source: &S, address: &OsStr, progress: Progress<'_>) -> Result<JointMapFile, OpenError> {
     match source.locate(address)?.content {
         Content::File { place, name, .. } => {
             let bytes = source.read(&place, &name, &mut Reading::new::<S>(progress)).await?;

@@ -12,10 +12,11 @@ pub use borrowed::{BorrowError, BorrowedClip, map_for};
 pub use image::ImageData;
 pub use inspect::{inspect, warning_documents};
 pub use model::{Model, ModelId};
-pub use motion::Motion;
+pub use motion::{Motion, names_checksum};
 pub use rig::{Rig, RigBone};
 
-use std::sync::OnceLock;
+use std::collections::BTreeMap;
+use std::sync::{Arc, OnceLock};
 
 use crate::retarget::{Figures, FootTrack, JointMap, MapError, Proposal, propose};
 
@@ -53,9 +54,11 @@ pub struct Library {
     /// Files that the active model borrows clips from.
     motions: Vec<Motion>,
     /// The map per motion that the borrowed clips were baked with; none if they are stale.
-    borrowed_with: Option<Vec<Option<JointMap>>>,
+    baked_with: Option<Vec<Option<Arc<JointMap>>>>,
     /// The proposed map per motion for the active model, computed on demand.
     proposals: Vec<OnceLock<Proposal>>,
+    /// [`names_checksum`] per motion for the active model, computed on demand.
+    checksums: Vec<OnceLock<u32>>,
     borrow_errors: Vec<BorrowError>,
     next_id: u64,
 }
@@ -150,8 +153,9 @@ impl Library {
     }
 
     fn forget_borrowed(&mut self) {
-        self.borrowed_with = None;
+        self.baked_with = None;
         self.proposals = self.motions.iter().map(|_| OnceLock::new()).collect();
+        self.checksums = self.motions.iter().map(|_| OnceLock::new()).collect();
     }
 
     pub fn motions(&self) -> &[Motion] {
@@ -175,6 +179,18 @@ impl Library {
         Some(slot.get_or_init(|| propose(&model.asset, &motion.asset)))
     }
 
+    /// Returns the [`names_checksum`] of the active model and a motion, cached.
+    pub fn names_checksum(&self, motion: usize) -> Option<u32> {
+        let (model, slot) = (self.active()?, self.checksums.get(motion)?);
+        let motion = self.motions.get(motion)?;
+        Some(*slot.get_or_init(|| names_checksum(&model.asset, &motion.asset)))
+    }
+
+    /// Returns the map that a motion's clips were baked with. It stays the same allocation until the map changes.
+    pub fn baked_map(&self, motion: usize) -> Option<&Arc<JointMap>> {
+        self.baked_with.as_ref()?.get(motion)?.as_ref()
+    }
+
     /// Bakes the active model's borrowed clips if their inputs have changed; returns whether they had. Without a map,
     /// each motion gets the proposed one. Motions that fail are reported by [`Library::borrow_errors`]; the others
     /// still work.
@@ -183,25 +199,48 @@ impl Library {
         self.borrow_each(maps)
     }
 
-    /// Like [`Library::borrow`], with a map per motion.
+    /// Like [`Library::borrow`], with a map per motion. Clips of motions whose map is unchanged are kept.
     pub fn borrow_each(&mut self, maps: Vec<Option<JointMap>>) -> bool {
-        if self.borrowed_with.as_ref() == Some(&maps) {
-            return false;
-        }
-        self.borrow_errors.clear();
-        let mut borrowed = Vec::new();
-        let active = self.active;
-        if let Some(model) = self.models.iter_mut().find(|model| model.id == active) {
-            for (index, motion) in self.motions.iter().enumerate() {
-                match borrow_motion(model, motion, index, maps.get(index).and_then(Option::as_ref)) {
-                    Ok(clips) => borrowed.extend(clips),
-                    Err(error) => self.borrow_errors.push(error),
-                }
+        let before = self.baked_with.take();
+        let share = |(index, map): (usize, Option<JointMap>)| {
+            let before = before.as_ref().and_then(|before| before.get(index)?.as_ref());
+            match (before, map) {
+                (Some(before), Some(map)) if **before == map => Some(before.clone()),
+                (_, map) => map.map(Arc::new),
             }
-            model.set_borrowed(borrowed);
+        };
+        let maps: Vec<_> = maps.into_iter().enumerate().map(share).collect();
+        let is_changed = before.as_ref() != Some(&maps);
+        if is_changed {
+            self.bake(&before.unwrap_or_default(), &maps);
         }
-        self.borrowed_with = Some(maps);
-        true
+        self.baked_with = Some(maps);
+        is_changed
+    }
+
+    /// Bakes the clips of motions whose map is not the one from before.
+    fn bake(&mut self, before: &[Option<Arc<JointMap>>], maps: &[Option<Arc<JointMap>>]) {
+        self.borrow_errors.clear();
+        let active = self.active;
+        let Some(model) = self.models.iter_mut().find(|model| model.id == active) else { return };
+        let mut kept: BTreeMap<usize, Vec<BorrowedClip>> = BTreeMap::new();
+        for clip in model.take_borrowed() {
+            if before.get(clip.motion).is_some_and(|before| Some(before) == maps.get(clip.motion)) {
+                kept.entry(clip.motion).or_default().push(clip);
+            }
+        }
+        let mut borrowed = Vec::new();
+        for (index, motion) in self.motions.iter().enumerate() {
+            if let Some(clips) = kept.remove(&index) {
+                borrowed.extend(clips);
+                continue;
+            }
+            match borrow_motion(model, motion, index, maps.get(index).and_then(Option::as_deref)) {
+                Ok(clips) => borrowed.extend(clips),
+                Err(error) => self.borrow_errors.push(error),
+            }
+        }
+        model.set_borrowed(borrowed);
     }
 
     /// Quality figures of a borrowed clip; none for the model's own clips.

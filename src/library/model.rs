@@ -83,7 +83,7 @@ impl Model {
         own.get(index).or_else(|| Some(&self.borrowed.get(index.checked_sub(own.len())?)?.clip))
     }
 
-    pub fn clips(&self) -> impl Iterator<Item = &Clip> {
+    pub fn clips(&self) -> impl Iterator<Item = &Clip> + Clone {
         self.asset.clips.iter().chain(self.borrowed.iter().map(|borrowed| &borrowed.clip))
     }
 
@@ -93,7 +93,7 @@ impl Model {
     }
 
     /// Returns the borrowed clips with their indices among all clips.
-    pub fn borrowed_clips(&self) -> impl Iterator<Item = (usize, &BorrowedClip)> {
+    pub fn borrowed_clips(&self) -> impl Iterator<Item = (usize, &BorrowedClip)> + Clone {
         self.borrowed.iter().enumerate().map(|(at, borrowed)| (self.asset.clips.len() + at, borrowed))
     }
 
@@ -107,6 +107,11 @@ impl Model {
         let secs =
             |clip: Option<usize>| clip.and_then(|clip| self.borrowed(clip)).map_or(0.0, |clip| clip.crossfade_secs);
         secs(from).max(secs(to))
+    }
+
+    /// Removes the borrowed clips, until [`Model::set_borrowed`] sets new ones.
+    pub(super) fn take_borrowed(&mut self) -> Vec<BorrowedClip> {
+        std::mem::take(&mut self.borrowed)
     }
 
     /// Replaces the borrowed clips.

@@ -55,3 +55,17 @@ impl Motion {
         Body { asset: &self.asset, slots: &self.slots }
     }
 }
+
+/// Hashes the joint names of two skeletons in the order of their files (FNV-1a), to tell pairs of skeletons apart.
+pub fn names_checksum(model: &Asset, motion: &Asset) -> u32 {
+    let mut hash = 0x811c_9dc5_u32;
+    let mut take = |byte: u8| hash = (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193);
+    for skeleton in [&model.skeleton, &motion.skeleton] {
+        for joint in (0..skeleton.len()).filter_map(|source| skeleton.joint_of_source(source)) {
+            skeleton.name(joint).bytes().for_each(&mut take);
+            take(0);
+        }
+        take(1);
+    }
+    hash
+}

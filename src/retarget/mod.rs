@@ -40,9 +40,9 @@ mod transfer;
 
 pub use bake::{RetargetError, Retargeted};
 pub use map::{
-    ClipRef, Feet, JointMap, Keep, Layer, MapEntry, MapError, MutedChannel, MutedProperty, Pair, Proposal,
-    ProposedPair, ResolvedMap, RestChoice, RestChoices, RootOptions, RootPart, SourceRef, Unmapped, opposite_joints,
-    propose,
+    ClipRef, Feet, JointMap, JointMapFile, Keep, Layer, MapEntry, MapError, MutedChannel, MutedProperty, Pair,
+    Proposal, ProposedPair, ResolvedMap, RestChoice, RestChoices, RootOptions, RootPart, SourceRef, Unmapped,
+    opposite_joints, propose,
 };
 pub use measure::{Figures, FootTrack, StagePair};
 pub use recognize::{Contradiction, Facing, Reason, Recognized, RecognizedJoint, recognize};

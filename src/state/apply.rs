@@ -5,9 +5,9 @@ use std::f32::consts::{PI, TAU};
 use glam::Vec3;
 
 use super::framing::{frame_all, resolve_camera, resolved_bounds};
-use super::maps::{self, map_in_force, settled_maps};
+use super::maps::{self, reconciled_maps};
 use super::playhead::{active_clip, choice_of_clip, clip_of, clip_secs, play_range};
-use super::{CameraChoice, ClipChoice, Command, Fade, OrbitCamera, RetargetEdits, VertexChoice, ViewerState};
+use super::{CameraChoice, ClipChoice, Command, Fade, OrbitCamera, VertexChoice, ViewerState};
 use crate::anim::{LoopMode, TimeRange};
 use crate::library::{Library, Model};
 use crate::retarget::JointMap;
@@ -68,7 +68,7 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::SetUnmapped(unmapped) => state.retarget.unmapped = unmapped,
         Command::SetRoot(root) => state.retarget.root = root,
         Command::SetFeet(feet) => state.retarget.feet = feet,
-        Command::ReconcileMaps => state.retarget.map = settled_maps(library, state).0,
+        Command::ReconcileMaps => state.retarget.map = reconciled_maps(library, state).0,
     }
 }
 
@@ -163,10 +163,8 @@ fn select_vertex(state: &mut ViewerState, model: Option<&Model>, vertex: Option<
 
 /// Sets the map of a motion; `None` sets the proposed one.
 fn set_map(state: &mut ViewerState, library: &Library, motion: usize, map: Option<JointMap>) {
-    if let (Some(model), Some(about)) = (library.active(), library.motions().get(motion)) {
-        let map = map.or_else(|| maps::proposed(library, motion));
-        maps::set_map(state, &model.asset, about, map);
-    }
+    let map = map.or_else(|| maps::proposed(library, motion));
+    maps::set_map(state, library, motion, map);
 }
 
 /// Ignores joints that the files don't have.
@@ -175,13 +173,9 @@ fn set_source(state: &mut ViewerState, library: &Library, motion: usize, target:
     let has_target = model.asset.skeleton.joint_of_source(target).is_some();
     if has_target && source.is_none_or(|source| about.asset.skeleton.joint_of_source(source).is_some()) {
         // The overrides in `retarget` stay out of the map.
-        let bare = ViewerState {
-            retarget: RetargetEdits { map: state.retarget.map.clone(), ..RetargetEdits::default() },
-            ..ViewerState::default()
-        };
-        let mut map = map_in_force(library, &bare, motion).unwrap_or_default();
+        let mut map = maps::own_map(library, state, motion).cloned().unwrap_or_default();
         maps::set_source(&mut map, target, source);
-        maps::set_map(state, &model.asset, about, Some(map));
+        maps::set_map(state, library, motion, Some(map));
     }
 }
 

@@ -1,37 +1,36 @@
-//! Edits of the joint map for one motion: one for each thing that a person can do to it besides choosing a source.
+//! Edits of a motion's joint map, besides choosing a source.
 
 use std::collections::BTreeMap;
 
 use glam::Quat;
 
-use super::maps::{self, map_in_force};
-use super::{RetargetEdits, ViewerState};
+use super::{ViewerState, maps};
 use crate::asset::Asset;
 use crate::library::Library;
 use crate::retarget::{
-    JointMap, Keep, MapEntry, MutedChannel, MutedProperty, Proposal, RestChoices, SourceRef, Unmapped, opposite_joints,
+    JointMap, Keep, MapEntry, MutedChannel, MutedProperty, Proposal, RestChoices, Unmapped, opposite_joints,
 };
 
-/// Joints are named by their numbers in their own files.
+/// An edit of a joint map. Joints are identified by their numbers in their own files.
 #[derive(Debug, Clone, PartialEq)]
 pub enum MapEdit {
-    /// Takes over a whole map in joint numbers. What the view sets over the map goes, so that all of the map counts.
+    /// Replaces the whole map and clears the view's overrides, so that everything in the map takes effect.
     Load(Box<JointMap>),
-    /// No joint follows anything any more.
+    /// Removes all entries.
     Clear,
-    /// What followed the left now follows the right, and the other way round.
+    /// Joints that follow the left side follow the right, and vice versa.
     SwapSides,
-    /// Turns a joint further, in its own space.
+    /// Sets a joint's rotation offset, in its own space.
     Correction {
         target: usize,
         correction: Quat,
     },
-    /// What one joint does while it follows nothing; none: what the map says for all.
+    /// What a joint does without a source; None for the map's default.
     Unmapped {
         target: usize,
         unmapped: Option<Unmapped>,
     },
-    /// Leaves one channel of the motion out, or takes it in again.
+    /// Mutes or unmutes one channel of the motion.
     Mute {
         source: usize,
         property: MutedProperty,
@@ -41,24 +40,18 @@ pub enum MapEdit {
     Rest(RestChoices),
     Translations(Keep),
     Scales(Keep),
-    /// Length of a blend to or from the borrowed clips.
+    /// Length of the crossfade to and from the borrowed clips.
     CrossfadeSecs(f64),
 }
 
-/// Nobody waits longer for a blend.
-const MOST_CROSSFADE_SECS: f64 = 10.0;
+const MAX_CROSSFADE_SECS: f64 = 10.0;
 
 const PROPERTIES: [MutedProperty; 3] = [MutedProperty::Translation, MutedProperty::Rotation, MutedProperty::Scale];
 
-/// Numbers that the files do not have, and values that a map cannot have, change nothing.
+/// Applies an edit. Joint numbers and values that are out of range change nothing.
 pub(super) fn edit_map(state: &mut ViewerState, library: &Library, motion: usize, edit: MapEdit) {
     let (Some(model), Some(about)) = (library.active(), library.motions().get(motion)) else { return };
-    // What is set besides the map stays beside it.
-    let bare = ViewerState {
-        retarget: RetargetEdits { map: state.retarget.map.clone(), ..RetargetEdits::default() },
-        ..ViewerState::default()
-    };
-    let mut map = map_in_force(library, &bare, motion).unwrap_or_default();
+    let mut map = maps::own_map(library, state, motion).cloned().unwrap_or_default();
     let has_target = |target: usize| model.asset.skeleton.joint_of_source(target).is_some();
     match edit {
         MapEdit::Load(new) => {
@@ -92,21 +85,20 @@ pub(super) fn edit_map(state: &mut ViewerState, library: &Library, motion: usize
         MapEdit::Scales(keep) => map.scales = keep,
         MapEdit::CrossfadeSecs(secs) => {
             if secs.is_finite() {
-                map.crossfade_secs = secs.clamp(0.0, MOST_CROSSFADE_SECS);
+                map.crossfade_secs = secs.clamp(0.0, MAX_CROSSFADE_SECS);
             }
         }
     }
-    maps::set_map(state, &model.asset, about, Some(map));
+    maps::set_map(state, library, motion, Some(map));
 }
 
 fn entry(map: &mut JointMap, target: usize) -> &mut MapEntry {
-    let nothing = MapEntry { source: None, correction: Quat::IDENTITY, unmapped: None };
-    map.joints.entry(format!("#{target}")).or_insert(nothing)
+    map.joints.entry(target).or_insert(MapEntry::following(None))
 }
 
-/// Which of a source joint's channels a map in numbers leaves out, in the order translation, rotation, scale.
+/// Returns which channels of a source joint a map mutes, in the order translation, rotation, scale.
 pub fn muted_properties(map: &JointMap, source: usize) -> [bool; 3] {
-    let about = map.muted_channels.iter().filter(|channel| channel.source == SourceRef::Number(source));
+    let about = map.muted_channels.iter().filter(|channel| channel.source == source);
     let mut muted = [false; 3];
     for channel in about {
         for (muted, property) in muted.iter_mut().zip(PROPERTIES) {
@@ -121,23 +113,23 @@ fn mute(map: &mut JointMap, source: usize, property: MutedProperty, muted: bool)
     for (now, other) in now.iter_mut().zip(PROPERTIES) {
         *now = if other == property { muted } else { *now };
     }
-    let source = SourceRef::Number(source);
     map.muted_channels.retain(|channel| channel.source != source);
     if now == [true; 3] {
         map.muted_channels.push(MutedChannel { source, property: None });
     } else {
         let muted = PROPERTIES.into_iter().zip(now).filter(|(_, muted)| *muted);
-        let channel = |(property, _)| MutedChannel { source: source.clone(), property: Some(property) };
+        let channel = |(property, _)| MutedChannel { source, property: Some(property) };
         map.muted_channels.extend(muted.map(channel));
     }
 }
 
-/// Every source is changed for the one opposite; where the motion's sides are not known, targets trade their sources.
+/// Replaces every source by its counterpart on the other side; if the motion's sides are unknown, swaps the sources of
+/// opposite targets instead.
 fn swap_sides(map: &mut JointMap, model: &Asset, motion: &Asset, proposal: &Proposal) {
     let opposite = opposite_joints(&motion.skeleton, &proposal.motion);
     let mut swapped = false;
     for entry in map.joints.values_mut() {
-        let Some(SourceRef::Number(number)) = &mut entry.source else { continue };
+        let Some(number) = &mut entry.source else { continue };
         let joint = motion.skeleton.joint_of_source(*number);
         if let Some(other) = joint.and_then(|joint| opposite[joint.get()]) {
             *number = motion.skeleton.source_index(other);
@@ -148,13 +140,13 @@ fn swap_sides(map: &mut JointMap, model: &Asset, motion: &Asset, proposal: &Prop
         return;
     }
     let opposite = opposite_joints(&model.skeleton, &proposal.model);
-    let old: BTreeMap<String, Option<SourceRef>> =
-        map.joints.iter().map(|(key, entry)| (key.clone(), entry.source.clone())).collect();
+    let old: BTreeMap<usize, Option<usize>> =
+        map.joints.iter().map(|(&target, entry)| (target, entry.source)).collect();
     for joint in model.skeleton.joints() {
         let Some(other) = opposite[joint.get()] else { continue };
-        let other = old.get(&format!("#{}", model.skeleton.source_index(other))).cloned().flatten();
+        let other = old.get(&model.skeleton.source_index(other)).copied().flatten();
         let target = model.skeleton.source_index(joint);
-        if other.is_some() || old.contains_key(&format!("#{target}")) {
+        if other.is_some() || old.contains_key(&target) {
             entry(map, target).source = other;
         }
     }

@@ -1,31 +1,29 @@
-//! Which joint map is in force for each motion. A view holds maps in joint numbers, each with a checksum of the names it
-//! was made for, so that it can be written down without the files, and a better proposal never changes an old link.
+//! The active joint map of each motion. A view holds maps in joint numbers, each with a checksum of the joint names it was
+//! made for, so that a link can hold it without the files, and a better proposal never changes an old link.
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
 use super::ViewerState;
-use crate::anim::{JointIndex, Skeleton};
-use crate::asset::Asset;
-use crate::library::{Library, Motion};
-use crate::retarget::{JointMap, MapEntry, MapError, SourceRef};
+use crate::library::{Library, Model, Motion};
+use crate::retarget::{JointMap, JointMapFile, MapEntry, MapError};
 
 /// A joint map of a view.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum MotionMap {
     Numbers(NumberedMap),
-    /// As a file has it, for whichever motions it fits: becomes [`MotionMap::Numbers`] as soon as those are there.
-    Names(JointMap),
-    /// The address of a map that has not been read yet.
+    /// The file form, for every motion it fits; becomes [`MotionMap::Numbers`] once those are loaded.
+    Names(JointMapFile),
+    /// The URL of a map that has not been read yet.
     File(String),
 }
 
-/// A joint map for one model and one motion, in joint numbers: keys are `#NODE`, sources are numbers.
+/// A joint map for one model and one motion.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NumberedMap {
-    /// See [`names_checksum`].
+    /// See [`crate::library::names_checksum`].
     pub checksum: u32,
     pub map: JointMap,
 }
@@ -41,25 +39,14 @@ pub enum MapProblem {
     NoFit { motion: String, problem: MapError },
 }
 
-/// Tells two pairs of skeletons apart by the names of their joints, in the files' order (FNV-1a).
-pub fn names_checksum(model: &Asset, motion: &Asset) -> u32 {
-    let mut hash = 0x811c_9dc5_u32;
-    let mut take = |byte: u8| hash = (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193);
-    for skeleton in [&model.skeleton, &motion.skeleton] {
-        for joint in (0..skeleton.len()).filter_map(|source| skeleton.joint_of_source(source)) {
-            skeleton.name(joint).bytes().for_each(&mut take);
-            take(0);
-        }
-        take(1);
-    }
-    hash
+/// Returns a motion's map in the view, without the view's overrides.
+pub(super) fn own_map<'a>(library: &Library, state: &'a ViewerState, motion: usize) -> Option<&'a JointMap> {
+    Some(&numbered_for(&state.retarget.map, library.names_checksum(motion)?)?.map)
 }
 
-/// The map of a view that is meant for a motion of the library, with what the view sets besides on top. None: none is
-/// meant for it.
-pub fn map_in_force(library: &Library, state: &ViewerState, motion: usize) -> Option<JointMap> {
-    let (model, motion) = (library.active()?, library.motions().get(motion)?);
-    let mut map = numbered_for(&state.retarget.map, names_checksum(&model.asset, &motion.asset))?.map.clone();
+/// Returns the active map of a motion: its map in the view, with the view's overrides. None if the view has no map for it.
+pub fn active_map(library: &Library, state: &ViewerState, motion: usize) -> Option<JointMap> {
+    let mut map = own_map(library, state, motion)?.clone();
     if let Some(unmapped) = &state.retarget.unmapped {
         map.unmapped = unmapped.clone();
     }
@@ -68,142 +55,84 @@ pub fn map_in_force(library: &Library, state: &ViewerState, motion: usize) -> Op
     Some(map)
 }
 
-/// As [`map_in_force`], for every motion: what [`Library::borrow_each`] wants.
-pub fn maps_in_force(library: &Library, state: &ViewerState) -> Vec<Option<JointMap>> {
-    (0..library.motions().len()).map(|motion| map_in_force(library, state, motion)).collect()
+/// Returns the [`active_map`] of every motion, for [`Library::borrow_each`].
+pub fn active_maps(library: &Library, state: &ViewerState) -> Vec<Option<JointMap>> {
+    (0..library.motions().len()).map(|motion| active_map(library, state, motion)).collect()
 }
 
-/// The maps that a view should hold, one for each pair of skeletons: those that it holds as far as they fit, and
-/// proposals for the rest. What is still to be read stays. And what did not fit.
-pub fn settled_maps(library: &Library, state: &ViewerState) -> (Vec<MotionMap>, Vec<MapProblem>) {
+/// Reconciles the maps of a view with the loaded files. Returns one map per pair of skeletons (the view's where it fits, else
+/// the proposal) and the maps that are still to be read, and says which maps are not used.
+pub fn reconciled_maps(library: &Library, state: &ViewerState) -> (Vec<MotionMap>, Vec<MapProblem>) {
+    let held = &state.retarget.map;
     let Some(model) = library.active().filter(|_| !library.motions().is_empty()) else {
-        return (state.retarget.map.clone(), Vec::new());
+        return (held.clone(), Vec::new());
     };
-    let mut settled: Vec<MotionMap> = Vec::new();
-    let mut used = vec![false; state.retarget.map.len()];
+    let mut reconciled: Vec<MotionMap> = Vec::new();
+    let mut used = vec![false; held.len()];
     let mut misfits: BTreeMap<usize, MapProblem> = BTreeMap::new();
     for (index, motion) in library.motions().iter().enumerate() {
-        let checksum = names_checksum(&model.asset, &motion.asset);
-        if numbered_for(&settled, checksum).is_some() {
+        let Some(checksum) = library.names_checksum(index) else { continue };
+        if numbered_for(&reconciled, checksum).is_some() {
             continue;
         }
-        let mut found = None;
-        for (at, map) in state.retarget.map.iter().enumerate() {
-            if let MotionMap::Names(map) = map {
-                match numbered(map, &model.asset, &motion.asset) {
-                    Ok(map) => found = found.or(Some((at, map))),
-                    Err(problem) => {
-                        let problem = MapProblem::NoFit { motion: motion.source.clone(), problem };
-                        misfits.entry(at).or_insert(problem);
-                    }
-                }
-            }
-        }
-        let in_numbers = || {
-            state.retarget.map.iter().enumerate().find_map(|(at, map)| match map {
+        let by_names = fitting_map(held, model, motion, &mut misfits);
+        let by_numbers = || {
+            held.iter().enumerate().find_map(|(at, map)| match map {
                 MotionMap::Numbers(map) if map.checksum == checksum => Some((at, map.map.clone())),
                 _ => None,
             })
         };
-        if let Some((at, map)) = found.or_else(in_numbers) {
-            used[at] = true;
-            settled.push(MotionMap::Numbers(NumberedMap { checksum, map }));
-        } else if let Some(map) = proposed(library, index) {
-            settled.push(MotionMap::Numbers(NumberedMap { checksum, map }));
-        }
+        let map = match by_names.or_else(by_numbers) {
+            Some((at, map)) => {
+                used[at] = true;
+                Some(map)
+            }
+            None => proposed(library, index),
+        };
+        reconciled.extend(map.map(|map| MotionMap::Numbers(NumberedMap { checksum, map })));
     }
     let mut problems = Vec::new();
-    for (at, map) in state.retarget.map.iter().enumerate() {
+    for (at, map) in held.iter().enumerate() {
         match map {
-            MotionMap::File(_) => settled.push(map.clone()),
+            MotionMap::File(_) => reconciled.push(map.clone()),
             MotionMap::Names(_) if !used[at] => problems.extend(misfits.remove(&at)),
-            // Of two maps for the same names the second is not asked for.
-            MotionMap::Numbers(numbers) if !used[at] && numbered_for(&settled, numbers.checksum).is_none() => {
+            // A second map for the same names is redundant, not a problem.
+            MotionMap::Numbers(numbers) if !used[at] && numbered_for(&reconciled, numbers.checksum).is_none() => {
                 problems.push(MapProblem::OtherFiles);
             }
             _ => {}
         }
     }
-    (settled, problems)
+    (reconciled, problems)
 }
 
-/// What is proposed for a motion, in numbers; none when nothing is.
+/// Returns the first map by names that fits a motion, with its place in the list. Each map that does not fit gets its first
+/// problem into `misfits`.
+fn fitting_map(
+    maps: &[MotionMap],
+    model: &Model,
+    motion: &Motion,
+    misfits: &mut BTreeMap<usize, MapProblem>,
+) -> Option<(usize, JointMap)> {
+    let mut found = None;
+    for (at, map) in maps.iter().enumerate() {
+        let MotionMap::Names(map) = map else { continue };
+        match map.to_joint_map(&model.asset, &motion.asset) {
+            Ok(map) => found = found.or(Some((at, map))),
+            Err(problem) => {
+                let problem = MapProblem::NoFit { motion: motion.source.clone(), problem };
+                misfits.entry(at).or_insert(problem);
+            }
+        }
+    }
+    found
+}
+
+/// Returns the proposed map of a motion; None if there is nothing to propose.
 pub fn proposed(library: &Library, motion: usize) -> Option<JointMap> {
     let proposal = library.proposal(motion).filter(|proposal| !proposal.pairs.is_empty())?;
     let (model, motion) = (library.active()?, library.motions().get(motion)?);
-    numbered(&proposal.to_map(&model.asset, &motion.asset), &model.asset, &motion.asset).ok()
-}
-
-/// A map that fits both files, with numbers for all names of joints.
-///
-/// # Errors
-/// As [`JointMap::resolve`].
-pub fn numbered(map: &JointMap, model: &Asset, motion: &Asset) -> Result<JointMap, MapError> {
-    // An empty map is a start to go on from; everything else is checked.
-    if !map.joints.is_empty() {
-        match map.resolve(model, motion) {
-            Ok(_) | Err(MapError::NothingMapped) => {}
-            Err(problem) => return Err(problem),
-        }
-    }
-    let mut joints = BTreeMap::new();
-    for (name, entry) in &map.joints {
-        let key = match model.skeleton.find(name) {
-            Some(joint) => format!("#{}", model.skeleton.source_index(joint)),
-            None => name.clone(),
-        };
-        let source = entry.source.as_ref().map(|source| match source {
-            SourceRef::Name(name) => match motion.skeleton.find(name) {
-                Some(joint) => SourceRef::Number(motion.skeleton.source_index(joint)),
-                None => source.clone(),
-            },
-            SourceRef::Number(_) => source.clone(),
-        });
-        joints.insert(key, MapEntry { source, ..entry.clone() });
-    }
-    let muted_channels = map.muted_channels.iter().map(|channel| {
-        let number = match &channel.source {
-            SourceRef::Name(name) => motion.skeleton.find(name).map(|joint| motion.skeleton.source_index(joint)),
-            SourceRef::Number(number) => Some(*number),
-        };
-        let source = number.map_or_else(|| channel.source.clone(), SourceRef::Number);
-        crate::retarget::MutedChannel { source, ..channel.clone() }
-    });
-    Ok(JointMap { joints, muted_channels: muted_channels.collect(), ..map.clone() })
-}
-
-/// A map in numbers with names for people to read, wherever a name stands for one joint.
-pub fn named(map: &JointMap, model: &Asset, motion: &Asset) -> JointMap {
-    let source_name = |number: usize| {
-        let joint = motion.skeleton.joint_of_source(number)?;
-        only_name(&motion.skeleton, joint).map(|name| SourceRef::Name(name.to_owned()))
-    };
-    let source = |source: &SourceRef| match source {
-        SourceRef::Number(number) => source_name(*number).unwrap_or_else(|| source.clone()),
-        SourceRef::Name(_) => source.clone(),
-    };
-    let joints = map.joints.iter().map(|(key, entry)| {
-        let joint = number_of(key).and_then(|number| model.skeleton.joint_of_source(number));
-        let name = joint.and_then(|joint| only_name(&model.skeleton, joint)).filter(|name| !name.starts_with('#'));
-        let entry = MapEntry { source: entry.source.as_ref().map(source), ..entry.clone() };
-        (name.map_or_else(|| key.clone(), str::to_owned), entry)
-    });
-    let muted = map
-        .muted_channels
-        .iter()
-        .map(|channel| crate::retarget::MutedChannel { source: source(&channel.source), ..channel.clone() });
-    JointMap { joints: joints.collect(), muted_channels: muted.collect(), ..map.clone() }
-}
-
-/// The joint number in a key of a numbered map.
-pub fn number_of(key: &str) -> Option<usize> {
-    key.strip_prefix('#')?.parse().ok()
-}
-
-fn only_name(skeleton: &Skeleton, joint: JointIndex) -> Option<&str> {
-    let name = skeleton.name(joint);
-    let same = skeleton.joints().filter(|&other| skeleton.name(other) == name).count();
-    (same == 1 && !name.is_empty()).then_some(name)
+    Some(proposal.to_map(&model.asset, &motion.asset))
 }
 
 fn numbered_for(maps: &[MotionMap], checksum: u32) -> Option<&NumberedMap> {
@@ -213,28 +142,22 @@ fn numbered_for(maps: &[MotionMap], checksum: u32) -> Option<&NumberedMap> {
     })
 }
 
-/// Puts a map in the place of the one for a motion.
-pub(super) fn set_map(state: &mut ViewerState, model: &Asset, motion: &Motion, map: Option<JointMap>) {
-    let checksum = names_checksum(model, &motion.asset);
-    let at =
-        state.retarget.map.iter().position(|map| matches!(map, MotionMap::Numbers(map) if map.checksum == checksum));
+/// Replaces the map of a motion; None removes it.
+pub(super) fn set_map(state: &mut ViewerState, library: &Library, motion: usize, map: Option<JointMap>) {
+    let Some(checksum) = library.names_checksum(motion) else { return };
+    let maps = &mut state.retarget.map;
+    let at = maps.iter().position(|map| matches!(map, MotionMap::Numbers(map) if map.checksum == checksum));
+    let map = map.map(|map| MotionMap::Numbers(NumberedMap { checksum, map }));
     match (at, map) {
-        (Some(at), Some(map)) => state.retarget.map[at] = MotionMap::Numbers(NumberedMap { checksum, map }),
-        (None, Some(map)) => state.retarget.map.push(MotionMap::Numbers(NumberedMap { checksum, map })),
-        (Some(at), None) => {
-            state.retarget.map.remove(at);
-        }
+        (Some(at), Some(map)) => maps[at] = map,
+        (None, Some(map)) => maps.push(map),
+        (Some(at), None) => drop(maps.remove(at)),
         (None, None) => {}
     }
 }
 
-/// Lets one joint follow another source, or none.
+/// Makes one joint follow another source, or none.
 pub(super) fn set_source(map: &mut JointMap, target: usize, source: Option<usize>) {
-    let source = source.map(SourceRef::Number);
-    let entry = map.joints.entry(format!("#{target}"));
-    entry.and_modify(|entry| entry.source.clone_from(&source)).or_insert(MapEntry {
-        source,
-        correction: glam::Quat::IDENTITY,
-        unmapped: None,
-    });
+    let entry = map.joints.entry(target);
+    entry.and_modify(|entry| entry.source = source).or_insert(MapEntry::following(source));
 }

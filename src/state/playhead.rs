@@ -3,7 +3,7 @@
 use glam::{Affine3A, EulerRot, Quat};
 
 use super::{ClipChoice, UpAxis, ViewerState};
-use crate::anim::{Pose, SampleCursor, TimeRange, clip_time};
+use crate::anim::{ClipQuery, Pose, SampleCursor, TimeRange, clip_time, find_clip};
 use crate::library::Model;
 
 /// Returns the index of the active clip; `None` for the rest pose, a model without clips, or an unknown name.
@@ -16,22 +16,24 @@ pub(super) fn clip_of(model: &Model, choice: &ClipChoice) -> Option<usize> {
     match choice {
         ClipChoice::First => (model.clip_count() > 0).then_some(0),
         ClipChoice::RestPose => None,
-        ClipChoice::Named(name) => find_clip(model, name),
+        ClipChoice::Named(name) => clip_called(model, name),
     }
 }
 
-/// Finds a clip by its name, its display title, or its index in decimal.
-fn find_clip(model: &Model, name: &str) -> Option<usize> {
-    let by_name = model.clips().position(|clip| !name.is_empty() && clip.name() == name);
+/// Finds a clip by its name, its index in decimal, or its display title.
+fn clip_called(model: &Model, name: &str) -> Option<usize> {
+    if name.is_empty() {
+        return None;
+    }
+    // Titles never look like an index unless a clip has that very name.
     let by_title = || model.clip_titles().iter().position(|title| title == name);
-    let by_index = || name.parse::<usize>().ok().filter(|&index| index < model.clip_count());
-    by_name.or_else(by_title).or_else(by_index)
+    find_clip(model.clips(), ClipQuery::NameOrIndex(name)).or_else(by_title)
 }
 
 /// Returns how a state refers to a clip: by name if that is unambiguous, otherwise by index.
 pub fn choice_of_clip(model: &Model, clip: usize) -> ClipChoice {
     let name = model.clip(clip).map_or("", |clip| clip.name());
-    let found = find_clip(model, name);
+    let found = clip_called(model, name);
     let unique = model.clips().filter(|other| other.name() == name).count() == 1;
     ClipChoice::Named(if unique && found == Some(clip) { name.to_owned() } else { clip.to_string() })
 }

@@ -3,7 +3,7 @@
 use glam::Affine3A;
 use wasm_bindgen::prelude::*;
 
-use crate::anim::{Pose, SampleCursor, model_from_joint};
+use crate::anim::{ClipQuery, Pose, SampleCursor, find_clip, model_from_joint};
 use crate::asset::Asset;
 use crate::files::{Item, Role, open_items};
 use crate::formats::{FileSet, load};
@@ -43,7 +43,8 @@ pub async fn bench_load(bytes: Vec<u8>) -> Result<(), JsError> {
 #[wasm_bindgen]
 pub fn bench_characters(bytes: &[u8], clip: &str, characters: u32, frames: u32) -> Result<f64, JsError> {
     let asset = read(bytes)?;
-    let clip = asset.clips.iter().find(|other| other.name() == clip).ok_or_else(|| JsError::new("no such clip"))?;
+    let clip = find_clip(asset.clips.iter(), ClipQuery::Name(clip)).ok_or_else(|| JsError::new("no such clip"))?;
+    let clip = &asset.clips[clip];
     let skeleton = &asset.skeleton;
     let duration_secs = f64::from(clip.duration_secs()).max(1e-3);
     let mut crowd: Vec<Character> = (0..characters)
@@ -79,7 +80,7 @@ pub fn bench_characters(bytes: &[u8], clip: &str, characters: u32, frames: u32) 
 pub fn bench_retarget(model: &[u8], motion: &[u8], clip: &str, rounds: u32) -> Result<f64, JsError> {
     let error = |message: &dyn std::fmt::Display| JsError::new(&message.to_string());
     let (model, motion) = (read(model)?, read(motion)?);
-    let clip = motion.clips.iter().position(|other| other.name() == clip).ok_or_else(|| error(&"no such clip"))?;
+    let clip = find_clip(motion.clips.iter(), ClipQuery::Name(clip)).ok_or_else(|| error(&"no such clip"))?;
     let map = propose(&model, &motion).to_map(&model, &motion).resolve(&model, &motion).map_err(|e| error(&e))?;
     let slots = [recognize(&model).humanoid(), recognize(&motion).humanoid()];
     let start_ms = now();

@@ -1,7 +1,7 @@
 //! The file form of joint maps.
 
 use gaitway::retarget::{
-    ClipRef, Feet, JointMap, Keep, MapEntry, MutedChannel, MutedProperty, RestChoice, RestChoices, RootOptions,
+    ClipRef, Feet, JointMapFile, Keep, MapEntry, MutedChannel, MutedProperty, RestChoice, RestChoices, RootOptions,
     RootPart, SourceRef, Unmapped,
 };
 use glam::Quat;
@@ -20,7 +20,7 @@ const EXAMPLE: &str = r##"{ "gaitway_map": 1,
   "feet": "off", "crossfade_secs": 0 }"##;
 
 fn check_refused(text: &str, expected: &str) {
-    let message = JointMap::from_json(text).expect_err(text).to_string();
+    let message = JointMapFile::from_json(text).expect_err(text).to_string();
     assert!(message.contains(expected), "{text}\n{message}\n{expected}");
 }
 
@@ -62,10 +62,10 @@ fn errors_give_the_path_of_a_wrong_member() {
 
 #[test]
 fn the_documented_example_is_read() {
-    let map = JointMap::from_json(EXAMPLE).expect("the example");
+    let map = JointMapFile::from_json(EXAMPLE).expect("the example");
     let entry = |source| MapEntry { source, correction: Quat::IDENTITY, unmapped: None };
     let first_key = Unmapped::Clip { clip: ClipRef::Index(0), frozen: true };
-    let expected = JointMap {
+    let expected = JointMapFile {
         joints: [
             ("spine1".to_owned(), entry(Some(SourceRef::Name("neck".to_owned())))),
             ("head".to_owned(), entry(Some(SourceRef::Number(5)))),
@@ -76,7 +76,7 @@ fn the_documented_example_is_read() {
             source: SourceRef::Name("free3dmodel_skeleton".to_owned()),
             property: Some(MutedProperty::Translation),
         }],
-        ..JointMap::default()
+        ..JointMapFile::default()
     };
     assert_eq!(map, expected);
     let documented =
@@ -88,7 +88,7 @@ fn the_documented_example_is_read() {
 fn written_maps_read_back_the_same() {
     let playing = |clip, frozen| Unmapped::Clip { clip, frozen };
     let entry = |source, correction, unmapped| MapEntry { source, correction, unmapped };
-    let full = JointMap {
+    let full = JointMapFile {
         joints: [
             ("#3".to_owned(), entry(Some(SourceRef::Number(7)), Quat::from_xyzw(0.1, -0.2, 0.3, 0.9), None)),
             ("“quoted” \\ joint".to_owned(), entry(None, Quat::IDENTITY, Some(Unmapped::Rest))),
@@ -109,10 +109,10 @@ fn written_maps_read_back_the_same() {
         muted_channels: vec![MutedChannel { source: SourceRef::Number(0), property: None }],
         feet: Feet::Plant,
         crossfade_secs: 0.25,
-        ..JointMap::default()
+        ..JointMapFile::default()
     };
-    for map in [JointMap::default(), full] {
+    for map in [JointMapFile::default(), full] {
         let text = map.to_json().expect("plain data");
-        assert_eq!(JointMap::from_json(&text).expect(&text), map, "{text}");
+        assert_eq!(JointMapFile::from_json(&text).expect(&text), map, "{text}");
     }
 }

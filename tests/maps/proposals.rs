@@ -2,7 +2,7 @@
 
 use gaitway::anim::{Joint, JointIndex, Transform};
 use gaitway::asset::Asset;
-use gaitway::retarget::{JointMap, Proposal, Reason, propose};
+use gaitway::retarget::{JointMapFile, Proposal, Reason, propose};
 use glam::Vec3;
 
 use crate::data::open;
@@ -96,8 +96,8 @@ fn every_joint_of_a_file_follows_itself() {
         let proposal = propose(&asset, &asset);
         assert_eq!(proposal.pairs.len(), asset.skeleton.len(), "{path}");
         assert!(proposal.pairs.iter().all(|pair| pair.target == pair.source), "{path}");
-        let map = proposal.to_map(&asset, &asset);
-        let read = JointMap::from_json(&map.to_json().expect("plain data")).expect("what was written");
+        let map = proposal.to_map(&asset, &asset).to_file(&asset, &asset);
+        let read = JointMapFile::from_json(&map.to_json().expect("plain data")).expect("what was written");
         let resolved = read.resolve(&asset, &asset).expect(path);
         assert!(resolved.pairs.iter().all(|pair| pair.target == pair.source), "{path}");
         assert_eq!(resolved.pairs.len(), asset.skeleton.len(), "{path}");
@@ -113,8 +113,8 @@ fn proposals_read_back_from_their_file_form() {
     ] {
         let (Some(model), Some(motion)) = (open(model), open(motion)) else { return };
         let proposal = propose(&model, &motion);
-        let text = proposal.to_map(&model, &motion).to_json().expect("plain data");
-        let resolved = JointMap::from_json(&text).expect(&text).resolve(&model, &motion).expect(&text);
+        let text = proposal.to_map(&model, &motion).to_file(&model, &motion).to_json().expect("plain data");
+        let resolved = JointMapFile::from_json(&text).expect(&text).resolve(&model, &motion).expect(&text);
         let proposed: Vec<_> = proposal.pairs.iter().map(|pair| (pair.target, pair.source)).collect();
         assert_eq!(resolved.pairs.iter().map(|pair| (pair.target, pair.source)).collect::<Vec<_>>(), proposed);
         assert!(proposed.len() > 10);

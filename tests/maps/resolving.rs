@@ -3,7 +3,8 @@
 use gaitway::anim::{ClipBuilder, Joint, Property, Skeleton};
 use gaitway::asset::{Asset, AssetParts};
 use gaitway::retarget::{
-    ClipRef, JointMap, Layer, MapEntry, MapError, MutedChannel, MutedProperty, Pair, ResolvedMap, SourceRef, Unmapped,
+    ClipRef, JointMapFile, Layer, MapEntry, MapError, MutedChannel, MutedProperty, Pair, ResolvedMap, SourceRef,
+    Unmapped,
 };
 use glam::Quat;
 
@@ -27,12 +28,12 @@ fn motion() -> Asset {
     chain(&["head", "neck", "rep", "rep", "hip"], &[])
 }
 
-fn map(joints: &[(&str, Option<SourceRef>)]) -> JointMap {
+fn map(joints: &[(&str, Option<SourceRef>)]) -> JointMapFile {
     let entry =
         |source: &Option<SourceRef>| MapEntry { source: source.clone(), correction: Quat::IDENTITY, unmapped: None };
-    JointMap {
+    JointMapFile {
         joints: joints.iter().map(|(name, source)| ((*name).to_owned(), entry(source))).collect(),
-        ..JointMap::default()
+        ..JointMapFile::default()
     }
 }
 
@@ -40,11 +41,11 @@ fn name(name: &str) -> Option<SourceRef> {
     Some(SourceRef::Name(name.to_owned()))
 }
 
-fn resolve(map: &JointMap) -> Result<ResolvedMap, MapError> {
+fn resolve(map: &JointMapFile) -> Result<ResolvedMap, MapError> {
     map.resolve(&model(), &motion())
 }
 
-fn check_refused(map: &JointMap, expected: &str) {
+fn check_refused(map: &JointMapFile, expected: &str) {
     let message = resolve(map).expect_err(expected).to_string();
     assert!(message.contains(expected), "{message}\n{expected}");
 }
@@ -72,14 +73,14 @@ fn missing_and_ambiguous_joints_are_refused() {
 fn maps_without_sources_are_refused() {
     check_refused(&map(&[]), "the map names no source");
     check_refused(&map(&[("tip", None)]), "the map names no source");
-    check_refused(&JointMap { gaitway_map: 3, ..map(&[("tip", name("neck"))]) }, "gaitway_map is 3");
+    check_refused(&JointMapFile { gaitway_map: 3, ..map(&[("tip", name("neck"))]) }, "gaitway_map is 3");
 }
 
 #[test]
 fn invalid_clips_corrections_and_times_are_refused() {
     let good = map(&[("tip", name("neck"))]);
     let play = |clip| Unmapped::Clip { clip, frozen: false };
-    let with_clip = |clip| JointMap { unmapped: play(clip), ..good.clone() };
+    let with_clip = |clip| JointMapFile { unmapped: play(clip), ..good.clone() };
     check_refused(&with_clip(ClipRef::Index(2)), "unmapped.clip: the model has no clip 2; it has 0 “Idle”, 1 “Walk”");
     check_refused(
         &with_clip(ClipRef::Name("Run".to_owned())),
@@ -94,7 +95,7 @@ fn invalid_clips_corrections_and_times_are_refused() {
         check_refused(&turned, "joints.tip.correction: ");
     }
     for bad in [-0.5, f64::NAN, f64::INFINITY] {
-        check_refused(&JointMap { crossfade_secs: bad, ..good.clone() }, "crossfade_secs is");
+        check_refused(&JointMapFile { crossfade_secs: bad, ..good.clone() }, "crossfade_secs is");
     }
 }
 

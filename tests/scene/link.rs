@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::mesh::SkinningMode;
 use gaitway::retarget::{
-    ClipRef, Feet, JointMap, MapEntry, MutedChannel, RestChoice, RestChoices, RootOptions, RootPart, SourceRef,
-    Unmapped,
+    ClipRef, Feet, JointMap, JointMapFile, MapEntry, MutedChannel, RestChoice, RestChoices, RootOptions, RootPart,
+    SourceRef, Unmapped,
 };
 use gaitway::state::{
     Background, CameraChoice, ClipChoice, Display, Fade, LinkError, MotionMap, NumberedMap, OrbitCamera, Playback,
@@ -43,34 +43,27 @@ fn check_bad(link: &str, key: &str) {
 
 /// One map of each kind, with every member set.
 fn some_maps() -> Vec<MotionMap> {
-    let entry = |source| MapEntry { source, correction: glam::Quat::IDENTITY, unmapped: None };
-    let number = |number| Some(SourceRef::Number(number));
+    let entry = MapEntry::following;
     let frozen = Unmapped::Clip { clip: ClipRef::Index(2), frozen: true };
     let full = JointMap {
         joints: BTreeMap::from([
-            ("#3".to_owned(), entry(number(14))),
-            ("#12".to_owned(), entry(number(0))),
-            ("#7".to_owned(), entry(None)),
-            (
-                "#8".to_owned(),
-                MapEntry { correction: glam::Quat::from_rotation_x(0.3), unmapped: Some(frozen), ..entry(None) },
-            ),
+            (3, entry(Some(14))),
+            (12, entry(Some(0))),
+            (7, entry(None)),
+            (8, MapEntry { correction: glam::Quat::from_rotation_x(0.3), unmapped: Some(frozen), ..entry(None) }),
         ]),
         unmapped: Unmapped::Clip { clip: ClipRef::Name("Idle & more".to_owned()), frozen: false },
         rest: RestChoices { model: RestChoice::Bind, motion: RestChoice::FirstFrame },
         root: RootOptions { vertical: RootPart::Freeze, ..RootOptions::default() },
-        muted_channels: vec![MutedChannel { source: SourceRef::Number(4), property: None }],
+        muted_channels: vec![MutedChannel { source: 4, property: None }],
         feet: Feet::Plant,
         crossfade_secs: 0.25,
         ..JointMap::default()
     };
-    let plain = JointMap {
-        joints: BTreeMap::from([("#0".to_owned(), entry(number(5))), ("#1".to_owned(), entry(None))]),
-        ..JointMap::default()
-    };
-    let by_name = JointMap {
-        joints: BTreeMap::from([("Hüfte".to_owned(), entry(Some(SourceRef::Name("hip".to_owned()))))]),
-        ..JointMap::default()
+    let plain = JointMap { joints: BTreeMap::from([(0, entry(Some(5))), (1, entry(None))]), ..JointMap::default() };
+    let by_name = JointMapFile {
+        joints: BTreeMap::from([("Hüfte".to_owned(), MapEntry::following(Some(SourceRef::Name("hip".to_owned()))))]),
+        ..JointMapFile::default()
     };
     vec![
         MotionMap::Numbers(NumberedMap { checksum: 0x00c0_ffee, map: full }),

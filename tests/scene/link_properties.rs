@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::mesh::SkinningMode;
-use gaitway::retarget::{ClipRef, Feet, JointMap, MapEntry, RootOptions, RootPart, SourceRef, Unmapped};
+use gaitway::retarget::{ClipRef, Feet, JointMap, MapEntry, RootOptions, RootPart, Unmapped};
 use gaitway::state::{
     Background, CameraChoice, ClipChoice, Fade, Inspect, LinkError, MotionMap, NumberedMap, OrbitCamera, RetargetEdits,
     Show, UpAxis, VertexChoice, ViewerState, from_link, from_object, to_link, to_object,
@@ -77,12 +77,12 @@ impl Random {
 
     fn map(&mut self) -> MotionMap {
         let joints = (0..self.below(70)).map(|_| {
-            let source = self.often().then(|| SourceRef::Number(self.below(300)));
+            let source = self.often().then(|| self.below(300));
             let correction = if self.often() { Quat::from_rotation_y(self.below(7) as f32) } else { Quat::IDENTITY };
             let unmapped = (self.below(5) == 0).then(|| self.unmapped());
-            (format!("#{}", self.below(400)), MapEntry { source, correction, unmapped })
+            (self.below(400), MapEntry { source, correction, unmapped })
         });
-        let joints: BTreeMap<String, MapEntry> = joints.collect();
+        let joints: BTreeMap<usize, MapEntry> = joints.collect();
         let root = if self.often() { self.root() } else { RootOptions::default() };
         let map = JointMap { joints, root, feet: self.one(&[Feet::Off, Feet::Plant]), ..JointMap::default() };
         MotionMap::Numbers(NumberedMap { checksum: self.word(), map })
@@ -273,9 +273,8 @@ fn old_links_keep_working() {
 /// A typical character with fingers.
 #[test]
 fn a_map_of_sixty_joints_is_short() {
-    let entry =
-        |number| MapEntry { source: Some(SourceRef::Number(number)), correction: Quat::IDENTITY, unmapped: None };
-    let joints = (0..60).map(|joint| (format!("#{joint}"), entry(3 * joint + 100))).collect();
+    let entry = |number| MapEntry::following(Some(number));
+    let joints = (0..60).map(|joint| (joint, entry(3 * joint + 100))).collect();
     let map = JointMap { joints, ..JointMap::default() };
     let map = vec![MotionMap::Numbers(NumberedMap { checksum: u32::MAX, map })];
     let link =

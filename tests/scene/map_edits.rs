@@ -9,11 +9,11 @@ use gaitway::frame::pose_document;
 use gaitway::library::{Library, Model, Motion};
 use gaitway::retarget::{
     ClipRef, Feet, JointMap, Keep, MapEntry, MutedChannel, MutedProperty, RestChoice, RestChoices, RootOptions,
-    RootPart, SourceRef, Unmapped,
+    RootPart, Unmapped,
 };
 use gaitway::state::{
     ClipChoice, Command, History, MapEdit, MotionMap, NumberedMap, Playback, Playhead, RetargetEdits, ViewerState,
-    apply, from_link, map_in_force, maps_in_force, muted_properties, settled_maps, to_link,
+    active_map, active_maps, apply, from_link, muted_properties, reconciled_maps, to_link,
 };
 use glam::{Quat, Vec3};
 
@@ -37,7 +37,7 @@ fn walker_with_motion() -> (Library, ViewerState) {
 
 fn reconcile(library: &mut Library, state: &mut ViewerState) {
     apply(state, library, Command::ReconcileMaps);
-    library.borrow_each(maps_in_force(library, state));
+    library.borrow_each(active_maps(library, state));
 }
 
 fn number(library: &Library, name: &str) -> usize {
@@ -46,11 +46,11 @@ fn number(library: &Library, name: &str) -> usize {
 }
 
 fn map(library: &Library, state: &ViewerState) -> JointMap {
-    map_in_force(library, state, 0).expect("a map")
+    active_map(library, state, 0).expect("a map")
 }
 
-fn source(map: &JointMap, target: usize) -> Option<SourceRef> {
-    map.joints.get(&format!("#{target}")).and_then(|entry| entry.source.clone())
+fn source(map: &JointMap, target: usize) -> Option<usize> {
+    map.source_of(target).flatten()
 }
 
 fn edited(library: &Library, state: &ViewerState, edit: MapEdit) -> ViewerState {
@@ -68,10 +68,7 @@ fn all_edits(library: &Library) -> Vec<MapEdit> {
     let [neck, head, hips] = ["Neck", "Head", "Hips"].map(|name| number(library, name));
     let frozen = Unmapped::Clip { clip: ClipRef::Index(1), frozen: true };
     let loaded = JointMap {
-        joints: BTreeMap::from([(
-            format!("#{hips}"),
-            MapEntry { source: Some(SourceRef::Number(hips)), correction: Quat::IDENTITY, unmapped: None },
-        )]),
+        joints: BTreeMap::from([(hips, MapEntry::following(Some(hips)))]),
         feet: Feet::Plant,
         ..JointMap::default()
     };
@@ -98,7 +95,7 @@ fn sides_are_swapped_and_swapped_back() {
     for (target, expected) in
         [("LeftUpperArm", "RightUpperArm"), ("RightFoot", "LeftFoot"), ("Neck", "Neck"), ("Hips", "Hips")]
     {
-        let expected = Some(SourceRef::Number(number(&library, expected)));
+        let expected = Some(number(&library, expected));
         assert_eq!(source(&now, number(&library, target)), expected, "{target}");
     }
     assert_eq!(edited(&library, &swapped, MapEdit::SwapSides), state);
@@ -125,12 +122,8 @@ fn check_swapped(model: &[&str], motion: &[&str], pairs: &[(usize, usize)], expe
     }
     let swapped = edited(&library, &state, MapEdit::SwapSides);
     let map = map(&library, &swapped);
-    let now: Vec<(usize, usize)> = (0..model.len())
-        .filter_map(|target| match source(&map, target)? {
-            SourceRef::Number(source) => Some((target, source)),
-            SourceRef::Name(_) => None,
-        })
-        .collect();
+    let now: Vec<(usize, usize)> =
+        (0..model.len()).filter_map(|target| Some((target, source(&map, target)?))).collect();
     assert_eq!(now, expected, "{model:?} {motion:?}");
 }
 
@@ -156,7 +149,7 @@ fn a_rotation_offset_turns_the_playing_joint() {
         &library,
         Command::EditMap { motion: 0, edit: MapEdit::Correction { target: neck, correction: turn() * 3.0 } },
     );
-    let correction = map(&library, &state).joints[&format!("#{neck}")].correction;
+    let correction = map(&library, &state).joints[&neck].correction;
     assert!(correction.abs_diff_eq(turn(), 1e-6), "it is normalized: {correction}");
     reconcile(&mut library, &mut state);
     assert_ne!(pose_document(&library, &state), before);
@@ -176,7 +169,7 @@ fn channels_are_muted_one_by_one() {
     let two = mute(&rotation, MutedProperty::Scale, true);
     assert_eq!(muted_properties(&map(&library, &two), arm), [false, true, true]);
     let all = mute(&two, MutedProperty::Translation, true);
-    let whole = MutedChannel { source: SourceRef::Number(arm), property: None };
+    let whole = MutedChannel { source: arm, property: None };
     assert_eq!(map(&library, &all).muted_channels, [whole]);
     // Unmuting one channel of an entirely muted joint leaves the others muted.
     let back = mute(&all, MutedProperty::Rotation, false);
@@ -303,7 +296,7 @@ fn every_edit_round_trips_through_the_link() {
         reconcile(&mut library, &mut state);
         let (mut back, errors) = from_link(&to_link(&state));
         assert_eq!(errors, [], "{edit:?}");
-        assert_eq!(settled_maps(&library, &back).1, [], "{edit:?}");
+        assert_eq!(reconciled_maps(&library, &back).1, [], "{edit:?}");
         reconcile(&mut library, &mut back);
         assert_eq!(back, state, "{edit:?}");
     }
@@ -312,7 +305,6 @@ fn every_edit_round_trips_through_the_link() {
 /// Maps that differ from the default in one member each. Add new members here.
 fn one_member_each() -> Vec<(&'static str, JointMap)> {
     let JointMap {
-        gaitway_map: _,
         joints: _,
         unmapped: _,
         rest: _,
@@ -330,16 +322,15 @@ fn one_member_each() -> Vec<(&'static str, JointMap)> {
     };
     let frozen = Unmapped::Clip { clip: ClipRef::Index(2), frozen: true };
     let entry = |source, correction, unmapped| MapEntry { source, correction, unmapped };
-    let number = |number| Some(SourceRef::Number(number));
     let odd = Quat::from_xyzw(0.1, -0.7, 1.0 / 3.0, 0.2).normalize();
     vec![
         (
             "joints",
             with(&|map| {
-                map.joints.insert("#4".to_owned(), entry(number(9), Quat::IDENTITY, None));
-                map.joints.insert("#5".to_owned(), entry(number(9), odd, None));
-                map.joints.insert("#6".to_owned(), entry(None, Quat::IDENTITY, Some(frozen.clone())));
-                map.joints.insert("#7".to_owned(), entry(None, Quat::IDENTITY, None));
+                map.joints.insert(4, entry(Some(9), Quat::IDENTITY, None));
+                map.joints.insert(5, entry(Some(9), odd, None));
+                map.joints.insert(6, entry(None, Quat::IDENTITY, Some(frozen.clone())));
+                map.joints.insert(7, entry(None, Quat::IDENTITY, None));
             }),
         ),
         ("unmapped", with(&|map| map.unmapped = frozen.clone())),
@@ -352,10 +343,8 @@ fn one_member_each() -> Vec<(&'static str, JointMap)> {
             with(&|map| {
                 let properties =
                     [None, Some(MutedProperty::Rotation), Some(MutedProperty::Translation), Some(MutedProperty::Scale)];
-                map.muted_channels = (1..)
-                    .zip(properties)
-                    .map(|(number, property)| MutedChannel { source: SourceRef::Number(number), property })
-                    .collect();
+                map.muted_channels =
+                    (1..).zip(properties).map(|(number, property)| MutedChannel { source: number, property }).collect();
             }),
         ),
         ("feet", with(&|map| map.feet = Feet::Plant)),
@@ -366,11 +355,9 @@ fn one_member_each() -> Vec<(&'static str, JointMap)> {
 #[test]
 fn the_map_key_holds_every_member() {
     let members = one_member_each();
-    let form =
-        serde_json::to_value(JointMap { muted_channels: members[6].1.muted_channels.clone(), ..Default::default() });
-    let form = form.expect("plain data");
+    let form = serde_json::to_value(JointMap::default()).expect("plain data");
     let all: BTreeSet<&str> = form.as_object().expect("an object").keys().map(String::as_str).collect();
-    let tried: BTreeSet<&str> = members.iter().map(|(name, _)| *name).chain(["gaitway_map"]).collect();
+    let tried: BTreeSet<&str> = members.iter().map(|(name, _)| *name).collect();
     assert_eq!(tried, all);
     for (name, map) in members {
         let map = MotionMap::Numbers(NumberedMap { checksum: 0x0123_4567, map });
@@ -402,12 +389,11 @@ fn a_large_map_stays_short() {
         let angle = 0.1 * joint as f32;
         let correction =
             if joint % 6 == 5 { Quat::from_euler(glam::EulerRot::XYZ, angle, 0.3, -angle) } else { Quat::IDENTITY };
-        let source = Some(SourceRef::Number(joint + 40));
-        map.joints.insert(format!("#{}", joint + 100), MapEntry { source, correction, unmapped: None });
+        let source = Some(joint + 40);
+        map.joints.insert(joint + 100, MapEntry { source, correction, unmapped: None });
     }
     for number in 0..4 {
-        map.muted_channels
-            .push(MutedChannel { source: SourceRef::Number(number), property: Some(MutedProperty::Rotation) });
+        map.muted_channels.push(MutedChannel { source: number, property: Some(MutedProperty::Rotation) });
     }
     let maps = vec![MotionMap::Numbers(NumberedMap { checksum: 7, map })];
     let state =

@@ -6,13 +6,15 @@ use std::sync::Arc;
 use gaitway::anim::Clip;
 use gaitway::asset::Asset;
 use gaitway::frame::pose_document;
-use gaitway::library::{Library, Motion};
-use gaitway::retarget::{ClipRef, Feet, JointMap, MapEntry, MutedChannel, RootOptions, RootPart, SourceRef, Unmapped};
-use gaitway::state::{
-    ClipChoice, Command, History, MapProblem, MotionMap, Playback, Playhead, RetargetEdits, ViewerState, apply,
-    from_link, map_in_force, maps_in_force, named, names_checksum, numbered, settled_maps, to_link,
+use gaitway::library::{Library, Motion, names_checksum};
+use gaitway::retarget::{
+    ClipRef, Feet, JointMap, JointMapFile, MapEntry, MutedChannel, RootOptions, RootPart, SourceRef, Unmapped,
 };
-use glam::{Quat, Vec3};
+use gaitway::state::{
+    ClipChoice, Command, History, MapProblem, MotionMap, Playback, Playhead, RetargetEdits, ViewerState, active_map,
+    active_maps, apply, from_link, reconciled_maps, to_link,
+};
+use glam::Vec3;
 
 use crate::data::walker;
 use crate::skeletons;
@@ -31,9 +33,9 @@ fn chain(names: &[&str]) -> Asset {
 }
 
 fn reconcile(library: &mut Library, state: &mut ViewerState) -> Vec<MapProblem> {
-    let (_, problems) = settled_maps(library, state);
+    let (_, problems) = reconciled_maps(library, state);
     apply(state, library, Command::ReconcileMaps);
-    library.borrow_each(maps_in_force(library, state));
+    library.borrow_each(active_maps(library, state));
     problems
 }
 
@@ -42,21 +44,17 @@ fn number(library: &Library, name: &str) -> usize {
     skeleton.source_index(skeleton.find(name).expect("a joint of the walker"))
 }
 
-fn follows(source: Option<SourceRef>) -> MapEntry {
-    MapEntry { source, correction: Quat::IDENTITY, unmapped: None }
-}
-
 fn name(name: &str) -> Option<SourceRef> {
     Some(SourceRef::Name(name.to_owned()))
 }
 
 /// A map by name: the neck follows the head, the head is unmapped.
-fn by_name() -> JointMap {
+fn by_name() -> JointMapFile {
     let joints = [("Hips", name("Hips")), ("Neck", name("Head")), ("Head", None)];
-    JointMap {
-        joints: joints.into_iter().map(|(target, source)| (target.to_owned(), follows(source))).collect(),
+    JointMapFile {
+        joints: joints.into_iter().map(|(target, source)| (target.to_owned(), MapEntry::following(source))).collect(),
         muted_channels: vec![MutedChannel { source: SourceRef::Name("Hips".to_owned()), property: None }],
-        ..JointMap::default()
+        ..JointMapFile::default()
     }
 }
 
@@ -69,13 +67,40 @@ fn a_map_is_proposed_for_every_motion() {
     let asset = &library.active().expect("a model").asset;
     assert_eq!(map.checksum, names_checksum(asset, asset));
     let hips = number(&library, "Hips");
-    assert_eq!(map.map.joints[&format!("#{hips}")].source, Some(SourceRef::Number(hips)));
+    assert_eq!(map.map.joints[&hips].source, Some(hips));
     assert_eq!(library.borrow_errors(), []);
     assert_eq!(library.active().expect("a model").clip_count(), 6);
     // An existing map is kept.
     let before = state.clone();
     assert_eq!(reconcile(&mut library, &mut state), []);
     assert_eq!(state, before);
+}
+
+#[test]
+fn only_motions_whose_map_changed_are_baked_again() {
+    let mut library = walker_with_motion();
+    let asset = library.active().expect("a model").asset.clone();
+    let mut names: Vec<&str> = asset.skeleton.joints().map(|joint| asset.skeleton.name(joint)).collect();
+    names[3] = "Else";
+    let other = Motion::new("else.bvh".to_owned(), Arc::new(chain(&names)));
+    library.set_motions(vec![Motion::new("dance.glb".to_owned(), asset), other]);
+    let mut state = ViewerState::default();
+    assert_eq!(reconcile(&mut library, &mut state), []);
+    let baked = |library: &Library| [0, 1].map(|motion| library.baked_map(motion).expect("a map").clone());
+    let motions = |library: &Library| -> Vec<usize> {
+        library.active().expect("a model").borrowed_clips().map(|(_, borrowed)| borrowed.motion).collect()
+    };
+    let (first, order) = (baked(&library), motions(&library));
+    reconcile(&mut library, &mut state);
+    assert!(baked(&library).iter().zip(&first).all(|(now, first)| Arc::ptr_eq(now, first)), "nothing changed");
+    let (neck, head) = (number(&library, "Neck"), number(&library, "Head"));
+    apply(&mut state, &library, Command::SetSource { motion: 0, target: neck, source: Some(head) });
+    reconcile(&mut library, &mut state);
+    let [changed, same] = baked(&library);
+    assert_eq!(changed.joints[&neck].source, Some(head));
+    assert!(Arc::ptr_eq(&same, &first[1]));
+    assert_eq!(motions(&library), order);
+    assert_eq!(order, [0, 0, 0, 1]);
 }
 
 #[test]
@@ -98,22 +123,24 @@ fn a_map_by_name_becomes_numbers_and_round_trips() {
         ..ViewerState::default()
     };
     assert_eq!(reconcile(&mut library, &mut state), []);
-    let map = map_in_force(&library, &state, 0).expect("the given map");
+    let map = active_map(&library, &state, 0).expect("the given map");
     let (neck, head) = (number(&library, "Neck"), number(&library, "Head"));
-    assert_eq!(map.joints[&format!("#{neck}")].source, Some(SourceRef::Number(head)));
-    assert_eq!(map.joints[&format!("#{head}")].source, None);
+    assert_eq!(map.joints[&neck].source, Some(head));
+    assert_eq!(map.joints[&head].source, None);
     assert_eq!(map.joints.len(), 3);
-    assert_eq!(map.muted_channels[0].source, SourceRef::Number(number(&library, "Hips")));
+    assert_eq!(map.muted_channels[0].source, number(&library, "Hips"));
     let asset = &library.active().expect("a model").asset;
-    assert_eq!(named(&map, asset, asset), by_name());
-    assert_eq!(numbered(&named(&map, asset, asset), asset, asset), Ok(map));
+    assert_eq!(map.to_file(asset, asset), by_name());
+    assert_eq!(by_name().to_joint_map(asset, asset), Ok(map));
 }
 
 #[test]
 fn a_map_that_fits_no_motion_is_reported_and_replaced() {
     let mut library = walker_with_motion();
-    let wrong =
-        JointMap { joints: BTreeMap::from([("Hips".to_owned(), follows(name("Pelvis")))]), ..JointMap::default() };
+    let wrong = JointMapFile {
+        joints: BTreeMap::from([("Hips".to_owned(), MapEntry::following(name("Pelvis")))]),
+        ..JointMapFile::default()
+    };
     let mut state = ViewerState {
         retarget: RetargetEdits { map: vec![MotionMap::Names(wrong)], ..RetargetEdits::default() },
         ..ViewerState::default()
@@ -121,7 +148,7 @@ fn a_map_that_fits_no_motion_is_reported_and_replaced() {
     let problems = reconcile(&mut library, &mut state);
     assert!(matches!(&problems[..], [MapProblem::NoFit { motion, .. }] if motion == "dance.glb"), "{problems:?}");
     assert!(problems[0].to_string().contains("Pelvis"), "{}", problems[0]);
-    assert!(map_in_force(&library, &state, 0).expect("an automatic map").joints.len() > 10);
+    assert!(active_map(&library, &state, 0).expect("an automatic map").joints.len() > 10);
 }
 
 /// If joint names changed since a link was made, its numbers may identify other joints.
@@ -150,16 +177,15 @@ fn a_source_can_be_changed_and_restored() {
     let (neck, head) = (number(&library, "Neck"), number(&library, "Head"));
     let change = Command::SetSource { motion: 0, target: neck, source: Some(head) };
     history.apply(&mut state, &library, change);
-    let source = |library: &Library, state: &ViewerState| {
-        map_in_force(library, state, 0).expect("a map").joints[&format!("#{neck}")].source.clone()
-    };
-    assert_eq!(source(&library, &state), Some(SourceRef::Number(head)));
+    let source =
+        |library: &Library, state: &ViewerState| active_map(library, state, 0).expect("a map").joints[&neck].source;
+    assert_eq!(source(&library, &state), Some(head));
     history.end_gesture();
     history.apply(&mut state, &library, Command::SetFeet(Some(Feet::Plant)));
     assert!(history.undo(&mut state, &mut library) && history.undo(&mut state, &mut library) && !history.can_undo());
     assert_eq!(state, before);
     assert!(history.redo(&mut state, &mut library));
-    assert_eq!(source(&library, &state), Some(SourceRef::Number(head)));
+    assert_eq!(source(&library, &state), Some(head));
     for (target, source) in [(9999, None), (neck, Some(9999))] {
         let now = state.clone();
         apply(&mut state, &library, Command::SetSource { motion: 0, target, source });
@@ -176,7 +202,7 @@ fn overrides_take_precedence_over_the_map() {
     reconcile(&mut library, &mut state);
     let root = RootOptions { vertical: RootPart::Freeze, ..RootOptions::default() };
     let unmapped = Unmapped::Clip { clip: ClipRef::Index(1), frozen: true };
-    let own = map_in_force(&library, &state, 0).expect("a map");
+    let own = active_map(&library, &state, 0).expect("a map");
     for command in [
         Command::SetRoot(Some(root)),
         Command::SetUnmapped(Some(unmapped.clone())),
@@ -184,7 +210,7 @@ fn overrides_take_precedence_over_the_map() {
     ] {
         apply(&mut state, &library, command);
     }
-    let map = map_in_force(&library, &state, 0).expect("a map");
+    let map = active_map(&library, &state, 0).expect("a map");
     assert_eq!(map, JointMap { root, unmapped, feet: Feet::Plant, ..own.clone() });
     // Editing a joint doesn't write them into the map.
     let head = number(&library, "Head");
@@ -192,7 +218,7 @@ fn overrides_take_precedence_over_the_map() {
     for command in [Command::SetRoot(None), Command::SetUnmapped(None), Command::SetFeet(None)] {
         apply(&mut state, &library, command);
     }
-    let map = map_in_force(&library, &state, 0).expect("a map");
+    let map = active_map(&library, &state, 0).expect("a map");
     assert_eq!((map.root, map.unmapped, map.feet), (own.root, own.unmapped, own.feet));
 }
 
@@ -210,7 +236,7 @@ fn a_motion_without_anything_in_common_has_no_map() {
     // It can still be mapped manually.
     let head = number(&library, "Head");
     apply(&mut state, &library, Command::SetSource { motion: 0, target: head, source: Some(1) });
-    let map = map_in_force(&library, &state, 0).expect("a map");
+    let map = active_map(&library, &state, 0).expect("a map");
     assert_eq!(map.joints.len(), 1);
     let before = state.retarget.map.clone();
     reconcile(&mut library, &mut state);

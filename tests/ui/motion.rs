@@ -4,10 +4,8 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use gaitway::editor::Export;
 use gaitway::library::{Library, Model, Motion};
-use gaitway::retarget::{
-    ClipRef, Feet, JointMap, Keep, MutedProperty, RestChoice, RootOptions, RootPart, SourceRef, Unmapped,
-};
-use gaitway::state::{ClipChoice, Command, MapEdit, map_in_force, muted_properties};
+use gaitway::retarget::{ClipRef, Feet, JointMap, Keep, MutedProperty, RestChoice, RootOptions, RootPart, Unmapped};
+use gaitway::state::{ClipChoice, Command, MapEdit, active_map, muted_properties};
 use gaitway::ui::{PathPrompt, PathPurpose, Saved, UiAction};
 
 use crate::bench::{Bench, NARROW, WIDE, bench_of, drag, motion_bench, press, press_key, sample_bench};
@@ -15,7 +13,7 @@ use crate::skeletons;
 
 fn map(harness: &Harness<'_, Bench>, motion: usize) -> JointMap {
     let bench = harness.state();
-    map_in_force(bench.library(), bench.state(), motion).expect("a map for the motion")
+    active_map(bench.library(), bench.state(), motion).expect("a map for the motion")
 }
 
 fn number(harness: &Harness<'_, Bench>, name: &str) -> usize {
@@ -92,7 +90,7 @@ fn another_source_is_chosen_from_a_list() {
     assert_eq!(commands, [Command::SetSource { motion: 0, target: neck, source: Some(head) }]);
     assert!(harness.query_by_label("What does Neck follow?").is_none());
     assert!(harness.query_by_label_contains(&format!("Neck follows {head}  Head (")).is_some());
-    assert_eq!(map(&harness, 0).joints[&format!("#{neck}")].source, Some(SourceRef::Number(head)));
+    assert_eq!(map(&harness, 0).joints[&neck].source, Some(head));
     press_row(&mut harness, "Neck follows");
     press(&mut harness, "Nothing");
     assert!(harness.query_by_label_contains("Neck follows none (").is_some());
@@ -390,7 +388,7 @@ fn a_source_is_typed_in_the_table() {
     assert_eq!(enter("9999"), []);
     assert_eq!(enter("tail"), []);
     assert!(harness.query_by_label("No joint of the motion is called “tail”.").is_some());
-    assert_eq!(map(&harness, 0).joints[&format!("#{neck}")].source, None);
+    assert_eq!(map(&harness, 0).joints[&neck].source, None);
     // Escape takes back what was typed and leaves the joint chosen.
     harness.get_by_label("Source of Neck").focus();
     harness.run();
@@ -410,7 +408,7 @@ fn a_joint_is_turned_further_and_back() {
     let from = harness.get_by_label("Turn further about Y").rect().center();
     let commands = drag(&mut harness, from, from + egui::vec2(40.0, 0.0), egui::PointerButton::Primary);
     assert!(!commands.is_empty());
-    let turned = map(&harness, 0).joints[&format!("#{neck}")].correction;
+    let turned = map(&harness, 0).joints[&neck].correction;
     let (axis, angle) = turned.to_axis_angle();
     assert!(axis.abs_diff_eq(glam::Vec3::Y, 1e-4) && angle > 0.05, "{axis} {angle}");
     assert!(harness.query_by_label_contains("turned further)").is_some());
@@ -418,9 +416,9 @@ fn a_joint_is_turned_further_and_back() {
     assert_eq!(reset, [edit(MapEdit::Correction { target: neck, correction: glam::Quat::IDENTITY })]);
     // The drag was one step, the reset another.
     press(&mut harness, "Undo (Ctrl+Z)");
-    assert_eq!(map(&harness, 0).joints[&format!("#{neck}")].correction, turned);
+    assert_eq!(map(&harness, 0).joints[&neck].correction, turned);
     press(&mut harness, "Undo (Ctrl+Z)");
-    assert_eq!(map(&harness, 0).joints[&format!("#{neck}")].correction, glam::Quat::IDENTITY);
+    assert_eq!(map(&harness, 0).joints[&neck].correction, glam::Quat::IDENTITY);
     assert!(!harness.state().editor.can_undo());
 }
 
@@ -544,7 +542,7 @@ fn both_joints_are_clicked_where_both_are_shown() {
     let at = place(&harness, 1, "Head");
     let source = |source| [Command::SetSource { motion: 0, target: hand, source: Some(source) }];
     assert_eq!(click(&mut harness, at), source(head));
-    assert_eq!(map(&harness, 0).joints[&format!("#{hand}")].source, Some(SourceRef::Number(head)));
+    assert_eq!(map(&harness, 0).joints[&hand].source, Some(head));
     // From the table the model's joint is known already.
     reach(&mut harness, "Click its source");
     let at = place(&harness, 1, "RightFoot");

@@ -11,7 +11,6 @@ use gltf::json::validation::USize64;
 use gltf::json::{Index, Root, scene};
 use serde_json::value::RawValue;
 use serde_json::{Map, Value};
-use serde_path_to_error::{Path, Segment};
 
 use crate::formats::LoadError;
 
@@ -114,12 +113,81 @@ fn read_loosened(file: &str, text: &[u8]) -> Result<Root, LoadError> {
     let asset = |key: &str| value.pointer(&format!("/asset/{key}")).filter(|value| !value.is_null()).map(self::text);
     check_version(file, asset("version").as_deref(), asset("minVersion").as_deref())?;
     loosen(&mut value);
-    serde_path_to_error::deserialize(value).map_err(|problem| {
-        let (line, column) = position(text, problem.path());
-        let place = problem.path().to_string();
-        let problem = format!("{place}: {}", problem.into_inner());
+    // As text again: deserializing the value itself would put the crate's many types into the program a second time.
+    let loosened = value.to_string();
+    serde_json::from_slice(loosened.as_bytes()).map_err(|problem| {
+        let path = path_at(&loosened, problem.column());
+        let (line, column) = position(text, &path);
+        let problem = match json_error(file, &problem) {
+            LoadError::Json { problem, .. } => format!("{}: {problem}", place(&path)),
+            other => other.to_string(),
+        };
         LoadError::Json { file: file.to_owned(), line, column, problem }
     })
+}
+
+/// A step from a JSON value to one inside it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Step {
+    Member(String),
+    Element(usize),
+}
+
+/// The path to the value that a parser was reading when it stopped after `end` bytes of compact JSON.
+fn path_at(text: &str, end: usize) -> Vec<Step> {
+    let mut path = Vec::new();
+    let mut at = 0;
+    while at < end.min(text.len()) {
+        let rest = &text[at..];
+        let mut length = 1;
+        match (rest.as_bytes()[0], path.last_mut()) {
+            // Stopped at its beginning: what it is was the problem, not what is in it.
+            (b'{' | b'[', _) if at + 1 >= end => {}
+            (b'{', _) => path.push(Step::Member(String::new())),
+            (b'[', _) => path.push(Step::Element(0)),
+            (b'}' | b']', _) => drop(path.pop()),
+            (b',', Some(Step::Member(key))) => key.clear(),
+            (b',', Some(Step::Element(index))) => *index += 1,
+            (b'"', last) => {
+                length = string_length(rest);
+                let string = &rest[..length];
+                if let (Some(Step::Member(key)), true) = (last, rest[length..].starts_with(':')) {
+                    *key = serde_json::from_str(string).unwrap_or_default();
+                }
+            }
+            _ => {}
+        }
+        at += length.max(rest.chars().next().map_or(1, char::len_utf8));
+    }
+    path
+}
+
+/// Bytes of the string that the text begins with, with its quotation marks.
+fn string_length(text: &str) -> usize {
+    let mut escaped = false;
+    for (at, letter) in text.char_indices().skip(1) {
+        match letter {
+            _ if escaped => escaped = false,
+            '\\' => escaped = true,
+            '"' => return at + 1,
+            _ => {}
+        }
+    }
+    text.len()
+}
+
+/// A path as messages have it: `meshes[0].primitives[1].mode`.
+fn place(path: &[Step]) -> String {
+    let mut place = String::new();
+    for step in path {
+        match step {
+            Step::Member(key) if key.is_empty() => {}
+            Step::Member(key) if place.is_empty() => place.push_str(key),
+            Step::Member(key) => place.extend([".", key]),
+            Step::Element(index) => place.push_str(&format!("[{index}]")),
+        }
+    }
+    place
 }
 
 fn check_version(file: &str, version: Option<&str>, min_version: Option<&str>) -> Result<(), LoadError> {
@@ -165,18 +233,17 @@ fn has_long_integer(text: &[u8]) -> bool {
 }
 
 /// Line and column, from 1, of the value at `path`, or of the innermost value around it that exists.
-fn position(text: &[u8], path: &Path) -> (usize, usize) {
+fn position(text: &[u8], path: &[Step]) -> (usize, usize) {
     let text = str::from_utf8(text).unwrap_or_default();
     let Ok(mut value) = serde_json::from_str::<&RawValue>(text) else { return (1, 1) };
-    for segment in path {
-        let inner = match segment {
-            Segment::Seq { index } => {
+    for step in path {
+        let inner = match step {
+            Step::Element(index) => {
                 serde_json::from_str::<Vec<&RawValue>>(value.get()).ok().and_then(|list| list.get(*index).copied())
             }
-            Segment::Map { key } => serde_json::from_str::<BTreeMap<String, &RawValue>>(value.get())
+            Step::Member(key) => serde_json::from_str::<BTreeMap<String, &RawValue>>(value.get())
                 .ok()
                 .and_then(|members| members.get(key).copied()),
-            _ => None,
         };
         let Some(inner) = inner else { break };
         value = inner;

@@ -1,24 +1,25 @@
-//! The joint map as it is written in files (`{"gaitway_map": 1, …}`): which target joint follows which source joint, and
-//! how. Its names are looked up in two skeletons by `resolve`.
+//! The file form of a joint map (`{"gaitway_map": 1, …}`), with joints by name. It exists only where files are read and
+//! written; [`JointMapFile::to_joint_map`] looks its names up in two skeletons.
 
 use std::collections::BTreeMap;
 
-use glam::Quat;
 use serde::de::{Error, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::error::MapError;
+use super::joint_map::{MapEntry, MutedChannel};
 use super::options::{Feet, Keep, RestChoices, RootOptions};
+use super::unmapped::Unmapped;
 
-/// A whole map, as written. Joints that it does not name have no source.
+/// A joint map as written in a file. Joints that it does not name have no source.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct JointMap {
+pub struct JointMapFile {
     /// Version of the format: 1.
     pub gaitway_map: u32,
     /// By target joint: its name, or `#NODE` if it has none or shares it.
     #[serde(default, deserialize_with = "unique_entries")]
-    pub joints: BTreeMap<String, MapEntry>,
+    pub joints: BTreeMap<String, MapEntry<SourceRef>>,
     #[serde(default)]
     pub unmapped: Unmapped,
     #[serde(default)]
@@ -30,28 +31,11 @@ pub struct JointMap {
     #[serde(default)]
     pub scales: Keep,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub muted_channels: Vec<MutedChannel>,
+    pub muted_channels: Vec<MutedChannel<SourceRef>>,
     #[serde(default)]
     pub feet: Feet,
     #[serde(default)]
     pub crossfade_secs: f64,
-}
-
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct MapEntry {
-    /// None (`null`): deliberately without a source.
-    pub source: Option<SourceRef>,
-    /// Rotation offset in the joint's own space, as x y z w.
-    #[serde(default, skip_serializing_if = "is_identity")]
-    pub correction: Quat,
-    /// What the joint does without a source; by default what the map says for all.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub unmapped: Option<Unmapped>,
-}
-
-fn is_identity(rotation: &Quat) -> bool {
-    *rotation == Quat::IDENTITY
 }
 
 /// A source joint by its number in its own file, or by its name.
@@ -62,78 +46,14 @@ pub enum SourceRef {
     Name(String),
 }
 
-/// A clip of the model by its index or by its name.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(untagged, expecting = "expected a clip's name or its index (0, 1, …)")]
-pub enum ClipRef {
-    Index(usize),
-    Name(String),
-}
-
-/// What joints without a source do: the word `"rest"`, or one of the model's own clips.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "UnmappedForm", into = "UnmappedForm")]
-pub enum Unmapped {
-    #[default]
-    Rest,
-    Clip {
-        clip: ClipRef,
-        /// Holds the clip's first key.
-        frozen: bool,
-    },
-}
-
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(
-    untagged,
-    expecting = "expected \"rest\" or {\"clip\": NAME or INDEX}, with \"hold\": \"first-key\" to freeze it"
-)]
-enum UnmappedForm {
-    Word(String),
-    Clip(ClipForm),
-}
-
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ClipForm {
-    clip: ClipRef,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    hold: Option<String>,
-}
-
-impl TryFrom<UnmappedForm> for Unmapped {
-    type Error = String;
-
-    fn try_from(form: UnmappedForm) -> Result<Self, String> {
-        match form {
-            UnmappedForm::Word(word) if word == "rest" => Ok(Self::Rest),
-            UnmappedForm::Word(word) => Err(format!("expected \"rest\" or {{\"clip\": …}}, found “{word}”")),
-            UnmappedForm::Clip(ClipForm { clip, hold }) => match hold.as_deref() {
-                None => Ok(Self::Clip { clip, frozen: false }),
-                Some("first-key") => Ok(Self::Clip { clip, frozen: true }),
-                Some(other) => Err(format!("expected \"hold\": \"first-key\", found “{other}”")),
-            },
-        }
-    }
-}
-
-impl From<Unmapped> for UnmappedForm {
-    fn from(unmapped: Unmapped) -> Self {
-        match unmapped {
-            Unmapped::Rest => Self::Word("rest".to_owned()),
-            Unmapped::Clip { clip, frozen } => {
-                Self::Clip(ClipForm { clip, hold: frozen.then(|| "first-key".to_owned()) })
-            }
-        }
-    }
-}
-
 /// Refuses a joint that appears twice, which would silently lose one of its entries.
-fn unique_entries<'de, D: Deserializer<'de>>(deserializer: D) -> Result<BTreeMap<String, MapEntry>, D::Error> {
+fn unique_entries<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<BTreeMap<String, MapEntry<SourceRef>>, D::Error> {
     struct Entries;
 
     impl<'de> Visitor<'de> for Entries {
-        type Value = BTreeMap<String, MapEntry>;
+        type Value = BTreeMap<String, MapEntry<SourceRef>>;
 
         fn expecting(&self, formatter: &mut std::fmt::Formatter) -> std::fmt::Result {
             formatter.write_str("an object of target joints and what they follow")
@@ -141,7 +61,7 @@ fn unique_entries<'de, D: Deserializer<'de>>(deserializer: D) -> Result<BTreeMap
 
         fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
             let mut entries = BTreeMap::new();
-            while let Some((name, entry)) = map.next_entry::<String, MapEntry>()? {
+            while let Some((name, entry)) = map.next_entry::<String, MapEntry<SourceRef>>()? {
                 if entries.contains_key(&name) {
                     return Err(A::Error::custom(format!("“{name}” appears twice; keep one of the two")));
                 }
@@ -154,25 +74,7 @@ fn unique_entries<'de, D: Deserializer<'de>>(deserializer: D) -> Result<BTreeMap
     deserializer.deserialize_map(Entries)
 }
 
-/// A channel of the motion to ignore.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct MutedChannel {
-    pub source: SourceRef,
-    /// By default all of the joint's channels.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub property: Option<MutedProperty>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum MutedProperty {
-    Translation,
-    Rotation,
-    Scale,
-}
-
-impl JointMap {
+impl JointMapFile {
     /// Reads a map's JSON.
     ///
     /// # Errors
@@ -222,7 +124,7 @@ fn without_explanations(text: &str) -> Option<String> {
     Some(form.to_string())
 }
 
-impl Default for JointMap {
+impl Default for JointMapFile {
     fn default() -> Self {
         Self {
             gaitway_map: 1,

@@ -1,17 +1,24 @@
-//! Which target joint follows which source joint: the map's file form, its resolved form, and proposals.
+//! Which target joint follows which source joint: the map in joint numbers, its file form with names, its resolved form, and
+//! proposals.
 
+mod convert;
 mod error;
 mod file;
+mod joint_map;
+mod names;
 mod opposite;
 mod options;
 mod propose;
 mod resolve;
 mod resolved;
 mod shared_names;
+mod unmapped;
 
 pub use error::MapError;
-pub use file::{ClipRef, JointMap, MapEntry, MutedChannel, MutedProperty, SourceRef, Unmapped};
+pub use file::{JointMapFile, SourceRef};
+pub use joint_map::{JointMap, MapEntry, MutedChannel, MutedProperty};
 pub use opposite::opposite_joints;
 pub use options::{Feet, Keep, RestChoice, RestChoices, RootOptions, RootPart};
 pub use propose::{Proposal, ProposedPair, propose};
 pub use resolved::{Layer, Pair, ResolvedMap};
+pub use unmapped::{ClipRef, Unmapped};

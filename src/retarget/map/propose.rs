@@ -3,10 +3,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use glam::Quat;
-
-use super::file::{JointMap, MapEntry, SourceRef};
-use super::shared_names::{joints_by_name, shared_names};
+use super::joint_map::{JointMap, MapEntry};
+use super::shared_names::shared_names;
 use crate::anim::{JointIndex, Keys, Skeleton};
 use crate::asset::{Asset, Slot};
 use crate::retarget::recognize::{Reason, Recognized, recognize};
@@ -205,28 +203,12 @@ fn nearest_above<T: Copy>(skeleton: &Skeleton, of: impl Fn(JointIndex) -> Option
 }
 
 impl Proposal {
-    /// Returns the map as files have it, by name where a name is unambiguous.
+    /// Returns the proposed pairs as a map.
     pub fn to_map(&self, model: &Asset, motion: &Asset) -> JointMap {
-        let (targets, sources) =
-            (joints_by_name(&model.skeleton, str::to_owned), joints_by_name(&motion.skeleton, str::to_owned));
-        let is_unambiguous = |names: &BTreeMap<String, Vec<JointIndex>>, name: &str| {
-            !name.starts_with('#') && names.get(name).is_some_and(|joints| joints.len() == 1)
+        let entry = |pair: &ProposedPair| {
+            let source = motion.skeleton.source_index(pair.source);
+            (model.skeleton.source_index(pair.target), MapEntry::following(Some(source)))
         };
-        let mut map = JointMap::default();
-        for pair in &self.pairs {
-            let (target, source) = (model.skeleton.name(pair.target), motion.skeleton.name(pair.source));
-            let key = if is_unambiguous(&targets, target) {
-                target.to_owned()
-            } else {
-                format!("#{}", model.skeleton.source_index(pair.target))
-            };
-            let source = if is_unambiguous(&sources, source) {
-                SourceRef::Name(source.to_owned())
-            } else {
-                SourceRef::Number(motion.skeleton.source_index(pair.source))
-            };
-            map.joints.insert(key, MapEntry { source: Some(source), correction: Quat::IDENTITY, unmapped: None });
-        }
-        map
+        JointMap { joints: self.pairs.iter().map(entry).collect(), ..JointMap::default() }
     }
 }

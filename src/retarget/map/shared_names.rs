@@ -58,7 +58,7 @@ fn add_children_of_matches(
 }
 
 /// Named joints by what `read` makes of their names.
-pub fn joints_by_name(skeleton: &Skeleton, read: fn(&str) -> String) -> BTreeMap<String, Vec<JointIndex>> {
+fn joints_by_name(skeleton: &Skeleton, read: fn(&str) -> String) -> BTreeMap<String, Vec<JointIndex>> {
     let mut joints: BTreeMap<String, Vec<JointIndex>> = BTreeMap::new();
     for joint in skeleton.joints().filter(|&joint| !skeleton.name(joint).is_empty()) {
         joints.entry(read(skeleton.name(joint))).or_default().push(joint);

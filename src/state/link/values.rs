@@ -10,7 +10,7 @@ use super::files::MEMBER_SEPARATOR;
 use super::{Read, Written};
 use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
-use crate::retarget::{ClipRef, Feet, JointMap, RootOptions, RootPart, Unmapped};
+use crate::retarget::{ClipRef, Feet, JointMapFile, RootOptions, RootPart, Unmapped};
 use crate::state::{
     Background, CameraChoice, ClipChoice, Fade, Inspect, MotionMap, OrbitCamera, Show, UpAxis, VertexChoice,
 };
@@ -152,7 +152,7 @@ pub(super) fn map_text(map: &MotionMap) -> String {
 /// Reads the compact form, JSON, or a URL.
 pub(super) fn read_map(text: &str) -> Option<MotionMap> {
     if text.starts_with('{') {
-        JointMap::from_json(text).ok().map(MotionMap::Names)
+        JointMapFile::from_json(text).ok().map(MotionMap::Names)
     } else if text.starts_with(map_code::MARK) {
         map_code::decode(text).map(MotionMap::Numbers)
     } else {

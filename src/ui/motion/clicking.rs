@@ -1,30 +1,29 @@
-//! Choosing by clicking in the picture: a joint of the model, then the joint of the motion that it is to follow, in the
-//! picture where the motion's skeleton stands there, else in the list.
+//! Picking in the viewport: a joint of the model, then its source, in the viewport if the motion's skeleton is shown there,
+//! otherwise in the list.
 
 use egui::{Align2, Area, Context, FontId, Id, Order, Painter, Pos2, Rect, Response, Stroke, Ui, pos2, vec2};
 
 use super::Pairing;
 use super::picker::Picking;
-use super::rows::rows;
 use crate::anim::JointIndex;
 use crate::frame::Character;
-use crate::state::{Command, map_in_force, title};
+use crate::state::{Command, title};
 use crate::ui::inspector::Tab;
 use crate::ui::{Output, Sheet, Shown, UiState, picture, style};
 
-/// What the next click in the picture means.
+/// What the next click in the viewport picks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Clicking {
-    /// The joint of the model that a source is chosen for.
+    /// A joint of the model, to choose a source for.
     Target { motion: usize },
-    /// The joint of the motion that this joint of the model is to follow.
+    /// The source of this joint of the model.
     Source { motion: usize, target: usize },
 }
 
-/// How far beside a joint a click or a finger still means it.
+/// Maximum distance of a click or touch from a joint.
 const REACH_POINTS: f32 = 28.0;
 
-/// Whether the motion's own skeleton stands on the stage, so that its joints can be clicked.
+/// Whether the motion's own skeleton is shown, so that its joints can be picked.
 pub(super) fn source_is_shown(shown: &Shown<'_>, pairing: &Pairing<'_>) -> bool {
     source_character(shown, pairing).is_some()
 }
@@ -34,12 +33,12 @@ fn source_character<'a>(shown: &Shown<'a>, pairing: &Pairing<'_>) -> Option<&'a 
     shown.frame.characters.iter().skip(1).find(|character| character.model == stage)
 }
 
-/// Ends choosing by clicking; true when it was on.
+/// Stops picking; returns whether it was active.
 pub(in crate::ui) fn stop(local: &mut UiState) -> bool {
     local.motion.clicking.take().is_some()
 }
 
-/// Takes the pointer while a joint is chosen by clicking, and paints a dot on every joint that can be; false otherwise.
+/// While picking, handles the pointer, paints a dot on every joint that can be picked, and returns true.
 pub(in crate::ui) fn show(
     ui: &Ui,
     painter: &Painter,
@@ -56,8 +55,7 @@ pub(in crate::ui) fn show(
     };
     let (asset, character, joints) = match clicking {
         Clicking::Target { .. } => {
-            let map = map_in_force(shown.library, shown.state, motion).unwrap_or_default();
-            let joints = rows(&pairing, &map).iter().map(|row| row.joint).collect();
+            let joints = local.motion.rows(&pairing).iter().map(|row| row.joint).collect();
             (&pairing.model.asset, shown.frame.characters.first(), joints)
         }
         Clicking::Source { .. } => {
@@ -108,14 +106,14 @@ pub(in crate::ui) fn show(
     true
 }
 
-/// The table comes back, and with it the sheet that went away for the picture.
+/// Returns to the table, and reopens the sheet that made room for the viewport.
 fn finish(local: &mut UiState) {
     local.motion.clicking = None;
     local.tab = Tab::Motion;
     local.sheet = Some(Sheet::Inspector);
 }
 
-/// Where joints are on the screen.
+/// Screen positions of joints.
 fn places(
     shown: &Shown<'_>,
     pane: Rect,
@@ -135,7 +133,7 @@ fn nearest(places: &[(JointIndex, Pos2)], position: Pos2) -> Option<(JointIndex,
     near.min_by(|(_, a), (_, b)| a.distance(position).total_cmp(&b.distance(position))).copied()
 }
 
-/// Says over the picture what to click, and offers other ways.
+/// Says over the viewport what to click, and offers alternatives.
 pub(in crate::ui) fn banner(context: &Context, picture: Rect, shown: &Shown<'_>, local: &mut UiState) {
     let Some(clicking) = local.motion.clicking else { return };
     let (Clicking::Target { motion } | Clicking::Source { motion, .. }) = clicking;

@@ -1,5 +1,5 @@
-//! Everything that the map says of the chosen joint, under its line of the table: its source to be typed, a further turn,
-//! what of the source is left out, what the joint does without one.
+//! Details of the selected joint, below its row: its source as text, its rotation offset, muted channels of the source, and
+//! what the joint does without one.
 
 use egui::{EventFilter, Key, RichText, Ui};
 use glam::{EulerRot, Quat};
@@ -13,16 +13,16 @@ use crate::retarget::{JointMap, MutedProperty, Unmapped};
 use crate::state::{Command, MapEdit, muted_properties};
 use crate::ui::{Output, Shown, style};
 
-/// A source that is being typed.
+/// A source being typed.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Typed {
     target: usize,
     text: String,
-    /// What is wrong with it, since it was entered.
+    /// Why the entered text was rejected.
     problem: Option<String>,
 }
 
-/// A turn as it was typed: the rotation alone does not tell which angles were meant.
+/// A rotation offset as typed: the rotation alone does not determine the angles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Turn {
     target: usize,
@@ -41,7 +41,7 @@ pub(super) fn show(
 ) {
     let edit = |edit| Command::EditMap { motion: pairing.index, edit };
     let palette = style::palette(ui);
-    // On the panel's own ground, or fields and buttons could not be told from it.
+    // Unfilled, so that fields and buttons stand out.
     let card = egui::Frame::new()
         .stroke(egui::Stroke::new(1.0, palette.line))
         .corner_radius(8)
@@ -77,7 +77,7 @@ pub(super) fn show(
                 out.commands.extend(muting(ui, pairing, map, source).map(edit));
             }
             None => {
-                let own = map.joints.get(&format!("#{}", row.number)).and_then(|entry| entry.unmapped.clone());
+                let own = map.joints.get(&row.number).and_then(|entry| entry.unmapped.clone());
                 if let Some(unmapped) = own_policy(ui, pairing, map, own) {
                     out.commands.push(edit(MapEdit::Unmapped { target: row.number, unmapped }));
                 }
@@ -105,7 +105,7 @@ fn source_field(ui: &mut Ui, pairing: &Pairing<'_>, row: &Row, tab: &mut MotionT
     if field.changed() {
         typed = Some(Typed { target: row.number, text: text.clone(), problem: None });
     }
-    // Escape takes back what was typed, and nothing else.
+    // Escape discards the typed text and does nothing else.
     let filter = EventFilter { escape: true, ..EventFilter::default() };
     if field.has_focus() {
         ui.memory_mut(|memory| memory.set_focus_lock_filter(field.id, filter));
@@ -135,7 +135,7 @@ fn source_field(ui: &mut Ui, pairing: &Pairing<'_>, row: &Row, tab: &mut MotionT
     tab.typed = typed;
 }
 
-/// The number of the joint that is meant; none for nothing.
+/// Finds the joint of the motion that a text names, by number or name; None for an empty text.
 fn find_source(pairing: &Pairing<'_>, text: &str) -> Result<Option<usize>, String> {
     let skeleton = &pairing.motion.asset.skeleton;
     let text = text.trim();
@@ -167,20 +167,20 @@ fn find_source(pairing: &Pairing<'_>, text: &str) -> Result<Option<usize>, Strin
 }
 
 impl Turn {
-    /// What was typed as long as it is what the map says.
+    /// The typed angles while they match the map, otherwise angles of the map's rotation.
     fn of(map: &JointMap, target: usize, typed: Option<Self>) -> Self {
-        let rotation = map.joints.get(&format!("#{target}")).map_or(Quat::IDENTITY, |entry| entry.correction);
+        let rotation = map.joints.get(&target).map_or(Quat::IDENTITY, |entry| entry.correction);
         let same = |turn: &Self| turn.target == target && turn.rotation.abs_diff_eq(rotation, 1e-6);
         typed.filter(same).unwrap_or_else(|| {
             let (x, y, z) = rotation.to_euler(EulerRot::XYZ);
-            // Whole tenths of a degree stay whole; minus nothing is nothing.
+            // Rounds off floating-point noise; adding 0.0 turns -0.0 into 0.0.
             let degrees = [x, y, z].map(|angle| (f64::from(angle).to_degrees() * 1e4).round() / 1e4 + 0.0);
             Self { target, rotation, degrees }
         })
     }
 }
 
-/// Three angles; true when one was changed.
+/// Edits three angles; returns whether one changed.
 fn turn_fields(ui: &mut Ui, turn: &mut Turn) -> bool {
     let mut degrees = turn.degrees;
     let weak = style::palette(ui).weak_text;
@@ -199,7 +199,7 @@ fn turn_fields(ui: &mut Ui, turn: &mut Turn) -> bool {
                 .speed(0.5)
                 .range(-180.0..=180.0)
                 .max_decimals(1)
-                // Typing an angle is one step, not one for each digit.
+                // Typing an angle is a single undo step, not one per digit.
                 .update_while_editing(false)
                 .prefix(format!("{axis} "))
                 .suffix("°");
@@ -239,7 +239,7 @@ fn muting(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, source: JointIndex
     edit
 }
 
-/// What this joint does while it follows nothing.
+/// Chooses what this joint does without a source.
 fn own_policy(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, own: Option<Unmapped>) -> Option<Option<Unmapped>> {
     let mut pressed = None;
     let all = options::policy_text(pairing, &map.unmapped);

@@ -1,4 +1,4 @@
-//! The channel table: every joint of the model, what it follows, how sure that is, and why.
+//! The joint table: every joint of the model, its source, how certain it is, and why.
 
 use std::collections::HashSet;
 
@@ -12,26 +12,26 @@ use crate::state::Command;
 use crate::ui::{Output, Shown, controls, style};
 
 const ROW_HEIGHT: f32 = 44.0;
-/// Of more rows than this, those out of sight are only room: a rig may have hundreds.
+/// Tables with more rows than this skip the hidden ones: a rig may have hundreds.
 const MANY_ROWS: usize = 120;
-/// How far out of sight a row is still there: the Tab key brings it into sight.
+/// Hidden rows this close to the visible area are kept, so that the Tab key can reach them.
 const NEAR: f32 = 4.0 * ROW_HEIGHT;
 const HEADING_HEIGHT: f32 = 32.0;
-/// How far a joint stands to the right of the one it hangs under, and how often at most.
+/// Indentation of a joint relative to its parent.
 const INDENT: f32 = 8.0;
-const MOST_INDENTS: usize = 7;
+const MAX_INDENTS: usize = 7;
 
-/// How the table is ordered and what of it is shown.
+/// Order and filter of the table.
 #[derive(Debug, Default)]
 pub(super) struct TableView {
     pub search: String,
     pub filter: Filter,
-    /// As the skeleton hangs together, even where parts of a body are known.
+    /// Ordered by hierarchy, even if parts of the body are known.
     pub tree: bool,
     folded: HashSet<BodyPart>,
-    /// The joint that was last scrolled to.
+    /// The joint last scrolled to.
     scrolled_to: Option<usize>,
-    /// A joint was just chosen here: what opens under its line comes into sight, without more moving than that takes.
+    /// A joint was just selected here: scroll its details into view, but no further than needed.
     reveal: bool,
 }
 
@@ -40,7 +40,7 @@ pub(super) fn has_body(pairing: &Pairing<'_>) -> bool {
     pairing.proposal.is_some_and(|proposal| !proposal.model.parts.is_empty())
 }
 
-/// The choices above the table.
+/// Order and filter controls above the table.
 pub(super) fn choices(ui: &mut Ui, pairing: &Pairing<'_>, rows: &[Row], table: &mut TableView) {
     let count = |filter: Filter| rows.iter().filter(|row| filter.lets_through(row)).count();
     let name = |filter: Filter| Filter::ALL.iter().find(|(other, _)| *other == filter).map_or("", |(_, name)| name);
@@ -107,11 +107,11 @@ pub(super) fn show(
     let many = rows.len() > MANY_ROWS;
     let mut line = |ui: &mut Ui, row: &Row, tab: &mut MotionTab| {
         let is_chosen = chosen == Some(row.number);
-        let indents = if by_body || !wanted.is_empty() { 0 } else { row.depth.min(MOST_INDENTS) };
+        let indents = if by_body || !wanted.is_empty() { 0 } else { row.depth.min(MAX_INDENTS) };
         match show_row(ui, row, prefix, is_chosen, indents as f32 * INDENT, scroll, many) {
             Some(Pressed::Target) => {
                 let joint = (!is_chosen).then_some(row.number);
-                // Already in sight: it was just pressed.
+                // Already visible: it was just pressed.
                 tab.table.scrolled_to = joint;
                 tab.table.reveal = joint.is_some();
                 out.commands.push(Command::SelectJoint(joint));
@@ -153,7 +153,7 @@ pub(super) fn show(
     }
 }
 
-/// What the names of all skinned joints begin with, such as `mixamorig:`: left out where there is little room.
+/// The namespace that the names of all skinned joints share, such as `mixamorig:`; omitted from rows to save room.
 fn common_prefix<'a>(pairing: &Pairing<'a>) -> &'a str {
     let asset = &pairing.model.asset;
     let mut names = asset.skins.iter().flat_map(|skin| skin.joints()).map(|&joint| asset.skeleton.name(joint));
@@ -163,7 +163,7 @@ fn common_prefix<'a>(pairing: &Pairing<'a>) -> &'a str {
     if names.all(|name| name.starts_with(prefix)) { prefix } else { "" }
 }
 
-/// A part of the body, how many of its joints follow something, and whether one of them needs a look; true when pressed.
+/// Heading of a part of the body, with how many of its joints have a source and how many need review; true when pressed.
 fn heading(ui: &mut Ui, part: BodyPart, rows: &[&Row], open: bool) -> bool {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEADING_HEIGHT), Sense::click());
     let follow = rows.iter().filter(|row| row.source.is_some()).count();
@@ -210,7 +210,7 @@ enum Pressed {
     Source,
 }
 
-/// How it stands and the target at the left, its source at the right, the reason under both. Either half is a button.
+/// State and target on the left, source on the right, the reason below. Either half is a button.
 fn show_row(
     ui: &mut Ui,
     row: &Row,
@@ -222,13 +222,13 @@ fn show_row(
 ) -> Option<Pressed> {
     let (rect, whole) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT), Sense::hover());
     if chosen && scroll {
-        // To the top: there is more under it.
+        // To the top, since its details open below.
         whole.scroll_to_me(Some(egui::Align::TOP));
     }
     if many && !chosen && !ui.is_rect_visible(rect.expand2(vec2(0.0, NEAR))) {
         return None;
     }
-    // Names that stand further in keep their room.
+    // Indented names keep their width.
     let middle = rect.center().x + 0.5 * indent;
     let id = ui.scope_id().with(("map row", row.number));
     let target = ui.interact(rect.with_max_x(middle), id.with("target"), Sense::click());
@@ -268,7 +268,7 @@ fn show_row(
     if target.clicked() { Some(Pressed::Target) } else { source.clicked().then_some(Pressed::Source) }
 }
 
-/// A sign for each state, so that the colour is not the only one.
+/// A symbol for each state, so that color is not the only cue.
 pub(super) fn badge(ui: &Ui, center: egui::Pos2, state: State) {
     let palette = style::palette(ui);
     let painter = ui.painter();

@@ -1,4 +1,4 @@
-//! The Motion tab: which joint follows which, why, and how the motion is carried over.
+//! The Motion tab: which joint follows which and why, and how the motion is retargeted.
 
 mod clicking;
 mod detail;
@@ -11,44 +11,44 @@ mod rows;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::rc::Rc;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use egui::{RichText, Ui};
 
 use self::rows::Row;
 use super::icons::{Icon, icon_button_sized};
 use super::{Output, Shown, UiAction, UiState, clips, controls, style};
-use crate::anim::JointIndex;
+use crate::anim::{JointIndex, find_clip};
 use crate::asset::Asset;
 use crate::library::{Model, ModelId, Motion};
-use crate::retarget::{ClipRef, Contradiction, JointMap, Proposal, SourceRef, Unmapped};
-use crate::state::{Command, MapEdit, ViewerState, active_clip, choice_of_clip, map_in_force, title};
+use crate::retarget::{ClipRef, Contradiction, JointMap, Proposal, Unmapped};
+use crate::state::{Command, MapEdit, ViewerState, active_clip, choice_of_clip, title};
 
 pub(super) use clicking::{banner, show as clicking, stop as stop_clicking};
 pub(super) use picker::show as picker;
 
-/// What the tab remembers.
+/// The state of the tab.
 #[derive(Debug, Default)]
 pub(super) struct MotionTab {
     part: Part,
     table: joints::TableView,
-    /// The motion that was last shown: one whose map has been cleared has no clip to play.
+    /// The motion last shown, to stay on when its map is cleared and its clip is gone.
     motion: usize,
-    /// A joint's source is being chosen from the list.
+    /// The open list of sources.
     picking: Option<picker::Picking>,
-    /// A joint is being chosen in the picture.
+    /// The joint being picked in the viewport.
     clicking: Option<clicking::Clicking>,
     typed: Option<detail::Typed>,
     turn: Option<detail::Turn>,
     rows: Option<KeptRows>,
 }
 
-/// The table's rows, and what they were worked out from.
+/// Rows of the joint table, and what they were built from.
 #[derive(Debug)]
 struct KeptRows {
     model: ModelId,
     motion: Arc<Asset>,
-    map: JointMap,
+    map: Arc<JointMap>,
     names: BTreeMap<usize, String>,
     rows: Rc<[Row]>,
 }
@@ -63,30 +63,33 @@ enum Part {
 }
 
 impl MotionTab {
-    /// A joint is being chosen in the picture.
+    /// Whether a joint is being picked in the viewport.
     pub fn is_clicking(&self) -> bool {
         self.clicking.is_some()
     }
 
-    /// The list of sources lies over everything and has the keyboard.
+    /// Whether the list of sources is open, which takes keyboard input.
     pub fn is_picking(&self) -> bool {
         self.picking.is_some()
     }
 
-    /// Ends what was begun about one of the motions.
+    /// Cancels unfinished input, which is about a motion that may be gone.
     pub fn other_motions(&mut self) {
         (self.picking, self.clicking, self.typed, self.turn) = (None, None, None, None);
     }
 
-    /// The table's rows, worked out anew when one of the files, the map or a name given by hand is another.
-    fn rows(&mut self, pairing: &Pairing<'_>, map: &JointMap) -> Rc<[Row]> {
+    /// Rows of the joint table, rebuilt when a file, the map or a custom joint name changes.
+    fn rows(&mut self, pairing: &Pairing<'_>) -> Rc<[Row]> {
         let (model, motion, names) = (pairing.model.id, &pairing.motion.asset, &pairing.state.edits.names);
         let is_same = |kept: &KeptRows| {
-            kept.model == model && Arc::ptr_eq(&kept.motion, motion) && kept.map == *map && kept.names == *names
+            kept.model == model
+                && Arc::ptr_eq(&kept.motion, motion)
+                && Arc::ptr_eq(&kept.map, pairing.map)
+                && kept.names == *names
         };
         let kept = self.rows.take().filter(is_same).unwrap_or_else(|| {
-            let rows = rows::rows(pairing, map).into();
-            KeptRows { model, motion: motion.clone(), map: map.clone(), names: names.clone(), rows }
+            let rows = rows::rows(pairing, pairing.map).into();
+            KeptRows { model, motion: motion.clone(), map: pairing.map.clone(), names: names.clone(), rows }
         });
         let rows = kept.rows.clone();
         self.rows = Some(kept);
@@ -94,19 +97,23 @@ impl MotionTab {
     }
 }
 
-/// One motion over the shown model.
+/// Stands for the map of a motion that has none.
+static NO_MAP: LazyLock<Arc<JointMap>> = LazyLock::new(Arc::default);
+
+/// A motion and the active model.
 #[derive(Clone, Copy)]
 struct Pairing<'a> {
     model: &'a Model,
     motion: &'a Motion,
     index: usize,
+    map: &'a Arc<JointMap>,
     proposal: Option<&'a Proposal>,
-    /// What is set: the model's joints may have names given by hand.
+    /// For custom joint names.
     state: &'a ViewerState,
 }
 
 impl<'a> Pairing<'a> {
-    /// The motion whose clip plays, else the one before, else the first.
+    /// The motion whose clip plays, else the one last shown, else the first.
     fn shown(shown: &Shown<'a>, before: usize) -> Option<Self> {
         let model = shown.library.active()?;
         let playing = active_clip(model, shown.state).and_then(|clip| model.borrowed(clip));
@@ -117,21 +124,18 @@ impl<'a> Pairing<'a> {
     fn of(shown: &Shown<'a>, index: usize) -> Option<Self> {
         let library = shown.library;
         let (model, motion) = (library.active()?, library.motions().get(index)?);
-        Some(Self { model, motion, index, proposal: library.proposal(index), state: shown.state })
+        let map = library.baked_map(index).unwrap_or(&NO_MAP);
+        Some(Self { model, motion, index, map, proposal: library.proposal(index), state: shown.state })
     }
 
-    /// Which of the model's clips joints without a source play, and whether it stands still; none: they rest.
+    /// Which of the model's own clips joints without a source play, and whether it is frozen; None if they rest.
     fn own_clip(&self, unmapped: &Unmapped) -> Option<(usize, bool)> {
         let Unmapped::Clip { clip, frozen } = unmapped else { return None };
-        let clips = &self.model.asset.clips;
-        let index = match clip {
-            ClipRef::Index(index) => *index,
-            ClipRef::Name(name) => clips.iter().position(|clip| clip.name() == name).unwrap_or(usize::MAX),
-        };
-        Some((index, *frozen))
+        let missing = if let ClipRef::Index(index) = clip { *index } else { usize::MAX };
+        Some((find_clip(self.model.asset.clips.iter(), clip.query()).unwrap_or(missing), *frozen))
     }
 
-    /// What a joint of the model is called.
+    /// The display name of a joint of the model.
     fn target_title(&self, joint: JointIndex) -> Cow<'a, str> {
         title(Some(self.state), &self.model.asset, joint)
     }
@@ -140,35 +144,31 @@ impl<'a> Pairing<'a> {
         self.model.clip_titles().get(clip).map_or("a clip that is not there", String::as_str)
     }
 
-    /// The source that a map gives to a target. None: the map does not speak of it; `Some(None)`: deliberately none.
+    /// A target's source. None if the map does not mention the target, `Some(None)` if it deliberately has none.
     fn source_in(&self, map: &JointMap, target: usize) -> Option<Option<JointIndex>> {
-        let entry = map.joints.get(&format!("#{target}"))?;
-        let skeleton = &self.motion.asset.skeleton;
-        Some(entry.source.as_ref().and_then(|source| match source {
-            SourceRef::Number(number) => skeleton.joint_of_source(*number),
-            SourceRef::Name(name) => skeleton.find(name),
-        }))
+        let source = map.source_of(target)?;
+        Some(source.and_then(|source| self.motion.asset.skeleton.joint_of_source(source)))
     }
 }
 
-/// With less height than this the whole tab scrolls, else only what is under its head.
+/// In a panel lower than this the whole tab scrolls, otherwise only the part below its head.
 const ROOMY_HEIGHT: f32 = 480.0;
 
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     let Some(pairing) = Pairing::shown(shown, local.motion.motion) else { return };
-    let map = map_in_force(shown.library, shown.state, pairing.index).unwrap_or_default();
+    let map = pairing.map;
     local.motion.motion = pairing.index;
     let part = local.motion.part;
-    let rows = if part == Part::Joints { local.motion.rows(&pairing, &map) } else { Rc::default() };
-    // Each part keeps its own place.
+    let rows = if part == Part::Joints { local.motion.rows(&pairing) } else { Rc::default() };
+    // Each part keeps its own scroll position.
     let place = ("motion", part);
     if ui.available_height() >= ROOMY_HEIGHT {
-        head(ui, shown, &pairing, &map, &rows, local, out);
-        controls::scrolled(ui, place, |ui| body(ui, shown, &pairing, &map, &rows, &mut local.motion, out));
+        head(ui, shown, &pairing, map, &rows, local, out);
+        controls::scrolled(ui, place, |ui| body(ui, shown, &pairing, map, &rows, &mut local.motion, out));
     } else {
         controls::scrolled(ui, place, |ui| {
-            head(ui, shown, &pairing, &map, &rows, local, out);
-            body(ui, shown, &pairing, &map, &rows, &mut local.motion, out);
+            head(ui, shown, &pairing, map, &rows, local, out);
+            body(ui, shown, &pairing, map, &rows, &mut local.motion, out);
         });
     }
 }
@@ -214,7 +214,7 @@ fn body(
     }
 }
 
-/// What is done to the whole map.
+/// Buttons that edit the whole map.
 fn edits(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, local: &mut UiState, out: &mut Output) {
     const HEIGHT: f32 = 30.0;
     let button = |ui: &mut Ui, width: f32, enabled: bool, text: &str, hover: &str| {
@@ -232,7 +232,7 @@ fn edits(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, local: &mut UiState
         };
         if button(ui, width, true, text, hover) {
             local.motion.clicking = (!clicking).then_some(clicking::Clicking::Target { motion: pairing.index });
-            // On a narrow screen the sheet makes room for the picture.
+            // On a narrow screen the sheet makes room for the viewport.
             local.sheet = None;
         }
         for (icon, label, enabled, action) in [
@@ -247,7 +247,7 @@ fn edits(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, local: &mut UiState
     });
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
-        // Three words side by side in the narrowest panel.
+        // Fits three labels side by side in the narrowest panel.
         ui.spacing_mut().button_padding.x = 4.0;
         let width = (ui.available_width() - 12.0) / 3.0;
         let motion = pairing.index;
@@ -301,9 +301,9 @@ fn first_clip_of(model: &Model, motion: usize) -> Option<Command> {
     Some(Command::SetClip(choice_of_clip(model, clip)))
 }
 
-/// What a person should know about the two skeletons.
+/// Warnings about the two skeletons.
 fn remarks(pairing: &Pairing<'_>) -> Vec<String> {
-    const MOST: usize = 3;
+    const MAX_REMARKS: usize = 3;
     let mut remarks = Vec::new();
     let Some(proposal) = pairing.proposal else { return remarks };
     for (who, recognized) in [("model", &proposal.model), ("motion", &proposal.motion)] {
@@ -326,11 +326,11 @@ fn remarks(pairing: &Pairing<'_>) -> Vec<String> {
             ));
         }
     }
-    remarks.truncate(MOST);
+    remarks.truncate(MAX_REMARKS);
     remarks
 }
 
-/// A joint as lists show it: its number in the file and its name.
+/// A joint as shown in lists: its number in the file and its name.
 fn joint_text(asset: &Asset, joint: JointIndex) -> String {
     format!("{}  {}", asset.skeleton.source_index(joint), title(None, asset, joint))
 }

@@ -1,4 +1,6 @@
-//! How the motion is carried over: what becomes of its travel, of joints that follow nothing, of the feet. And the files.
+//! Retargeting options (root motion, feet, joints without a source), and the tab's files.
+
+use std::collections::BTreeSet;
 
 use egui::{RichText, Ui};
 
@@ -78,8 +80,7 @@ pub(super) fn show(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, out: &mut
     }
 
     controls::section(ui, "LEFT OUT OF THE MOTION");
-    let joints: std::collections::BTreeSet<_> =
-        map.muted_channels.iter().map(|channel| format!("{:?}", channel.source)).collect();
+    let joints: BTreeSet<usize> = map.muted_channels.iter().map(|channel| channel.source).collect();
     match joints.len() {
         0 => controls::hint(ui, "Nothing. Choose a joint in the table to leave out channels of its source."),
         count => {
@@ -92,7 +93,7 @@ pub(super) fn show(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, out: &mut
     }
 }
 
-/// What can be opened, saved and put away.
+/// Opening, saving and removing files.
 pub(super) fn files(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, out: &mut Output) {
     let wide = |ui: &mut Ui, enabled: bool, text: &str| {
         let button = egui::Button::new(text).min_size(egui::vec2(ui.available_width(), 32.0));
@@ -158,7 +159,7 @@ fn rest_choice(ui: &mut Ui, label: &str, chosen: RestChoice) -> Option<RestChoic
     pressed
 }
 
-/// What joints without a source can do, with words for people.
+/// What joints without a source can do, with display texts.
 pub(super) fn policies(pairing: &Pairing<'_>) -> Vec<(Unmapped, String)> {
     let mut policies = vec![(Unmapped::Rest, "Rest".to_owned())];
     for index in 0..pairing.model.asset.clips.len() {

@@ -1,22 +1,22 @@
-//! Choosing what one joint follows: a list of the motion's joints to be searched by name or number.
+//! The list of a motion's joints, searchable by name or number, to choose a joint's source from.
 
 use egui::{Context, Key, ScrollArea, Ui};
 
 use super::{Pairing, joint_text};
 use crate::anim::JointIndex;
-use crate::state::{Command, map_in_force, title};
+use crate::state::{Command, title};
 use crate::ui::{Output, Shown, UiState, controls, overlays};
 
-/// Which joint a source is chosen for.
+/// The joint whose source is being chosen.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Picking {
     motion: usize,
     /// The joint's number in the model's file.
     target: usize,
     search: String,
-    /// Where the arrow keys have led.
+    /// The row reached with the arrow keys.
     stepped: Option<JointIndex>,
-    /// Shown for the first time: the present source is scrolled to.
+    /// On the first frame the list scrolls to the current source.
     fresh: bool,
 }
 
@@ -26,7 +26,7 @@ impl Picking {
     }
 }
 
-/// Shown over everything while a source is chosen.
+/// Shows the list as a modal while a source is being chosen.
 pub fn show(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     let Some(picking) = &mut local.motion.picking else { return };
     let Some(pairing) = Pairing::of(shown, picking.motion) else {
@@ -61,10 +61,9 @@ pub fn show(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut
             picking.stepped = None;
         }
         ui.add_space(4.0);
-        let map = map_in_force(shown.library, shown.state, picking.motion).unwrap_or_default();
-        let now = pairing.source_in(&map, picking.target).flatten();
+        let now = pairing.source_in(pairing.map, picking.target).flatten();
         let fresh = std::mem::take(&mut picking.fresh);
-        // Nothing typed and no step taken chooses nothing.
+        // Without a search or an arrow key, Enter chooses nothing.
         let searched = found.first().copied().filter(|_| !picking.search.trim().is_empty());
         if steps != 0 && !found.is_empty() {
             let from = picking.stepped.or(searched).or(now).and_then(|at| found.iter().position(|&joint| joint == at));
@@ -75,7 +74,7 @@ pub fn show(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut
         if let Some(taken) = taken.filter(|_| entered) {
             chosen = Some(Some(pairing.motion.asset.skeleton.source_index(taken)));
         }
-        // What Enter would take is marked, else what is followed now.
+        // Marks what Enter would choose, otherwise the current source.
         let marked = taken.or(now);
         let scroll_to = if steps != 0 { picking.stepped } else { now.filter(|_| fresh) };
         list(ui, &pairing, &found, scroll_to, marked, marked.is_none(), &mut chosen);
@@ -122,7 +121,7 @@ fn list(
     });
 }
 
-/// Joints by the file's order; the one with exactly this number or name comes first.
+/// Returns matching joints in the file's order, exact matches of number or name first.
 fn matching(pairing: &Pairing<'_>, search: &str) -> Vec<JointIndex> {
     let asset = &pairing.motion.asset;
     let skeleton = &asset.skeleton;

@@ -1,5 +1,5 @@
-//! What the channel table says of each joint of the model: its source, how sure that is, and in which part of the body it
-//! stands. Knows nothing of how it is drawn.
+//! Contents of the joint table: each joint's source, how certain it is, and the part of the body the joint belongs to.
+//! Independent of drawing.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use crate::asset::Slot;
 use crate::retarget::{Contradiction, JointMap};
 use crate::state::muted_properties;
 
-/// Below this a proposal is a guess.
+/// Below this confidence a proposal counts as a guess.
 const UNSURE: f32 = 0.6;
 
 #[derive(Debug)]
@@ -18,18 +18,18 @@ pub(super) struct Row {
     /// The joint's number in its file.
     pub number: usize,
     pub target: String,
-    /// Which part of a body it is; empty: none.
+    /// Its humanoid slot in words; empty if it has none.
     pub what: String,
     pub source: Option<JointIndex>,
     /// The source's number and name, or “none”.
     pub source_text: String,
     pub state: State,
-    /// What the joint is, why it follows what it does, what speaks against it.
+    /// The joint's slot, why it has its source, and what contradicts it.
     pub why: String,
-    /// Nobody has looked at it and something speaks against it.
+    /// Needs review: something contradicts it and the user has not set it.
     pub look: bool,
     pub part: BodyPart,
-    /// How many joints of the table it hangs under.
+    /// Number of its ancestors in the table.
     pub depth: usize,
 }
 
@@ -37,11 +37,11 @@ pub(super) struct Row {
 pub(super) enum State {
     Sure,
     Guess,
-    /// Something speaks against it.
+    /// Something contradicts it.
     Conflict,
-    /// Follows nothing.
+    /// Has no source.
     None,
-    /// Some of what its source does is left out.
+    /// Some channels of its source are muted.
     Muted,
 }
 
@@ -167,7 +167,8 @@ fn side(slot: Slot) -> Option<Side> {
     }
 }
 
-/// All joints that could matter, by the file's order: what the map speaks of, and joints of skins.
+/// Returns the relevant joints in the order of the skeleton: those the map mentions and those of skins (all joints if there
+/// is no skin).
 pub(super) fn rows(pairing: &Pairing<'_>, map: &JointMap) -> Vec<Row> {
     let asset = &pairing.model.asset;
     let skeleton = &asset.skeleton;
@@ -179,7 +180,7 @@ pub(super) fn rows(pairing: &Pairing<'_>, map: &JointMap) -> Vec<Row> {
     let given: Vec<Option<Option<JointIndex>>> =
         skeleton.joints().map(|joint| pairing.source_in(map, skeleton.source_index(joint))).collect();
     let whole = Whole::new(pairing, &given);
-    // Of each joint or its nearest ancestor: what it is, and how deep in the table.
+    // By joint; a joint without a slot belongs to the part of its parent.
     let mut parts: Vec<BodyPart> = Vec::with_capacity(skeleton.len());
     let mut depths: Vec<usize> = Vec::with_capacity(skeleton.len());
     let mut rows = Vec::new();
@@ -201,16 +202,16 @@ pub(super) fn rows(pairing: &Pairing<'_>, map: &JointMap) -> Vec<Row> {
     rows
 }
 
-/// What is known of all pairs together.
+/// Facts that involve all pairs.
 struct Whole {
     target_slots: BTreeMap<JointIndex, Slot>,
     source_slots: BTreeMap<JointIndex, Slot>,
-    /// Joints named for one side that lie on the other.
+    /// Joints named for one side but placed on the other.
     misplaced_targets: Vec<JointIndex>,
     misplaced_sources: Vec<JointIndex>,
-    /// Who follows each source.
+    /// Targets by the source they follow.
     followers: BTreeMap<JointIndex, Vec<JointIndex>>,
-    /// Most of what is left follows what is right: sides were swapped on purpose.
+    /// Most joints follow the other side: the sides were swapped on purpose.
     swapped: bool,
 }
 
@@ -257,7 +258,7 @@ impl Whole {
         Some((of(&self.target_slots, target)?, of(&self.source_slots, source)?))
     }
 
-    /// What speaks against a pair.
+    /// Describes what contradicts a pair.
     fn conflict(&self, pairing: &Pairing<'_>, target: JointIndex, source: JointIndex) -> Option<String> {
         let misplaced = [self.misplaced_targets.contains(&target), self.misplaced_sources.contains(&source)];
         if let Some((target_side, source_side)) = self.sides(target, source) {
@@ -303,12 +304,12 @@ impl Whole {
         match source {
             None => {
                 state = State::None;
-                // The motion has such a part, nothing else follows it, and nobody said that it is not wanted.
+                // The motion has this slot, nothing follows it, and the map does not rule it out.
                 let is_free = |(source, other): (&JointIndex, &Slot)| {
                     Some(*other) == slot && !self.followers.contains_key(source)
                 };
                 look = given.is_none() && self.source_slots.iter().any(is_free);
-                let own = map.joints.get(&format!("#{number}")).and_then(|entry| entry.unmapped.as_ref());
+                let own = map.joints.get(&number).and_then(|entry| entry.unmapped.as_ref());
                 match pairing.own_clip(own.unwrap_or(&map.unmapped)) {
                     Some((clip, true)) => why.push(format!("first key of {}", pairing.clip_title(clip))),
                     Some((clip, false)) => why.push(format!("plays {}", pairing.clip_title(clip))),
@@ -325,7 +326,7 @@ impl Whole {
                 } else if as_proposed.is_some_and(|pair| pair.confidence < UNSURE) {
                     (state, look) = (State::Guess, true);
                 }
-                let turned = map.joints.get(&format!("#{number}"));
+                let turned = map.joints.get(&number);
                 let turned = turned.is_some_and(|entry| entry.correction != glam::Quat::IDENTITY);
                 why.extend(conflict);
                 why.extend(muted);

@@ -1,0 +1,77 @@
+//! The joint map that everything but its file form uses: which target joint follows which source joint, and how, by the
+//! joints' numbers in their files.
+
+use std::collections::BTreeMap;
+
+use glam::Quat;
+use serde::{Deserialize, Serialize};
+
+use super::options::{Feet, Keep, RestChoices, RootOptions};
+use super::unmapped::Unmapped;
+
+/// A joint map for one model and one motion. Joints without an entry have no source.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct JointMap {
+    /// By target joint.
+    pub joints: BTreeMap<usize, MapEntry>,
+    pub unmapped: Unmapped,
+    pub rest: RestChoices,
+    pub root: RootOptions,
+    pub translations: Keep,
+    pub scales: Keep,
+    pub muted_channels: Vec<MutedChannel>,
+    pub feet: Feet,
+    pub crossfade_secs: f64,
+}
+
+/// What a map says about one target joint. `S` identifies the source: by number, or as a file writes it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MapEntry<S = usize> {
+    /// None (`null` in a file): deliberately without a source.
+    pub source: Option<S>,
+    /// Rotation offset in the joint's own space, as x y z w.
+    #[serde(default, skip_serializing_if = "is_identity")]
+    pub correction: Quat,
+    /// What the joint does without a source; by default what the map says for all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unmapped: Option<Unmapped>,
+}
+
+fn is_identity(rotation: &Quat) -> bool {
+    *rotation == Quat::IDENTITY
+}
+
+impl<S> MapEntry<S> {
+    /// Follows `source` and says nothing else.
+    pub fn following(source: Option<S>) -> Self {
+        Self { source, correction: Quat::IDENTITY, unmapped: None }
+    }
+}
+
+/// A channel of the motion to ignore.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MutedChannel<S = usize> {
+    pub source: S,
+    /// By default all of the joint's channels.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub property: Option<MutedProperty>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum MutedProperty {
+    Translation,
+    Rotation,
+    Scale,
+}
+
+impl JointMap {
+    /// The source of a target joint. None if the map does not mention the joint, `Some(None)` if it is deliberately without
+    /// one.
+    pub fn source_of(&self, target: usize) -> Option<Option<usize>> {
+        self.joints.get(&target).map(|entry| entry.source)
+    }
+}
