@@ -2,23 +2,13 @@
 //! know neither the clock nor the GPU; what only matters to the panels themselves lives in [`UiState`].
 
 mod clips;
-mod controls;
-mod display;
 mod feet;
-mod formula;
-mod gizmo;
-mod icons;
-mod inspector;
 mod keys;
 mod motion;
-mod overlays;
-mod picture;
-mod report;
-mod scene_tree;
-mod scrub;
-mod style;
+mod tabs;
 mod transport;
-mod view_options;
+mod viewport;
+mod widgets;
 
 use std::collections::HashSet;
 
@@ -31,11 +21,15 @@ use crate::library::{Library, Model, ModelId};
 use crate::state::{Command, ViewerState, active_clip, clip_secs};
 
 pub use crate::editor::short_name;
-pub use inspector::Tab;
 pub use keys::{KEY_TABLE, KeyHelp};
-pub use overlays::overlays;
-pub use picture::{PictureSlot, labels, picture};
-pub use style::install;
+pub use tabs::Tab;
+pub use viewport::overlays::overlays;
+pub use viewport::picture::{PictureSlot, labels, picture};
+pub use widgets::style::install;
+
+use tabs::{formula, view_options};
+use viewport::{gizmo, overlays, picture};
+use widgets::{controls, icons, scrub, style};
 
 /// What the panels show. `frame` is what is on the screen: one behind while a command is under way.
 #[derive(Clone, Copy)]
@@ -335,7 +329,7 @@ pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Outp
                 .default_size(304.0)
                 .size_range(260.0..=(0.38 * width).clamp(260.0, 520.0))
                 .show_separator_line(false)
-                .show(ui, |ui| inspector::show(ui, &shown, local, out));
+                .show(ui, |ui| tabs::show(ui, &shown, local, out));
         }
     }
     let free = ui.available_rect_before_wrap();

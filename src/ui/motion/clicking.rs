@@ -9,7 +9,7 @@ use super::rows::rows;
 use crate::anim::JointIndex;
 use crate::frame::Character;
 use crate::state::{Command, map_in_force, title};
-use crate::ui::inspector::Tab;
+use crate::ui::Tab;
 use crate::ui::{Output, Sheet, Shown, UiState, picture, style};
 
 /// What the next click in the picture means.

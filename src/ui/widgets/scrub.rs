@@ -66,7 +66,7 @@ impl KeyMarks {
 /// Height of the whole bar: a lane for the handles, the rail, and the marks.
 const HEIGHT: f32 = 42.0;
 /// How far from either end the rail begins, so that the handles fit.
-pub(super) const MARGIN: f32 = 9.0;
+pub const MARGIN: f32 = 9.0;
 
 /// `of` says which clip of which model this is. True in the second place while the playhead is held.
 pub fn show(ui: &mut Ui, scrub: &Scrub<'_>, of: (ModelId, usize), marks: &mut KeyMarks) -> (Option<Scrubbed>, bool) {

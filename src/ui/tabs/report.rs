@@ -4,15 +4,15 @@ use std::collections::BTreeMap;
 
 use egui::{RichText, Ui};
 
-use super::{Output, Saved, Shown, UiAction, controls, style};
 use crate::asset::{Asset, Warning};
 use crate::editor::Export;
 use crate::mesh::{Geometry, Mesh};
+use crate::ui::{Output, Saved, Shown, UiAction, controls, style};
 
 /// More are not listed.
 const MOST_PARTS: usize = 100;
 
-pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
+pub fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let Some(model) = shown.library.active() else { return };
     let asset: &Asset = &model.asset;
     let primitives = || asset.meshes.iter().flat_map(|mesh| &mesh.primitives);
@@ -149,7 +149,7 @@ fn grouped(number: usize) -> String {
 }
 
 /// Three decimals, or a power of ten where those would show nothing.
-pub(super) fn short(number: f32) -> String {
+pub fn short(number: f32) -> String {
     let size = number.abs();
     if size == 0.0 || !number.is_finite() {
         format!("{}", number + 0.0)

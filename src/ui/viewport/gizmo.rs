@@ -4,9 +4,9 @@ use egui::{Color32, Painter, Pos2, Rect, Response, Shape, Stroke, Ui, Vec2};
 use glam::{Quat, Vec3};
 
 use super::picture::{pane_at, to_screen};
-use super::{Output, Shown, UiState, style};
 use crate::anim::Transform;
 use crate::state::{Command, degrees_by_hand};
+use crate::ui::{Output, Shown, UiState, style};
 
 const RADIUS_POINTS: f32 = 72.0;
 /// The disc for free turning, as a share of the rings.
@@ -20,7 +20,7 @@ const COLORS: [Color32; 3] =
 
 /// What is being dragged.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Grab {
+pub enum Grab {
     /// A ring, and where on it, as a unit vector from the joint.
     Ring(usize, Vec3),
     Disc,
@@ -39,7 +39,7 @@ struct Handle {
 }
 
 /// Paints the rings where turning by hand is on, and turns the joint; true when the pointer is theirs.
-pub(super) fn show(
+pub fn show(
     ui: &Ui,
     painter: &Painter,
     response: &Response,

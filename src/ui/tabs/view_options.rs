@@ -2,11 +2,11 @@
 
 use egui::{RichText, Ui};
 
-use super::controls::{self, SliderSettings};
-use super::{Output, Saved, Shown, UiAction, UiState, style};
 use crate::state::{
     Background, CameraChoice, Command, OrbitCamera, UpAxis, ViewerState, frame_all, front_yaw_radians, resolve_camera,
 };
+use crate::ui::controls::{self, SliderSettings};
+use crate::ui::{Output, Saved, Shown, UiAction, UiState, style};
 
 /// Of the picture that is saved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,7 +25,7 @@ impl Default for PictureSettings {
 /// Every device that this runs on can draw as large.
 const LARGEST_PICTURE: u32 = 4096;
 
-pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
+pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     let aspect = local.aspect;
     camera(ui, shown, aspect, out);
     light(ui, shown, out);

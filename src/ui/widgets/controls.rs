@@ -232,10 +232,10 @@ fn elided_in(ui: &Ui, rect: Rect, text: &str, color: Color32, style: egui::TextS
 }
 
 /// Room for the floating scroll bar, which gets wider under the pointer.
-pub(super) const BAR: f32 = 12.0;
+pub const BAR: f32 = 12.0;
 
 /// What a tab holds, scrolling where it is higher than the panel. `id` keeps its place.
-pub(super) fn scrolled(ui: &mut Ui, id: impl egui::AsIdSalt, contents: impl FnOnce(&mut Ui)) {
+pub fn scrolled(ui: &mut Ui, id: impl egui::AsIdSalt, contents: impl FnOnce(&mut Ui)) {
     egui::ScrollArea::vertical().id_salt(id).auto_shrink([false, false]).show(ui, |ui| {
         ui.set_max_width(ui.available_width() - BAR);
         contents(ui);

@@ -2,12 +2,12 @@
 
 use egui::{Align, Align2, Area, Color32, Context, Id, Layout, Order, Rect, RichText, Stroke, Ui, pos2, vec2};
 
-use super::icons::{Icon, icon_button};
-use super::{
-    KEY_TABLE, Output, PathPrompt, PathPurpose, Saved, Sheet, Shown, UiAction, UiState, clips, inspector, is_narrow,
-    motion, style,
-};
 use crate::editor::Export;
+use crate::ui::icons::{Icon, icon_button};
+use crate::ui::{
+    KEY_TABLE, Output, PathPrompt, PathPurpose, Saved, Sheet, Shown, UiAction, UiState, clips, is_narrow, motion,
+    style, tabs,
+};
 
 /// Call last; `picture` is the rectangle the picture has.
 pub fn overlays(ui: &mut Ui, picture: Rect, shown: Shown<'_>, local: &mut UiState, out: &mut Output) {
@@ -36,10 +36,10 @@ pub fn overlays(ui: &mut Ui, picture: Rect, shown: Shown<'_>, local: &mut UiStat
 }
 
 /// How round the upper corners of a sheet are; the picture goes on behind them.
-pub(super) const SHEET_CORNER: u8 = 16;
+pub const SHEET_CORNER: u8 = 16;
 
 /// The rectangle of a sheet at the bottom of what the panels leave free. It leaves a strip of the picture.
-pub(super) fn sheet_rect(free: Rect) -> Rect {
+pub fn sheet_rect(free: Rect) -> Rect {
     let height = (free.height() * 0.62).max(240.0).min(free.height() - 56.0).max(0.0);
     Rect::from_min_max(pos2(free.left(), free.bottom() - height), free.right_bottom())
 }
@@ -74,7 +74,7 @@ fn sheet(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) 
             Sheet::Clips => clips::show(&mut content, shown, local, out),
             Sheet::Inspector => {
                 content.add_space(28.0);
-                inspector::show(&mut content, shown, local, out);
+                tabs::show(&mut content, shown, local, out);
             }
         }
         let mut corner = ui.new_child(egui::UiBuilder::new().max_rect(close));
@@ -192,7 +192,7 @@ fn notice<R>(ui: &mut Ui, line: Color32, contents: impl FnOnce(&mut Ui) -> R) ->
         .inner
 }
 
-pub(super) fn modal(name: &str, context: &Context) -> egui::Modal {
+pub fn modal(name: &str, context: &Context) -> egui::Modal {
     let frame = egui::Frame::window(&context.global_style()).inner_margin(egui::Margin::same(18));
     egui::Modal::new(Id::unique(name)).frame(frame)
 }
@@ -276,7 +276,7 @@ fn path_prompt(context: &Context, local: &mut UiState, out: &mut Output) {
             field.request_focus();
         }
         if !matches!(purpose, PathPurpose::Save(_)) {
-            super::controls::hint(ui, "Files can also be dropped anywhere on the window.");
+            crate::ui::controls::hint(ui, "Files can also be dropped anywhere on the window.");
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let filled = !path.trim().is_empty();

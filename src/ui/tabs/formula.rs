@@ -3,19 +3,19 @@
 use egui::{Align2, FontId, Painter, Rect, Response, RichText, Sense, Ui, WidgetInfo, pos2, vec2};
 use glam::{Affine3A, Mat4, Vec2, Vec3};
 
-use super::picture::{pane_at, to_screen};
-use super::{Output, Shown, UiState, controls, style};
 use crate::anim::JointIndex;
 use crate::frame::{VertexFormula, joint_matrices, pick_vertex, vertex_formula};
 use crate::library::Model;
 use crate::mesh::{DeformedVertices, SkinningMode};
 use crate::state::{Command, VertexChoice, title};
+use crate::ui::viewport::picture::{pane_at, to_screen};
+use crate::ui::{Output, Shown, UiState, controls, style};
 
 const LINE: f32 = 17.0;
 
 /// What the vertex part remembers between passes.
 #[derive(Debug, Default)]
-pub(super) struct Probe {
+pub struct Probe {
     /// Vertices are looked for under the pointer.
     on: bool,
     /// The one that was found last, where none is kept.
@@ -43,7 +43,7 @@ impl Probe {
 }
 
 /// What the pointer does to the picture while vertices are looked for: true when it is on the mesh.
-pub(super) fn point_at_vertex(response: &Response, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) -> bool {
+pub fn point_at_vertex(response: &Response, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) -> bool {
     if !local.probe.is_on(shown) || shown.state.page.embed {
         return false;
     }
@@ -78,7 +78,7 @@ fn vertex_at(shown: &Shown<'_>, rect: Rect, at: egui::Pos2, scratch: &mut Deform
 }
 
 /// A dot on the vertex and its number.
-pub(super) fn mark(ui: &Ui, painter: &Painter, pane: Rect, shown: &Shown<'_>, local: &mut UiState) -> Option<()> {
+pub fn mark(ui: &Ui, painter: &Painter, pane: Rect, shown: &Shown<'_>, local: &mut UiState) -> Option<()> {
     let choice = local.probe.vertex(shown).filter(|_| local.probe.is_on(shown) && !shown.state.page.embed)?;
     let (model, character) = (shown.library.active()?, shown.frame.characters.first()?);
     let formula = &mut local.probe.formula;
@@ -107,7 +107,7 @@ fn vertex_title(model: &Model, choice: VertexChoice) -> String {
 }
 
 /// The three matrices of a joint; nothing for one that no skin names.
-pub(super) fn matrices(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex) {
+pub fn matrices(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex) {
     let found = shown.frame.characters.first().and_then(|character| joint_matrices(model, character, joint));
     let Some(found) = found else {
         controls::hint(ui, "No mesh is bound to this joint.");
@@ -146,7 +146,7 @@ fn matrix(ui: &mut Ui, name: &str, what: &str, matrix: &Affine3A) {
 }
 
 /// The switch for looking at vertices, and the formula at the one that was found.
-pub(super) fn vertex(ui: &mut Ui, shown: &Shown<'_>, model: &Model, local: &mut UiState, out: &mut Output) {
+pub fn vertex(ui: &mut Ui, shown: &Shown<'_>, model: &Model, local: &mut UiState, out: &mut Output) {
     let on = local.probe.is_on(shown);
     if controls::switch(ui, "Vertex under the pointer", on) {
         local.probe.on = !on;
@@ -279,7 +279,7 @@ fn decimals(number: f32) -> usize {
 }
 
 /// Never minus nothing.
-pub(super) fn fixed(number: f32, digits: usize) -> String {
+pub fn fixed(number: f32, digits: usize) -> String {
     let text = format!("{number:.digits$}");
     match text.strip_prefix('-') {
         Some(rest) if rest.bytes().all(|byte| matches!(byte, b'0' | b'.')) => rest.to_owned(),

@@ -3,18 +3,19 @@
 use egui::{Color32, Rect, RichText, ScrollArea, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
 use glam::{Affine3A, EulerRot, Quat, Vec3};
 
-use super::controls::SliderSettings;
+use super::formula;
 use super::report::short;
-use super::{Output, Shown, UiState, clips, controls, formula, style};
 use crate::anim::{JointIndex, Transform};
 use crate::asset::Asset;
 use crate::library::Model;
 use crate::state::{Command, ViewerState, degrees_by_hand, title};
+use crate::ui::controls::SliderSettings;
+use crate::ui::{Output, Shown, UiState, clips, controls, icons, style};
 
 const ROW_HEIGHT: f32 = 26.0;
 const LEAST_TREE_HEIGHT: f32 = 8.0 * ROW_HEIGHT;
 
-pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
+pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     let Some(model) = shown.library.active() else { return };
     if local.folded_of != Some(model.id) {
         local.folded_of = Some(model.id);
@@ -278,7 +279,7 @@ fn joint_card(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, 
             name(ui, shown, asset, joint, panel, out);
         });
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let close = super::icons::icon_button_sized(ui, super::icons::Icon::Close, "Choose no joint", false, 24.0);
+            let close = icons::icon_button_sized(ui, icons::Icon::Close, "Choose no joint", false, 24.0);
             if close.clicked() {
                 out.commands.push(Command::SelectJoint(None));
             }

@@ -2,17 +2,17 @@
 
 use egui::Ui;
 
-use super::controls::{self, SliderSettings};
-use super::{Output, Shown};
 use crate::library::Model;
 use crate::mesh::{Geometry, SkinningMode, Topology};
 use crate::state::{Command, Inspect, Show, active_clip};
+use crate::ui::controls::{self, SliderSettings};
+use crate::ui::{Output, Shown};
 
 const MODES: [(SkinningMode, &str); 3] =
     [(SkinningMode::Linear, "Linear"), (SkinningMode::Rigid, "Rigid"), (SkinningMode::DualQuaternion, "Dual quat.")];
 
 /// What a skinning mode is called.
-pub(super) fn title(mode: SkinningMode) -> &'static str {
+pub fn title(mode: SkinningMode) -> &'static str {
     match mode {
         SkinningMode::Linear => "Linear",
         SkinningMode::Rigid => "Rigid",
@@ -34,7 +34,7 @@ fn explanation(mode: SkinningMode) -> &'static str {
     }
 }
 
-pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
+pub fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let state = shown.state;
     let model = shown.library.active();
     // Where nothing is skinned they are what there is to play with.

@@ -1,8 +1,14 @@
-//! The right panel: one tab at a time.
+//! The inspector: the right panel, one tab at a time.
+
+pub mod display;
+pub mod formula;
+pub mod report;
+pub mod scene_tree;
+pub mod view_options;
 
 use egui::Ui;
 
-use super::{Output, Shown, UiState, controls, display, motion, report, scene_tree, view_options};
+use crate::ui::{Output, Shown, UiState, controls, motion};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tab {
@@ -13,7 +19,7 @@ pub enum Tab {
     Motion,
 }
 
-pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
+pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     let mut tabs = vec![(Tab::Scene, "Scene"), (Tab::Display, "Display"), (Tab::File, "File"), (Tab::View, "View")];
     if !shown.library.motions().is_empty() {
         tabs.push((Tab::Motion, "Motion"));

@@ -5,10 +5,12 @@ use egui::layers::ShapeIdx;
 use egui::{Align, Layout, PaintCallback, Painter, PointerButton, Pos2, Rect, Response, Sense, Shape, Ui, pos2, vec2};
 use glam::Vec2;
 
-use super::icons::{Icon, icon_button};
-use super::{Output, Sheet, Shown, UiAction, UiState, display, formula, gizmo, is_narrow, keys, motion, style};
+use super::gizmo;
 use crate::frame::{PickedJoint, pick_joint};
 use crate::state::{Command, source_on_stage, title};
+use crate::ui::icons::{Icon, icon_button};
+use crate::ui::tabs::{display, formula};
+use crate::ui::{Output, Sheet, Shown, UiAction, UiState, is_narrow, keys, motion, style};
 
 /// Where the pixels go: under everything that was painted on the picture.
 pub struct PictureSlot {
@@ -258,14 +260,14 @@ fn pane_rects(shown: &Shown<'_>, rect: Rect) -> Vec<Rect> {
 }
 
 /// The pane of the picture under a point, the first one by default.
-pub(super) fn pane_at(shown: &Shown<'_>, rect: Rect, position: Option<Pos2>) -> Rect {
+pub fn pane_at(shown: &Shown<'_>, rect: Rect, position: Option<Pos2>) -> Rect {
     let panes = pane_rects(shown, rect);
     let under = position.and_then(|position| panes.iter().find(|pane| pane.contains(position)));
     under.or(panes.first()).copied().unwrap_or(rect)
 }
 
 /// A world-space point on the screen, in this pane of the picture; none behind the camera.
-pub(super) fn to_screen(shown: &Shown<'_>, rect: Rect, world: glam::Vec3) -> Option<Pos2> {
+pub fn to_screen(shown: &Shown<'_>, rect: Rect, world: glam::Vec3) -> Option<Pos2> {
     let view = &shown.frame.view;
     let projected = view.projection_from_view * view.view_from_world * world.extend(1.0);
     let ndc = Vec2::new(projected.x, projected.y) / projected.w;

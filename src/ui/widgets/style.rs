@@ -75,7 +75,7 @@ pub fn install(context: &egui::Context) {
 }
 
 /// See assets/font/README.md.
-const UBUNTU_LIGHT: &[u8] = include_bytes!("../../assets/font/Ubuntu-Light-derivative-Gaitway.ttf");
+const UBUNTU_LIGHT: &[u8] = include_bytes!("../../../assets/font/Ubuntu-Light-derivative-Gaitway.ttf");
 
 /// One font for all text: its digits have one width, so that columns of numbers need no other. And egui's few icons.
 fn fonts() -> FontDefinitions {
