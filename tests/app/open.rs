@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use gaitway::samples;
 use gaitway::state::{ClipChoice, Command, to_link};
+use gaitway::ui::{Tab, text};
 
 use crate::desk::{desk, real};
 
@@ -26,7 +27,7 @@ fn what_was_opened_can_be_taken_back() {
     let Some(mut desk) = desk("sample:pilot") else { return };
     let before = desk.state().clone();
     desk.open(&["sample:creature".into()]);
-    desk.press("Undo");
+    desk.press(text::UNDO);
     assert_eq!((desk.shown(), desk.state()), ("sample:pilot", &before));
     assert!(desk.says("Back to Pilot. Ctrl+Y returns to Fox."));
     desk.redo();
@@ -48,13 +49,13 @@ fn a_closed_model_gives_way_to_its_neighbour_and_comes_back() {
     let Some(mut desk) = desk("sample:pilot") else { return };
     desk.open(&["sample:creature".into()]);
     desk.open(&["sample:dwarf".into()]);
-    desk.press("Close Dwarf");
+    desk.press(&text::close_model("Dwarf"));
     assert_eq!((desk.shown(), desk.models()), ("sample:creature", vec!["sample:pilot", "sample:creature"]));
     desk.undo();
     assert_eq!(desk.shown(), "sample:dwarf");
     assert_eq!(desk.models().len(), 3);
     // One that is not shown only leaves the list.
-    desk.press("Close Pilot");
+    desk.press(&text::close_model("Pilot"));
     assert_eq!((desk.shown(), desk.models()), ("sample:dwarf", vec!["sample:creature", "sample:dwarf"]));
     desk.undo();
     assert_eq!(desk.models().len(), 3);
@@ -76,7 +77,7 @@ fn a_motion_is_borrowed_from_and_goes_and_comes_with_undo() {
     assert_eq!((desk.borrowed_clips(), &desk.state().playhead.clip), (1, &clip));
     assert!(desk.says("Added motion Walk again."));
     assert!(!desk.says("Search joints of the model"), "the tab stays");
-    desk.press("Motion");
+    desk.press(Tab::Motion.label());
     assert!(desk.says("Search joints of the model"));
     desk.undo();
     desk.redo();
@@ -105,7 +106,7 @@ fn a_motion_that_fits_nowhere_changes_nothing_and_can_be_mapped_by_hand() {
     let problem = desk.problem().expect("is said");
     assert!(problem.contains("no joint in common with Goblin"), "{problem}");
     assert_eq!((desk.state(), desk.library().motions().len()), (&before, 0));
-    desk.press("Choose joints by hand");
+    desk.press(text::MAP_REFUSED_MANUALLY);
     assert_eq!((desk.problem(), desk.library().motions().len()), (None, 1));
     desk.undo();
     assert_eq!(desk.library().motions().len(), 0);
@@ -142,7 +143,7 @@ fn a_file_that_cannot_be_read_loses_nothing() {
     std::fs::remove_file(&file).expect("was there");
     assert!(desk.problem().is_some_and(|problem| problem.contains(".glb")), "{:?}", desk.problem());
     assert_eq!((desk.shown(), desk.state()), ("sample:pilot", &before));
-    desk.press("Dismiss the error");
+    desk.press(text::DISMISS_ERROR);
     assert_eq!(desk.problem(), None);
 }
 

@@ -9,8 +9,8 @@ use super::rows::rows;
 use crate::anim::JointIndex;
 use crate::frame::Character;
 use crate::state::{Command, map_in_force, title};
-use crate::ui::Tab;
-use crate::ui::{Output, Sheet, Shown, UiState, picture, style};
+use crate::ui::viewport::panes;
+use crate::ui::{Output, Sheet, Shown, Tab, UiState, style};
 
 /// What the next click in the picture means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -65,14 +65,14 @@ pub(in crate::ui) fn show(
             (&pairing.motion.asset, source_character(shown, &pairing), joints)
         }
     };
-    let pane = picture::pane_at(shown, response.rect, response.hover_pos());
+    let pane = panes::pane_at(shown, response.rect, response.hover_pos());
     let places = places(shown, pane, character, &joints);
     let palette = style::palette(ui);
     let dot = |at: Pos2, radius: f32| {
         painter.circle(at, radius, palette.accent, Stroke::new(1.5, palette.panel));
     };
     places.iter().for_each(|&(_, at)| dot(at, 3.5));
-    local.hovered_joint = None;
+    local.viewport.hovered_joint = None;
     let state = matches!(clicking, Clicking::Target { .. }).then_some(shown.state);
     if let Some((joint, at)) = response.hover_pos().and_then(|position| nearest(&places, position)) {
         dot(at, 6.0);
@@ -111,8 +111,8 @@ pub(in crate::ui) fn show(
 /// The table comes back, and with it the sheet that went away for the picture.
 fn finish(local: &mut UiState) {
     local.motion.clicking = None;
-    local.tab = Tab::Motion;
-    local.sheet = Some(Sheet::Inspector);
+    local.layout.tab = Tab::Motion;
+    local.layout.sheet = Some(Sheet::Inspector);
 }
 
 /// Where joints are on the screen.
@@ -125,7 +125,7 @@ fn places(
     let Some(character) = character else { return Vec::new() };
     let place = |&joint: &JointIndex| {
         let world = character.world_from_joint.get(joint.get())?;
-        Some((joint, picture::to_screen(shown, pane, world.translation.into())?))
+        Some((joint, panes::to_screen(shown, pane, world.translation.into())?))
     };
     joints.iter().filter_map(place).collect()
 }

@@ -2,13 +2,19 @@
 
 pub mod display;
 pub mod formula;
+mod joint_card;
 pub mod report;
-pub mod scene_tree;
-pub mod view_options;
+mod scene_tree;
+mod view_options;
 
 use egui::Ui;
 
-use crate::ui::{Output, Shown, UiState, controls, motion};
+use super::{Output, Shown, UiState, controls, motion};
+
+pub use formula::VertexProbe;
+pub use joint_card::JointCard;
+pub use scene_tree::SceneTree;
+pub use view_options::PictureSettings;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tab {
@@ -19,17 +25,28 @@ pub enum Tab {
     Motion,
 }
 
-pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
-    let mut tabs = vec![(Tab::Scene, "Scene"), (Tab::Display, "Display"), (Tab::File, "File"), (Tab::View, "View")];
-    if !shown.library.motions().is_empty() {
-        tabs.push((Tab::Motion, "Motion"));
+impl Tab {
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Scene => "Scene",
+            Self::Display => "Display",
+            Self::File => "File",
+            Self::View => "View",
+            Self::Motion => "Motion",
+        }
     }
-    if let Some(tab) = controls::segmented(ui, Some(local.open_tab(shown.library)), &tabs) {
-        local.tab = tab;
+}
+
+/// Shows the tab bar and the open tab.
+pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
+    let tabs = [Tab::Scene, Tab::Display, Tab::File, Tab::View, Tab::Motion].map(|tab| (tab, tab.label()));
+    let count = if shown.library.motions().is_empty() { tabs.len() - 1 } else { tabs.len() };
+    if let Some(tab) = controls::segmented(ui, Some(local.layout.open_tab(shown.library)), &tabs[..count]) {
+        local.layout.tab = tab;
     }
     ui.add_space(4.0);
-    match local.open_tab(shown.library) {
-        // The tree scrolls by itself, under the chosen joint's numbers.
+    match local.layout.open_tab(shown.library) {
+        // Has a scroll area of its own.
         Tab::Scene => scene_tree::show(ui, shown, local, out),
         Tab::Display => controls::scrolled(ui, "display", |ui| display::show(ui, shown, out)),
         Tab::File => controls::scrolled(ui, "file", |ui| report::show(ui, shown, out)),
