@@ -34,7 +34,7 @@ for (const renderer of BACK_ENDS) {
       const [rest, restPicture] = [await pose(page), await picture(page)];
       assert.equal(rest.nodes.length, 18);
       assert.deepEqual(rest.meshes.map(({ positions }) => positions.length), [3 * VERTICES]);
-      // The switch “Turn by hand” of the chosen joint, then the knob of the first slider: egui's panels are pixels to a page.
+      // The switch “Pose manually” of the chosen joint, then the knob of the first slider: egui's panels are pixels to a page.
       await apply(page, { joint: 5 });
       // egui finds what is under the pointer by the frame before.
       await page.mouse.move(741, 118);

@@ -76,9 +76,9 @@ fn everything_stays_on_the_screen() {
     for size in [NARROW, [360.0, 640.0], [700.0, 500.0], WIDE, [1920.0, 1080.0]] {
         let mut harness = bench(size, model_with_clips(30));
         let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
+        let normal_speed = text::speed(1.0);
         let narrow = size[0] < 700.0;
-        for label in
-            [text::PLAY, text::NEXT_FRAME, text::TIME, if narrow { &text::speed(1.0) } else { text::SPEED_VALUE }]
+        for label in [text::PLAY, text::NEXT_FRAME, text::TIME, if narrow { &normal_speed } else { text::SPEED_VALUE }]
         {
             let rect = harness.get_by_label(label).rect();
             assert!(screen.contains_rect(rect), "{label} at {rect:?} on {size:?}");
