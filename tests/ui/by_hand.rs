@@ -1,4 +1,4 @@
-//! Turning joints by hand, comparing, and what can be taken out of the page.
+//! Posing joints manually, comparing skinning methods, saving images and videos.
 
 use egui::{PointerButton, Pos2, pos2, vec2};
 use egui_kittest::Harness;

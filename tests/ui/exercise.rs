@@ -1,4 +1,4 @@
-//! The skinning exercise in the panels: sliders, matrices, the formula at a vertex, names, and what can be saved.
+//! The skinning exercise in the panels: sliders, matrices, the skinning equation at a vertex, names, saving.
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;

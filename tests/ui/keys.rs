@@ -1,4 +1,4 @@
-//! The keys, and the table of them.
+//! Keyboard shortcuts and their table.
 
 use egui::Key;
 use egui_kittest::kittest::Queryable;

@@ -1,4 +1,4 @@
-//! What fits where: wide, narrow, folded, embedded; and what lies over the picture.
+//! Layout on wide, narrow and embedded screens, and what lies over the viewport.
 
 use egui_kittest::kittest::Queryable;
 use gaitway::ui::{PathPrompt, PathPurpose, Progress, Sheet, Tab, UiAction, text};

@@ -1,4 +1,4 @@
-//! Several models at once, and the way back from what was opened.
+//! Several models at once, and undoing an open.
 
 use egui_kittest::kittest::Queryable;
 use gaitway::library::{Library, Model};

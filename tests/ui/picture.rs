@@ -1,4 +1,4 @@
-//! Pointer and wheel on the picture.
+//! Pointer, wheel and fingers in the viewport.
 
 use egui::{Event, Modifiers, PointerButton, TouchDeviceId, TouchId, TouchPhase, pos2, vec2};
 use egui_kittest::Harness;
