@@ -7,13 +7,13 @@ use crate::ui::{Tab, Toast};
 impl App {
     /// Shows an error, replacing earlier ones.
     pub(super) fn replace_error(&mut self, error: String) {
-        self.panels.motion_refused = false;
-        self.panels.error = Some(error);
+        self.panels.messages.clear_error();
+        self.panels.messages.error = Some(error);
     }
 
     /// Shows an error below earlier ones.
     pub(super) fn add_error(&mut self, problem: &str) {
-        let error = self.panels.error.get_or_insert_default();
+        let error = self.panels.messages.error.get_or_insert_default();
         if !error.is_empty() {
             error.push('\n');
         }
@@ -29,14 +29,14 @@ impl App {
         const SECS_PER_BYTE: f64 = 0.03;
         let secs = SECS + SECS_PER_BYTE * text.len() as f64 + if undoable { Toast::UNDOABLE_SECS } else { 0.0 };
         let until_secs = self.context.input(|input| input.time) + secs;
-        self.panels.toast = Some(Toast { text, until_secs, undoable });
+        self.panels.messages.toast = Some(Toast { text, until_secs, undoable });
         self.toast_steps = self.editor.undo_steps();
     }
 
     /// Hides an undoable toast once its step is no longer the last, since that is what its button undoes.
     pub(super) fn expire_toast(&mut self) {
         let steps = self.editor.undo_steps();
-        self.panels.toast.take_if(|toast| toast.undoable && steps != self.toast_steps);
+        self.panels.messages.toast.take_if(|toast| toast.undoable && steps != self.toast_steps);
     }
 
     /// Shows the editor's events.
@@ -46,16 +46,16 @@ impl App {
                 Event::Notice { text, undoable } => self.show_toast(text, undoable),
                 Event::Problem(problem) => self.add_error(&problem),
                 Event::ViewOpened => {
-                    self.panels.turn_to_link(self.editor.state());
+                    self.panels.on_view_opened(self.editor.state());
                     // Space plays and pauses the new view, instead of pressing the button that had focus.
                     if let Some(focused) = self.context.memory(|memory| memory.focused()) {
                         self.context.memory_mut(|memory| memory.surrender_focus(focused));
                     }
                 }
-                Event::ModelOpened => self.panels.turn_to_model(self.editor.library()),
-                Event::MotionsRefused => self.panels.motion_refused = true,
-                Event::MapStarted => (self.panels.tab, self.panels.inspector_open) = (Tab::Motion, true),
-                Event::Stepped => self.panels.toast = None,
+                Event::ModelOpened => self.panels.on_model_opened(self.editor.library()),
+                Event::MotionsRefused => self.panels.messages.motion_refused = true,
+                Event::MapStarted => (self.panels.layout.tab, self.panels.layout.inspector_open) = (Tab::Motion, true),
+                Event::Stepped => self.panels.messages.toast = None,
             }
         }
     }

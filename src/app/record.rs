@@ -27,7 +27,7 @@ impl App {
             was_playing: self.editor.state().playback.playing,
             time_secs: self.editor.state().playhead.time_secs,
         });
-        self.panels.recording = true;
+        self.panels.host.is_recording = true;
         self.apply(Command::SetPlaying(false));
         self.apply(Command::Seek(range.start_secs));
     }
@@ -67,7 +67,7 @@ impl App {
     /// Restores the panels and the playback.
     fn end_recording(&mut self) {
         let Some(recording) = self.recording.take() else { return };
-        self.panels.recording = false;
+        self.panels.host.is_recording = false;
         self.apply(Command::Seek(recording.time_secs));
         self.apply(Command::SetPlaying(recording.was_playing));
     }

@@ -60,7 +60,7 @@ impl App {
         ui::install(&cc.egui_ctx);
         let inbox = Inbox::new(cc.egui_ctx.clone());
         let mut panels = UiState::default();
-        panels.has_gallery = host.has_gallery();
+        panels.host.has_gallery = host.has_gallery();
         let mut app = Self {
             editor: Editor::default(),
             viewport: Viewport::new(gpu, device::samples(&info)),
@@ -99,12 +99,11 @@ impl App {
 
     /// The error that the user sees.
     pub fn problem(&self) -> Option<&str> {
-        self.panels.error.as_deref()
+        self.panels.messages.error.as_deref()
     }
 
     fn open(&mut self, contents: Contents, view: Option<ViewerState>) -> Result<(), String> {
-        self.panels.error = None;
-        self.panels.motion_refused = false;
+        self.panels.messages.clear_error();
         let opened = self.editor.open(contents, view, &mut |model| self.viewport.admit(model));
         self.show_events();
         opened
@@ -119,22 +118,24 @@ impl App {
 
     fn handle(&mut self, message: Message) {
         match message {
-            Message::OpenProgress(opening) => self.panels.progress = Some(progress(&opening)),
+            Message::OpenProgress(opening) => self.panels.messages.progress = Some(progress(&opening)),
             Message::Opened { contents, state, reply } => {
-                self.panels.progress = None;
+                let progress = self.panels.messages.progress.take();
                 let opened = self.open(*contents, state.map(|state| *state));
                 if let Err(error) = &opened {
-                    self.panels.error = Some(error.clone());
+                    self.panels.messages.error = Some(error.clone());
+                    self.panels.messages.failed_to_open = progress.map(|progress| progress.name);
                 }
                 if let Some(reply) = reply {
                     self.answer_opened(opened, reply);
                 }
             }
             Message::OpenFailed(error) => {
-                self.panels.progress = None;
+                let progress = self.panels.messages.progress.take();
                 self.replace_error(error);
+                self.panels.messages.failed_to_open = progress.map(|progress| progress.name);
             }
-            Message::OpenFailedSilently => self.panels.progress = None,
+            Message::OpenFailedSilently => self.panels.messages.progress = None,
             Message::Failed(error) => self.replace_error(error),
             Message::Save(name, bytes) => {
                 self.host.save_file(&name, &bytes);
@@ -257,13 +258,13 @@ impl App {
         let motions = || self.editor.library().motions().iter().map(Motion::id);
         if !motions().eq(self.last_motions.iter().copied()) {
             self.last_motions = motions().collect();
-            self.panels.other_motions();
+            self.panels.on_motions_changed();
         }
     }
 
     fn choose(&mut self, role: Role, purpose: PathPurpose) {
         if !self.host.choose_files(role, &self.inbox) {
-            self.panels.path_prompt = Some(PathPrompt { purpose, path: String::new() });
+            self.panels.messages.path_prompt = Some(PathPrompt { purpose, path: String::new() });
         }
     }
 
@@ -275,7 +276,7 @@ impl App {
     fn advance(&mut self, context: &egui::Context) {
         /// Pauses (a hidden page, a long load) are skipped, not caught up.
         const MAX_STEP_SECS: f32 = 0.25;
-        let has_motion = self.shown().clip().is_some_and(|clip| clip.duration_secs() > 0.0);
+        let has_motion = self.shown().is_animated();
         let state = self.editor.state();
         let is_moving = (state.playback.playing && has_motion) || state.is_turning();
         if !self.has_begun || !is_moving || self.panels.holds_time {
@@ -302,10 +303,10 @@ impl App {
     fn lay_out(&mut self, ui: &mut egui::Ui, output: &mut Output) -> (bool, egui::Rect, ui::PictureSlot) {
         let shown = Shown { library: self.editor.library(), state: self.editor.state(), frame: &self.viewport.frame };
         let rect = ui::panels(ui, shown, &mut self.panels, output);
-        let slot = ui::picture(ui, rect, shown, &mut self.panels, output);
+        let slot = ui::viewport(ui, rect, shown, &mut self.panels, output);
         ui::overlays(ui, rect, shown, &mut self.panels, output);
         let has_input = !output.commands.is_empty() || !output.actions.is_empty();
-        self.editor.set_aspect(self.panels.aspect);
+        self.editor.set_aspect(self.panels.viewport.aspect);
         // On a slow machine, one key is released in the same frame as the next is pressed.
         let is_press = |event: &egui::Event| matches!(event, egui::Event::Key { pressed: true, repeat: false, .. });
         if ui.input(|input| input.events.iter().any(is_press)) {
@@ -342,7 +343,7 @@ impl eframe::App for App {
         if !dropped.is_empty() {
             self.host.open_dropped(dropped, &self.inbox);
         }
-        (self.panels.can_undo, self.panels.can_redo) = (self.editor.can_undo(), self.editor.can_redo());
+        (self.panels.host.can_undo, self.panels.host.can_redo) = (self.editor.can_undo(), self.editor.can_redo());
         self.expire_toast();
         self.update_motions();
         let mut output = std::mem::take(&mut self.output);

@@ -33,7 +33,7 @@ impl App {
         if self.host.save_file(&file.name, &file.bytes) {
             self.toast(file.remark.unwrap_or_else(|| format!("Saved {}.", file.name)));
         } else {
-            self.panels.path_prompt = Some(PathPrompt { purpose: PathPurpose::Save(what), path: file.name });
+            self.panels.messages.path_prompt = Some(PathPrompt { purpose: PathPurpose::Save(what), path: file.name });
         }
     }
 

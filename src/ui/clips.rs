@@ -1,112 +1,126 @@
-//! The left panel: which model, and which of its clips.
+//! The left panel: the open models, and the clips of the active one.
 
 use egui::{RichText, ScrollArea, Ui};
 
 use super::icons::{Icon, icon_button_sized};
-use super::{Output, Shown, UiAction, UiState, controls, style};
+use super::{Output, Shown, UiAction, UiState, controls, style, text};
 use crate::editor::{name_and_place, short_name};
-use crate::library::Model;
+use crate::library::{Model, ModelId};
 use crate::state::{ClipChoice, Command, choice_of_clip};
 
-/// As high as a search field, so that nothing moves when the first letter is typed.
+/// The height of a search field, so that nothing moves when the clear button appears.
 const CLEAR_SIZE: f32 = 28.0;
-/// With the space below it.
+/// Including the space below.
 const ROW_HEIGHT: f32 = 32.0;
-/// Of the heading of the clips.
-const CLIPS_HEADING: f32 = 40.0;
-/// With more clips than this there is a search field.
+/// Height of the clip list's heading.
+const CLIPS_HEADING_HEIGHT: f32 = 40.0;
+/// Longer lists have a search field.
 const MANY_CLIPS: usize = 8;
+
+/// What the panel remembers.
+#[derive(Debug, Default)]
+pub struct ClipList {
+    search: String,
+    /// The active model and the panel's height when the list of models last scrolled to it.
+    seen_model: Option<(ModelId, u32)>,
+    /// The model, its current clip and the list's height when the list last scrolled to that clip.
+    seen_clip: Option<(ModelId, Option<usize>, u32)>,
+}
 
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     let Some(model) = shown.library.active() else { return };
+    let list = &mut local.clip_list;
     header(ui, model, out);
     if shown.library.models().len() > 1 {
-        models(ui, shown, model, local, out);
+        models(ui, shown, model, list, out);
     }
-    controls::section(ui, "CLIPS");
-    let titles = model.clip_titles();
-    if titles.len() > MANY_CLIPS {
-        search_field(ui, &mut local.clip_search, &format!("Search {} clips", titles.len()));
+    controls::section(ui, text::CLIPS_SECTION);
+    let count = model.clip_titles().len();
+    if count > MANY_CLIPS {
+        search_field(ui, &mut list.search, &text::search_clips(count));
         ui.add_space(4.0);
     } else {
-        local.clip_search.clear();
+        list.search.clear();
     }
-    let wanted = local.clip_search.to_lowercase();
-    let chosen = shown.clip_index();
-    let motions = names_of(shown.library.motions().iter().map(|motion| &*motion.source));
-    // What is chosen stays in sight when the list gets shorter, and comes into sight when another is chosen elsewhere.
-    let seen = (model.id, chosen, ui.available_height() as u32);
-    let scrolls = local.clips_seen.replace(seen) != Some(seen);
+    // The current clip stays visible when the list gets shorter, and becomes visible when it is set elsewhere.
+    let seen = (model.id, shown.clip_index(), ui.available_height() as u32);
+    let scrolls = list.seen_clip.replace(seen) != Some(seen);
     ScrollArea::vertical().id_salt("clips").auto_shrink([false, true]).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
-        let mut found = false;
-        if wanted.is_empty() {
-            found = true;
-            if controls::list_row(ui, "Rest pose", "", chosen.is_none()).clicked() {
-                out.commands.push(Command::SetClip(ClipChoice::RestPose));
-            }
-        }
-        let mut heading = None;
-        for (index, title) in titles.iter().enumerate() {
-            if !title.to_lowercase().contains(&wanted) {
-                continue;
-            }
-            found = true;
-            let motion = model.borrowed(index).map(|borrowed| borrowed.motion);
-            if motion != heading
-                && let Some(name) = motion.and_then(|motion| motions.get(motion))
-            {
-                motion_heading(ui, name);
-            }
-            heading = motion;
-            let duration = model.clip(index).map_or(0.0, |clip| clip.duration_secs());
-            let row = controls::list_row(ui, title, &format!("{duration:.2} s"), chosen == Some(index));
-            if scrolls && chosen == Some(index) {
-                row.scroll_to_me(None);
-            }
-            if row.clicked() {
-                out.commands.push(Command::SetClip(choice_of_clip(model, index)));
-            }
-        }
-        if !found {
-            controls::hint(ui, format!("No clip's name contains “{}”.", local.clip_search));
-        } else if titles.is_empty() {
-            ui.add_space(4.0);
-            controls::hint(
-                ui,
-                "This file has no animation. Drop a motion to borrow one (.bvh, .vrma, a .glb without meshes), or take \
-                 another model's clips with “Motion…”.",
-            );
-        }
+        clips(ui, shown, model, &list.search, scrolls, out);
     });
 }
 
-/// The models to turn to, in no more than a part of the panel.
-fn models(ui: &mut Ui, shown: &Shown<'_>, active: &Model, local: &mut UiState, out: &mut Output) {
+/// The rest pose and the clips that match the search, borrowed ones under the name of their motion.
+fn clips(ui: &mut Ui, shown: &Shown<'_>, model: &Model, search: &str, scrolls: bool, out: &mut Output) {
+    let wanted = search.to_lowercase();
+    let current = shown.clip_index();
+    let motions = names_of(shown.library.motions().iter().map(|motion| &*motion.source));
+    let titles = model.clip_titles();
+    if wanted.is_empty() && controls::list_row(ui, text::REST_POSE, "", current.is_none()).clicked() {
+        out.commands.push(Command::SetClip(ClipChoice::RestPose));
+    }
+    let mut found = wanted.is_empty();
+    let mut heading = None;
+    for (index, title) in titles.iter().enumerate() {
+        if !title.to_lowercase().contains(&wanted) {
+            continue;
+        }
+        found = true;
+        let motion = model.borrowed(index).map(|borrowed| borrowed.motion);
+        if motion != heading
+            && let Some(name) = motion.and_then(|motion| motions.get(motion))
+        {
+            motion_heading(ui, name);
+        }
+        heading = motion;
+        let duration = model.clip(index).map_or(0.0, |clip| clip.duration_secs());
+        let row = controls::list_row(ui, title, &format!("{duration:.2} s"), current == Some(index));
+        if scrolls && current == Some(index) {
+            row.scroll_to_me(None);
+        }
+        if row.clicked() {
+            out.commands.push(Command::SetClip(choice_of_clip(model, index)));
+        }
+    }
+    if !found {
+        controls::hint(ui, text::no_clip_found(search));
+    } else if titles.is_empty() {
+        ui.add_space(4.0);
+        controls::hint(
+            ui,
+            "This model has no animations. To borrow one, drop a motion (.bvh, .vrma, or a .glb without meshes), or use \
+             “Motion…” to take another model's clips.",
+        );
+    }
+}
+
+/// The open models, in at most a part of the panel.
+fn models(ui: &mut Ui, shown: &Shown<'_>, active: &Model, list: &mut ClipList, out: &mut Output) {
     controls::section(ui, "MODELS");
     let room = ui.available_height();
-    // What the clips do not need, or their fair share.
-    let clips_need = CLIPS_HEADING + (active.clip_count() + 1) as f32 * ROW_HEIGHT;
-    let most_high = (room - clips_need).max(0.4 * room).max(2.0 * ROW_HEIGHT);
+    // What the clips leave free, but at least a fair share.
+    let clips_need = CLIPS_HEADING_HEIGHT + (active.clip_count() + 1) as f32 * ROW_HEIGHT;
+    let max_height = (room - clips_need).max(0.4 * room).max(2.0 * ROW_HEIGHT);
     let seen = (active.id, room as u32);
-    let scrolls = local.models_seen.replace(seen) != Some(seen);
-    ScrollArea::vertical().id_salt("models").max_height(most_high).auto_shrink([false, true]).show(ui, |ui| {
+    let scrolls = list.seen_model.replace(seen) != Some(seen);
+    ScrollArea::vertical().id_salt("models").max_height(max_height).auto_shrink([false, true]).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         let models = shown.library.models();
         let names = names_of(models.iter().map(|model| &*model.source));
         for (model, name) in models.iter().zip(&names) {
-            let chosen = active.id == model.id;
+            let is_active = active.id == model.id;
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = 2.0;
                 let size = egui::vec2(ui.available_width() - CLEAR_SIZE - 2.0, ROW_HEIGHT);
-                let row = ui.allocate_ui(size, |ui| controls::list_row(ui, name, "", chosen)).inner;
-                if scrolls && chosen {
+                let row = ui.allocate_ui(size, |ui| controls::list_row(ui, name, "", is_active)).inner;
+                if scrolls && is_active {
                     row.scroll_to_me(None);
                 }
-                if row.clicked() && !chosen {
+                if row.clicked() && !is_active {
                     out.actions.push(UiAction::ShowModel(model.id));
                 }
-                let close = format!("Close {name}");
+                let close = text::close_model(name);
                 if icon_button_sized(ui, Icon::Close, &close, false, CLEAR_SIZE).clicked() {
                     out.actions.push(UiAction::CloseModel(model.id));
                 }
@@ -115,11 +129,11 @@ fn models(ui: &mut Ui, shown: &Shown<'_>, active: &Model, local: &mut UiState, o
     });
 }
 
-/// Whose clips follow.
+/// The name of a motion, above its clips.
 fn motion_heading(ui: &mut Ui, name: &str) {
     ui.add_space(8.0);
     let weak = style::palette(ui).weak_text;
-    let text = RichText::new(format!("From {name}")).small().color(weak);
+    let text = RichText::new(text::from_motion(name)).small().color(weak);
     ui.add(egui::Label::new(text).truncate());
     ui.add_space(1.0);
 }
@@ -132,25 +146,25 @@ fn header(ui: &mut Ui, model: &Model, out: &mut Output) {
     ui.add_space(8.0);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = egui::Vec2::splat(6.0);
-        // All three in a row of the narrowest panel that a screen of 800 pixels gives.
+        // All three buttons fit into the narrowest panel of a screen 800 pixels wide.
         ui.spacing_mut().button_padding.x = 7.0;
         let size = egui::vec2(0.0, 32.0);
-        let open = egui::Button::new("Open…").min_size(size);
-        if ui.add(open).on_hover_text("Open a model; files can also be dropped anywhere").clicked() {
+        let open = egui::Button::new(text::OPEN).min_size(size);
+        if ui.add(open).on_hover_text("Open a model. You can also drop files anywhere.").clicked() {
             out.actions.push(UiAction::OpenFiles);
         }
-        let motion = egui::Button::new("Motion…").min_size(size);
+        let motion = egui::Button::new(text::BORROW_MOTION).min_size(size);
         if ui.add(motion).on_hover_text("Borrow motion from another file, or load a joint map").clicked() {
             out.actions.push(UiAction::ChooseMotion);
         }
-        let share = egui::Button::new("Share…").min_size(size);
-        if ui.add(share).on_hover_text("A link to this view, with all that is set").clicked() {
+        let share = egui::Button::new(text::SHARE).min_size(size);
+        if ui.add(share).on_hover_text("Share a link to this view and all its settings").clicked() {
             out.actions.push(UiAction::ShareLink);
         }
     });
 }
 
-/// What files are called in a list of them: those of the same name are numbered.
+/// The names of files in a list; equal names are numbered.
 pub(super) fn names_of<'a>(sources: impl Iterator<Item = &'a str>) -> Vec<String> {
     let names: Vec<String> = sources.map(short_name).collect();
     let numbered = |(index, name): (usize, &String)| {
@@ -160,12 +174,12 @@ pub(super) fn names_of<'a>(sources: impl Iterator<Item = &'a str>) -> Vec<String
     names.iter().enumerate().map(numbered).collect()
 }
 
-/// A search field that can be emptied.
+/// A search field with a button that clears it.
 pub(super) fn search_field(ui: &mut Ui, text: &mut String, hint: &str) {
-    // As the pass began: typing does not make room for the button before the next.
+    // As of the start of the pass: the button appears in the pass after the first letter.
     let filled = !text.is_empty();
     ui.horizontal(|ui| {
-        // All of the button and its distance: a row that is too wide makes the panel grow, in every pass again.
+        // The button and its spacing: a row that is too wide would widen the panel in every pass.
         let clear_width = if filled { CLEAR_SIZE + ui.spacing().item_spacing.x } else { 0.0 };
         let field = ui.add(
             egui::TextEdit::singleline(text)
@@ -177,7 +191,7 @@ pub(super) fn search_field(ui: &mut Ui, text: &mut String, hint: &str) {
             ui.ctx().request_repaint();
         }
         field.accessible_name(hint);
-        if filled && icon_button_sized(ui, Icon::Close, "Clear the search", false, CLEAR_SIZE).clicked() {
+        if filled && icon_button_sized(ui, Icon::Close, text::CLEAR_SEARCH, false, CLEAR_SIZE).clicked() {
             text.clear();
         }
     });

@@ -1,13 +1,13 @@
-//! The keys: one table that is both listened to and shown.
+//! Keyboard shortcuts: one table for both handling and help.
 
 use egui::{Context, Key, Modifiers};
 
 use super::transport::range_here;
-use super::{Output, Shown, UiAction, UiState, motion};
+use super::{Output, Shown, UiAction, UiState, motion, text};
 use crate::anim::LoopMode;
 use crate::state::{CameraChoice, Command, Show, choice_of_clip};
 
-/// One line of the help.
+/// A shortcut and its line in the help.
 pub struct KeyHelp {
     pub keys: &'static str,
     pub does: &'static str,
@@ -18,7 +18,7 @@ pub struct KeyHelp {
 const ORBIT_STEP_RADIANS: f32 = 0.12;
 const ZOOM_STEP: f32 = 0.9;
 
-/// All keys. `act` gets the position of the pressed key among `pressed`.
+/// All shortcuts. `act` receives the index of the pressed key in `pressed`.
 pub const KEY_TABLE: &[KeyHelp] = &[
     KeyHelp {
         keys: "Space",
@@ -27,14 +27,14 @@ pub const KEY_TABLE: &[KeyHelp] = &[
         act: |_, _, _, out| out.commands.push(Command::TogglePlaying),
     },
     KeyHelp {
-        keys: "Comma, period",
-        does: "One frame back, one frame on",
+        keys: text::STEP_KEYS,
+        does: text::STEP_FRAMES,
         pressed: &[Key::Comma, Key::Period],
         act: |_, _, which, out| out.commands.push(Command::StepFrames(if which == 0 { -1 } else { 1 })),
     },
     KeyHelp {
         keys: "Up  Down",
-        does: "Nearer, farther",
+        does: "Zoom in, zoom out",
         pressed: &[Key::ArrowUp, Key::ArrowDown],
         act: |_, _, which, out| {
             let factor = if which == 0 { ZOOM_STEP } else { 1.0 / ZOOM_STEP };
@@ -43,7 +43,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
     },
     KeyHelp {
         keys: "Left  Right",
-        does: "Around",
+        does: "Orbit",
         pressed: &[Key::ArrowLeft, Key::ArrowRight],
         act: |_, _, which, out| {
             let yaw_radians = if which == 0 { -ORBIT_STEP_RADIANS } else { ORBIT_STEP_RADIANS };
@@ -52,7 +52,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
     },
     KeyHelp {
         keys: "1 – 9",
-        does: "Choose a clip",
+        does: "Play a clip",
         pressed: &[Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9],
         act: |shown, _, which, out| {
             if let Some(model) = shown.library.active().filter(|model| which < model.clip_count()) {
@@ -62,25 +62,25 @@ pub const KEY_TABLE: &[KeyHelp] = &[
     },
     KeyHelp {
         keys: "F",
-        does: "Fit everything into the picture",
+        does: text::FRAME_ALL,
         pressed: &[Key::F],
         act: |_, _, _, out| out.commands.push(Command::FrameAll),
     },
     KeyHelp {
         keys: "Home",
-        does: "The camera as it was at first",
+        does: "Reset camera",
         pressed: &[Key::Home],
         act: |_, _, _, out| out.commands.push(Command::SetCamera(CameraChoice::Auto)),
     },
     KeyHelp {
         keys: "C",
-        does: "The camera goes along with the character, or stays",
+        does: "Toggle camera follow",
         pressed: &[Key::C],
         act: |shown, _, _, out| out.commands.push(Command::SetFollow(!shown.state.camera_options.follow)),
     },
     KeyHelp {
         keys: "I  O",
-        does: "In point, out point here",
+        does: "Set in point, set out point",
         pressed: &[Key::I, Key::O],
         act: |shown, _, which, out| out.commands.extend(range_here(shown, which == 0)),
     },
@@ -98,7 +98,7 @@ pub const KEY_TABLE: &[KeyHelp] = &[
     },
     KeyHelp {
         keys: "S  W  G",
-        does: "Skeleton, wireframe, grid",
+        does: "Toggle skeleton, wireframe, grid",
         pressed: &[Key::S, Key::W, Key::G],
         act: |shown, _, which, out| {
             let mut show: Show = shown.state.display.show;
@@ -111,32 +111,26 @@ pub const KEY_TABLE: &[KeyHelp] = &[
         },
     },
     KeyHelp { keys: "Ctrl O", does: "Open files", pressed: &[], act: |_, _, _, _| {} },
-    KeyHelp {
-        keys: "Ctrl Z, Ctrl Y",
-        does: "Undo, redo a setting or what was opened",
-        pressed: &[],
-        act: |_, _, _, _| {},
-    },
+    KeyHelp { keys: "Ctrl Z, Ctrl Y", does: "Undo, redo", pressed: &[], act: |_, _, _, _| {} },
     KeyHelp {
         keys: "?",
-        does: "This list",
+        does: "Show this list",
         pressed: &[Key::Questionmark, Key::F1],
-        act: |_, local, _, _| local.help_open = !local.help_open,
+        act: |_, local, _, _| local.help.is_open = !local.help.is_open,
     },
     KeyHelp {
         keys: "Esc",
-        does: "Close what is open, choose no joint",
+        does: "Close or cancel; deselect the joint",
         pressed: &[Key::Escape],
         act: |shown, local, _, out| {
-            if local.help_open {
-                local.help_open = false;
+            if local.help.is_open {
+                local.help.is_open = false;
             } else if motion::stop_clicking(local) {
-                // That was all.
-            } else if local.sheet.is_some() {
-                local.sheet = None;
-            } else if local.error.is_some() {
-                local.error = None;
-                local.motion_refused = false;
+                // Esc only ended picking.
+            } else if local.layout.sheet.is_some() {
+                local.layout.sheet = None;
+            } else if local.messages.error.is_some() {
+                local.messages.clear_error();
             } else if shown.state.selection.joint.is_some() {
                 out.commands.push(Command::SelectJoint(None));
             }
@@ -144,9 +138,9 @@ pub const KEY_TABLE: &[KeyHelp] = &[
     },
 ];
 
-/// Listens, unless someone is typing or a control has the keyboard; to shortcuts also when a mere button has it.
+/// Handles keys unless a text field or another control has the keyboard; shortcuts work whenever no text field has it.
 pub(super) fn listen(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
-    if local.path_prompt.is_some() || local.motion.is_picking() {
+    if local.messages.path_prompt.is_some() || local.motion.is_picking() {
         return;
     }
     if !context.text_edit_focused() {
@@ -155,8 +149,8 @@ pub(super) fn listen(context: &Context, shown: &Shown<'_>, local: &mut UiState, 
     if context.egui_wants_keyboard_input() {
         return;
     }
-    // The help is modal: only the keys that close it count.
-    let modal = local.help_open;
+    // While the modal help is open, only the keys that close it work.
+    let modal = local.help.is_open;
     for line in KEY_TABLE {
         if modal && !line.pressed.iter().any(|key| matches!(key, Key::Escape | Key::Questionmark)) {
             continue;
@@ -173,9 +167,9 @@ pub(super) fn listen(context: &Context, shown: &Shown<'_>, local: &mut UiState, 
     }
 }
 
-/// On a slow machine a key is pressed several times within a frame: each counts.
+/// Handles shortcuts with modifiers. Counts every press: on a slow machine one frame can have several.
 fn shortcuts(context: &Context, out: &mut Output) {
-    // The longer one first: the shorter would swallow it.
+    // Ctrl+Shift+Z first: matching Ctrl+Z ignores Shift.
     let shortcuts = [
         (Modifiers::COMMAND | Modifiers::SHIFT, Key::Z, UiAction::Redo),
         (Modifiers::COMMAND, Key::Y, UiAction::Redo),

@@ -1,23 +1,20 @@
-//! The bottom panel: play, scrub, step, speed, loop mode, in and out points.
+//! The bottom panel: playback, scrubbing, frame steps, speed, loop mode, in and out points.
 
 use egui::{Align, Layout, RichText, Ui};
 
 use super::icons::{Icon, icon_button, play_button};
 use super::scrub::{self, Scrub, Scrubbed};
-use super::{Output, Shown, UiState, controls, feet, style};
+use super::{Output, Shown, UiState, controls, feet, style, text};
 use crate::anim::{LoopMode, TimeRange};
 use crate::library::ModelId;
 use crate::state::Command;
 
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, narrow: bool, out: &mut Output) {
-    let model = shown.library.active();
-    let clip_index = shown.clip_index();
-    let clip = shown.clip();
-    let time_secs = shown.clip_time_secs();
-    let of = (model.map_or(ModelId::default(), |model| model.id), clip_index.unwrap_or(usize::MAX));
-    let bar = Scrub { clip, time_secs, range: shown.state.playhead.range };
-    let (scrubbed, held) = scrub::show(ui, &bar, of, &mut local.key_marks);
-    local.holds_time = held;
+    let model_id = shown.library.active().map_or(ModelId::default(), |model| model.id);
+    let clip_id = (model_id, shown.clip_index().unwrap_or(usize::MAX));
+    let bar = Scrub { clip: shown.clip(), time_secs: shown.clip_time_secs(), range: shown.state.playhead.range };
+    let (scrubbed, is_held) = scrub::show(ui, &bar, clip_id, &mut local.key_marks);
+    local.holds_time = is_held;
     match scrubbed {
         Some(Scrubbed::Seek(secs)) => out.commands.push(Command::Seek(secs)),
         Some(Scrubbed::Range(range)) => out.commands.push(Command::SetRange(Some(range))),
@@ -29,18 +26,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, narrow: 
     ui.horizontal(|ui| {
         ui.set_height(44.0);
         ui.spacing_mut().item_spacing.x = 4.0;
-        let moves = clip.is_some_and(|clip| clip.duration_secs() > 0.0);
-        ui.add_enabled_ui(moves, |ui| {
-            if icon_button(ui, Icon::StepBack, "Previous frame (,)", false).clicked() {
-                out.commands.push(Command::StepFrames(-1));
-            }
-            if play_button(ui, shown.state.playback.playing && moves, 40.0).clicked() {
-                out.commands.push(Command::TogglePlaying);
-            }
-            if icon_button(ui, Icon::StepForward, "Next frame (.)", false).clicked() {
-                out.commands.push(Command::StepFrames(1));
-            }
-        });
+        ui.add_enabled_ui(shown.is_animated(), |ui| play_buttons(ui, shown, out));
         ui.add_space(8.0);
         times(ui, shown);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -51,18 +37,30 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, narrow: 
             } else {
                 speed_slider(ui, shown, out);
                 ui.add_space(8.0);
-                loop_choice(ui, shown, out);
+                loop_buttons(ui, shown, out);
                 ui.add_space(8.0);
-                ui.add_enabled_ui(moves, |ui| range_buttons(ui, shown, out));
+                ui.add_enabled_ui(shown.is_animated(), |ui| range_buttons(ui, shown, out));
             }
         });
     });
 }
 
+fn play_buttons(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
+    if icon_button(ui, Icon::StepBack, text::PREVIOUS_FRAME, false).clicked() {
+        out.commands.push(Command::StepFrames(-1));
+    }
+    if play_button(ui, shown.state.playback.playing && shown.is_animated(), 40.0).clicked() {
+        out.commands.push(Command::TogglePlaying);
+    }
+    if icon_button(ui, Icon::StepForward, text::NEXT_FRAME, false).clicked() {
+        out.commands.push(Command::StepFrames(1));
+    }
+}
+
 fn times(ui: &mut Ui, shown: &Shown<'_>) {
     let palette = style::palette(ui);
     let Some(clip) = shown.clip() else {
-        ui.label(RichText::new("Rest pose").color(palette.weak_text));
+        ui.label(RichText::new(text::REST_POSE).color(palette.weak_text));
         return;
     };
     let (time_secs, duration_secs) = (shown.clip_time_secs(), f64::from(clip.duration_secs()));
@@ -72,21 +70,21 @@ fn times(ui: &mut Ui, shown: &Shown<'_>) {
     ui.vertical(|ui| {
         ui.spacing_mut().item_spacing.y = 1.0;
         ui.add_space(5.0);
-        let text = format!("{time_secs:.2} / {duration_secs:.2} s");
-        ui.add(egui::Label::new(RichText::new(text).color(palette.text)).extend());
-        let text = format!("Frame {frame:.0} / {frames:.0}");
-        ui.add(egui::Label::new(RichText::new(text).small().color(palette.weak_text)).extend())
-            .on_hover_text(format!("At {per_sec:.0} frames a second"));
+        let seconds = text::seconds(time_secs, duration_secs);
+        ui.add(egui::Label::new(RichText::new(seconds).color(palette.text)).extend());
+        let frames = text::frames(frame, frames);
+        ui.add(egui::Label::new(RichText::new(frames).small().color(palette.weak_text)).extend())
+            .on_hover_text(format!("{per_sec:.0} frames per second"));
     });
 }
 
 const LOOP_MODES: [(LoopMode, Icon, &str); 3] = [
-    (LoopMode::Once, Icon::Once, "Play once"),
-    (LoopMode::Loop, Icon::Loop, "Loop"),
-    (LoopMode::PingPong, Icon::PingPong, "There and back"),
+    (LoopMode::Once, Icon::Once, text::PLAY_ONCE),
+    (LoopMode::Loop, Icon::Loop, text::LOOP),
+    (LoopMode::PingPong, Icon::PingPong, text::PING_PONG),
 ];
 
-fn loop_choice(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
+fn loop_buttons(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     for (mode, icon, label) in LOOP_MODES.into_iter().rev() {
         if icon_button(ui, icon, label, shown.state.playback.loop_mode == mode).clicked() {
             out.commands.push(Command::SetLoopMode(mode));
@@ -94,7 +92,7 @@ fn loop_choice(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     }
 }
 
-/// One button that goes through the modes.
+/// A single button that cycles through the modes.
 fn loop_cycle(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let at = LOOP_MODES.iter().position(|(mode, ..)| *mode == shown.state.playback.loop_mode).unwrap_or(0);
     let (_, icon, label) = LOOP_MODES[at];
@@ -104,24 +102,24 @@ fn loop_cycle(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
 }
 
 fn range_buttons(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
-    // Its place is kept, so that the others stay under the pointer.
+    // Invisible rather than absent, so that the other buttons don't move.
     ui.scope(|ui| {
         if shown.state.playhead.range.is_none() {
             ui.set_invisible();
         }
-        if icon_button(ui, Icon::Close, "Play the whole clip", false).clicked() {
+        if icon_button(ui, Icon::Close, text::CLEAR_RANGE, false).clicked() {
             out.commands.push(Command::SetRange(None));
         }
     });
-    if icon_button(ui, Icon::MarkOut, "Set the out point here (O)", false).clicked() {
+    if icon_button(ui, Icon::MarkOut, text::SET_OUT_POINT, false).clicked() {
         out.commands.extend(range_here(shown, false));
     }
-    if icon_button(ui, Icon::MarkIn, "Set the in point here (I)", false).clicked() {
+    if icon_button(ui, Icon::MarkIn, text::SET_IN_POINT, false).clicked() {
         out.commands.extend(range_here(shown, true));
     }
 }
 
-/// The range with its in or out point at the playhead.
+/// The range with its in or out point moved to the playhead.
 pub(super) fn range_here(shown: &Shown<'_>, start: bool) -> Option<Command> {
     let duration_secs = f64::from(shown.clip()?.duration_secs());
     let now = shown.clip_time_secs();
@@ -142,8 +140,8 @@ fn speed_slider(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let palette = style::palette(ui);
     if ui
         .add(egui::DragValue::new(&mut speed).range(SPEEDS).speed(0.01).fixed_decimals(2).suffix("×"))
-        .on_hover_text("Speed; drag, or click to type")
-        .accessible_name("Speed value")
+        .on_hover_text("Speed. Drag, or click to type.")
+        .accessible_name(text::SPEED_VALUE)
         .changed()
     {
         out.commands.push(Command::SetSpeed(speed));
@@ -156,28 +154,28 @@ fn speed_slider(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
             ui.add(egui::Slider::new(&mut speed, SPEEDS).logarithmic(true).show_value(false))
         })
         .inner;
-    let slider = slider.accessible_name("Speed").on_hover_text("Speed; double click for 1×");
+    let slider = slider.accessible_name(text::SPEED).on_hover_text("Speed. Double-click to reset to 1×.");
     if slider.double_clicked() {
         out.commands.push(Command::SetSpeed(1.0));
     } else if slider.changed() {
-        // Near the middle it catches, so that the ordinary speed is easy to find again.
+        // Snaps to the normal speed.
         let speed = if (speed - 1.0).abs() < 0.04 { 1.0 } else { speed };
         out.commands.push(Command::SetSpeed(speed));
     }
     ui.add_space(2.0);
-    ui.label(RichText::new("Speed").small().color(palette.weak_text));
+    ui.label(RichText::new(text::SPEED).small().color(palette.weak_text));
 }
 
 fn speed_menu(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
-    let label = format!("{}×", (shown.state.playback.speed * 100.0).round() / 100.0);
+    let label = text::speed((shown.state.playback.speed * 100.0).round() / 100.0);
     let button = ui.menu_button(label, |ui| {
         for speed in [0.1, 0.25, 0.5, 1.0, 1.5, 2.0, 4.0] {
             let chosen = (shown.state.playback.speed - speed).abs() < 1e-6;
-            if ui.selectable_label(chosen, format!("{speed}×")).clicked() {
+            if ui.selectable_label(chosen, text::speed(speed)).clicked() {
                 out.commands.push(Command::SetSpeed(speed));
                 ui.close();
             }
         }
     });
-    button.response.on_hover_text("Speed");
+    button.response.on_hover_text(text::SPEED);
 }

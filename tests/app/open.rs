@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use gaitway::samples;
 use gaitway::state::{ClipChoice, Command, to_link};
+use gaitway::ui::{Tab, text};
 
 use crate::desk::{desk, real};
 
@@ -26,7 +27,7 @@ fn opening_can_be_undone() {
     let Some(mut desk) = desk("sample:pilot") else { return };
     let before = desk.state().clone();
     desk.open(&["sample:creature".into()]);
-    desk.press("Undo");
+    desk.press(text::UNDO);
     assert_eq!((desk.active(), desk.state()), ("sample:pilot", &before));
     assert!(desk.shows("Back to Pilot. Ctrl+Y returns to Fox."));
     desk.redo();
@@ -48,13 +49,13 @@ fn closing_activates_the_neighbour_and_can_be_undone() {
     let Some(mut desk) = desk("sample:pilot") else { return };
     desk.open(&["sample:creature".into()]);
     desk.open(&["sample:dwarf".into()]);
-    desk.press("Close Dwarf");
+    desk.press(&text::close_model("Dwarf"));
     assert_eq!((desk.active(), desk.models()), ("sample:creature", vec!["sample:pilot", "sample:creature"]));
     desk.undo();
     assert_eq!(desk.active(), "sample:dwarf");
     assert_eq!(desk.models().len(), 3);
     // Closing an inactive model only removes it from the list.
-    desk.press("Close Pilot");
+    desk.press(&text::close_model("Pilot"));
     assert_eq!((desk.active(), desk.models()), ("sample:dwarf", vec!["sample:creature", "sample:dwarf"]));
     desk.undo();
     assert_eq!(desk.models().len(), 3);
@@ -76,7 +77,7 @@ fn a_motion_is_retargeted_and_follows_undo_and_redo() {
     assert_eq!((desk.retargeted_clips(), &desk.state().playhead.clip), (1, &clip));
     assert!(desk.shows("Added motion Walk again."));
     assert!(!desk.shows("Search joints of the model"), "the tab stays");
-    desk.press("Motion");
+    desk.press(Tab::Motion.label());
     assert!(desk.shows("Search joints of the model"));
     desk.undo();
     desk.redo();
@@ -105,7 +106,7 @@ fn an_incompatible_motion_changes_nothing_and_can_be_mapped_manually() {
     let problem = desk.problem().expect("is said");
     assert!(problem.contains("no joint in common with Goblin"), "{problem}");
     assert_eq!((desk.state(), desk.library().motions().len()), (&before, 0));
-    desk.press("Choose joints by hand");
+    desk.press(text::MAP_REFUSED_MANUALLY);
     assert_eq!((desk.problem(), desk.library().motions().len()), (None, 1));
     desk.undo();
     assert_eq!(desk.library().motions().len(), 0);
@@ -142,7 +143,7 @@ fn an_unreadable_file_changes_nothing() {
     std::fs::remove_file(&file).expect("was there");
     assert!(desk.problem().is_some_and(|problem| problem.contains(".glb")), "{:?}", desk.problem());
     assert_eq!((desk.active(), desk.state()), ("sample:pilot", &before));
-    desk.press("Dismiss the error");
+    desk.press(text::DISMISS_ERROR);
     assert_eq!(desk.problem(), None);
 }
 

@@ -45,6 +45,7 @@ for (const renderer of BACK_ENDS) {
       const [rest, restPicture] = [await pose(page), await picture(page)];
       assert.equal(rest.nodes.length, 18);
       assert.deepEqual(rest.meshes.map(({ positions }) => positions.length), [3 * VERTICES]);
+      // The “Pose manually” switch of the selected joint, then the knob of the first slider: egui's panels are pixels to a page.
       await apply(page, { joint: 5 });
       // egui finds what is under the pointer in the previous frame.
       await page.mouse.move(POSE_MANUALLY.x, POSE_MANUALLY.y);

@@ -17,7 +17,7 @@ pub struct Bench {
     pub panels: UiState,
     pub commands: Vec<Command>,
     pub actions: Vec<UiAction>,
-    pub picture: egui::Rect,
+    pub viewport: egui::Rect,
 }
 
 pub const WIDE: [f32; 2] = [1280.0, 720.0];
@@ -68,7 +68,7 @@ pub fn bench_of(size: [f32; 2], library: Library) -> Harness<'static, Bench> {
         panels: UiState::default(),
         commands: Vec::new(),
         actions: Vec::new(),
-        picture: egui::Rect::NOTHING,
+        viewport: egui::Rect::NOTHING,
     };
     let mut harness = Harness::builder()
         .with_size(size)
@@ -82,16 +82,16 @@ pub fn bench_of(size: [f32; 2], library: Library) -> Harness<'static, Bench> {
                 let mut ui = ui.new_child(egui::UiBuilder::new().max_rect(whole));
                 ui.set_clip_rect(whole);
                 let ui = &mut ui;
-                let Bench { editor, frame, panels, commands, actions, picture } = bench;
-                evaluate(editor.library(), editor.state(), panels.aspect, frame);
-                (panels.can_undo, panels.can_redo) = (editor.can_undo(), editor.can_redo());
+                let Bench { editor, frame, panels, commands, actions, viewport } = bench;
+                evaluate(editor.library(), editor.state(), panels.viewport.aspect, frame);
+                (panels.host.can_undo, panels.host.can_redo) = (editor.can_undo(), editor.can_redo());
                 let mut output = Output::default();
                 let shown = Shown { library: editor.library(), state: editor.state(), frame: &*frame };
-                *picture = ui::panels(ui, shown, panels, &mut output);
-                ui::picture(ui, *picture, shown, panels, &mut output);
-                ui::labels(ui, *picture, shown, panels);
-                ui::overlays(ui, *picture, shown, panels, &mut output);
-                editor.set_aspect(panels.aspect);
+                *viewport = ui::panels(ui, shown, panels, &mut output);
+                ui::viewport(ui, *viewport, shown, panels, &mut output);
+                ui::labels(ui, *viewport, shown, panels);
+                ui::overlays(ui, *viewport, shown, panels, &mut output);
+                editor.set_aspect(panels.viewport.aspect);
                 if !output.commands.is_empty() || !output.actions.is_empty() {
                     ui.ctx().request_repaint();
                 }

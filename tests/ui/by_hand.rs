@@ -1,10 +1,10 @@
-//! Turning joints by hand, comparing, and what can be taken out of the page.
+//! Posing joints manually, comparing skinning methods, saving images and videos.
 
 use egui::{PointerButton, Pos2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use gaitway::state::{ClipChoice, Command, Inspect, Show};
-use gaitway::ui::{Saved, UiAction};
+use gaitway::ui::{Saved, Tab, UiAction, text};
 
 use crate::bench::{Bench, NARROW, WIDE, drag, motion_bench, press, press_key, sample_bench};
 
@@ -19,7 +19,7 @@ fn turning(size: [f32; 2]) -> Harness<'static, Bench> {
     harness.state_mut().change(|state| {
         state.playhead.clip = ClipChoice::RestPose;
     });
-    harness.state_mut().panels.turning = true;
+    harness.state_mut().panels.joint_card.is_posing = true;
     harness.run();
     harness
 }
@@ -31,7 +31,7 @@ fn place_of_joint(bench: &Bench) -> Pos2 {
     let view = &bench.frame.view;
     let at = view.projection_from_view * view.view_from_world * world.extend(1.0);
     let (x, y) = (0.5 + 0.5 * at.x / at.w, 0.5 - 0.5 * at.y / at.w);
-    bench.picture.min + vec2(x * bench.picture.width(), y * bench.picture.height())
+    bench.viewport.min + vec2(x * bench.viewport.width(), y * bench.viewport.height())
 }
 
 fn angles(commands: &[Command]) -> [f32; 3] {
@@ -48,16 +48,16 @@ fn sliders_turn_the_chosen_joint_and_it_can_be_given_back() {
         state.selection.joint = Some(SHIN);
     });
     harness.run();
-    assert!(harness.query_by_label("Turn X").is_none());
+    assert!(harness.query_by_label(text::POSE_ANGLES[0]).is_none());
     assert!(harness.query_by_label_contains("Reset").is_none());
-    press(&mut harness, "Turn by hand");
-    harness.get_by_label("Turn X").set_value_accesskit(40.0);
+    press(&mut harness, text::POSE_MANUALLY);
+    harness.get_by_label(text::POSE_ANGLES[0]).set_value_accesskit(40.0);
     harness.run();
     assert!((harness.state().state().edits.pose[&SHIN][0] - 40.0).abs() < 0.1);
-    assert_eq!(press(&mut harness, "Reset joint"), [Command::SetPose { joint: SHIN, degrees: None }]);
-    harness.get_by_label("Turn Z").set_value_accesskit(-20.0);
+    assert_eq!(press(&mut harness, text::RESET_JOINT), [Command::SetPose { joint: SHIN, degrees: None }]);
+    harness.get_by_label(text::POSE_ANGLES[2]).set_value_accesskit(-20.0);
     harness.run();
-    assert_eq!(press(&mut harness, "Reset all 1"), [Command::ClearPose]);
+    assert_eq!(press(&mut harness, &text::reset_all_joints(1)), [Command::ClearPose]);
     assert!(harness.state().state().edits.pose.is_empty());
 }
 
@@ -75,7 +75,7 @@ fn the_disc_turns_freely_and_the_camera_stays() {
 #[test]
 fn a_drag_beside_the_rings_turns_the_camera() {
     let mut harness = turning(WIDE);
-    let corner = harness.state().picture.left_bottom() + vec2(30.0, -30.0);
+    let corner = harness.state().viewport.left_bottom() + vec2(30.0, -30.0);
     let commands = drag(&mut harness, corner, corner + vec2(60.0, -10.0), PointerButton::Primary);
     assert!(!commands.is_empty() && commands.iter().all(|command| matches!(command, Command::Orbit { .. })));
 }
@@ -83,7 +83,8 @@ fn a_drag_beside_the_rings_turns_the_camera() {
 #[test]
 fn time_stands_still_while_the_rings_are_aimed_at() {
     let mut harness = turning(WIDE);
-    let (middle, corner) = (place_of_joint(harness.state()), harness.state().picture.left_bottom() + vec2(30.0, -30.0));
+    let (middle, corner) =
+        (place_of_joint(harness.state()), harness.state().viewport.left_bottom() + vec2(30.0, -30.0));
     for (at, holds) in [(middle, true), (corner, false)] {
         harness.event(egui::Event::PointerMoved(at));
         harness.run();
@@ -115,16 +116,16 @@ fn a_ring_turns_about_its_own_axis_alone() {
 #[test]
 fn modes_are_compared_by_a_switch() {
     let mut harness = sample_bench(WIDE);
-    press(&mut harness, "Display");
+    press(&mut harness, Tab::Display.label());
     let split = Inspect { split: true, ..Inspect::default() };
-    assert_eq!(press(&mut harness, "Compare all three"), [Command::SetInspect(split)]);
+    assert_eq!(press(&mut harness, text::COMPARE_SKINNING), [Command::SetInspect(split)]);
     assert_eq!(harness.state().frame.panes, [3, 1]);
     // A joint is found in any pane.
     harness.state_mut().change(|state| {
         state.display.show.skeleton = true;
     });
     harness.run();
-    let (picture, place) = (harness.state().picture, place_of_joint(harness.state()));
+    let (picture, place) = (harness.state().viewport, place_of_joint(harness.state()));
     let part = (place - picture.min) / picture.size();
     let in_last = pos2(picture.left() + (2.0 + part.x) / 3.0 * picture.width(), place.y);
     let commands = drag(&mut harness, in_last, in_last, PointerButton::Primary);
@@ -134,8 +135,8 @@ fn modes_are_compared_by_a_switch() {
 #[test]
 fn pictures_and_videos_are_asked_for() {
     let mut harness = sample_bench(WIDE);
-    press(&mut harness, "View");
-    for label in ["Square", "Transparent background", "Save picture (PNG)", "Record one loop (WebM)"] {
+    press(&mut harness, Tab::View.label());
+    for label in [text::SQUARE, text::TRANSPARENT_BACKGROUND, text::SAVE_IMAGE, text::RECORD] {
         harness.get_by_label(label).scroll_to_me();
         harness.run();
         press(&mut harness, label);
@@ -147,10 +148,10 @@ fn pictures_and_videos_are_asked_for() {
 #[test]
 fn a_recording_shows_the_picture_alone_and_escape_ends_it() {
     let mut harness = sample_bench(WIDE);
-    harness.state_mut().panels.recording = true;
+    harness.state_mut().panels.host.is_recording = true;
     harness.run();
-    assert_eq!(harness.state().picture.size(), vec2(WIDE[0], WIDE[1]));
-    assert!(harness.query_by_label("Open…").is_none());
+    assert_eq!(harness.state().viewport.size(), vec2(WIDE[0], WIDE[1]));
+    assert!(harness.query_by_label(text::OPEN).is_none());
     press_key(&mut harness, egui::Key::Escape);
     assert_eq!(harness.state().actions, [UiAction::StopRecording]);
 }
@@ -158,7 +159,7 @@ fn a_recording_shows_the_picture_alone_and_escape_ends_it() {
 #[test]
 fn the_motion_tab_tells_the_fit_and_puts_the_source_on_the_stage() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, "Motion");
+    press(&mut harness, Tab::Motion.label());
     press(&mut harness, "Fit");
     assert!(harness.query_by_label_contains("Choose a borrowed clip").is_some());
     press(&mut harness, "Walk (2)");
@@ -172,5 +173,5 @@ fn the_motion_tab_tells_the_fit_and_puts_the_source_on_the_stage() {
         [Command::SetShow(Show { source: true, ..Show::default() })]
     );
     assert_eq!(harness.state().frame.characters.len(), 2);
-    assert_eq!(harness.query_all_by_label_contains("on the ground").count(), 2, "a lane for each foot");
+    assert_eq!(harness.query_all_by_label_contains(&text::foot_contacts("")).count(), 2, "a lane for each foot");
 }

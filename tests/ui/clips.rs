@@ -5,7 +5,7 @@ use egui_kittest::kittest::Queryable;
 use gaitway::anim::ClipBuilder;
 use gaitway::asset::Asset;
 use gaitway::state::{ClipChoice, Command};
-use gaitway::ui::UiAction;
+use gaitway::ui::{UiAction, text};
 
 use crate::bench::{Bench, WIDE, bench, model_with_clips, press, sample_bench};
 
@@ -16,7 +16,7 @@ fn every_clip_and_the_rest_pose_can_be_chosen() {
         let expected = Command::SetClip(ClipChoice::Named(name.to_owned()));
         assert_eq!(press(&mut harness, name), [expected], "{name}");
     }
-    assert_eq!(press(&mut harness, "Rest pose"), [Command::SetClip(ClipChoice::RestPose)]);
+    assert_eq!(press(&mut harness, text::REST_POSE), [Command::SetClip(ClipChoice::RestPose)]);
 }
 
 #[test]
@@ -42,30 +42,31 @@ fn the_chosen_clip_is_in_sight() {
 fn the_buttons_of_the_header_stand_in_one_row() {
     for size in [WIDE, [1920.0, 1080.0], [800.0, 600.0]] {
         let harness = sample_bench(size);
-        let [open, motion, share] = ["Open…", "Motion…", "Share…"].map(|label| harness.get_by_label(label).rect());
+        let [open, motion, share] =
+            [text::OPEN, text::BORROW_MOTION, text::SHARE].map(|label| harness.get_by_label(label).rect());
         assert!(open.top() == motion.top() && motion.top() == share.top(), "{open:?} {motion:?} {share:?} on {size:?}");
         assert!(open.right() < motion.left() && motion.right() < share.left());
-        assert!(share.right() < harness.state().picture.left(), "{share:?} on {size:?}");
+        assert!(share.right() < harness.state().viewport.left(), "{share:?} on {size:?}");
     }
 }
 
 #[test]
 fn few_clips_need_no_search() {
-    assert!(sample_bench(WIDE).query_by_label("Search 3 clips").is_none());
+    assert!(sample_bench(WIDE).query_by_label(&text::search_clips(3)).is_none());
 }
 
 #[test]
 fn search_narrows_many_clips_and_can_be_cleared() {
     let mut harness = bench(WIDE, model_with_clips(12));
-    harness.get_by_label("Search 12 clips").click();
+    harness.get_by_label(&text::search_clips(12)).click();
     harness.run();
-    harness.get_by_label("Search 12 clips").type_text("move 11");
+    harness.get_by_label(&text::search_clips(12)).type_text("move 11");
     harness.run();
     assert!(harness.query_by_label("Move 11").is_some());
     assert!(harness.query_by_label("Move 3").is_none());
     let expected = Command::SetClip(ClipChoice::Named("Move 11".to_owned()));
     assert_eq!(press(&mut harness, "Move 11"), [expected]);
-    press(&mut harness, "Clear the search");
+    press(&mut harness, text::CLEAR_SEARCH);
     assert!(harness.query_by_label("Move 3").is_some());
 }
 
@@ -73,13 +74,13 @@ fn search_narrows_many_clips_and_can_be_cleared() {
 #[test]
 fn a_search_leaves_the_panels_as_wide_as_they_are() {
     let mut harness = bench(WIDE, model_with_clips(12));
-    let width = harness.state().picture.width();
-    for field in ["Search 12 clips", "Search nodes by name"] {
+    let width = harness.state().viewport.width();
+    for field in [&text::search_clips(12), text::SEARCH_NODES] {
         harness.get_by_label(field).click();
         harness.run();
         harness.get_by_label(field).type_text("o");
         harness.run_steps(20);
-        assert_eq!(harness.state().picture.width(), width, "{field}");
+        assert_eq!(harness.state().viewport.width(), width, "{field}");
     }
 }
 
@@ -102,7 +103,7 @@ fn a_name_that_is_cut_is_told_in_full_under_the_pointer() {
 #[test]
 fn open_and_share_are_asked_of_the_host() {
     let mut harness = sample_bench(WIDE);
-    press(&mut harness, "Open…");
-    press(&mut harness, "Share…");
+    press(&mut harness, text::OPEN);
+    press(&mut harness, text::SHARE);
     assert_eq!(harness.state().actions, [UiAction::OpenFiles, UiAction::ShareLink]);
 }

@@ -1,4 +1,4 @@
-//! The skinning exercise in the panels: sliders, matrices, the formula at a vertex, names, and what can be saved.
+//! The skinning exercise in the panels: sliders, matrices, the skinning equation at a vertex, names, saving.
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -6,7 +6,8 @@ use gaitway::editor::{Editor, Export};
 use gaitway::formats::{FileSet, load};
 use gaitway::library::{Library, Model};
 use gaitway::state::{Command, Show, VertexChoice, ViewerState};
-use gaitway::ui::{Saved, Tab, UiAction};
+use gaitway::ui::text::FormulaRow;
+use gaitway::ui::{Saved, Tab, UiAction, text};
 
 use crate::bench::{Bench, NARROW, WIDE, bench, model_with_clips, press, sample_bench};
 
@@ -25,6 +26,11 @@ fn strip(size: [f32; 2]) -> Harness<'static, Bench> {
     bench(size, Model::new("strip.obj".to_owned(), asset, Vec::new()))
 }
 
+/// The accessible text of a row of the skinning equation.
+fn numbers(row: FormulaRow, values: &str) -> String {
+    format!("{} {values}", row.label())
+}
+
 fn has(harness: &Harness<'_, Bench>, label: &str) -> bool {
     harness.query_by_label(label).is_some()
 }
@@ -33,9 +39,9 @@ fn has(harness: &Harness<'_, Bench>, label: &str) -> bool {
 fn the_sliders_say_their_order_and_bend_the_model() {
     let mut harness = strip(WIDE);
     press(&mut harness, "joint 2");
-    press(&mut harness, "Turn by hand");
-    assert!(harness.query_by_label_contains("about its X, then its Y, then its Z").is_some());
-    harness.get_by_label("Turn Z").set_value_accesskit(90.0);
+    press(&mut harness, text::POSE_MANUALLY);
+    assert!(harness.query_by_label(text::POSE_HINT).is_some());
+    harness.get_by_label(text::POSE_ANGLES[2]).set_value_accesskit(90.0);
     harness.run();
     let world = harness.state().frame.characters[0].world_from_joint[2];
     assert!(world.transform_point3(glam::Vec3::X).distance(glam::Vec3::new(1.0, 1.0, 0.0)) < 1e-5);
@@ -50,7 +56,7 @@ fn the_three_matrices_of_the_chosen_joint_are_shown() {
     });
     harness.run();
     assert_eq!(harness.query_all_by_label("Scale 1.000 1.000 1.000").count(), 2, "local and in the world");
-    press(&mut harness, "Matrices");
+    press(&mut harness, text::MATRICES);
     let zero = "0.0000";
     let row = |numbers: [&str; 4]| format!(" {}", numbers.join(" "));
     let last = row([zero, zero, zero, "1.0000"]);
@@ -63,19 +69,19 @@ fn the_three_matrices_of_the_chosen_joint_are_shown() {
         assert!(has(&harness, &label), "{label}");
     }
     assert!(!has(&harness, "Scale 1.000 1.000 1.000"), "the matrices say the same");
-    press(&mut harness, "Matrices");
+    press(&mut harness, text::MATRICES);
     assert!(harness.query_by_label_contains("inv(B):").is_none());
 }
 
 #[test]
 fn a_model_without_meshes_has_no_vertices_to_look_at() {
     let mut harness = strip(WIDE);
-    press(&mut harness, "Vertex under the pointer");
+    press(&mut harness, text::VERTEX_PROBE);
     let mut library = Library::default();
     library.set(model_with_clips(2));
     harness.state_mut().editor = Editor::new(library, ViewerState::default());
     harness.run();
-    assert!(harness.query_by_label("Vertex under the pointer").is_none());
+    assert!(harness.query_by_label(text::VERTEX_PROBE).is_none());
 }
 
 #[test]
@@ -83,10 +89,10 @@ fn a_vertex_shows_shares_that_add_up() {
     for size in [WIDE, NARROW] {
         let mut harness = strip(size);
         if size == NARROW {
-            press(&mut harness, "Inspector");
+            press(&mut harness, text::INSPECTOR);
         }
-        press(&mut harness, "Vertex under the pointer");
-        assert!(harness.query_by_label_contains("Point at the mesh").is_some());
+        press(&mut harness, text::VERTEX_PROBE);
+        assert!(harness.query_by_label(text::VERTEX_HINT).is_some());
         // Turned by a quarter about Z, joint 2 alone would put (1, 1) to (0, 0).
         harness.state_mut().change(|state| {
             state.edits.pose.insert(2, [0.0, 0.0, 90.0]);
@@ -96,24 +102,24 @@ fn a_vertex_shows_shares_that_add_up() {
         });
         harness.run();
         for label in [
-            "Vertex 3",
-            "p, where it is bound: 1.0000 1.0000 0.0000",
-            "joint 1, weight 0.5000",
-            "joint 2, weight 0.5000",
-            "share, w times that: 0.5000 0.5000 0.0000",
-            "share, w times that: 0.0000 0.0000 0.0000",
-            "p', the sum of the shares: 0.5000 0.5000 0.0000",
+            &text::vertex(3),
+            &numbers(FormulaRow::Bound, "1.0000 1.0000 0.0000"),
+            &text::joint_weight("joint 1", 0.5),
+            &text::joint_weight("joint 2", 0.5),
+            &numbers(FormulaRow::Share, "0.5000 0.5000 0.0000"),
+            &numbers(FormulaRow::Share, "0.0000 0.0000 0.0000"),
+            &numbers(FormulaRow::Sum, "0.5000 0.5000 0.0000"),
         ] {
             assert!(has(&harness, label), "{label} at {size:?}");
         }
-        assert!(harness.query_by_label_contains("drawn").is_none(), "linear skinning draws the sum");
+        assert!(harness.query_by_label_contains(&FormulaRow::Drawn.label()).is_none(), "linear skinning draws the sum");
         harness.state_mut().change(|state| {
             state.display.skinning = gaitway::mesh::SkinningMode::Rigid;
         });
         harness.run();
-        assert!(harness.query_by_label_contains("drawn, with the skinning").is_some());
-        assert_eq!(press(&mut harness, "joint 2, weight 0.5000"), [Command::SelectJoint(Some(2))]);
-        assert_eq!(press(&mut harness, "Let go"), [Command::SelectVertex(None)]);
+        assert!(harness.query_by_label_contains(&FormulaRow::Drawn.label()).is_some());
+        assert_eq!(press(&mut harness, &text::joint_weight("joint 2", 0.5)), [Command::SelectJoint(Some(2))]);
+        assert_eq!(press(&mut harness, text::UNPIN_VERTEX), [Command::SelectVertex(None)]);
     }
 }
 
@@ -126,30 +132,30 @@ fn a_copy_has_the_number_of_its_vertex() {
         files.insert("m.obj", format!("{head}f 1/1 2/1 3/1\n{between}f 1/2 3/2 4/2\n").into_bytes());
         let asset = load(&files).expect("a small model");
         let mut harness = bench(WIDE, Model::new("m.obj".to_owned(), asset, Vec::new()));
-        press(&mut harness, "Vertex under the pointer");
+        press(&mut harness, text::VERTEX_PROBE);
         harness.state_mut().change(|state| {
             state.selection.vertex = Some(VertexChoice { instance: 0, primitive: piece, vertex });
         });
         harness.run();
-        assert!(has(&harness, "Vertex 2"), "{between:?}");
+        assert!(has(&harness, &text::vertex(2)), "{between:?}");
     }
 }
 
 #[test]
 fn a_click_keeps_the_vertex_and_a_click_beside_lets_it_go() {
     let mut harness = strip(WIDE);
-    press(&mut harness, "Vertex under the pointer");
-    let middle = harness.state().picture.center();
+    press(&mut harness, text::VERTEX_PROBE);
+    let middle = harness.state().viewport.center();
     let click = |harness: &mut Harness<'static, Bench>, at: egui::Pos2| {
         harness.state_mut().commands.clear();
         crate::bench::drag(harness, at, at, egui::PointerButton::Primary)
     };
     let kept = click(&mut harness, middle);
     assert!(matches!(kept[..], [Command::SelectVertex(Some(_))]), "{kept:?}");
-    let aside = harness.state().picture.right_center() - egui::vec2(12.0, 0.0);
+    let aside = harness.state().viewport.right_center() - egui::vec2(12.0, 0.0);
     assert!(click(&mut harness, aside).contains(&Command::SelectVertex(None)));
     // Switched off, a click is about joints again.
-    press(&mut harness, "Vertex under the pointer");
+    press(&mut harness, text::VERTEX_PROBE);
     assert!(!click(&mut harness, middle).iter().any(|command| matches!(command, Command::SelectVertex(_))));
 }
 
@@ -157,8 +163,8 @@ fn a_click_keeps_the_vertex_and_a_click_beside_lets_it_go() {
 fn a_joint_is_renamed_in_its_card() {
     let mut harness = strip(WIDE);
     press(&mut harness, "joint 2");
-    press(&mut harness, "Rename");
-    let field = harness.get_by_label("Name of the joint");
+    press(&mut harness, text::RENAME);
+    let field = harness.get_by_label(text::JOINT_NAME);
     field.focus();
     field.type_text(" of the tip");
     harness.run();
@@ -169,8 +175,8 @@ fn a_joint_is_renamed_in_its_card() {
     assert_eq!(harness.state().commands, [Command::RenameJoint { joint: 2, name: name.clone() }]);
     assert!(harness.query_all_by_label(&name).count() >= 2, "in the card and in the tree");
     assert!(!has(&harness, "joint 2"));
-    press(&mut harness, "Rename");
-    harness.get_by_label("Name of the joint").type_text("!");
+    press(&mut harness, text::RENAME);
+    harness.get_by_label(text::JOINT_NAME).type_text("!");
     harness.run();
     harness.key_press(egui::Key::Escape);
     harness.run();
@@ -180,29 +186,29 @@ fn a_joint_is_renamed_in_its_card() {
 #[test]
 fn the_model_can_be_saved_at_rest_and_as_it_stands() {
     let mut harness = strip(WIDE);
-    harness.state_mut().panels.tab = Tab::File;
+    harness.state_mut().panels.layout.tab = Tab::File;
     harness.run();
-    press(&mut harness, "At rest");
-    press(&mut harness, "As it stands");
+    press(&mut harness, text::SAVE_REST_POSE);
+    press(&mut harness, text::SAVE_CURRENT_POSE);
     let whole = |posed| UiAction::Save(Saved::File(Export::Whole { posed }));
     assert_eq!(harness.state().actions, [whole(false), whole(true)]);
     let mut harness = sample_bench(WIDE);
-    harness.state_mut().panels.tab = Tab::File;
+    harness.state_mut().panels.layout.tab = Tab::File;
     harness.run();
-    assert!(!has(&harness, "As it stands"), "a glTF is one already");
+    assert!(!has(&harness, text::SAVE_CURRENT_POSE), "a glTF is one already");
 }
 
 #[test]
 fn boxes_and_smooth_surfaces_are_in_the_display_tab() {
     let mut harness = strip(WIDE);
-    harness.state_mut().panels.tab = Tab::Display;
+    harness.state_mut().panels.layout.tab = Tab::Display;
     harness.run();
     let smooth = Show { smooth: true, ..Show::default() };
-    assert_eq!(press(&mut harness, "Smooth surface"), [Command::SetShow(smooth)]);
+    assert_eq!(press(&mut harness, text::SMOOTH_SURFACE), [Command::SetShow(smooth)]);
     let boxes = Show { boxes: true, skeleton: true, ..smooth };
-    assert_eq!(press(&mut harness, "Skeleton of spheres and boxes"), [Command::SetShow(boxes)]);
+    assert_eq!(press(&mut harness, text::SKELETON_BOXES), [Command::SetShow(boxes)]);
     let mut harness = sample_bench(WIDE);
-    harness.state_mut().panels.tab = Tab::Display;
+    harness.state_mut().panels.layout.tab = Tab::Display;
     harness.run();
-    assert!(!has(&harness, "Smooth surface"), "the sample has normals");
+    assert!(!has(&harness, text::SMOOTH_SURFACE), "the sample has normals");
 }

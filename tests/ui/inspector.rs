@@ -3,6 +3,7 @@
 use egui_kittest::kittest::{NodeT, Queryable};
 use gaitway::mesh::SkinningMode;
 use gaitway::state::{Background, CameraChoice, Command, Inspect, Show, UpAxis};
+use gaitway::ui::{Tab, text};
 
 use crate::bench::{WIDE, bench, model_with_clips, press, sample_bench};
 
@@ -13,27 +14,27 @@ fn the_tree_shows_all_joints_and_chooses_one() {
     let skeleton = &harness.state().library().active().unwrap().asset.skeleton;
     let hand = skeleton.source_index(skeleton.find("LeftHand").unwrap());
     assert_eq!(commands, [Command::SelectJoint(Some(hand))]);
-    assert!(harness.query_by_label_contains("Local, in LeftLowerArm").is_some());
+    assert!(harness.query_by_label(&text::local_transform("LeftLowerArm")).is_some());
     assert!(harness.query_all_by_label_contains("Position").count() >= 2, "local and world");
-    assert_eq!(press(&mut harness, "Choose no joint"), [Command::SelectJoint(None)]);
+    assert_eq!(press(&mut harness, text::DESELECT_JOINT), [Command::SelectJoint(None)]);
 }
 
 #[test]
 fn folding_a_joint_hides_what_hangs_on_it() {
     let mut harness = sample_bench(WIDE);
     assert!(harness.query_by_label("Head").is_some());
-    press(&mut harness, "Fold Neck");
+    press(&mut harness, &text::collapse("Neck"));
     assert!(harness.query_by_label("Head").is_none());
-    press(&mut harness, "Unfold Neck");
+    press(&mut harness, &text::expand("Neck"));
     assert!(harness.query_by_label("Head").is_some());
 }
 
 #[test]
 fn nodes_are_found_by_name() {
     let mut harness = sample_bench(WIDE);
-    harness.get_by_label("Search nodes by name").click();
+    harness.get_by_label(text::SEARCH_NODES).click();
     harness.run();
-    harness.get_by_label("Search nodes by name").type_text("toes");
+    harness.get_by_label(text::SEARCH_NODES).type_text("toes");
     harness.run();
     assert!(harness.query_by_label("LeftToes").is_some());
     assert!(harness.query_by_label("Hips").is_none());
@@ -42,37 +43,37 @@ fn nodes_are_found_by_name() {
 #[test]
 fn display_sets_skinning_overlays_and_morphs() {
     let mut harness = sample_bench(WIDE);
-    press(&mut harness, "Display");
-    assert_eq!(press(&mut harness, "Rigid"), [Command::SetSkinning(SkinningMode::Rigid)]);
-    assert_eq!(press(&mut harness, "Dual quat."), [Command::SetSkinning(SkinningMode::DualQuaternion)]);
+    press(&mut harness, Tab::Display.label());
+    assert_eq!(press(&mut harness, text::RIGID), [Command::SetSkinning(SkinningMode::Rigid)]);
+    assert_eq!(press(&mut harness, text::DUAL_QUATERNION), [Command::SetSkinning(SkinningMode::DualQuaternion)]);
     let skeleton = Show { skeleton: true, ..Show::default() };
-    assert_eq!(press(&mut harness, "Skeleton"), [Command::SetShow(skeleton)]);
+    assert_eq!(press(&mut harness, text::SKELETON), [Command::SetShow(skeleton)]);
     let weights = Inspect { weights: true, ..Inspect::default() };
-    assert_eq!(press(&mut harness, "Influence of the chosen joint"), [Command::SetInspect(weights)]);
-    assert!(harness.query_by_label_contains("Choose a joint in the picture").is_some());
+    assert_eq!(press(&mut harness, text::JOINT_WEIGHTS), [Command::SetInspect(weights)]);
+    assert!(harness.query_by_label(text::JOINT_WEIGHTS_HINT).is_some());
     harness.state_mut().commands.clear();
     harness.get_by_label("Blink").set_value_accesskit(0.75);
     harness.run();
     let morphs: Vec<_> = harness.state().state().edits.morph.values().copied().collect();
     assert_eq!(morphs, [0.75]);
-    assert_eq!(press(&mut harness, "Let the clip decide"), [Command::ClearMorphs]);
+    assert_eq!(press(&mut harness, text::RESET_MORPHS), [Command::ClearMorphs]);
 }
 
 #[test]
 fn view_sets_camera_and_background() {
     let mut harness = sample_bench(WIDE);
-    press(&mut harness, "View");
-    let angles = [("Front", 0.0, 0.0), ("Side", 90.0, 0.0), ("Top", 0.0, 89.9)];
+    press(&mut harness, Tab::View.label());
+    let angles = [(text::FRONT, 0.0, 0.0), (text::SIDE, 90.0, 0.0), (text::TOP, 0.0, 89.9)];
     for (label, yaw_degrees, pitch_degrees) in angles {
         let commands = press(&mut harness, label);
         let [Command::SetCamera(CameraChoice::Orbit(orbit))] = commands[..] else { panic!("{commands:?}") };
         assert!((orbit.yaw_radians.to_degrees() - yaw_degrees).abs() < 1e-3, "{label}");
         assert!((orbit.pitch_radians.to_degrees() - pitch_degrees).abs() < 1e-3, "{label}");
     }
-    assert_eq!(press(&mut harness, "Follow the character"), [Command::SetFollow(true)]);
-    assert_eq!(press(&mut harness, "None"), [Command::SetBackground(Background::Transparent)]);
-    assert_eq!(press(&mut harness, "Z"), [Command::SetUp(UpAxis::Z)]);
-    harness.get_by_label("Exposure").set_value_accesskit(2.0);
+    assert_eq!(press(&mut harness, text::FOLLOW), [Command::SetFollow(true)]);
+    assert_eq!(press(&mut harness, text::NO_BACKGROUND), [Command::SetBackground(Background::Transparent)]);
+    assert_eq!(press(&mut harness, text::UP_Z), [Command::SetUp(UpAxis::Z)]);
+    harness.get_by_label(text::EXPOSURE).set_value_accesskit(2.0);
     harness.run();
     assert_eq!(harness.state().state().display.exposure, 2.0);
 }
@@ -80,9 +81,9 @@ fn view_sets_camera_and_background() {
 #[test]
 fn the_file_report_counts_and_groups() {
     let mut harness = bench(WIDE, model_with_clips(3));
-    press(&mut harness, "File");
-    for fact in ["Format glb", "Clips 3", "Nodes 1"] {
-        assert!(harness.query_by_label(fact).is_some(), "{fact}");
+    press(&mut harness, Tab::File.label());
+    for (name, value) in [(text::FORMAT, "glb"), (text::CLIPS, "3"), (text::NODES, "1")] {
+        assert!(harness.query_by_label(&text::fact(name, value)).is_some(), "{name}");
     }
     assert!(harness.query_by_label_contains("KHR_texture_transform").is_some());
     assert!(harness.query_by_label("matrix-not-decomposable (2)").is_some());
@@ -92,8 +93,8 @@ fn the_file_report_counts_and_groups() {
 #[test]
 fn the_chosen_segment_says_so() {
     let mut harness = sample_bench(WIDE);
-    press(&mut harness, "View");
+    press(&mut harness, Tab::View.label());
     let toggled = |label: &str| harness.get_by_label(label).accesskit_node().toggled();
-    assert_eq!(toggled("Studio"), Some(egui::accesskit::Toggled::True));
-    assert_eq!(toggled("Colour"), Some(egui::accesskit::Toggled::False));
+    assert_eq!(toggled(text::STUDIO), Some(egui::accesskit::Toggled::True));
+    assert_eq!(toggled(text::COLOR), Some(egui::accesskit::Toggled::False));
 }

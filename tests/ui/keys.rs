@@ -1,9 +1,9 @@
-//! The keys, and the table of them.
+//! Keyboard shortcuts and their table.
 
 use egui::Key;
 use egui_kittest::kittest::Queryable;
 use gaitway::state::{CameraChoice, ClipChoice, Command};
-use gaitway::ui::{KEY_TABLE, UiAction};
+use gaitway::ui::{KEY_TABLE, UiAction, text};
 
 use crate::bench::{WIDE, press, press_key, sample_bench};
 
@@ -58,7 +58,7 @@ fn every_press_within_a_frame_counts() {
 #[test]
 fn typing_is_not_taken_for_keys() {
     let mut harness = sample_bench(WIDE);
-    harness.get_by_label("Search nodes by name").click();
+    harness.get_by_label(text::SEARCH_NODES).click();
     harness.run();
     assert!(press_key(&mut harness, Key::F).is_empty());
     assert!(press_key(&mut harness, Key::Space).is_empty());
@@ -72,10 +72,10 @@ fn the_help_lists_every_key_and_closes() {
         assert!(harness.query_all_by_label(line.does).next().is_some(), "{}", line.does);
     }
     assert!(press_key(&mut harness, Key::Space).is_empty(), "nothing plays behind the help");
-    press(&mut harness, "Close the help");
-    assert!(!harness.state().panels.help_open);
-    press(&mut harness, "Keys (?)");
-    assert!(harness.state().panels.help_open, "the press that opens it does not close it");
+    press(&mut harness, text::CLOSE_HELP);
+    assert!(!harness.state().panels.help.is_open);
+    press(&mut harness, text::HELP);
+    assert!(harness.state().panels.help.is_open, "the press that opens it does not close it");
     press_key(&mut harness, Key::Escape);
-    assert!(!harness.state().panels.help_open);
+    assert!(!harness.state().panels.help.is_open);
 }

@@ -1,36 +1,36 @@
-//! What fits where: wide, narrow, folded, embedded; and what lies over the picture.
+//! Layout on wide, narrow and embedded screens, and what lies over the viewport.
 
 use egui_kittest::kittest::Queryable;
-use gaitway::ui::{PathPrompt, PathPurpose, Progress, Sheet, UiAction};
+use gaitway::ui::{PathPrompt, PathPurpose, Progress, Sheet, Tab, UiAction, text};
 
 use crate::bench::{NARROW, WIDE, bench, model_with_clips, press, sample_bench};
 
 #[test]
 fn panels_fold_away_and_come_back() {
     let mut harness = sample_bench(WIDE);
-    let narrower = harness.state().picture.width();
-    press(&mut harness, "Fold the inspector away");
-    press(&mut harness, "Fold the clips away");
-    assert!(harness.query_by_label("Rest pose").is_none());
-    assert!(harness.query_by_label("Scene").is_none());
-    assert_eq!(harness.state().picture.width(), WIDE[0]);
-    press(&mut harness, "Show the clips");
-    press(&mut harness, "Show the inspector");
-    assert_eq!(harness.state().picture.width(), narrower);
+    let narrower = harness.state().viewport.width();
+    press(&mut harness, text::HIDE_INSPECTOR);
+    press(&mut harness, text::HIDE_CLIPS);
+    assert!(harness.query_by_label(text::REST_POSE).is_none());
+    assert!(harness.query_by_label(Tab::Scene.label()).is_none());
+    assert_eq!(harness.state().viewport.width(), WIDE[0]);
+    press(&mut harness, text::SHOW_CLIPS);
+    press(&mut harness, text::SHOW_INSPECTOR);
+    assert_eq!(harness.state().viewport.width(), narrower);
 }
 
 #[test]
 fn a_narrow_screen_has_sheets_one_at_a_time() {
     let mut harness = sample_bench(NARROW);
-    assert_eq!(harness.state().picture.width(), NARROW[0]);
-    assert!(harness.query_by_label("Rest pose").is_none());
-    press(&mut harness, "Clips");
-    assert!(harness.query_by_label("Rest pose").is_some());
-    press(&mut harness, "Inspector");
-    assert_eq!(harness.state().panels.sheet, Some(Sheet::Inspector));
-    assert!(harness.query_by_label("Rest pose").is_none());
-    press(&mut harness, "Close the sheet");
-    assert_eq!(harness.state().panels.sheet, None);
+    assert_eq!(harness.state().viewport.width(), NARROW[0]);
+    assert!(harness.query_by_label(text::REST_POSE).is_none());
+    press(&mut harness, text::CLIPS);
+    assert!(harness.query_by_label(text::REST_POSE).is_some());
+    press(&mut harness, text::INSPECTOR);
+    assert_eq!(harness.state().panels.layout.sheet, Some(Sheet::Inspector));
+    assert!(harness.query_by_label(text::REST_POSE).is_none());
+    press(&mut harness, text::CLOSE_SHEET);
+    assert_eq!(harness.state().panels.layout.sheet, None);
 }
 
 /// The picture is what a sheet leaves free: the character stays in sight while a clip is chosen.
@@ -38,14 +38,14 @@ fn a_narrow_screen_has_sheets_one_at_a_time() {
 fn a_sheet_does_not_hide_the_picture() {
     for size in [NARROW, [320.0, 240.0]] {
         let mut harness = sample_bench(size);
-        let whole = harness.state().picture;
-        press(&mut harness, "Clips");
-        let above = harness.state().picture;
+        let whole = harness.state().viewport;
+        press(&mut harness, text::CLIPS);
+        let above = harness.state().viewport;
         assert!(above.height() >= 56.0 && above.height() < whole.height(), "{above:?} of {whole:?}");
-        let row = harness.get_by_label("Rest pose").rect();
+        let row = harness.get_by_label(text::REST_POSE).rect();
         assert!(above.bottom() <= row.top(), "{above:?} and {row:?}");
-        press(&mut harness, "Close the sheet");
-        assert_eq!(harness.state().picture, whole);
+        press(&mut harness, text::CLOSE_SHEET);
+        assert_eq!(harness.state().viewport, whole);
     }
 }
 
@@ -53,14 +53,14 @@ fn a_sheet_does_not_hide_the_picture() {
 fn the_help_fits_small_screens() {
     for size in [[320.0, 240.0], NARROW, WIDE] {
         let mut harness = sample_bench(size);
-        harness.state_mut().panels.help_open = true;
+        harness.state_mut().panels.help.is_open = true;
         harness.run();
         let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
-        for label in ["Keys and gestures", "Close the help"] {
+        for label in [text::HELP_TITLE, text::CLOSE_HELP] {
             let rect = harness.get_by_label(label).rect();
             assert!(screen.contains_rect(rect), "{label} at {rect:?} on {size:?}");
         }
-        for label in ["Comma, period", "One frame back, one frame on"] {
+        for label in [text::STEP_KEYS, text::STEP_FRAMES] {
             let rect = harness.get_by_label(label).rect();
             assert!(
                 screen.x_range().contains(rect.left()) && screen.x_range().contains(rect.right()),
@@ -76,22 +76,24 @@ fn everything_stays_on_the_screen() {
     for size in [NARROW, [360.0, 640.0], [700.0, 500.0], WIDE, [1920.0, 1080.0]] {
         let mut harness = bench(size, model_with_clips(30));
         let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
+        let normal_speed = text::speed(1.0);
         let narrow = size[0] < 700.0;
-        for label in ["Play", "Next frame (.)", "Time", if narrow { "1×" } else { "Speed value" }] {
+        for label in [text::PLAY, text::NEXT_FRAME, text::TIME, if narrow { &normal_speed } else { text::SPEED_VALUE }]
+        {
             let rect = harness.get_by_label(label).rect();
             assert!(screen.contains_rect(rect), "{label} at {rect:?} on {size:?}");
         }
         if narrow {
-            press(&mut harness, "Inspector");
+            press(&mut harness, text::INSPECTOR);
         }
-        for tab in ["Display", "File", "View", "Scene"] {
+        for tab in [Tab::Display.label(), Tab::File.label(), Tab::View.label(), Tab::Scene.label()] {
             press(&mut harness, tab);
-            for node in ["Scene", "View"] {
+            for node in [Tab::Scene.label(), Tab::View.label()] {
                 let rect = harness.get_by_label(node).rect();
                 assert!(screen.contains_rect(rect), "{node} at {rect:?} on {size:?} with {tab} open");
             }
         }
-        assert!(harness.state().picture.width() >= 180.0, "{size:?}");
+        assert!(harness.state().viewport.width() >= 180.0, "{size:?}");
     }
 }
 
@@ -102,9 +104,9 @@ fn embedded_there_is_only_picture_and_transport() {
         state.page.embed = true;
     });
     harness.run();
-    assert_eq!(harness.state().picture.width(), WIDE[0]);
-    assert!(harness.query_by_label("Play").is_some());
-    for label in ["Rest pose", "Scene", "Keys (?)", "Open…"] {
+    assert_eq!(harness.state().viewport.width(), WIDE[0]);
+    assert!(harness.query_by_label(text::PLAY).is_some());
+    for label in [text::REST_POSE, Tab::Scene.label(), text::HELP, text::OPEN] {
         assert!(harness.query_by_label(label).is_none(), "{label}");
     }
 }
@@ -112,19 +114,19 @@ fn embedded_there_is_only_picture_and_transport() {
 #[test]
 fn an_error_stays_until_dismissed() {
     let mut harness = sample_bench(WIDE);
-    harness.state_mut().panels.error = Some("broken.glb: it is not a GLB file".to_owned());
+    harness.state_mut().panels.messages.error = Some("broken.glb: it is not a GLB file".to_owned());
     harness.run();
     assert!(harness.query_by_label("broken.glb: it is not a GLB file").is_some());
-    press(&mut harness, "Dismiss the error");
-    assert_eq!(harness.state().panels.error, None);
+    press(&mut harness, text::DISMISS_ERROR);
+    assert_eq!(harness.state().panels.messages.error, None);
 }
 
 #[test]
 fn a_load_shows_how_far_it_is() {
     let mut harness = sample_bench(WIDE);
-    harness.state_mut().panels.progress = Some(Progress { name: "large.glb".to_owned(), fraction: Some(0.5) });
+    harness.state_mut().panels.messages.progress = Some(Progress { name: "large.glb".to_owned(), fraction: Some(0.5) });
     harness.run();
-    assert!(harness.query_by_label("Opening large.glb").is_some());
+    assert!(harness.query_by_label(&text::opening("large.glb")).is_some());
 }
 
 #[test]
@@ -137,11 +139,12 @@ fn nothing_repaints_by_itself() {
 #[test]
 fn a_path_can_be_typed_where_there_is_no_dialog() {
     let mut harness = sample_bench(WIDE);
-    harness.state_mut().panels.path_prompt = Some(PathPrompt { purpose: PathPurpose::Open, path: String::new() });
+    harness.state_mut().panels.messages.path_prompt =
+        Some(PathPrompt { purpose: PathPurpose::Open, path: String::new() });
     harness.run();
-    harness.get_by_label("Path").type_text("models/fox.glb");
+    harness.get_by_label(text::PATH).type_text("models/fox.glb");
     harness.run();
-    assert!(press(&mut harness, "Open").is_empty());
+    assert!(press(&mut harness, text::PROMPT_OPEN).is_empty());
     assert_eq!(harness.state().actions, [UiAction::UsePath(PathPurpose::Open, "models/fox.glb".to_owned())]);
-    assert_eq!(harness.state().panels.path_prompt, None);
+    assert_eq!(harness.state().panels.messages.path_prompt, None);
 }

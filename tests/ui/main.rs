@@ -1,4 +1,4 @@
-//! The panels without a GPU: what is shown for a model, and which commands come of pressing things, found by label.
+//! The panels without a GPU: what they show for a model, and which commands its controls produce.
 
 mod bench;
 mod by_hand;

@@ -1,9 +1,9 @@
-//! Several models at once, and the way back from what was opened.
+//! Several models at once, and undoing an open.
 
 use egui_kittest::kittest::Queryable;
 use gaitway::library::{Library, Model};
 use gaitway::samples;
-use gaitway::ui::{Toast, UiAction};
+use gaitway::ui::{Toast, UiAction, text};
 
 use crate::bench::{NARROW, WIDE, bench_of, press, sample_bench};
 
@@ -17,18 +17,18 @@ fn two_models() -> Library {
 
 #[test]
 fn models_are_listed_when_there_are_several() {
-    assert!(sample_bench(WIDE).query_by_label("Close Walker").is_none(), "one needs no list");
+    assert!(sample_bench(WIDE).query_by_label(&text::close_model("Walker")).is_none(), "one needs no list");
     for size in [WIDE, NARROW] {
         let mut harness = bench_of(size, two_models());
         if size == NARROW {
-            press(&mut harness, "Clips");
+            press(&mut harness, text::CLIPS);
         }
         let first = harness.state().library().models()[0].id;
         press(&mut harness, "Walker");
         assert_eq!(harness.state().actions, [UiAction::ShowModel(first)], "{size:?}");
-        assert!(harness.query_by_label("Close other.glb").is_some(), "what is shown can be closed too");
+        assert!(harness.query_by_label(&text::close_model("other.glb")).is_some(), "what is shown can be closed too");
         harness.state_mut().actions.clear();
-        press(&mut harness, "Close Walker");
+        press(&mut harness, &text::close_model("Walker"));
         assert_eq!(harness.state().actions, [UiAction::CloseModel(first)]);
     }
 }
@@ -42,11 +42,11 @@ fn the_shown_model_is_in_sight_among_many() {
     }
     let mut harness = bench_of([1280.0, 400.0], library);
     harness.run_steps(30);
-    let last = format!("Close {}.glb", Library::MAX_MODELS - 1);
+    let last = text::close_model(&format!("{}.glb", Library::MAX_MODELS - 1));
     // Its section leaves room to the clips.
-    let section = harness.get_by_label("CLIPS").rect();
+    let section = harness.get_by_label(text::CLIPS_SECTION).rect();
     assert!(harness.get_by_label(&last).rect().bottom() <= section.top());
-    assert!(harness.get_by_label("Rest pose").rect().bottom() < 400.0);
+    assert!(harness.get_by_label(text::REST_POSE).rect().bottom() < 400.0);
 }
 
 #[test]
@@ -55,7 +55,7 @@ fn models_of_one_name_are_told_apart() {
     let asset = library.active().expect("there are two").asset.clone();
     library.add(Model::new("elsewhere/other.glb".to_owned(), asset, Vec::new()));
     let harness = bench_of(WIDE, library);
-    for name in ["Walker", "other.glb (1)", "Close other.glb (1)", "other.glb (2)"] {
+    for name in ["Walker", "other.glb (1)", &text::close_model("other.glb (1)"), "other.glb (2)"] {
         assert_eq!(harness.query_all_by_label(name).count(), 1, "{name}");
     }
 }
@@ -65,19 +65,19 @@ fn what_was_opened_has_a_button_to_undo_it() {
     for size in [WIDE, NARROW, [320.0, 480.0]] {
         let mut harness = sample_bench(size);
         let text = "Opened a-rather-long-name-of-a-character.glb. 3 others are in the list of models.".to_owned();
-        harness.state_mut().panels.toast = Some(Toast { text, until_secs: 1e9, undoable: true });
+        harness.state_mut().panels.messages.toast = Some(Toast { text, until_secs: 1e9, undoable: true });
         harness.step();
         harness.step();
         harness.step();
-        let button = harness.get_by_label("Undo").rect();
+        let button = harness.get_by_label(text::UNDO).rect();
         let words = harness.get_by_label_contains("Opened a-rather").rect();
         let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
         assert!(screen.contains_rect(button) && screen.contains_rect(words), "{button:?} {words:?} on {size:?}");
         assert!(!button.intersects(words), "{button:?} over {words:?}");
-        harness.get_by_label("Undo").click();
+        harness.get_by_label(text::UNDO).click();
         harness.step();
         harness.step();
         assert_eq!(harness.state().actions, [UiAction::Undo]);
-        assert!(harness.state().panels.toast.is_none());
+        assert!(harness.state().panels.messages.toast.is_none());
     }
 }

@@ -6,7 +6,7 @@ use gaitway::editor::Export;
 use gaitway::library::{Library, Model, Motion};
 use gaitway::retarget::{ClipRef, Feet, JointMap, Keep, MutedProperty, RestChoice, RootOptions, RootPart, Unmapped};
 use gaitway::state::{ClipChoice, Command, MapEdit, active_map, muted_properties};
-use gaitway::ui::{PathPrompt, PathPurpose, Saved, UiAction};
+use gaitway::ui::{PathPrompt, PathPurpose, Saved, Tab, UiAction, text};
 
 use crate::bench::{Bench, NARROW, WIDE, bench_of, drag, motion_bench, press, press_key, sample_bench};
 use crate::skeletons;
@@ -39,7 +39,7 @@ fn press_row(harness: &mut Harness<'_, Bench>, start: &str) {
 #[test]
 fn borrowed_clips_stand_under_the_name_of_their_file() {
     let mut harness = motion_bench(WIDE, &["folder/dance.bvh"]);
-    assert!(harness.query_by_label("From dance.bvh").is_some());
+    assert!(harness.query_by_label(&text::from_motion("dance.bvh")).is_some());
     let [walk, idle, wave] = ["Walk (2)", "Idle (2)", "Wave (2)"];
     for (title, index) in [(walk, 3), (idle, 4), (wave, 5)] {
         let expected = Command::SetClip(ClipChoice::Named(index.to_string()));
@@ -50,15 +50,15 @@ fn borrowed_clips_stand_under_the_name_of_their_file() {
 #[test]
 fn without_a_motion_there_is_no_tab_for_it() {
     let mut harness = sample_bench(WIDE);
-    assert!(harness.query_by_label("Motion").is_none());
-    press(&mut harness, "Motion…");
+    assert!(harness.query_by_label(Tab::Motion.label()).is_none());
+    press(&mut harness, text::BORROW_MOTION);
     assert_eq!(harness.state().actions, [UiAction::ChooseMotion]);
 }
 
 #[test]
 fn the_table_says_who_follows_whom_and_why() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, "Motion");
+    press(&mut harness, Tab::Motion.label());
     let (hips, spine) = (number(&harness, "Hips"), number(&harness, "Spine"));
     assert!(harness.query_by_label_contains(&format!("Hips follows {hips}  Hips (")).is_some());
     assert!(harness.query_by_label_contains(&format!("Spine follows {spine}  Spine (")).is_some());
@@ -70,7 +70,7 @@ fn the_table_says_who_follows_whom_and_why() {
     assert!(harness.query_by_label_contains("LeftToes follows").is_some());
     assert!(harness.query_by_label_contains("Hips follows").is_none());
     // By what it is, too.
-    press(&mut harness, "Clear the search");
+    press(&mut harness, text::CLEAR_SEARCH);
     harness.get_by_label("Search joints of the model").click();
     harness.run();
     harness.get_by_label("Search joints of the model").type_text("left lower");
@@ -82,7 +82,7 @@ fn the_table_says_who_follows_whom_and_why() {
 #[test]
 fn another_source_is_chosen_from_a_list() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, "Motion");
+    press(&mut harness, Tab::Motion.label());
     let (neck, head) = (number(&harness, "Neck"), number(&harness, "Head"));
     press_row(&mut harness, "Neck follows");
     assert!(harness.query_by_label("What does Neck follow?").is_some());
@@ -102,7 +102,7 @@ fn another_source_is_chosen_from_a_list() {
 #[test]
 fn a_source_is_typed_by_number_or_name() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, "Motion");
+    press(&mut harness, Tab::Motion.label());
     let (neck, head, chest) = (number(&harness, "Neck"), number(&harness, "Head"), number(&harness, "Chest"));
     for (typed, source) in [(head.to_string(), head), ("chest".to_owned(), chest)] {
         press_row(&mut harness, "Neck follows");
@@ -116,7 +116,7 @@ fn a_source_is_typed_by_number_or_name() {
 #[test]
 fn a_source_is_chosen_by_arrow_keys() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, "Motion");
+    press(&mut harness, Tab::Motion.label());
     let neck = number(&harness, "Neck");
     for (keys, source) in
         [(&[egui::Key::ArrowDown][..], neck + 1), (&[egui::Key::ArrowUp, egui::Key::ArrowUp], neck - 1)]
@@ -131,7 +131,7 @@ fn a_source_is_chosen_by_arrow_keys() {
 #[test]
 fn keys_do_nothing_else_while_a_source_is_chosen() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, "Motion");
+    press(&mut harness, Tab::Motion.label());
     press_row(&mut harness, "Neck follows");
     assert_eq!(press_key(&mut harness, egui::Key::Space), []);
     assert_eq!(press_key(&mut harness, egui::Key::Escape), []);
@@ -141,7 +141,7 @@ fn keys_do_nothing_else_while_a_source_is_chosen() {
 #[test]
 fn the_options_say_how_the_motion_is_carried_over() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, "Motion");
+    press(&mut harness, Tab::Motion.label());
     press(&mut harness, "Options");
     let mut root = RootOptions { horizontal: RootPart::InPlace, ..RootOptions::default() };
     assert_eq!(press(&mut harness, "Over the ground: In place"), [Command::SetRoot(Some(root))]);
@@ -160,7 +160,7 @@ fn the_options_say_how_the_motion_is_carried_over() {
 #[test]
 fn joints_without_a_source_can_play_a_clip() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, "Motion");
+    press(&mut harness, Tab::Motion.label());
     press(&mut harness, "Options");
     reach(&mut harness, "Joints that follow nothing");
     // One in the list at the left, one in the list that has opened.
@@ -180,7 +180,7 @@ fn joints_without_a_source_can_play_a_clip() {
 #[test]
 fn files_are_asked_of_the_host() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, "Motion");
+    press(&mut harness, Tab::Motion.label());
     press(&mut harness, "Files");
     press(&mut harness, "Save map");
     press(&mut harness, "Load map");
@@ -202,9 +202,9 @@ fn files_are_asked_of_the_host() {
 fn a_path_to_save_at_can_be_typed() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
     let purpose = PathPurpose::Save(Saved::File(Export::Map { motion: 0 }));
-    harness.state_mut().panels.path_prompt = Some(PathPrompt { purpose, path: "map.json".to_owned() });
+    harness.state_mut().panels.messages.path_prompt = Some(PathPrompt { purpose, path: "map.json".to_owned() });
     harness.run();
-    press(&mut harness, "Save");
+    press(&mut harness, text::PROMPT_SAVE);
     assert_eq!(harness.state().actions, [UiAction::UsePath(purpose, "map.json".to_owned())]);
 }
 
@@ -212,7 +212,7 @@ fn a_path_to_save_at_can_be_typed() {
 #[test]
 fn one_of_several_motions_is_chosen() {
     let mut harness = motion_bench(WIDE, &["first.bvh", "second.bvh"]);
-    press(&mut harness, "Motion");
+    press(&mut harness, Tab::Motion.label());
     press(&mut harness, "Motion file");
     let commands = press(&mut harness, "second.bvh");
     assert_eq!(commands, [Command::SetClip(ClipChoice::Named("6".to_owned()))]);
@@ -223,18 +223,20 @@ fn one_of_several_motions_is_chosen() {
 
 #[test]
 fn what_does_not_fit_can_be_looked_at_or_mapped_by_hand() {
-    let offers =
-        [("Show its own skeleton", UiAction::ShowRefusedAlone), ("Choose joints by hand", UiAction::MapRefusedByHand)];
+    let offers = [
+        (text::SHOW_REFUSED_ALONE, UiAction::ShowRefusedAlone),
+        (text::MAP_REFUSED_MANUALLY, UiAction::MapRefusedByHand),
+    ];
     for (label, action) in offers {
         let mut harness = sample_bench(WIDE);
-        harness.state_mut().panels.error = Some("snake.bvh: no joint in common".to_owned());
+        harness.state_mut().panels.messages.error = Some("snake.bvh: no joint in common".to_owned());
         harness.run();
         assert!(harness.query_by_label(label).is_none(), "only for motions");
-        harness.state_mut().panels.motion_refused = true;
+        harness.state_mut().panels.messages.motion_refused = true;
         harness.run();
         press(&mut harness, label);
         assert_eq!(harness.state().actions, [action]);
-        assert_eq!(harness.state().panels.error, None);
+        assert_eq!(harness.state().panels.messages.error, None);
     }
 }
 
@@ -256,7 +258,7 @@ fn choose(harness: &mut Harness<'_, Bench>, list: &str, entry: &str) -> Vec<Comm
 #[test]
 fn the_table_stands_by_parts_of_the_body_or_as_a_tree() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, "Motion");
+    press(&mut harness, Tab::Motion.label());
     let top = |harness: &Harness<'_, Bench>, label: &str| harness.get_by_label_contains(label).rect().top();
     let left_arm = harness.get_by_label_contains("Left arm, ").rect();
     assert!(top(&harness, "LeftHand follows") > left_arm.top());
@@ -275,7 +277,7 @@ fn the_table_stands_by_parts_of_the_body_or_as_a_tree() {
 #[test]
 fn the_table_is_filtered_by_how_it_stands() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, "Motion");
+    press(&mut harness, Tab::Motion.label());
     choose(&mut harness, "Which joints are shown", "To look at (0)");
     assert!(harness.query_by_label("There is nothing that needs a look.").is_some());
     choose(&mut harness, "Which joints are shown", "All joints (24)");
@@ -300,7 +302,7 @@ fn the_table_is_filtered_by_how_it_stands() {
 #[test]
 fn whole_maps_are_swapped_cleared_and_taken_back() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, "Motion");
+    press(&mut harness, Tab::Motion.label());
     let before = harness.state().state().clone();
     let [left, right] = ["LeftHand", "RightHand"].map(|name| number(&harness, name));
     assert_eq!(press(&mut harness, "Swap sides"), [edit(MapEdit::SwapSides)]);
@@ -325,7 +327,7 @@ fn whole_maps_are_swapped_cleared_and_taken_back() {
 #[test]
 fn undo_works_while_a_button_has_the_keyboard() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, "Motion");
+    press(&mut harness, Tab::Motion.label());
     harness.get_by_label("Swap sides").focus();
     harness.run();
     assert_eq!(press_key(&mut harness, egui::Key::Enter), [edit(MapEdit::SwapSides)]);
@@ -345,7 +347,7 @@ fn undo_works_while_a_button_has_the_keyboard() {
 #[test]
 fn a_joint_chosen_anywhere_opens_in_the_table() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, "Motion");
+    press(&mut harness, Tab::Motion.label());
     let [neck, toes] = ["Neck", "RightToes"].map(|name| number(&harness, name));
     assert_eq!(press(&mut harness, "Edit Neck"), [Command::SelectJoint(Some(neck))]);
     assert!(harness.query_by_label("Source of Neck").is_some());
@@ -367,7 +369,7 @@ fn a_joint_chosen_anywhere_opens_in_the_table() {
 #[test]
 fn a_source_is_typed_in_the_table() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, "Motion");
+    press(&mut harness, Tab::Motion.label());
     let [neck, head, chest] = ["Neck", "Head", "Chest"].map(|name| number(&harness, name));
     press(&mut harness, "Edit Neck");
     let mut enter = |text: &str| {
@@ -402,7 +404,7 @@ fn a_source_is_typed_in_the_table() {
 #[test]
 fn a_joint_is_turned_further_and_back() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, "Motion");
+    press(&mut harness, Tab::Motion.label());
     let neck = number(&harness, "Neck");
     press(&mut harness, "Edit Neck");
     let from = harness.get_by_label("Turn further about Y").rect().center();
@@ -425,7 +427,7 @@ fn a_joint_is_turned_further_and_back() {
 #[test]
 fn channels_of_a_source_are_left_out() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, "Motion");
+    press(&mut harness, Tab::Motion.label());
     let neck = number(&harness, "Neck");
     press(&mut harness, "Edit Neck");
     let mute = |property, muted| [edit(MapEdit::Mute { source: neck, property, muted })];
@@ -442,7 +444,7 @@ fn channels_of_a_source_are_left_out() {
 #[test]
 fn one_joint_without_a_source_has_a_policy_of_its_own() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, "Motion");
+    press(&mut harness, Tab::Motion.label());
     let neck = number(&harness, "Neck");
     press(&mut harness, "Edit Neck");
     let clear = Command::SetSource { motion: 0, target: neck, source: None };
@@ -458,7 +460,7 @@ fn one_joint_without_a_source_has_a_policy_of_its_own() {
 #[test]
 fn translations_scales_and_the_crossfade_are_options() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
-    press(&mut harness, "Motion");
+    press(&mut harness, Tab::Motion.label());
     press(&mut harness, "Options");
     assert_eq!(reach(&mut harness, "Translations of joints: Drop"), [edit(MapEdit::Translations(Keep::Drop))]);
     assert_eq!(reach(&mut harness, "Scales of joints: Keep"), [edit(MapEdit::Scales(Keep::Keep))]);
@@ -479,7 +481,7 @@ fn place(harness: &Harness<'_, Bench>, character: usize, name: &str) -> egui::Po
     let view = &bench.frame.view;
     let world = bench.frame.characters[character].world_from_joint[joint.get()].translation;
     let at = (view.projection_from_view * view.view_from_world).project_point3(world.into());
-    let rect = bench.picture;
+    let rect = bench.viewport;
     rect.min + egui::vec2(0.5 + 0.5 * at.x, 0.5 - 0.5 * at.y) * rect.size()
 }
 
@@ -494,9 +496,9 @@ fn the_joint_is_chosen_by_clicking_it() {
         let mut harness = motion_bench(size, &["dance.bvh"]);
         let [hand, head] = ["LeftHand", "Head"].map(|name| number(&harness, name));
         if size == NARROW {
-            press(&mut harness, "Inspector");
+            press(&mut harness, text::INSPECTOR);
         }
-        press(&mut harness, "Motion");
+        press(&mut harness, Tab::Motion.label());
         press(&mut harness, "Choose by clicking");
         assert!(harness.query_by_label("Click a joint of the model").is_some());
         let at = place(&harness, 0, "LeftHand");
@@ -515,7 +517,7 @@ fn the_joint_is_chosen_by_clicking_it() {
             } else {
                 press_key(&mut harness, egui::Key::Escape);
                 if size == NARROW {
-                    press(&mut harness, "Inspector");
+                    press(&mut harness, text::INSPECTOR);
                 }
             }
             assert!(harness.query_by_label("Click a joint of the model").is_none());
@@ -529,7 +531,7 @@ fn the_joint_is_chosen_by_clicking_it() {
 fn both_joints_are_clicked_where_both_are_shown() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
     press(&mut harness, "Walk (2)");
-    press(&mut harness, "Motion");
+    press(&mut harness, Tab::Motion.label());
     harness.state_mut().change(|state| {
         state.display.show.source = true;
     });
@@ -561,7 +563,7 @@ fn three_hundred_joints_have_their_lines() {
     let asset = library.active().expect("just set").asset.clone();
     library.set_motions(vec![Motion::new("swim.bvh".to_owned(), asset)]);
     let mut harness = bench_of(WIDE, library);
-    press(&mut harness, "Motion");
+    press(&mut harness, Tab::Motion.label());
     assert!(harness.query_by_label("300 joints follow the motion's 300.").is_some());
     assert!(harness.query_by_label("Order: Body").is_none(), "it has no body");
     assert!(harness.query_by_label_contains("Tentacle250 follows").is_none(), "far out of sight");
@@ -602,9 +604,9 @@ fn the_chosen_joint_fits_everywhere() {
     for size in [NARROW, [360.0, 640.0], WIDE, [1920.0, 1080.0]] {
         let mut harness = motion_bench(size, &["dance.bvh"]);
         if size[0] < 700.0 {
-            press(&mut harness, "Inspector");
+            press(&mut harness, text::INSPECTOR);
         }
-        press(&mut harness, "Motion");
+        press(&mut harness, Tab::Motion.label());
         let arm = number(&harness, "LeftUpperArm");
         harness.state_mut().change(|state| {
             state.selection.joint = Some(arm);
@@ -636,8 +638,8 @@ fn the_chosen_joint_fits_everywhere() {
 fn everything_fits_on_a_narrow_screen() {
     for size in [NARROW, [360.0, 640.0]] {
         let mut harness = motion_bench(size, &["a-motion-with-a-rather-long-name.bvh", "b.bvh"]);
-        press(&mut harness, "Inspector");
-        press(&mut harness, "Motion");
+        press(&mut harness, text::INSPECTOR);
+        press(&mut harness, Tab::Motion.label());
         let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
         let head = [
             "Motion file",

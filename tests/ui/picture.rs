@@ -1,4 +1,4 @@
-//! Pointer and wheel on the picture.
+//! Pointer, wheel and fingers in the viewport.
 
 use egui::{Event, Modifiers, PointerButton, TouchDeviceId, TouchId, TouchPhase, pos2, vec2};
 use egui_kittest::Harness;
@@ -9,7 +9,7 @@ use crate::bench::{Bench, NARROW, WIDE, drag, sample_bench};
 #[test]
 fn dragging_turns_or_moves_the_camera() {
     let mut harness = sample_bench(WIDE);
-    let center = harness.state().picture.center();
+    let center = harness.state().viewport.center();
     let commands = drag(&mut harness, center, center + vec2(100.0, 40.0), PointerButton::Primary);
     let turned: (f32, f32) = commands.iter().fold((0.0, 0.0), |(yaw, pitch), command| match command {
         Command::Orbit { yaw_radians, pitch_radians } => (yaw + yaw_radians, pitch + pitch_radians),
@@ -45,7 +45,7 @@ fn wheel(harness: &mut Harness<'_, Bench>, at: egui::Pos2) -> Vec<Command> {
 #[test]
 fn the_wheel_goes_nearer_towards_the_pointer() {
     let mut harness = sample_bench(WIDE);
-    let picture = harness.state().picture;
+    let picture = harness.state().viewport;
     for beside in [vec2(0.0, 0.0), vec2(0.25, -0.1)] {
         let mut together = 1.0;
         for command in wheel(&mut harness, picture.center() + beside * picture.height()) {
@@ -60,7 +60,7 @@ fn the_wheel_goes_nearer_towards_the_pointer() {
 #[test]
 fn two_fingers_pinch_and_move_but_do_not_turn() {
     let mut harness = sample_bench(NARROW);
-    let center = harness.state().picture.center();
+    let center = harness.state().viewport.center();
     let touch =
         |id: u64, phase, pos| Event::Touch { device_id: TouchDeviceId(1), id: TouchId(id), phase, pos, force: None };
     // As the browser does, the first finger moves the pointer too.
@@ -93,7 +93,7 @@ fn a_click_on_a_bone_chooses_its_joint_and_one_beside_it_none() {
         state.display.show = Show { skeleton: true, ..Show::default() };
     });
     harness.run();
-    let rect = harness.state().picture;
+    let rect = harness.state().viewport;
     let (bone, point) = {
         let frame = &harness.state().frame;
         let bone = *frame.bones.first().expect("bones are drawn");
@@ -105,7 +105,7 @@ fn a_click_on_a_bone_chooses_its_joint_and_one_beside_it_none() {
         pos2(rect.left() + rect.width() * (0.5 + 0.5 * point.x), rect.top() + rect.height() * (0.5 - 0.5 * point.y));
     drag(&mut harness, on_screen, on_screen, PointerButton::Primary);
     assert_eq!(harness.state().state().selection.joint, Some(bone.joint as usize));
-    assert_eq!(harness.state().panels.hovered_joint, Some(bone.joint as usize));
+    assert_eq!(harness.state().panels.viewport.hovered_joint, Some(bone.joint as usize));
     let beside = rect.left_bottom() + vec2(12.0, -12.0);
     drag(&mut harness, beside, beside, PointerButton::Primary);
     assert_eq!(harness.state().state().selection.joint, None);
@@ -114,7 +114,7 @@ fn a_click_on_a_bone_chooses_its_joint_and_one_beside_it_none() {
 #[test]
 fn a_double_click_frames() {
     let mut harness = sample_bench(WIDE);
-    let center = harness.state().picture.center();
+    let center = harness.state().viewport.center();
     let event = |pressed| Event::PointerButton {
         pos: center,
         button: PointerButton::Primary,

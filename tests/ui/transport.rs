@@ -4,33 +4,36 @@ use egui::{PointerButton, pos2};
 use egui_kittest::kittest::Queryable;
 use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::state::{ClipChoice, Command};
+use gaitway::ui::text;
 
 use crate::bench::{NARROW, WIDE, drag, press, sample_bench};
 
 #[test]
 fn play_becomes_pause() {
     let mut harness = sample_bench(WIDE);
-    assert_eq!(press(&mut harness, "Play"), [Command::TogglePlaying]);
-    assert_eq!(press(&mut harness, "Pause"), [Command::TogglePlaying]);
+    assert_eq!(press(&mut harness, text::PLAY), [Command::TogglePlaying]);
+    assert_eq!(press(&mut harness, text::PAUSE), [Command::TogglePlaying]);
     assert!(!harness.state().state().playback.playing);
 }
 
 #[test]
 fn frames_are_stepped() {
     let mut harness = sample_bench(WIDE);
-    assert_eq!(press(&mut harness, "Next frame (.)"), [Command::StepFrames(1)]);
-    assert_eq!(press(&mut harness, "Previous frame (,)"), [Command::StepFrames(-1)]);
+    assert_eq!(press(&mut harness, text::NEXT_FRAME), [Command::StepFrames(1)]);
+    assert_eq!(press(&mut harness, text::PREVIOUS_FRAME), [Command::StepFrames(-1)]);
 }
 
 #[test]
 fn loop_modes_are_chosen_side_by_side_or_in_turn() {
-    let modes = [("Play once", LoopMode::Once), ("There and back", LoopMode::PingPong), ("Loop", LoopMode::Loop)];
+    let modes =
+        [(text::PLAY_ONCE, LoopMode::Once), (text::PING_PONG, LoopMode::PingPong), (text::LOOP, LoopMode::Loop)];
     let mut harness = sample_bench(WIDE);
     for (label, mode) in modes {
         assert_eq!(press(&mut harness, label), [Command::SetLoopMode(mode)]);
     }
     let mut harness = sample_bench(NARROW);
-    let in_turn = [("Loop", LoopMode::PingPong), ("There and back", LoopMode::Once), ("Play once", LoopMode::Loop)];
+    let in_turn =
+        [(text::LOOP, LoopMode::PingPong), (text::PING_PONG, LoopMode::Once), (text::PLAY_ONCE, LoopMode::Loop)];
     for (label, next) in in_turn {
         assert_eq!(press(&mut harness, label), [Command::SetLoopMode(next)]);
     }
@@ -39,7 +42,7 @@ fn loop_modes_are_chosen_side_by_side_or_in_turn() {
 #[test]
 fn scrubbing_seeks_and_holds_the_time() {
     let mut harness = sample_bench(WIDE);
-    let bar = harness.get_by_label("Time").rect();
+    let bar = harness.get_by_label(text::TIME).rect();
     let y = bar.top() + 8.0;
     let commands = drag(&mut harness, pos2(bar.left() + 20.0, y), pos2(bar.center().x, y), PointerButton::Primary);
     let Some(Command::Seek(secs)) = commands.last() else { panic!("{commands:?}") };
@@ -57,20 +60,21 @@ fn in_and_out_points_are_set_dragged_and_cleared() {
     harness.run();
     let duration = f64::from(harness.state().library().active().unwrap().asset.clips[0].duration_secs());
     let range = TimeRange { start_secs: 0.5, end_secs: duration };
-    assert_eq!(press(&mut harness, "Set the in point here (I)"), [Command::SetRange(Some(range))]);
-    let (handle, bar) = (harness.get_by_label("Out point").rect().center(), harness.get_by_label("Time").rect());
+    assert_eq!(press(&mut harness, text::SET_IN_POINT), [Command::SetRange(Some(range))]);
+    let (handle, bar) =
+        (harness.get_by_label(text::OUT_POINT).rect().center(), harness.get_by_label(text::TIME).rect());
     let three_quarters = bar.left() + 0.75 * bar.width();
     let commands = drag(&mut harness, handle, pos2(three_quarters, handle.y), PointerButton::Primary);
     let Some(Command::SetRange(Some(range))) = commands.last() else { panic!("{commands:?}") };
     assert_eq!(range.start_secs, 0.5);
     assert!((range.end_secs - 0.75 * duration).abs() < 0.01, "{range:?}");
-    assert_eq!(press(&mut harness, "Play the whole clip"), [Command::SetRange(None)]);
+    assert_eq!(press(&mut harness, text::CLEAR_RANGE), [Command::SetRange(None)]);
 }
 
 #[test]
 fn speed_goes_from_a_tenth_to_four_times() {
     let mut harness = sample_bench(WIDE);
-    let bar = harness.get_by_role_and_label(egui::accesskit::Role::Slider, "Speed").rect();
+    let bar = harness.get_by_role_and_label(egui::accesskit::Role::Slider, text::SPEED).rect();
     let across = |x: f32| pos2(x, bar.center().y);
     drag(&mut harness, bar.center(), across(bar.right() + 50.0), PointerButton::Primary);
     assert_eq!(harness.state().state().playback.speed, 4.0);
@@ -81,8 +85,8 @@ fn speed_goes_from_a_tenth_to_four_times() {
 #[test]
 fn speed_is_a_menu_on_a_phone() {
     let mut harness = sample_bench(NARROW);
-    press(&mut harness, "1×");
-    assert_eq!(press(&mut harness, "0.25×"), [Command::SetSpeed(0.25)]);
+    press(&mut harness, &text::speed(1.0));
+    assert_eq!(press(&mut harness, &text::speed(0.25)), [Command::SetSpeed(0.25)]);
 }
 
 #[test]
@@ -92,8 +96,8 @@ fn the_rest_pose_has_nothing_to_play() {
         state.playhead.clip = ClipChoice::RestPose;
     });
     harness.run();
-    assert!(press(&mut harness, "Play").is_empty());
-    assert!(harness.query_by_label("Time").is_none());
+    assert!(press(&mut harness, text::PLAY).is_empty());
+    assert!(harness.query_by_label(text::TIME).is_none());
 }
 
 #[test]
@@ -103,6 +107,6 @@ fn time_is_told_in_seconds_and_frames() {
         state.playhead.time_secs = 0.5;
     });
     harness.run();
-    assert!(harness.query_by_label("0.50 / 1.07 s").is_some());
-    assert!(harness.query_by_label("Frame 15 / 32").is_some());
+    assert!(harness.query_by_label(&text::seconds(0.5, 1.07)).is_some());
+    assert!(harness.query_by_label(&text::frames(15.0, 32.0)).is_some());
 }

@@ -8,8 +8,8 @@ use super::picker::Picking;
 use crate::anim::JointIndex;
 use crate::frame::Character;
 use crate::state::{Command, title};
-use crate::ui::inspector::Tab;
-use crate::ui::{Output, Sheet, Shown, UiState, picture, style};
+use crate::ui::viewport::panes;
+use crate::ui::{Output, Sheet, Shown, Tab, UiState, style};
 
 /// What the next click in the viewport picks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -63,14 +63,14 @@ pub(in crate::ui) fn show(
             (&pairing.motion.asset, source_character(shown, &pairing), joints)
         }
     };
-    let pane = picture::pane_at(shown, response.rect, response.hover_pos());
+    let pane = panes::pane_at(shown, response.rect, response.hover_pos());
     let places = places(shown, pane, character, &joints);
     let palette = style::palette(ui);
     let dot = |at: Pos2, radius: f32| {
         painter.circle(at, radius, palette.accent, Stroke::new(1.5, palette.panel));
     };
     places.iter().for_each(|&(_, at)| dot(at, 3.5));
-    local.hovered_joint = None;
+    local.viewport.hovered_joint = None;
     let state = matches!(clicking, Clicking::Target { .. }).then_some(shown.state);
     if let Some((joint, at)) = response.hover_pos().and_then(|position| nearest(&places, position)) {
         dot(at, 6.0);
@@ -109,8 +109,8 @@ pub(in crate::ui) fn show(
 /// Returns to the table, and reopens the sheet that made room for the viewport.
 fn finish(local: &mut UiState) {
     local.motion.clicking = None;
-    local.tab = Tab::Motion;
-    local.sheet = Some(Sheet::Inspector);
+    local.layout.tab = Tab::Motion;
+    local.layout.sheet = Some(Sheet::Inspector);
 }
 
 /// Screen positions of joints.
@@ -123,7 +123,7 @@ fn places(
     let Some(character) = character else { return Vec::new() };
     let place = |&joint: &JointIndex| {
         let world = character.world_from_joint.get(joint.get())?;
-        Some((joint, picture::to_screen(shown, pane, world.translation.into())?))
+        Some((joint, panes::to_screen(shown, pane, world.translation.into())?))
     };
     joints.iter().filter_map(place).collect()
 }

@@ -29,7 +29,7 @@ pub(super) use picker::show as picker;
 
 /// The state of the tab.
 #[derive(Debug, Default)]
-pub(super) struct MotionTab {
+pub struct MotionTab {
     part: Part,
     table: joints::TableView,
     /// The motion last shown, to stay on when its map is cleared and its clip is gone.
@@ -233,11 +233,11 @@ fn edits(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, local: &mut UiState
         if button(ui, width, true, text, hover) {
             local.motion.clicking = (!clicking).then_some(clicking::Clicking::Target { motion: pairing.index });
             // On a narrow screen the sheet makes room for the viewport.
-            local.sheet = None;
+            local.layout.sheet = None;
         }
         for (icon, label, enabled, action) in [
-            (Icon::Undo, "Undo (Ctrl+Z)", local.can_undo, UiAction::Undo),
-            (Icon::Redo, "Redo (Ctrl+Y)", local.can_redo, UiAction::Redo),
+            (Icon::Undo, "Undo (Ctrl+Z)", local.host.can_undo, UiAction::Undo),
+            (Icon::Redo, "Redo (Ctrl+Y)", local.host.can_redo, UiAction::Redo),
         ] {
             let pressed = ui.add_enabled_ui(enabled, |ui| icon_button_sized(ui, icon, label, false, HEIGHT)).inner;
             if pressed.clicked() {

@@ -1,10 +1,11 @@
-//! The few controls that all panels share: section titles, switches, segmented choices, labelled sliders.
+//! Controls that all panels share: section titles, switches, segmented buttons, labelled sliders, rows and cards.
 
 use egui::{Color32, CornerRadius, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, vec2};
 
 use super::style;
+use crate::ui::text;
 
-/// A quiet title over a group of settings.
+/// The title of a group of settings.
 pub fn section(ui: &mut Ui, title: &str) {
     ui.add_space(10.0);
     let weak = style::palette(ui).weak_text;
@@ -12,13 +13,13 @@ pub fn section(ui: &mut Ui, title: &str) {
     ui.add_space(2.0);
 }
 
-/// Weak text that wraps.
+/// Small, weak text that wraps.
 pub fn hint(ui: &mut Ui, text: impl Into<String>) {
     let weak = style::palette(ui).weak_text;
     ui.add(egui::Label::new(RichText::new(text.into()).small().color(weak)).wrap());
 }
 
-/// A row with a name on the left and a switch on the right; true when it was flipped.
+/// A row with a label on the left and a switch on the right; returns true when it was flipped.
 pub fn switch(ui: &mut Ui, label: &str, on: bool) -> bool {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 28.0), Sense::click());
     let role = egui::accesskit::Role::CheckBox;
@@ -44,12 +45,12 @@ pub fn switch(ui: &mut Ui, label: &str, on: bool) -> bool {
     response.clicked()
 }
 
-/// Equal buttons side by side, one of them chosen; the value of the one that was pressed.
+/// Buttons of equal width, of which one is selected; returns the value of the one that was pressed.
 pub fn segmented<T: Copy + PartialEq>(ui: &mut Ui, chosen: Option<T>, choices: &[(T, &str)]) -> Option<T> {
     segmented_about(ui, "", chosen, choices)
 }
 
-/// As [`segmented`], for choices that only say together with what they are about which button is which.
+/// Like [`segmented`], with a topic that makes the accessible names of the buttons unambiguous.
 pub fn segmented_about<T: Copy + PartialEq>(
     ui: &mut Ui,
     about: &str,
@@ -93,7 +94,7 @@ fn segment(ui: &Ui, cell: Rect, response: &Response, on: bool, label: &str) {
     ui.painter().text(cell.center(), egui::Align2::CENTER_CENTER, label, font, color);
 }
 
-/// A name, a value and a slider under them; the new value while it is dragged or typed. Double click: `default`.
+/// A label and a value with a slider below; returns the new value. A double click resets it to `default`.
 pub fn slider(ui: &mut Ui, label: &str, value: f64, settings: SliderSettings) -> Option<f64> {
     ui.scope(|ui| slider_in(ui, label, value, settings)).inner
 }
@@ -121,7 +122,7 @@ fn slider_in(ui: &mut Ui, label: &str, value: f64, settings: SliderSettings) -> 
     (new != value).then_some(new)
 }
 
-/// A ring in the accent's colour instead of egui's knob, for all sliders that follow in this `Ui`.
+/// Draws the knobs of all further sliders in this `Ui` as rings in the accent colour.
 pub fn knob_style(ui: &mut Ui) {
     let palette = style::palette(ui);
     ui.spacing_mut().interact_size.y = 20.0;
@@ -158,7 +159,7 @@ fn label_and_value(ui: &mut Ui, label: &str, value: &mut f64, settings: &SliderS
                 .fixed_decimals(settings.decimals)
                 .suffix(settings.suffix),
         );
-        field.accessible_name(format!("{label} value"));
+        field.accessible_name(text::value_of(label));
     });
 }
 
@@ -171,14 +172,14 @@ pub fn card<R>(ui: &mut Ui, contents: impl FnOnce(&mut Ui) -> R) -> R {
         .inner_margin(egui::Margin::same(10))
         .show(ui, |ui| {
             ui.set_width(ui.available_width());
-            // Buttons elsewhere have the card's own colour.
+            // The usual colour of buttons is the card's own.
             ui.visuals_mut().widgets.inactive.weak_bg_fill = panel;
             contents(ui)
         })
         .inner
 }
 
-/// A full-width row that can be chosen: a name, and something short at its right end.
+/// A selectable full-width row: a name, and a short text on the right.
 pub fn list_row(ui: &mut Ui, name: &str, right: &str, chosen: bool) -> Response {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 30.0), Sense::click());
     let role = egui::accesskit::Role::Button;
@@ -210,12 +211,12 @@ pub fn list_row(ui: &mut Ui, name: &str, right: &str, chosen: bool) -> Response 
     if cut { response.on_hover_text(name) } else { response }
 }
 
-/// One line of text in a box, cut with an ellipsis where it does not fit; true when it was cut.
+/// Paints one line of text, truncated with an ellipsis where it doesn't fit; returns whether it was truncated.
 pub fn elided(ui: &Ui, rect: Rect, text: &str, color: Color32) -> bool {
     elided_in(ui, rect, text, color, egui::TextStyle::Body)
 }
 
-/// As [`elided`], in small print.
+/// Like [`elided`], in small text.
 pub fn elided_small(ui: &Ui, rect: Rect, text: &str, color: Color32) -> bool {
     elided_in(ui, rect, text, color, egui::TextStyle::Small)
 }
@@ -231,13 +232,13 @@ fn elided_in(ui: &Ui, rect: Rect, text: &str, color: Color32, style: egui::TextS
     cut
 }
 
-/// Room for the floating scroll bar, which gets wider under the pointer.
-pub(super) const BAR: f32 = 12.0;
+/// Room for the floating scroll bar, which widens under the pointer.
+pub const SCROLL_BAR_WIDTH: f32 = 12.0;
 
-/// What a tab holds, scrolling where it is higher than the panel. `id` keeps its place.
-pub(super) fn scrolled(ui: &mut Ui, id: impl egui::AsIdSalt, contents: impl FnOnce(&mut Ui)) {
+/// The contents of a tab, which scroll if they are higher than the panel. `id` identifies the scroll position.
+pub fn scrolled(ui: &mut Ui, id: impl egui::AsIdSalt, contents: impl FnOnce(&mut Ui)) {
     egui::ScrollArea::vertical().id_salt(id).auto_shrink([false, false]).show(ui, |ui| {
-        ui.set_max_width(ui.available_width() - BAR);
+        ui.set_max_width(ui.available_width() - SCROLL_BAR_WIDTH);
         contents(ui);
         ui.add_space(12.0);
     });

@@ -1,8 +1,9 @@
-//! Icons painted as shapes: the fonts at hand have few that match, and none that match each other.
+//! Icons painted as shapes, because the fonts have no consistent set.
 
 use egui::{Color32, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2};
 
 use super::style;
+use crate::ui::text;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Icon {
@@ -28,7 +29,7 @@ pub enum Icon {
     Redo,
 }
 
-/// A square button that shows an icon; `label` names it for people who cannot see it and is shown on hover.
+/// A square button with an icon; `label` is its accessible name and its tooltip.
 pub fn icon_button(ui: &mut Ui, icon: Icon, label: &str, chosen: bool) -> Response {
     icon_button_sized(ui, icon, label, chosen, 32.0)
 }
@@ -64,9 +65,9 @@ pub fn icon_button_sized(ui: &mut Ui, icon: Icon, label: &str, chosen: bool, siz
     response.on_hover_text(label)
 }
 
-/// The round button that everything else on the transport is smaller than.
+/// The large round play button.
 pub fn play_button(ui: &mut Ui, playing: bool, size: f32) -> Response {
-    let label = if playing { "Pause" } else { "Play" };
+    let label = if playing { text::PAUSE } else { text::PLAY };
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(size), Sense::click());
     response.widget_info(|| WidgetInfo::labeled(egui::accesskit::Role::Button, ui.is_enabled(), label));
     let palette = style::palette(ui);
@@ -83,7 +84,7 @@ pub fn play_button(ui: &mut Ui, playing: bool, size: f32) -> Response {
     }
     let icon = if playing { Icon::Pause } else { Icon::Play };
     paint(ui.painter(), icon, Rect::from_center_size(rect.center(), Vec2::splat(size * 0.42)), palette.on_accent);
-    response.on_hover_text(format!("{label} (space)"))
+    response.on_hover_text(format!("{label} (Space)"))
 }
 
 /// Paints an icon into a square.
@@ -202,7 +203,7 @@ pub fn paint(painter: &Painter, icon: Icon, square: Rect, color: Color32) {
     }
 }
 
-/// Degrees run clockwise from the right.
+/// Angles run clockwise from the right.
 fn arc(painter: &Painter, center: Pos2, radius: f32, from_degrees: f32, to_degrees: f32, stroke: Stroke) {
     let steps = 20;
     let points = (0..=steps)

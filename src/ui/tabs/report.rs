@@ -1,67 +1,77 @@
-//! The File tab: what is in the file, and what was odd about it.
+//! The File tab: the contents of the file, and its problems.
 
 use std::collections::BTreeMap;
 
 use egui::{RichText, Ui};
 
-use super::{Output, Saved, Shown, UiAction, controls, style};
 use crate::asset::{Asset, Warning};
 use crate::editor::Export;
+use crate::library::Model;
 use crate::mesh::{Geometry, Mesh};
+use crate::ui::{Output, Saved, Shown, UiAction, controls, style, text};
 
-/// More are not listed.
-const MOST_PARTS: usize = 100;
+/// Further parts are not listed.
+const MAX_PARTS: usize = 100;
 
-pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
+pub fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let Some(model) = shown.library.active() else { return };
     let asset: &Asset = &model.asset;
-    let primitives = || asset.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    contents(ui, model);
+    parts(ui, asset);
+    save(ui, asset, out);
+    extensions(ui, asset);
+    warnings(ui, asset);
+}
 
+fn contents(ui: &mut Ui, model: &Model) {
+    let asset: &Asset = &model.asset;
+    let primitives = || asset.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    let size = model.rest_bounds().size();
+    let rows = [
+        (text::FORMAT, asset.format.to_owned()),
+        (text::NODES, grouped(asset.skeleton.len())),
+        ("Skins", grouped(asset.skins.len())),
+        ("Joints", grouped(model.rig().joint_count(asset))),
+        ("Meshes", grouped(asset.meshes.len())),
+        ("Primitives", grouped(primitives().count())),
+        ("Vertices", grouped(asset.meshes.iter().map(Mesh::file_vertex_count).sum())),
+        ("Triangles", grouped(primitives().map(Geometry::triangles).sum())),
+        ("Materials", grouped(asset.materials.len())),
+        ("Images", grouped(asset.images.len())),
+        (text::CLIPS, grouped(asset.clips.len())),
+        ("Cameras", grouped(asset.cameras.len())),
+        ("Lights", grouped(asset.lights.len())),
+        ("Size", format!("{} × {} × {} m", short(size.x), short(size.y), short(size.z))),
+    ];
     controls::section(ui, "CONTENTS");
     controls::card(ui, |ui| {
-        let size = model.rest_bounds().size();
-        let rows = [
-            ("Format", asset.format.to_owned()),
-            ("Nodes", grouped(asset.skeleton.len())),
-            ("Skins", grouped(asset.skins.len())),
-            ("Joints", grouped(model.rig().joint_count(asset))),
-            ("Meshes", grouped(asset.meshes.len())),
-            ("Primitives", grouped(primitives().count())),
-            ("Vertices", grouped(asset.meshes.iter().map(Mesh::file_vertex_count).sum())),
-            ("Triangles", grouped(primitives().map(Geometry::triangles).sum())),
-            ("Materials", grouped(asset.materials.len())),
-            ("Images", grouped(asset.images.len())),
-            ("Clips", grouped(asset.clips.len())),
-            ("Cameras", grouped(asset.cameras.len())),
-            ("Lights", grouped(asset.lights.len())),
-            ("Size", format!("{} × {} × {} m", short(size.x), short(size.y), short(size.z))),
-        ];
         for (name, value) in rows {
             fact(ui, name, &value);
         }
         if !asset.generator.is_empty() {
-            fact(ui, "Made with", &asset.generator);
+            fact(ui, "Generator", &asset.generator);
         }
     });
+}
 
-    parts(ui, asset);
-    save(ui, asset, out);
-
+fn extensions(ui: &mut Ui, asset: &Asset) {
     controls::section(ui, "EXTENSIONS");
     if asset.extensions_used.is_empty() {
-        controls::hint(ui, "None.");
-    } else {
-        controls::card(ui, |ui| {
-            for name in &asset.extensions_used {
-                let required = asset.extensions_required.contains(name);
-                fact(ui, name, if required { "required" } else { "" });
-            }
-        });
+        controls::hint(ui, "None");
+        return;
     }
+    controls::card(ui, |ui| {
+        for name in &asset.extensions_used {
+            let required = asset.extensions_required.contains(name);
+            fact(ui, name, if required { "required" } else { "" });
+        }
+    });
+}
 
+fn warnings(ui: &mut Ui, asset: &Asset) {
     controls::section(ui, "WARNINGS");
     if asset.warnings.is_empty() {
-        controls::hint(ui, "None: nothing was odd about the files, as far as Gaitway looks.");
+        controls::hint(ui, "No problems found");
         return;
     }
     let mut by_code: BTreeMap<&str, Vec<&Warning>> = BTreeMap::new();
@@ -79,41 +89,41 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     }
 }
 
-/// What the file calls the pieces of its meshes, where it has names for them.
+/// The named parts of the meshes.
 fn parts(ui: &mut Ui, asset: &Asset) {
-    let mut pieces =
-        asset.meshes.iter().flat_map(|mesh| mesh.part_names.iter().zip(&mesh.primitives)).take(MOST_PARTS).peekable();
-    if pieces.peek().is_none() {
+    let mut parts =
+        asset.meshes.iter().flat_map(|mesh| mesh.part_names.iter().zip(&mesh.primitives)).take(MAX_PARTS).peekable();
+    if parts.peek().is_none() {
         return;
     }
     controls::section(ui, "PARTS");
     controls::card(ui, |ui| {
-        for (name, geometry) in pieces {
-            let name = if name.is_empty() { "without a name" } else { name };
+        for (name, geometry) in parts {
+            let name = if name.is_empty() { "unnamed" } else { name };
             fact(ui, name, &format!("{} triangles", grouped(geometry.triangles())));
         }
     });
 }
 
-/// Models of other formats can be had as GLB; a glTF file is one already.
+/// Saves models of other formats as GLB.
 fn save(ui: &mut Ui, asset: &Asset, out: &mut Output) {
     if asset.format != "obj" {
         return;
     }
     if asset.skins.is_empty() {
-        controls::hint(ui, "A static model: there were no .skel and .attach with the .obj.");
+        controls::hint(ui, "Static model: opened without its .skel and .attach files.");
     }
     controls::section(ui, "SAVE AS GLB");
-    for (label, posed) in [("At rest", false), ("As it stands", true)] {
+    for (label, posed) in [(text::SAVE_REST_POSE, false), (text::SAVE_CURRENT_POSE, true)] {
         let button = egui::Button::new(label).min_size(egui::vec2(ui.available_width(), 32.0));
         if ui.add(button).clicked() {
             out.actions.push(UiAction::Save(Saved::File(Export::Whole { posed })));
         }
     }
-    controls::hint(ui, "With all weights of each vertex, in sets of four. Joints keep the names that you gave them.");
+    controls::hint(ui, "Includes all weights of each vertex, in sets of four, and your joint names.");
 }
 
-/// A name at the left and its value at the right end; a value that does not fit goes on below.
+/// A name on the left and its value on the right, or below where both don't fit.
 fn fact(ui: &mut Ui, name: &str, value: &str) {
     let palette = style::palette(ui);
     let font = egui::TextStyle::Body.resolve(ui.style());
@@ -124,7 +134,7 @@ fn fact(ui: &mut Ui, name: &str, value: &str) {
     let beside = name_size.x + value_size.x + 12.0 <= width;
     let height = if beside || value.is_empty() { name_size.y } else { name_size.y + value_size.y + 2.0 };
     let (rect, response) = ui.allocate_exact_size(egui::vec2(width, height), egui::Sense::hover());
-    let whole = format!("{name} {value}");
+    let whole = text::fact(name, value);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Label, true, &whole));
     let value_at = if beside {
         egui::pos2(rect.right() - value_size.x, rect.top())
@@ -135,7 +145,7 @@ fn fact(ui: &mut Ui, name: &str, value: &str) {
     ui.painter().galley(value_at, value_galley, palette.text);
 }
 
-/// With a thin space between thousands.
+/// Formats a number with thin spaces between thousands.
 fn grouped(number: usize) -> String {
     let digits = number.to_string();
     let mut text = String::new();
@@ -148,8 +158,8 @@ fn grouped(number: usize) -> String {
     text
 }
 
-/// Three decimals, or a power of ten where those would show nothing.
-pub(super) fn short(number: f32) -> String {
+/// Formats a number with about three decimals, or with an exponent where those would show nothing.
+pub fn short(number: f32) -> String {
     let size = number.abs();
     if size == 0.0 || !number.is_finite() {
         format!("{}", number + 0.0)

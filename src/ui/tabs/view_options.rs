@@ -1,17 +1,17 @@
-//! The View tab: camera, light, background, and which way is up.
+//! The View tab: camera, light, background, up axis, images and videos.
 
 use egui::{RichText, Ui};
 
-use super::controls::{self, SliderSettings};
-use super::{Output, Saved, Shown, UiAction, UiState, style};
 use crate::state::{
     Background, CameraChoice, Command, OrbitCamera, UpAxis, ViewerState, frame_all, front_yaw_radians, resolve_camera,
 };
+use crate::ui::controls::{self, SliderSettings};
+use crate::ui::{Output, Saved, Shown, UiAction, UiState, style, text};
 
-/// Of the picture that is saved.
+/// Settings of saved images.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PictureSettings {
-    /// Pixels.
+    /// Width and height in pixels.
     size: [u32; 2],
     transparent: bool,
 }
@@ -22,18 +22,18 @@ impl Default for PictureSettings {
     }
 }
 
-/// Every device that this runs on can draw as large.
-const LARGEST_PICTURE: u32 = 4096;
+/// Supported by every device that Gaitway runs on.
+const MAX_PICTURE_SIZE: u32 = 4096;
 
-pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
-    let aspect = local.aspect;
+pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
+    let aspect = local.viewport.aspect;
     camera(ui, shown, aspect, out);
     light(ui, shown, out);
     controls::section(ui, "UP AXIS OF THE FILE");
     let axes = [
         (UpAxis::X, "X"),
         (UpAxis::Y, "Y"),
-        (UpAxis::Z, "Z"),
+        (UpAxis::Z, text::UP_Z),
         (UpAxis::MinusX, "−X"),
         (UpAxis::MinusY, "−Y"),
         (UpAxis::MinusZ, "−Z"),
@@ -42,39 +42,39 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
         out.commands.push(Command::SetUp(up));
     }
     ui.add_space(2.0);
-    controls::hint(ui, "glTF says Y. Choose another for a model that lies on its back.");
+    controls::hint(ui, "Y in glTF. Change it if the model lies on its back.");
     scenes(ui, shown, out);
-    picture(ui, shown, &mut local.picture, out);
+    picture(ui, shown, &mut local.picture_settings, out);
 }
 
-/// What can be taken out of the page besides files.
+/// Saving images and recording videos.
 fn picture(ui: &mut Ui, shown: &Shown<'_>, settings: &mut PictureSettings, out: &mut Output) {
-    controls::section(ui, "PICTURE AND VIDEO");
-    let sizes = [([1280, 720], "720p"), ([1920, 1080], "1080p"), ([3840, 2160], "4K"), ([1080, 1080], "Square")];
+    controls::section(ui, "IMAGE AND VIDEO");
+    let sizes = [([1280, 720], "720p"), ([1920, 1080], "1080p"), ([3840, 2160], "4K"), ([1080, 1080], text::SQUARE)];
     if let Some(size) = controls::segmented(ui, Some(settings.size), &sizes) {
         settings.size = size;
     }
     ui.horizontal(|ui| {
         for (edge, name) in [(0, "Width in pixels"), (1, "Height in pixels")] {
             let value = &mut settings.size[edge];
-            let field = egui::DragValue::new(value).range(16..=LARGEST_PICTURE).suffix(" px");
+            let field = egui::DragValue::new(value).range(16..=MAX_PICTURE_SIZE).suffix(" px");
             ui.add_sized([90.0, 26.0], field).accessible_name(name);
         }
     });
-    if controls::switch(ui, "Transparent background", settings.transparent) {
+    if controls::switch(ui, text::TRANSPARENT_BACKGROUND, settings.transparent) {
         settings.transparent = !settings.transparent;
     }
     let wide = |ui: &mut Ui, enabled: bool, text: &str| {
         let button = egui::Button::new(text).min_size(egui::vec2(ui.available_width(), 32.0));
         ui.add_enabled(enabled, button)
     };
-    if wide(ui, true, "Save picture (PNG)").clicked() {
+    if wide(ui, true, text::SAVE_IMAGE).clicked() {
         let PictureSettings { size, transparent } = *settings;
         out.actions.push(UiAction::Save(Saved::Picture { size, transparent }));
     }
-    let moves = shown.clip().is_some_and(|clip| clip.duration_secs() > 0.0);
-    let record = wide(ui, moves, "Record one loop (WebM)");
-    if record.on_hover_text("Plays the clip once, as large as the window, without the panels. Esc ends it.").clicked() {
+    let record = wide(ui, shown.is_animated(), text::RECORD);
+    if record.on_hover_text("Plays the clip once at the size of the window, without the panels. Esc cancels.").clicked()
+    {
         out.actions.push(UiAction::Record);
     }
 }
@@ -82,7 +82,7 @@ fn picture(ui: &mut Ui, shown: &Shown<'_>, settings: &mut PictureSettings, out: 
 fn camera(ui: &mut Ui, shown: &Shown<'_>, aspect: f32, out: &mut Output) {
     let state = shown.state;
     controls::section(ui, "CAMERA");
-    let sides = [(0.0, 0.0, "Front"), (180.0, 0.0, "Back"), (90.0, 0.0, "Side"), (0.0, 89.9, "Top")];
+    let sides = [(0.0, 0.0, text::FRONT), (180.0, 0.0, "Back"), (90.0, 0.0, text::SIDE), (0.0, 89.9, text::TOP)];
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         let width = (ui.available_width() - 4.0 * 6.0) / 5.0;
@@ -91,11 +91,7 @@ fn camera(ui: &mut Ui, shown: &Shown<'_>, aspect: f32, out: &mut Output) {
                 out.commands.push(look_from(shown, aspect, yaw_degrees, pitch_degrees));
             }
         }
-        if ui
-            .add_sized([width, 30.0], egui::Button::new("Fit"))
-            .on_hover_text("Fit everything into the picture (F)")
-            .clicked()
-        {
+        if ui.add_sized([width, 30.0], egui::Button::new("Fit")).on_hover_text(text::FRAME_ALL_KEY).clicked() {
             out.commands.push(Command::FrameAll);
         }
     });
@@ -109,7 +105,7 @@ fn camera(ui: &mut Ui, shown: &Shown<'_>, aspect: f32, out: &mut Output) {
         for (index, camera) in cameras.iter().enumerate() {
             let name = if camera.name.is_empty() { format!("Camera {index}") } else { camera.name.clone() };
             let chosen = state.camera == CameraChoice::File(index);
-            if controls::list_row(ui, &name, "in the file", chosen).clicked() {
+            if controls::list_row(ui, &name, "from the file", chosen).clicked() {
                 out.commands.push(Command::SetCamera(CameraChoice::File(index)));
             }
         }
@@ -120,7 +116,7 @@ fn camera(ui: &mut Ui, shown: &Shown<'_>, aspect: f32, out: &mut Output) {
     {
         out.commands.push(Command::SetFov(degrees as f32));
     }
-    if controls::switch(ui, "Follow the character", state.camera_options.follow) {
+    if controls::switch(ui, text::FOLLOW, state.camera_options.follow) {
         out.commands.push(Command::SetFollow(!state.camera_options.follow));
     }
     let settings =
@@ -130,7 +126,7 @@ fn camera(ui: &mut Ui, shown: &Shown<'_>, aspect: f32, out: &mut Output) {
     }
 }
 
-/// An orbit camera that looks from a fixed side and sees everything.
+/// An orbit camera that frames everything from a fixed direction.
 fn look_from(shown: &Shown<'_>, aspect: f32, yaw_degrees: f32, pitch_degrees: f32) -> Command {
     let camera = CameraChoice::Orbit(OrbitCamera {
         yaw_radians: front_yaw_radians(shown.library, shown.state) + yaw_degrees.to_radians(),
@@ -146,12 +142,14 @@ fn light(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     controls::section(ui, "LIGHT AND BACKGROUND");
     let settings =
         SliderSettings { range: (-5.0, 5.0), default: 0.0, decimals: 1, suffix: " stops", logarithmic: false };
-    if let Some(stops) = controls::slider(ui, "Exposure", f64::from(state.display.exposure), settings) {
+    if let Some(stops) = controls::slider(ui, text::EXPOSURE, f64::from(state.display.exposure), settings) {
         out.commands.push(Command::SetExposure(stops as f32));
     }
     let settings =
         SliderSettings { range: (-180.0, 180.0), default: 0.0, decimals: 0, suffix: "°", logarithmic: false };
-    if let Some(degrees) = controls::slider(ui, "Environment", f64::from(state.display.environment_degrees), settings) {
+    if let Some(degrees) =
+        controls::slider(ui, "Light rotation", f64::from(state.display.environment_degrees), settings)
+    {
         out.commands.push(Command::SetEnvironment(degrees as f32));
     }
     ui.add_space(4.0);
@@ -166,7 +164,7 @@ fn light(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
         Background::Color(color) => (Kind::Color, color),
         Background::Transparent => (Kind::Transparent, [236, 238, 242]),
     };
-    let kinds = [(Kind::Studio, "Studio"), (Kind::Color, "Colour"), (Kind::Transparent, "None")];
+    let kinds = [(Kind::Studio, text::STUDIO), (Kind::Color, text::COLOR), (Kind::Transparent, text::NO_BACKGROUND)];
     if let Some(kind) = controls::segmented(ui, Some(kind), &kinds) {
         out.commands.push(Command::SetBackground(match kind {
             Kind::Studio => Background::Studio,

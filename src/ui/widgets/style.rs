@@ -1,5 +1,5 @@
-//! How the panels look: two quiet palettes, one for each system theme, and egui's style made from them. The scene's own
-//! look is part of the view state and never follows the theme.
+//! The style of the panels: a palette for each system theme, and egui's style derived from it. The look of the scene is part
+//! of the view state and doesn't depend on the theme.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use egui::{
     Theme, Vec2, Visuals,
 };
 
-/// The colours of one theme; panels ask for these by what they are for.
+/// The colours of a theme, named by their purpose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Palette {
     pub panel: Color32,
@@ -20,9 +20,9 @@ pub struct Palette {
     pub text: Color32,
     pub weak_text: Color32,
     pub accent: Color32,
-    /// On top of `accent`.
+    /// Text on `accent`.
     pub on_accent: Color32,
-    /// A tint of the accent, for what is chosen.
+    /// Background of selected items, a tint of the accent.
     pub chosen: Color32,
     pub warning: Color32,
     pub error: Color32,
@@ -60,12 +60,12 @@ const LIGHT: Palette = Palette {
 
 pub const CORNER: u8 = 7;
 
-/// The palette that goes with what egui shows now.
+/// The palette of the current theme.
 pub fn palette(ui: &egui::Ui) -> Palette {
     if ui.visuals().dark_mode { DARK } else { LIGHT }
 }
 
-/// Sets the font and both styles; egui then follows the system's theme by itself.
+/// Sets the fonts and both styles; egui follows the system theme.
 pub fn install(context: &egui::Context) {
     context.set_fonts(fonts());
     context.set_theme(egui::ThemePreference::System);
@@ -75,9 +75,9 @@ pub fn install(context: &egui::Context) {
 }
 
 /// See assets/font/README.md.
-const UBUNTU_LIGHT: &[u8] = include_bytes!("../../assets/font/Ubuntu-Light-derivative-Gaitway.ttf");
+const UBUNTU_LIGHT: &[u8] = include_bytes!("../../../assets/font/Ubuntu-Light-derivative-Gaitway.ttf");
 
-/// One font for all text: its digits have one width, so that columns of numbers need no other. And egui's few icons.
+/// One font for all text, with tabular digits for columns of numbers, and egui's icons.
 fn fonts() -> FontDefinitions {
     let mut fonts = FontDefinitions::empty();
     let data: [(&str, &'static [u8]); 2] =

@@ -1,0 +1,196 @@
+//! The card of the selected joint: its name, transforms and matrices, and sliders to pose it.
+
+use egui::{RichText, Sense, Ui, WidgetInfo, pos2, vec2};
+use glam::{Affine3A, EulerRot, Quat, Vec3};
+
+use super::formula;
+use super::report::short;
+use crate::anim::{JointIndex, Transform};
+use crate::asset::Asset;
+use crate::library::Model;
+use crate::state::{Command, manual_degrees, title};
+use crate::ui::controls::SliderSettings;
+use crate::ui::icons::{Icon, icon_button_sized};
+use crate::ui::{Output, Shown, controls, style, text};
+
+/// What the card remembers.
+#[derive(Debug, Default)]
+pub struct JointCard {
+    /// The pose sliders and the rotation gizmo are on.
+    pub is_posing: bool,
+    shows_matrices: bool,
+    /// The number in the file of the joint that is being renamed, and what has been typed so far.
+    renaming: Option<(usize, String)>,
+}
+
+pub fn show(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, card: &mut JointCard, out: &mut Output) {
+    let asset = &model.asset;
+    header(ui, shown, asset, joint, card, out);
+    let local = shown.frame.pose().locals.get(joint.get()).copied().unwrap_or_default();
+    ui.add_space(2.0);
+    if controls::switch(ui, text::POSE_MANUALLY, card.is_posing) {
+        card.is_posing = !card.is_posing;
+        if shown.state.camera_options.turntable != 0.0 {
+            out.commands.push(Command::SetTurntable(0.0));
+        }
+    }
+    if card.is_posing {
+        pose_sliders(ui, shown, asset, joint, local.rotation, out);
+    }
+    reset_buttons(ui, shown, asset.skeleton.source_index(joint), out);
+    // Transforms or matrices: they say the same.
+    if !card.shows_matrices {
+        transforms(ui, shown, asset, joint, &local);
+    }
+    if controls::switch(ui, text::MATRICES, card.shows_matrices) {
+        card.shows_matrices = !card.shows_matrices;
+    }
+    if card.shows_matrices {
+        ui.scope(|ui| formula::matrices(ui, shown, model, joint));
+    }
+}
+
+fn header(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, card: &mut JointCard, out: &mut Output) {
+    ui.horizontal(|ui| {
+        let width = ui.available_width() - 100.0;
+        ui.scope(|ui| {
+            ui.set_max_width(width);
+            name(ui, shown, asset, joint, card, out);
+        });
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if icon_button_sized(ui, Icon::Close, text::DESELECT_JOINT, false, 24.0).clicked() {
+                out.commands.push(Command::SelectJoint(None));
+            }
+            if card.renaming.is_none() && ui.small_button(text::RENAME).clicked() {
+                let name = title(Some(shown.state), asset, joint).into_owned();
+                card.renaming = Some((asset.skeleton.source_index(joint), name));
+            }
+        });
+    });
+}
+
+/// Shown while any joint is posed manually.
+fn reset_buttons(ui: &mut Ui, shown: &Shown<'_>, joint: usize, out: &mut Output) {
+    let posed = &shown.state.edits.pose;
+    if posed.is_empty() {
+        return;
+    }
+    ui.horizontal_wrapped(|ui| {
+        if ui.add_enabled(posed.contains_key(&joint), egui::Button::new(text::RESET_JOINT)).clicked() {
+            out.commands.push(Command::SetPose { joint, degrees: None });
+        }
+        let all = ui.button(text::reset_all_joints(posed.len()));
+        if all.on_hover_text("Return all manually posed joints to the clip").clicked() {
+            out.commands.push(Command::ClearPose);
+        }
+    });
+}
+
+/// Translation, rotation and scale, relative to the parent and to the world.
+fn transforms(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, local: &Transform) {
+    let parent =
+        asset.skeleton.parent(joint).map_or("no parent".into(), |parent| title(Some(shown.state), asset, parent));
+    let (heads, _) = ui.allocate_exact_size(vec2(ui.available_width(), 12.0), Sense::hover());
+    for (axis, name) in ["X", "Y", "Z"].into_iter().enumerate() {
+        let right = heads.left() + 60.0 + (heads.width() - 60.0) / 3.0 * (axis + 1) as f32;
+        let (at, font) = (pos2(right, heads.center().y), egui::FontId::proportional(11.0));
+        ui.painter().text(at, egui::Align2::RIGHT_CENTER, name, font, style::palette(ui).weak_text);
+    }
+    transform(ui, &text::local_transform(&parent), local);
+    let character = shown.frame.characters.first();
+    if let Some(world) = character.and_then(|character| character.world_from_joint.get(joint.get())) {
+        transform(ui, "World", &decomposed(world));
+    }
+}
+
+/// The joint's name, or the field to rename it: Enter or a click elsewhere accepts, Esc cancels.
+fn name(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, card: &mut JointCard, out: &mut Output) {
+    let number = asset.skeleton.source_index(joint);
+    let Some((_, typed)) = card.renaming.as_mut().filter(|(of, _)| *of == number) else {
+        card.renaming = None;
+        let name = RichText::new(title(Some(shown.state), asset, joint)).strong().size(15.0);
+        ui.add(egui::Label::new(name).truncate().selectable(true));
+        return;
+    };
+    let in_file = asset.skeleton.name(joint);
+    let field = egui::TextEdit::singleline(typed).hint_text(in_file).desired_width(f32::INFINITY);
+    let field = ui.add(field).accessible_name(text::JOINT_NAME);
+    let is_cancelled = ui.input(|input| input.key_pressed(egui::Key::Escape));
+    if field.lost_focus() {
+        if !is_cancelled {
+            out.commands.push(Command::RenameJoint { joint: number, name: typed.clone() });
+        }
+        card.renaming = None;
+    } else if !field.has_focus() {
+        field.request_focus();
+    }
+}
+
+/// Three angles relative to the rest pose; they follow the clip until they are touched.
+fn pose_sliders(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, rotation: Quat, out: &mut Output) {
+    let number = asset.skeleton.source_index(joint);
+    let rest = asset.skeleton.rest().locals.get(joint.get()).map_or(Quat::IDENTITY, |local| local.rotation);
+    let now = shown.state.edits.pose.get(&number).copied().unwrap_or_else(|| manual_degrees(rest, rotation));
+    // Turns -0 into 0.
+    let now = now.map(|angle| angle + 0.0);
+    controls::hint(ui, text::POSE_HINT);
+    for (axis, name) in text::POSE_ANGLES.into_iter().enumerate() {
+        let settings =
+            SliderSettings { range: (-180.0, 180.0), default: 0.0, decimals: 1, suffix: "°", logarithmic: false };
+        if let Some(angle) = controls::slider(ui, name, f64::from(now[axis]), settings) {
+            let mut degrees = now;
+            degrees[axis] = angle as f32;
+            out.commands.push(Command::SetPose { joint: number, degrees: Some(degrees) });
+        }
+    }
+}
+
+fn decomposed(world: &Affine3A) -> Transform {
+    Transform::from_matrix(&(*world).into())
+}
+
+fn transform(ui: &mut Ui, title: &str, value: &Transform) {
+    let palette = style::palette(ui);
+    ui.add_space(4.0);
+    ui.add(egui::Label::new(RichText::new(title).small().color(palette.weak_text)).truncate());
+    let (x, y, z) = value.rotation.normalize_or_identity().to_euler(EulerRot::XYZ);
+    let degrees = Vec3::new(x, y, z) * (180.0 / std::f32::consts::PI);
+    let rows = [("Position", value.translation, " m"), ("Rotation", degrees, "°"), ("Scale", value.scale, "")];
+    for (name, numbers, unit) in rows {
+        let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 18.0), Sense::hover());
+        let font = egui::FontId::proportional(12.5);
+        ui.painter().text(rect.left_center(), egui::Align2::LEFT_CENTER, name, font, palette.weak_text);
+        let font = egui::FontId::monospace(12.0);
+        let width = (rect.width() - 60.0) / 3.0;
+        let texts = numbers.to_array().map(|number| match unit {
+            "°" => formula::fixed(number, 1) + "°",
+            _ => short(number),
+        });
+        for (column, text) in texts.iter().enumerate() {
+            let at = pos2(rect.left() + 60.0 + width * (column + 1) as f32, rect.center().y);
+            ui.painter().text(at, egui::Align2::RIGHT_CENTER, text, font.clone(), palette.text);
+        }
+        let whole = format!("{name} {}", texts.join(" "));
+        response.widget_info(|| WidgetInfo::labeled(egui::accesskit::Role::Label, true, &whole));
+        let exact = match unit {
+            "°" => quaternion_text(value.rotation),
+            _ => format!("{} {} {}{unit}", numbers.x, numbers.y, numbers.z),
+        };
+        response.on_hover_text(exact);
+    }
+}
+
+fn quaternion_text(rotation: Quat) -> String {
+    let [x, y, z, w] = rotation.to_array();
+    format!("Quaternion x {x:.5}  y {y:.5}  z {z:.5}  w {w:.5}\nEuler angles about the joint's X, then Y, then Z.")
+}
+
+trait NormalizeOrIdentity {
+    fn normalize_or_identity(self) -> Quat;
+}
+
+impl NormalizeOrIdentity for Quat {
+    fn normalize_or_identity(self) -> Quat {
+        if self.length_squared() > 0.0 && self.is_finite() { self.normalize() } else { Quat::IDENTITY }
+    }
+}

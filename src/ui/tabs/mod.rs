@@ -1,0 +1,56 @@
+//! The inspector: the right panel, one tab at a time.
+
+pub mod display;
+pub mod formula;
+mod joint_card;
+pub mod report;
+mod scene_tree;
+mod view_options;
+
+use egui::Ui;
+
+use super::{Output, Shown, UiState, controls, motion};
+
+pub use formula::VertexProbe;
+pub use joint_card::JointCard;
+pub use scene_tree::SceneTree;
+pub use view_options::PictureSettings;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Tab {
+    Scene,
+    Display,
+    File,
+    View,
+    Motion,
+}
+
+impl Tab {
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Scene => "Scene",
+            Self::Display => "Display",
+            Self::File => "File",
+            Self::View => "View",
+            Self::Motion => "Motion",
+        }
+    }
+}
+
+/// Shows the tab bar and the open tab.
+pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
+    let tabs = [Tab::Scene, Tab::Display, Tab::File, Tab::View, Tab::Motion].map(|tab| (tab, tab.label()));
+    let count = if shown.library.motions().is_empty() { tabs.len() - 1 } else { tabs.len() };
+    if let Some(tab) = controls::segmented(ui, Some(local.layout.open_tab(shown.library)), &tabs[..count]) {
+        local.layout.tab = tab;
+    }
+    ui.add_space(4.0);
+    match local.layout.open_tab(shown.library) {
+        // Has a scroll area of its own.
+        Tab::Scene => scene_tree::show(ui, shown, local, out),
+        Tab::Display => controls::scrolled(ui, "display", |ui| display::show(ui, shown, out)),
+        Tab::File => controls::scrolled(ui, "file", |ui| report::show(ui, shown, out)),
+        Tab::Motion => motion::show(ui, shown, local, out),
+        Tab::View => controls::scrolled(ui, "view", |ui| view_options::show(ui, shown, local, out)),
+    }
+}

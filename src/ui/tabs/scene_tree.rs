@@ -1,0 +1,310 @@
+//! The Scene tab: every node of the file as a tree, and above it the selected joint and vertex.
+
+use std::collections::HashSet;
+
+use egui::{Color32, Rect, ScrollArea, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
+
+use super::joint_card;
+use crate::anim::JointIndex;
+use crate::asset::Asset;
+use crate::library::{Model, ModelId};
+use crate::state::{Command, ViewerState, title};
+use crate::ui::{Output, Shown, UiState, clips, controls, style, text};
+
+const ROW_HEIGHT: f32 = 26.0;
+const MIN_TREE_HEIGHT: f32 = 8.0 * ROW_HEIGHT;
+
+/// What the tree remembers about one model. Joints are numbered as in the file.
+#[derive(Debug, Default)]
+pub struct SceneTree {
+    model: Option<ModelId>,
+    search: String,
+    /// Joints whose children are hidden.
+    collapsed: HashSet<usize>,
+    /// The joint that the tree last scrolled to.
+    scrolled_to: Option<usize>,
+    /// The joint that it scrolls to in the next pass.
+    scroll_next: Option<usize>,
+}
+
+pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
+    let Some(model) = shown.library.active() else { return };
+    if local.scene_tree.model != Some(model.id) {
+        local.scene_tree = SceneTree { model: Some(model.id), ..SceneTree::default() };
+        local.vertex_probe.forget();
+    }
+    let selected = shown.state.selection.joint.and_then(|joint| model.asset.skeleton.joint_of_source(joint));
+    let height = ui.available_height();
+    // Everything scrolls together when the cards leave too little room for the tree.
+    ScrollArea::vertical().id_salt("scene").auto_shrink([false, false]).show(ui, |ui| {
+        let top = ui.cursor().top();
+        ui.set_max_width(ui.available_width() - controls::SCROLL_BAR_WIDTH);
+        ui.add_space(4.0);
+        cards(ui, shown, model, selected, local, out);
+        ui.add_space(6.0);
+        clips::search_field(ui, &mut local.scene_tree.search, text::SEARCH_NODES);
+        ui.add_space(2.0);
+        let left = (top + height - ui.cursor().top()).max(MIN_TREE_HEIGHT);
+        ui.allocate_ui(vec2(ui.available_width(), left), |ui| local.scene_tree.show(ui, shown, model, out));
+    });
+}
+
+/// The selected joint and vertex. The vertex comes first while it is shown, because its rows select joints; while it is only
+/// a switch, the joint comes first.
+fn cards(
+    ui: &mut Ui,
+    shown: &Shown<'_>,
+    model: &Model,
+    selected: Option<JointIndex>,
+    local: &mut UiState,
+    out: &mut Output,
+) {
+    let Some(joint) = selected else {
+        vertex(ui, shown, model, local, out);
+        controls::hint(ui, "Select a joint here or in the viewport to see its transforms.");
+        return;
+    };
+    let vertex_first = local.vertex_probe.is_on(shown);
+    if vertex_first {
+        vertex(ui, shown, model, local, out);
+    }
+    controls::card(ui, |ui| joint_card::show(ui, shown, model, joint, &mut local.joint_card, out));
+    if !vertex_first {
+        vertex(ui, shown, model, local, out);
+    }
+}
+
+fn vertex(ui: &mut Ui, shown: &Shown<'_>, model: &Model, local: &mut UiState, out: &mut Output) {
+    if model.asset.instances.is_empty() {
+        return;
+    }
+    let probe = &mut local.vertex_probe;
+    if probe.is_on(shown) {
+        controls::card(ui, |ui| probe.show(ui, shown, model, out));
+        ui.add_space(6.0);
+    } else {
+        probe.show(ui, shown, model, out);
+    }
+}
+
+/// One row of the tree.
+struct Row {
+    joint: JointIndex,
+    depth: usize,
+    has_children: bool,
+}
+
+impl SceneTree {
+    fn show(&mut self, ui: &mut Ui, shown: &Shown<'_>, model: &Model, out: &mut Output) {
+        let asset = &model.asset;
+        let rows = self.rows(asset, shown.state);
+        if rows.is_empty() {
+            controls::hint(ui, text::no_node_found(&self.search));
+            return;
+        }
+        let kinds = kinds(model);
+        let mut area = ScrollArea::vertical().id_salt(("tree", model.id)).auto_shrink([false, false]);
+        if let Some(offset) = self.scroll_offset(ui, shown, asset, &rows) {
+            area = area.vertical_scroll_offset(offset);
+        }
+        let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
+        area.show_rows(ui, ROW_HEIGHT, rows.len(), |ui, visible| {
+            ui.set_max_width(ui.available_width() - controls::SCROLL_BAR_WIDTH);
+            for row in rows.get(visible).unwrap_or_default() {
+                let number = asset.skeleton.source_index(row.joint);
+                let line = Line {
+                    name: &title(Some(shown.state), asset, row.joint),
+                    kind: kinds[row.joint.get()],
+                    is_selected: shown.state.selection.joint == Some(number),
+                    is_collapsed: self.collapsed.contains(&number),
+                };
+                match tree_row(ui, row, &line) {
+                    Some(Pressed::Row) => {
+                        (self.scrolled_to, self.scroll_next) = (Some(number), Some(number));
+                        out.commands.push(Command::SelectJoint((!line.is_selected).then_some(number)));
+                    }
+                    Some(Pressed::Triangle) if line.is_collapsed => _ = self.collapsed.remove(&number),
+                    Some(Pressed::Triangle) => _ = self.collapsed.insert(number),
+                    None => {}
+                }
+            }
+        });
+        ui.spacing_mut().item_spacing.y = spacing;
+    }
+
+    /// The rows that the search and the collapsed joints leave.
+    fn rows(&self, asset: &Asset, state: &ViewerState) -> Vec<Row> {
+        let skeleton = &asset.skeleton;
+        let wanted = self.search.to_lowercase();
+        if !wanted.is_empty() {
+            let is_wanted = |&joint: &JointIndex| title(Some(state), asset, joint).to_lowercase().contains(&wanted);
+            return skeleton
+                .joints()
+                .filter(is_wanted)
+                .map(|joint| Row { joint, depth: 0, has_children: false })
+                .collect();
+        }
+        let mut has_children = vec![false; skeleton.len()];
+        for parent in skeleton.parents().iter().flatten() {
+            has_children[parent.get()] = true;
+        }
+        // Joints are sorted depth first, so a parent's depth is known before its children's.
+        let mut depths = vec![0; skeleton.len()];
+        let mut hidden = vec![false; skeleton.len()];
+        for joint in skeleton.joints() {
+            if let Some(parent) = skeleton.parent(joint) {
+                depths[joint.get()] = depths[parent.get()] + 1;
+                hidden[joint.get()] = hidden[parent.get()] || self.collapsed.contains(&skeleton.source_index(parent));
+            }
+        }
+        let visible = skeleton.joints().filter(|joint| !hidden[joint.get()]);
+        visible
+            .map(|joint| Row { joint, depth: depths[joint.get()], has_children: has_children[joint.get()] })
+            .collect()
+    }
+
+    /// The scroll offset that shows a newly selected joint, one pass after the selection: by then its card has its height,
+    /// and egui does not clamp the offset to the tree's old range.
+    fn scroll_offset(&mut self, ui: &Ui, shown: &Shown<'_>, asset: &Asset, rows: &[Row]) -> Option<f32> {
+        const ROWS_ABOVE: f32 = 4.0;
+        let selected = shown.state.selection.joint;
+        if self.scrolled_to == selected {
+            return None;
+        }
+        if self.scroll_next != selected {
+            self.scroll_next = selected;
+            ui.ctx().request_repaint();
+            return None;
+        }
+        self.scrolled_to = selected;
+        let at = rows.iter().position(|row| Some(asset.skeleton.source_index(row.joint)) == selected)?;
+        let max = rows.len() as f32 * ROW_HEIGHT - ui.available_height();
+        let wanted = (at as f32 - ROWS_ABOVE) * ROW_HEIGHT;
+        Some(wanted.min(max).max(0.0))
+    }
+}
+
+/// What each node is, for its mark.
+fn kinds(model: &Model) -> Vec<Kind> {
+    let asset = &model.asset;
+    let mut kinds = vec![Kind::Empty; asset.skeleton.len()];
+    for joint in asset.skeleton.joints().filter(|&joint| model.rig().is_real(joint)) {
+        kinds[joint.get()] = Kind::Joint;
+    }
+    for camera in &asset.cameras {
+        kinds[camera.joint.get()] = Kind::Camera;
+    }
+    for light in &asset.lights {
+        kinds[light.joint.get()] = Kind::Light;
+    }
+    for instance in &asset.instances {
+        kinds[instance.joint.get()] = Kind::Mesh;
+    }
+    kinds
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Empty,
+    Joint,
+    Mesh,
+    Camera,
+    Light,
+}
+
+/// What a row shows.
+struct Line<'a> {
+    name: &'a str,
+    kind: Kind,
+    is_selected: bool,
+    is_collapsed: bool,
+}
+
+enum Pressed {
+    Row,
+    Triangle,
+}
+
+fn tree_row(ui: &mut Ui, row: &Row, line: &Line<'_>) -> Option<Pressed> {
+    let &Line { name, kind, is_selected, .. } = line;
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT), Sense::click());
+    let role = egui::accesskit::Role::TreeItem;
+    response.widget_info(|| WidgetInfo::selected(role, true, is_selected, name));
+    let palette = style::palette(ui);
+    let fill = if is_selected {
+        palette.chosen
+    } else if response.hovered() {
+        palette.hover
+    } else {
+        Color32::TRANSPARENT
+    };
+    ui.painter().rect_filled(rect.shrink2(vec2(0.0, 1.0)), 5.0, fill);
+    // The indent grows more slowly at depth, which keeps deep rigs readable.
+    let depth = row.depth as f32;
+    let indent = if depth <= 8.0 { depth * 11.0 } else { 88.0 + (depth - 8.0) * 3.0 };
+    let x = rect.left() + 4.0 + indent.min(rect.width() * 0.55);
+    let mut pressed = response.clicked().then_some(Pressed::Row);
+    if row.has_children && triangle(ui, row, line, pos2(x + 6.0, rect.center().y)) {
+        pressed = Some(Pressed::Triangle);
+    }
+    kind_mark(ui, kind, pos2(x + 20.0, rect.center().y), palette);
+    let text = Rect::from_min_max(pos2(x + 32.0, rect.top()), rect.right_bottom() - vec2(6.0, 0.0));
+    let color = if is_selected {
+        palette.accent
+    } else if kind == Kind::Empty {
+        palette.weak_text
+    } else {
+        palette.text
+    };
+    if controls::elided(ui, text, name, color) {
+        response.on_hover_text(name);
+    }
+    pressed
+}
+
+/// Expands or collapses a row; returns true when clicked.
+fn triangle(ui: &Ui, row: &Row, line: &Line<'_>, center: egui::Pos2) -> bool {
+    let grab = Rect::from_center_size(center, vec2(18.0, ROW_HEIGHT));
+    let response = ui.interact(grab, ui.scope_id().with(("collapse", row.joint.0)), Sense::click());
+    let label = if line.is_collapsed { text::expand(line.name) } else { text::collapse(line.name) };
+    response.widget_info(|| WidgetInfo::labeled(egui::accesskit::Role::Button, true, &label));
+    let (a, b, tip) = if line.is_collapsed {
+        (vec2(-2.0, -4.0), vec2(-2.0, 4.0), vec2(3.0, 0.0))
+    } else {
+        (vec2(-4.0, -2.0), vec2(4.0, -2.0), vec2(0.0, 3.0))
+    };
+    let palette = style::palette(ui);
+    let color = if response.hovered() { palette.text } else { palette.weak_text };
+    ui.painter().add(Shape::convex_polygon(vec![center + a, center + tip, center + b], color, Stroke::NONE));
+    response.clicked()
+}
+
+fn kind_mark(ui: &Ui, kind: Kind, center: egui::Pos2, palette: style::Palette) {
+    let painter = ui.painter();
+    let line = Stroke::new(1.3, palette.weak_text);
+    match kind {
+        Kind::Empty => {
+            painter.circle_stroke(center, 3.0, line);
+        }
+        Kind::Joint => {
+            painter.circle_filled(center, 3.5, palette.accent);
+        }
+        Kind::Mesh => {
+            let points = [vec2(0.0, -5.0), vec2(5.0, 4.0), vec2(-5.0, 4.0)].map(|corner| center + corner);
+            painter.add(Shape::closed_line(points.to_vec(), line));
+        }
+        Kind::Camera => {
+            let body = Rect::from_center_size(center - vec2(1.5, 0.0), vec2(8.0, 7.0));
+            painter.rect_stroke(body, 1.5, line, egui::StrokeKind::Middle);
+            painter.line_segment([center + vec2(3.0, 0.0), center + vec2(6.0, -3.0)], line);
+            painter.line_segment([center + vec2(3.0, 0.0), center + vec2(6.0, 3.0)], line);
+        }
+        Kind::Light => {
+            painter.circle_filled(center, 2.5, palette.warning);
+            for step in 0..8 {
+                let way = egui::Vec2::angled(step as f32 * std::f32::consts::FRAC_PI_4);
+                painter.line_segment([center + way * 4.0, center + way * 5.5], Stroke::new(1.2, palette.warning));
+            }
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! The list of keys and gestures.
+
+use egui::{Align, Context, Layout, RichText, Ui};
+
+use super::overlays;
+use crate::ui::icons::{Icon, icon_button};
+use crate::ui::{KEY_TABLE, style, text};
+
+/// Whether the help is open.
+#[derive(Debug, Default)]
+pub struct Help {
+    pub is_open: bool,
+    was_open: bool,
+}
+
+const GESTURES: [(&str, &str); 8] = [
+    ("Drop files", "Open a model, borrow motion for it, or apply a joint map"),
+    ("Drag", "Orbit"),
+    ("Right drag, shift drag", "Pan"),
+    ("Wheel, pinch", "Zoom to the pointer"),
+    ("Two-finger drag", "Pan"),
+    ("Drag a ring", text::HELP_RING),
+    ("Click a joint", "Select it; in the Motion tab, choose its source"),
+    ("Double-click", text::FRAME_ALL),
+];
+
+impl Help {
+    pub fn show(&mut self, context: &Context) {
+        // Not in the pass that opens it: that click would count as one outside the modal and close it again.
+        if self.is_open && self.was_open {
+            self.modal(context);
+        } else if self.is_open {
+            context.request_repaint();
+        }
+        self.was_open = self.is_open;
+    }
+
+    fn modal(&mut self, context: &Context) {
+        let modal = overlays::modal("help", context).show(context, |ui| {
+            let width = (ui.ctx().content_rect().width() - 64.0).min(400.0);
+            ui.set_width(width);
+            ui.horizontal(|ui| {
+                ui.heading(text::HELP_TITLE);
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    if icon_button(ui, Icon::Close, text::CLOSE_HELP, false).clicked() {
+                        self.is_open = false;
+                    }
+                });
+            });
+            list(ui, width);
+        });
+        if modal.should_close() {
+            self.is_open = false;
+        }
+    }
+}
+
+fn list(ui: &mut Ui, width: f32) {
+    let accent = style::palette(ui).accent;
+    let lines = KEY_TABLE.iter().map(|line| (line.keys, line.does)).chain(GESTURES);
+    let max_height = (ui.ctx().content_rect().height() - 160.0).max(120.0);
+    // A scroll bar that is always visible: nothing else would show that the list goes on.
+    ui.spacing_mut().scroll = egui::style::ScrollStyle::solid();
+    egui::ScrollArea::vertical().max_height(max_height).min_scrolled_height(max_height).show(ui, |ui| {
+        // Fixed widths: on small screens the longest key and the longest text don't fit side by side.
+        let columns = [0.37 * width, 0.63 * width - 18.0];
+        egui::Grid::new("keys").num_columns(2).min_row_height(18.0).spacing([18.0, 7.0]).show(ui, |ui| {
+            for (keys, does) in lines {
+                cell(ui, columns[0], RichText::new(keys).color(accent));
+                cell(ui, columns[1], does.into());
+                ui.end_row();
+            }
+        });
+    });
+}
+
+fn cell(ui: &mut Ui, width: f32, text: RichText) {
+    ui.vertical(|ui| {
+        ui.set_width(width);
+        ui.add(egui::Label::new(text).wrap());
+    });
+}

@@ -1,0 +1,108 @@
+//! The viewport: what pointer and fingers do there, what is painted over the scene, and what floats above everything for a
+//! while. Whoever draws the scene fills in its pixels.
+
+mod buttons;
+mod camera;
+mod gizmo;
+pub mod help;
+mod hover;
+pub mod labels;
+pub mod notices;
+pub mod overlays;
+pub mod panes;
+pub mod path_prompt;
+pub mod sheet;
+
+use egui::layers::ShapeIdx;
+use egui::{PaintCallback, Painter, Rect, Sense, Shape, Ui, vec2};
+
+use super::tabs::formula;
+use super::{Output, Shown, UiAction, UiState, keys, style, text};
+use crate::frame::PickedJoint;
+use crate::state::Background;
+
+/// What the viewport remembers.
+#[derive(Debug)]
+pub struct ViewportState {
+    /// Width over height, as last shown.
+    pub aspect: f32,
+    /// Number in the file of the model's joint under the pointer, or of the one that follows the source's joint there.
+    pub hovered_joint: Option<usize>,
+    hovered: Option<PickedJoint>,
+    grab: Option<gizmo::Grab>,
+}
+
+impl Default for ViewportState {
+    fn default() -> Self {
+        Self { aspect: 1.6, hovered_joint: None, hovered: None, grab: None }
+    }
+}
+
+impl ViewportState {
+    pub fn clear_hover(&mut self) {
+        (self.hovered, self.hovered_joint) = (None, None);
+    }
+}
+
+/// Where the rendered scene goes: under everything painted over the viewport.
+pub struct PictureSlot {
+    painter: Painter,
+    index: ShapeIdx,
+    rect: Rect,
+}
+
+impl PictureSlot {
+    pub fn fill(self, picture: impl FnOnce(Rect) -> PaintCallback) {
+        self.painter.set(self.index, Shape::Callback(picture(self.rect)));
+    }
+}
+
+/// Handles input on the viewport and paints what lies over the scene.
+pub fn viewport(ui: &mut Ui, rect: Rect, shown: Shown<'_>, local: &mut UiState, out: &mut Output) -> PictureSlot {
+    let painter = ui.painter_at(rect);
+    checkerboard(&painter, rect, &shown, style::palette(ui));
+    let index = painter.add(Shape::Noop);
+    if rect.is_positive() {
+        input(ui, &painter, rect, &shown, local, out);
+    }
+    PictureSlot { painter, index, rect }
+}
+
+fn input(ui: &mut Ui, painter: &Painter, rect: Rect, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
+    local.viewport.aspect = rect.width() / rect.height().max(1.0);
+    let response = ui.interact(rect, ui.scope_id().with("viewport"), Sense::click_and_drag());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Image, true, text::VIEWPORT));
+    if local.host.is_recording {
+        if ui.input(|input| input.key_pressed(egui::Key::Escape)) || response.clicked() {
+            out.actions.push(UiAction::StopRecording);
+        }
+        return;
+    }
+    if !gizmo::show(ui, painter, &response, shown, local, out) {
+        camera::show(ui, &response, shown, out);
+    }
+    if !formula::point_at_vertex(&response, shown, local, out) {
+        hover::show(ui, painter, &response, shown, local, out);
+    }
+    keys::listen(ui.ctx(), shown, local, out);
+    if !shown.state.page.embed {
+        buttons::show(ui, rect, local, out);
+    }
+}
+
+/// Marks a transparent background.
+fn checkerboard(painter: &Painter, rect: Rect, shown: &Shown<'_>, palette: style::Palette) {
+    if shown.state.display.background != Background::Transparent || shown.state.page.embed {
+        return;
+    }
+    let size = 12.0;
+    let (columns, rows) = ((rect.width() / size).ceil() as usize, (rect.height() / size).ceil() as usize);
+    let mut mesh = egui::Mesh::default();
+    for row in 0..rows {
+        for column in (row % 2..columns).step_by(2) {
+            let min = rect.min + vec2(column as f32, row as f32) * size;
+            mesh.add_colored_rect(Rect::from_min_size(min, vec2(size, size)), palette.surface);
+        }
+    }
+    painter.add(mesh);
+}

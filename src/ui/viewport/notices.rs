@@ -1,0 +1,170 @@
+//! Progress, errors and toasts, in the lower left corner of the viewport: the character is in its middle.
+
+use egui::{Align, Align2, Area, Color32, Id, Layout, Order, Rect, RichText, Stroke, Ui, pos2};
+
+use super::path_prompt::PathPrompt;
+use crate::ui::icons::{Icon, icon_button};
+use crate::ui::{Output, Shown, UiAction, style, text};
+
+/// What the app tells or asks the user.
+#[derive(Debug, Default)]
+pub struct Messages {
+    /// Shown until dismissed.
+    pub error: Option<String>,
+    /// The error is about motions that were refused: alternatives are offered.
+    pub motion_refused: bool,
+    /// The error is about opening this file.
+    pub failed_to_open: Option<String>,
+    pub progress: Option<Progress>,
+    pub toast: Option<Toast>,
+    pub path_prompt: Option<PathPrompt>,
+}
+
+/// A load under way.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Progress {
+    pub name: String,
+    /// From 0 to 1, if known.
+    pub fraction: Option<f32>,
+}
+
+/// A short message that goes away by itself.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Toast {
+    pub text: String,
+    /// When it disappears, in egui's time.
+    pub until_secs: f64,
+    /// It has a button that undoes what it reports.
+    pub undoable: bool,
+}
+
+impl Toast {
+    /// Extra time to reach the Undo button.
+    pub const UNDOABLE_SECS: f64 = 3.5;
+}
+
+impl Messages {
+    pub fn clear_error(&mut self) {
+        (self.error, self.motion_refused, self.failed_to_open) = (None, false, None);
+    }
+
+    pub fn show(&mut self, ui: &Ui, viewport: Rect, shown: &Shown<'_>, out: &mut Output) {
+        self.expire_toast(ui);
+        if self.toast.is_none() && self.error.is_none() && self.progress.is_none() {
+            return;
+        }
+        let width = (viewport.width() - 28.0).min(520.0);
+        // Above the labels of the side-by-side comparison.
+        let bottom = viewport.bottom() - if shown.state.inspect.split { 38.0 } else { 14.0 };
+        let area = Area::new(Id::unique("notices"))
+            .order(Order::Foreground)
+            .pivot(Align2::LEFT_BOTTOM)
+            .fixed_pos(pos2(viewport.left() + 14.0, bottom));
+        area.show(ui.ctx(), |ui| {
+            ui.set_max_width(width);
+            self.show_progress(ui, width);
+            self.show_error(ui, out);
+            self.show_toast(ui, width, out);
+        });
+    }
+
+    fn expire_toast(&mut self, ui: &Ui) {
+        let now_secs = ui.input(|input| input.time);
+        self.toast.take_if(|toast| toast.until_secs <= now_secs);
+        if let Some(toast) = &self.toast {
+            ui.ctx().request_repaint_after_secs((toast.until_secs - now_secs) as f32);
+        }
+    }
+
+    fn show_progress(&self, ui: &mut Ui, width: f32) {
+        let Some(progress) = &self.progress else { return };
+        let palette = style::palette(ui);
+        notice(ui, palette.line, |ui| {
+            ui.set_width(width.min(360.0) - 32.0);
+            ui.add(egui::Label::new(text::opening(&progress.name)).truncate());
+            let bar = match progress.fraction {
+                Some(fraction) => egui::ProgressBar::new(fraction),
+                None => egui::ProgressBar::new(1.0).animate(true),
+            };
+            ui.add(bar.desired_height(6.0).fill(palette.accent));
+        });
+    }
+
+    fn show_error(&mut self, ui: &mut Ui, out: &mut Output) {
+        let Some(error) = self.error.clone() else { return };
+        let color = style::palette(ui).error;
+        notice(ui, color, |ui| {
+            ui.with_layout(Layout::right_to_left(Align::Min), |ui| {
+                if icon_button(ui, Icon::Close, text::DISMISS_ERROR, false).clicked() {
+                    self.clear_error();
+                }
+                ui.with_layout(Layout::top_down(Align::Min), |ui| {
+                    ui.label(RichText::new(self.error_title()).strong().color(color));
+                    egui::ScrollArea::vertical().max_height(180.0).show(ui, |ui| {
+                        ui.add(egui::Label::new(error).wrap().selectable(true));
+                    });
+                    if self.motion_refused {
+                        self.offer_alternatives(ui, out);
+                    }
+                });
+            });
+        });
+    }
+
+    fn error_title(&self) -> String {
+        match &self.failed_to_open {
+            _ if self.motion_refused => text::REFUSED_TITLE.to_owned(),
+            Some(name) => text::couldnt_open(name),
+            None => text::ERROR_TITLE.to_owned(),
+        }
+    }
+
+    fn offer_alternatives(&mut self, ui: &mut Ui, out: &mut Output) {
+        ui.add_space(4.0);
+        ui.horizontal_wrapped(|ui| {
+            let offers = [
+                (text::SHOW_REFUSED_ALONE, UiAction::ShowRefusedAlone),
+                (text::MAP_REFUSED_MANUALLY, UiAction::MapRefusedByHand),
+            ];
+            for (label, action) in offers {
+                if ui.button(label).clicked() {
+                    out.actions.push(action);
+                    self.clear_error();
+                }
+            }
+        });
+    }
+
+    fn show_toast(&mut self, ui: &mut Ui, width: f32, out: &mut Output) {
+        const BUTTON_WIDTH: f32 = 70.0;
+        let Some(toast) = &self.toast else { return };
+        let line = style::palette(ui).line;
+        if !toast.undoable {
+            notice(ui, line, |ui| ui.label(&toast.text));
+            return;
+        }
+        let row = |ui: &mut Ui| {
+            ui.scope(|ui| {
+                ui.set_max_width(width - 32.0 - BUTTON_WIDTH);
+                ui.add(egui::Label::new(&toast.text).wrap());
+            });
+            ui.button(text::UNDO).on_hover_text("Ctrl+Z").clicked()
+        };
+        if notice(ui, line, |ui| ui.horizontal(row).inner) {
+            out.actions.push(UiAction::Undo);
+            self.toast = None;
+        }
+    }
+}
+
+fn notice<R>(ui: &mut Ui, line: Color32, contents: impl FnOnce(&mut Ui) -> R) -> R {
+    let palette = style::palette(ui);
+    egui::Frame::new()
+        .fill(palette.panel)
+        .stroke(Stroke::new(1.0, line))
+        .corner_radius(10)
+        .shadow(ui.visuals().popup_shadow)
+        .inner_margin(egui::Margin::symmetric(16, 12))
+        .show(ui, contents)
+        .inner
+}

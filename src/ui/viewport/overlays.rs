@@ -1,0 +1,46 @@
+//! What lies over everything for a while.
+
+use egui::{Align2, Context, Id, Order, Rect, Stroke, Ui, vec2};
+
+use super::{path_prompt, sheet};
+use crate::ui::{Output, Shown, UiState, is_narrow, motion, style};
+
+/// Call last; `viewport` is the viewport's rectangle.
+pub fn overlays(ui: &mut Ui, viewport: Rect, shown: Shown<'_>, local: &mut UiState, out: &mut Output) {
+    if local.host.is_recording {
+        return;
+    }
+    if is_narrow(ui) && !shown.state.page.embed {
+        sheet::show(ui, &shown, local, out);
+    } else {
+        local.layout.sheet = None;
+    }
+    local.messages.show(ui, viewport, &shown, out);
+    local.help.show(ui.ctx());
+    path_prompt::show(ui.ctx(), local, out);
+    motion::banner(ui.ctx(), viewport, &shown, local);
+    motion::picker(ui.ctx(), &shown, local, out);
+    if ui.input(|input| !input.raw.hovered_files.is_empty()) {
+        drop_target(ui);
+    }
+}
+
+pub fn modal(name: &str, context: &Context) -> egui::Modal {
+    let frame = egui::Frame::window(&context.global_style()).inner_margin(egui::Margin::same(18));
+    egui::Modal::new(Id::unique(name)).frame(frame)
+}
+
+fn drop_target(ui: &Ui) {
+    let palette = style::palette(ui);
+    let painter = ui.ctx().layer_painter(egui::LayerId::new(Order::Tooltip, Id::unique("drop target")));
+    let whole = ui.ctx().content_rect();
+    painter.rect_filled(whole, 0.0, palette.panel.gamma_multiply(0.82));
+    let inner = whole.shrink(24.0);
+    let corners = [inner.left_top(), inner.right_top(), inner.right_bottom(), inner.left_bottom(), inner.left_top()];
+    painter.extend(egui::Shape::dashed_line(&corners, Stroke::new(2.0, palette.accent), 10.0, 8.0));
+    let center = whole.center();
+    painter.text(center, Align2::CENTER_BOTTOM, "Drop to open", egui::FontId::proportional(28.0), palette.text);
+    let below = "A model with its files, motions for it, a folder or a .zip archive";
+    let at = center + vec2(0.0, 10.0);
+    painter.text(at, Align2::CENTER_TOP, below, egui::FontId::proportional(15.0), palette.weak_text);
+}

@@ -1,0 +1,59 @@
+//! Sheets: the panels of narrow screens.
+
+use egui::{Area, Id, Order, Rect, Stroke, Ui, pos2, vec2};
+
+use crate::ui::icons::{Icon, icon_button};
+use crate::ui::{Output, Sheet, Shown, UiState, clips, style, tabs, text};
+
+/// Radius of a sheet's upper corners; the viewport goes on behind them.
+pub const CORNER: u8 = 16;
+
+/// The rectangle of a sheet, at the bottom of what the panels leave free. It leaves a strip of the viewport visible.
+pub fn rect(free: Rect) -> Rect {
+    let height = (free.height() * 0.62).max(240.0).min(free.height() - 56.0).max(0.0);
+    Rect::from_min_max(pos2(free.left(), free.bottom() - height), free.right_bottom())
+}
+
+pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
+    let Some(sheet) = local.layout.sheet else { return };
+    // A sheet opened in this pass has no rectangle yet.
+    let Some(rect) = local.layout.sheet_rect else {
+        ui.ctx().request_repaint();
+        return;
+    };
+    Area::new(Id::unique(("sheet", sheet as u8))).order(Order::Middle).fixed_pos(rect.min).show(ui.ctx(), |ui| {
+        background(ui, rect);
+        // The whole sheet takes the pointer, so that nothing under it moves.
+        ui.allocate_rect(rect, egui::Sense::click_and_drag());
+        let handle = Rect::from_min_size(rect.min, vec2(rect.width() - 48.0, 24.0));
+        let handle = ui.interact(handle, ui.scope_id().with("handle"), egui::Sense::drag());
+        if handle.total_drag_delta().is_some_and(|dragged| dragged.y > 48.0) {
+            local.layout.sheet = None;
+        }
+        let inner = Rect::from_min_max(rect.min + vec2(14.0, 16.0), rect.max - vec2(14.0, 4.0));
+        let mut content = ui.new_child(egui::UiBuilder::new().max_rect(inner));
+        content.set_clip_rect(inner.expand(4.0).intersect(content.clip_rect()));
+        match sheet {
+            Sheet::Clips => clips::show(&mut content, shown, local, out),
+            Sheet::Inspector => {
+                content.add_space(28.0);
+                tabs::show(&mut content, shown, local, out);
+            }
+        }
+        let close = Rect::from_min_size(pos2(rect.right() - 44.0, rect.top() + 10.0), vec2(32.0, 32.0));
+        let mut corner = ui.new_child(egui::UiBuilder::new().max_rect(close));
+        if icon_button(&mut corner, Icon::Close, text::CLOSE_SHEET, false).clicked() {
+            local.layout.sheet = None;
+        }
+    });
+}
+
+fn background(ui: &Ui, rect: Rect) {
+    let palette = style::palette(ui);
+    let corners = egui::CornerRadius { nw: CORNER, ne: CORNER, sw: 0, se: 0 };
+    ui.painter().rect_filled(rect, corners, palette.panel);
+    let line = Stroke::new(1.0, palette.line);
+    ui.painter().rect_stroke(rect, corners, line, egui::StrokeKind::Inside);
+    let grip = Rect::from_center_size(rect.center_top() + vec2(0.0, 9.0), vec2(36.0, 4.0));
+    ui.painter().rect_filled(grip, 2.0, palette.pressed);
+}

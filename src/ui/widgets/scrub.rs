@@ -1,0 +1,192 @@
+//! The scrub bar: key marks, the playhead, and handles for the in and out points. All times are in clip seconds.
+
+use egui::{Color32, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
+
+use super::style;
+use crate::anim::{Clip, TimeRange};
+use crate::library::ModelId;
+use crate::ui::text;
+
+pub struct Scrub<'a> {
+    /// `None` for the rest pose, which has nothing to scrub.
+    pub clip: Option<&'a Clip>,
+    pub time_secs: f64,
+    pub range: Option<TimeRange>,
+}
+
+/// The result of a drag.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Scrubbed {
+    Seek(f64),
+    Range(TimeRange),
+}
+
+/// Minimum distance between marks in points.
+const MARK_SPACING: f32 = 3.0;
+/// Number of adjacent marks that merge into a bar.
+const MIN_BAR_MARKS: usize = 8;
+
+/// Positions of a clip's keys at the resolution of the bar, cached between frames.
+#[derive(Debug, Default)]
+pub struct KeyMarks {
+    /// Identifies the clip and the width that the marks were computed for.
+    computed_for: Option<(ModelId, usize, u32, u32, usize)>,
+    /// First and last key of each mark, from 0 (start) to 1 (end); equal for single keys.
+    spans: Vec<[f32; 2]>,
+}
+
+impl KeyMarks {
+    fn refresh(&mut self, clip: &Clip, clip_id: (ModelId, usize), width: f32) {
+        // The number alone is not enough: re-mapping replaces a borrowed clip under the same number.
+        let keys = clip.timelines().iter().map(|times| times.len()).sum();
+        let key = (clip_id.0, clip_id.1, width as u32, clip.duration_secs().to_bits(), keys);
+        if self.computed_for == Some(key) {
+            return;
+        }
+        self.computed_for = Some(key);
+        self.spans.clear();
+        let duration = clip.duration_secs();
+        if duration <= 0.0 {
+            return;
+        }
+        let slots = (width / MARK_SPACING).max(1.0) as usize;
+        let mut first_key = vec![None; slots + 1];
+        for &time in clip.timelines().iter().flatten() {
+            let position = time / duration;
+            let slot = ((position * slots as f32).round() as usize).min(slots);
+            first_key[slot].get_or_insert(position);
+        }
+        for keys in first_key.chunk_by(|one, next| one.is_some() == next.is_some()) {
+            let Some((&Some(first), &Some(last))) = keys.first().zip(keys.last()) else { continue };
+            match keys.len() < MIN_BAR_MARKS {
+                true => self.spans.extend(keys.iter().flatten().map(|&key| [key, key])),
+                false => self.spans.push([first, last]),
+            }
+        }
+    }
+}
+
+/// Height of the bar: handles, rail and marks.
+const HEIGHT: f32 = 42.0;
+/// Space for the handles at either end of the rail.
+pub const MARGIN: f32 = 9.0;
+
+/// Geometry of the bar for one clip.
+struct Bar {
+    rect: Rect,
+    rail: Rect,
+    duration_secs: f64,
+}
+
+impl Bar {
+    fn x_of(&self, secs: f64) -> f32 {
+        self.rail.left() + (secs / self.duration_secs).clamp(0.0, 1.0) as f32 * self.rail.width()
+    }
+
+    fn secs_at(&self, x: f32) -> f64 {
+        f64::from(((x - self.rail.left()) / self.rail.width()).clamp(0.0, 1.0)) * self.duration_secs
+    }
+}
+
+/// Shows the bar; returns what was dragged, and whether the playhead is held. `clip_id` identifies the clip.
+pub fn show(
+    ui: &mut Ui,
+    scrub: &Scrub<'_>,
+    clip_id: (ModelId, usize),
+    marks: &mut KeyMarks,
+) -> (Option<Scrubbed>, bool) {
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
+    let rail =
+        Rect::from_x_y_ranges(rect.left() + MARGIN..=rect.right() - MARGIN, rect.top() + 20.0..=rect.top() + 25.0);
+    let Some(clip) = scrub.clip.filter(|clip| clip.duration_secs() > 0.0) else {
+        ui.painter().rect_filled(rail, 2.5, style::palette(ui).surface);
+        return (None, false);
+    };
+    let duration_secs = f64::from(clip.duration_secs());
+    let bar = Bar { rect, rail, duration_secs };
+    let range = scrub.range.unwrap_or(TimeRange { start_secs: 0.0, end_secs: duration_secs });
+
+    let seek_area = Rect::from_x_y_ranges(rect.x_range(), rect.top() + 13.0..=rect.bottom());
+    let seek = ui.interact(seek_area, ui.scope_id().with("seek"), Sense::click_and_drag());
+    seek.widget_info(|| WidgetInfo::slider(true, scrub.time_secs, text::TIME));
+    let is_held = seek.is_pointer_button_down_on();
+    let mut scrubbed = None;
+    if is_held && let Some(pointer) = seek.interact_pointer_pos() {
+        // No request while the pointer rests, so that nothing is redrawn.
+        let secs = bar.secs_at(pointer.x);
+        scrubbed = (secs != scrub.time_secs).then_some(Scrubbed::Seek(secs));
+    }
+    let start = |secs: f64| TimeRange { start_secs: secs.min(range.end_secs), ..range };
+    let end = |secs: f64| TimeRange { end_secs: secs.max(range.start_secs), ..range };
+    let dragged = [
+        handle(ui, &bar, text::IN_POINT, range.start_secs, -1.0, scrub.range.is_some()).map(start),
+        handle(ui, &bar, text::OUT_POINT, range.end_secs, 1.0, scrub.range.is_some()).map(end),
+    ];
+    for range in dragged.into_iter().flatten() {
+        scrubbed = (scrub.range != Some(range)).then_some(Scrubbed::Range(range));
+    }
+    marks.refresh(clip, clip_id, rail.width());
+    paint_rail(ui, &bar, range, scrub.time_secs, marks);
+    paint_playhead(ui, &bar, scrub.time_secs, &seek, is_held);
+    (scrubbed, is_held)
+}
+
+/// A handle of the range; returns the time that it is dragged to. `side` is -1 for the in point and 1 for the out point.
+fn handle(ui: &Ui, bar: &Bar, label: &str, secs: f64, side: f32, has_range: bool) -> Option<f64> {
+    let palette = style::palette(ui);
+    let x = bar.x_of(secs);
+    let grab = Rect::from_center_size(pos2(x + side * 3.0, bar.rect.top() + 8.0), vec2(18.0, 18.0));
+    let handle = ui.interact(grab, ui.scope_id().with(label), Sense::drag());
+    handle.widget_info(|| WidgetInfo::slider(true, secs, label));
+    let pointer = handle.interact_pointer_pos().filter(|_| handle.dragged());
+    let color = match (handle.hovered() || handle.dragged(), has_range) {
+        (true, _) => palette.accent,
+        (false, true) => palette.text,
+        (false, false) => palette.weak_text.gamma_multiply(0.6),
+    };
+    flag(ui.painter(), x, bar.rect.top() + 3.0, side, bar.rail.bottom(), color);
+    handle.on_hover_cursor(egui::CursorIcon::ResizeHorizontal).on_hover_text(format!("{label}. Drag to set."));
+    pointer.map(|pointer| bar.secs_at(pointer.x))
+}
+
+fn paint_rail(ui: &Ui, bar: &Bar, range: TimeRange, time_secs: f64, marks: &KeyMarks) {
+    let (palette, painter, rail) = (style::palette(ui), ui.painter(), bar.rail);
+    let (start_x, end_x) = (bar.x_of(range.start_secs), bar.x_of(range.end_secs));
+    painter.rect_filled(rail, 2.5, palette.pressed);
+    let inside = Rect::from_x_y_ranges(start_x..=end_x, rail.y_range());
+    painter.rect_filled(inside, 2.5, palette.accent.gamma_multiply(0.35));
+    let played = Rect::from_x_y_ranges(start_x..=bar.x_of(time_secs).max(start_x), rail.y_range());
+    painter.rect_filled(played, 2.5, palette.accent);
+    let color = palette.weak_text.gamma_multiply(0.75);
+    for &span in &marks.spans {
+        let [first, last] = span.map(|position| rail.left() + position * rail.width());
+        if first == last {
+            painter.vline(first, rail.bottom() + 5.0..=rail.bottom() + 11.0, Stroke::new(1.0, color));
+        } else {
+            let keys = Rect::from_x_y_ranges(first..=last, rail.bottom() + 7.0..=rail.bottom() + 9.0);
+            painter.rect_filled(keys, 1.0, color.gamma_multiply(0.6));
+        }
+    }
+}
+
+fn paint_playhead(ui: &Ui, bar: &Bar, time_secs: f64, seek: &Response, is_held: bool) {
+    let (palette, painter, rail) = (style::palette(ui), ui.painter(), bar.rail);
+    let center = pos2(bar.x_of(time_secs), rail.center().y);
+    let radius = if is_held || seek.hovered() { 8.0 } else { 7.0 };
+    painter.circle(center, radius, palette.accent, Stroke::new(2.0, palette.panel));
+    if seek.has_focus() {
+        painter.circle_stroke(center, radius + 2.0, Stroke::new(1.5, palette.text));
+    }
+    let pointer = ui.input(|input| input.pointer.hover_pos()).filter(|_| seek.hovered() && !is_held);
+    if let Some(pointer) = pointer {
+        let x = pointer.x.clamp(rail.left(), rail.right());
+        painter.vline(x, rail.top() - 3.0..=rail.bottom() + 3.0, Stroke::new(1.0, palette.weak_text));
+    }
+}
+
+/// A flag that points away from the range.
+fn flag(painter: &egui::Painter, x: f32, top: f32, side: f32, bottom: f32, color: Color32) {
+    painter.vline(x, top..=bottom, Stroke::new(1.2, color));
+    let points = vec![pos2(x, top), pos2(x + side * 7.0, top + 4.5), pos2(x, top + 9.0)];
+    painter.add(Shape::convex_polygon(points, color, Stroke::NONE));
+}
