@@ -5,7 +5,7 @@ use anyhow::{Context, Error, bail};
 use super::motion::{MotionArguments, apply_link, open_editor};
 use super::{ConvertArguments, open};
 use crate::editor::Export;
-use crate::files::read_set;
+use crate::files::{Opened, read_set};
 use crate::formats::{LoadOptions, convert};
 
 pub(super) fn run(arguments: &ConvertArguments) -> anyhow::Result<()> {
@@ -22,7 +22,8 @@ pub(super) fn run(arguments: &ConvertArguments) -> anyhow::Result<()> {
 
 /// Writes a model of another format in the pose of a link.
 fn posed(arguments: &ConvertArguments, link: &str) -> anyhow::Result<Vec<u8>> {
-    let opened = open(&arguments.input.files)?;
+    // Motions and maps beside the model are not part of its pose.
+    let opened = Opened { motions: Vec::new(), map: None, ..open(&arguments.input.files)? };
     if opened.model.asset.format != "obj" {
         bail!("{}: --view: expected an .obj; a glTF file is written unchanged", opened.model.source);
     }

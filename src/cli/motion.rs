@@ -99,11 +99,12 @@ pub(super) fn apply_link(editor: &mut Editor, link: &str, arguments: &MotionArgu
         contents.motions.iter().flatten().for_each(print_warnings);
     }
     editor.open(contents, Some(view), &mut |_| Ok(())).map_err(Error::msg)?;
-    for event in editor.take_events() {
-        if let Event::Problem(problem) = event {
-            eprintln!("warning: {problem}");
-        }
-    }
+    let problem = |event| if let Event::Problem(problem) = event { Some(problem) } else { None };
+    let problems: Vec<String> = editor.take_events().into_iter().filter_map(problem).collect();
+    // The editor keeps an empty map to itself, since it may be about to be edited.
+    let errors = editor.library().borrow_errors().iter().map(ToString::to_string);
+    let unreported: Vec<String> = errors.filter(|error| !problems.contains(error)).collect();
+    problems.iter().chain(&unreported).for_each(|problem| eprintln!("warning: {problem}"));
     Ok(())
 }
 

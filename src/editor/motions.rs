@@ -190,9 +190,12 @@ impl Editor {
             return None;
         }
         let names: Vec<String> = unfit.iter().map(|(_, motion)| short_name(&motion.source)).collect();
-        let pronoun = if names.len() == 1 { "it doesn't" } else { "they don't" };
         self.keep_motions(fit.into_iter().map(|(_, motion)| motion).collect());
-        Some(format!("Removed motion {}: {pronoun} fit this model.", names.join(", ")))
+        let names = names.join(", ");
+        Some(match unfit.len() {
+            1 => format!("Removed motion {names}: it doesn't fit this model."),
+            _ => format!("Removed motions {names}: they don't fit this model."),
+        })
     }
 
     /// Removes all motions but these.

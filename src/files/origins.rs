@@ -50,8 +50,9 @@ impl Origins {
             models.extend(samples.into_iter().map(OpenedModel::from));
         }
         name_members(&mut models);
-        let place = |opened: &OpenedModel| self.known.iter().position(|(_, origin)| *origin == opened.model.origin);
-        models.sort_by_key(|opened| place(opened).unwrap_or(usize::MAX));
+        let place_of = |origin: &str| self.known.iter().position(|(_, known)| known == origin);
+        let place = |origin: &str| place_of(origin).or_else(|| place_of(container_of(origin))).unwrap_or(usize::MAX);
+        models.sort_by_key(|opened| place(&opened.model.origin));
         let problems = if role == Role::Motion { Vec::new() } else { self.missing_members(&models) };
         let motions = (!motions.is_empty()).then_some(motions);
         Contents { motions, models, map: sorted.map, problems, ..Contents::default() }

@@ -11,6 +11,7 @@ pub use self::files::{
     LinkRole, LinkedFile, MEMBER_SEPARATOR, embedded_link, link_with_files, link_without_missing, linked_files,
     most_similar_link, public_link, shown_files,
 };
+pub use self::values::with_current_member;
 use self::values::*;
 use super::ViewerState;
 

@@ -22,7 +22,7 @@ pub use framing::{
     world_from_file_camera,
 };
 pub use history::History;
-pub use link::{LinkError, from_link, from_object, to_link, to_object};
+pub use link::{LinkError, from_link, from_object, to_link, to_object, with_current_member};
 pub use link::{
     LinkRole, LinkedFile, MEMBER_SEPARATOR, embedded_link, link_with_files, link_without_missing, linked_files,
     most_similar_link, public_link, shown_files,

@@ -13,7 +13,7 @@ use crate::files::{Item, OpenError, Role, open_items, open_view};
 use crate::frame::pose_document;
 use crate::library::Motion;
 use crate::samples;
-use crate::state::{Command, MotionMap, ViewerState, active_clip, from_object, to_object};
+use crate::state::{Command, MotionMap, ViewerState, active_clip, from_object, to_object, with_current_member};
 
 /// Opens one set: an array of URLs and `[name, Uint8Array]` pairs. A model becomes the active one; motions and joint maps are
 /// applied to the active model. With the role `motion`, models are opened as motions too. Resolves once it is on screen, to
@@ -249,7 +249,7 @@ pub(super) fn items_of(items: &Array) -> Result<Vec<Item>, String> {
         .iter()
         .map(|item| {
             if let Some(url) = item.as_string() {
-                return Ok(Item::Address(url.into()));
+                return Ok(Item::Address(with_current_member(&url).into()));
             }
             let pair: Array = item.dyn_into().map_err(|_| invalid())?;
             let name = pair.get(0).as_string().ok_or_else(invalid)?;

@@ -44,6 +44,7 @@ fn a_model_in_an_archive_belongs_to_the_archive() {
 fn links_to_the_same_files_are_recognized() {
     let same = |link: &str, other: &str| assert_eq!(shown_files(link), shown_files(other), "{link}, {other}");
     let differ = |link: &str, other: &str| assert_ne!(shown_files(link), shown_files(other), "{link}, {other}");
+    same("model=a.zip%23/b.glb", "model=a.zip%23!/b.glb");
     same("v=1&model=sample:pilot&t=1", "model=sample%3Apilot&clip=run");
     same("", "v=1&model=sample:walker");
     same("motion=a.bvh", "model=sample:walker&motion=a.bvh");

@@ -76,7 +76,7 @@ pub fn shown_files(link: &str) -> String {
     for pair in pairs(link) {
         let Some(role) = LinkRole::from_key(key_of(pair)) else { continue };
         has_model |= role == LinkRole::Model;
-        files.push(format!("{}={}", role.key(), value_of(pair)));
+        files.push(format!("{}={}", role.key(), with_current_member(&value_of(pair))));
     }
     if !has_model {
         files.insert(0, format!("{}={DEFAULT_MODEL}", LinkRole::Model.key()));
