@@ -62,7 +62,7 @@ impl fmt::Display for Warning {
                 "{mesh}: up to {found} influences per vertex, the strongest {kept} are kept (largest weight lost: {largest_lost_weight:.4})"
             ),
             Self::UnsupportedExtension { name } => {
-                write!(f, "extension {name} is not supported; the file does without it")
+                write!(f, "extension {name} is not supported; shown without it")
             }
             Self::FoundByBareName { uri, used } => write!(f, "“{uri}” was not found; “{used}” was used instead"),
             Self::ImageMissing { uri } => {

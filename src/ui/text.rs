@@ -211,3 +211,29 @@ pub const SAVE_CURRENT_POSE: &str = "Save in current pose";
 pub fn fact(name: &str, value: &str) -> String {
     format!("{name} {value}")
 }
+
+// Motion
+pub const PICK_IN_VIEWPORT: &str = "Pick in viewport";
+pub const STOP_PICKING: &str = "Stop picking";
+pub const DONE_PICKING: &str = "Done";
+pub const REMATCH: &str = "Re-match";
+pub const SWAP_SIDES: &str = "Swap sides";
+pub const CLEAR_MAP: &str = "Clear all";
+pub const ROOT_HORIZONTAL: &str = "Root motion: horizontal";
+pub const ROOT_VERTICAL: &str = "Root motion: vertical";
+pub const ROOT_TURN: &str = "Root motion: turn";
+pub const EXTRACT_ROOT_MOTION: &str = "Extract root motion";
+pub const UNMAPPED_JOINTS: &str = "Unmapped joints";
+pub const ROTATION_OFFSET: &str = "Rotation offset";
+
+pub fn rotation_offset_about(axis: &str) -> String {
+    format!("{ROTATION_OFFSET} about {axis}")
+}
+
+pub fn joints_mapped(count: usize, sources: usize) -> String {
+    match count {
+        0 => "No joints mapped yet.".to_owned(),
+        1 => format!("1 joint mapped ({sources} in the motion)."),
+        _ => format!("{count} joints mapped ({sources} in the motion)."),
+    }
+}

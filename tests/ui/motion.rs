@@ -95,7 +95,7 @@ fn another_source_is_chosen_from_a_list() {
     press(&mut harness, "Nothing");
     assert!(harness.query_by_label_contains("Neck follows none (").is_some());
     // And all the way back.
-    press(&mut harness, "Match anew");
+    press(&mut harness, text::REMATCH);
     assert!(harness.query_by_label_contains(&format!("Neck follows {neck}  Neck (")).is_some());
 }
 
@@ -144,11 +144,11 @@ fn the_options_say_how_the_motion_is_carried_over() {
     press(&mut harness, Tab::Motion.label());
     press(&mut harness, "Options");
     let mut root = RootOptions { horizontal: RootPart::InPlace, ..RootOptions::default() };
-    assert_eq!(press(&mut harness, "Over the ground: In place"), [Command::SetRoot(Some(root))]);
+    assert_eq!(press(&mut harness, &format!("{}: In place", text::ROOT_HORIZONTAL)), [Command::SetRoot(Some(root))]);
     root.yaw = RootPart::Freeze;
     assert_eq!(press(&mut harness, "Turning: Freeze"), [Command::SetRoot(Some(root))]);
     root.extract = true;
-    assert_eq!(reach(&mut harness, "Travel on the root joint"), [Command::SetRoot(Some(root))]);
+    assert_eq!(reach(&mut harness, text::EXTRACT_ROOT_MOTION), [Command::SetRoot(Some(root))]);
     let plant = Command::SetFeet(Some(Feet::Plant));
     assert_eq!(reach(&mut harness, "Hold feet on the ground"), [plant]);
     reach(&mut harness, "Rest pose of the model");
@@ -162,7 +162,7 @@ fn joints_without_a_source_can_play_a_clip() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
     press(&mut harness, Tab::Motion.label());
     press(&mut harness, "Options");
-    reach(&mut harness, "Joints that follow nothing");
+    reach(&mut harness, text::UNMAPPED_JOINTS);
     // One in the list at the left, one in the list that has opened.
     harness.state_mut().commands.clear();
     harness.get_all_by_label("Wave").last().expect("in the list").click();
@@ -315,7 +315,7 @@ fn whole_maps_are_swapped_cleared_and_taken_back() {
     assert_eq!(press(&mut harness, "Clear all"), [edit(MapEdit::Clear)]);
     assert!(harness.query_by_label("No joint follows the motion yet.").is_some());
     assert!(harness.query_by_label_contains("Hips follows none (none: hips · follows nothing").is_some());
-    assert_eq!(press(&mut harness, "Match anew"), [Command::SetMap { motion: 0, map: None }]);
+    assert_eq!(press(&mut harness, text::REMATCH), [Command::SetMap { motion: 0, map: None }]);
     for _ in 0..3 {
         harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
         harness.run();
@@ -407,7 +407,7 @@ fn a_joint_is_turned_further_and_back() {
     press(&mut harness, Tab::Motion.label());
     let neck = number(&harness, "Neck");
     press(&mut harness, "Edit Neck");
-    let from = harness.get_by_label("Turn further about Y").rect().center();
+    let from = harness.get_by_label(&text::rotation_offset_about("Y")).rect().center();
     let commands = drag(&mut harness, from, from + egui::vec2(40.0, 0.0), egui::PointerButton::Primary);
     assert!(!commands.is_empty());
     let turned = map(&harness, 0).joints[&neck].correction;
@@ -499,7 +499,7 @@ fn the_joint_is_chosen_by_clicking_it() {
             press(&mut harness, text::INSPECTOR);
         }
         press(&mut harness, Tab::Motion.label());
-        press(&mut harness, "Choose by clicking");
+        press(&mut harness, text::PICK_IN_VIEWPORT);
         assert!(harness.query_by_label("Click a joint of the model").is_some());
         let at = place(&harness, 0, "LeftHand");
         assert_eq!(click(&mut harness, at), [Command::SelectJoint(Some(hand))]);
@@ -509,11 +509,11 @@ fn the_joint_is_chosen_by_clicking_it() {
         assert!(harness.query_by_label("Source of LeftHand").is_some(), "the table is back on {size:?}");
         // And by escape, or the button, to nothing.
         for stop in [true, false] {
-            harness.get_by_label("Choose by clicking").scroll_to_me();
+            harness.get_by_label(text::PICK_IN_VIEWPORT).scroll_to_me();
             harness.run();
-            press(&mut harness, "Choose by clicking");
+            press(&mut harness, text::PICK_IN_VIEWPORT);
             if stop {
-                press(&mut harness, "Stop clicking");
+                press(&mut harness, text::DONE_PICKING);
             } else {
                 press_key(&mut harness, egui::Key::Escape);
                 if size == NARROW {
@@ -537,7 +537,7 @@ fn both_joints_are_clicked_where_both_are_shown() {
     });
     harness.run();
     let [hand, head, foot] = ["LeftHand", "Head", "RightFoot"].map(|name| number(&harness, name));
-    press(&mut harness, "Choose by clicking");
+    press(&mut harness, text::PICK_IN_VIEWPORT);
     let at = place(&harness, 0, "LeftHand");
     assert_eq!(click(&mut harness, at), [Command::SelectJoint(Some(hand))]);
     assert!(harness.query_by_label("Click the joint of the motion that LeftHand is to follow").is_some());
@@ -564,7 +564,7 @@ fn three_hundred_joints_have_their_lines() {
     library.set_motions(vec![Motion::new("swim.bvh".to_owned(), asset)]);
     let mut harness = bench_of(WIDE, library);
     press(&mut harness, Tab::Motion.label());
-    assert!(harness.query_by_label("300 joints follow the motion's 300.").is_some());
+    assert!(harness.query_by_label(&text::joints_mapped(300, 300)).is_some());
     assert!(harness.query_by_label("Order: Body").is_none(), "it has no body");
     assert!(harness.query_by_label_contains("Tentacle250 follows").is_none(), "far out of sight");
     harness.state_mut().change(|state| {
@@ -616,9 +616,9 @@ fn the_chosen_joint_fits_everywhere() {
             "Source of LeftUpperArm",
             "List…",
             "Clear",
-            "Turn further about X",
-            "Turn further about Y",
-            "Turn further about Z",
+            &text::rotation_offset_about("X"),
+            &text::rotation_offset_about("Y"),
+            &text::rotation_offset_about("Z"),
             "Leave out rotation",
             "Leave out translation",
             "Leave out scale",
@@ -646,10 +646,10 @@ fn everything_fits_on_a_narrow_screen() {
             "Joints",
             "Options",
             "Files",
-            "Choose by clicking",
+            text::PICK_IN_VIEWPORT,
             "Undo (Ctrl+Z)",
             "Redo (Ctrl+Y)",
-            "Match anew",
+            text::REMATCH,
             "Swap sides",
             "Clear all",
             "Order: Body",

@@ -9,7 +9,7 @@ use crate::anim::JointIndex;
 use crate::frame::Character;
 use crate::state::{Command, title};
 use crate::ui::viewport::panes;
-use crate::ui::{Output, Sheet, Shown, Tab, UiState, style};
+use crate::ui::{Output, Sheet, Shown, Tab, UiState, style, text};
 
 /// What the next click in the viewport picks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -169,7 +169,7 @@ pub(in crate::ui) fn banner(context: &Context, picture: Rect, shown: &Shown<'_>,
                     local.motion.picking = Some(Picking::new(motion, target));
                     finish(local);
                 }
-                if ui.button("Stop clicking").on_hover_text("Escape does the same").clicked() {
+                if ui.button(text::DONE_PICKING).on_hover_text("Esc does the same").clicked() {
                     finish(local);
                 }
             });

@@ -11,7 +11,7 @@ use super::{MotionTab, Pairing, options};
 use crate::anim::JointIndex;
 use crate::retarget::{JointMap, MutedProperty, Unmapped};
 use crate::state::{Command, MapEdit, muted_properties};
-use crate::ui::{Output, Shown, style};
+use crate::ui::{Output, Shown, style, text};
 
 /// A source being typed.
 #[derive(Debug, Clone, PartialEq)]
@@ -185,10 +185,10 @@ fn turn_fields(ui: &mut Ui, turn: &mut Turn) -> bool {
     let mut degrees = turn.degrees;
     let weak = style::palette(ui).weak_text;
     ui.horizontal(|ui| {
-        ui.label(RichText::new("Turn further").small().color(weak))
+        ui.label(RichText::new(text::ROTATION_OFFSET).small().color(weak))
             .on_hover_text("In the joint's own space: about its X, then Y, then Z");
         let turned = turn.rotation != Quat::IDENTITY;
-        if turned && ui.small_button("Reset").on_hover_text("No further turn").clicked() {
+        if turned && ui.small_button("Reset").on_hover_text("No offset").clicked() {
             degrees = [0.0; 3];
         }
     });
@@ -204,7 +204,7 @@ fn turn_fields(ui: &mut Ui, turn: &mut Turn) -> bool {
                 .prefix(format!("{axis} "))
                 .suffix("°");
             let field = ui.add_sized([width, 26.0], field);
-            field.accessible_name(format!("Turn further about {axis}"));
+            field.accessible_name(text::rotation_offset_about(axis));
         }
     });
     if degrees == turn.degrees {

@@ -25,18 +25,18 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>) {
     } = *figures;
     let degrees = |value: Option<f64>| value.map(|value| format!("{value:.2}°"));
     let speed = |value: Option<f64>| value.map(|value| format!("{:.1} cm/s", 100.0 * value));
-    controls::hint(ui, "Of the whole clip as it plays, with joints that follow nothing at rest.");
-    group(ui, "ORIENTATION ERROR", "How far joints turn away from their rest otherwise than their sources do.");
+    controls::hint(ui, "Over the whole clip as it plays, with unmapped joints at rest.");
+    group(ui, "ORIENTATION ERROR", "Rotation error relative to the source.");
     row(ui, "Mean", degrees(orientation_error_degrees_mean));
     row(ui, "Largest", degrees(orientation_error_degrees_max));
-    group(ui, "LIMB DIRECTION ERROR", "The angle between a limb and its source's: what an eye sees.");
+    group(ui, "LIMB DIRECTION ERROR", "The angle between a limb and its source's: the visible error.");
     row(ui, "Mean", degrees(limb_direction_error_degrees_mean));
     row(ui, "Largest", degrees(limb_direction_error_degrees_max));
-    group(ui, "FEET", "Sliding is measured while the source's foot is on the ground. The source's own is beside it.");
+    group(ui, "FEET", "Measured while the source's foot is on the ground, next to the source's own slide.");
     row(ui, "Slide", speed(foot_slide_metres_per_sec));
     row(ui, "Slide of the source", speed(foot_slide_source_metres_per_sec));
-    row(ui, "Deepest in the ground", ground_penetration_metres_max.map(|depth| format!("{:.1} cm", 100.0 * depth)));
-    group(ui, "COVERAGE", "Parts of the body that follow, of those that both files have.");
+    row(ui, "Max. ground penetration", ground_penetration_metres_max.map(|depth| format!("{:.1} cm", 100.0 * depth)));
+    group(ui, "COVERAGE", "Mapped body parts, of those that both files have.");
     row(ui, "Mapped", coverage.map(|share| format!("{:.0} %", 100.0 * share)));
 }
 

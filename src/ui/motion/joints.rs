@@ -170,7 +170,8 @@ fn heading(ui: &mut Ui, part: BodyPart, rows: &[&Row], open: bool) -> bool {
     let look = rows.iter().filter(|row| row.look).count();
     let mut right = format!("{follow} of {}", rows.len());
     if look > 0 {
-        right = format!("{look} to look at · {right}");
+        let need = if look == 1 { "needs" } else { "need" };
+        right = format!("{look} {need} review · {right}");
     }
     let label = format!("{}, {right}", part.title());
     let role = egui::accesskit::Role::Button;

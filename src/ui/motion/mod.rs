@@ -23,6 +23,7 @@ use crate::asset::Asset;
 use crate::library::{Model, ModelId, Motion};
 use crate::retarget::{ClipRef, Contradiction, JointMap, Proposal, Unmapped};
 use crate::state::{Command, MapEdit, ViewerState, active_clip, choice_of_clip, title};
+use crate::ui::text;
 
 pub(super) use clicking::{banner, show as clicking, stop as stop_clicking};
 pub(super) use picker::show as picker;
@@ -226,9 +227,9 @@ fn edits(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, local: &mut UiState
         let width = ui.available_width() - 2.0 * (HEIGHT + 6.0);
         let clicking = local.motion.clicking.is_some();
         let (text, hover) = if clicking {
-            ("Stop clicking here", "Choose no joint in the picture")
+            (text::STOP_PICKING, "Leave the viewport alone again")
         } else {
-            ("Choose by clicking", "Click a joint of the model in the picture, then choose what it follows")
+            (text::PICK_IN_VIEWPORT, "Click a joint of the model, then its source")
         };
         if button(ui, width, true, text, hover) {
             local.motion.clicking = (!clicking).then_some(clicking::Clicking::Target { motion: pairing.index });
@@ -252,13 +253,13 @@ fn edits(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, local: &mut UiState
         let width = (ui.available_width() - 12.0) / 3.0;
         let motion = pairing.index;
         let any = map.joints.values().any(|entry| entry.source.is_some());
-        if button(ui, width, true, "Match anew", "Back to what is proposed: by names and shape, as at first") {
+        if button(ui, width, true, text::REMATCH, "Return to the proposed map") {
             out.commands.push(Command::SetMap { motion, map: None });
         }
-        if button(ui, width, any, "Swap sides", "Left follows right and right follows left") {
+        if button(ui, width, any, text::SWAP_SIDES, "Map left joints to right ones and vice versa") {
             out.commands.push(Command::EditMap { motion, edit: MapEdit::SwapSides });
         }
-        if button(ui, width, any, "Clear all", "No joint follows anything") {
+        if button(ui, width, any, text::CLEAR_MAP, "Leave all joints unmapped") {
             out.commands.push(Command::EditMap { motion, edit: MapEdit::Clear });
         }
     });
@@ -283,14 +284,9 @@ fn header(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, map: &JointMap,
         });
         response.response.accessible_name("Motion file");
     }
-    let follow = map.joints.values().filter(|entry| entry.source.is_some()).count();
+    let mapped = map.joints.values().filter(|entry| entry.source.is_some()).count();
     let sources = pairing.motion.asset.skeleton.len();
-    let text = match follow {
-        0 => "No joint follows the motion yet.".to_owned(),
-        1 => format!("1 joint follows one of {sources}."),
-        _ => format!("{follow} joints follow the motion's {sources}."),
-    };
-    controls::hint(ui, text);
+    controls::hint(ui, text::joints_mapped(mapped, sources));
     for text in remarks(pairing) {
         ui.add(egui::Label::new(RichText::new(text).small().color(palette.warning)).wrap());
     }
@@ -316,14 +312,13 @@ fn remarks(pairing: &Pairing<'_>) -> Vec<String> {
             })
             .collect();
         if let Some((first, rest)) = sides.split_first() {
-            let others = match rest.len() {
-                0 => String::new(),
-                1 => format!(" (so does {})", rest[0]),
-                count => format!(" (so do {count} others)"),
-            };
-            remarks.push(format!(
-                "In the {who}, {first} is named for one side and lies on the other{others}. Names were believed."
-            ));
+            remarks.push(match rest.len() {
+                0 => format!("{first} of the {who} has a left/right name on the opposite side; matched by name."),
+                others => {
+                    let count = others + 1;
+                    format!("{count} joints of the {who} have left/right names on the opposite side; matched by name.")
+                }
+            });
         }
     }
     remarks.truncate(MAX_REMARKS);

@@ -8,7 +8,7 @@ use super::Pairing;
 use crate::editor::Export;
 use crate::retarget::{ClipRef, Feet, JointMap, Keep, RestChoice, RestChoices, RootOptions, RootPart, Unmapped};
 use crate::state::{Command, MapEdit, Show, active_clip};
-use crate::ui::{Output, Saved, Shown, UiAction, controls, style};
+use crate::ui::{Output, Saved, Shown, UiAction, controls, style, text};
 
 const PARTS: [(RootPart, &str); 3] =
     [(RootPart::Keep, "Keep"), (RootPart::InPlace, "In place"), (RootPart::Freeze, "Freeze")];
@@ -26,18 +26,18 @@ pub(super) fn show(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, out: &mut
     let edit = |edit| Command::EditMap { motion: pairing.index, edit };
     let root = map.root;
     let set = |root: RootOptions| Command::SetRoot(Some(root));
-    if let Some(horizontal) = parts(ui, "Over the ground", root.horizontal) {
+    if let Some(horizontal) = parts(ui, text::ROOT_HORIZONTAL, root.horizontal) {
         out.commands.push(set(RootOptions { horizontal, ..root }));
     }
     controls::hint(ui, "In place: the character walks on the spot and still sways.");
-    if let Some(vertical) = parts(ui, "Up and down", root.vertical) {
+    if let Some(vertical) = parts(ui, text::ROOT_VERTICAL, root.vertical) {
         out.commands.push(set(RootOptions { vertical, ..root }));
     }
-    if let Some(yaw) = parts(ui, "Turning", root.yaw) {
+    if let Some(yaw) = parts(ui, text::ROOT_TURN, root.yaw) {
         out.commands.push(set(RootOptions { yaw, ..root }));
     }
     ui.add_space(4.0);
-    if controls::switch(ui, "Travel on the root joint", root.extract) {
+    if controls::switch(ui, text::EXTRACT_ROOT_MOTION, root.extract) {
         out.commands.push(set(RootOptions { extract: !root.extract, ..root }));
     }
 
@@ -46,7 +46,7 @@ pub(super) fn show(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, out: &mut
     if controls::switch(ui, "Hold feet on the ground", planted) {
         out.commands.push(Command::SetFeet(Some(if planted { Feet::Off } else { Feet::Plant })));
     }
-    controls::hint(ui, "Feet that stand stay in one place; a motion that hovers comes down.");
+    controls::hint(ui, "Planted feet don't slide, and a hovering motion is lowered to the ground.");
 
     controls::section(ui, "JOINTS THAT FOLLOW NOTHING");
     unmapped(ui, pairing, map, out);
@@ -100,7 +100,7 @@ pub(super) fn files(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, out: 
         ui.add_enabled(enabled, button).clicked()
     };
     controls::section(ui, "JOINT MAP");
-    controls::hint(ui, "Which joint follows which and how, as JSON. A map can also be dropped anywhere.");
+    controls::hint(ui, "The source of each joint, as JSON. You can also drop a map anywhere.");
     ui.add_space(2.0);
     if wide(ui, true, "Save map") {
         out.actions.push(UiAction::Save(Saved::File(Export::Map { motion: pairing.index })));
@@ -110,7 +110,7 @@ pub(super) fn files(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, out: 
     }
     controls::section(ui, "MODEL WITH THIS CLIP");
     let clip = active_clip(pairing.model, shown.state).filter(|&clip| pairing.model.borrowed(clip).is_some());
-    controls::hint(ui, "The model's file with the clip that plays behind its own.");
+    controls::hint(ui, "The model's file with the current clip added.");
     ui.add_space(2.0);
     if wide(ui, clip.is_some(), "Save GLB")
         && let Some(clip) = clip
@@ -204,7 +204,7 @@ fn unmapped(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, out: &mut Output
             }
         }
     });
-    response.response.accessible_name("Joints that follow nothing");
+    response.response.accessible_name(text::UNMAPPED_JOINTS);
     match playing {
         Some((clip, frozen)) => {
             if controls::switch(ui, "Stand still at the clip's first key", frozen) {
