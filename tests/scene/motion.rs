@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use gaitway::anim::Clip;
-use gaitway::asset::Asset;
+use gaitway::anim::{ClipBuilder, Interpolation, JointIndex, Keys};
+use gaitway::asset::{Asset, AssetParts};
 use gaitway::frame::pose_document;
 use gaitway::library::{Library, Motion, names_checksum};
 use gaitway::retarget::{
@@ -82,7 +83,13 @@ fn only_motions_whose_map_changed_are_baked_again() {
     let asset = library.active().expect("a model").asset.clone();
     let mut names: Vec<&str> = asset.skeleton.joints().map(|joint| asset.skeleton.name(joint)).collect();
     names[3] = "Else";
-    let other = Motion::new("else.bvh".to_owned(), Arc::new(chain(&names)));
+    let skeleton = chain(&names).into_parts().skeleton;
+    let mut clip = ClipBuilder::new("Other", &skeleton);
+    let keys = Keys::Translation(vec![Vec3::ZERO, Vec3::Y]);
+    clip.channel(JointIndex(0), Interpolation::Linear, &[0.0, 1.0], keys).expect("two keys");
+    let clips = vec![clip.build()];
+    let other = Asset::new(AssetParts { skeleton, clips, ..AssetParts::default() }).expect("valid indices");
+    let other = Motion::new("else.bvh".to_owned(), Arc::new(other));
     library.set_motions(vec![Motion::new("dance.glb".to_owned(), asset), other]);
     let mut state = ViewerState::default();
     assert_eq!(reconcile(&mut library, &mut state), []);
@@ -90,6 +97,7 @@ fn only_motions_whose_map_changed_are_baked_again() {
     let motions = |library: &Library| -> Vec<usize> {
         library.active().expect("a model").borrowed_clips().map(|(_, borrowed)| borrowed.motion).collect()
     };
+    assert_eq!(library.borrow_errors(), []);
     let (first, order) = (baked(&library), motions(&library));
     reconcile(&mut library, &mut state);
     assert!(baked(&library).iter().zip(&first).all(|(now, first)| Arc::ptr_eq(now, first)), "nothing changed");
