@@ -210,7 +210,7 @@ impl App {
             UiAction::CloseModel(id) => self.editor.close(id, admit),
             UiAction::ShowMotionAlone(index) => self.editor.open_motion_alone(index, admit),
             UiAction::ShowRefusedAlone => self.editor.open_refused_alone(admit),
-            UiAction::MapRefusedByHand => {
+            UiAction::MapRefusedManually => {
                 self.editor.map_refused_manually();
                 Ok(())
             }
@@ -300,7 +300,7 @@ impl App {
 
     /// Lays out the panels and the viewport, and applies the user's input. Returns whether there was any, the viewport's
     /// rectangle, and where to paint the scene.
-    fn lay_out(&mut self, ui: &mut egui::Ui, output: &mut Output) -> (bool, egui::Rect, ui::PictureSlot) {
+    fn lay_out(&mut self, ui: &mut egui::Ui, output: &mut Output) -> (bool, egui::Rect, ui::ViewportSlot) {
         let shown = Shown { library: self.editor.library(), state: self.editor.state(), frame: &self.viewport.frame };
         let rect = ui::panels(ui, shown, &mut self.panels, output);
         let slot = ui::viewport(ui, rect, shown, &mut self.panels, output);

@@ -69,9 +69,7 @@ pub(super) fn open_editor(opened: Opened, arguments: &MotionArguments) -> anyhow
     let contents = Contents { models, motions: Some(motions), map, ..Contents::default() };
     let mut editor = Editor::default();
     editor.open(contents, None, &mut |_| Ok(())).map_err(Error::msg)?;
-    if let Some(Event::Problem(problem)) =
-        editor.take_events().into_iter().find(|event| matches!(event, Event::Problem(_)))
-    {
+    if let Some(problem) = take_problems(&mut editor).first() {
         bail!("{problem}");
     }
     editor.apply(Command::SetPlaying(false));
@@ -99,13 +97,18 @@ pub(super) fn apply_link(editor: &mut Editor, link: &str, arguments: &MotionArgu
         contents.motions.iter().flatten().for_each(print_warnings);
     }
     editor.open(contents, Some(view), &mut |_| Ok(())).map_err(Error::msg)?;
-    let problem = |event| if let Event::Problem(problem) = event { Some(problem) } else { None };
-    let problems: Vec<String> = editor.take_events().into_iter().filter_map(problem).collect();
+    let problems = take_problems(editor);
     // The editor keeps an empty map to itself, since it may be about to be edited.
     let errors = editor.library().borrow_errors().iter().map(ToString::to_string);
     let unreported: Vec<String> = errors.filter(|error| !problems.contains(error)).collect();
     problems.iter().chain(&unreported).for_each(|problem| eprintln!("warning: {problem}"));
     Ok(())
+}
+
+/// Takes the editor's events and returns the problems among them.
+fn take_problems(editor: &mut Editor) -> Vec<String> {
+    let events = editor.take_events().into_iter();
+    events.filter_map(|event| if let Event::Problem(problem) = event { Some(problem) } else { None }).collect()
 }
 
 /// Returns a joint's name, or `#NODE` if the name is empty or not unique.

@@ -11,7 +11,7 @@ use crate::render::{Renderer, RendererOptions, headless_device, read_pixels};
 use crate::state::{CameraChoice, Command, OrbitCamera, resolve_camera, source_on_stage};
 
 pub(super) fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
-    let editor = open_view(arguments)?;
+    let editor = open_requested_view(arguments)?;
     let (library, state) = (editor.library(), editor.state());
     let [width, height] = arguments.size;
     let mut frame = Frame::default();
@@ -34,7 +34,7 @@ pub(super) fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
 }
 
 /// Opens the link's view, overridden by the other options.
-fn open_view(arguments: &RenderArguments) -> anyhow::Result<Editor> {
+fn open_requested_view(arguments: &RenderArguments) -> anyhow::Result<Editor> {
     let mut editor = open_editor(open(&arguments.input.files)?, &arguments.motion)?;
     let [width, height] = arguments.size;
     let aspect = width as f32 / height as f32;

@@ -30,14 +30,14 @@ impl History {
     /// Applies a command, and adds a step if it was an edit that changed something. Consecutive commands of one kind are one
     /// step until [`History::end_gesture`].
     pub fn apply(&mut self, state: &mut ViewerState, library: &Library, command: Command) {
-        if !is_edit(&command) {
-            // Time and camera advance while a slider is dragged; that doesn't end the gesture.
+        if !may_be_edit(&command) {
             apply(state, library, command);
             return;
         }
         let kind = std::mem::discriminant(&command);
         let before = state.clone();
         apply(state, library, command);
+        // Commands that move the camera while a slider is dragged don't end the gesture.
         if before.undoable() != state.undoable() {
             if self.gesture != Some(kind) {
                 self.push(Step::Edits(before));
@@ -140,26 +140,8 @@ impl Step {
     }
 }
 
-fn is_edit(command: &Command) -> bool {
-    matches!(
-        command,
-        Command::SetSkinning(_)
-            | Command::SetMorph { .. }
-            | Command::ClearMorphs
-            | Command::SetPose { .. }
-            | Command::ClearPose
-            | Command::RenameJoint { .. }
-            | Command::SetShow(_)
-            | Command::SetInspect(_)
-            | Command::SetUp(_)
-            | Command::SetExposure(_)
-            | Command::SetEnvironment(_)
-            | Command::SetBackground(_)
-            | Command::SetMap { .. }
-            | Command::SetSource { .. }
-            | Command::EditMap { .. }
-            | Command::SetUnmapped(_)
-            | Command::SetRoot(_)
-            | Command::SetFeet(_)
-    )
+/// Whether undo may cover the command; whether it does depends on the groups of the state that it changes. Neither a whole
+/// view nor the reconciliation of maps is an edit of the user's, and time must not cost a copy of the state in every frame.
+fn may_be_edit(command: &Command) -> bool {
+    !matches!(command, Command::Replace(_) | Command::ReconcileMaps | Command::Advance(_))
 }

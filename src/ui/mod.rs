@@ -28,7 +28,7 @@ pub use viewport::labels::labels;
 pub use viewport::notices::{Messages, Progress, Toast};
 pub use viewport::overlays::overlays;
 pub use viewport::path_prompt::PathPrompt;
-pub use viewport::{PictureSlot, ViewportState, viewport};
+pub use viewport::{ViewportSlot, ViewportState, viewport};
 pub use widgets::style::install;
 
 use viewport::{overlays, sheet};

@@ -33,7 +33,7 @@ pub enum UiAction {
     /// Show the skeleton of the motions that were refused.
     ShowRefusedAlone,
     /// Borrow from the motions that were refused, with an empty joint map.
-    MapRefusedByHand,
+    MapRefusedManually,
     /// Record one loop of the clip.
     Record,
     /// Discard the recording.

@@ -112,3 +112,14 @@ fn an_error_behind_harmless_deviations_has_its_own_place() {
     let problem = load(&one("model.gltf", missing.as_bytes().to_vec())).expect_err("must not load").to_string();
     assert!(problem.contains("animations[0].channels[0]") && problem.contains("sampler"), "{problem}");
 }
+
+#[test]
+fn an_error_names_its_place_past_names_that_look_like_json() {
+    // The version must be patched, so the text is read a second time; the error is found there and named in the original.
+    let text = "{\"asset\":{\"version\":2.0},\n\"nodes\":[{\"name\":\"a{[\\\",\\u0041é:\"},\n{\"mesh\":\"x\"}]}";
+    let problem = load(&one("m.gltf", text.into())).expect_err("a mesh is not a name").to_string();
+    assert!(problem.contains("line 3") && problem.contains("nodes[1].mesh"), "{problem}");
+    let text = "{\"asset\":{\"version\":\"2.0\"},\"accessors\":[{\"type\":\"VEC3\"}]}";
+    let problem = load(&one("m.gltf", text.into())).expect_err("members are missing").to_string();
+    assert!(problem.contains("accessors[0]"), "{problem}");
+}

@@ -5,18 +5,18 @@ use std::process::{Command, Output};
 
 use serde_json::Value;
 
-fn run(arguments: &[&str]) -> Output {
+pub fn run(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_gaitway")).args(arguments).output().expect("the program runs")
 }
 
-fn document(arguments: &[&str]) -> Value {
+pub fn document(arguments: &[&str]) -> Value {
     let output = run(arguments);
     assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice(&output.stdout).expect("one JSON document")
 }
 
 /// Checks the status, that the error contains this text, and that nothing is printed to standard output.
-fn check_fails(arguments: &[&str], status: i32, says: &str) {
+pub fn check_fails(arguments: &[&str], status: i32, says: &str) {
     let output = run(arguments);
     let error = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(status), "{arguments:?}: {error}");

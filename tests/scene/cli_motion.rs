@@ -1,7 +1,7 @@
 //! The subcommands that use motions, as scripts use them.
 
+use crate::cli::{check_fails, document, run};
 use std::path::PathBuf;
-use std::process::{Command, Output};
 
 use serde_json::{Value, json};
 
@@ -13,24 +13,6 @@ JOINT RightUpLeg\n{\nOFFSET -10 -5 0\nCHANNELS 3 Zrotation Xrotation Yrotation\n
 MOTION\nFrames: 2\nFrame Time: 0.5\n\
 0 90 0 0 0 0  0 0 0  0 0 0  0 -20 0 0 0 0 0 0 0  0 20 0 0 10 0 0 0 0\n\
 0 90 30 0 0 0  0 5 0  0 0 0  0 20 0 0 10 0 0 0 0  0 -20 0 0 0 0 0 0 0\n";
-
-fn run(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_gaitway")).args(arguments).output().expect("the program runs")
-}
-
-fn document(arguments: &[&str]) -> Value {
-    let output = run(arguments);
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).expect("one JSON document")
-}
-
-fn check_fails(arguments: &[&str], status: i32, says: &str) {
-    let output = run(arguments);
-    let error = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(status), "{arguments:?}: {error}");
-    assert!(error.contains(says), "{arguments:?}: {error}");
-    assert!(output.stdout.is_empty(), "{arguments:?}");
-}
 
 /// Creates a folder for one test with the BVH file in it.
 fn folder(name: &str) -> (PathBuf, String) {

@@ -226,7 +226,7 @@ fn one_of_several_motions_is_chosen() {
 fn what_does_not_fit_can_be_looked_at_or_mapped_by_hand() {
     let offers = [
         (text::SHOW_REFUSED_ALONE, UiAction::ShowRefusedAlone),
-        (text::MAP_REFUSED_MANUALLY, UiAction::MapRefusedByHand),
+        (text::MAP_REFUSED_MANUALLY, UiAction::MapRefusedManually),
     ];
     for (label, action) in offers {
         let mut harness = sample_bench(WIDE);

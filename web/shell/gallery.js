@@ -38,6 +38,6 @@ button("gallery-close").addEventListener("click", () => setShown(false));
 addEventListener("keydown", ({ key, target }) => {
   if (key === "Escape" && (target === document.body || gallery.contains(/** @type {Node} */ (target)))) setShown(false);
 });
-// After a click the keyboard controls the viewport; whoever came by keyboard continues from here.
+// After a click the keyboard controls the viewport; after a key press the focus stays here.
 for (const card of cards)
   card.addEventListener("click", ({ detail, ctrlKey, metaKey, shiftKey }) => detail > 0 && !(ctrlKey || metaKey || shiftKey) && focusCanvas());

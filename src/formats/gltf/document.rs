@@ -2,7 +2,7 @@
 //!
 //! Those types are stricter than the specification in a few places (an animation channel need not target a node) and stricter
 //! than a viewer needs to be in many. So the text is deserialized directly first, which works for nearly every file. If that
-//! fails, it is parsed as a plain value, [`loosen`]ed, and converted.
+//! fails, it is parsed as a plain value, [`loosen`]ed, written as text and deserialized once more.
 
 use std::cell::OnceCell;
 use std::collections::BTreeMap;

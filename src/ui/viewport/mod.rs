@@ -45,27 +45,27 @@ impl ViewportState {
 }
 
 /// Where the rendered scene goes: under everything painted over the viewport.
-pub struct PictureSlot {
+pub struct ViewportSlot {
     painter: Painter,
     index: ShapeIdx,
     rect: Rect,
 }
 
-impl PictureSlot {
+impl ViewportSlot {
     pub fn fill(self, picture: impl FnOnce(Rect) -> PaintCallback) {
         self.painter.set(self.index, Shape::Callback(picture(self.rect)));
     }
 }
 
 /// Handles input on the viewport and paints what lies over the scene.
-pub fn viewport(ui: &mut Ui, rect: Rect, shown: Shown<'_>, local: &mut UiState, out: &mut Output) -> PictureSlot {
+pub fn viewport(ui: &mut Ui, rect: Rect, shown: Shown<'_>, local: &mut UiState, out: &mut Output) -> ViewportSlot {
     let painter = ui.painter_at(rect);
     checkerboard(&painter, rect, &shown, style::palette(ui));
     let index = painter.add(Shape::Noop);
     if rect.is_positive() {
         input(ui, &painter, rect, &shown, local, out);
     }
-    PictureSlot { painter, index, rect }
+    ViewportSlot { painter, index, rect }
 }
 
 fn input(ui: &mut Ui, painter: &Painter, rect: Rect, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {

@@ -124,7 +124,7 @@ impl Messages {
         ui.horizontal_wrapped(|ui| {
             let offers = [
                 (text::SHOW_REFUSED_ALONE, UiAction::ShowRefusedAlone),
-                (text::MAP_REFUSED_MANUALLY, UiAction::MapRefusedByHand),
+                (text::MAP_REFUSED_MANUALLY, UiAction::MapRefusedManually),
             ];
             for (label, action) in offers {
                 if ui.button(label).clicked() {
