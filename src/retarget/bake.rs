@@ -10,18 +10,33 @@ use super::transfer::{
 };
 use crate::anim::{ChannelError, Clip, ClipBuilder, JointIndex, Property};
 
+/// Why a clip cannot be retargeted.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RetargetError {
+    /// The motion has no clips at all.
     #[error("the motion has no clip")]
     NoClips,
+    /// The clip index is out of range.
     #[error("the motion has no clip {index}; it has {count}")]
-    NoSuchClip { index: usize, count: usize },
+    NoSuchClip {
+        /// The index that was asked for.
+        index: usize,
+        /// Number of the motion's clips.
+        count: usize,
+    },
+    /// The map has no pairs.
     #[error(
         "no joint of the model follows a joint of the motion: name pairs in a joint map (`gaitway map` writes one to start from)"
     )]
     NoPairs,
+    /// A retargeted channel is invalid.
     #[error("joint “{joint}” cannot be written: {problem}")]
-    Channel { joint: String, problem: ChannelError },
+    Channel {
+        /// Name of the target joint.
+        joint: String,
+        /// What is wrong with its channel.
+        problem: ChannelError,
+    },
 }
 
 /// The retargeted clip, and how it was made.
@@ -31,8 +46,9 @@ pub struct Retargeted {
     pub clip: Clip,
     /// Target metres per source metre of travel; None if nothing travels.
     pub hips_scale: Option<f64>,
-    /// Number of keys in the source channels that were used, and in the channels that were written.
+    /// Number of keys in the source channels that were used.
     pub keys_in: usize,
+    /// Number of keys in the channels that were written.
     pub keys_out: usize,
     /// Joints whose keys are not the source's own: more than one rotation moves between them and their mapped ancestor.
     pub resampled: Vec<JointIndex>,

@@ -20,20 +20,28 @@ pub struct JointMapFile {
     /// By target joint: its name, or `#NODE` if it has none or shares it.
     #[serde(default, deserialize_with = "unique_entries")]
     pub joints: BTreeMap<String, MapEntry<SourceRef>>,
+    /// What joints without a source do, unless their entry says otherwise.
     #[serde(default)]
     pub unmapped: Unmapped,
+    /// Which poses count as the rests of both skeletons.
     #[serde(default)]
     pub rest: RestChoices,
+    /// What happens to the root motion.
     #[serde(default)]
     pub root: RootOptions,
+    /// Translations of mapped joints other than the hips.
     #[serde(default)]
     pub translations: Keep,
+    /// Scales of mapped joints.
     #[serde(default)]
     pub scales: Keep,
+    /// Channels of the motion to ignore.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub muted_channels: Vec<MutedChannel<SourceRef>>,
+    /// Whether feet are planted.
     #[serde(default)]
     pub feet: Feet,
+    /// Crossfade to and from the retargeted clips, 0 or more.
     #[serde(default)]
     pub crossfade_secs: f64,
 }
@@ -42,7 +50,9 @@ pub struct JointMapFile {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "expected a joint's name, its number (0, 1, …) or null")]
 pub enum SourceRef {
+    /// A glTF node index or a BVH joint number.
     Number(usize),
+    /// A joint name, which only one joint may have.
     Name(String),
 }
 

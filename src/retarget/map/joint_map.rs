@@ -15,13 +15,21 @@ use super::unmapped::Unmapped;
 pub struct JointMap {
     /// By target joint.
     pub joints: BTreeMap<usize, MapEntry>,
+    /// What joints without a source do, unless their entry says otherwise.
     pub unmapped: Unmapped,
+    /// Which poses count as the rests of both skeletons.
     pub rest: RestChoices,
+    /// What happens to the root motion.
     pub root: RootOptions,
+    /// Translations of mapped joints other than the hips.
     pub translations: Keep,
+    /// Scales of mapped joints.
     pub scales: Keep,
+    /// Channels of the motion to ignore.
     pub muted_channels: Vec<MutedChannel>,
+    /// Whether feet are planted.
     pub feet: Feet,
+    /// Crossfade to and from the retargeted clips, 0 or more.
     pub crossfade_secs: f64,
 }
 
@@ -54,17 +62,22 @@ impl<S> MapEntry<S> {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MutedChannel<S = usize> {
+    /// The joint of the motion.
     pub source: S,
     /// By default all of the joint's channels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub property: Option<MutedProperty>,
 }
 
+/// The property of a muted channel. Morph weights cannot be muted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum MutedProperty {
+    /// The joint's translation.
     Translation,
+    /// The joint's rotation.
     Rotation,
+    /// The joint's scale.
     Scale,
 }
 

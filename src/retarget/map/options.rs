@@ -2,10 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
+/// Which poses count as the rests that rotations are measured from.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RestChoices {
+    /// The model's. Only rotations depend on it; translations and scales are always the nodes'.
     pub model: RestChoice,
+    /// The motion's.
     pub motion: RestChoice,
 }
 
@@ -13,6 +16,8 @@ pub struct RestChoices {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RestChoice {
+    /// The bind pose where a skin covers a joint, the node's transform elsewhere. For a motion whose body does not
+    /// stand upright in that pose, the most upright frame of its clip.
     #[default]
     Auto,
     /// The nodes' own transforms.
@@ -23,13 +28,18 @@ pub enum RestChoice {
     FirstFrame,
 }
 
+/// What happens to the travel and turning of the hips.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RootOptions {
+    /// Position of the hips on the ground plane.
     pub horizontal: RootPart,
+    /// Height of the hips.
     pub vertical: RootPart,
+    /// Heading: rotation of the hips about the vertical.
     pub yaw: RootPart,
-    /// Moves the travel that is kept to the model's root joint.
+    /// Moves the horizontal travel and the turning that are kept from the hips to their parent. No effect if they have
+    /// no parent or it has a source.
     pub extract: bool,
 }
 
@@ -37,6 +47,7 @@ pub struct RootOptions {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RootPart {
+    /// Leaves it as it is in the motion.
     #[default]
     Keep,
     /// Removes the travel (the line from the first to the last key); the sway stays.
@@ -52,13 +63,17 @@ pub enum Keep {
     /// Keeps them if the two skeletons are the same.
     #[default]
     Auto,
+    /// Carries them over, converted to the target's rest and size.
     Keep,
+    /// Leaves them out.
     Drop,
 }
 
+/// What happens to the feet after retargeting.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Feet {
+    /// Leaves them where the retargeted rotations put them.
     #[default]
     Off,
     /// Keeps feet in place while they touch the ground.

@@ -20,15 +20,20 @@ pub struct Proposal {
     pub unused_sources: Vec<JointIndex>,
     /// What was recognized in the model, including contradictions.
     pub model: Recognized,
+    /// What was recognized in the motion.
     pub motion: Recognized,
 }
 
+/// A joint of the model, the joint of the motion that it could follow, and why.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ProposedPair {
+    /// Joint of the model.
     pub target: JointIndex,
+    /// Joint of the motion.
     pub source: JointIndex,
     /// The target's slot.
     pub slot: Option<Slot>,
+    /// How the pair was found; of two recognized joints, how the less certain one was.
     pub reason: Reason,
     /// 0 (a guess) to 1 (the files say so).
     pub confidence: f32,

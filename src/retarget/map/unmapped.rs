@@ -8,11 +8,14 @@ use crate::anim::ClipQuery;
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "expected a clip's name or its index (0, 1, …)")]
 pub enum ClipRef {
+    /// Index among the model's own clips.
     Index(usize),
+    /// The first of the model's own clips with this name.
     Name(String),
 }
 
 impl ClipRef {
+    /// Returns the query that finds this clip.
     pub fn query(&self) -> ClipQuery<'_> {
         match self {
             Self::Index(index) => ClipQuery::Index(*index),
@@ -25,9 +28,12 @@ impl ClipRef {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "UnmappedForm", into = "UnmappedForm")]
 pub enum Unmapped {
+    /// Stays in the rest pose.
     #[default]
     Rest,
+    /// Plays one of the model's own clips, looping with its own duration.
     Clip {
+        /// The clip to play.
         clip: ClipRef,
         /// Holds the clip's first key.
         frozen: bool,

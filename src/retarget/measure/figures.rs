@@ -20,13 +20,15 @@ pub struct Figures {
     /// How far the rotation of a mapped joint away from its aligned rest differs from its source's. Measured without
     /// planted feet.
     pub orientation_error_degrees_mean: Option<f64>,
+    /// The largest of these angles, over all mapped joints and measured times.
     pub orientation_error_degrees_max: Option<f64>,
     /// Angle between the direction of a limb (or the torso) and its source's: the visible error, regardless of rests.
     pub limb_direction_error_degrees_mean: Option<f64>,
+    /// The largest of these angles, over all segments and measured times.
     pub limb_direction_error_degrees_max: Option<f64>,
-    /// Mean horizontal speed of the toes (or ankles) while the source's are in contact, with removed travel added back; and
-    /// the source's own, scaled.
+    /// Mean horizontal speed of the toes (or ankles) while the source's are in contact, with removed travel added back.
     pub foot_slide_metres_per_sec: Option<f64>,
+    /// The source's own speed during the same contacts, scaled to the target.
     pub foot_slide_source_metres_per_sec: Option<f64>,
     /// How far a toe or ankle goes at most below the lowest leg joint of the aligned rest.
     pub ground_penetration_metres_max: Option<f64>,

@@ -13,6 +13,7 @@ use crate::retarget::transfer::Transfer;
 pub struct FootTrack {
     /// The model's toes, or ankle.
     pub joint: JointIndex,
+    /// The measured times in seconds, ascending: the source's keys and halfway between them.
     pub times: Vec<f32>,
     /// Whether the source's foot is in contact with the ground.
     pub touching: Vec<bool>,

@@ -10,9 +10,13 @@ use crate::retarget::transfer::Hips;
 /// A pair of joints and the rotations of their aligned rests in the model's space, from which both turn away alike.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StagePair {
+    /// Joint of the model.
     pub target: JointIndex,
+    /// Joint of the motion.
     pub source: JointIndex,
+    /// Aligned rest rotation of `target` in model space.
     pub target_rest: Quat,
+    /// Rest rotation of `source`, turned into the target's model space.
     pub source_rest: Quat,
 }
 

@@ -24,7 +24,9 @@ pub use names::{Name, Side};
 /// The result of [`recognize`]; empty for anything but a human body.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Recognized {
+    /// The joint that fills each slot.
     pub parts: BTreeMap<Slot, RecognizedJoint>,
+    /// Which way the body faces at rest.
     pub facing: Facing,
     /// Evidence against what was decided in `parts`.
     pub contradictions: Vec<Contradiction>,
@@ -33,7 +35,9 @@ pub struct Recognized {
 /// The joint of a slot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RecognizedJoint {
+    /// The joint that fills the slot.
     pub joint: JointIndex,
+    /// How it was found.
     pub reason: Reason,
     /// 0 (a guess) to 1 (the file says so).
     pub confidence: f32,
@@ -97,18 +101,28 @@ impl Facing {
 #[derive(Debug, Clone, PartialEq)]
 pub enum Contradiction {
     /// Named for one side but on the other, as the toes point.
-    Side { slot: Slot, joint: JointIndex, name: String },
+    Side {
+        /// The slot that the joint fills.
+        slot: Slot,
+        /// The joint that lies on the wrong side of its counterpart.
+        joint: JointIndex,
+        /// Its name.
+        name: String,
+    },
 }
 
 impl Recognized {
+    /// Returns the joint that fills a slot.
     pub fn joint(&self, slot: Slot) -> Option<JointIndex> {
         self.parts.get(&slot).map(|part| part.joint)
     }
 
+    /// Returns the slot that a joint fills.
     pub fn slot(&self, joint: JointIndex) -> Option<Slot> {
         self.parts.iter().find(|(_, part)| part.joint == joint).map(|(&slot, _)| slot)
     }
 
+    /// Returns the joints by slot, without how they were found.
     pub fn humanoid(&self) -> Humanoid {
         Humanoid(self.parts.iter().map(|(&slot, part)| (slot, part.joint)).collect())
     }

@@ -7,6 +7,7 @@ use crate::retarget::map::ResolvedMap;
 /// One of the model's own clips, cut down to the joints that play it.
 #[derive(Debug, Clone)]
 pub struct LayerClip {
+    /// The channels of those joints only, so it may end before `duration_secs`.
     pub clip: Clip,
     /// Duration of the whole clip, which is that of the loop.
     pub duration_secs: f32,
