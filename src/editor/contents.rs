@@ -12,6 +12,7 @@ pub struct Contents {
     pub models: Vec<OpenedModel>,
     /// `None` keeps the motions already loaded.
     pub motions: Option<Vec<Motion>>,
+    /// A joint map for the motions; `None` if none was opened.
     pub map: Option<JointMapFile>,
     /// The map is one of the user's local files.
     pub is_map_private: bool,
@@ -22,6 +23,7 @@ pub struct Contents {
 /// A model that is not in the library yet.
 #[derive(Debug)]
 pub struct OpenedModel {
+    /// Gets its id from the library.
     pub model: Model,
     /// The model's own files, needed to write it with another clip. `None` for generated samples.
     pub files: Option<ModelFiles>,
@@ -30,7 +32,9 @@ pub struct OpenedModel {
 /// The files a model was read from, and the name of its main file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModelFiles {
+    /// All files that were opened together, including the buffers and images that the main file refers to.
     pub set: FileSet,
+    /// Path of the main file in `set`.
     pub name: String,
 }
 

@@ -4,7 +4,12 @@
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Event {
     /// Something was done. If `undoable`, the next undo reverts exactly that.
-    Notice { text: String, undoable: bool },
+    Notice {
+        /// For the user, in full sentences.
+        text: String,
+        /// Whether the shell may offer to undo it.
+        undoable: bool,
+    },
     /// Part of an operation failed, although the rest worked.
     Problem(String),
     /// A whole view, such as a link's, is active.

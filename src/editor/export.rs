@@ -14,20 +14,35 @@ use crate::state::{active_clip, active_map, written_skeleton};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Export {
     /// The joint map of a motion.
-    Map { motion: usize },
+    Map {
+        /// Index into [`Library::motions`](crate::library::Library::motions).
+        motion: usize,
+    },
     /// The model with one of its retargeted clips.
-    Model { clip: usize },
+    Model {
+        /// Index among all clips of the active model; one of its own clips is an error.
+        clip: usize,
+    },
     /// The skeleton with one of the clips, without meshes.
-    Clip { clip: usize },
+    Clip {
+        /// Index among all clips of the active model.
+        clip: usize,
+    },
     /// The whole model as a .glb, in its current pose or in its rest pose.
-    Whole { posed: bool },
+    Whole {
+        /// Makes the current pose the rest pose of the file.
+        posed: bool,
+    },
 }
 
 /// An exported file, with a remark for the user.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ExportedFile {
+    /// File name with extension, without a folder.
     pub name: String,
+    /// Content of the file.
     pub bytes: Vec<u8>,
+    /// A message for the user, such as a seam in the loop. `None` if there is nothing to say.
     pub remark: Option<String>,
 }
 

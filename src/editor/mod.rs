@@ -28,6 +28,7 @@ use open::Shelved;
 /// Decides whether a model can be shown, for example whether it fits on the graphics device. The error is for the user.
 pub type Admit<'a> = &'a mut dyn FnMut(&crate::library::Model) -> Result<(), String>;
 
+/// Owns the library, the state and the history. Every change to them goes through its methods.
 #[derive(Debug)]
 pub struct Editor {
     library: Library,
@@ -58,6 +59,7 @@ impl Editor {
     /// Suits most windows; shells with a viewport call [`Editor::set_aspect`].
     const DEFAULT_ASPECT: f32 = 1.6;
 
+    /// Takes a library and a state, and retargets the library's motions as the state asks.
     pub fn new(library: Library, state: ViewerState) -> Self {
         let mut editor = Self {
             library,
@@ -76,10 +78,12 @@ impl Editor {
         editor
     }
 
+    /// Returns the loaded models and motions.
     pub fn library(&self) -> &Library {
         &self.library
     }
 
+    /// Returns the current state.
     pub fn state(&self) -> &ViewerState {
         &self.state
     }
@@ -99,6 +103,7 @@ impl Editor {
         std::mem::take(&mut self.is_changed)
     }
 
+    /// Sets the viewport's width over height, which some camera commands depend on.
     pub fn set_aspect(&mut self, aspect: f32) {
         self.aspect = aspect;
     }

@@ -6,10 +6,12 @@ use super::{Editor, Event};
 use crate::library::ModelId;
 
 impl Editor {
+    /// Returns whether there is a step to undo.
     pub fn can_undo(&self) -> bool {
         self.history.can_undo()
     }
 
+    /// Returns whether there is an undone step to redo.
     pub fn can_redo(&self) -> bool {
         self.history.can_redo()
     }
