@@ -14,6 +14,7 @@ use crate::retarget::{
 /// A clip of a motion retargeted to a model; plays like one of the model's own.
 #[derive(Debug)]
 pub struct BorrowedClip {
+    /// For the model's skeleton.
     pub clip: Clip,
     /// Layers that animate the joints without a source.
     pub layers: Vec<LayerClip>,
@@ -21,11 +22,13 @@ pub struct BorrowedClip {
     pub motion: usize,
     /// Index into the motion's clips.
     pub source_clip: usize,
+    /// The joint whose travel is the character's. `None` if nothing is translated.
     pub root: Option<JointIndex>,
     /// Frame rate the source was authored at; retargeting may add keys between its frames.
     pub frames_per_sec: f64,
     /// Places the source in this model's space.
     pub model_from_source: Affine3A,
+    /// Every pair of the joint map, to compare the model with the source beside it.
     pub pairs: Vec<StagePair>,
     map: Arc<ResolvedMap>,
     measured: OnceLock<Option<(Figures, Vec<FootTrack>)>>,
@@ -48,10 +51,22 @@ impl BorrowedClip {
 /// Why a motion cannot be borrowed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BorrowError {
+    /// The joint map does not fit, or none could be proposed.
     #[error("{motion}: {problem}")]
-    Map { motion: String, problem: MapError },
+    Map {
+        /// [`Motion::source`](super::Motion::source) of the motion.
+        motion: String,
+        /// What is wrong with the map.
+        problem: MapError,
+    },
+    /// The map fits, but the motion has no clip, or one cannot be retargeted.
     #[error("{motion}: {problem}")]
-    Retarget { motion: String, problem: RetargetError },
+    Retarget {
+        /// [`Motion::source`](super::Motion::source) of the motion.
+        motion: String,
+        /// Why retargeting failed.
+        problem: RetargetError,
+    },
 }
 
 /// Returns the active map between two files: the given one, or else the proposal.

@@ -23,7 +23,9 @@ use crate::retarget::{Figures, FootTrack, JointMap, MapError, Proposal, propose}
 /// The active model and the files it borrows from.
 #[derive(Debug, Clone)]
 pub struct Loaded {
+    /// The active model.
     pub model: ModelId,
+    /// The motions it borrows, in order.
     pub motions: Vec<Motion>,
 }
 
@@ -158,6 +160,7 @@ impl Library {
         self.checksums = self.motions.iter().map(|_| OnceLock::new()).collect();
     }
 
+    /// Returns the files that clips are borrowed from. Other methods take indices into this list.
     pub fn motions(&self) -> &[Motion] {
         &self.motions
     }

@@ -14,9 +14,11 @@ use crate::asset::{Asset, Humanoid};
 use crate::mesh::Bounds;
 use crate::retarget::{Body, LayerClip, recognize};
 
+/// Identifies a model, or a motion shown as one, within its library. 0 until the library assigns one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
 pub struct ModelId(pub u64);
 
+/// A loaded file that can be shown: its asset, decoded images and borrowed clips.
 #[derive(Debug)]
 pub struct Model {
     /// Assigned by the library.
@@ -27,6 +29,7 @@ pub struct Model {
     pub origin: String,
     /// Whether it is the user's local file, which an embedding page must not learn about.
     pub is_own: bool,
+    /// The file's content.
     pub asset: Arc<Asset>,
     /// One per image of the asset; none if it could not be decoded (a warning says why).
     pub images: Vec<Option<ImageData>>,
@@ -52,6 +55,8 @@ impl Model {
     /// Poses sampled to find a clip's bounds.
     const SWEEP_SAMPLES: usize = 24;
 
+    /// Wraps an asset. `images` has one entry per image of the asset. The origin is the source until the caller sets
+    /// another.
     pub fn new(source: String, asset: impl Into<Arc<Asset>>, images: Vec<Option<ImageData>>) -> Self {
         let asset = asset.into();
         let clip_titles = unique_titles(asset.clips.iter());
@@ -78,11 +83,13 @@ impl Model {
         self.asset.clips.len() + self.borrowed.len()
     }
 
+    /// Returns a clip by its index among all clips: the asset's own, then the borrowed ones.
     pub fn clip(&self, index: usize) -> Option<&Clip> {
         let own = &self.asset.clips;
         own.get(index).or_else(|| Some(&self.borrowed.get(index.checked_sub(own.len())?)?.clip))
     }
 
+    /// Returns all clips by index: the asset's own, then the borrowed ones.
     pub fn clips(&self) -> impl Iterator<Item = &Clip> + Clone {
         self.asset.clips.iter().chain(self.borrowed.iter().map(|borrowed| &borrowed.clip))
     }

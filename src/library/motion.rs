@@ -15,7 +15,9 @@ pub struct Motion {
     pub origin: String,
     /// See [`Model::is_own`].
     pub is_own: bool,
+    /// The file's content.
     pub asset: Arc<Asset>,
+    /// Humanoid slots recognized in `asset`; empty if it is not a human body.
     pub slots: Humanoid,
     /// Assigned by the library.
     pub(super) stage_id: ModelId,
@@ -23,6 +25,7 @@ pub struct Motion {
 }
 
 impl Motion {
+    /// Wraps an asset and recognizes its humanoid slots. The origin is the source until the caller sets another.
     pub fn new(source: String, asset: Arc<Asset>) -> Self {
         let slots = recognize(&asset).humanoid();
         Self {
@@ -51,6 +54,7 @@ impl Motion {
         self.stage_id
     }
 
+    /// Returns the asset with its humanoid slots, as the source of a retarget.
     pub fn body(&self) -> Body<'_> {
         Body { asset: &self.asset, slots: &self.slots }
     }

@@ -16,7 +16,9 @@ pub struct Rig {
 /// From a joint to one of its children; without a tail at the end of a chain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RigBone {
+    /// The joint it starts from.
     pub head: JointIndex,
+    /// The joint it ends at, a child of `head`.
     pub tail: Option<JointIndex>,
 }
 
@@ -53,10 +55,12 @@ impl Rig {
         Self { real, bones, roots, skin_joints }
     }
 
+    /// Returns whether the joint is real; false if the index is out of range.
     pub fn is_real(&self, joint: JointIndex) -> bool {
         self.real.get(joint.get()).copied().unwrap_or(false)
     }
 
+    /// Returns the bones between real joints, then one without a tail for each end of a chain.
     pub fn bones(&self) -> &[RigBone] {
         &self.bones
     }
