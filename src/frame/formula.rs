@@ -25,7 +25,9 @@ pub struct VertexFormula {
 /// The contribution of one joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FormulaTerm {
+    /// `j`. For an unskinned mesh, its node.
     pub joint: JointIndex,
+    /// `w_j`, above 0; 1 for an unskinned mesh.
     pub weight: f32,
     /// `T_j · B_j⁻¹ · p`: the position by this joint alone, in world space.
     pub alone: Vec3,

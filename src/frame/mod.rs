@@ -28,7 +28,9 @@ pub use pose_document::pose_document;
 /// Input of the renderer. Reused between frames, so that evaluation stops allocating once the buffers have grown.
 #[derive(Debug, Default)]
 pub struct Frame {
+    /// The camera.
     pub view: View,
+    /// Display settings.
     pub look: Look,
     /// Columns and rows of equally sized panes that share one camera.
     pub panes: [u32; 2],
@@ -54,28 +56,39 @@ impl Frame {
     }
 }
 
+/// The camera of a frame, shared by all panes.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct View {
+    /// Right-handed, looking along −Z.
     pub view_from_world: Mat4,
     /// WebGPU's clip space: depth from 0 (near) to 1 (far), Y up.
     pub projection_from_view: Mat4,
+    /// Position of the camera in world space.
     pub eye: Vec3,
 }
 
+/// Display settings that apply to the whole frame.
 #[derive(Debug, Clone, Copy)]
 pub struct Look {
     /// Multiplies linear colours: 2^stops.
     pub exposure: f32,
+    /// Rotation of the environment and the studio's key light about +Y.
     pub environment_radians: f32,
+    /// What shows behind the scene.
     pub background: Background,
+    /// Draws the surfaces. Without them nothing casts a shadow.
     pub mesh: bool,
+    /// Draws the edges of triangles, over the surfaces if those are drawn.
     pub wireframe: bool,
+    /// Draws [`Frame::bones`].
     pub skeleton: bool,
     /// Draws the skeleton as spheres and boxes.
     pub boxes: bool,
     /// Shades meshes without normals smooth instead of flat.
     pub smooth: bool,
+    /// Draws shadows, on the ground as well as on meshes.
     pub shadow: bool,
+    /// `None` hides the grid.
     pub grid: Option<Grid>,
     /// Height of the plane that the character stands on and that receives shadows.
     pub ground_height: f32,
@@ -84,25 +97,32 @@ pub struct Look {
 /// A grid on the ground plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Grid {
+    /// World-space Y of the grid.
     pub height: f32,
     /// Distance between thin lines, a power of ten in metres; every tenth line is thick.
     pub spacing: f32,
     /// Distance from `center` at which the grid has faded out.
     pub radius: f32,
+    /// Middle of the grid in world space, at `height`.
     pub center: Vec3,
 }
 
 /// A model in a pose.
 #[derive(Debug, Default)]
 pub struct Character {
+    /// The model whose meshes are drawn; for a source, that of its [`Motion::stage`](crate::library::Motion::stage).
     pub model: ModelId,
+    /// Skinning method, for which `palette` is written.
     pub skinning: SkinningMode,
     /// Index of its pane, row by row; none for all panes.
     pub pane: Option<u32>,
+    /// One per joint of the model.
     pub world_from_joint: Vec<Affine3A>,
     /// World-space palettes of all draws, concatenated.
     pub palette: Vec<PaletteEntry>,
+    /// Weights of all morph targets, laid out as in [`Pose::morph_weights`].
     pub morph_weights: Vec<f32>,
+    /// Mesh instances of the chosen scene, in the asset's order.
     pub draws: Vec<Draw>,
 }
 
@@ -123,6 +143,7 @@ impl Character {
 pub struct Draw {
     /// Index into [`crate::asset::AssetParts::instances`].
     pub instance: usize,
+    /// Index into [`crate::asset::AssetParts::meshes`].
     pub mesh: usize,
     /// Range in [`Character::palette`].
     pub palette: Range<u32>,
@@ -137,11 +158,14 @@ pub struct Draw {
     pub center: Vec3,
 }
 
+/// A light of the file, placed in the world.
 #[derive(Debug, Clone, Copy)]
 pub struct FrameLight {
+    /// Directional, point or spot, with the cone of a spot.
     pub kind: LightKind,
     /// Linear colour times intensity.
     pub color: Vec3,
+    /// World space; unused by directional lights.
     pub position: Vec3,
     /// Direction in which the light travels.
     pub direction: Vec3,
@@ -149,12 +173,16 @@ pub struct FrameLight {
     pub range: f32,
 }
 
+/// A line segment of constant width on screen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Line {
+    /// Start in world space.
     pub from: Vec3,
+    /// End in world space.
     pub to: Vec3,
     /// Linear, straight alpha.
     pub color: Vec4,
+    /// In pixels of the render target.
     pub width_pixels: f32,
     /// Drawn over everything in front of it.
     pub on_top: bool,
@@ -163,7 +191,9 @@ pub struct Line {
 /// A tapered octahedron from head to tail, drawn over the mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bone {
+    /// Position of the joint in world space.
     pub head: Vec3,
+    /// Position of the child joint, or end of the stub at the end of a chain. World space.
     pub tail: Vec3,
     /// Largest radius, metres; the joint at the head is a ball of the same radius. A box is half as thick.
     pub radius: f32,

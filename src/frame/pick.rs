@@ -7,6 +7,7 @@ use super::Frame;
 /// A picked joint, by its file's number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PickedJoint {
+    /// In the model's own file.
     Model(usize),
     /// In the file that the clip is borrowed from.
     Source(usize),
