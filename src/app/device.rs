@@ -8,7 +8,9 @@ use eframe::egui_wgpu;
 /// The page's graphics APIs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Backend {
+    /// The browser's WebGPU.
     WebGpu,
+    /// WebGL 2: wgpu's GL backend in the browser.
     WebGl2,
 }
 

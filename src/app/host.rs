@@ -19,6 +19,7 @@ pub trait Host {
         false
     }
 
+    /// Opens the gallery of samples. Called only if [`Host::has_gallery`] returns true.
     fn show_gallery(&self) {}
 
     /// Saves a file for the user; returns false if that takes a path, which is then passed to [`Host::save_path`].

@@ -13,25 +13,33 @@ pub enum Message {
     OpenProgress(Opening),
     /// Files are ready: models to activate, motions to retarget. With `state` (a link), that replaces the state too.
     Opened {
+        /// The models, motions and joint map that were read.
         contents: Box<Contents>,
+        /// `None` keeps what still fits of the current state.
         state: Option<Box<ViewerState>>,
+        /// Answered with the active model's inspect document once the viewport shows it, or with the error.
         reply: Option<Reply<serde_json::Value>>,
     },
     /// Nothing was opened; shows the message.
     OpenFailed(String),
     /// Nothing was opened; the caller reports why.
     OpenFailedSilently,
+    /// Commands to apply, in order.
     Commands(Vec<Command>),
     /// A request failed; shows the message.
     Failed(String),
     /// A file written in the background is ready to save under this name.
     Save(String, Vec<u8>),
+    /// A call from the script interface.
     Script(ScriptCall),
 }
 
+/// Progress of a load.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Opening {
+    /// Name of the file being read, as shown to the user.
     pub name: String,
+    /// Bytes read so far.
     pub received_bytes: u64,
     /// 0 if unknown.
     pub total_bytes: u64,
@@ -50,6 +58,7 @@ pub enum ScriptCall {
     Pose(Reply<serde_json::Value>),
     /// Returns the viewport as PNG bytes.
     Screenshot(Reply<Vec<u8>>),
+    /// Returns frame times and draw counts as an object.
     Stats(Reply<serde_json::Value>),
 }
 
@@ -61,10 +70,12 @@ pub struct Inbox {
 }
 
 impl Inbox {
+    /// Returns an empty queue that wakes `context` when something is sent. Clones share the queue.
     pub fn new(context: egui::Context) -> Self {
         Self { queue: Arc::default(), context }
     }
 
+    /// Appends a message and requests a repaint, so that the next frame handles it.
     pub fn send(&self, message: Message) {
         if let Ok(mut queue) = self.queue.lock() {
             queue.push_back(message);

@@ -12,8 +12,10 @@ use crate::state::ViewerState;
 /// Why the window could not be opened, or stopped.
 #[derive(Debug, thiserror::Error)]
 pub enum WindowError {
+    /// The files could not be read.
     #[error(transparent)]
     Open(#[from] OpenError),
+    /// No window or graphics device, the first model could not be shown, or the event loop failed.
     #[error("the window could not be opened: {0}")]
     Window(#[from] eframe::Error),
 }

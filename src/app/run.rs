@@ -14,6 +14,7 @@ use crate::library::{Library, ModelId, Motion, inspect};
 use crate::state::{Command, ViewerState, to_link, to_object};
 use crate::ui::{self, Output, PathPrompt, PathPurpose, Progress, Shown, UiAction, UiState};
 
+/// The app that eframe runs, in a window or a page: owns the editor, the viewport and the panels.
 pub struct App {
     pub(super) editor: Editor,
     pub(super) viewport: Viewport,
@@ -85,14 +86,17 @@ impl App {
         Ok(app)
     }
 
+    /// Returns the editor, read-only. Changes go through the inbox.
     pub fn editor(&self) -> &Editor {
         &self.editor
     }
 
+    /// Returns the view state.
     pub fn state(&self) -> &ViewerState {
         self.editor.state()
     }
 
+    /// Returns the loaded models and motions.
     pub fn library(&self) -> &Library {
         self.editor.library()
     }
@@ -182,6 +186,7 @@ impl App {
         async move { crate::render::finished(&device, &queue).await }
     }
 
+    /// Returns frame times in milliseconds, the graphics backend, and counts for the last frame drawn, as an object.
     pub fn stats(&self) -> serde_json::Value {
         let drawn = self.viewport.scene.stats();
         let characters = &self.viewport.frame.characters;

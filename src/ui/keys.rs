@@ -9,7 +9,9 @@ use crate::state::{CameraChoice, Command, Show, choice_of_clip};
 
 /// A shortcut and its line in the help.
 pub struct KeyHelp {
+    /// The keys, as the help writes them.
     pub keys: &'static str,
+    /// What they do, as the help says it.
     pub does: &'static str,
     pressed: &'static [Key],
     act: fn(&Shown<'_>, &mut UiState, usize, &mut Output),

@@ -37,8 +37,11 @@ use widgets::{controls, icons, scrub, style};
 /// What the interface shows. `frame` is what is on the screen: one behind while a command is being applied.
 #[derive(Clone, Copy)]
 pub struct Shown<'a> {
+    /// The loaded models and motions.
     pub library: &'a Library,
+    /// The current view state, which `frame` may not show yet.
     pub state: &'a ViewerState,
+    /// The last evaluated frame.
     pub frame: &'a Frame,
 }
 
@@ -48,6 +51,7 @@ impl<'a> Shown<'a> {
         active_clip(self.library.active()?, self.state)
     }
 
+    /// Returns the current clip, or `None` for the rest pose.
     pub fn clip(&self) -> Option<&'a Clip> {
         self.library.active()?.clip(self.clip_index()?)
     }
@@ -77,11 +81,17 @@ impl<'a> Shown<'a> {
 /// State of the interface itself, grouped by the code that owns it. Never part of a link.
 #[derive(Debug, Default)]
 pub struct UiState {
+    /// What the app reports; set by the app.
     pub host: HostState,
+    /// Progress, errors, toasts and the path prompt.
     pub messages: Messages,
+    /// Which panels, sheet and tab are open.
     pub layout: Layout,
+    /// Aspect ratio, hovered joint and gizmo drag of the viewport.
     pub viewport: ViewportState,
+    /// State of the selected joint's card in the Scene tab.
     pub joint_card: tabs::JointCard,
+    /// The list of keys and gestures.
     pub help: Help,
     /// Time stands still while the user holds the playhead or points at the rotation gizmo.
     pub holds_time: bool,
@@ -98,7 +108,9 @@ pub struct UiState {
 pub struct HostState {
     /// The platform can show a gallery of samples.
     pub has_gallery: bool,
+    /// There is a step to undo.
     pub can_undo: bool,
+    /// There is an undone step to redo.
     pub can_redo: bool,
     /// A video is being recorded: only the viewport is shown.
     pub is_recording: bool,
@@ -107,10 +119,13 @@ pub struct HostState {
 /// Which panels are open.
 #[derive(Debug)]
 pub struct Layout {
+    /// The clips panel, on the left, is open. Ignored on a narrow screen.
     pub clips_open: bool,
+    /// The inspector, on the right, is open. Ignored on a narrow screen.
     pub inspector_open: bool,
     /// On a narrow screen the panels are sheets over the viewport, one at a time.
     pub sheet: Option<Sheet>,
+    /// The chosen inspector tab. The Scene tab stands in for Motion while there are no motions.
     pub tab: Tab,
     /// Where the open sheet is.
     sheet_rect: Option<Rect>,
@@ -129,9 +144,12 @@ impl Layout {
     }
 }
 
+/// A panel shown as a sheet on a narrow screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sheet {
+    /// Open models and clips.
     Clips,
+    /// The inspector tabs.
     Inspector,
 }
 

@@ -7,7 +7,9 @@ use crate::state::Command;
 /// The requests of one pass.
 #[derive(Debug, Default, PartialEq)]
 pub struct Output {
+    /// Changes of the view state, in order.
     pub commands: Vec<Command>,
+    /// Handled in order, after the commands.
     pub actions: Vec<UiAction>,
 }
 
@@ -22,11 +24,13 @@ pub enum UiAction {
     ChooseMotion,
     /// Use the path that was typed into a prompt.
     UsePath(PathPurpose, String),
+    /// Save a file, or ask for its path where the platform has no save dialog.
     Save(Saved),
     /// Activate another of the open models.
     ShowModel(ModelId),
     /// Close a model; if it is the active one, its neighbour takes its place.
     CloseModel(ModelId),
+    /// Remove the motion at this index in the library, and all others from the same archive.
     RemoveMotion(usize),
     /// Show the skeleton of a motion by itself instead of the model.
     ShowMotionAlone(usize),
@@ -40,25 +44,33 @@ pub enum UiAction {
     StopRecording,
     /// Share a link to this view.
     ShareLink,
+    /// Undo the last step.
     Undo,
+    /// Redo the last undone step.
     Redo,
 }
 
 /// What a typed path is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PathPurpose {
+    /// Open files of any kind.
     Open,
+    /// Borrow motion from a file, or load a joint map.
     OpenMotion,
+    /// Write this file.
     Save(Saved),
 }
 
 /// A file that can be saved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Saved {
+    /// A model, clip or joint map that the editor exports.
     File(Export),
     /// The current view, rendered at a size in pixels.
     Picture {
+        /// Width and height. Each is clamped to the device's maximum texture size.
         size: [u32; 2],
+        /// Leaves out the background of the view.
         transparent: bool,
     },
 }

@@ -1,147 +1,226 @@
 //! Texts of controls that tests look for, so that each can change in one place.
 
 // Viewport and layout
+/// Accessible name of the 3D view.
 pub const VIEWPORT: &str = "Viewport";
+/// Narrow screens: button that opens the clips sheet. Also the number of clips in the File tab.
 pub const CLIPS: &str = "Clips";
+/// Narrow screens: button that opens the inspector sheet.
 pub const INSPECTOR: &str = "Inspector";
+/// Wide screens: button that closes the clips panel.
 pub const HIDE_CLIPS: &str = "Hide clips";
+/// Wide screens: button that opens the clips panel.
 pub const SHOW_CLIPS: &str = "Show clips";
+/// Wide screens: button that closes the inspector.
 pub const HIDE_INSPECTOR: &str = "Hide inspector";
+/// Wide screens: button that opens the inspector.
 pub const SHOW_INSPECTOR: &str = "Show inspector";
+/// Close button of a sheet.
 pub const CLOSE_SHEET: &str = "Close panel";
+/// Viewport button that opens files while the clips panel is closed.
 pub const OPEN_FILES: &str = "Open files";
+/// Button that opens the gallery of samples.
 pub const SAMPLES: &str = "Samples";
+/// Fitting everything into the viewport, as the help describes it.
 pub const FRAME_ALL: &str = "Fit everything in view";
+/// Button that fits everything into the viewport, with its key.
 pub const FRAME_ALL_KEY: &str = "Fit everything in view (F)";
 
 // Help
+/// Button that opens and closes the help, with its key.
 pub const HELP: &str = "Keys (?)";
+/// Title of the help.
 pub const HELP_TITLE: &str = "Keys and gestures";
+/// Close button of the help.
 pub const CLOSE_HELP: &str = "Close help";
+/// What dragging a ring of the rotation gizmo does, in the help.
 pub const HELP_RING: &str = "Rotate the selected joint, with “Pose manually” on in the Scene tab";
+/// Keys that step by a frame, spelled out for the help.
 pub const STEP_KEYS: &str = "Comma, period";
+/// What [`STEP_KEYS`] do, in the help.
 pub const STEP_FRAMES: &str = "Previous frame, next frame";
 
 // Messages
+/// Title of an error without a more specific one.
 pub const ERROR_TITLE: &str = "Something went wrong";
+/// Title of the error for refused motions.
 pub const REFUSED_TITLE: &str = "Couldn't borrow the motion";
+/// Close button of an error.
 pub const DISMISS_ERROR: &str = "Dismiss error";
+/// Button on a refused motion: shows its skeleton instead of the model.
 pub const SHOW_REFUSED_ALONE: &str = "Show its skeleton";
+/// Button on a refused motion: borrows from it with an empty joint map.
 pub const MAP_REFUSED_MANUALLY: &str = "Map joints manually";
+/// Button on a toast that reports an undoable step.
 pub const UNDO: &str = "Undo";
+/// Accessible name of the path prompt's text field.
 pub const PATH: &str = "Path";
+/// Path prompt: button that opens the path.
 pub const PROMPT_OPEN: &str = "Open";
+/// Path prompt: button that saves to the path.
 pub const PROMPT_SAVE: &str = "Save";
+/// Path prompt: button that closes it.
 pub const CANCEL: &str = "Cancel";
 
+/// Returns the label of the progress bar while a file loads.
 pub fn opening(name: &str) -> String {
     format!("Opening {name}")
 }
 
+/// Returns the title of the error for a file that failed to open.
 pub fn couldnt_open(name: &str) -> String {
     format!("Couldn't open {name}")
 }
 
 // Clips
+/// Button that opens files.
 pub const OPEN: &str = "Open…";
+/// Button that borrows motion from another file, or loads a joint map.
 pub const BORROW_MOTION: &str = "Motion…";
+/// Button that shares a link to the view.
 pub const SHARE: &str = "Share…";
+/// Heading of the clip list.
 pub const CLIPS_SECTION: &str = "CLIPS";
+/// Row of the clip list for no clip. The transport shows it in place of the time.
 pub const REST_POSE: &str = "Rest pose";
+/// Button that empties a search field.
 pub const CLEAR_SEARCH: &str = "Clear search";
 
+/// Returns the hint in the search field of a list of `count` clips.
 pub fn search_clips(count: usize) -> String {
     format!("Search {count} clips")
 }
 
+/// Returns the note shown when the search matches no clip.
 pub fn no_clip_found(search: &str) -> String {
     format!("No clip matches “{search}”.")
 }
 
+/// Returns the name of the button that closes a model.
 pub fn close_model(name: &str) -> String {
     format!("Close {name}")
 }
 
+/// Returns the heading above the clips borrowed from a motion.
 pub fn from_motion(name: &str) -> String {
     format!("From {name}")
 }
 
 // Transport
+/// Accessible name of the play button while stopped.
 pub const PLAY: &str = "Play";
+/// Accessible name of the play button while playing.
 pub const PAUSE: &str = "Pause";
+/// Button that steps back one frame, with its key.
 pub const PREVIOUS_FRAME: &str = "Previous frame (,)";
+/// Button that steps forward one frame, with its key.
 pub const NEXT_FRAME: &str = "Next frame (.)";
+/// Accessible name of the timeline, a slider in seconds.
 pub const TIME: &str = "Time";
+/// Accessible name of the timeline handle at the start of the played range.
 pub const IN_POINT: &str = "In point";
+/// Accessible name of the timeline handle at the end of the played range.
 pub const OUT_POINT: &str = "Out point";
+/// Button that moves the in point to the playhead, with its key.
 pub const SET_IN_POINT: &str = "Set in point (I)";
+/// Button that moves the out point to the playhead, with its key.
 pub const SET_OUT_POINT: &str = "Set out point (O)";
+/// Button that plays the whole clip again.
 pub const CLEAR_RANGE: &str = "Clear in and out points";
+/// Loop mode: stops at the end.
 pub const PLAY_ONCE: &str = "Play once";
+/// Loop mode: starts over at the end.
 pub const LOOP: &str = "Loop";
+/// Loop mode: plays forwards and backwards in turn.
 pub const PING_PONG: &str = "Ping-pong";
+/// Name of the speed slider; on narrow screens, tooltip of the speed menu.
 pub const SPEED: &str = "Speed";
+/// Accessible name of the number field beside the speed slider.
 pub const SPEED_VALUE: &str = "Speed value";
 
+/// Returns a playback speed as a multiple of normal speed.
 pub fn speed(factor: f64) -> String {
     format!("{factor}×")
 }
 
+/// Returns the playhead position and the duration of the clip.
 pub fn seconds(time_secs: f64, duration_secs: f64) -> String {
     format!("{time_secs:.2} / {duration_secs:.2} s")
 }
 
+/// Returns the current frame and the last one, `count`. Frames are numbered from 0.
 pub fn frames(frame: f64, count: f64) -> String {
     format!("Frame {frame:.0} / {count:.0}")
 }
 
+/// Returns the accessible name of a foot's contact track.
 pub fn foot_contacts(joint: &str) -> String {
     format!("{joint}: foot contacts")
 }
 
 // Sliders
+/// Returns the accessible name of the number field beside the slider `label`.
 pub fn value_of(label: &str) -> String {
     format!("{label} value")
 }
 
 // Scene tab
+/// Hint in the search field of the node tree.
 pub const SEARCH_NODES: &str = "Search nodes";
+/// Close button of the selected joint's card.
 pub const DESELECT_JOINT: &str = "Deselect joint";
+/// Button that starts renaming the selected joint.
 pub const RENAME: &str = "Rename";
+/// Accessible name of the field for the joint's new name.
 pub const JOINT_NAME: &str = "Joint name";
+/// Switch for the pose sliders and the rotation gizmo.
 pub const POSE_MANUALLY: &str = "Pose manually";
+/// How the three angles combine.
 pub const POSE_HINT: &str = "From the rest pose: about X, then Y, then Z. Or drag the rings in the viewport.";
+/// The pose sliders, in degrees. They apply in this order.
 pub const POSE_ANGLES: [&str; 3] = ["Rotation X", "Rotation Y", "Rotation Z"];
+/// Button that returns the selected joint to the clip.
 pub const RESET_JOINT: &str = "Reset joint";
+/// Switch between the joint's transforms and its skinning matrices.
 pub const MATRICES: &str = "Matrices";
+/// Switch for the skinning equation of a vertex.
 pub const VERTEX_PROBE: &str = "Vertex under the pointer";
+/// Shown while the probe is on and no vertex has been found.
 pub const VERTEX_HINT: &str = "Point at the mesh to see which joints move a vertex. Click to pin it.";
+/// Button that unpins the vertex, so that the probe follows the pointer again.
 pub const UNPIN_VERTEX: &str = "Unpin";
 
+/// Returns the note shown when the search matches no node.
 pub fn no_node_found(search: &str) -> String {
     format!("No node matches “{search}”.")
 }
 
+/// Returns the name of a collapsed tree row's triangle.
 pub fn expand(name: &str) -> String {
     format!("Expand {name}")
 }
 
+/// Returns the name of an expanded tree row's triangle.
 pub fn collapse(name: &str) -> String {
     format!("Collapse {name}")
 }
 
+/// Returns the label of the button that returns all `count` manually posed joints to the clip.
 pub fn reset_all_joints(count: usize) -> String {
     format!("Reset all {count}")
 }
 
+/// Returns the heading of a joint's transform relative to its parent.
 pub fn local_transform(parent: &str) -> String {
     format!("Local, in {parent}")
 }
 
+/// Returns the title of a vertex; `number` is the one in the file.
 pub fn vertex(number: usize) -> String {
     format!("Vertex {number}")
 }
 
+/// Returns the accessible name of a joint's row in the skinning equation.
 pub fn joint_weight(joint: &str, weight: f32) -> String {
     format!("{joint}, weight {weight:.4}")
 }
@@ -149,10 +228,15 @@ pub fn joint_weight(joint: &str, weight: f32) -> String {
 /// A row of the skinning equation.
 #[derive(Debug, Clone, Copy)]
 pub enum FormulaRow {
+    /// `p`: the morphed bind position, in mesh space.
     Bound,
+    /// Where one joint alone would move the vertex, in world space.
     Alone,
+    /// `Alone` times the joint's weight, `w`.
     Share,
+    /// `p'`: the result of linear skinning, in world space.
     Sum,
+    /// The vertex as drawn, in world space. Shown unless the skinning method is linear.
     Drawn,
 }
 
@@ -176,35 +260,61 @@ impl FormulaRow {
 }
 
 // Display tab
+/// Skinning method: each vertex follows its strongest joint.
 pub const RIGID: &str = "Rigid";
+/// Skinning method: dual quaternions, abbreviated to fit.
 pub const DUAL_QUATERNION: &str = "Dual quat.";
+/// Switch that shows the three skinning methods side by side.
 pub const COMPARE_SKINNING: &str = "Compare all three";
+/// Switch for the skeleton.
 pub const SKELETON: &str = "Skeleton";
+/// Switch that replaces the octahedral bones; turning it on also shows the skeleton.
 pub const SKELETON_BOXES: &str = "Skeleton as spheres and boxes";
+/// Switch that colours the mesh by the selected joint's influence.
 pub const JOINT_WEIGHTS: &str = "Weights of the selected joint";
+/// Shown while the weights are on and no joint is selected.
 pub const JOINT_WEIGHTS_HINT: &str = "Select a joint in the viewport or in the Scene tab to see its influence.";
+/// Switch that computes normals for meshes without any.
 pub const SMOOTH_SURFACE: &str = "Smooth surface";
+/// Button that undoes all edits of the morph sliders.
 pub const RESET_MORPHS: &str = "Reset to clip";
 
 // View tab
+/// Button that looks at the model's front.
 pub const FRONT: &str = "Front";
+/// Button that looks at the model from its left.
 pub const SIDE: &str = "Side";
+/// Button that looks down on the model.
 pub const TOP: &str = "Top";
+/// Switch that moves the camera along with the character.
 pub const FOLLOW: &str = "Follow character";
+/// The Z axis, in the choice of the file's up axis.
 pub const UP_Z: &str = "Z";
+/// Exposure slider, in stops.
 pub const EXPOSURE: &str = "Exposure";
+/// The studio, in the choice of background.
 pub const STUDIO: &str = "Studio";
+/// A single colour, in the choice of background.
 pub const COLOR: &str = "Colour";
+/// A transparent background, in the choice of background.
 pub const NO_BACKGROUND: &str = "None";
+/// Preset of 1080 × 1080 pixels, in the choice of image size.
 pub const SQUARE: &str = "Square";
+/// Switch that saves images without the background.
 pub const TRANSPARENT_BACKGROUND: &str = "Transparent background";
+/// Button that saves an image.
 pub const SAVE_IMAGE: &str = "Save image (PNG)";
+/// Button that records a video.
 pub const RECORD: &str = "Record one loop (WebM)";
 
 // File tab
+/// Row of the file report: the format of the file.
 pub const FORMAT: &str = "Format";
+/// Row of the file report: the number of nodes.
 pub const NODES: &str = "Nodes";
+/// OBJ models: button that saves a GLB in the rest pose.
 pub const SAVE_REST_POSE: &str = "Save in rest pose";
+/// OBJ models: button that saves a GLB in the current pose.
 pub const SAVE_CURRENT_POSE: &str = "Save in current pose";
 
 /// A line of the file report as a screen reader reads it.
@@ -213,23 +323,37 @@ pub fn fact(name: &str, value: &str) -> String {
 }
 
 // Motion
+/// Button that starts mapping joints by clicking them.
 pub const PICK_IN_VIEWPORT: &str = "Pick in viewport";
+/// The same button while picking.
 pub const STOP_PICKING: &str = "Stop picking";
+/// Button on the viewport that ends picking.
 pub const DONE_PICKING: &str = "Done";
+/// Button that returns to the proposed map.
 pub const REMATCH: &str = "Re-match";
+/// Button that exchanges the sources of left and right joints.
 pub const SWAP_SIDES: &str = "Swap sides";
+/// Button that leaves all joints unmapped.
 pub const CLEAR_MAP: &str = "Clear all";
+/// Choice of what happens to the root's horizontal travel.
 pub const ROOT_HORIZONTAL: &str = "Root motion: horizontal";
+/// Choice of what happens to the root's vertical travel.
 pub const ROOT_VERTICAL: &str = "Root motion: vertical";
+/// Choice of what happens to the root's yaw.
 pub const ROOT_TURN: &str = "Root motion: turn";
+/// Switch that moves the kept travel to the model's root joint.
 pub const EXTRACT_ROOT_MOTION: &str = "Extract root motion";
+/// Accessible name of the choice of what unmapped joints do.
 pub const UNMAPPED_JOINTS: &str = "Unmapped joints";
+/// Heading of the three rotation offset fields of a mapped joint.
 pub const ROTATION_OFFSET: &str = "Rotation offset";
 
+/// Returns the accessible name of the rotation offset field for an axis.
 pub fn rotation_offset_about(axis: &str) -> String {
     format!("{ROTATION_OFFSET} about {axis}")
 }
 
+/// Returns the summary of the map; `sources` counts all nodes of the motion.
 pub fn joints_mapped(count: usize, sources: usize) -> String {
     match count {
         0 => "No joints mapped yet.".to_owned(),

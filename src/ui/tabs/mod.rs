@@ -16,16 +16,23 @@ pub use joint_card::JointCard;
 pub use scene_tree::SceneTree;
 pub use view_options::PictureSettings;
 
+/// A tab of the inspector.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tab {
+    /// The node tree, and the selected joint and vertex.
     Scene,
+    /// Skinning method, overlays and morph targets.
     Display,
+    /// Contents, parts, extensions and warnings of the file.
     File,
+    /// Camera, light, background, up axis, images and videos.
     View,
+    /// Joint map and retargeting options. Hidden while there are no motions.
     Motion,
 }
 
 impl Tab {
+    /// Returns the text on the tab.
     pub fn label(self) -> &'static str {
         match self {
             Self::Scene => "Scene",

@@ -9,6 +9,7 @@ use crate::ui::{KEY_TABLE, style, text};
 /// Whether the help is open.
 #[derive(Debug, Default)]
 pub struct Help {
+    /// Set by the help button and its key. The help appears in the pass after that.
     pub is_open: bool,
     was_open: bool,
 }
@@ -25,6 +26,7 @@ const GESTURES: [(&str, &str); 8] = [
 ];
 
 impl Help {
+    /// Shows the help if it has been open since the last pass; clears `is_open` when the user closes it.
     pub fn show(&mut self, context: &Context) {
         // Not in the pass that opens it: that click would count as one outside the modal and close it again.
         if self.is_open && self.was_open {

@@ -39,6 +39,7 @@ impl Default for ViewportState {
 }
 
 impl ViewportState {
+    /// Forgets the joint under the pointer.
     pub fn clear_hover(&mut self) {
         (self.hovered, self.hovered_joint) = (None, None);
     }
@@ -52,6 +53,7 @@ pub struct ViewportSlot {
 }
 
 impl ViewportSlot {
+    /// Paints the scene into the slot; `picture` receives the viewport's rectangle, in points.
     pub fn fill(self, picture: impl FnOnce(Rect) -> PaintCallback) {
         self.painter.set(self.index, Shape::Callback(picture(self.rect)));
     }

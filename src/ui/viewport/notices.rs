@@ -15,14 +15,18 @@ pub struct Messages {
     pub motion_refused: bool,
     /// The error is about opening this file.
     pub failed_to_open: Option<String>,
+    /// The load under way.
     pub progress: Option<Progress>,
+    /// The latest one; a new toast replaces it.
     pub toast: Option<Toast>,
+    /// Open until the user answers or cancels it.
     pub path_prompt: Option<PathPrompt>,
 }
 
 /// A load under way.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Progress {
+    /// Name of the file being read.
     pub name: String,
     /// From 0 to 1, if known.
     pub fraction: Option<f32>,
@@ -31,6 +35,7 @@ pub struct Progress {
 /// A short message that goes away by itself.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Toast {
+    /// The message itself.
     pub text: String,
     /// When it disappears, in egui's time.
     pub until_secs: f64,
@@ -44,10 +49,12 @@ impl Toast {
 }
 
 impl Messages {
+    /// Dismisses the error, with its title and the alternatives it offers.
     pub fn clear_error(&mut self) {
         (self.error, self.motion_refused, self.failed_to_open) = (None, false, None);
     }
 
+    /// Shows the load under way, the error and the toast in the viewport's lower left corner.
     pub fn show(&mut self, ui: &Ui, viewport: Rect, shown: &Shown<'_>, out: &mut Output) {
         self.expire_toast(ui);
         if self.toast.is_none() && self.error.is_none() && self.progress.is_none() {

@@ -6,8 +6,10 @@ use super::overlays;
 use crate::editor::Export;
 use crate::ui::{Output, PathPurpose, Saved, UiAction, UiState, controls, text};
 
+/// An open prompt for a path.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PathPrompt {
+    /// What the path is for; sets the title and the button.
     pub purpose: PathPurpose,
     /// What has been typed so far.
     pub path: String,
