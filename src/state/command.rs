@@ -12,7 +12,7 @@ pub enum Command {
     Replace(Box<ViewerState>),
     /// Shows a scene of the file, by index; `None` shows the default one.
     SetScene(Option<usize>),
-    /// Starts a clip from its beginning and clears the range. Crossfades if playing and one of the two clips asks for it.
+    /// Starts a clip from its beginning and clears the range. While playing, crossfades if either clip asks for it.
     SetClip(ClipChoice),
     /// Plays or pauses. A clip that plays once and has ended restarts.
     SetPlaying(bool),
