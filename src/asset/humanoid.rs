@@ -11,7 +11,7 @@ macro_rules! slots {
         /// One of the 55 humanoid bones of VRM 1.0. Left and right are the character's own.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
         pub enum Slot {
-            $(#[serde(rename = $name)] $slot,)*
+            $(#[doc = concat!("VRM's `", $name, "`.")] #[serde(rename = $name)] $slot,)*
         }
 
         impl Slot {
@@ -56,6 +56,7 @@ slots! {
 }
 
 impl Slot {
+    /// Returns the slot with this VRM 1.0 name; case-sensitive.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|slot| slot.name() == name)
     }
@@ -77,10 +78,12 @@ impl Slot {
 pub struct Humanoid(pub BTreeMap<Slot, JointIndex>);
 
 impl Humanoid {
+    /// Returns the joint of a slot.
     pub fn joint(&self, slot: Slot) -> Option<JointIndex> {
         self.0.get(&slot).copied()
     }
 
+    /// Returns the slot of a joint, the first in [`Slot::ALL`] if it has several.
     pub fn slot(&self, joint: JointIndex) -> Option<Slot> {
         self.0.iter().find(|&(_, &other)| other == joint).map(|(&slot, _)| slot)
     }

@@ -21,6 +21,7 @@ pub use warning::{Warning, Warnings};
 #[derive(Debug, Default)]
 pub struct Asset {
     parts: AssetParts,
+    /// Problems found while loading the file and decoding its images.
     pub warnings: Warnings,
 }
 
@@ -29,81 +30,144 @@ pub struct Asset {
 pub struct AssetParts {
     /// The kind of file: `glb`, `gltf`, ….
     pub format: &'static str,
+    /// The tool that wrote the file (glTF's `asset.generator`); empty if unknown.
     pub generator: String,
     /// Every node of the file.
     pub skeleton: Skeleton,
+    /// Empty if the file has none.
     pub scenes: Vec<Scene>,
     /// The scene to show first; none if the file has no scenes (then all nodes are shown).
     pub default_scene: Option<usize>,
+    /// The file's animations.
     pub clips: Vec<Clip>,
+    /// Indexed by [`MeshInstance::skin`].
     pub skins: Vec<Skin>,
+    /// Indexed by [`MeshInstance::mesh`].
     pub meshes: Vec<Mesh>,
     /// Which joint draws which mesh.
     pub instances: Vec<MeshInstance>,
+    /// Indexed by [`crate::mesh::Geometry::material`].
     pub materials: Vec<Material>,
+    /// Indexed by [`crate::mesh::TextureRef::texture`].
     pub textures: Vec<Texture>,
+    /// Indexed by [`Texture::image`].
     pub images: Vec<Image>,
+    /// One per node with a camera, in node order.
     pub cameras: Vec<Camera>,
+    /// One per node with a light, in node order.
     pub lights: Vec<Light>,
     /// The humanoid bones that the file declares (VRM, VRMA).
     pub humanoid: Option<Humanoid>,
+    /// glTF's `extensionsUsed`.
     pub extensions_used: Vec<String>,
+    /// glTF's `extensionsRequired`. Loading fails if any of them is unsupported.
     pub extensions_required: Vec<String>,
 }
 
+/// The nodes that are shown together.
 #[derive(Debug, Clone, Default)]
 pub struct Scene {
+    /// Empty if the file doesn't name it.
     pub name: String,
+    /// Joints that belong to the scene, with all their descendants.
     pub roots: Vec<JointIndex>,
 }
 
+/// A node with a mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MeshInstance {
+    /// The node. Its transform places the mesh only if there is no skin.
     pub joint: JointIndex,
+    /// Index into [`AssetParts::meshes`].
     pub mesh: usize,
+    /// Index into [`AssetParts::skins`]; `None` if the mesh is rigid, even if it has influences.
     pub skin: Option<usize>,
 }
 
 /// An encoded image, its size already read from the header and within bounds.
 #[derive(Debug, Clone)]
 pub struct Image {
+    /// The file's name for it, else its URI; may be empty.
     pub name: String,
+    /// By content: `image/png`, `image/jpeg` or `image/webp`. Empty if the image is unavailable.
     pub mime: &'static str,
+    /// As encoded. Empty if the image is unavailable.
     pub bytes: Arc<[u8]>,
+    /// In pixels. 0 if the image is unavailable.
     pub width: u32,
+    /// In pixels. 0 if the image is unavailable.
     pub height: u32,
 }
 
 /// A camera of the file, looking along −Z of its joint.
 #[derive(Debug, Clone)]
 pub struct Camera {
+    /// The camera's own name, else its node's; may be empty.
     pub name: String,
+    /// The node that has the camera.
     pub joint: JointIndex,
+    /// Lens and clip planes.
     pub projection: CameraProjection,
 }
 
+/// A camera's lens and clip planes, as glTF has them; distances in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CameraProjection {
-    Perspective { y_fov_radians: f32, aspect: Option<f32>, near: f32, far: Option<f32> },
-    Orthographic { x_mag: f32, y_mag: f32, near: f32, far: f32 },
+    /// glTF's `camera.perspective`.
+    Perspective {
+        /// Vertical field of view.
+        y_fov_radians: f32,
+        /// Width over height. Not used: the viewport's aspect ratio is.
+        aspect: Option<f32>,
+        /// Distance of the near plane.
+        near: f32,
+        /// Distance of the far plane; `None` is an infinite projection.
+        far: Option<f32>,
+    },
+    /// glTF's `camera.orthographic`.
+    Orthographic {
+        /// Half the width of the view. Not used: the viewport's aspect ratio gives the width.
+        x_mag: f32,
+        /// Half the height of the view.
+        y_mag: f32,
+        /// Distance of the near plane.
+        near: f32,
+        /// Distance of the far plane.
+        far: f32,
+    },
 }
 
 /// A light (KHR_lights_punctual), shining along −Z of its joint. Intensity in lux (directional) or candela.
 #[derive(Debug, Clone)]
 pub struct Light {
+    /// Empty if the file doesn't name it.
     pub name: String,
+    /// The node that has the light.
     pub joint: JointIndex,
+    /// Linear RGB.
     pub color: Vec3,
+    /// Lux for a directional light, otherwise candela.
     pub intensity: f32,
+    /// Distance in metres at which the light has faded out; `None` is unlimited.
     pub range: Option<f32>,
+    /// Directional, point or spot.
     pub kind: LightKind,
 }
 
+/// How a light spreads.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LightKind {
+    /// Parallel rays.
     Directional,
+    /// Equally in all directions.
     Point,
-    Spot { inner_cone_radians: f32, outer_cone_radians: f32 },
+    /// A cone.
+    Spot {
+        /// Angle from the axis at which the light starts to fall off.
+        inner_cone_radians: f32,
+        /// Angle from the axis at which the light has fallen to zero.
+        outer_cone_radians: f32,
+    },
 }
 
 impl Asset {

@@ -5,19 +5,82 @@ use std::fmt;
 /// A problem and how it was handled. `code` is stable and in kebab case: scripts and the page group by it.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Warning {
-    WeightsNormalized { mesh: String, vertices: usize },
-    WeightsMissing { mesh: String, vertices: usize },
-    InfluencesDropped { mesh: String, found: usize, kept: usize, largest_lost_weight: f32 },
-    UnsupportedExtension { name: String },
-    FoundByBareName { uri: String, used: String },
-    ImageMissing { uri: String },
-    ImageUnreadable { image: String, problem: String },
-    MatrixNotDecomposable { node: String },
-    ChannelIgnored { clip: String, place: String, problem: String },
-    Other { code: &'static str, place: String, problem: String },
+    /// Weights that did not sum to 1; they were divided by their sum.
+    WeightsNormalized {
+        /// The primitive, such as `meshes[0].primitives[1]`, or the .attach file.
+        mesh: String,
+        /// Number of vertices affected.
+        vertices: usize,
+    },
+    /// Vertices without any weight; they follow the skin's first joint.
+    WeightsMissing {
+        /// The primitive, such as `meshes[0].primitives[1]`, or the .attach file.
+        mesh: String,
+        /// Number of vertices affected.
+        vertices: usize,
+    },
+    /// Vertices with more than [`MAX_INFLUENCES`](crate::mesh::MAX_INFLUENCES); the weakest were dropped.
+    InfluencesDropped {
+        /// The primitive, such as `meshes[0].primitives[1]`, or the .attach file.
+        mesh: String,
+        /// Most influences that one vertex had.
+        found: usize,
+        /// Most influences that a vertex has now.
+        kept: usize,
+        /// Largest weight dropped, as a fraction of its vertex's sum.
+        largest_lost_weight: f32,
+    },
+    /// An optional glTF extension that is ignored.
+    UnsupportedExtension {
+        /// As in `extensionsUsed`.
+        name: String,
+    },
+    /// A file that is not where the reference says; one with the same bare name was used.
+    FoundByBareName {
+        /// The reference, percent-decoded.
+        uri: String,
+        /// Path of the file used.
+        used: String,
+    },
+    /// An image file that was not supplied.
+    ImageMissing {
+        /// The reference, percent-decoded.
+        uri: String,
+    },
+    /// An image that is broken, too large or of an unsupported kind.
+    ImageUnreadable {
+        /// Its place in the file, its name, its URI or its index.
+        image: String,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// A sheared or singular node matrix; it is approximated by a translation, rotation and scale.
+    MatrixNotDecomposable {
+        /// The node, such as `nodes[3]`.
+        node: String,
+    },
+    /// An animation channel that was left out.
+    ChannelIgnored {
+        /// Name of its clip.
+        clip: String,
+        /// The channel's place in the file.
+        place: String,
+        /// Why it was left out.
+        problem: String,
+    },
+    /// A problem without a variant of its own.
+    Other {
+        /// What [`Warning::code`] returns.
+        code: &'static str,
+        /// Place in the file.
+        place: String,
+        /// What is wrong, and how it was handled.
+        problem: String,
+    },
 }
 
 impl Warning {
+    /// Returns the code to group by.
     pub fn code(&self) -> &'static str {
         match self {
             Self::WeightsNormalized { .. } => "weights-normalized",
@@ -86,20 +149,24 @@ impl Warnings {
     /// Limit per code, so that a broken file does not fill the memory.
     const MAX_PER_CODE: usize = 100;
 
+    /// Adds a warning unless its code has reached the limit.
     pub fn push(&mut self, warning: Warning) {
         if self.0.iter().filter(|other| other.code() == warning.code()).count() < Self::MAX_PER_CODE {
             self.0.push(warning);
         }
     }
 
+    /// Iterates over the warnings in the order in which they occurred.
     pub fn iter(&self) -> std::slice::Iter<'_, Warning> {
         self.0.iter()
     }
 
+    /// Number of warnings kept.
     pub fn len(&self) -> usize {
         self.0.len()
     }
 
+    /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }

@@ -5,13 +5,18 @@ use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
 use crate::retarget::{Feet, JointMap, RootOptions, Unmapped};
 
+/// A change to the view, applied by [`super::apply()`].
 #[derive(Debug, Clone, PartialEq)]
 pub enum Command {
     /// Replaces the whole state (a link, the script interface).
     Replace(Box<ViewerState>),
+    /// Shows a scene of the file, by index; `None` shows the default one.
     SetScene(Option<usize>),
+    /// Starts a clip from its beginning and clears the range. While playing, crossfades if either clip asks for it.
     SetClip(ClipChoice),
+    /// Plays or pauses. A clip that plays once and has ended restarts.
     SetPlaying(bool),
+    /// Plays if paused, otherwise pauses.
     TogglePlaying,
     /// Moves the playhead, in clip seconds.
     Seek(f64),
@@ -19,77 +24,119 @@ pub enum Command {
     Advance(f64),
     /// Steps forwards (+1) or backwards (−1) by frames of `1 / frames_per_sec`, and pauses.
     StepFrames(i32),
+    /// Sets the playback speed, a factor from 0.1 to 4.
     SetSpeed(f64),
+    /// Sets what happens at the end of the range, keeping the current pose.
     SetLoopMode(LoopMode),
+    /// Sets the in and out points, in clip seconds; `None` plays the whole clip.
     SetRange(Option<TimeRange>),
+    /// Sets the skinning method.
     SetSkinning(SkinningMode),
+    /// Overrides a morph weight.
     SetMorph {
+        /// Index into `Pose::morph_weights`.
         index: usize,
+        /// Clamped to ±10; `None` returns it to the clip.
         weight: Option<f32>,
     },
+    /// Returns all morph weights to the clip.
     ClearMorphs,
     /// Poses a joint manually (index in the file; Euler angles in degrees from its rest pose); `None` returns it to the clip.
     SetPose {
+        /// Index in the file.
         joint: usize,
+        /// See [`super::manual_rotation`].
         degrees: Option<[f32; 3]>,
     },
+    /// Returns all joints to the clip.
     ClearPose,
     /// Renames a joint (index in the file); an empty name restores the file's.
     RenameJoint {
+        /// Index in the file.
         joint: usize,
+        /// Control characters are removed, and everything after 80 characters.
         name: String,
     },
+    /// Sets what is drawn.
     SetShow(super::Show),
+    /// Sets what the viewport explains about the model.
     SetInspect(super::Inspect),
+    /// Selects a joint by index in the file; `None` deselects.
     SelectJoint(Option<usize>),
+    /// Selects the vertex whose skinning is explained; `None` deselects.
     SelectVertex(Option<super::VertexChoice>),
+    /// Chooses the camera.
     SetCamera(CameraChoice),
     /// Orbits the target.
     Orbit {
+        /// Positive moves the camera to its right.
         yaw_radians: f32,
+        /// Positive moves the camera up, to just short of the pole.
         pitch_radians: f32,
     },
     /// Moves the target parallel to the viewport, in fractions of its height.
     Pan {
+        /// Positive moves the target to the camera's right.
         right: f32,
+        /// Positive moves the target up.
         up: f32,
     },
     /// Multiplies the distance. The point at this offset from the viewport's centre, in fractions of its height, stays where
     /// it is; with a running turntable, the centre does.
     Zoom {
+        /// Below 1 zooms in.
         factor: f32,
+        /// Positive is right of the centre.
         right: f32,
+        /// Positive is above the centre.
         up: f32,
     },
     /// Frames everything, keeping the direction.
     FrameAll,
+    /// Sets the vertical field of view in degrees, 5 to 120.
     SetFov(f32),
+    /// Sets whether the camera travels with the character's root.
     SetFollow(bool),
     /// Degrees per second; 0 stops the turntable.
     SetTurntable(f32),
+    /// Sets which axis of the file points up.
     SetUp(UpAxis),
+    /// Sets the exposure in stops, −10 to 10.
     SetExposure(f32),
+    /// Rotates the lighting about the vertical axis, in degrees.
     SetEnvironment(f32),
+    /// Sets what is behind the scene.
     SetBackground(Background),
+    /// Sets whether the page shows only the viewport and the transport.
     SetEmbed(bool),
     /// Replaces the joint map of a motion in the library, and of all that share its skeleton; `None` restores the proposed map.
     SetMap {
+        /// Index into [`crate::library::Library::motions`].
         motion: usize,
+        /// In joint numbers of the two files.
         map: Option<Box<JointMap>>,
     },
     /// Maps a joint of the model to a joint of a motion, or to none; both by index in their files.
     SetSource {
+        /// Index into [`crate::library::Library::motions`].
         motion: usize,
+        /// Joint of the model.
         target: usize,
+        /// Joint of the motion; `None` leaves the target without a source.
         source: Option<usize>,
     },
     /// Edits the map of a motion in another way.
     EditMap {
+        /// Index into [`crate::library::Library::motions`].
         motion: usize,
+        /// The edit.
         edit: MapEdit,
     },
+    /// Overrides what joints without a source do; `None` leaves it to each map.
     SetUnmapped(Option<Unmapped>),
+    /// Overrides the root options; `None` leaves them to each map.
     SetRoot(Option<RootOptions>),
+    /// Overrides what feet do; `None` leaves it to each map.
     SetFeet(Option<Feet>),
     /// Reconciles the maps with the loaded files: names become joint numbers, missing maps are proposed, others are dropped.
     ReconcileMaps,

@@ -15,14 +15,31 @@ pub use self::values::with_current_member;
 use self::values::*;
 use super::ViewerState;
 
+/// A part of a link, or of an object from a script, that is not understood. All other parts still apply.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum LinkError {
+    /// A key's value is unusable and was skipped.
     #[error("{key}={value}: expected {expected}")]
-    BadValue { key: String, value: String, expected: &'static str },
+    BadValue {
+        /// The key.
+        key: String,
+        /// Its value, decoded.
+        value: String,
+        /// What the key takes, in words.
+        expected: &'static str,
+    },
+    /// A key that this version does not know, preserved in [`super::PageOptions::unknown`].
     #[error("{key}: unknown key, kept in the link")]
-    UnknownKey { key: String },
+    UnknownKey {
+        /// The key, decoded.
+        key: String,
+    },
+    /// A word of `show` that this version does not know, preserved in [`super::PageOptions::unknown`].
     #[error("show={value}: unknown word, kept in the link")]
-    UnknownShow { value: String },
+    UnknownShow {
+        /// The word.
+        value: String,
+    },
 }
 
 /// How one key of the link is read and written: a row of [`KEYS`].

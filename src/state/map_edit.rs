@@ -22,23 +22,34 @@ pub enum MapEdit {
     SwapSides,
     /// Sets a joint's rotation offset, in its own space.
     Correction {
+        /// Joint of the model.
         target: usize,
+        /// Normalized when applied; ignored if close to zero or not finite.
         correction: Quat,
     },
     /// What a joint does without a source; None for the map's default.
     Unmapped {
+        /// Joint of the model.
         target: usize,
+        /// For this joint alone.
         unmapped: Option<Unmapped>,
     },
     /// Mutes or unmutes one channel of the motion.
     Mute {
+        /// Joint of the motion.
         source: usize,
+        /// The channel.
         property: MutedProperty,
+        /// Whether to ignore the channel.
         muted: bool,
     },
+    /// Unmutes all channels.
     UnmuteAll,
+    /// Sets which poses count as the skeletons' rest.
     Rest(RestChoices),
+    /// Sets whether translations of joints other than the hips are carried over.
     Translations(Keep),
+    /// Sets whether scales of joints other than the hips are carried over.
     Scales(Keep),
     /// Length of the crossfade to and from the borrowed clips.
     CrossfadeSecs(f64),

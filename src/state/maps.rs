@@ -13,6 +13,7 @@ use crate::retarget::{JointMap, JointMapFile, MapEntry, MapError};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum MotionMap {
+    /// For one pair of skeletons, identified by a checksum.
     Numbers(NumberedMap),
     /// The file form, for every motion it fits; becomes [`MotionMap::Numbers`] once those are loaded.
     Names(JointMapFile),
@@ -25,18 +26,26 @@ pub enum MotionMap {
 pub struct NumberedMap {
     /// See [`crate::library::names_checksum`].
     pub checksum: u32,
+    /// In joint numbers of the two files.
     pub map: JointMap,
 }
 
 /// Why a map of a view is not used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MapProblem {
+    /// A map by numbers whose checksum fits no pair of loaded skeletons.
     #[error(
         "the link's joint map was made for other files (their joints have other names); an automatic one is used instead"
     )]
     OtherFiles,
+    /// A map by names that fits none of the motions.
     #[error("the joint map fits no motion that is open: {motion}: {problem}")]
-    NoFit { motion: String, problem: MapError },
+    NoFit {
+        /// [Source](crate::library::Motion::source) of the first motion it was tried with.
+        motion: String,
+        /// Why it doesn't fit that motion.
+        problem: MapError,
+    },
 }
 
 /// Returns a motion's map in the view, without the view's overrides.

@@ -58,6 +58,7 @@ pub fn clip_secs(model: &Model, clip: usize, state: &ViewerState) -> f64 {
 /// A pose, with the buffers to sample the next one without allocating.
 #[derive(Debug, Default)]
 pub struct PoseSampler {
+    /// The pose sampled last; empty before that.
     pub pose: Pose,
     cursor: SampleCursor,
     before: Pose,

@@ -10,10 +10,13 @@ use crate::mesh::Bounds;
 /// A motion's own skeleton, playing the original clip.
 #[derive(Debug, Clone, Copy)]
 pub struct SourceOnStage<'a> {
+    /// The motion as a model, see [`crate::library::Motion::stage`].
     pub model: &'a Model,
     /// Index among its own clips.
     pub clip: usize,
+    /// The retargeted clip, one of the active model's.
     pub borrowed: &'a BorrowedClip,
+    /// Includes the up axis and the offset to the place beside the model.
     pub world_from_source: Affine3A,
 }
 

@@ -23,16 +23,27 @@ use crate::retarget::{Feet, RootOptions, Unmapped};
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ViewerState {
+    /// The files and the scene.
     pub sources: Sources,
+    /// How motions are retargeted.
     pub retarget: RetargetEdits,
+    /// Changes to the model itself.
     pub edits: Edits,
+    /// What the viewport explains.
     pub inspect: Inspect,
+    /// The active clip and the time in it.
     pub playhead: Playhead,
+    /// The selected joint and vertex.
     pub selection: Selection,
+    /// Where the model is seen from.
     pub camera: CameraChoice,
+    /// How clips play.
     pub playback: Playback,
+    /// How the scene is drawn.
     pub display: Display,
+    /// How any camera behaves.
     pub camera_options: CameraOptions,
+    /// What the page does with the view.
     pub page: PageOptions,
 }
 
@@ -112,9 +123,11 @@ pub struct Sources {
 pub struct RetargetEdits {
     /// One joint map per pair of skeletons; a missing map is proposed.
     pub map: Vec<MotionMap>,
-    /// Override the maps; `None` leaves it to the map.
+    /// Overrides what joints without a source do; `None` leaves it to each map.
     pub unmapped: Option<Unmapped>,
+    /// Overrides the root options; `None` leaves them to each map.
     pub root: Option<RootOptions>,
+    /// Overrides what feet do; `None` leaves it to each map.
     pub feet: Option<Feet>,
 }
 
@@ -130,6 +143,7 @@ pub struct Edits {
     /// Custom joint names, by index in the file; never empty. They replace the file's names on screen and in exported files,
     /// except where a glTF file is copied unchanged.
     pub names: BTreeMap<usize, String>,
+    /// Which axis of the file points up.
     pub up: UpAxis,
 }
 
@@ -147,14 +161,17 @@ pub struct Inspect {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Playhead {
+    /// The active clip.
     pub clip: ClipChoice,
     /// In clip seconds; runs on beyond the range while looping.
     pub time_secs: f64,
+    /// `None` unless a crossfade is in progress.
     pub fade: Option<Fade>,
     /// In and out points; `None` is the whole clip.
     pub range: Option<TimeRange>,
 }
 
+/// What the user has selected in the model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Selection {
@@ -168,8 +185,11 @@ pub struct Selection {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Playback {
+    /// Whether clip time advances.
     pub playing: bool,
+    /// Clip seconds per second of the clock, 0.1 to 4.
     pub speed: f64,
+    /// What happens at the end of the range.
     pub loop_mode: LoopMode,
 }
 
@@ -183,12 +203,15 @@ impl Default for Playback {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Display {
+    /// Skinning method.
     pub skinning: SkinningMode,
+    /// What is drawn.
     pub show: Show,
     /// In stops: the image is multiplied by 2^exposure.
     pub exposure: f32,
     /// Rotation of the lighting about the vertical axis.
     pub environment_degrees: f32,
+    /// What is behind the scene.
     pub background: Background,
 }
 
@@ -235,14 +258,18 @@ pub struct PageOptions {
 /// A vertex of a primitive of a mesh instance; all are indices into the asset's lists.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct VertexChoice {
+    /// Index into [`crate::asset::AssetParts::instances`].
     pub instance: usize,
+    /// Index into the mesh's primitives.
     pub primitive: usize,
+    /// Index into the primitive's positions, so copies made on loading count.
     pub vertex: usize,
 }
 
 /// The outgoing clip of a crossfade.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Fade {
+    /// The clip that fades out.
     pub clip: ClipChoice,
     /// Clip time when the crossfade started; the clip plays on from there.
     pub time_secs: f64,
@@ -250,11 +277,14 @@ pub struct Fade {
     pub elapsed_secs: f64,
 }
 
+/// Which clip is active.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ClipChoice {
+    /// The first clip; the rest pose if there are no clips.
     #[default]
     First,
+    /// No clip: every joint at rest.
     RestPose,
     /// A clip's name, or its index in decimal if the name is empty or not unique.
     Named(String),
@@ -264,11 +294,17 @@ pub enum ClipChoice {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Show {
+    /// Surfaces of the meshes.
     pub mesh: bool,
+    /// Bones between the joints.
     pub skeleton: bool,
+    /// Box around the current pose.
     pub bounds: bool,
+    /// Triangle edges of the meshes.
     pub wireframe: bool,
+    /// Grid on the ground.
     pub grid: bool,
+    /// The model's shadow on the ground.
     pub shadow: bool,
     /// The source of a retargeted clip, beside the model.
     pub source: bool,
@@ -304,15 +340,22 @@ impl Default for Show {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum UpAxis {
+    /// The file's +X.
     X,
+    /// The file's +Y.
     #[default]
     Y,
+    /// The file's +Z.
     Z,
+    /// The file's −X.
     MinusX,
+    /// The file's −Y.
     MinusY,
+    /// The file's −Z.
     MinusZ,
 }
 
+/// What is behind the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Background {
@@ -321,5 +364,6 @@ pub enum Background {
     Studio,
     /// sRGB.
     Color([u8; 3]),
+    /// Alpha 0.
     Transparent,
 }

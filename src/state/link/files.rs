@@ -34,7 +34,9 @@ const COMPONENT: &AsciiSet = &NON_ALPHANUMERIC
 /// What a linked file is used for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LinkRole {
+    /// A file of the model.
     Model,
+    /// A file whose clips are retargeted to the model.
     Motion,
 }
 
@@ -55,6 +57,7 @@ impl LinkRole {
 /// A `model=` or `motion=` part of a link.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LinkedFile {
+    /// What it is used for.
     pub role: LinkRole,
     /// URL, `sample:NAME` or the name of a local file; for a model inside an archive, that of the archive. Without `file:`.
     pub name: String,
