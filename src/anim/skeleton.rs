@@ -179,7 +179,7 @@ impl Skeleton {
         skeleton
     }
 
-    /// The joint built from this entry of the source list; `None` if out of range. Inverse of [`Skeleton::source_index`].
+    /// The joint built from an entry of the source list; `None` if out of range. Inverse of [`Skeleton::source_index`].
     pub fn joint_of_source(&self, source: usize) -> Option<JointIndex> {
         self.joint_of_source.get(source).copied()
     }
