@@ -61,7 +61,7 @@ pub struct Geometry {
     pub topology: Topology,
     /// The number of positions is the number of vertices.
     pub positions: Vec<Vec3>,
-    /// Unit length. If empty, flat normals are derived from the deformed triangles when drawn.
+    /// Unit length. If empty, triangles are drawn flat or, if the view asks for it, with [`super::smooth_normals`].
     pub normals: Vec<Vec3>,
     /// xyz unit length, w the bitangent's sign.
     pub tangents: Vec<Vec4>,
