@@ -19,7 +19,9 @@ pub struct Clip {
 /// How a clip is asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ClipQuery<'a> {
+    /// Position in the list, from 0.
     Index(usize),
+    /// An exact name.
     Name(&'a str),
     /// A name, or an index in decimal if no clip has that name.
     NameOrIndex(&'a str),
@@ -42,6 +44,7 @@ pub struct SampleCursor {
     pub(super) segments: Vec<u32>,
 }
 
+/// Builds a [`Clip`]. Each channel is validated when it is added.
 #[derive(Debug)]
 pub struct ClipBuilder<'a> {
     skeleton: &'a Skeleton,
@@ -54,6 +57,7 @@ pub struct ClipBuilder<'a> {
 }
 
 impl<'a> ClipBuilder<'a> {
+    /// Starts a clip without channels. The name may be empty.
     pub fn new(name: impl Into<String>, skeleton: &'a Skeleton) -> Self {
         Self {
             skeleton,
@@ -101,6 +105,7 @@ impl<'a> ClipBuilder<'a> {
         Ok(())
     }
 
+    /// Finishes the clip. Its duration is 0 if it has no channels.
     pub fn build(self) -> Clip {
         let Self { name, duration_secs, timelines, channels, .. } = self;
         let sampler = Sampler::new(&timelines, &channels);
@@ -124,8 +129,10 @@ fn check_times(times_secs: &[f32]) -> Result<f32, ChannelError> {
 }
 
 impl Clip {
+    /// Assumed if the key times do not reveal the frame rate.
     pub const DEFAULT_FRAMES_PER_SEC: f64 = 30.0;
 
+    /// The name given by the file; may be empty and need not be unique.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -140,6 +147,7 @@ impl Clip {
         &self.timelines
     }
 
+    /// All channels in the order they were added, including those that a later one overrides.
     pub fn channels(&self) -> &[Channel] {
         &self.channels
     }

@@ -2,23 +2,30 @@
 
 use serde::{Deserialize, Serialize};
 
+/// What happens when the playhead leaves the range.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LoopMode {
+    /// Stops at the in and out points.
     Once,
+    /// Wraps around to the other end.
     #[default]
     Loop,
+    /// Alternates between forward and backward.
     PingPong,
 }
 
 /// In and out points within a clip, in seconds, `start <= end`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct TimeRange {
+    /// In point.
     pub start_secs: f64,
+    /// Out point.
     pub end_secs: f64,
 }
 
 impl TimeRange {
+    /// Length of the range.
     pub fn length_secs(self) -> f64 {
         self.end_secs - self.start_secs
     }

@@ -8,7 +8,9 @@ use super::{Skeleton, Transform};
 /// concatenated (see [`Skeleton::morph_range`]).
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Pose {
+    /// One per joint.
     pub locals: Vec<Transform>,
+    /// Usually from 0 to 1, but not clamped.
     pub morph_weights: Vec<f32>,
 }
 

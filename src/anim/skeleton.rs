@@ -10,6 +10,7 @@ use super::{Pose, Transform};
 pub struct JointIndex(pub u32);
 
 impl JointIndex {
+    /// The index as a `usize`, for slices with one entry per joint.
     pub fn get(self) -> usize {
         self.0 as usize
     }
@@ -18,19 +19,35 @@ impl JointIndex {
 /// Input for building a skeleton; `parent` is an index into the same list.
 #[derive(Debug, Clone, Default)]
 pub struct Joint {
+    /// May be empty and need not be unique.
     pub name: String,
+    /// `None` for a root.
     pub parent: Option<usize>,
+    /// Local rest transform.
     pub rest: Transform,
     /// Rest weights of the morph targets of the mesh on this joint, if any.
     pub morph_weights: Vec<f32>,
 }
 
+/// Why joints do not form a hierarchy. Indices are those of the list the skeleton is built from.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum SkeletonError {
+    /// A parent index is not in the list.
     #[error("joint {joint} has parent {parent}, but there are only {count} joints")]
-    ParentOutOfRange { joint: usize, parent: usize, count: usize },
+    ParentOutOfRange {
+        /// The child.
+        joint: usize,
+        /// Its parent index.
+        parent: usize,
+        /// Number of joints in the list.
+        count: usize,
+    },
+    /// Some joints cannot be reached from any root.
     #[error("joint {joint} is its own ancestor")]
-    Cycle { joint: usize },
+    Cycle {
+        /// The first such joint, on a cycle or below one.
+        joint: usize,
+    },
 }
 
 /// Joints sorted so that parents come before their children. Immutable once built.
@@ -86,18 +103,22 @@ impl Skeleton {
         Ok(skeleton)
     }
 
+    /// Number of joints.
     pub fn len(&self) -> usize {
         self.names.len()
     }
 
+    /// Whether there are no joints.
     pub fn is_empty(&self) -> bool {
         self.names.is_empty()
     }
 
+    /// All joints, parents before their children.
     pub fn joints(&self) -> impl DoubleEndedIterator<Item = JointIndex> + ExactSizeIterator + use<> {
         (0..self.names.len() as u32).map(JointIndex)
     }
 
+    /// The joint's name; may be empty and need not be unique.
     pub fn name(&self, joint: JointIndex) -> &str {
         &self.names[joint.get()]
     }
@@ -107,6 +128,7 @@ impl Skeleton {
         self.joint_of_source.iter().copied().find(|joint| self.names[joint.get()] == name)
     }
 
+    /// The joint's parent; `None` for a root.
     pub fn parent(&self, joint: JointIndex) -> Option<JointIndex> {
         self.parents[joint.get()]
     }
@@ -116,10 +138,12 @@ impl Skeleton {
         &self.parents
     }
 
+    /// Children of a joint, siblings in the order of the source list. Scans all joints.
     pub fn children(&self, joint: JointIndex) -> impl Iterator<Item = JointIndex> + '_ {
         self.joints().filter(move |&child| self.parent(child) == Some(joint))
     }
 
+    /// The rest pose, including the rest morph weights.
     pub fn rest(&self) -> &Pose {
         &self.rest
     }
@@ -155,6 +179,7 @@ impl Skeleton {
         skeleton
     }
 
+    /// The joint built from an entry of the source list; `None` if out of range. Inverse of [`Skeleton::source_index`].
     pub fn joint_of_source(&self, source: usize) -> Option<JointIndex> {
         self.joint_of_source.get(source).copied()
     }

@@ -6,18 +6,24 @@ use serde::{Deserialize, Serialize};
 /// A local transform: `parent_from_joint = T · R · S`. Translation in the parent's units, rotation a unit quaternion.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Transform {
+    /// Position of the joint's origin in its parent's space.
     pub translation: Vec3,
+    /// Orientation relative to the parent.
     pub rotation: Quat,
+    /// Factors along the joint's own axes; negative ones mirror.
     pub scale: Vec3,
 }
 
 impl Transform {
+    /// No translation or rotation, scale 1.
     pub const IDENTITY: Self = Self { translation: Vec3::ZERO, rotation: Quat::IDENTITY, scale: Vec3::ONE };
 
+    /// A translation without rotation, scale 1.
     pub fn from_translation(translation: Vec3) -> Self {
         Self { translation, ..Self::IDENTITY }
     }
 
+    /// A rotation without translation, scale 1.
     pub fn from_rotation(rotation: Quat) -> Self {
         Self { rotation, ..Self::IDENTITY }
     }
@@ -41,6 +47,7 @@ impl Transform {
         self.scale.min_element() > 0.0
     }
 
+    /// Returns the matrix `parent_from_joint`.
     pub fn to_affine(&self) -> Affine3A {
         Affine3A::from_scale_rotation_translation(self.scale, self.rotation, self.translation)
     }
@@ -76,6 +83,7 @@ impl Transform {
         }
     }
 
+    /// Whether no component is infinite or NaN.
     pub fn is_finite(&self) -> bool {
         self.translation.is_finite() && self.rotation.is_finite() && self.scale.is_finite()
     }

@@ -21,10 +21,13 @@ use crate::state::ViewerState;
 /// One model with the motions and the joint map that were opened along with it.
 #[derive(Debug)]
 pub struct Opened {
+    /// The only model among the files and samples.
     pub model: Model,
     /// `None` for a sample generated in code.
     pub model_files: Option<ModelFiles>,
+    /// Motions to borrow, in addition to the model's own clips.
     pub motions: Vec<Motion>,
+    /// `None` if no file is a joint map.
     pub map: Option<JointMapFile>,
     /// Names of all files that were read.
     pub files: Vec<String>,

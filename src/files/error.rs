@@ -7,38 +7,98 @@ use super::SortError;
 /// Names the file and, where possible, what to do next.
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
+    /// No files, folders, URLs or samples were given.
     #[error("there is nothing to open: expected files or URLs")]
     Nothing,
+    /// No bundled sample has this name.
     #[error("{name}: there is no such sample; the samples are: {}", known.join(", "))]
-    NoSuchSample { name: String, known: Vec<String> },
+    NoSuchSample {
+        /// As asked for, with `sample:`.
+        name: String,
+        /// All samples, with `sample:`.
+        known: Vec<String>,
+    },
+    /// Together, the files exceed the memory budget.
     #[error("{name}: more than {max} bytes in total{}", memory_hint())]
-    TooLarge { name: String, max: u64 },
+    TooLarge {
+        /// The file that exceeds it.
+        name: String,
+        /// The budget in bytes.
+        max: u64,
+    },
 
+    /// A file or folder on disk cannot be read.
     #[error("{}: {source}", path.display())]
-    Read { path: PathBuf, source: std::io::Error },
+    Read {
+        /// Its path.
+        path: PathBuf,
+        /// The underlying error, usually from the operating system.
+        source: std::io::Error,
+    },
+    /// A folder has too many files, counting subfolders.
     #[error("{}: more than {max} files in the folder; name the model's own files instead", path.display())]
-    TooManyFiles { path: PathBuf, max: usize },
+    TooManyFiles {
+        /// The folder that was opened.
+        path: PathBuf,
+        /// Maximum number of files.
+        max: usize,
+    },
 
+    /// An address on the page does not form a URL.
     #[error("{url}: not a URL; expected something like https://example.org/character.glb")]
-    InvalidUrl { url: String },
+    InvalidUrl {
+        /// The address as given.
+        url: String,
+    },
+    /// The server answered with a status other than success.
     #[error("{url}: the server answered {status}{}", status_hint(*status))]
-    Status { url: String, status: u16 },
+    Status {
+        /// The requested file.
+        url: String,
+        /// HTTP status code.
+        status: u16,
+    },
+    /// The fetch failed although the site answers: CORS, or an error page without CORS headers.
     #[error(
         "{url}: the site is there, but does not allow other pages to read this file (CORS), or there is no such file; \
          download the file and drop it here instead"
     )]
-    Refused { url: String },
+    Refused {
+        /// The requested file.
+        url: String,
+    },
+    /// The fetch failed and the site does not answer.
     #[error("{url}: the site cannot be reached; check the URL and the connection")]
-    Unreachable { url: String },
+    Unreachable {
+        /// The requested file.
+        url: String,
+    },
+    /// The site sent nothing for too long, before or during the transfer.
     #[error(
         "{url}: nothing has come from the site for {secs} seconds; try again later, or download the file and drop it here"
     )]
-    Silent { url: String, secs: u32 },
+    Silent {
+        /// The requested file.
+        url: String,
+        /// How long, in seconds.
+        secs: u32,
+    },
+    /// Browsers block http URLs on https pages, except those of the same machine.
     #[error("{url}: a page loaded over https cannot read http URLs; try the same URL with https")]
-    Insecure { url: String },
+    Insecure {
+        /// The requested file.
+        url: String,
+    },
+    /// The transfer ended early.
     #[error("{url}: the connection was lost after {received} bytes")]
-    BrokeOff { url: String, received: u64 },
+    BrokeOff {
+        /// The requested file.
+        url: String,
+        /// Bytes received until then.
+        received: u64,
+    },
 
+    /// The files were read, but cannot be used.
     #[error(transparent)]
     Files(#[from] SortError),
 }

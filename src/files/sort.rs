@@ -20,28 +20,60 @@ pub enum Role {
 /// The files of a set by content, each with its name in the set.
 #[derive(Debug, Default)]
 pub struct Sorted {
+    /// Files to show as models.
     pub models: Vec<(String, Asset)>,
+    /// Files to borrow clips from.
     pub motions: Vec<(String, Asset)>,
+    /// `None` if no file is a joint map.
     pub map: Option<JointMapFile>,
 }
 
 /// Why a set of files cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum SortError {
+    /// A file cannot be loaded, or none is a model or motion.
     #[error(transparent)]
     Load(#[from] LoadError),
+    /// Exactly one model was expected.
     #[error("several models at once ({}); name one of them with its own files", found.join(", "))]
-    SeveralModels { found: Vec<String> },
+    SeveralModels {
+        /// What the models are called.
+        found: Vec<String>,
+    },
+    /// More models than the library holds.
     #[error("more than {max} models at once; open fewer")]
-    TooManyModels { max: usize },
+    TooManyModels {
+        /// [`Library::MAX_MODELS`].
+        max: usize,
+    },
+    /// A model was expected, and no single motion can stand in for it.
     #[error("several motions and no model ({}); open one of them, or a model together with them", found.join(", "))]
-    NoModel { found: Vec<String> },
+    NoModel {
+        /// Names of the files; for many, the last entry counts the rest.
+        found: Vec<String>,
+    },
+    /// A joint map is invalid.
     #[error("{file}: {problem}")]
-    Map { file: String, problem: MapError },
+    Map {
+        /// Name of the file.
+        file: String,
+        /// Why it is invalid.
+        problem: MapError,
+    },
+    /// At most one joint map can be opened.
     #[error("several joint maps at once ({}); open only one of them", found.join(", "))]
-    SeveralMaps { found: Vec<String> },
+    SeveralMaps {
+        /// Names of the first two.
+        found: Vec<String>,
+    },
+    /// More files than the library holds motions.
     #[error("{found} motions at once; open at most {max}")]
-    TooManyMotions { found: usize, max: usize },
+    TooManyMotions {
+        /// Number of files, models included.
+        found: usize,
+        /// [`Library::MAX_MOTIONS`].
+        max: usize,
+    },
 }
 
 /// Errors list no more names than this.

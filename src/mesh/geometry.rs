@@ -8,13 +8,17 @@ pub const MAX_INFLUENCES: usize = 16;
 /// How indices form elements. Strips, fans and loops are converted to lists on loading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Topology {
+    /// One index per point.
     Points,
+    /// Two indices per segment.
     Lines,
+    /// Three indices per triangle, counter-clockwise seen from the front.
     #[default]
     Triangles,
 }
 
 impl Topology {
+    /// Number of indices per point, line or triangle.
     pub fn indices_per_element(self) -> usize {
         match self {
             Self::Points => 1,
@@ -27,7 +31,9 @@ impl Topology {
 /// A named list of primitives with the same morph targets.
 #[derive(Debug, Clone, Default)]
 pub struct Mesh {
+    /// The name in the file; may be empty.
     pub name: String,
+    /// Each with at most one material.
     pub primitives: Vec<Geometry>,
     /// Names of the morph targets that every primitive has.
     pub target_names: Vec<String>,
@@ -51,19 +57,25 @@ impl Mesh {
 /// have one entry per vertex, which [`Geometry::validate`] checks.
 #[derive(Debug, Clone, Default)]
 pub struct Geometry {
+    /// What the indices form.
     pub topology: Topology,
+    /// The number of positions is the number of vertices.
     pub positions: Vec<Vec3>,
-    /// Unit length. If empty, flat normals are derived from the deformed triangles when drawn.
+    /// Unit length. If empty, triangles are drawn flat or, if the view asks for it, with [`super::smooth_normals`].
     pub normals: Vec<Vec3>,
     /// xyz unit length, w the bitangent's sign.
     pub tangents: Vec<Vec4>,
+    /// `TEXCOORD_0` and `TEXCOORD_1`, origin at the top left of the image.
     pub uvs: [Vec<Vec2>; 2],
     /// Linear, alpha last.
     pub colors: Vec<Vec4>,
     /// Never empty for a drawable primitive.
     pub indices: Vec<u32>,
+    /// Joints and weights; empty if the primitive has none.
     pub influences: Influences,
+    /// As many as the other primitives of the mesh have.
     pub morph_targets: Vec<MorphTarget>,
+    /// Index into the asset's materials; `None` for the default material.
     pub material: Option<usize>,
     /// Number of vertices in the file, which come first and in the file's order. The rest are copies, made where a
     /// vertex has several tangents, texture coordinates or normals.
@@ -72,11 +84,14 @@ pub struct Geometry {
     pub file_vertex: Vec<u32>,
 }
 
-/// Deltas to the base attributes at weight 1; normals and tangents may be empty.
+/// Deltas to the base attributes at weight 1, one per vertex. Each list may be empty.
 #[derive(Debug, Clone, Default)]
 pub struct MorphTarget {
+    /// Empty if the target does not move vertices.
     pub positions: Vec<Vec3>,
+    /// Added to the base normals before normalization.
     pub normals: Vec<Vec3>,
+    /// xyz only: the bitangent's sign does not change.
     pub tangents: Vec<Vec3>,
 }
 
@@ -84,31 +99,58 @@ pub struct MorphTarget {
 /// unused pairs (0, 0.0). `stride` is 0 (not skinned) or a multiple of 4 up to [`MAX_INFLUENCES`].
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Influences {
+    /// Pairs per vertex.
     pub stride: usize,
     /// Indices into [`super::Skin::joints`].
     pub joints: Vec<u16>,
+    /// From 0 to 1, parallel to `joints`.
     pub weights: Vec<f32>,
 }
 
 impl Influences {
+    /// Whether there are no influences, so the primitive is not skinned.
     pub fn is_empty(&self) -> bool {
         self.stride == 0
     }
 
+    /// Joint and weight pairs of one vertex, including unused ones.
     pub fn of_vertex(&self, vertex: usize) -> impl Iterator<Item = (u16, f32)> + '_ {
         let range = vertex * self.stride..(vertex + 1) * self.stride;
         self.joints[range.clone()].iter().copied().zip(self.weights[range].iter().copied())
     }
 }
 
+/// Why a primitive is inconsistent.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum GeometryError {
+    /// An attribute has the wrong number of entries.
     #[error("{attribute} has {found} entries, expected {expected}")]
-    Count { attribute: &'static str, expected: usize, found: usize },
+    Count {
+        /// The attribute, as named in messages.
+        attribute: &'static str,
+        /// Number of vertices; for influences, times `stride`.
+        expected: usize,
+        /// Number of entries.
+        found: usize,
+    },
+    /// An index refers to a vertex that does not exist.
     #[error("index {index} is out of range, there are {vertices} vertices")]
-    IndexOutOfRange { index: u32, vertices: usize },
+    IndexOutOfRange {
+        /// The first such index.
+        index: u32,
+        /// Number of vertices.
+        vertices: usize,
+    },
+    /// An influence refers to a joint that the skin does not have.
     #[error("vertex {vertex} references joint {joint}, but the skin has only {joints} joints")]
-    JointOutOfRange { vertex: usize, joint: u16, joints: usize },
+    JointOutOfRange {
+        /// The first such vertex.
+        vertex: usize,
+        /// Index into [`super::Skin::joints`].
+        joint: u16,
+        /// Number of joints in the skin.
+        joints: usize,
+    },
 }
 
 impl Geometry {
@@ -163,6 +205,7 @@ impl Geometry {
         self.file_vertex.get(vertex).map_or(vertex, |&number| number as usize)
     }
 
+    /// Number of triangles; 0 for points and lines.
     pub fn triangles(&self) -> usize {
         if self.topology == Topology::Triangles { self.indices.len() / 3 } else { 0 }
     }

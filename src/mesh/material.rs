@@ -2,25 +2,42 @@
 
 use glam::{Vec2, Vec3, Vec4};
 
+/// How alpha is interpreted, `alphaMode` in glTF.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum AlphaMode {
+    /// Alpha is ignored.
     Opaque,
-    Mask { cutoff: f32 },
+    /// Fully opaque where alpha reaches the cutoff, invisible elsewhere.
+    Mask {
+        /// `alphaCutoff` in glTF, 0.5 by default.
+        cutoff: f32,
+    },
+    /// Blended over what is behind it.
     Blend,
 }
 
+/// A metallic-roughness material. Factors are multiplied with the matching textures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
+    /// The name in the file; may be empty.
     pub name: String,
+    /// Linear RGBA, also multiplied with the vertex colours.
     pub base_color: Vec4,
+    /// 0 for dielectrics, 1 for metals.
     pub metallic: f32,
+    /// Perceptual roughness, from 0 (smooth) to 1.
     pub roughness: f32,
     /// Includes the factor of KHR_materials_emissive_strength.
     pub emissive: Vec3,
+    /// Multiplies X and Y of the normal texture.
     pub normal_scale: f32,
+    /// How much the occlusion texture darkens, from 0 (not at all) to 1.
     pub occlusion_strength: f32,
+    /// How alpha is interpreted.
     pub alpha_mode: AlphaMode,
+    /// Whether back faces are drawn.
     pub double_sided: bool,
+    /// Whether base colour is shown without lighting (KHR_materials_unlit).
     pub unlit: bool,
     /// sRGB.
     pub base_color_texture: Option<TextureRef>,
@@ -64,18 +81,23 @@ pub struct TextureRef {
     pub texture: usize,
     /// 0 or 1.
     pub uv_set: usize,
+    /// Identity if the file has none.
     pub uv_transform: UvTransform,
 }
 
 /// KHR_texture_transform: `uv' = offset + R(rotation) · scale · uv`, rotation counter-clockwise in radians.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UvTransform {
+    /// In UV units: 1 is the width or height of the image.
     pub offset: Vec2,
+    /// Counter-clockwise.
     pub rotation_radians: f32,
+    /// Per axis, applied before rotation.
     pub scale: Vec2,
 }
 
 impl UvTransform {
+    /// Leaves texture coordinates unchanged.
     pub const IDENTITY: Self = Self { offset: Vec2::ZERO, rotation_radians: 0.0, scale: Vec2::ONE };
 }
 
@@ -84,35 +106,53 @@ impl UvTransform {
 pub struct Texture {
     /// Index into the asset's images; none if the file has no image in a supported format.
     pub image: Option<usize>,
+    /// Filtering and wrapping; the default if the file has no sampler.
     pub sampler: Sampler,
 }
 
+/// How texture coordinates outside 0 to 1 are wrapped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Wrap {
+    /// Tiles.
     Repeat,
+    /// Extends the texels at the edge.
     ClampToEdge,
+    /// Tiles, mirroring every other copy.
     MirroredRepeat,
 }
 
+/// How texels of one mip level are filtered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Filter {
+    /// The nearest texel.
     Nearest,
+    /// Bilinear.
     Linear,
 }
 
+/// How mip levels are combined, the second half of `minFilter` in glTF.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum MipFilter {
+    /// Only the largest level is used.
     None,
+    /// The nearest level.
     Nearest,
+    /// Blends the two nearest levels.
     Linear,
 }
 
+/// How a texture is filtered and wrapped; linear with mipmaps and repeating by default.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Sampler {
+    /// Magnification filter.
     pub mag: Filter,
+    /// Minification filter within a mip level.
     pub min: Filter,
+    /// Minification filter between mip levels.
     pub mip: MipFilter,
+    /// Wrapping of U, `wrapS` in glTF.
     pub wrap_u: Wrap,
+    /// Wrapping of V, `wrapT` in glTF.
     pub wrap_v: Wrap,
 }
 

@@ -29,6 +29,7 @@ pub enum SkinningMode {
 /// of the 3×3 scale-and-shear matrix `S`, fourth components zero.
 pub type PaletteEntry = [Vec4; 5];
 
+/// Returns the entry of one joint, given its skinning matrix. Only `DualQuaternion` decomposes it.
 pub fn palette_entry(world_from_bind: &Affine3A, mode: SkinningMode) -> PaletteEntry {
     match mode {
         SkinningMode::Linear | SkinningMode::Rigid => {

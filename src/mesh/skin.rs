@@ -14,18 +14,40 @@ pub struct Skin {
     joint_from_bind_rows: Vec<[Vec4; 3]>,
 }
 
+/// Why a skin cannot be built.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum SkinError {
+    /// Joints and inverse bind matrices must have the same count.
     #[error("{joints} joints but {matrices} inverse bind matrices")]
-    MatrixCount { joints: usize, matrices: usize },
+    MatrixCount {
+        /// Number of joints.
+        joints: usize,
+        /// Number of inverse bind matrices.
+        matrices: usize,
+    },
+    /// A joint is not in the skeleton.
     #[error("joint {joint} is out of range, the skeleton has {count} joints")]
-    NoSuchJoint { joint: usize, count: usize },
+    NoSuchJoint {
+        /// Index in the skeleton.
+        joint: usize,
+        /// Number of joints in the skeleton.
+        count: usize,
+    },
+    /// An inverse bind matrix has an infinite or NaN component.
     #[error("the inverse bind matrix of joint {joint} is not finite")]
-    NotFinite { joint: usize },
+    NotFinite {
+        /// Index in the skin's list of joints.
+        joint: usize,
+    },
+    /// The list of joints is empty.
     #[error("a skin needs at least one joint")]
     NoJoints,
+    /// Joint indices of vertices are `u16`.
     #[error("{joints} joints, but influences can address at most {}", u16::MAX)]
-    TooManyJoints { joints: usize },
+    TooManyJoints {
+        /// Number of joints.
+        joints: usize,
+    },
 }
 
 impl Skin {
@@ -59,14 +81,17 @@ impl Skin {
         Ok(Self { name, joints, joint_from_bind, joint_from_bind_rows })
     }
 
+    /// The name in the file; may be empty.
     pub fn name(&self) -> &str {
         &self.name
     }
 
+    /// The joints in palette order, which influences index.
     pub fn joints(&self) -> &[JointIndex] {
         &self.joints
     }
 
+    /// Inverse bind matrices, one per joint of the skin.
     pub fn joint_from_bind(&self) -> &[Affine3A] {
         &self.joint_from_bind
     }

@@ -7,6 +7,7 @@ use super::{Geometry, PaletteEntry, SkinningMode};
 /// Result of [`deform`], reused between calls.
 #[derive(Debug, Clone, Default)]
 pub struct DeformedVertices {
+    /// One per vertex, in the palette's target space.
     pub positions: Vec<Vec3>,
     /// Unit length; empty if the geometry has none.
     pub normals: Vec<Vec3>,
