@@ -6,31 +6,93 @@ use crate::mesh::GeometryError;
 /// Everything that makes a set of files unreadable. The user sees these texts.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LoadError {
+    /// No file of the set is a model or motion, or none has the requested name.
     #[error(
         "no model among the files ({}); Gaitway reads .glb, .gltf with its files, .vrm, .vrma, .bvh, .obj (with .skel and .attach), or a .zip of these",
         listed(found)
     )]
-    NoModel { found: Vec<String> },
+    NoModel {
+        /// Names of all files in the set.
+        found: Vec<String>,
+    },
+    /// The set has more than one model or motion, where exactly one is expected.
     #[error("several models at once ({}); drop one of them with its own files", listed(found))]
-    SeveralModels { found: Vec<String> },
+    SeveralModels {
+        /// Names of the models and motions.
+        found: Vec<String>,
+    },
+    /// There is no model, but a file in a known format that Gaitway cannot read.
     #[error(
         "{file}: {format} files cannot be read; open it in Blender (File › Import), then export glTF 2.0 (.glb) and drop that"
     )]
-    UnsupportedFormat { file: String, format: &'static str },
+    UnsupportedFormat {
+        /// Name of the file in the set.
+        file: String,
+        /// The format as the user knows it, such as "FBX".
+        format: &'static str,
+    },
+    /// The glTF has no version, has one other than 2.x, or has a `minVersion` other than 2.0.
     #[error(
         "{file}: this is glTF {found}; Gaitway reads glTF 2.0. Convert it, for example by importing and exporting it again"
     )]
-    UnsupportedVersion { file: String, found: String },
+    UnsupportedVersion {
+        /// Name of the file in the set.
+        file: String,
+        /// The version, completing "this is glTF …".
+        found: String,
+    },
+    /// The glTF lists an unsupported extension in `extensionsRequired`.
     #[error("{file}: needs the extension {name}, which is not supported; {advice}")]
-    RequiredExtension { file: String, name: String, advice: &'static str },
+    RequiredExtension {
+        /// Name of the file in the set.
+        file: String,
+        /// Name of the extension, such as "KHR_draco_mesh_compression".
+        name: String,
+        /// How to export or convert the file without the extension.
+        advice: &'static str,
+    },
+    /// The JSON is malformed or does not have the structure of a glTF.
     #[error("{file}: not valid JSON for glTF, line {line}, column {column}: {problem}")]
-    Json { file: String, line: usize, column: usize, problem: String },
+    Json {
+        /// Name of the file in the set.
+        file: String,
+        /// Line in the JSON text, from 1.
+        line: usize,
+        /// Byte in the line, from 1.
+        column: usize,
+        /// The JSON parser's message, after the path of the value if it is known.
+        problem: String,
+    },
+    /// Something else in the file is malformed, cut short or inconsistent.
     #[error("{file}: {place}: expected {expected}, found {found}")]
-    Invalid { file: String, place: String, expected: String, found: String },
+    Invalid {
+        /// Name of the file in the set.
+        file: String,
+        /// Where in the file: a JSON path such as "accessors[3].count", or a line of a text format.
+        place: String,
+        /// What a valid file has there.
+        expected: String,
+        /// What this file has there.
+        found: String,
+    },
+    /// A file that the model needs is not in the set.
     #[error("{file}: {place} is “{uri}”, which is not among the files; drop it together with the model")]
-    MissingFile { file: String, place: String, uri: String },
+    MissingFile {
+        /// Name of the file that needs it.
+        file: String,
+        /// What refers to it: a JSON path such as "buffers[0].uri", or the role of an .obj's companion.
+        place: String,
+        /// The missing file's percent-decoded URI, or its bare name if it is a companion.
+        uri: String,
+    },
+    /// A zip archive is unreadable, or too large to unpack in memory.
     #[error("{file}: {problem}")]
-    Archive { file: String, problem: String },
+    Archive {
+        /// Name of the archive.
+        file: String,
+        /// What is wrong with the archive, or with one of its entries.
+        problem: String,
+    },
 }
 
 fn listed(names: &[String]) -> String {

@@ -47,18 +47,22 @@ impl FileSet {
         }
     }
 
+    /// Returns the contents of the file with exactly this normalized name.
     pub fn get(&self, name: &str) -> Option<&Arc<[u8]>> {
         self.files.iter().find(|(other, _)| other == name).map(|(_, bytes)| bytes)
     }
 
+    /// Returns the normalized names, in the order the files were added.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.files.iter().map(|(name, _)| name.as_str())
     }
 
+    /// Returns whether the set has no files.
     pub fn is_empty(&self) -> bool {
         self.files.is_empty()
     }
 
+    /// Returns the normalized names and contents, in the order the files were added.
     pub fn iter(&self) -> impl Iterator<Item = (&str, &Arc<[u8]>)> {
         self.files.iter().map(|(name, bytes)| (name.as_str(), bytes))
     }

@@ -73,6 +73,7 @@ pub fn load(files: &FileSet) -> Result<Asset, LoadError> {
     load_with(files, &LoadOptions::default())
 }
 
+/// Like [`load`], with options for what a file does not state.
 pub fn load_with(files: &FileSet, options: &LoadOptions) -> Result<Asset, LoadError> {
     let (name, bytes) = find_model(files)?;
     read(files, name, bytes, options, &mut |_| ())

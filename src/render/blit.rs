@@ -49,6 +49,7 @@ impl Blit {
         self.current = Some((group, opaque));
     }
 
+    /// Draws the current picture; nothing before the first [`Self::show`].
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         let Some((group, opaque)) = &self.current else { return };
         pass.set_pipeline(if *opaque { &self.opaque } else { &self.blended });

@@ -26,6 +26,7 @@ pub enum InfluenceSource {
 }
 
 impl InfluenceSource {
+    /// Returns the source for a [`stride`](Influences::stride), the number of influences per vertex.
     pub fn of(stride: usize) -> Self {
         match stride {
             0 => Self::None,
@@ -101,18 +102,26 @@ pub fn vertex_buffers(influences: InfluenceSource) -> Vec<Option<wgpu::VertexBuf
 
 /// A primitive on the GPU.
 pub struct GpuGeometry {
+    /// Whether the indices form points, lines or triangles.
     pub topology: Topology,
+    /// Selects the vertex buffer layout and the entry point.
     pub influences: InfluenceSource,
+    /// Influences per vertex, 0 if unskinned.
     pub influence_stride: u32,
+    /// Number of vertices.
     pub vertices: u32,
-    /// Texels per vertex and morph target.
+    /// Texels per vertex and morph target: 1 position, 2 also normal, 3 also tangent.
     pub morph_attributes: u32,
     shape: wgpu::Buffer,
     surface: wgpu::Buffer,
     influence_buffer: Option<wgpu::Buffer>,
+    /// Index buffer, [`wgpu::IndexFormat::Uint32`].
     pub indices: wgpu::Buffer,
+    /// Length of `indices`, in indices.
     pub index_count: u32,
+    /// Deltas of the morph targets, one texel each: by target, then vertex, then attribute. None without targets.
     pub morph_view: Option<wgpu::TextureView>,
+    /// Joints and weights by vertex, two pairs to a texel. None unless `influences` is [`InfluenceSource::Texture`].
     pub influence_view: Option<wgpu::TextureView>,
 }
 

@@ -8,8 +8,10 @@ use std::sync::atomic::{AtomicU8, Ordering};
 /// Why no device could be created.
 #[derive(Debug, thiserror::Error)]
 pub enum HeadlessError {
+    /// None of the enabled back ends has an adapter.
     #[error("no graphics adapter was found ({0}); install a Vulkan driver, for example Mesa's llvmpipe")]
     NoAdapter(#[from] wgpu::RequestAdapterError),
+    /// The adapter cannot create a device with the requested limits.
     #[error("the graphics adapter did not provide a device: {0}")]
     NoDevice(#[from] wgpu::RequestDeviceError),
 }

@@ -8,6 +8,7 @@ const ENTRY_TEXELS: usize = 5;
 
 type Texel = [f32; 4];
 
+/// An Rgba32Float texture, rebuilt for each frame: clear, push the palettes, push the morph weights, upload.
 pub struct PaletteTexture {
     texture: wgpu::Texture,
     view: wgpu::TextureView,
@@ -17,15 +18,18 @@ pub struct PaletteTexture {
 }
 
 impl PaletteTexture {
+    /// Creates a texture of one row, with nothing uploaded.
     pub fn new(device: &wgpu::Device) -> Self {
         let (texture, view) = create(device, 1);
         Self { texture, view, texels: Vec::new(), uploaded: Vec::new() }
     }
 
+    /// Returns the view to bind. [`Self::upload`] returns whether it was replaced.
     pub fn view(&self) -> &wgpu::TextureView {
         &self.view
     }
 
+    /// Discards the texels of the next upload. The texture keeps its content.
     pub fn clear(&mut self) {
         self.texels.clear();
     }

@@ -17,6 +17,7 @@ use crate::frame::Frame;
 use crate::library::{Model, ModelId};
 use crate::state::Background;
 
+/// Settings that last as long as the renderer.
 #[derive(Debug, Clone, Copy)]
 pub struct RendererOptions {
     /// Samples per pixel: 4, or 1 on software adapters.
@@ -26,17 +27,38 @@ pub struct RendererOptions {
 /// Why a model cannot be drawn.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum UploadError {
+    /// A vertex or index buffer, or the texture of the influences, exceeds the device's limits.
     #[error("mesh {mesh}, primitive {primitive}: {vertices} vertices are more than this device can hold")]
-    TooManyVertices { mesh: usize, primitive: usize, vertices: usize },
+    TooManyVertices {
+        /// Index of the mesh in the asset.
+        mesh: usize,
+        /// Index of the primitive in the mesh.
+        primitive: usize,
+        /// Number of vertices in the primitive.
+        vertices: usize,
+    },
+    /// The texture of the morph deltas exceeds the device's limits.
     #[error(
         "mesh {mesh}, primitive {primitive}: {targets} morph targets of {vertices} vertices are more than this device can hold"
     )]
-    TooManyMorphTargets { mesh: usize, primitive: usize, vertices: usize, targets: usize },
+    TooManyMorphTargets {
+        /// Index of the mesh in the asset.
+        mesh: usize,
+        /// Index of the primitive in the mesh.
+        primitive: usize,
+        /// Number of vertices in the primitive.
+        vertices: usize,
+        /// Number of morph targets.
+        targets: usize,
+    },
 }
 
+/// Counts for one picture.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct RenderStats {
+    /// Draw calls of the shadow pass and of all panes.
     pub draw_calls: u32,
+    /// Triangles of meshes and bones in all panes, without the shadow pass, background, ground and lines.
     pub triangles: u32,
 }
 
@@ -108,6 +130,7 @@ impl UniformBuffer {
 }
 
 impl Renderer {
+    /// Creates what every picture needs. Pipelines of meshes and overlays follow when they are first drawn.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, options: RendererOptions) -> Self {
         flush(queue);
         let layouts = Layouts::new(device);

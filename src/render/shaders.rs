@@ -18,17 +18,26 @@ const BLIT_PICTURE: &str = include_str!("../../shaders/blit.wgsl");
 /// One shader module.
 #[derive(Debug, Clone, Copy)]
 pub struct Shader {
+    /// Name in wgpu's messages and graphics debuggers.
     pub label: &'static str,
     parts: &'static [&'static str],
 }
 
+/// Meshes: all vertex and fragment stages of the scene and shadow passes.
 pub const MESH: Shader = Shader { label: "mesh", parts: &[FRAME, TONE, PALETTE, SKINNING, VERTEX, LIGHT, SURFACE] };
+/// The grid and the shadow on the ground.
 pub const GROUND_PLANE: Shader = Shader { label: "ground", parts: &[FRAME, LIGHT, GROUND] };
+/// Overlay lines.
 pub const LINES: Shader = Shader { label: "lines", parts: &[FRAME, TONE, LINE] };
+/// Bones of the skeleton overlay.
 pub const BONES: Shader = Shader { label: "bones", parts: &[FRAME, TONE, BONE] };
+/// Resets the depth buffer before the overlays that are drawn on top.
 pub const DEPTH_CLEAR: Shader = Shader { label: "clear depth", parts: &[CLEAR_DEPTH] };
+/// The gradient of the studio background.
 pub const BACKDROP: Shader = Shader { label: "background", parts: &[FRAME, BACKGROUND] };
+/// Renders a mip level of a texture from the level above.
 pub const MIPS: Shader = Shader { label: "mips", parts: &[MIP] };
+/// Copies the finished picture to the screen.
 pub const BLIT: Shader = Shader { label: "blit", parts: &[BLIT_PICTURE] };
 /// The vertex stages of meshes alone, without fragment stages.
 pub const SKINNED_VERTEX: Shader = Shader { label: "skinned vertex", parts: &[FRAME, PALETTE, SKINNING, VERTEX] };
@@ -37,6 +46,7 @@ pub const SKINNED_VERTEX: Shader = Shader { label: "skinned vertex", parts: &[FR
 pub const ALL: [Shader; 8] = [MESH, GROUND_PLANE, LINES, BONES, DEPTH_CLEAR, BACKDROP, MIPS, BLIT];
 
 impl Shader {
+    /// Returns the WGSL of the whole module.
     pub fn source(&self) -> String {
         self.parts.concat()
     }

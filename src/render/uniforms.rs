@@ -9,13 +9,21 @@ pub const MAX_LIGHTS: usize = 8;
 #[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
 #[repr(C)]
 pub struct LightUniform {
+    /// World space, metres.
     pub position: [f32; 3],
+    /// Distance in metres at which the light ends; 0 for unlimited.
     pub range: f32,
+    /// Linear colour times intensity: lux for a directional light, else candela.
     pub color: [f32; 3],
+    /// 0 directional, 1 point, 2 spot.
     pub kind: u32,
+    /// World-space unit vector in which the light travels.
     pub direction: [f32; 3],
+    /// `lightAngleScale` of KHR_lights_punctual; 0 unless a spot light.
     pub spot_scale: f32,
+    /// `lightAngleOffset` of KHR_lights_punctual; 0 unless a spot light.
     pub spot_offset: f32,
+    /// Unused, zero.
     pub padding: [f32; 3],
 }
 
@@ -23,28 +31,51 @@ pub struct LightUniform {
 #[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
 #[repr(C)]
 pub struct FrameUniform {
+    /// The camera's view and projection; in the shadow pass, the light's.
     pub projection_from_world: [[f32; 4]; 4],
+    /// World space to the clip space of the shadow map.
     pub shadow_from_world: [[f32; 4]; 4],
+    /// The camera's position in world space.
     pub eye: [f32; 3],
+    /// Factor on linear colours before tone mapping, above 0.
     pub exposure: f32,
+    /// Width and height of a pane.
     pub viewport_pixels: [f32; 2],
+    /// Number of used elements of `lights`.
     pub light_count: u32,
+    /// Unused, zero.
     pub padding: u32,
+    /// Cosine and sine of the environment's rotation about Y.
     pub environment: [f32; 2],
+    /// Size of a shadow-map texel in metres; 0 without a shadow.
     pub shadow_texel: f32,
+    /// Index into `lights` of the light whose shadow falls on meshes; `u32::MAX` for none. 0 if the key light is used.
     pub shadow_light: u32,
+    /// World-space unit vector towards the key light.
     pub key_direction: [f32; 3],
+    /// Opacity of the shadow on the ground.
     pub ground_shadow: f32,
+    /// Linear colour times intensity of the key light, which replaces missing file lights.
     pub key_color: [f32; 3],
+    /// Distance in metres between thin grid lines; every tenth line is thick.
     pub grid_spacing: f32,
+    /// World-space center of the ground; w is the radius in metres at which it has faded out, 0 for no ground.
     pub ground: [f32; 4],
+    /// X and z in metres from the center of the ground to the center of the area that the shadow map covers.
     pub shadow_center: [f32; 2],
+    /// X and z of half that area's edge along the shadow map's x axis. The area is a parallelogram.
     pub shadow_x: [f32; 2],
+    /// X and z of half that area's edge along the shadow map's y axis.
     pub shadow_y: [f32; 2],
+    /// Unused, zero.
     pub padding_2: [f32; 2],
+    /// sRGB colour of the studio background at its brightest point.
     pub background_center: [f32; 4],
+    /// sRGB colour of the studio background at its edge.
     pub background_edge: [f32; 4],
+    /// Spherical harmonics of the environment's irradiance over π, all constants folded in; w is unused.
     pub irradiance: [[f32; 4]; 9],
+    /// The file's lights; unused elements are zero.
     pub lights: [LightUniform; MAX_LIGHTS],
 }
 
@@ -52,14 +83,23 @@ pub struct FrameUniform {
 #[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
 #[repr(C)]
 pub struct DrawUniform {
+    /// First entry in the palette texture.
     pub palette: u32,
+    /// First texel of the non-zero morph weights in the palette texture.
     pub morph_weights: u32,
+    /// Number of non-zero morph weights.
     pub morph_count: u32,
+    /// Texels per vertex and morph target: 1 position, 2 also normal, 3 also tangent.
     pub morph_attributes: u32,
+    /// Number of vertices, the stride of the morph targets.
     pub vertices: u32,
+    /// Influences per vertex, 0 if unskinned.
     pub influence_stride: u32,
+    /// Joint of the heat map as an index into the draw's palette; `u32::MAX` for none.
     pub heat_joint: u32,
+    /// Unused, zero.
     pub padding: u32,
+    /// Wireframe colour, sRGB with straight alpha.
     pub color: [f32; 4],
 }
 
@@ -67,9 +107,13 @@ pub struct DrawUniform {
 #[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
 #[repr(C)]
 pub struct UvTransformUniform {
+    /// Columns of the 2×2 matrix of rotation and scale.
     pub matrix: [f32; 4],
+    /// Added after the matrix.
     pub offset: [f32; 2],
+    /// Index of the texture coordinates, 0 or 1.
     pub uv_set: u32,
+    /// Unused, zero.
     pub padding: u32,
 }
 
@@ -77,12 +121,20 @@ pub struct UvTransformUniform {
 #[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
 #[repr(C)]
 pub struct MaterialUniform {
+    /// Linear base colour factor and alpha.
     pub base_color: [f32; 4],
+    /// Linear emissive factor times emissive strength.
     pub emissive: [f32; 3],
+    /// Alpha below which masked fragments are discarded; 0.5 otherwise, for the shadows of blended surfaces.
     pub alpha_cutoff: f32,
+    /// Metallic factor.
     pub metallic: f32,
+    /// Roughness factor.
     pub roughness: f32,
+    /// Scale of the normal map's x and y.
     pub normal_scale: f32,
+    /// 0 ignores the occlusion map, 1 applies it fully.
     pub occlusion_strength: f32,
+    /// Transforms for the base colour, metallic-roughness, normal, occlusion and emissive maps.
     pub uvs: [UvTransformUniform; 5],
 }

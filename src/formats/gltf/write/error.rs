@@ -2,18 +2,46 @@
 
 use crate::formats::LoadError;
 
+/// Everything that prevents writing a GLB. The user sees these texts.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum WriteError {
+    /// The source files cannot be read.
     #[error(transparent)]
     Read(#[from] LoadError),
+    /// No channel of the clip can be written, for example only morph weights to a file without meshes.
     #[error("clip “{clip}” has no channel that could be written")]
-    EmptyClip { clip: String },
+    EmptyClip {
+        /// Name of the clip.
+        clip: String,
+    },
+    /// A key value is infinite or not a number.
     #[error("clip “{clip}” has a key that is not a number, for joint {joint}")]
-    NotFinite { clip: String, joint: String },
+    NotFinite {
+        /// Name of the clip.
+        clip: String,
+        /// Name of the joint that the channel animates.
+        joint: String,
+    },
+    /// The skeleton given for the clips is not the file's.
     #[error("the clips are for {joints} joints, but {file} has {nodes} nodes: they belong to another model")]
-    OtherSkeleton { file: String, nodes: usize, joints: usize },
+    OtherSkeleton {
+        /// Name of the model's file in the set.
+        file: String,
+        /// Number of nodes in the file; for an .obj, of joints.
+        nodes: usize,
+        /// Number of joints in the given skeleton.
+        joints: usize,
+    },
+    /// The glTF's first buffer has neither a URI nor a binary chunk.
     #[error("{file}: its first buffer has no data, so that there is nothing to append to")]
-    NoBuffer { file: String },
+    NoBuffer {
+        /// Name of the model's file in the set.
+        file: String,
+    },
+    /// The file would exceed the 32-bit length in the GLB header.
     #[error("the file would have {bytes} bytes; a GLB holds at most 4 GiB")]
-    TooLarge { bytes: usize },
+    TooLarge {
+        /// Length of the whole GLB.
+        bytes: usize,
+    },
 }
