@@ -95,14 +95,25 @@ impl<'a> ClipBuilder<'a> {
         if expected != found {
             return Err(ChannelError::ValueCount { keys: times_secs.len(), expected, found });
         }
-        let bits: Vec<u32> = times_secs.iter().map(|time_secs| time_secs.to_bits()).collect();
-        let timeline = *self.timeline_of.entry(bits).or_insert_with(|| {
-            self.timelines.push(times_secs.to_vec());
-            self.timelines.len() as u32 - 1
-        });
+        let timeline = self.timeline(times_secs);
         self.duration_secs = self.duration_secs.max(last_secs);
         self.channels.push(Channel { joint, interpolation, timeline, keys });
         Ok(())
+    }
+
+    /// Returns the timeline with these times, after adding it if there is none.
+    fn timeline(&mut self, times_secs: &[f32]) -> u32 {
+        let bits = times_secs.iter().map(|time_secs| time_secs.to_bits());
+        // Most channels have the times of the one before.
+        if let Some(last) = self.channels.last().map(|channel| channel.timeline)
+            && bits.clone().eq(self.timelines[last as usize].iter().map(|time_secs| time_secs.to_bits()))
+        {
+            return last;
+        }
+        *self.timeline_of.entry(bits.collect()).or_insert_with(|| {
+            self.timelines.push(times_secs.to_vec());
+            self.timelines.len() as u32 - 1
+        })
     }
 
     /// Finishes the clip. Its duration is 0 if it has no channels.

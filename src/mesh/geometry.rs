@@ -153,6 +153,14 @@ pub enum GeometryError {
     },
 }
 
+/// Returns the position of the first index that is not below `count`. Looks for the largest first: without early exit, that
+/// search is vectorized.
+pub(crate) fn first_not_below<T: Copy + Ord + TryInto<usize>>(indices: &[T], count: usize) -> Option<usize> {
+    let is_outside = |index: T| index.try_into().map_or(true, |index| index >= count);
+    let largest = indices.iter().copied().max()?;
+    if is_outside(largest) { indices.iter().position(|&index| is_outside(index)) } else { None }
+}
+
 impl Geometry {
     /// Checks that array lengths match and indices are in range. `skin_joints` is the joint count of the smallest skin
     /// that this geometry is used with, if any.
@@ -182,17 +190,11 @@ impl Geometry {
                 return Err(GeometryError::Count { attribute: "influences", expected, found });
             }
         }
-        // The folds come first because, without early exit, they are vectorized.
-        let is_outside = |index: &u32| *index as usize >= vertices;
-        if self.indices.iter().fold(false, |found, index| found | is_outside(index))
-            && let Some(&index) = self.indices.iter().find(|&index| is_outside(index))
-        {
-            return Err(GeometryError::IndexOutOfRange { index, vertices });
+        if let Some(at) = first_not_below(&self.indices, vertices) {
+            return Err(GeometryError::IndexOutOfRange { index: self.indices[at], vertices });
         }
-        let joints_of_vertices = &self.influences.joints;
         if let Some(joints) = skin_joints
-            && joints_of_vertices.iter().fold(false, |found, &joint| found | (usize::from(joint) >= joints))
-            && let Some(at) = joints_of_vertices.iter().position(|&joint| usize::from(joint) >= joints)
+            && let Some(at) = first_not_below(&self.influences.joints, joints)
         {
             let (vertex, joint) = (at / self.influences.stride, self.influences.joints[at]);
             return Err(GeometryError::JointOutOfRange { vertex, joint, joints });

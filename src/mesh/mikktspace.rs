@@ -71,21 +71,24 @@ pub(super) fn corner_tangents(
             tangents[3 * face as usize + corner] = Some(tangent.extend(sign));
         }
     }
-    // Corners of degenerate faces take the tangent of the first corner at their vertex.
-    let mut first_at: HashMap<u32, Vec4> = HashMap::new();
+    if faces.iter().any(|face| face.degenerate) {
+        complete_degenerate(&faces, positions.len(), &mut tangents);
+    }
+    tangents
+}
+
+/// Gives corners of degenerate faces the tangent of the first corner at their vertex.
+fn complete_degenerate(faces: &[Face], vertices: usize, tangents: &mut [Option<Vec4>]) {
+    let mut first_at: Vec<Option<Vec4>> = vec![None; vertices];
     for (face, tangents) in faces.iter().zip(tangents.as_chunks::<3>().0) {
         for (&vertex, tangent) in face.vertices.iter().zip(tangents) {
-            if let Some(tangent) = tangent {
-                first_at.entry(vertex).or_insert(*tangent);
-            }
+            let first = &mut first_at[vertex as usize];
+            *first = first.or(*tangent);
         }
     }
     for (face, tangents) in faces.iter().zip(tangents.as_chunks_mut::<3>().0).filter(|(face, _)| face.degenerate) {
-        for (vertex, tangent) in face.vertices.iter().zip(tangents) {
-            *tangent = first_at.get(vertex).copied();
-        }
+        *tangents = face.vertices.map(|vertex| first_at[vertex as usize]);
     }
-    tangents
 }
 
 /// Maps each vertex to the first one that equals it.

@@ -12,6 +12,7 @@ mod skinning;
 mod tangents;
 
 pub use bounds::Bounds;
+pub(crate) use geometry::first_not_below;
 pub use geometry::{Geometry, GeometryError, Influences, MAX_INFLUENCES, Mesh, MorphTarget, Topology};
 pub use material::{AlphaMode, Filter, Material, MipFilter, Sampler, Texture, TextureRef, UvTransform, Wrap};
 pub use normals::smooth_normals;

@@ -21,8 +21,7 @@ pub fn corner_tangents(geometry: &Geometry, uv_set: usize) -> Vec<Vec4> {
 
 /// Adds tangents to a triangle list. Does nothing without normals or the given texture coordinates. A vertex whose
 /// corners need different tangents is duplicated; copies are appended, so the first `file_vertices` stay in place.
-/// Copies take at most
-/// `max_copied_bytes`; beyond that, corners keep their vertex's tangent. Returns the bytes taken.
+/// Copies take at most `max_copied_bytes`; beyond that, corners keep their vertex's tangent. Returns the bytes taken.
 pub fn add_tangents(geometry: &mut Geometry, uv_set: usize, max_copied_bytes: usize) -> usize {
     if geometry.normals.is_empty() || geometry.uvs.get(uv_set).is_none_or(Vec::is_empty) {
         return 0;

@@ -34,7 +34,7 @@ impl Times<'_> {
     fn get(&mut self, accessor: usize, place: &dyn Display) -> Result<&[f32], Problem> {
         if let std::collections::btree_map::Entry::Vacant(entry) = self.read.entry(accessor) {
             let times = self.accessors.finite::<1>(accessor, place, "SCALAR of key times")?;
-            entry.insert(times.into_iter().map(|[time_secs]| time_secs).collect());
+            entry.insert(times.into_flattened());
         }
         Ok(&self.read[&accessor])
     }
@@ -125,8 +125,7 @@ fn vec3(accessors: &Accessors, accessor: usize, place: &dyn Display) -> Result<V
 }
 
 fn weights(accessors: &Accessors, accessor: usize, place: &dyn Display, targets: usize) -> Result<Vec<f32>, Problem> {
-    let values: Vec<f32> =
-        accessors.finite::<1>(accessor, place, "SCALAR of weights")?.into_iter().map(|[weight]| weight).collect();
+    let values = accessors.finite::<1>(accessor, place, "SCALAR of weights")?.into_flattened();
     if !values.len().is_multiple_of(targets) {
         return Err(Problem::new(
             place.to_string(),

@@ -4,6 +4,7 @@
 //! than a viewer needs to be in many. So the text is deserialized directly first, which works for nearly every file. If that
 //! fails, it is parsed as a plain value, [`loosen`]ed, written as text and deserialized once more.
 
+use std::borrow::Cow;
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
@@ -51,19 +52,21 @@ const TYPED_EXTENSIONS: [&str; 4] =
 /// The parsed JSON of a file. No index in it has been checked.
 pub struct Document<'a> {
     pub root: Root,
-    text: &'a [u8],
+    text: Cow<'a, str>,
     /// The text as a plain value, parsed once a message has to quote it.
     value: OnceCell<Value>,
 }
 
 impl<'a> Document<'a> {
     pub fn read(file: &str, text: &'a [u8]) -> Result<Self, LoadError> {
-        let root = match serde_json::from_slice::<Root>(text) {
-            Ok(root) if !has_long_integer(text) => {
+        // Checking the whole text once is faster than each string. Names in another encoding get replacement characters.
+        let text = str::from_utf8(text).map_or_else(|_| String::from_utf8_lossy(text), Cow::Borrowed);
+        let root = match serde_json::from_str::<Root>(&text) {
+            Ok(root) if !has_long_integer(text.as_bytes()) => {
                 check_version(file, Some(&root.asset.version), root.asset.min_version.as_deref())?;
                 root
             }
-            _ => read_loosened(file, text)?,
+            _ => read_loosened(file, &text)?,
         };
         Ok(Self { root, text, value: OnceCell::new() })
     }
@@ -81,7 +84,7 @@ impl<'a> Document<'a> {
     }
 
     fn value_at(&self, place: &str) -> Option<&Value> {
-        let value = self.value.get_or_init(|| serde_json::from_slice(self.text).unwrap_or_default());
+        let value = self.value.get_or_init(|| serde_json::from_str(&self.text).unwrap_or_default());
         let pointer = place.replace("].", "/").replace(['.', '['], "/").replace(']', "");
         value.pointer(&format!("/{pointer}"))
     }
@@ -107,15 +110,15 @@ pub fn json_error(file: &str, problem: &serde_json::Error) -> LoadError {
 }
 
 /// Reads a text that the crate's types reject, or whose integers they may truncate.
-fn read_loosened(file: &str, text: &[u8]) -> Result<Root, LoadError> {
-    let mut value: Value = serde_json::from_slice(text).map_err(|problem| json_error(file, &problem))?;
+fn read_loosened(file: &str, text: &str) -> Result<Root, LoadError> {
+    let mut value: Value = serde_json::from_str(text).map_err(|problem| json_error(file, &problem))?;
     // Other versions have another structure, so the version comes first.
     let asset = |key: &str| value.pointer(&format!("/asset/{key}")).filter(|value| !value.is_null()).map(self::text);
     check_version(file, asset("version").as_deref(), asset("minVersion").as_deref())?;
     loosen(&mut value);
     // As text again: deserializing the value itself would put the crate's many types into the program a second time.
     let loosened = value.to_string();
-    serde_json::from_slice(loosened.as_bytes()).map_err(|problem| {
+    serde_json::from_str(&loosened).map_err(|problem| {
         let path = path_at(&loosened, problem.column());
         let (line, column) = position(text, &path);
         let problem = match json_error(file, &problem) {
@@ -211,30 +214,32 @@ fn text(value: &Value) -> String {
 /// Whether the text has an integer of ten digits or more, which may not fit into 32 bits. Inspects every tenth byte.
 fn has_long_integer(text: &[u8]) -> bool {
     const DIGITS: usize = 10;
+    let is_digit = |at: usize| text.get(at).is_some_and(u8::is_ascii_digit);
     let mut at = DIGITS - 1;
-    while let Some(byte) = text.get(at) {
-        if !byte.is_ascii_digit() {
-            at += DIGITS;
-            continue;
+    while at < text.len() {
+        // Ten digits around this one reach at least five to one side.
+        if is_digit(at) && (is_digit(at + DIGITS / 2) || is_digit(at - DIGITS / 2)) {
+            let mut start = at;
+            while start > 0 && is_digit(start - 1) {
+                start -= 1;
+            }
+            // Not part of a fraction or a name.
+            if start.checked_sub(1).is_none_or(|before| b":,[ \t\r\n".contains(&text[before])) {
+                while is_digit(at) {
+                    at += 1;
+                }
+                if at - start >= DIGITS && text.get(at).is_none_or(|after| b",]} \t\r\n".contains(after)) {
+                    return true;
+                }
+            }
         }
-        let is_digit = |byte: &&u8| byte.is_ascii_digit();
-        let start = at - text[..at].iter().rev().take_while(is_digit).count();
-        let end = at + text[at..].iter().take_while(is_digit).count();
-        // Not part of a fraction or a name.
-        let before = start.checked_sub(1).and_then(|before| text.get(before));
-        let is_integer = before.is_none_or(|byte| b":,[ \t\r\n".contains(byte))
-            && text.get(end).is_none_or(|byte| b",]} \t\r\n".contains(byte));
-        if is_integer && end - start >= DIGITS {
-            return true;
-        }
-        at = end + DIGITS;
+        at += DIGITS;
     }
     false
 }
 
 /// Line and column, from 1, of the value at `path`, or of the innermost value around it that exists.
-fn position(text: &[u8], path: &[Step]) -> (usize, usize) {
-    let text = str::from_utf8(text).unwrap_or_default();
+fn position(text: &str, path: &[Step]) -> (usize, usize) {
     let Ok(mut value) = serde_json::from_str::<&RawValue>(text) else { return (1, 1) };
     for step in path {
         let inner = match step {

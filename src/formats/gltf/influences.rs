@@ -73,33 +73,38 @@ pub fn merge(mesh: &str, vertices: usize, sets: &[InfluenceSet], warnings: &mut 
 /// The common case, at most four influences per vertex, without growing lists.
 fn single_set(mesh: &str, set: &InfluenceSet, warnings: &mut Warnings) -> Influences {
     let vertices = set.joints.len();
-    let mut influences =
-        Influences { stride: 4, joints: Vec::with_capacity(4 * vertices), weights: Vec::with_capacity(4 * vertices) };
+    let (mut sorted_joints, mut sorted_weights) = (vec![[0; 4]; vertices], vec![[0.0; 4]; vertices]);
     let (mut normalized, mut missing) = (0, 0);
-    for (joints, weights) in set.joints.iter().zip(&set.weights) {
-        let mut pairs: [(u16, f32); 4] = std::array::from_fn(|at| {
-            let (joint, weight) = (joints[at].min(u32::from(u16::MAX)) as u16, weights[at]);
-            if weight > 0.0 && weight < MAX_WEIGHT { (joint, weight) } else { (0, 0.0) }
-        });
-        // Swaps neighbours only if the second is heavier: equal weights keep the file's order.
-        for (a, b) in [(0, 1), (1, 2), (2, 3), (0, 1), (1, 2), (0, 1)] {
-            if pairs[a].1 < pairs[b].1 {
-                pairs.swap(a, b);
+    let sorted = sorted_joints.iter_mut().zip(&mut sorted_weights);
+    for ((joints, weights), (sorted_joints, sorted_weights)) in set.joints.iter().zip(&set.weights).zip(sorted) {
+        let (mut joints, mut weights) = (joints.map(|joint| joint.min(u32::from(u16::MAX)) as u16), *weights);
+        for (joint, weight) in joints.iter_mut().zip(&mut weights) {
+            if !(*weight > 0.0 && *weight < MAX_WEIGHT) {
+                (*joint, *weight) = (0, 0.0);
             }
         }
-        let total: f32 = pairs.iter().map(|pair| pair.1).sum();
+        if !weights.is_sorted_by(|a, b| a >= b) {
+            // Swaps neighbours only if the second is heavier: equal weights keep the file's order.
+            for (a, b) in [(0, 1), (1, 2), (2, 3), (0, 1), (1, 2), (0, 1)] {
+                if weights[a] < weights[b] {
+                    weights.swap(a, b);
+                    joints.swap(a, b);
+                }
+            }
+        }
+        let total: f32 = weights.iter().sum();
         if total == 0.0 {
             missing += 1;
-            pairs[0].1 = 1.0;
-        } else if (total - 1.0).abs() > SUM_TOLERANCE {
-            normalized += 1;
+            weights = [1.0, 0.0, 0.0, 0.0];
+        } else {
+            normalized += usize::from((total - 1.0).abs() > SUM_TOLERANCE);
+            weights = weights.map(|weight| weight / total);
         }
-        let total = if total == 0.0 { 1.0 } else { total };
-        influences.joints.extend(pairs.map(|pair| pair.0));
-        influences.weights.extend(pairs.map(|pair| pair.1 / total));
+        *sorted_joints = joints;
+        *sorted_weights = weights;
     }
     warn(mesh, missing, normalized, warnings);
-    influences
+    Influences { stride: 4, joints: sorted_joints.into_flattened(), weights: sorted_weights.into_flattened() }
 }
 
 fn warn(mesh: &str, missing: usize, normalized: usize, warnings: &mut Warnings) {

@@ -12,7 +12,7 @@ use super::indices;
 use super::influences::{self, InfluenceSet};
 use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
-use crate::mesh::{Geometry, Influences, Material, Mesh, MorphTarget, Topology, add_tangents};
+use crate::mesh::{Geometry, Influences, Material, Mesh, MorphTarget, Topology, add_tangents, first_not_below};
 
 pub fn meshes(accessors: &Accessors, materials: &[Material], warnings: &mut Warnings) -> Result<Vec<Mesh>, Problem> {
     let meshes = accessors.document.root.meshes.iter().enumerate();
@@ -213,11 +213,11 @@ fn read_indices(
         None => (0..u32::try_from(vertices).unwrap_or(u32::MAX)).collect(),
         Some(index) => {
             let place = format!("{place}.indices");
-            let read = accessors.integers::<1>(index.value(), &place, "SCALAR")?;
-            if let Some(at) = read.iter().position(|[index]| *index as usize >= vertices) {
-                return Err(Problem::new(format!("{place}[{at}]"), format!("an index below {vertices}"), read[at][0]));
+            let read = accessors.integers::<1>(index.value(), &place, "SCALAR")?.into_flattened();
+            if let Some(at) = first_not_below(&read, vertices) {
+                return Err(Problem::new(format!("{place}[{at}]"), format!("an index below {vertices}"), read[at]));
             }
-            read.into_iter().map(|[index]| index).collect()
+            read
         }
     };
     let Checked::Valid(mode) = primitive.mode else {
