@@ -68,7 +68,7 @@ pub enum LoadError {
     Invalid {
         /// Name of the file in the set.
         file: String,
-        /// Where in the file: a JSON path such as "accessors[3].count", or a line of a text format.
+        /// Where in the file: a JSON path such as `accessors[3].count`, or a line of a text format.
         place: String,
         /// What a valid file has there.
         expected: String,
@@ -80,7 +80,7 @@ pub enum LoadError {
     MissingFile {
         /// Name of the file that needs it.
         file: String,
-        /// What refers to it: a JSON path such as "buffers[0].uri", or the role of an .obj's companion.
+        /// What refers to it: a JSON path such as `buffers[0].uri`, or the role of an .obj's companion.
         place: String,
         /// The missing file's percent-decoded URI, or its bare name if it is a companion.
         uri: String,
