@@ -2,10 +2,15 @@
 // name never changes; the page itself has a version, which this worker shares. A new version waits until a page asks for it.
 // Requests for anything else are left alone: other sites, files beside the page, ranges.
 
-/** The build sets both. */
+/** The build sets these three. */
 const VERSION = "";
 /** @type {string[]} */
 const FILES = [];
+/**
+ * The files of each program. Only those that the page asks to keep are stored, since it runs one of them.
+ * @type {Record<string, string[]>}
+ */
+const PROGRAMS = {};
 
 const worker = /** @type {ServiceWorkerGlobalScope} */ (/** @type {unknown} */ (self));
 const { scope } = worker.registration;
@@ -22,7 +27,20 @@ async function fill() {
   if (!page.ok || !text.includes(VERSION)) throw new Error("the page's version differs from this service worker's; a later visit tries again");
   // A redirected response can't answer a navigation, so the page is stored as a new one.
   await cache.put("./", new Response(text, { headers: page.headers }));
-  await Promise.all(FILES.map(async (file) => cache.put(file, await fetched(file))));
+  await keep([...FILES, ...(await programsInUse())]);
+}
+
+/** Files of the programs that earlier versions stored: without them, this version would not work offline. */
+async function programsInUse() {
+  const stored = await Promise.all((await caches.keys()).filter((name) => name.startsWith(PREFIX)).map(async (name) => (await caches.open(name)).keys()));
+  const isStored = (/** @type {string} */ program) => stored.flat().some(({ url }) => url.startsWith(`${scope}${program}-`));
+  return Object.keys(PROGRAMS).filter(isStored).flatMap((program) => PROGRAMS[program]);
+}
+
+/** @param {string[]} files */
+async function keep(files) {
+  const cache = await caches.open(CACHE);
+  await Promise.all(files.map(async (file) => cache.put(file, await fetched(file))));
 }
 
 /** @param {string} file */
@@ -44,7 +62,13 @@ async function tidy() {
   for (const name of await caches.keys()) if (name.startsWith(PREFIX) && name !== CACHE) await caches.delete(name);
 }
 
-worker.addEventListener("message", ({ data }) => data === "use" && worker.skipWaiting());
+worker.addEventListener("message", (event) => {
+  const { data } = event;
+  if (data.use) worker.skipWaiting();
+  const files = Object.values(PROGRAMS).flat();
+  // Of another version if the page is older or newer than this worker.
+  if (data.keep) event.waitUntil(keep(data.keep.filter((/** @type {string} */ file) => files.includes(file))));
+});
 
 worker.addEventListener("fetch", (event) => {
   const { method, mode, url, headers } = event.request;

@@ -5,15 +5,6 @@ use std::sync::{Arc, Mutex};
 
 use eframe::egui_wgpu;
 
-/// The page's graphics APIs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Backend {
-    /// The browser's WebGPU.
-    WebGpu,
-    /// WebGL 2: wgpu's GL backend in the browser.
-    WebGl2,
-}
-
 /// Called with the message of a fatal graphics error; see [`set_fatal_hook`].
 pub type FatalHook = fn(&str);
 
@@ -104,13 +95,9 @@ pub fn native_options() -> eframe::NativeOptions {
     }
 }
 
-/// Returns the options for the page's canvas. Without a backend, WebGPU is used if there is an adapter, otherwise WebGL2.
+/// Returns the options for the page's canvas. The page is compiled with one back end.
 #[cfg(target_arch = "wasm32")]
-pub fn web_options(backend: Option<Backend>) -> eframe::WebOptions {
-    let backends = match backend {
-        None => wgpu::Backends::BROWSER_WEBGPU | wgpu::Backends::GL,
-        Some(Backend::WebGpu) => wgpu::Backends::BROWSER_WEBGPU,
-        Some(Backend::WebGl2) => wgpu::Backends::GL,
-    };
-    eframe::WebOptions { wgpu_options: configuration(Some(backends)), ..Default::default() }
+pub fn web_options() -> eframe::WebOptions {
+    let compiled = wgpu::Backends::BROWSER_WEBGPU | wgpu::Backends::GL;
+    eframe::WebOptions { wgpu_options: configuration(Some(compiled)), ..Default::default() }
 }

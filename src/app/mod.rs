@@ -13,7 +13,7 @@ mod scene_texture;
 mod timing;
 mod viewport;
 
-pub use device::{Backend, FatalHook, set_fatal_hook};
+pub use device::{FatalHook, set_fatal_hook};
 pub use host::Host;
 pub use inbox::{Inbox, Message, Opening, Reply, ScriptCall};
 pub use run::App;

@@ -6,7 +6,7 @@ use js_sys::Array;
 use wasm_bindgen::prelude::*;
 
 use super::shell::{self, Shell};
-use crate::app::{App, Backend, Host, Inbox, set_fatal_hook, web_options};
+use crate::app::{App, Host, Inbox, set_fatal_hook, web_options};
 use crate::editor::{Contents, OpenedModel};
 use crate::files::{Item, OpenError, Role, open_items, open_view};
 use crate::samples;
@@ -39,12 +39,10 @@ pub fn start() {
 
 /// Opens the link's files, or `items` (see [`super::calls::open`]) in the link's view, with the motions in `motion_items` and
 /// those that the link lists. `is_private` marks the items as the user's local files. Resolves once the first image has been
-/// requested, to a JSON list of problems; call [`super::calls::begin`] next. `renderer` is `webgpu`, `webgl2` or nothing.
-/// Rejects if no device is available; retry with a new canvas.
+/// requested, to a JSON list of problems; call [`super::calls::begin`] next. Rejects if no device is available.
 #[wasm_bindgen]
 pub async fn run(
     canvas: web_sys::HtmlCanvasElement,
-    renderer: Option<String>,
     link: String,
     items: Array,
     motion_items: Array,
@@ -54,11 +52,6 @@ pub async fn run(
     shell::set_shell(shell.clone());
     let first = first_contents(&link, &items, &motion_items, is_private, &shell).await;
     let (contents, state, problems) = first.map_err(|error| JsError::new(&error))?;
-    let backend = match renderer.as_deref() {
-        Some("webgpu") => Some(Backend::WebGpu),
-        Some("webgl2") => Some(Backend::WebGl2),
-        _ => None,
-    };
     let runner = eframe::WebRunner::new();
     let inbox_cell = std::rc::Rc::new(RefCell::new(None));
     let app_inbox_cell = inbox_cell.clone();
@@ -67,7 +60,7 @@ pub async fn run(
         let app = App::new(cc, host, contents, Some(state), |inbox| *app_inbox_cell.borrow_mut() = Some(inbox))?;
         Ok(Box::new(app))
     });
-    runner.start(canvas, web_options(backend), create).await.map_err(|error| JsError::new(&text_of(&error)))?;
+    runner.start(canvas, web_options(), create).await.map_err(|error| JsError::new(&text_of(&error)))?;
     let inbox = inbox_cell.borrow_mut().take().ok_or_else(|| JsError::new("Gaitway couldn't start"))?;
     let page = Page { runner, inbox, shell, loads: Cell::new(0) };
     PAGE.with_borrow_mut(|slot| *slot = Some(std::rc::Rc::new(page)));

@@ -13,7 +13,7 @@ import { readOrReport } from "./load.js";
 import { showOpenDialog } from "./open-dialog.js";
 import { panel, sayProblem, showCannotRun, showPanel, showProgress } from "./panels.js";
 import { arePrivate } from "./privacy.js";
-import { loadProgram } from "./program.js";
+import { backendsToTry, keepProgram, loadProgram } from "./program.js";
 import { download, startRecording, stopRecording } from "./recording.js";
 import { session } from "./session.js";
 import { share } from "./share.js";
@@ -24,11 +24,10 @@ import { share } from "./share.js";
 /** @typedef {import("./types.d.ts").ShellCalls} ShellCalls */
 
 /**
- * The back end that the last instance asked for or got.
- * @type {Backend | null}
+ * The back end of the last instance.
+ * @type {Backend}
  */
-let backend = null;
-const usedBackend = () => backend ?? (hasBackend("webgpu") ? "webgpu" : "webgl2");
+let backend = "webgl2";
 
 /**
  * Aborts a start that is under way.
@@ -58,18 +57,19 @@ async function start(renderer) {
     showCannotRun(lacking.missing, lacking.attempts);
     throw new Error(lacking.missing.join(" "));
   }
-  const bindings = await loadProgram();
-  readLinksWith(bindings);
-  session.link = awaited()?.link ?? session.link;
-  awaitFiles(session.link);
-  session.askedLink = null;
-  const files = await Promise.all([heldItems(session.link), heldMotions(session.link)].map((items) => readOrReport(items, sayProblem)));
   const problems = [];
-  /** @type {(Backend | null)[]} */
-  const attempts = renderer === null ? [null, "webgl2"] : [renderer];
-  for (const attempt of attempts) {
+  for (const attempt of renderer === null ? await backendsToTry() : [renderer]) {
+    const bindings = await loadProgram(attempt);
+    readLinksWith(bindings);
+    session.link = awaited()?.link ?? session.link;
+    awaitFiles(session.link);
+    session.askedLink = null;
+    const files = await Promise.all([heldItems(session.link), heldMotions(session.link)].map((items) => readOrReport(items, sayProblem)));
     const problem = await startOn(bindings, attempt, files);
-    if (problem === null) return;
+    if (problem === null) {
+      keepProgram(attempt);
+      return;
+    }
     problems.push(problem);
   }
   const other = renderer === null ? null : otherBackend(renderer);
@@ -80,7 +80,7 @@ async function start(renderer) {
 /**
  * Starts on one back end; returns the problem if it can't be used.
  * @param {Bindings} bindings
- * @param {Backend | null} renderer
+ * @param {Backend} renderer
  * @param {ReadItem[][]} files Local files of the model, and of its motions.
  */
 async function startOn(bindings, renderer, [items, motionItems]) {
@@ -95,14 +95,13 @@ async function startOn(bindings, renderer, [items, motionItems]) {
   let missing;
   try {
     const isPrivate = arePrivate([...heldItems(link), ...heldMotions(link)]);
-    const run = bindings.run(canvas, renderer ?? undefined, link, items, motionItems, isPrivate, callsFor(bindings));
+    const run = bindings.run(canvas, link, items, motionItems, isPrivate, callsFor(bindings));
     missing = JSON.parse(await Promise.race([run, aborted]));
   } catch (error) {
     if (panel() === "stopped") throw error;
-    return `${renderer === null ? "Graphics" : BACKEND_NAMES[renderer]}: ${messageOf(error)}`;
+    return `${BACKEND_NAMES[renderer]}: ${messageOf(error)}`;
   }
   session.app = bindings;
-  backend = /** @type {Backend} */ (JSON.parse(bindings.stats()).backend);
   canvas.addEventListener("webglcontextlost", () => stopped("The browser took the graphics context away."));
   await showFirstFrame(canvas, aborted, bindings);
   showPanel(null);
@@ -129,7 +128,7 @@ function newCanvas() {
  * @param {Bindings} bindings
  */
 async function showFirstFrame(canvas, aborted, bindings) {
-  const presentFrames = drawOffScreen(canvas, usedBackend());
+  const presentFrames = drawOffScreen(canvas, backend);
   // One for the panels, one for the scene, and one to be sure that both came before it.
   await frames(3);
   await Promise.race([bindings.begin(), aborted]);
@@ -172,7 +171,7 @@ function stopped(message) {
   abortStart?.(new Error(message));
   session.stopReason = message;
   byId("stopped-why").textContent = message.charAt(0).toUpperCase() + message.slice(1);
-  const other = otherBackend(usedBackend());
+  const other = otherBackend(backend);
   button("stopped-other").textContent = `Use ${BACKEND_NAMES[other]} instead`;
   button("stopped-other").onclick = () => launch(other);
   button("stopped-other").hidden = !hasBackend(other);
@@ -201,7 +200,7 @@ function end(instance) {
 
 session.restart = () => {
   end(session.app);
-  launch(usedBackend());
+  launch(backend);
 };
 
 /** @param {unknown} error */
@@ -212,5 +211,5 @@ function stopOnTrap(error) {
 
 addEventListener("error", ({ error }) => stopOnTrap(error));
 addEventListener("unhandledrejection", ({ reason }) => stopOnTrap(reason));
-button("stopped-again").addEventListener("click", () => launch(usedBackend()));
+button("stopped-again").addEventListener("click", () => launch(backend));
 for (const id of ["stopped-reload", "cannot-run-reload"]) button(id).addEventListener("click", () => location.reload());

@@ -34,6 +34,6 @@ function offer(worker) {
     // Another tab may have activated it already.
     if (worker.state !== "installed") return location.reload();
     navigator.serviceWorker.addEventListener("controllerchange", () => location.reload(), { once: true });
-    worker.postMessage("use");
+    worker.postMessage({ use: true });
   };
 }

@@ -1,54 +1,117 @@
-// Downloads and compiles the program, and loads its bindings.
-import { TRY_BROWSER } from "./capabilities.js";
+// Downloads and compiles the program, and loads its bindings. There is one program per back end; only the one that is used is
+// downloaded.
+import { TRY_BROWSER, forcedBackend, hasBackend } from "./capabilities.js";
 import { messageOf } from "./dom.js";
 import { showCannotRun, showProgress } from "./panels.js";
 
+/** @typedef {import("./types.d.ts").Backend} Backend */
 /** @typedef {import("./types.d.ts").Bindings} Bindings */
 
-const meta = /** @type {HTMLMetaElement} */ (document.querySelector('meta[name="gaitway-module"]'));
-const moduleUrl = new URL(meta.content, document.baseURI).href;
-const wasmUrl = new URL(/** @type {string} */ (meta.dataset.wasm), document.baseURI).href;
+/** @typedef {{ compiled: Promise<WebAssembly.Module>, abort: () => void }} Download */
+
+const meta = /** @type {HTMLMetaElement} */ (document.querySelector('meta[name="gaitway-programs"]'));
+/**
+ * The build records the length, because the header may give the compressed one.
+ * @type {Record<Backend, { script: string, wasm: string, bytes: number }>}
+ */
+const programs = JSON.parse(meta.content);
 
 /**
- * Compiled once for all instances.
- * @type {WebAssembly.Module | null}
+ * Each is compiled once for all instances.
+ * @type {Partial<Record<Backend, Download>>}
  */
-let compiled = null;
+const downloads = {};
 let instanceCount = 0;
+
+/** The back ends to try, in this order. Asks for an adapter, because a browser may have WebGPU and none. */
+export async function backendsToTry() {
+  const adapter = await navigator.gpu?.requestAdapter().catch(() => null);
+  /** @type {Backend[]} */
+  const backends = adapter ? ["webgpu", "webgl2"] : ["webgl2"];
+  if (!adapter) cancel("webgpu");
+  return backends;
+}
 
 /**
  * Returns the bindings of a fresh instance.
+ * @param {Backend} backend
  * @returns {Promise<Bindings>}
  */
-export async function loadProgram() {
+export async function loadProgram(backend) {
   try {
-    compiled ??= await compile();
+    const script = new URL(programs[backend].script, document.baseURI).href;
+    const { compiled } = download(backend);
     instanceCount += 1;
     // A URL of its own makes an instance of its own.
-    const bindings = await import(instanceCount === 1 ? moduleUrl : `${moduleUrl}?instance=${instanceCount}`);
-    await bindings.default({ module_or_path: compiled });
+    const [bindings, module] = await Promise.all([import(instanceCount === 1 ? script : `${script}?instance=${instanceCount}`), compiled]);
+    await bindings.default({ module_or_path: module });
     return bindings;
   } catch (error) {
+    // The next attempt downloads it again.
+    delete downloads[backend];
     showCannotRun([`The program couldn't be loaded: ${messageOf(error)}`], ["Check the connection and reload the page.", TRY_BROWSER]);
     throw error;
   }
 }
 
-/** Compiles the program while it downloads, and shows how far it has got. */
-async function compile() {
-  const response = await fetch(wasmUrl);
-  if (!response.ok || response.body === null) throw new Error(`${wasmUrl}: the server answered ${response.status}`);
-  // The header may give the compressed length; the build records the other.
-  const total = Number(meta.dataset.bytes ?? response.headers.get("content-length") ?? 0);
+/**
+ * Has the service worker store a program, so that it runs offline.
+ * @param {Backend} backend
+ */
+export async function keepProgram(backend) {
+  const { script, wasm } = programs[backend];
+  // `ready` never resolves if there is no service worker.
+  const registration = await navigator.serviceWorker?.ready;
+  registration?.active?.postMessage({ keep: [script, wasm] });
+}
+
+/** @param {Backend} backend */
+function cancel(backend) {
+  downloads[backend]?.abort();
+  delete downloads[backend];
+}
+
+/**
+ * Starts to download a program, unless that has been done.
+ * @param {Backend} backend
+ */
+function download(backend) {
+  return (downloads[backend] ??= begin(backend));
+}
+
+/**
+ * @param {Backend} backend
+ * @returns {Download}
+ */
+function begin(backend) {
+  const controller = new AbortController();
+  const compiled = compile(backend, controller.signal);
+  // Whoever waits for it gets the error; nobody may.
+  compiled.catch(() => {});
+  return { compiled, abort: () => controller.abort() };
+}
+
+/**
+ * Compiles the program while it downloads, and shows how far it has got.
+ * @param {Backend} backend
+ * @param {AbortSignal} signal
+ */
+async function compile(backend, signal) {
+  const { wasm, bytes } = programs[backend];
+  const response = await fetch(new URL(wasm, document.baseURI), { signal });
+  if (!response.ok || response.body === null) throw new Error(`${response.url}: the server answered ${response.status}`);
   let received = 0;
   /** @type {TransformStream<Uint8Array<ArrayBuffer>, Uint8Array<ArrayBuffer>>} */
   const counter = new TransformStream({
     transform(chunk, controller) {
       received += chunk.byteLength;
-      showProgress("Loading Gaitway", received, total);
+      showProgress("Loading Gaitway", received, bytes);
       controller.enqueue(chunk);
     },
   });
   const headers = { "content-type": "application/wasm" };
   return await WebAssembly.compileStreaming(new Response(response.body.pipeThrough(counter), { headers }));
 }
+
+// The likely one, before anything else.
+if (typeof WebAssembly === "object") download(forcedBackend() ?? (hasBackend("webgpu") ? "webgpu" : "webgl2"));

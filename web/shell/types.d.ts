@@ -47,7 +47,6 @@ export interface Bindings {
   default(options: { module_or_path: WebAssembly.Module }): Promise<unknown>;
   run(
     canvas: HTMLCanvasElement,
-    renderer: Backend | undefined,
     link: string,
     items: ReadItem[],
     motionItems: ReadItem[],

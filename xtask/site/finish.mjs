@@ -1,15 +1,17 @@
-// Turns what trunk left into a site: adds samples with their images, icons, manifest and service worker, and names everything
-// but index.html, manifest.webmanifest and sw.js after a hash of its content. Arguments: the folder, and the URL that the
-// site will have (optional).
+// Makes the site: the page with its scripts and styles, the programs, samples with their images, icons, manifest and service
+// worker. Everything but index.html, manifest.webmanifest and sw.js is named after a hash of its content. Arguments: the
+// folder of the site, that of the programs, and the URL that the site will have (optional).
 import crypto from "node:crypto";
 import fs from "node:fs";
 import path from "node:path";
-import { transform } from "esbuild";
+import { build, transform } from "esbuild";
 import sharp from "sharp";
 import { renderScenes } from "./pictures.mjs";
 import { linkOf, readSamples, readScenes } from "./samples.mjs";
 
-const [dist, url] = process.argv.slice(2);
+const [dist, programs, url] = process.argv.slice(2);
+/** What every browser with WebAssembly SIMD understands. */
+const TARGET = "es2022";
 const STILL = "640x480";
 /** The background of transparent images. */
 const STUDIO = "#a3a6ab";
@@ -40,29 +42,34 @@ function put(folder, name, extension, bytes) {
  * @param {string} to
  */
 function replaced(text, from, to) {
-  if (!text.includes(from)) throw new Error(`dist/index.html: expected ${from}`);
+  if (!text.includes(from)) throw new Error(`web/index.html: expected ${from}`);
   return text.replace(from, () => to);
 }
 
-/** @param {string} css */
-const minifiedCss = async (css) => (await transform(css, { loader: "css", minify: true })).code;
+/** @param {string} file */
+const text = (file) => fs.readFileSync(file, "utf8");
 
-/**
- * Renames trunk's files, whose hashes are from before they were minified.
- * @param {string} html
- */
-async function renamed(html) {
-  for (const file of fs.readdirSync(dist).filter((file) => /\.(js|wasm|css|svg)$/.test(file))) {
-    const [, name, rest] = file.match(/^(.*)-[0-9a-f]+((?:_bg)?\.\w+)$/) ?? ["", file, ""];
-    if (rest === "") throw new Error(`dist/${file}: expected a name with a hash`);
-    const content = fs.readFileSync(path.join(dist, file));
-    const bytes = rest === ".css" ? await minifiedCss(content.toString()) : content;
-    fs.rmSync(path.join(dist, file));
-    html = html.replaceAll(file, put("", name, rest, bytes));
-  }
-  return html;
+/** @type {(file: string, options: import("esbuild").TransformOptions) => Promise<string>} */
+const minified = async (file, options) => (await transform(text(file), { minify: true, ...options })).code;
+
+/** Bundles the page's modules into one file, so that they take one request. */
+async function bundledShell() {
+  const { outputFiles } = await build({ entryPoints: ["web/shell.js"], bundle: true, format: "esm", minify: true, target: TARGET, write: false, logLevel: "warning" });
+  return outputFiles[0].text;
 }
 
+/**
+ * Puts a program and its script in place, and returns what the shell has to know of it.
+ * @param {string} backend
+ */
+async function putProgram(backend) {
+  const wasm = fs.readFileSync(path.join(programs, `${backend}.wasm`));
+  const script = await minified(path.join(programs, `${backend}.js`), { target: TARGET });
+  return { script: put("", backend, ".js", script), wasm: put("", backend, ".wasm", wasm), bytes: wasm.length };
+}
+
+fs.rmSync(dist, { recursive: true, force: true });
+const [webgpu, webgl2] = await Promise.all(["webgpu", "webgl2"].map(putProgram));
 const samples = readSamples();
 const scenes = readScenes(samples);
 const addresses = Object.fromEntries(
@@ -112,6 +119,7 @@ const cards = scenes.map(
 const head = [
   '<link rel="manifest" href="manifest.webmanifest">',
   `<link rel="apple-touch-icon" href="${touchIcon}">`,
+  `<meta name="gaitway-programs" content="${escaped(JSON.stringify({ webgpu, webgl2 }))}">`,
   `<meta name="gaitway-samples" content="${escaped(JSON.stringify(addresses))}">`,
   // Many sites need an absolute URL.
   `<meta property="og:image" content="${escaped(url === undefined ? previewFile : new URL(previewFile, url).href)}">`,
@@ -121,7 +129,11 @@ const head = [
   ...(url === undefined ? [] : [`<meta property="og:url" content="${escaped(url)}">`, `<link rel="canonical" href="${escaped(url)}">`]),
 ];
 const index = path.join(dist, "index.html");
-let html = await renamed(fs.readFileSync(index, "utf8"));
+let html = text("web/index.html");
+html = replaced(html, 'href="icon.svg"', `href="${put("", "icon", ".svg", icon)}"`);
+html = replaced(html, 'href="shell.css"', `href="${put("", "shell", ".css", await minified("web/shell.css", { loader: "css" }))}"`);
+html = replaced(html, 'src="shell.js"', `src="${put("", "shell", ".js", await bundledShell())}"`);
+html = replaced(html, 'src="still.js"', `src="${put("", "still", ".js", await minified("web/still.js", { target: TARGET }))}"`);
 html = replaced(html, "<!-- scenes -->", cards.join("\n        "));
 // Of several scenes with one model the first, which is the plainest.
 const images = Object.fromEntries(scenes.map(({ model }, index) => [model, stills[index].large]).reverse());
@@ -132,10 +144,11 @@ html = replaced(html, "<title>", `${head.join("\n    ")}\n    <title>`);
 const files = fs
   .readdirSync(dist, { recursive: true, encoding: "utf8" })
   .map((file) => file.split(path.sep).join("/"))
-  .filter((file) => fs.statSync(path.join(dist, file)).isFile() && file !== "index.html" && file !== previewFile)
+  .filter((file) => fs.statSync(path.join(dist, file)).isFile() && file !== previewFile && !file.endsWith(".wasm") && ![webgpu.script, webgl2.script].includes(file))
   .sort();
 const version = hashOf(html, files.join("\n"), fs.readFileSync(path.join(dist, "manifest.webmanifest")), fs.readFileSync("web/sw.js"));
 fs.writeFileSync(index, replaced(html, "<title>", `<meta name="gaitway-version" content="${version}">\n    <title>`));
-const worker = fs.readFileSync("web/sw.js", "utf8").replace('VERSION = ""', `VERSION = "${version}"`).replace("FILES = []", `FILES = ${JSON.stringify(files)}`);
-const { code } = await transform(worker, { minify: true, format: "iife", target: "es2022" });
+const stored = { webgpu: [webgpu.script, webgpu.wasm], webgl2: [webgl2.script, webgl2.wasm] };
+const worker = text("web/sw.js").replace('VERSION = ""', `VERSION = "${version}"`).replace("FILES = []", `FILES = ${JSON.stringify(files)}`).replace("PROGRAMS = {}", `PROGRAMS = ${JSON.stringify(stored)}`);
+const { code } = await transform(worker, { minify: true, format: "iife", target: TARGET });
 fs.writeFileSync(path.join(dist, "sw.js"), code);

@@ -1,11 +1,13 @@
-// Writes compressed copies of everything that compresses, for hosts that can send them, and prints what a visitor downloads;
-// fails when the page itself exceeds the budget. Samples and images are counted apart, since each is loaded when it is shown.
-// Arguments: the folder, and the budget in bytes.
+// Writes compressed copies of everything that compresses, for hosts that can send them, and prints what a visitor downloads:
+// the shell and one of the two programs. Fails if that exceeds a budget. Samples and images are counted apart, since each is
+// loaded when it is shown. Arguments: the folder, and the budgets in bytes with the WebGPU and with the WebGL2 program.
 import fs from "node:fs";
 import path from "node:path";
 import zlib from "node:zlib";
 
-const [folder, budget] = [process.argv[2], Number(process.argv[3])];
+const folder = process.argv[2];
+const [webgpu, webgl2] = process.argv.slice(3).map(Number);
+const BUDGETS = { webgpu, webgl2 };
 const COMPRESSED_ALREADY = [".webp", ".jpg", ".png"];
 /** @typedef {{ raw: number, gzip: number, brotli: number }} Size */
 
@@ -15,7 +17,9 @@ const number = (value) => value.toLocaleString("en").padStart(12);
 const line = (name, { raw, gzip, brotli }) => console.log(`${name.padEnd(48)}${number(raw)}${number(gzip)}${number(brotli)}`);
 
 /** @type {Record<string, Size>} */
-const parts = { page: { raw: 0, gzip: 0, brotli: 0 } };
+const parts = {};
+/** @param {string} name */
+const partOf = (name) => (name.includes(path.sep) ? name.split(path.sep)[0] : (Object.keys(BUDGETS).find((program) => name.startsWith(`${program}-`)) ?? "shell"));
 console.log(`${"bytes".padEnd(48)}${"raw".padStart(12)}${"gzip".padStart(12)}${"brotli".padStart(12)}`);
 for (const name of fs.readdirSync(folder, { recursive: true, encoding: "utf8" }).sort()) {
   const file = path.join(folder, name);
@@ -28,12 +32,13 @@ for (const name of fs.readdirSync(folder, { recursive: true, encoding: "utf8" })
     fs.writeFileSync(`${file}.br`, copies.brotli);
     [size.gzip, size.brotli] = [copies.gzip.length, copies.brotli.length];
   }
-  const part = (parts[name.includes(path.sep) ? name.split(path.sep)[0] : "page"] ??= { raw: 0, gzip: 0, brotli: 0 });
+  const part = (parts[partOf(name)] ??= { raw: 0, gzip: 0, brotli: 0 });
   for (const kind of /** @type {const} */ (["raw", "gzip", "brotli"])) part[kind] += size[kind];
   line(name, size);
 }
 for (const [part, size] of Object.entries(parts)) line(`all: ${part}`, size);
-if (parts.page.brotli > budget) {
-  console.error(`the page takes ${parts.page.brotli} bytes with brotli, more than its budget of ${budget}`);
-  process.exit(1);
+for (const [program, budget] of Object.entries(BUDGETS)) {
+  const brotli = parts.shell.brotli + parts[program].brotli;
+  console.log(`the page with ${program}: ${brotli.toLocaleString("en")} bytes with brotli, of at most ${budget.toLocaleString("en")}`);
+  if (brotli > budget) process.exitCode = 1;
 }

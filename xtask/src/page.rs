@@ -1,12 +1,14 @@
-//! The page: trunk compiles and binds, wasm-opt and esbuild make it smaller, the length of the program is written down so that
-//! the page can show how far its loading has got, and `xtask/site` puts samples, pictures and the service worker beside it.
+//! The page: one program per back end, compiled, bound and optimized here; `xtask/site` makes a site of them.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+use std::thread;
 
-use anyhow::Context;
+use anyhow::{Context, anyhow};
 
-use crate::process::{repository, run};
+use crate::process::{repository, run, target_folder};
+
+const BACK_ENDS: [&str; 2] = ["webgpu", "webgl2"];
 
 /// WebAssembly features that rustc uses today. Every browser with SIMD supports them.
 const WASM_FEATURES: [&str; 8] = [
@@ -26,56 +28,44 @@ pub fn dist() -> PathBuf {
 
 /// `url` is the site's future URL, for link previews.
 pub fn build(features: &[&str], url: Option<&str>) -> anyhow::Result<()> {
-    let features = features.join(",");
-    let mut arguments = vec!["build", "--offline"];
-    if !features.is_empty() {
-        arguments.extend(["--features", &features]);
-    }
-    run("trunk", &arguments)?;
-    let wasm = file_with_suffix("_bg.wasm")?;
-    optimise(&wasm)?;
-    rename_imports(&wasm)?;
-    write_length(&wasm)?;
-    let dist = dist();
-    let folder = dist.to_str().context("the repository's path is not UTF-8")?;
-    run("node", &["xtask/site/scripts.mjs", folder])?;
-    let mut arguments = vec!["xtask/site/finish.mjs", folder];
+    // Cargo spends most of a build on one core, in link-time optimization: meanwhile the other optimizes the previous program.
+    thread::scope(|scope| {
+        let mut optimizing = Vec::new();
+        for back_end in BACK_ENDS {
+            compile(back_end, features)?;
+            optimizing.push(scope.spawn(move || optimize(back_end)));
+        }
+        optimizing.into_iter().try_for_each(|thread| thread.join().map_err(|_| anyhow!("wasm-opt's thread panicked"))?)
+    })?;
+    let (dist, programs) = (dist(), programs());
+    let mut arguments = vec!["xtask/site/finish.mjs", text(&dist)?, text(&programs)?];
     arguments.extend(url);
     run("node", &arguments)
 }
 
-fn optimise(wasm: &Path) -> anyhow::Result<()> {
-    let file = wasm.to_str().context("the repository's path is not UTF-8")?;
-    run(
-        "node",
-        &[&["node_modules/binaryen/bin/wasm-opt", "--gufa", "-Oz"], &WASM_FEATURES[..], &[file, "-o", file]].concat(),
-    )
+/// Holds `BACK_END.js` and `BACK_END.wasm`.
+fn programs() -> PathBuf {
+    target_folder().join("page")
 }
 
-/// The script has the program's name with another suffix.
-fn rename_imports(wasm: &Path) -> anyhow::Result<()> {
-    let program = wasm.to_str().context("the repository's path is not UTF-8")?;
-    let script = program.replace("_bg.wasm", ".js");
-    run("node", &["xtask/site/imports.mjs", program, &script])
+fn compile(back_end: &str, features: &[&str]) -> anyhow::Result<()> {
+    let features = [&["viewer", back_end], features].concat().join(",");
+    let cargo = ["build", "--locked", "--bin", "gaitway", "--target", "wasm32-unknown-unknown", "--profile", "web"];
+    run("cargo", &[&cargo[..], &["--no-default-features", "--features", &features]].concat())?;
+    let built = target_folder().join("wasm32-unknown-unknown/web/gaitway.wasm");
+    let folder = programs();
+    let bind = ["--target", "web", "--no-typescript", "--out-name", back_end, "--out-dir", text(&folder)?, text(&built)?];
+    run("wasm-bindgen", &bind)
 }
 
-/// If the host sends the program compressed, its Content-Length isn't the length that the page counts up to.
-fn write_length(wasm: &Path) -> anyhow::Result<()> {
-    let index = dist().join("index.html");
-    let length = fs::metadata(wasm)?.len();
-    let html = fs::read_to_string(&index).context("dist/index.html")?;
-    let marked = html.replacen(" data-wasm=", &format!(" data-bytes=\"{length}\" data-wasm="), 1);
-    anyhow::ensure!(marked != html, "dist/index.html doesn't name the program: see pattern_script in Trunk.toml");
-    Ok(fs::write(&index, marked)?)
+fn optimize(back_end: &str) -> anyhow::Result<()> {
+    let bound = programs().join(format!("{back_end}_bg.wasm"));
+    let optimized = programs().join(format!("{back_end}.wasm"));
+    let wasm_opt = ["node_modules/binaryen/bin/wasm-opt", "--gufa", "-Oz"];
+    run("node", &[&wasm_opt, &WASM_FEATURES[..], &[text(&bound)?, "-o", text(&optimized)?]].concat())?;
+    Ok(fs::remove_file(bound)?)
 }
 
-fn file_with_suffix(suffix: &str) -> anyhow::Result<PathBuf> {
-    let mut paths = files()?.into_iter();
-    let found = paths.find(|path| path.to_str().is_some_and(|path| path.ends_with(suffix)));
-    found.with_context(|| format!("trunk left no *{suffix} in dist/"))
-}
-
-fn files() -> anyhow::Result<Vec<PathBuf>> {
-    let entries = fs::read_dir(dist()).context("dist/")?;
-    Ok(entries.filter_map(|entry| Some(entry.ok()?.path())).collect())
+fn text(path: &std::path::Path) -> anyhow::Result<&str> {
+    path.to_str().with_context(|| format!("{} is not UTF-8", path.display()))
 }

@@ -44,8 +44,7 @@ pub fn command(program: impl AsRef<OsStr>) -> Command {
     if let Ok(path) = std::env::join_paths(folders) {
         command.env("PATH", path);
     }
-    // trunk rejects NO_COLOR=1 as an invalid option value.
-    command.env_remove("NO_COLOR").env("CARGO_TARGET_DIR", target_folder()).current_dir(repository());
+    command.env("CARGO_TARGET_DIR", target_folder()).current_dir(repository());
     command
 }
 

@@ -7,7 +7,6 @@ use anyhow::{Context, bail};
 
 use crate::process::{is_ci, output, repository, run, tools_folder};
 
-const TRUNK: &str = "0.21.14";
 const WASM: &str = "wasm32-unknown-unknown";
 
 /// Everything needed to build the page.
@@ -16,10 +15,7 @@ pub fn page() -> anyhow::Result<()> {
         run("rustup", &["target", "add", WASM])
             .context("Rust's wasm32-unknown-unknown target is missing and rustup couldn't add it")?;
     }
-    cargo_tool("trunk", TRUNK, "trunk", &["--locked"])?;
-    // Must match the library's version. Its own lock file is older than that, so it is installed without it.
-    let version = locked_version("wasm-bindgen")?;
-    cargo_tool("wasm-bindgen", &version, "wasm-bindgen-cli", &[])?;
+    wasm_bindgen()?;
     npm_packages()
 }
 
@@ -77,31 +73,32 @@ fn has_wasm_target() -> bool {
     output("rustc", &["--print", "target-libdir", "--target", WASM]).is_some_and(|folder| Path::new(&folder).exists())
 }
 
-/// Makes sure that `program` has exactly this version: uses one that is on the path, else downloads a binary if
-/// cargo-binstall is installed, else compiles it, which takes minutes.
-fn cargo_tool(program: &str, version: &str, package: &str, compile_options: &[&str]) -> anyhow::Result<()> {
-    if has_version(program, version) {
+/// Makes sure that wasm-bindgen has the library's version: uses one that is on the path, else downloads a binary if
+/// cargo-binstall is installed, else compiles it, which takes a minute or two.
+fn wasm_bindgen() -> anyhow::Result<()> {
+    let version = locked_version("wasm-bindgen")?;
+    if has_wasm_bindgen(&version) {
         return Ok(());
     }
     let tools = tools_folder();
     let tools = tools.to_str().context("the target folder's path is not UTF-8")?;
-    let options = ["--version", version, "--root", tools];
+    // Without `--locked`: its own lock file has an older library.
+    let package = ["--version", &version, "--root", tools, "wasm-bindgen-cli"];
     if output("cargo", &["binstall", "-V"]).is_some() {
-        let binstall = [&["binstall", "--no-confirm"], &options[..], &[package]].concat();
-        match run("cargo", &binstall) {
-            Ok(()) if has_version(program, version) => return Ok(()),
-            Ok(()) => eprintln!("cargo binstall left no {program} {version}; compiling it"),
-            Err(error) => eprintln!("{error:#}; compiling {program} instead"),
+        match run("cargo", &[&["binstall", "--no-confirm"], &package[..]].concat()) {
+            Ok(()) if has_wasm_bindgen(&version) => return Ok(()),
+            Ok(()) => eprintln!("cargo binstall left no wasm-bindgen {version}; compiling it"),
+            Err(error) => eprintln!("{error:#}; compiling wasm-bindgen instead"),
         }
     }
-    run("cargo", &[&["install", package], &options[..], compile_options].concat())
+    run("cargo", &[&["install"], &package[..]].concat())
 }
 
-fn has_version(program: &str, version: &str) -> bool {
-    output(program, &["--version"]).is_some_and(|printed| reports_version(&printed, version))
+fn has_wasm_bindgen(version: &str) -> bool {
+    output("wasm-bindgen", &["--version"]).is_some_and(|printed| reports_version(&printed, version))
 }
 
-/// `trunk 0.21.14`, `wasm-bindgen 0.2.130 (…)`.
+/// `wasm-bindgen 0.2.130 (…)`.
 fn reports_version(printed: &str, version: &str) -> bool {
     printed.split_whitespace().nth(1) == Some(version)
 }
@@ -120,7 +117,7 @@ fn npm_packages() -> anyhow::Result<()> {
         return Ok(());
     }
     let npm = if cfg!(windows) { "npm.cmd" } else { "npm" };
-    run(npm, &["ci", "--no-audit", "--no-fund"]).context("Node.js 20 or later with npm is required")
+    run(npm, &["ci", "--no-audit", "--no-fund"]).context("Node.js 20.19 or later with npm is required")
 }
 
 fn has_vulkan_driver() -> bool {
@@ -141,9 +138,9 @@ mod tests {
 
     #[test]
     fn a_tool_of_another_version_does_not_count() {
-        assert!(reports_version("trunk 0.21.14", "0.21.14"));
+        assert!(reports_version("wasm-bindgen 0.2.130", "0.2.130"));
         assert!(reports_version("wasm-bindgen 0.2.130 (0123abc 2026-01-01)", "0.2.130"));
-        assert!(!reports_version("trunk 0.21.1", "0.21.14"));
-        assert!(!reports_version("trunk", "0.21.14"));
+        assert!(!reports_version("wasm-bindgen 0.2.13", "0.2.130"));
+        assert!(!reports_version("wasm-bindgen", "0.2.130"));
     }
 }

@@ -28,7 +28,7 @@ fn cargo_checks() -> anyhow::Result<()> {
     process::run("cargo", &["fmt", "--all", "--check"])?;
     let clippy = ["clippy", "--workspace", "--all-targets"];
     process::run("cargo", &[&clippy[..], &["--", "-D", "warnings"]].concat())?;
-    let wasm = ["clippy", "--target", "wasm32-unknown-unknown", "--features", "bench"];
+    let wasm = ["clippy", "--target", "wasm32-unknown-unknown", "--features", "bench,webgpu,webgl2"];
     process::run("cargo", &[&wasm[..], &["--", "-D", "warnings"]].concat())?;
     run_with("cargo", &["doc", "--no-deps"], &[("RUSTDOCFLAGS", "-D warnings")])?;
     process::run("cargo", &["test", "--no-default-features"])?;
