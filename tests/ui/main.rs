@@ -1,5 +1,7 @@
 //! The panels without a GPU: what they show for a model, and which commands its controls produce.
 
+#[path = "../support/allocations.rs"]
+mod allocations;
 mod bench;
 mod by_hand;
 mod clips;

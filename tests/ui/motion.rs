@@ -8,6 +8,7 @@ use gaitway::retarget::{ClipRef, Feet, JointMap, Keep, MutedProperty, RestChoice
 use gaitway::state::{ClipChoice, Command, MapEdit, active_map, muted_properties};
 use gaitway::ui::{PathPrompt, PathPurpose, Saved, Tab, UiAction, text};
 
+use crate::allocations::allocations_after;
 use crate::bench::{Bench, NARROW, WIDE, bench_of, drag, motion_bench, press, press_key, sample_bench};
 use crate::skeletons;
 
@@ -555,9 +556,9 @@ fn both_joints_are_clicked_where_both_are_shown() {
     assert_eq!(reach(&mut harness, &format!("{head}  Head")), source(head));
 }
 
-#[test]
-fn three_hundred_joints_have_their_lines() {
-    let names: Vec<String> = (0..300).map(|index| format!("Tentacle{index}")).collect();
+/// The Motion tab of a chain of joints that borrows from itself.
+fn bench_of_chain(joints: usize) -> Harness<'static, Bench> {
+    let names: Vec<String> = (0..joints).map(|index| format!("Tentacle{index}")).collect();
     let asset = skeletons::asset(skeletons::chain(names.iter().map(String::as_str), glam::Vec3::Y * 0.01));
     let mut library = Library::default();
     library.set(Model::new("squid.glb".to_owned(), asset, Vec::new()));
@@ -565,6 +566,27 @@ fn three_hundred_joints_have_their_lines() {
     library.set_motions(vec![Motion::new("swim.bvh".to_owned(), asset)]);
     let mut harness = bench_of(WIDE, library);
     press(&mut harness, Tab::Motion.label());
+    harness
+}
+
+/// egui allocates for what it lays out, which is the same for both, and grows some lists of its own. Rows out of sight must
+/// cost nothing.
+#[test]
+fn a_frame_of_the_table_allocates_no_more_for_more_joints() {
+    let frames = |joints: usize| {
+        let mut harness = bench_of_chain(joints);
+        let mut run = |harness: &mut Harness<'static, Bench>, frames: usize| (0..frames).for_each(|_| harness.step());
+        let counted = allocations_after(&mut harness, |harness| run(harness, 20), |harness| run(harness, 50));
+        assert!(harness.query_by_label_contains("Tentacle3 follows").is_some());
+        counted
+    };
+    let (few, many) = (frames(200), frames(1000));
+    assert!(few.abs_diff(many) <= 4 * 50, "50 frames: {few} allocations with 200 joints, {many} with 1,000");
+}
+
+#[test]
+fn three_hundred_joints_have_their_lines() {
+    let mut harness = bench_of_chain(300);
     assert!(harness.query_by_label(&text::joints_mapped(300, 300)).is_some());
     assert!(harness.query_by_label("Order: Body").is_none(), "it has no body");
     assert!(harness.query_by_label_contains("Tentacle250 follows").is_none(), "far out of sight");

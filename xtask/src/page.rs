@@ -35,7 +35,9 @@ pub fn build(features: &[&str], url: Option<&str>) -> anyhow::Result<()> {
             compile(back_end, features)?;
             optimizing.push(scope.spawn(move || optimize(back_end)));
         }
-        optimizing.into_iter().try_for_each(|thread| thread.join().map_err(|_| anyhow!("wasm-opt's thread panicked"))?)
+        optimizing
+            .into_iter()
+            .try_for_each(|thread| thread.join().map_err(|_| anyhow!("wasm-opt's thread panicked"))?)
     })?;
     let (dist, programs) = (dist(), programs());
     let mut arguments = vec!["xtask/site/finish.mjs", text(&dist)?, text(&programs)?];
@@ -54,7 +56,8 @@ fn compile(back_end: &str, features: &[&str]) -> anyhow::Result<()> {
     run("cargo", &[&cargo[..], &["--no-default-features", "--features", &features]].concat())?;
     let built = target_folder().join("wasm32-unknown-unknown/web/gaitway.wasm");
     let folder = programs();
-    let bind = ["--target", "web", "--no-typescript", "--out-name", back_end, "--out-dir", text(&folder)?, text(&built)?];
+    let bind =
+        ["--target", "web", "--no-typescript", "--out-name", back_end, "--out-dir", text(&folder)?, text(&built)?];
     run("wasm-bindgen", &bind)
 }
 

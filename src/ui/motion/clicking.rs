@@ -55,7 +55,7 @@ pub(in crate::ui) fn show(
     };
     let (asset, character, joints) = match clicking {
         Clicking::Target { .. } => {
-            let joints = local.motion.rows(&pairing).iter().map(|row| row.joint).collect();
+            let joints = local.motion.contents(shown, &pairing).rows.iter().map(|row| row.joint).collect();
             (&pairing.model.asset, shown.frame.characters.first(), joints)
         }
         Clicking::Source { .. } => {

@@ -1,12 +1,13 @@
 //! The joint table: every joint of the model, its source, how certain it is, and why.
 
 use std::collections::HashSet;
+use std::rc::Rc;
 
 use egui::{Align2, FontId, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 
 use super::picker::Picking;
 use super::rows::{BodyPart, Filter, Row, State};
-use super::{MotionTab, Pairing, detail};
+use super::{Contents, MotionTab, Pairing, detail};
 use crate::retarget::JointMap;
 use crate::state::Command;
 use crate::ui::{Output, Shown, controls, style};
@@ -29,6 +30,7 @@ pub(super) struct TableView {
     /// Ordered by hierarchy, even if parts of the body are known.
     pub tree: bool,
     folded: HashSet<BodyPart>,
+    lines: Option<Rc<Lines>>,
     /// The joint last scrolled to.
     scrolled_to: Option<usize>,
     /// A joint was just selected here: scroll its details into view, but no further than needed.
@@ -41,10 +43,8 @@ pub(super) fn has_body(pairing: &Pairing<'_>) -> bool {
 }
 
 /// Order and filter controls above the table.
-pub(super) fn choices(ui: &mut Ui, pairing: &Pairing<'_>, rows: &[Row], table: &mut TableView) {
-    let count = |filter: Filter| rows.iter().filter(|row| filter.lets_through(row)).count();
-    let name = |filter: Filter| Filter::ALL.iter().find(|(other, _)| *other == filter).map_or("", |(_, name)| name);
-    let text = |filter: Filter| format!("{} ({})", name(filter), count(filter));
+pub(super) fn choices(ui: &mut Ui, pairing: &Pairing<'_>, contents: &Contents, table: &mut TableView) {
+    let counted = || Filter::ALL.iter().zip(&contents.filters).map(|((filter, _), text)| (*filter, text));
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         let half = (ui.available_width() - 6.0) / 2.0;
@@ -58,9 +58,10 @@ pub(super) fn choices(ui: &mut Ui, pairing: &Pairing<'_>, rows: &[Row], table: &
             });
         }
         let combo = egui::ComboBox::from_id_salt("joint filter").width(ui.available_width()).height(320.0).truncate();
-        let response = combo.selected_text(text(table.filter)).show_ui(ui, |ui| {
-            for (filter, _) in Filter::ALL {
-                if ui.selectable_label(filter == table.filter, text(filter)).clicked() {
+        let text = counted().find(|(filter, _)| *filter == table.filter).map_or("", |(_, text)| text);
+        let response = combo.selected_text(text).show_ui(ui, |ui| {
+            for (filter, text) in counted() {
+                if ui.selectable_label(filter == table.filter, text).clicked() {
                     table.filter = filter;
                 }
             }
@@ -69,33 +70,104 @@ pub(super) fn choices(ui: &mut Ui, pairing: &Pairing<'_>, rows: &[Row], table: &
     });
 }
 
+/// The rows to show and their headings, kept while nothing they depend on changes.
+#[derive(Debug)]
+struct Lines {
+    contents: Rc<Contents>,
+    search: String,
+    filter: Filter,
+    chosen: Option<usize>,
+    by_body: bool,
+    lines: Vec<Line>,
+}
+
+#[derive(Debug)]
+enum Line {
+    Heading(Heading),
+    /// Index into [`Contents::rows`].
+    Row(usize),
+}
+
+/// Heading of a part of the body.
+#[derive(Debug)]
+struct Heading {
+    part: BodyPart,
+    /// How many of its joints have a source and how many need review.
+    counts: String,
+    label: String,
+    needs_review: bool,
+    has_chosen: bool,
+}
+
+impl Lines {
+    fn new(contents: &Rc<Contents>, table: &TableView, chosen: Option<usize>, by_body: bool) -> Self {
+        let (search, filter) = (table.search.clone(), table.filter);
+        let wanted = search.to_lowercase();
+        let is_shown = |row: &Row| {
+            let found = wanted.is_empty()
+                || row.target.to_lowercase().contains(&wanted)
+                || row.source_text.to_lowercase().contains(&wanted)
+                || row.what.contains(&wanted);
+            found && (filter.lets_through(row) || Some(row.number) == chosen)
+        };
+        let rows = &contents.rows;
+        let shown: Vec<usize> = (0..rows.len()).filter(|&row| is_shown(&rows[row])).collect();
+        let mut lines = Vec::new();
+        if by_body {
+            for part in BodyPart::ALL {
+                let of_part = || shown.iter().copied().filter(|&row| rows[row].part == part);
+                if of_part().next().is_some() {
+                    lines.push(Line::Heading(Heading::new(part, of_part().map(|row| &rows[row]), chosen)));
+                    lines.extend(of_part().map(Line::Row));
+                }
+            }
+        } else {
+            lines.extend(shown.into_iter().map(Line::Row));
+        }
+        Self { contents: contents.clone(), search, filter, chosen, by_body, lines }
+    }
+
+    fn is_current(&self, contents: &Rc<Contents>, table: &TableView, chosen: Option<usize>, by_body: bool) -> bool {
+        Rc::ptr_eq(&self.contents, contents)
+            && self.search == table.search
+            && (self.filter, self.chosen, self.by_body) == (table.filter, chosen, by_body)
+    }
+}
+
+impl Heading {
+    fn new<'a>(part: BodyPart, rows: impl Iterator<Item = &'a Row> + Clone, chosen: Option<usize>) -> Self {
+        let follow = rows.clone().filter(|row| row.source.is_some()).count();
+        let look = rows.clone().filter(|row| row.look).count();
+        let has_chosen = rows.clone().any(|row| Some(row.number) == chosen);
+        let mut counts = format!("{follow} of {}", rows.count());
+        if look > 0 {
+            let need = if look == 1 { "needs" } else { "need" };
+            counts = format!("{look} {need} review · {counts}");
+        }
+        let label = format!("{}, {counts}", part.title());
+        Self { part, counts, label, needs_review: look > 0, has_chosen }
+    }
+}
+
 pub(super) fn show(
     ui: &mut Ui,
     shown: &Shown<'_>,
     pairing: &Pairing<'_>,
     map: &JointMap,
-    rows: &[Row],
+    contents: &Rc<Contents>,
     tab: &mut MotionTab,
     out: &mut Output,
 ) {
-    let prefix = common_prefix(pairing);
     let chosen = shown.state.selection.joint;
-    let wanted = tab.table.search.to_lowercase();
-    let rows: Vec<&Row> = rows
-        .iter()
-        .filter(|row| tab.table.filter.lets_through(row) || Some(row.number) == chosen)
-        .filter(|row| {
-            wanted.is_empty()
-                || row.target.to_lowercase().contains(&wanted)
-                || row.source_text.to_lowercase().contains(&wanted)
-                || row.what.contains(&wanted)
-        })
-        .collect();
-    if rows.is_empty() {
-        let nothing = match wanted.is_empty() {
-            true if tab.table.filter == Filter::Look => "There is nothing that needs a look.".to_owned(),
+    let by_body = !tab.table.tree && has_body(pairing);
+    let kept = tab.table.lines.take().filter(|lines| lines.is_current(contents, &tab.table, chosen, by_body));
+    let lines = kept.unwrap_or_else(|| Rc::new(Lines::new(contents, &tab.table, chosen, by_body)));
+    tab.table.lines = Some(lines.clone());
+    if lines.lines.is_empty() {
+        let nothing = match lines.search.is_empty() {
+            true if lines.filter == Filter::Look => "There is nothing that needs a look.".to_owned(),
             true => "There are no such joints.".to_owned(),
-            false => format!("No such joint is called “{}”.", tab.table.search),
+            false => format!("No such joint is called “{}”.", lines.search),
         };
         controls::hint(ui, nothing);
         return;
@@ -103,58 +175,76 @@ pub(super) fn show(
     let scroll = tab.table.scrolled_to != chosen;
     tab.table.scrolled_to = chosen;
     ui.spacing_mut().item_spacing.y = 0.0;
-    let by_body = !tab.table.tree && has_body(pairing);
-    let many = rows.len() > MANY_ROWS;
-    let mut line = |ui: &mut Ui, row: &Row, tab: &mut MotionTab| {
-        let is_chosen = chosen == Some(row.number);
-        let indents = if by_body || !wanted.is_empty() { 0 } else { row.depth.min(MAX_INDENTS) };
-        match show_row(ui, row, prefix, is_chosen, indents as f32 * INDENT, scroll, many) {
+    let mut table = Table { shown, pairing, map, lines: &lines, scroll, out };
+    let mut is_open = true;
+    for line in &lines.lines {
+        match line {
+            Line::Heading(heading) => is_open = table.heading(ui, heading, tab),
+            Line::Row(row) if is_open => table.row(ui, &contents.rows[*row], tab),
+            Line::Row(_) => {}
+        }
+    }
+}
+
+/// The table while it is drawn.
+struct Table<'a, 'b> {
+    shown: &'b Shown<'a>,
+    pairing: &'b Pairing<'a>,
+    map: &'b JointMap,
+    lines: &'b Lines,
+    /// Another joint was selected elsewhere: scroll to it.
+    scroll: bool,
+    out: &'b mut Output,
+}
+
+impl Table<'_, '_> {
+    /// Returns whether the rows below are shown.
+    fn heading(&mut self, ui: &mut Ui, heading: &Heading, tab: &mut MotionTab) -> bool {
+        let folded = &mut tab.table.folded;
+        let part = heading.part;
+        let has_to_open = (heading.has_chosen && self.scroll) || !self.lines.search.is_empty();
+        if has_to_open {
+            folded.remove(&part);
+        }
+        let open = !folded.contains(&part);
+        if show_heading(ui, heading, open) {
+            if open {
+                folded.insert(part)
+            } else {
+                folded.remove(&part)
+            };
+        }
+        open
+    }
+
+    fn row(&mut self, ui: &mut Ui, row: &Row, tab: &mut MotionTab) {
+        let Lines { contents, chosen, by_body, search, lines, .. } = self.lines;
+        let is_chosen = *chosen == Some(row.number);
+        let indents = if *by_body || !search.is_empty() { 0 } else { row.depth.min(MAX_INDENTS) };
+        let many = lines.len() > MANY_ROWS;
+        match show_row(ui, row, &contents.prefix, is_chosen, indents as f32 * INDENT, self.scroll, many) {
             Some(Pressed::Target) => {
                 let joint = (!is_chosen).then_some(row.number);
                 // Already visible: it was just pressed.
                 tab.table.scrolled_to = joint;
                 tab.table.reveal = joint.is_some();
-                out.commands.push(Command::SelectJoint(joint));
+                self.out.commands.push(Command::SelectJoint(joint));
             }
-            Some(Pressed::Source) => tab.picking = Some(Picking::new(pairing.index, row.number)),
+            Some(Pressed::Source) => tab.picking = Some(Picking::new(self.pairing.index, row.number)),
             None => {}
         }
         if is_chosen {
-            let opened = ui.scope(|ui| detail::show(ui, shown, pairing, map, row, tab, out)).response;
+            let opened =
+                ui.scope(|ui| detail::show(ui, self.shown, self.pairing, self.map, row, tab, self.out)).response;
             if std::mem::take(&mut tab.table.reveal) {
                 opened.scroll_to_me(None);
             }
-        }
-    };
-    if !by_body {
-        rows.iter().for_each(|row| line(ui, row, tab));
-        return;
-    }
-    for part in BodyPart::ALL {
-        let rows: Vec<&Row> = rows.iter().copied().filter(|row| row.part == part).collect();
-        if rows.is_empty() {
-            continue;
-        }
-        let has_chosen = rows.iter().any(|row| Some(row.number) == chosen);
-        let open = !tab.table.folded.contains(&part) || (has_chosen && scroll) || !wanted.is_empty();
-        if open {
-            tab.table.folded.remove(&part);
-        }
-        if heading(ui, part, &rows, open) {
-            if open {
-                tab.table.folded.insert(part)
-            } else {
-                tab.table.folded.remove(&part)
-            };
-        }
-        if open {
-            rows.iter().for_each(|row| line(ui, row, tab));
         }
     }
 }
 
 /// The namespace that the names of all skinned joints share, such as `mixamorig:`; omitted from rows to save room.
-fn common_prefix<'a>(pairing: &Pairing<'a>) -> &'a str {
+pub(super) fn common_prefix<'a>(pairing: &Pairing<'a>) -> &'a str {
     let asset = &pairing.model.asset;
     let mut names = asset.skins.iter().flat_map(|skin| skin.joints()).map(|&joint| asset.skeleton.name(joint));
     let Some(first) = names.next() else { return "" };
@@ -163,19 +253,11 @@ fn common_prefix<'a>(pairing: &Pairing<'a>) -> &'a str {
     if names.all(|name| name.starts_with(prefix)) { prefix } else { "" }
 }
 
-/// Heading of a part of the body, with how many of its joints have a source and how many need review; true when pressed.
-fn heading(ui: &mut Ui, part: BodyPart, rows: &[&Row], open: bool) -> bool {
+/// Returns whether the heading was pressed.
+fn show_heading(ui: &mut Ui, heading: &Heading, open: bool) -> bool {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEADING_HEIGHT), Sense::click());
-    let follow = rows.iter().filter(|row| row.source.is_some()).count();
-    let look = rows.iter().filter(|row| row.look).count();
-    let mut right = format!("{follow} of {}", rows.len());
-    if look > 0 {
-        let need = if look == 1 { "needs" } else { "need" };
-        right = format!("{look} {need} review · {right}");
-    }
-    let label = format!("{}, {right}", part.title());
     let role = egui::accesskit::Role::Button;
-    response.widget_info(|| WidgetInfo::selected(role, true, open, &label));
+    response.widget_info(|| WidgetInfo::selected(role, true, open, &heading.label));
     if ui.is_rect_visible(rect) {
         let palette = style::palette(ui);
         lit(ui, rect, &response);
@@ -186,11 +268,11 @@ fn heading(ui: &mut Ui, part: BodyPart, rows: &[&Row], open: bool) -> bool {
         let points = vec![tip - turn * 4.0 + side, tip, tip - turn * 4.0 - side];
         ui.painter().line(points, Stroke::new(1.4, palette.weak_text));
         let font = FontId::proportional(12.0);
-        let color = if look > 0 { palette.warning } else { palette.weak_text };
+        let color = if heading.needs_review { palette.warning } else { palette.weak_text };
         let at = rect.right_center() - vec2(8.0, 0.0);
-        let drawn = ui.painter().text(at, Align2::RIGHT_CENTER, right, font, color);
+        let drawn = ui.painter().text(at, Align2::RIGHT_CENTER, &heading.counts, font, color);
         let left = Rect::from_min_max(pos2(rect.left() + 22.0, rect.top()), pos2(drawn.left() - 6.0, rect.bottom()));
-        controls::elided(ui, left, part.title(), palette.text);
+        controls::elided(ui, left, heading.part.title(), palette.text);
     }
     response.clicked()
 }
@@ -235,9 +317,8 @@ fn show_row(
     let target = ui.interact(rect.with_max_x(middle), id.with("target"), Sense::click());
     let source = ui.interact(rect.with_min_x(middle), id.with("source"), Sense::click());
     let role = egui::accesskit::Role::Button;
-    let follows = format!("{} follows {} ({}: {})", row.target, row.source_text, row.state.word(), row.why);
     target.widget_info(|| WidgetInfo::selected(role, true, chosen, format!("Edit {}", row.target)));
-    source.widget_info(|| WidgetInfo::labeled(role, true, &follows));
+    source.widget_info(|| WidgetInfo::labeled(role, true, &row.follows));
     if ui.is_rect_visible(rect) {
         let palette = style::palette(ui);
         if chosen {
@@ -260,12 +341,12 @@ fn show_row(
         let color = if row.look { palette.warning } else { palette.weak_text };
         controls::elided_small(ui, below, &row.why, color);
     }
-    let told = match row.source {
-        Some(_) => follows,
-        None => format!("{}: {}", row.target, row.why),
+    let told = |ui: &mut Ui, click: &str| match row.source {
+        Some(_) => drop(ui.label(format!("{}. {click}", row.follows))),
+        None => drop(ui.label(format!("{}: {}. {click}", row.target, row.why))),
     };
-    let target = target.on_hover_ui(|ui| drop(ui.label(format!("{told}. Click for more."))));
-    let source = source.on_hover_ui(|ui| drop(ui.label(format!("{told}. Click to choose another."))));
+    let target = target.on_hover_ui(|ui| told(ui, "Click for more."));
+    let source = source.on_hover_ui(|ui| told(ui, "Click to choose another."));
     if target.clicked() { Some(Pressed::Target) } else { source.clicked().then_some(Pressed::Source) }
 }
 

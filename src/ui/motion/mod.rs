@@ -41,17 +41,33 @@ pub struct MotionTab {
     clicking: Option<clicking::Clicking>,
     typed: Option<detail::Typed>,
     turn: Option<detail::Turn>,
-    rows: Option<KeptRows>,
+    contents: Option<(Inputs, Rc<Contents>)>,
 }
 
-/// Rows of the joint table, and what they were built from.
+/// What [`Contents`] are made from.
 #[derive(Debug)]
-struct KeptRows {
+struct Inputs {
     model: ModelId,
     motion: Arc<Asset>,
+    /// Files of all motions.
+    motions: Vec<Arc<Asset>>,
     map: Arc<JointMap>,
     names: BTreeMap<usize, String>,
-    rows: Rc<[Row]>,
+}
+
+/// What the tab shows of a model, a motion and their map, kept while they do not change.
+#[derive(Debug)]
+struct Contents {
+    /// The joint table.
+    rows: Vec<Row>,
+    /// Rows that each filter of [`rows::Filter::ALL`] lets through, in words.
+    filters: [String; rows::Filter::ALL.len()],
+    /// See [`joints::common_prefix`].
+    prefix: String,
+    /// Names of all motions; empty if there is only one.
+    motions: Vec<String>,
+    mapped: String,
+    remarks: Vec<String>,
 }
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
@@ -79,22 +95,59 @@ impl MotionTab {
         (self.picking, self.clicking, self.typed, self.turn) = (None, None, None, None);
     }
 
-    /// Rows of the joint table, rebuilt when a file, the map or a custom joint name changes.
-    fn rows(&mut self, pairing: &Pairing<'_>) -> Rc<[Row]> {
-        let (model, motion, names) = (pairing.model.id, &pairing.motion.asset, &pairing.state.edits.names);
-        let is_same = |kept: &KeptRows| {
-            kept.model == model
-                && Arc::ptr_eq(&kept.motion, motion)
-                && Arc::ptr_eq(&kept.map, pairing.map)
-                && kept.names == *names
-        };
-        let kept = self.rows.take().filter(is_same).unwrap_or_else(|| {
-            let rows = rows::rows(pairing, pairing.map).into();
-            KeptRows { model, motion: motion.clone(), map: pairing.map.clone(), names: names.clone(), rows }
+    /// Contents of the tab, made anew when a file, the map or a custom joint name changes.
+    fn contents(&mut self, shown: &Shown<'_>, pairing: &Pairing<'_>) -> Rc<Contents> {
+        if let Some((inputs, contents)) = &self.contents
+            && inputs.are_those_of(shown, pairing)
+        {
+            return contents.clone();
+        }
+        let contents = Rc::new(Contents::new(shown, pairing));
+        self.contents = Some((Inputs::new(shown, pairing), contents.clone()));
+        contents
+    }
+}
+
+impl Inputs {
+    fn new(shown: &Shown<'_>, pairing: &Pairing<'_>) -> Self {
+        Self {
+            model: pairing.model.id,
+            motion: pairing.motion.asset.clone(),
+            motions: shown.library.motions().iter().map(|motion| motion.asset.clone()).collect(),
+            map: pairing.map.clone(),
+            names: pairing.state.edits.names.clone(),
+        }
+    }
+
+    fn are_those_of(&self, shown: &Shown<'_>, pairing: &Pairing<'_>) -> bool {
+        let motions = shown.library.motions();
+        self.model == pairing.model.id
+            && Arc::ptr_eq(&self.motion, &pairing.motion.asset)
+            && Arc::ptr_eq(&self.map, pairing.map)
+            && self.motions.len() == motions.len()
+            && self.motions.iter().zip(motions).all(|(kept, motion)| Arc::ptr_eq(kept, &motion.asset))
+            && self.names == pairing.state.edits.names
+    }
+}
+
+impl Contents {
+    fn new(shown: &Shown<'_>, pairing: &Pairing<'_>) -> Self {
+        let motions = shown.library.motions();
+        let rows = rows::rows(pairing, pairing.map);
+        let filters = rows::Filter::ALL.map(|(filter, name)| {
+            let count = rows.iter().filter(|row| filter.lets_through(row)).count();
+            format!("{name} ({count})")
         });
-        let rows = kept.rows.clone();
-        self.rows = Some(kept);
-        rows
+        let several = motions.len() > 1;
+        let mapped = pairing.map.joints.values().filter(|entry| entry.source.is_some()).count();
+        Self {
+            rows,
+            filters,
+            prefix: joints::common_prefix(pairing).to_owned(),
+            motions: if several { clips::names_of(motions.iter().map(|motion| &*motion.source)) } else { Vec::new() },
+            mapped: text::joints_mapped(mapped, pairing.motion.asset.skeleton.len()),
+            remarks: remarks(pairing),
+        }
     }
 }
 
@@ -160,30 +213,29 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
     let map = pairing.map;
     local.motion.motion = pairing.index;
     let part = local.motion.part;
-    let rows = if part == Part::Joints { local.motion.rows(&pairing) } else { Rc::default() };
+    let contents = local.motion.contents(shown, &pairing);
     // Each part keeps its own scroll position.
     let place = ("motion", part);
     if ui.available_height() >= ROOMY_HEIGHT {
-        head(ui, shown, &pairing, map, &rows, local, out);
-        controls::scrolled(ui, place, |ui| body(ui, shown, &pairing, map, &rows, &mut local.motion, out));
+        head(ui, &pairing, map, &contents, local, out);
+        controls::scrolled(ui, place, |ui| body(ui, shown, &pairing, map, &contents, &mut local.motion, out));
     } else {
         controls::scrolled(ui, place, |ui| {
-            head(ui, shown, &pairing, map, &rows, local, out);
-            body(ui, shown, &pairing, map, &rows, &mut local.motion, out);
+            head(ui, &pairing, map, &contents, local, out);
+            body(ui, shown, &pairing, map, &contents, &mut local.motion, out);
         });
     }
 }
 
 fn head(
     ui: &mut Ui,
-    shown: &Shown<'_>,
     pairing: &Pairing<'_>,
     map: &JointMap,
-    rows: &[Row],
+    contents: &Contents,
     local: &mut UiState,
     out: &mut Output,
 ) {
-    header(ui, shown, pairing, map, out);
+    header(ui, pairing, contents, out);
     ui.add_space(4.0);
     let parts = [(Part::Joints, "Joints"), (Part::Options, "Options"), (Part::Figures, "Fit"), (Part::Files, "Files")];
     if let Some(part) = controls::segmented(ui, Some(local.motion.part), &parts) {
@@ -193,7 +245,7 @@ fn head(
     if local.motion.part == Part::Joints {
         edits(ui, pairing, map, local, out);
         clips::search_field(ui, &mut local.motion.table.search, "Search joints of the model");
-        joints::choices(ui, pairing, rows, &mut local.motion.table);
+        joints::choices(ui, pairing, contents, &mut local.motion.table);
         ui.add_space(2.0);
     }
 }
@@ -203,12 +255,12 @@ fn body(
     shown: &Shown<'_>,
     pairing: &Pairing<'_>,
     map: &JointMap,
-    rows: &[Row],
+    contents: &Rc<Contents>,
     tab: &mut MotionTab,
     out: &mut Output,
 ) {
     match tab.part {
-        Part::Joints => joints::show(ui, shown, pairing, map, rows, tab, out),
+        Part::Joints => joints::show(ui, shown, pairing, map, contents, tab, out),
         Part::Options => options::show(ui, pairing, map, out),
         Part::Figures => figures::show(ui, shown, pairing),
         Part::Files => options::files(ui, shown, pairing, out),
@@ -265,18 +317,14 @@ fn edits(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, local: &mut UiState
     });
 }
 
-fn header(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, map: &JointMap, out: &mut Output) {
+fn header(ui: &mut Ui, pairing: &Pairing<'_>, contents: &Contents, out: &mut Output) {
     let palette = style::palette(ui);
-    let motions = shown.library.motions();
-    if motions.len() > 1 {
+    if let Some(name) = contents.motions.get(pairing.index) {
         ui.add_space(4.0);
-        let names = clips::names_of(motions.iter().map(|motion| &*motion.source));
-        let combo = egui::ComboBox::from_id_salt("motion file")
-            .width(ui.available_width())
-            .truncate()
-            .selected_text(&names[pairing.index]);
+        let combo =
+            egui::ComboBox::from_id_salt("motion file").width(ui.available_width()).truncate().selected_text(name);
         let response = combo.show_ui(ui, |ui| {
-            for (index, name) in names.iter().enumerate() {
+            for (index, name) in contents.motions.iter().enumerate() {
                 if ui.selectable_label(index == pairing.index, name).clicked() {
                     out.commands.extend(first_clip_of(pairing.model, index));
                 }
@@ -284,10 +332,8 @@ fn header(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, map: &JointMap,
         });
         response.response.accessible_name("Motion file");
     }
-    let mapped = map.joints.values().filter(|entry| entry.source.is_some()).count();
-    let sources = pairing.motion.asset.skeleton.len();
-    controls::hint(ui, text::joints_mapped(mapped, sources));
-    for text in remarks(pairing) {
+    controls::hint(ui, &contents.mapped);
+    for text in &contents.remarks {
         ui.add(egui::Label::new(RichText::new(text).small().color(palette.warning)).wrap());
     }
 }

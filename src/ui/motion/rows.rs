@@ -26,6 +26,8 @@ pub(super) struct Row {
     pub state: State,
     /// The joint's slot, why it has its source, and what contradicts it.
     pub why: String,
+    /// All of that in a sentence, for tooltips and screen readers.
+    pub follows: String,
     /// Needs review: something contradicts it and the user has not set it.
     pub look: bool,
     pub part: BodyPart,
@@ -333,15 +335,19 @@ impl Whole {
                 why.extend(turned.then(|| "turned further".to_owned()));
             }
         }
+        let target = pairing.target_title(joint).into_owned();
+        let source_text = source.map_or_else(|| "none".to_owned(), |source| joint_text(&pairing.motion.asset, source));
+        let why = why.join(" · ");
         Row {
             joint,
             number,
-            target: pairing.target_title(joint).into_owned(),
+            follows: format!("{target} follows {source_text} ({}: {why})", state.word()),
+            target,
             what,
             source,
-            source_text: source.map_or_else(|| "none".to_owned(), |source| joint_text(&pairing.motion.asset, source)),
+            source_text,
             state,
-            why: why.join(" · "),
+            why,
             look,
             part: BodyPart::Other,
             depth: 0,
