@@ -1,11 +1,12 @@
 // Measures three.js and Gaitway on the same work in the same headless Chromium, in alternating rounds, and prints medians.
 // Run `node benches/web/run.mjs` after `cargo xtask build --bench` (or with GAITWAY_DIST), with `characters`, `retargeting`,
-// `loads` or `frames` to measure only these. Nothing is asserted: times vary between machines, ratios less so.
+// `loads`, `frames` or `first` to measure only these. Nothing is asserted: times vary between machines, ratios less so.
 import path from "node:path";
 import { chromium } from "playwright-core";
 import { FLAGS, dist, until, whenReady } from "../../tests/browser/browser.mjs";
 import { serve } from "../../tests/browser/server.mjs";
 import { dataFile, hasData, repository } from "../../tests/three/data.mjs";
+import { measureFirstFrames } from "./first.mjs";
 
 const XBOT = "threejs/Xbot.glb";
 const SOLDIER = "threejs/Soldier.glb";
@@ -58,6 +59,7 @@ try {
   if (wanted("retargeting")) await measureRetargeting();
   if (wanted("loads")) await measureLoads();
   if (wanted("frames")) await measureFrames();
+  if (wanted("first")) await measureFirst();
 } finally {
   await browser.close();
   await site.close();
@@ -250,4 +252,13 @@ async function frameMs(page) {
     return frames;
   }, DRAWN_FRAMES);
   return median(frames);
+}
+
+async function measureFirst() {
+  console.log("\nFrom navigation to the first moving frame of Soldier.glb, cold, 10 Mbit/s, 40 ms latency, ms (median of 5)\n");
+  row("page", "median", "all", "ratio");
+  row("--", "--", "--", "--");
+  const times = await measureFirstFrames(browser);
+  const theirs = median(times["three.js"]);
+  for (const [name, values] of Object.entries(times)) row(name, median(values).toFixed(0), values.map((value) => value.toFixed(0)).join(", "), `${(median(values) / theirs).toFixed(2)}×`);
 }

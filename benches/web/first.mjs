@@ -1,0 +1,82 @@
+// How soon a link shows its model: from navigation to the first moving frame of Soldier.glb, cold cache, brotli on the wire,
+// 10 Mbit/s and 40 ms. Against the smallest three.js page that does the same, bundled and minified.
+import fs from "node:fs";
+import os from "node:os";
+import path from "node:path";
+import zlib from "node:zlib";
+import { build } from "esbuild";
+import { dist } from "../../tests/browser/browser.mjs";
+import { serve } from "../../tests/browser/server.mjs";
+import { dataFile, repository } from "../../tests/three/data.mjs";
+
+/** @typedef {import("playwright-core").Browser} Browser */
+
+const NETWORK = { offline: false, latency: 40, downloadThroughput: 10e6 / 8, uploadThroughput: 10e6 / 8 };
+const ROUNDS = 5;
+const SOLDIER = "threejs/Soldier.glb";
+
+const HTML = '<!doctype html><meta charset="utf-8"><title>three.js</title><link rel="icon" href="data:,"><style>body{margin:0}canvas{display:block}</style><script type="module" src="first.js"></script>';
+
+/** Builds the three.js page; returns its folder. */
+async function threePage() {
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), "gaitway-three-"));
+  const script = path.join(folder, "first.js");
+  await build({ entryPoints: [path.join(repository, "benches/web/first-three.mjs")], outfile: script, bundle: true, minify: true, format: "esm", logLevel: "warning" });
+  fs.writeFileSync(path.join(folder, "index.html"), HTML);
+  fs.writeFileSync(`${script}.br`, zlib.brotliCompressSync(fs.readFileSync(script)));
+  return folder;
+}
+
+/**
+ * Milliseconds from navigation to the first moving frame, which the page's own script or the one here reports.
+ * @param {Browser} browser
+ * @param {string} address
+ */
+async function firstFrame(browser, address) {
+  const context = await browser.newContext({ viewport: { width: 1280, height: 720 } });
+  const page = await context.newPage();
+  const session = await context.newCDPSession(page);
+  await session.send("Network.enable");
+  await session.send("Network.setCacheDisabled", { cacheDisabled: true });
+  await session.send("Network.emulateNetworkConditions", NETWORK);
+  await page.addInitScript(() => {
+    addEventListener("DOMContentLoaded", async () => {
+      if (document.querySelector('meta[name="gaitway-programs"], meta[name="gaitway-module"]') === null) return;
+      while (window.gaitway === undefined) await new Promise((resolve) => setTimeout(resolve));
+      await window.gaitway.ready;
+      // The first frame of playback, and the end of it.
+      await new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));
+      performance.mark("moving");
+    });
+  });
+  await page.goto(address, { waitUntil: "commit" });
+  const wait = () => page.evaluate(() => performance.getEntriesByName("moving")[0]?.startTime ?? null);
+  let time = null;
+  for (const start = Date.now(); time === null && Date.now() - start < 60_000; ) {
+    time = await wait();
+    await new Promise((resolve) => setTimeout(resolve, 20));
+  }
+  if (time === null) throw new Error(`${address}: nothing moved for a minute`);
+  await context.close();
+  return time;
+}
+
+/**
+ * Returns rows of name, median and ratio to three.js.
+ * @param {Browser} browser
+ */
+export async function measureFirstFrames(browser) {
+  const folder = await threePage();
+  const site = await serve({ "/three/": folder, "/data/": dataFile(""), "/": dist }, { "cache-control": "no-store" });
+  const link = `#model=${encodeURIComponent(`${site.origin}/data/${SOLDIER}`)}&clip=Walk`;
+  const pages = { "three.js": `${site.origin}/three/`, WebGPU: `${site.origin}/?renderer=webgpu${link}`, WebGL2: `${site.origin}/?renderer=webgl2${link}` };
+  /** @type {Record<string, number[]>} */
+  const times = { "three.js": [], WebGPU: [], WebGL2: [] };
+  try {
+    for (let round = 0; round < ROUNDS; round++) for (const [name, address] of Object.entries(pages)) times[name].push(await firstFrame(browser, address));
+  } finally {
+    await site.close();
+    fs.rmSync(folder, { recursive: true });
+  }
+  return times;
+}
