@@ -1,10 +1,12 @@
 //! Text operations on the files that a link names: listing them, making the link to share, and the link while some files are
-//! missing. The page's scripts call these through `web::links` and never split a link themselves. Links are never parsed into
-//! a view here, so that parts this version doesn't understand pass through unchanged.
+//! missing. The page's scripts call these through `web::links` and never split a link themselves. Links are not parsed into a
+//! view here, so that parts this version doesn't understand pass through unchanged; only a link that lacks its model is.
 
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_decode_str, utf8_percent_encode};
 
 use super::values::with_current_member;
+use super::{from_link, to_link};
+use crate::state::ViewerState;
 
 /// Separates an archive from the path of one of its models, as in the URL of an entry of a .jar. In a URL it is part of the
 /// fragment, which no server sees.
@@ -15,9 +17,6 @@ const TO_BRING: &str = "file:";
 
 /// The model of a link that names none.
 const DEFAULT_MODEL: &str = "sample:walker";
-
-/// Keys that still apply while the model itself is missing.
-const KEYS_WITHOUT_MODEL: [&str; 5] = ["v", "embed", "background", "exposure", "environment"];
 
 /// The characters that JavaScript's `encodeURIComponent` escapes.
 const COMPONENT: &AsciiSet = &NON_ALPHANUMERIC
@@ -102,21 +101,19 @@ pub fn embedded_link(link: &str) -> String {
 }
 
 /// Returns the part of a link that can be shown before its missing files arrive; the whole link if none are missing. If the
-/// model is missing, only keys that apply to any model are kept. Clips and maps are dropped with their motions.
+/// model is missing, what belongs to a model is left out ([`ViewerState::for_model`]). Clips and maps are dropped with their motions.
 pub fn link_without_missing(link: &str) -> String {
     let files = linked_files(link);
     let is_missing = |role| files.iter().any(|file| file.is_to_bring && file.role == role);
-    let (lacks_model, lacks_motion) = (is_missing(LinkRole::Model), is_missing(LinkRole::Motion));
-    if !lacks_model && !lacks_motion {
+    if is_missing(LinkRole::Model) {
+        return to_link(&from_link(link).0.for_model(ViewerState::default()));
+    }
+    if !is_missing(LinkRole::Motion) {
         return link.to_owned();
     }
     rewrite(link, &mut |pair| {
-        let key = key_of(pair);
-        let is_kept = if lacks_model {
-            KEYS_WITHOUT_MODEL.contains(&key)
-        } else {
-            key != "clip" && key != "map" && linked_file(pair).is_none_or(|file| !file.is_to_bring)
-        };
+        let is_of_motion = ["clip", "map"].contains(&key_of(pair));
+        let is_kept = !is_of_motion && linked_file(pair).is_none_or(|file| !file.is_to_bring);
         is_kept.then(|| pair.to_owned())
     })
 }
