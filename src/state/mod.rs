@@ -18,7 +18,7 @@ pub use apply::apply;
 pub use camera::{CameraChoice, OrbitCamera};
 pub use command::Command;
 pub use framing::{
-    frame_all, front_yaw_radians, pane_aspect, panes, resolve_camera, resolved_bounds, split_ratio,
+    DEFAULT_ASPECT, frame_all, front_yaw_radians, pane_aspect, panes, resolve_camera, resolved_bounds, split_ratio,
     world_from_file_camera,
 };
 pub use history::History;

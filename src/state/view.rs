@@ -251,8 +251,8 @@ impl Default for CameraOptions {
 pub struct PageOptions {
     /// Show nothing but the viewport and the transport.
     pub embed: bool,
-    /// Unknown link keys, preserved when the link is written again.
-    pub unknown: BTreeMap<String, String>,
+    /// Unknown link keys with all their values, preserved when the link is written again; for `show`, its unknown words.
+    pub unknown: BTreeMap<String, Vec<String>>,
 }
 
 /// A vertex of a primitive of a mesh instance; all are indices into the asset's lists.
