@@ -4,7 +4,7 @@
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
 
-use crate::editor::Contents;
+use crate::editor::{Contents, ExportedFile};
 use crate::state::{Command, ViewerState};
 
 /// A message to the frame loop.
@@ -28,8 +28,8 @@ pub enum Message {
     Commands(Vec<Command>),
     /// A request failed; shows the message.
     Failed(String),
-    /// A file written in the background is ready to save under this name.
-    Save(String, Vec<u8>),
+    /// A file written in the background is ready to save.
+    Save(ExportedFile),
     /// A call from the script interface.
     Script(ScriptCall),
 }

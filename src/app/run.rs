@@ -141,9 +141,8 @@ impl App {
             }
             Message::OpenFailedSilently => self.panels.messages.progress = None,
             Message::Failed(error) => self.replace_error(error),
-            Message::Save(name, bytes) => {
-                self.host.save_file(&name, &bytes);
-                self.toast(format!("Saved {name}."));
+            Message::Save(file) => {
+                self.save_file(&file);
             }
             Message::Commands(commands) => commands.into_iter().for_each(|command| self.apply(command)),
             Message::Script(call) => self.script(call),

@@ -8,7 +8,7 @@ use std::task::{Context, Poll, Waker};
 use super::open::{open_items, open_read};
 use super::origins::Origins;
 use super::read::{FilesRead, Item, read_items};
-use super::source::{Content, Located, Progress, Reading, Source};
+use super::source::{Content, Located, MAX_FOLDER_FILES, Progress, Reading, Source};
 use super::{OpenError, Role, SortError, decode_images, view};
 use crate::asset::{Asset, Image};
 use crate::editor::{Contents, ModelFiles, OpenedModel};
@@ -95,7 +95,6 @@ fn finish<T>(future: impl Future<Output = T>) -> T {
     }
 }
 
-const MAX_FILES: usize = 4096;
 const MAX_FOLDER_DEPTH: usize = 16;
 
 struct Disk;
@@ -203,13 +202,31 @@ fn list_folder(root: &Path, folder: &Path, depth: usize, files: &mut Vec<(String
                 list_folder(root, &path, depth + 1, files)?;
             }
         } else if path.is_file() {
-            if files.len() >= MAX_FILES {
-                return Err(OpenError::TooManyFiles { path: root.to_owned(), max: MAX_FILES });
+            if files.len() >= MAX_FOLDER_FILES {
+                return Err(OpenError::TooManyFiles { path: root.to_owned(), max: MAX_FOLDER_FILES });
             }
             let name = slashed(path.strip_prefix(root).unwrap_or(&path));
             files.push((name, Place::Path(path)));
         }
     }
+
+#[cfg(test)]
+mod tests {
+    use std::cell::RefCell;
+
+    use super::*;
+
+    #[test]
+    fn a_load_is_reported_before_it_can_fail() {
+        let names: RefCell<Vec<String>> = RefCell::default();
+        let progress = |name: &str, _, _| RefCell::borrow_mut(&names).push(name.to_owned());
+        let address = Item::Address("nowhere/walk.bvh".into());
+        let items = vec![Item::File("a/fox.zip".to_owned(), b"PK\x03\x04".to_vec())];
+        assert!(finish(read_items(&Disk, items, &progress)).is_err());
+        assert!(finish(read_items(&Disk, vec![address], &progress)).is_err());
+        assert_eq!(names.take(), ["fox.zip", "walk.bvh"], "what the error's title says");
+    }
+}
     Ok(())
 }
 

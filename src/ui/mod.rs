@@ -123,7 +123,7 @@ pub struct Layout {
     pub clips_open: bool,
     /// The inspector, on the right, is open. Ignored on a narrow screen.
     pub inspector_open: bool,
-    /// On a narrow screen the panels are sheets over the viewport, one at a time.
+    /// On a narrow screen the panels are sheets over the viewport, one at a time. Closed on a wide one.
     pub sheet: Option<Sheet>,
     /// The chosen inspector tab. The Scene tab stands in for Motion while there are no motions.
     pub tab: Tab,
@@ -170,6 +170,12 @@ impl UiState {
             self.layout.tab = Tab::Display;
         }
     }
+    /// Shows the joint table of a motion that the user maps manually.
+    pub fn on_map_started(&mut self) {
+        self.layout.tab = Tab::Motion;
+        (self.layout.inspector_open, self.layout.sheet) = (true, Some(Sheet::Inspector));
+    }
+
 
     /// Drops what was begun for a motion, whose index may now be another's.
     pub fn on_motions_changed(&mut self) {

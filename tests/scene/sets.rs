@@ -150,6 +150,35 @@ fn files_from_an_archive_have_its_name_as_origin() {
 }
 
 #[test]
+fn motions_of_a_folder_have_its_name_as_origin() {
+    let folder = temporary_folder("mixed");
+    let model = write(&folder, "m.gltf", MESH.as_bytes());
+    write(&folder, "moves/a.bvh", BVH.as_bytes());
+    let moves = folder.join("moves");
+    for paths in [[moves.clone(), model.clone()], [model, moves]] {
+        let contents = read_paths(&paths, Role::Any).expect("a model and a motion");
+        assert_eq!(contents.models[0].model.origin, "m.gltf");
+        let motions: Vec<_> =
+            contents.motions.iter().flatten().map(|motion| (&*motion.source, &*motion.origin)).collect();
+        assert_eq!(motions, [("a.bvh", "moves")]);
+    }
+    std::fs::remove_dir_all(&folder).expect("it was created");
+}
+
+#[test]
+fn folders_have_a_limit_of_files_together() {
+    let folder = temporary_folder("many");
+    let folders = ["a", "b"].map(|name| folder.join(name));
+    for folder in &folders {
+        std::fs::create_dir_all(folder).expect("it can be created");
+        (0..2049).for_each(|file| std::fs::write(folder.join(file.to_string()), "").expect("it can be written"));
+    }
+    let error = read_paths(&folders, Role::Any).expect_err("too many");
+    assert!(matches!(&error, OpenError::TooManyFiles { path, max: 4096 } if *path == folders[1]), "{error}");
+    std::fs::remove_dir_all(&folder).expect("it was created");
+}
+
+#[test]
 fn a_view_opens_the_files_it_lists() {
     let folder = temporary_folder("view");
     let path = |name: &str, text: &str| write(&folder, name, text.as_bytes()).to_str().expect("Unicode").to_owned();
