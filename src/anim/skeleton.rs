@@ -171,7 +171,7 @@ impl Skeleton {
     }
 
     /// Returns a copy with another rest pose: one local transform per joint.
-    pub fn with_rest(&self, locals: &[Transform]) -> Self {
+    pub(crate) fn with_rest(&self, locals: &[Transform]) -> Self {
         let mut skeleton = self.clone();
         for (slot, local) in skeleton.rest.locals.iter_mut().zip(locals) {
             *slot = *local;

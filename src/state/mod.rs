@@ -28,7 +28,7 @@ pub use link::{
     most_similar_link, public_link, shown_files,
 };
 pub use map_edit::{MapEdit, muted_properties};
-pub use maps::{MapProblem, MotionMap, NumberedMap, active_map, active_maps, proposed, reconciled_maps};
+pub use maps::{MapProblem, MotionMap, NumberedMap, active_map, active_maps, reconciled_maps};
 pub use names::{title, written_skeleton};
 pub use playhead::{
     PoseSampler, active_clip, choice_of_clip, clip_secs, manual_degrees, manual_rotation, play_range, world_from_model,

@@ -82,7 +82,7 @@ impl ViewerState {
     }
 
     /// Returns the groups that undo covers.
-    pub fn undoable(&self) -> UndoableEdits<'_> {
+    pub(super) fn undoable(&self) -> UndoableEdits<'_> {
         let Self { retarget, edits, inspect, display, .. } = self;
         UndoableEdits { retarget, edits, inspect, display }
     }
@@ -98,7 +98,7 @@ impl ViewerState {
 
 /// The groups of a [`ViewerState`] that undo covers.
 #[derive(Debug, PartialEq)]
-pub struct UndoableEdits<'a> {
+pub(super) struct UndoableEdits<'a> {
     retarget: &'a RetargetEdits,
     edits: &'a Edits,
     inspect: &'a Inspect,

@@ -19,7 +19,6 @@ use crate::frame::Frame;
 use crate::library::{Library, Model};
 use crate::state::{ViewerState, active_clip, clip_secs};
 
-pub use crate::editor::short_name;
 pub use keys::{KEY_TABLE, KeyHelp};
 pub use output::{Output, PathPurpose, Saved, UiAction};
 pub use tabs::Tab;
@@ -170,12 +169,12 @@ impl UiState {
             self.layout.tab = Tab::Display;
         }
     }
+
     /// Shows the joint table of a motion that the user maps manually.
     pub fn on_map_started(&mut self) {
         self.layout.tab = Tab::Motion;
         (self.layout.inspector_open, self.layout.sheet) = (true, Some(Sheet::Inspector));
     }
-
 
     /// Drops what was begun for a motion, whose index may now be another's.
     pub fn on_motions_changed(&mut self) {
@@ -185,7 +184,7 @@ impl UiState {
 }
 
 /// Screens narrower than this get sheets instead of side panels.
-pub const NARROW_WIDTH: f32 = 700.0;
+const NARROW_WIDTH: f32 = 700.0;
 
 /// Shows the panels and returns the rectangle that they leave for the viewport.
 pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Output) -> Rect {

@@ -560,7 +560,7 @@ fn three_hundred_joints_have_their_lines() {
     let names: Vec<String> = (0..300).map(|index| format!("Tentacle{index}")).collect();
     let asset = skeletons::asset(skeletons::chain(names.iter().map(String::as_str), glam::Vec3::Y * 0.01));
     let mut library = Library::default();
-    library.set(Model::new("squid.glb".to_owned(), asset, Vec::new()));
+    library.add(Model::new("squid.glb".to_owned(), asset, Vec::new()));
     let asset = library.active().expect("just set").asset.clone();
     library.set_motions(vec![Motion::new("swim.bvh".to_owned(), asset)]);
     let mut harness = bench_of(WIDE, library);

@@ -40,7 +40,7 @@ impl Default for ViewportState {
 
 impl ViewportState {
     /// Forgets the joint under the pointer.
-    pub fn clear_hover(&mut self) {
+    pub(in crate::ui) fn clear_hover(&mut self) {
         (self.hovered, self.hovered_joint) = (None, None);
     }
 }
