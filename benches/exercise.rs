@@ -19,7 +19,7 @@ fn main() {
     let asset = load(&files).unwrap_or_else(|problem| panic!("{problem}"));
     println!("{:44} {:>10} {:>10}", "13,336 vertices, 18 joints, up to 13 weights", "µs", "(fastest)");
     let mut library = Library::default();
-    library.set(Model::new("Model1.obj".to_owned(), asset, Vec::new()));
+    library.add(Model::new("Model1.obj".to_owned(), asset, Vec::new()));
     let print = |name: &str, nanos: support::Nanos| {
         println!("{name:44} {:>10.1} {:>10.1}", nanos.median / 1e3, nanos.fastest / 1e3);
     };

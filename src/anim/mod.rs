@@ -32,7 +32,7 @@ mod transform;
 pub use channel::{Channel, ChannelError, Interpolation, Keys, Property};
 pub use clip::{Clip, ClipBuilder, ClipQuery, SampleCursor, find_clip};
 pub use playback::{LoopMode, TimeRange, clip_time};
-pub use polar::nearest_rotation;
+pub(crate) use polar::nearest_rotation;
 pub use pose::{Pose, model_from_joint};
 pub use skeleton::{Joint, JointIndex, Skeleton, SkeletonError};
 pub use transform::Transform;

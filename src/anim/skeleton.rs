@@ -42,10 +42,10 @@ pub enum SkeletonError {
         /// Number of joints in the list.
         count: usize,
     },
-    /// Some joints cannot be reached from any root.
+    /// The parents of some joints form a cycle.
     #[error("joint {joint} is its own ancestor")]
     Cycle {
-        /// The first such joint, on a cycle or below one.
+        /// A joint on the cycle.
         joint: usize,
     },
 }
@@ -87,8 +87,8 @@ impl Skeleton {
         for (joint, &source) in source_of_joint.iter().enumerate() {
             joint_of_source[source as usize] = JointIndex(joint as u32);
         }
-        if let Some(joint) = joint_of_source.iter().position(|index| index.0 == u32::MAX) {
-            return Err(SkeletonError::Cycle { joint });
+        if let Some(unreached) = joint_of_source.iter().position(|index| index.0 == u32::MAX) {
+            return Err(SkeletonError::Cycle { joint: first_on_cycle(&joints, unreached) });
         }
         let mut skeleton = Self { source_of_joint, joint_of_source, ..Self::default() };
         for &source in &skeleton.source_of_joint {
@@ -171,7 +171,7 @@ impl Skeleton {
     }
 
     /// Returns a copy with another rest pose: one local transform per joint.
-    pub fn with_rest(&self, locals: &[Transform]) -> Self {
+    pub(crate) fn with_rest(&self, locals: &[Transform]) -> Self {
         let mut skeleton = self.clone();
         for (slot, local) in skeleton.rest.locals.iter_mut().zip(locals) {
             *slot = *local;
@@ -183,4 +183,13 @@ impl Skeleton {
     pub fn joint_of_source(&self, source: usize) -> Option<JointIndex> {
         self.joint_of_source.get(source).copied()
     }
+}
+
+/// Walks up from a joint that no root reaches. The joint itself may only hang below the cycle.
+fn first_on_cycle(joints: &[Joint], mut joint: usize) -> usize {
+    let mut seen = vec![false; joints.len()];
+    while !std::mem::replace(&mut seen[joint], true) {
+        joint = joints[joint].parent.unwrap_or(joint);
+    }
+    joint
 }

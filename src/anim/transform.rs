@@ -23,11 +23,6 @@ impl Transform {
         Self { translation, ..Self::IDENTITY }
     }
 
-    /// A rotation without translation, scale 1.
-    pub fn from_rotation(rotation: Quat) -> Self {
-        Self { rotation, ..Self::IDENTITY }
-    }
-
     /// Decomposes a matrix as required by glTF 2.0 §3.5.3; a mirroring one gets a negative X scale. Sheared and
     /// singular matrices have no exact decomposition: the result keeps their column lengths.
     pub fn from_matrix(matrix: &Mat4) -> Self {
@@ -43,7 +38,7 @@ impl Transform {
     }
 
     /// Whether the scale is positive on all axes. Only then is the rotation the joint's whole orientation.
-    pub fn is_upright(&self) -> bool {
+    pub(crate) fn is_upright(&self) -> bool {
         self.scale.min_element() > 0.0
     }
 

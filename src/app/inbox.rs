@@ -4,7 +4,7 @@
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
 
-use crate::editor::Contents;
+use crate::editor::{Contents, ExportedFile};
 use crate::state::{Command, ViewerState};
 
 /// A message to the frame loop.
@@ -28,8 +28,8 @@ pub enum Message {
     Commands(Vec<Command>),
     /// A request failed; shows the message.
     Failed(String),
-    /// A file written in the background is ready to save under this name.
-    Save(String, Vec<u8>),
+    /// A file written in the background is ready to save.
+    Save(ExportedFile),
     /// A call from the script interface.
     Script(ScriptCall),
 }
@@ -50,16 +50,10 @@ pub type Reply<T> = Box<dyn FnOnce(Result<T, String>)>;
 
 /// Calls of `window.gaitway` that need the loop's data.
 pub enum ScriptCall {
-    /// Returns the keys of the link as an object.
-    State(Reply<serde_json::Value>),
     /// Sets some keys of the link, given as an object; answered after the frame that shows the result.
     Apply(serde_json::Value, Reply<()>),
-    /// Returns the pose document of the current pose.
-    Pose(Reply<serde_json::Value>),
     /// Returns the viewport as PNG bytes.
     Screenshot(Reply<Vec<u8>>),
-    /// Returns frame times and draw counts as an object.
-    Stats(Reply<serde_json::Value>),
 }
 
 /// A queue that any code can send to.

@@ -1,5 +1,6 @@
 //! The native window. Opens files from the command line, typed paths and dropped files; reads them in the background.
 
+use std::cell::Cell;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
@@ -34,20 +35,27 @@ pub fn run_native(files: Vec<PathBuf>) -> Result<(), WindowError> {
     Ok(eframe::run_native("Gaitway", native_options(), create)?)
 }
 
+/// A load's number, with what was read or why nothing could be.
+type Loaded = (u32, Result<Box<Contents>, String>);
+
 struct Window {
     context: egui::Context,
-    loaded: Receiver<Result<Box<Contents>, String>>,
-    sender: Sender<Result<Box<Contents>, String>>,
+    /// Number of loads started. Only the latest is shown, whichever ends last.
+    loads: Cell<u32>,
+    loaded: Receiver<Loaded>,
+    sender: Sender<Loaded>,
 }
 
 impl Window {
     fn new(context: egui::Context) -> Self {
         let (sender, loaded) = channel();
-        Self { context, loaded, sender }
+        Self { context, loads: Cell::new(0), loaded, sender }
     }
 
-    /// Reads files in the background; the result arrives in a later frame.
+    /// Reads files in the background; the result arrives in a later frame, unless something else is opened in the meantime.
     fn open(&self, paths: Vec<PathBuf>, role: Role, inbox: &Inbox) {
+        let number = self.loads.get() + 1;
+        self.loads.set(number);
         let name = paths.first().and_then(|path| path.file_name()).map(|name| name.to_string_lossy().into_owned());
         let opening = Opening { name: name.unwrap_or_default(), received_bytes: 0, total_bytes: 0 };
         inbox.send(Message::OpenProgress(opening));
@@ -55,7 +63,7 @@ impl Window {
         std::thread::spawn(move || {
             let opened = read_paths(&paths, role).map(Box::new).map_err(|error| error.to_string());
             // Fails only if the window was closed in the meantime.
-            let _ = sender.send(opened);
+            let _ = sender.send((number, opened));
             context.request_repaint();
         });
     }
@@ -95,11 +103,32 @@ impl Host for Window {
     }
 
     fn before_frame(&self, inbox: &Inbox) {
-        while let Ok(loaded) = self.loaded.try_recv() {
+        while let Ok((number, loaded)) = self.loaded.try_recv() {
+            if number != self.loads.get() {
+                continue;
+            }
             inbox.send(match loaded {
                 Ok(contents) => Message::Opened { contents, state: None, reply: None },
                 Err(error) => Message::OpenFailed(error),
             });
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_the_latest_load_is_shown() {
+        let context = egui::Context::default();
+        let (window, inbox) = (Window::new(context.clone()), Inbox::new(context));
+        for (number, name) in [(2, "new"), (1, "old")] {
+            window.loads.set(2);
+            window.sender.send((number, Err(name.to_owned()))).expect("the window is open");
+        }
+        window.before_frame(&inbox);
+        assert!(matches!(inbox.take(), Some(Message::OpenFailed(name)) if name == "new"));
+        assert!(inbox.take().is_none());
     }
 }

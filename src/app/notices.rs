@@ -2,7 +2,7 @@
 
 use super::App;
 use crate::editor::Event;
-use crate::ui::{Tab, Toast};
+use crate::ui::Toast;
 
 impl App {
     /// Shows an error, replacing earlier ones.
@@ -54,7 +54,7 @@ impl App {
                 }
                 Event::ModelOpened => self.panels.on_model_opened(self.editor.library()),
                 Event::MotionsRefused => self.panels.messages.motion_refused = true,
-                Event::MapStarted => (self.panels.layout.tab, self.panels.layout.inspector_open) = (Tab::Motion, true),
+                Event::MapStarted => self.panels.on_map_started(),
                 Event::Stepped => self.panels.messages.toast = None,
             }
         }

@@ -9,9 +9,8 @@ use super::viewport::Viewport;
 use super::{Host, Inbox, Message, Opening, Reply, ScriptCall, device};
 use crate::editor::{Contents, Editor};
 use crate::files::{Role, set_largest_image};
-use crate::frame::pose_document;
 use crate::library::{Library, ModelId, Motion, inspect};
-use crate::state::{Command, ViewerState, to_link, to_object};
+use crate::state::{Command, ViewerState, to_link};
 use crate::ui::{self, Output, PathPrompt, PathPurpose, Progress, Shown, UiAction, UiState};
 
 /// The app that eframe runs, in a window or a page: owns the editor, the viewport and the panels.
@@ -141,9 +140,8 @@ impl App {
             }
             Message::OpenFailedSilently => self.panels.messages.progress = None,
             Message::Failed(error) => self.replace_error(error),
-            Message::Save(name, bytes) => {
-                self.host.save_file(&name, &bytes);
-                self.toast(format!("Saved {name}."));
+            Message::Save(file) => {
+                self.save_file(&file);
             }
             Message::Commands(commands) => commands.into_iter().for_each(|command| self.apply(command)),
             Message::Script(call) => self.script(call),
@@ -161,14 +159,11 @@ impl App {
 
     fn script(&mut self, call: ScriptCall) {
         match call {
-            ScriptCall::State(reply) => reply(Ok(to_object(self.editor.state()))),
             ScriptCall::Apply(partial, reply) => match self.editor.apply_partial(&partial) {
                 Ok(()) => self.after_draw.push(Box::new(move || reply(Ok(())))),
                 Err(error) => reply(Err(error)),
             },
-            ScriptCall::Pose(reply) => reply(Ok(pose_document(self.editor.library(), self.editor.state()))),
             ScriptCall::Screenshot(reply) => self.screenshots.push(reply),
-            ScriptCall::Stats(reply) => reply(Ok(self.stats())),
         }
     }
 

@@ -14,10 +14,10 @@ impl App {
         // In the page, an image arrives in a later turn of the event loop.
         #[cfg(target_arch = "wasm32")]
         if let Saved::Picture { size, transparent } = what {
-            let (image, name, inbox) = (self.image(size, transparent), self.image_name(), self.inbox.clone());
+            let (image, inbox) = (self.image(size, transparent), self.inbox.clone());
             wasm_bindgen_futures::spawn_local(async move {
                 inbox.send(match image.await {
-                    Ok(bytes) => Message::Save(name, bytes),
+                    Ok(file) => Message::Save(file),
                     Err(error) => Message::Failed(error),
                 });
             });
@@ -30,17 +30,28 @@ impl App {
     }
 
     fn deliver(&mut self, what: Saved, file: ExportedFile) {
-        if self.host.save_file(&file.name, &file.bytes) {
-            self.toast(file.remark.unwrap_or_else(|| format!("Saved {}.", file.name)));
-        } else {
+        if !self.save_file(&file) {
             self.panels.messages.path_prompt = Some(PathPrompt { purpose: PathPurpose::Save(what), path: file.name });
         }
     }
 
+    /// Saves a file if that takes no path; returns whether it did.
+    pub(super) fn save_file(&mut self, file: &ExportedFile) -> bool {
+        let is_saved = self.host.save_file(&file.name, &file.bytes);
+        if is_saved {
+            self.toast(saved(&file.name, file.remark.as_deref()));
+        }
+        is_saved
+    }
+
     /// Writes a file to the path that the user typed.
     pub(super) fn save_to(&mut self, what: Saved, path: &str) {
-        match self.file(what).and_then(|file| self.host.save_path(path, &file.bytes)) {
-            Ok(()) => self.toast(format!("Saved as {path}.")),
+        let saved_file = self.file(what).and_then(|file| {
+            self.host.save_path(path, &file.bytes)?;
+            Ok(file)
+        });
+        match saved_file {
+            Ok(file) => self.toast(saved(&format!("as {path}"), file.remark.as_deref())),
             Err(error) => self.add_error(&error),
         }
     }
@@ -51,15 +62,8 @@ impl App {
             #[cfg(target_arch = "wasm32")]
             Saved::Picture { .. } => Err("images are saved once they have been read back".to_owned()),
             #[cfg(not(target_arch = "wasm32"))]
-            Saved::Picture { size, transparent } => {
-                let bytes = pollster::block_on(self.image(size, transparent))?;
-                Ok(ExportedFile { name: self.image_name(), bytes, remark: None })
-            }
+            Saved::Picture { size, transparent } => pollster::block_on(self.image(size, transparent)),
         }
-    }
-
-    fn image_name(&self) -> String {
-        format!("{}.png", self.editor.file_stem())
     }
 
     pub(super) fn video_name(&self) -> String {
@@ -67,9 +71,19 @@ impl App {
     }
 
     /// Renders the current view at another size as a PNG.
-    fn image(&mut self, size: [u32; 2], transparent: bool) -> impl Future<Output = Result<Vec<u8>, String>> + use<> {
+    fn image(
+        &mut self,
+        asked: [u32; 2],
+        transparent: bool,
+    ) -> impl Future<Output = Result<ExportedFile, String>> + use<> {
+        let name = format!("{}.png", self.editor.file_stem());
+        let size = self.viewport.picture_size(asked);
+        let remark = (size != asked).then(|| {
+            let ([width, height], [asked_width, asked_height]) = (size, asked);
+            format!("It is {width} × {height} pixels: this device can't draw {asked_width} × {asked_height}.")
+        });
         let (device, queue, texture) = self.viewport.draw_to_texture(&self.editor, size, transparent);
-        async move { read_png(&device, &queue, &texture).await }
+        async move { Ok(ExportedFile { name, bytes: read_png(&device, &queue, &texture).await?, remark }) }
     }
 
     /// Starts reading the viewport back as a PNG for each script that requested it.
@@ -83,6 +97,11 @@ impl App {
             pollster::block_on(screenshot);
         }
     }
+}
+
+fn saved(name: &str, remark: Option<&str>) -> String {
+    let remark = remark.map_or_else(String::new, |remark| format!(" {remark}"));
+    format!("Saved {name}.{remark}")
 }
 
 async fn read_png(device: &wgpu::Device, queue: &wgpu::Queue, texture: &wgpu::Texture) -> Result<Vec<u8>, String> {

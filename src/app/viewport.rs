@@ -50,15 +50,19 @@ impl Viewport {
         self.needs_redraw = false;
     }
 
+    /// Returns the size of an image that was asked for in this size: smaller with the same aspect ratio if the device cannot
+    /// draw it.
+    pub fn picture_size(&self, size: [u32; 2]) -> [u32; 2] {
+        fitted(size, self.scene.max_size())
+    }
+
     /// Draws the current view at another size, to a texture of its own. The viewport is redrawn afterwards.
     pub fn draw_to_texture(
         &mut self,
         editor: &Editor,
-        [width, height]: [u32; 2],
+        size: [u32; 2],
         transparent: bool,
     ) -> (wgpu::Device, wgpu::Queue, wgpu::Texture) {
-        let max = self.scene.max_size();
-        let size = [width.clamp(1, max), height.clamp(1, max)];
         let state = editor.state();
         let background = if transparent { Background::Transparent } else { state.display.background };
         let state = ViewerState { display: Display { background, ..state.display }, ..state.clone() };
@@ -69,6 +73,25 @@ impl Viewport {
     }
 }
 
+/// Scales a size down to `max` pixels a side.
+fn fitted(size: [u32; 2], max: u32) -> [u32; 2] {
+    let factor = f64::from(max) / f64::from(size[0].max(size[1]).max(max));
+    size.map(|side| ((f64::from(side) * factor).round() as u32).max(1))
+}
+
 fn aspect([width, height]: [u32; 2]) -> f32 {
     width as f32 / height as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::fitted;
+
+    #[test]
+    fn images_too_large_for_the_device_keep_their_aspect() {
+        assert_eq!(fitted([3840, 2160], 2048), [2048, 1152]);
+        assert_eq!(fitted([1080, 4096], 2048), [540, 2048]);
+        assert_eq!(fitted([3840, 2160], 4096), [3840, 2160]);
+        assert_eq!(fitted([4096, 1], 2048), [2048, 1]);
+    }
 }

@@ -110,15 +110,13 @@ pub struct Camera {
     pub projection: CameraProjection,
 }
 
-/// A camera's lens and clip planes, as glTF has them; distances in metres.
+/// A camera's lens and clip planes, as glTF has them; distances in metres. The viewport decides the aspect ratio.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CameraProjection {
     /// glTF's `camera.perspective`.
     Perspective {
         /// Vertical field of view.
         y_fov_radians: f32,
-        /// Width over height. Not used: the viewport's aspect ratio is.
-        aspect: Option<f32>,
         /// Distance of the near plane.
         near: f32,
         /// Distance of the far plane; `None` is an infinite projection.
@@ -126,8 +124,6 @@ pub enum CameraProjection {
     },
     /// glTF's `camera.orthographic`.
     Orthographic {
-        /// Half the width of the view. Not used: the viewport's aspect ratio gives the width.
-        x_mag: f32,
         /// Half the height of the view.
         y_mag: f32,
         /// Distance of the near plane.
@@ -140,8 +136,6 @@ pub enum CameraProjection {
 /// A light (KHR_lights_punctual), shining along −Z of its joint. Intensity in lux (directional) or candela.
 #[derive(Debug, Clone)]
 pub struct Light {
-    /// Empty if the file doesn't name it.
-    pub name: String,
     /// The node that has the light.
     pub joint: JointIndex,
     /// Linear RGB.

@@ -74,8 +74,12 @@ impl Editor {
 
     /// Returns a file name for the current view, without extension: the model's and, if one is active, the clip's.
     pub fn file_stem(&self) -> String {
+        self.stem_with_clip(self.library.active().and_then(|model| active_clip(model, &self.state)))
+    }
+
+    fn stem_with_clip(&self, clip: Option<usize>) -> String {
         let model = self.library.active();
-        let clip = model.and_then(|model| model.clip_titles().get(active_clip(model, &self.state)?));
+        let clip = model.and_then(|model| model.clip_titles().get(clip?));
         let parts = [model.map(|model| stem(&model.source)), clip.cloned()];
         let name = parts.into_iter().flatten().collect::<Vec<_>>().join("-");
         let is_plain = |letter: char| letter.is_alphanumeric() || "-_. ".contains(letter);
@@ -113,11 +117,12 @@ impl Editor {
     /// Writes one clip with its skeleton.
     fn export_clip(&self, clip: usize) -> Result<ExportedFile, String> {
         let model = self.model()?;
+        let name = format!("{}.glb", self.stem_with_clip(Some(clip)));
         let baked = self.baked_clip(clip)?;
         let clip = baked.clip.as_ref().or_else(|| model.clip(clip)).ok_or("there is no such clip")?;
         let bytes = write_motion(&model.asset, &written_skeleton(model, &self.state, None), &[clip])
             .map_err(|error| error.to_string())?;
-        Ok(ExportedFile { remark: baked.remark, ..ExportedFile::new(format!("{}.glb", self.file_stem()), bytes) })
+        Ok(ExportedFile { remark: baked.remark, ..ExportedFile::new(name, bytes) })
     }
 
     /// Writes the model's own file with the clip appended; without a file, only skeleton and clip.

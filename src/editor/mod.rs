@@ -22,7 +22,7 @@ use std::collections::BTreeMap;
 use serde_json::Value;
 
 use crate::library::{Library, ModelId, Motion};
-use crate::state::{Command, History, ViewerState, from_object};
+use crate::state::{Command, DEFAULT_ASPECT, History, ViewerState, from_object};
 use open::Shelved;
 
 /// Decides whether a model can be shown, for example whether it fits on the graphics device. The error is for the user.
@@ -56,9 +56,6 @@ impl Default for Editor {
 }
 
 impl Editor {
-    /// Suits most windows; shells with a viewport call [`Editor::set_aspect`].
-    const DEFAULT_ASPECT: f32 = 1.6;
-
     /// Takes a library and a state, and retargets the library's motions as the state asks.
     pub fn new(library: Library, state: ViewerState) -> Self {
         let mut editor = Self {
@@ -69,7 +66,7 @@ impl Editor {
             refused: Vec::new(),
             has_private_map: false,
             reported: Vec::new(),
-            aspect: Self::DEFAULT_ASPECT,
+            aspect: DEFAULT_ASPECT,
             events: Vec::new(),
             needs_redraw: true,
             is_changed: false,

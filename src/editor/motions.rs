@@ -252,11 +252,11 @@ impl Editor {
             Ok(problems) => {
                 self.remember(before);
                 self.report(problems);
+                self.events.push(Event::MapStarted);
+                (self.needs_redraw, self.is_changed) = (true, true);
             }
             Err(error) => self.report(vec![error]),
         }
-        self.events.push(Event::MapStarted);
-        (self.needs_redraw, self.is_changed) = (true, true);
     }
 }
 

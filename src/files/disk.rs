@@ -6,9 +6,8 @@ use std::pin::pin;
 use std::task::{Context, Poll, Waker};
 
 use super::open::{open_items, open_read};
-use super::origins::Origins;
 use super::read::{FilesRead, Item, read_items};
-use super::source::{Content, Located, Progress, Reading, Source};
+use super::source::{Content, Located, MAX_FOLDER_FILES, Progress, Reading, Source};
 use super::{OpenError, Role, SortError, decode_images, view};
 use crate::asset::{Asset, Image};
 use crate::editor::{Contents, ModelFiles, OpenedModel};
@@ -44,13 +43,6 @@ pub fn read_set(paths: &[PathBuf]) -> Result<FileSet, OpenError> {
     Ok(finish(read_items(&Disk, items(paths), NO_PROGRESS))?.set)
 }
 
-/// Opens exactly one model from files in memory. `source` is what a folder or an archive of these files would be called.
-pub fn open_bytes(files: &FileSet, source: String) -> Result<Opened, OpenError> {
-    let names = files.names().map(str::to_owned).collect();
-    let origins = Origins { container: source, ..Origins::default() };
-    finish(only_model(FilesRead { set: files.clone(), names, origins, ..FilesRead::default() }))
-}
-
 /// Opens whatever the files are: models, motions, a joint map, or several of these.
 pub fn read_paths(paths: &[PathBuf], role: Role) -> Result<Contents, OpenError> {
     finish(open_items(&Disk, items(paths), role, NO_PROGRESS))
@@ -71,14 +63,11 @@ fn items(paths: &[PathBuf]) -> Vec<Item> {
 async fn only_model(read: FilesRead) -> Result<Opened, OpenError> {
     let mut files = read.names.clone();
     let has_sample = !read.samples.is_empty();
-    let Contents { mut models, motions, map, .. } = open_read(&Disk, read, Role::Model).await?;
-    if models.len() > 1 {
-        let found = models.into_iter().map(|opened| opened.model.source).collect();
-        return Err(SortError::SeveralModels { found }.into());
-    }
-    let Some(OpenedModel { model, files: model_files }) = models.pop() else {
-        return Err(SortError::NoModel { found: files }.into());
+    let Contents { models, motions, map, .. } = open_read(&Disk, read, Role::Model).await?;
+    let several = |models: Vec<OpenedModel>| SortError::SeveralModels {
+        found: models.into_iter().map(|opened| opened.model.source).collect(),
     };
+    let [OpenedModel { model, files: model_files }] = <[_; 1]>::try_from(models).map_err(several)?;
     if has_sample {
         files.insert(0, model.source.clone());
     }
@@ -95,7 +84,6 @@ fn finish<T>(future: impl Future<Output = T>) -> T {
     }
 }
 
-const MAX_FILES: usize = 4096;
 const MAX_FOLDER_DEPTH: usize = 16;
 
 struct Disk;
@@ -203,8 +191,8 @@ fn list_folder(root: &Path, folder: &Path, depth: usize, files: &mut Vec<(String
                 list_folder(root, &path, depth + 1, files)?;
             }
         } else if path.is_file() {
-            if files.len() >= MAX_FILES {
-                return Err(OpenError::TooManyFiles { path: root.to_owned(), max: MAX_FILES });
+            if files.len() >= MAX_FOLDER_FILES {
+                return Err(OpenError::TooManyFiles { path: root.to_owned(), max: MAX_FOLDER_FILES });
             }
             let name = slashed(path.strip_prefix(root).unwrap_or(&path));
             files.push((name, Place::Path(path)));
@@ -220,4 +208,22 @@ fn lossy(name: &OsStr) -> String {
 /// The path with `/` between folders on every system.
 fn slashed(path: &Path) -> String {
     path.components().map(|part| lossy(part.as_os_str())).collect::<Vec<_>>().join("/")
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::RefCell;
+
+    use super::*;
+
+    #[test]
+    fn a_load_is_reported_before_it_can_fail() {
+        let names: RefCell<Vec<String>> = RefCell::default();
+        let progress = |name: &str, _, _| RefCell::borrow_mut(&names).push(name.to_owned());
+        let address = Item::Address("nowhere/walk.bvh".into());
+        let items = vec![Item::File("a/fox.zip".to_owned(), b"PK\x03\x04".to_vec())];
+        assert!(finish(read_items(&Disk, items, &progress)).is_err());
+        assert!(finish(read_items(&Disk, vec![address], &progress)).is_err());
+        assert_eq!(names.take(), ["fox.zip", "walk.bvh"], "what the error's title says");
+    }
 }

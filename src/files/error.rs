@@ -35,10 +35,10 @@ pub enum OpenError {
         /// The underlying error, usually from the operating system.
         source: std::io::Error,
     },
-    /// A folder has too many files, counting subfolders.
-    #[error("{}: more than {max} files in the folder; name the model's own files instead", path.display())]
+    /// The folders that are opened together have too many files, counting subfolders.
+    #[error("{}: more than {max} files out of folders; name the model's own files instead", path.display())]
     TooManyFiles {
-        /// The folder that was opened.
+        /// The folder that exceeds it.
         path: PathBuf,
         /// Maximum number of files.
         max: usize,

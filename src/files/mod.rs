@@ -22,7 +22,7 @@ pub use address::raw_address;
 #[cfg(not(target_arch = "wasm32"))]
 pub use decode::decode_images;
 #[cfg(not(target_arch = "wasm32"))]
-pub use disk::{Opened, open_bytes, open_paths, open_view, read_paths, read_set};
+pub use disk::{Opened, open_paths, open_view, read_paths, read_set};
 pub use error::OpenError;
 pub use images::set_largest_image;
 pub use png::encode_png;

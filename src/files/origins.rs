@@ -12,16 +12,19 @@ use crate::state::MEMBER_SEPARATOR;
 pub(super) struct Origins {
     /// Name in the set and origin of each file that was asked for, in that order.
     pub known: Vec<(String, String)>,
-    /// The origin of all other files: the folder or archive that they came out of.
+    /// Name in the set and folder or archive of each file that came out of one.
+    pub members: Vec<(String, String)>,
+    /// The origin of all other files.
     pub container: String,
 }
 
 impl Origins {
     /// Returns a file's origin and display name. A file out of a folder or an archive is called by its own name.
     fn origin_and_source(&self, name: &str) -> (String, String) {
-        match self.known.iter().find(|(known, _)| known == name) {
-            Some((_, origin)) => (origin.clone(), origin.clone()),
-            None => (self.container.clone(), name.to_owned()),
+        let find = |list: &[(String, String)]| list.iter().find(|(known, _)| known == name).map(|(_, of)| of.clone());
+        match find(&self.known) {
+            Some(origin) => (origin.clone(), origin),
+            None => (find(&self.members).unwrap_or_else(|| self.container.clone()), name.to_owned()),
         }
     }
 

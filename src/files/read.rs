@@ -3,9 +3,9 @@
 use std::ffi::{OsStr, OsString};
 
 use super::origins::Origins;
-use super::source::{Content, Located, Progress, Reading, Source};
+use super::source::{Content, Located, MAX_FOLDER_FILES, Progress, Reading, Source};
 use super::{OpenError, SortError};
-use crate::editor::container_of;
+use crate::editor::{container_of, short_name};
 use crate::formats::{FileSet, missing_files};
 use crate::library::Model;
 use crate::samples;
@@ -49,9 +49,11 @@ pub(super) async fn read_items<S: Source>(
         files: FilesRead::default(),
         bases: Vec::new(),
         labels: Vec::new(),
+        folder_files: 0,
     };
     for item in items {
         reader.add(item).await?;
+        reader.note_members();
     }
     reader.add_missing().await?;
     reader.files.origins.container = container_of(model_label(&reader.labels)).to_owned();
@@ -66,23 +68,38 @@ struct Reader<'a, S: Source> {
     bases: Vec<S::Base>,
     /// What each item is called.
     labels: Vec<String>,
+    /// Number of files in all folders.
+    folder_files: usize,
 }
 
 impl<S: Source> Reader<'_, S> {
     async fn add(&mut self, item: Item) -> Result<(), OpenError> {
         match item {
             Item::File(name, bytes) => {
+                (self.reading.progress)(&short_name(&name), 0, bytes.len() as u64);
                 self.reading.spend(&name, bytes.len() as u64)?;
                 self.labels.push(name.clone());
                 let known = self.keep(name.clone(), bytes)?;
                 self.files.origins.known.push((known, name));
                 Ok(())
             }
-            Item::Address(address) => match address.to_str().and_then(|address| address.strip_prefix("sample:")) {
-                Some(name) => self.add_sample(name).await,
-                None => self.add_address(&address).await,
-            },
+            Item::Address(address) => {
+                (self.reading.progress)(&short_name(&address.to_string_lossy()), 0, 0);
+                match address.to_str().and_then(|address| address.strip_prefix("sample:")) {
+                    Some(name) => self.add_sample(name).await,
+                    None => self.add_address(&address).await,
+                }
+            }
         }
+    }
+
+    /// Notes which files came out of the last item.
+    fn note_members(&mut self) {
+        let FilesRead { set, origins, .. } = &mut self.files;
+        let Some(label) = self.labels.last() else { return };
+        let new = set.names().skip(origins.members.len());
+        let members: Vec<_> = new.map(|name| (name.to_owned(), container_of(label).to_owned())).collect();
+        origins.members.extend(members);
     }
 
     async fn add_sample(&mut self, name: &str) -> Result<(), OpenError> {
@@ -114,6 +131,10 @@ impl<S: Source> Reader<'_, S> {
                 self.files.origins.known.push((known, origin));
             }
             Content::Folder(files) => {
+                self.folder_files += files.len();
+                if self.folder_files > MAX_FOLDER_FILES {
+                    return Err(OpenError::TooManyFiles { path: address.into(), max: MAX_FOLDER_FILES });
+                }
                 for (name, place) in files {
                     self.read(&place, name).await?;
                 }

@@ -66,11 +66,9 @@ pub enum SortError {
         /// Names of the first two.
         found: Vec<String>,
     },
-    /// More files than the library holds motions.
-    #[error("{found} motions at once; open at most {max}")]
+    /// More motions than the library holds.
+    #[error("more than {max} motions at once; open fewer")]
     TooManyMotions {
-        /// Number of files, models included.
-        found: usize,
         /// [`Library::MAX_MOTIONS`].
         max: usize,
     },
@@ -96,9 +94,6 @@ pub(super) fn sort_noticing_images(
         // The error says what is there instead.
         return load(files).map(|_| sorted).map_err(SortError::from);
     }
-    if names.len() > Library::MAX_MOTIONS {
-        return Err(SortError::TooManyMotions { found: names.len(), max: Library::MAX_MOTIONS });
-    }
     for name in names {
         let on_images = &mut |images: &[Image]| on_images(&name, images);
         let asset = load_noticing_images(files, &name, &LoadOptions::default(), on_images)?;
@@ -110,6 +105,9 @@ pub(super) fn sort_noticing_images(
         }
         if sorted.models.len() > Library::MAX_MODELS {
             return Err(SortError::TooManyModels { max: Library::MAX_MODELS });
+        }
+        if sorted.motions.len() > Library::MAX_MOTIONS {
+            return Err(SortError::TooManyMotions { max: Library::MAX_MOTIONS });
         }
     }
     if role == Role::Model && sorted.models.is_empty() {

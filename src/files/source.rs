@@ -9,6 +9,9 @@ use crate::library::ImageData;
 /// Called with the name of the file being read, the bytes received so far and the total, 0 if unknown.
 pub type Progress<'a> = &'a dyn Fn(&str, u64, u64);
 
+/// Limit on files out of folders that are opened together.
+pub(super) const MAX_FOLDER_FILES: usize = 4096;
+
 /// Where files are read from. The futures of the disk are ready at once.
 pub(super) trait Source {
     /// A file that can be read.

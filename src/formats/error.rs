@@ -6,12 +6,20 @@ use crate::mesh::GeometryError;
 /// Everything that makes a set of files unreadable. The user sees these texts.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LoadError {
-    /// No file of the set is a model or motion, or none has the requested name.
+    /// No file of the set is a model or motion.
     #[error(
         "no model among the files ({}); Gaitway reads .glb, .gltf with its files, .vrm, .vrma, .bvh, .obj (with .skel and .attach), or a .zip of these",
         listed(found)
     )]
     NoModel {
+        /// Names of all files in the set.
+        found: Vec<String>,
+    },
+    /// No file of the set has the requested name.
+    #[error("“{name}” is not among the files ({})", listed(found))]
+    NoSuchFile {
+        /// The requested name.
+        name: String,
         /// Names of all files in the set.
         found: Vec<String>,
     },

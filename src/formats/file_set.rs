@@ -124,6 +124,14 @@ pub(super) fn bare_name(path: &str) -> &str {
     path.rsplit(['/', '\\']).next().unwrap_or(path)
 }
 
+/// Cuts the query and the fragment off a URL, which may contain slashes of their own. In a path, folders may be named with `?`
+/// or `#`.
+pub(super) fn without_query(name: &str) -> &str {
+    let start = if name.contains("://") { 0 } else { name.len() - bare_name(name).len() };
+    let end = name[start..].find(['?', '#']).map_or(name.len(), |length| start + length);
+    &name[..end]
+}
+
 /// Resolves `uri` against the folder of `base`, including `.` and `..`. A URL with a scheme is returned unchanged.
 fn join(base: &str, uri: &str) -> String {
     if uri.contains("://") {

@@ -38,7 +38,7 @@ pub use gltf::WriteError;
 
 use crate::anim::{Clip, Skeleton};
 use crate::asset::{Asset, Image};
-use file_set::bare_name;
+use file_set::{bare_name, without_query};
 
 /// Limit on .obj, .skel and .attach files together. Beyond it, which no real scene reaches, companions are not looked up:
 /// each lookup walks the set.
@@ -97,10 +97,7 @@ pub fn load_noticing_images(
     options: &LoadOptions,
     on_images: &mut dyn FnMut(&[Image]),
 ) -> Result<Asset, LoadError> {
-    match files.get(name) {
-        Some(bytes) => read(files, name, bytes, options, on_images),
-        None => Err(LoadError::NoModel { found: files.names().map(str::to_owned).collect() }),
-    }
+    read(files, name, named(files, name)?, options, on_images)
 }
 
 /// Writes the set's model `name` (one of its [`main_files`]) as a self-contained GLB, with `clips` added after its own. The
@@ -122,9 +119,14 @@ fn write_obj(
     clips: &[&Clip],
 ) -> Result<Vec<u8>, WriteError> {
     let asset = obj::load(files, name, bytes, &mut |_| ())?;
-    if asset.skeleton.parents() != skeleton.parents() {
-        let (nodes, joints) = (asset.skeleton.len(), skeleton.len());
+    let (nodes, joints) = (asset.skeleton.len(), skeleton.len());
+    if nodes != joints {
         return Err(WriteError::OtherSkeleton { file: name.to_owned(), nodes, joints });
+    }
+    let mut joints = skeleton.joints();
+    if let Some(joint) = joints.find(|&joint| skeleton.parent(joint) != asset.skeleton.parent(joint)) {
+        let joint = gltf::joint_label(skeleton, joint);
+        return Err(WriteError::OtherParent { file: name.to_owned(), joint });
     }
     gltf::write_asset(&asset, skeleton, clips)
 }
@@ -163,6 +165,11 @@ fn read(
     } else {
         gltf::load(files, name, bytes, on_images)
     }
+}
+
+fn named<'a>(files: &'a FileSet, name: &str) -> Result<&'a Arc<[u8]>, LoadError> {
+    let error = || LoadError::NoSuchFile { name: name.to_owned(), found: files.names().map(str::to_owned).collect() };
+    files.get(name).ok_or_else(error)
 }
 
 fn find_model(files: &FileSet) -> Result<(&str, &Arc<[u8]>), LoadError> {
@@ -229,7 +236,6 @@ fn foreign_format(name: &str, bytes: &[u8]) -> Option<&'static str> {
 
 /// The file extension in lower case, also of a URL with a query.
 fn extension(name: &str) -> String {
-    let bare = bare_name(name);
-    let bare = bare.split(['?', '#']).next().unwrap_or(bare);
+    let bare = bare_name(without_query(name));
     bare.rsplit_once('.').map_or_else(String::new, |(_, extension)| extension.to_lowercase())
 }

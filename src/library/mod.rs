@@ -71,13 +71,6 @@ impl Library {
     /// Motions held at once; every clip of each is retargeted, which takes time and memory.
     pub const MAX_MOTIONS: usize = 64;
 
-    /// Replaces all models with one.
-    pub fn set(&mut self, model: Model) -> ModelId {
-        self.models.clear();
-        self.closed.clear();
-        self.add(model)
-    }
-
     /// Adds a model and activates it.
     pub fn add(&mut self, mut model: Model) -> ModelId {
         self.next_id += 1;
@@ -194,15 +187,9 @@ impl Library {
         self.baked_with.as_ref()?.get(motion)?.as_ref()
     }
 
-    /// Bakes the active model's borrowed clips if their inputs have changed; returns whether they had. Without a map,
-    /// each motion gets the proposed one. Motions that fail are reported by [`Library::borrow_errors`]; the others
-    /// still work.
-    pub fn borrow(&mut self, map: Option<&JointMap>) -> bool {
-        let maps = vec![map.cloned(); self.motions.len()];
-        self.borrow_each(maps)
-    }
-
-    /// Like [`Library::borrow`], with a map per motion. Clips of motions whose map is unchanged are kept.
+    /// Bakes the active model's borrowed clips if their inputs have changed, with a map per motion; returns whether they had.
+    /// A motion without a map gets the proposed one. Clips of motions whose map is unchanged are kept. Motions that fail are
+    /// reported by [`Library::borrow_errors`]; the others still work.
     pub fn borrow_each(&mut self, maps: Vec<Option<JointMap>>) -> bool {
         let before = self.baked_with.take();
         let share = |(index, map): (usize, Option<JointMap>)| {
@@ -262,7 +249,7 @@ impl Library {
         borrowed.measured(model.body(), self.motions.get(borrowed.motion)?.body())
     }
 
-    /// Errors of the last [`Library::borrow`].
+    /// Errors of the last [`Library::borrow_each`].
     pub fn borrow_errors(&self) -> &[BorrowError] {
         &self.borrow_errors
     }

@@ -18,5 +18,6 @@ pub use material::{AlphaMode, Filter, Material, MipFilter, Sampler, Texture, Tex
 pub use normals::smooth_normals;
 pub use palette::{PaletteEntry, SkinningMode, palette_entry, write_palette};
 pub use skin::{Skin, SkinError};
-pub use skinning::{DeformedVertices, deform, deform_vertex};
+pub(crate) use skinning::deform_vertex;
+pub use skinning::{DeformedVertices, deform};
 pub use tangents::{add_tangents, corner_tangents};

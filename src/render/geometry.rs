@@ -10,7 +10,7 @@ use super::UploadError;
 use crate::mesh::{Geometry, Influences, Topology};
 
 /// Width of a vertex texture in texels; must match skinning.wgsl.
-pub const VERTEX_TEXTURE_WIDTH: u32 = 2048;
+const VERTEX_TEXTURE_WIDTH: u32 = 2048;
 
 /// Where the vertex stage reads influences from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -27,7 +27,7 @@ pub enum InfluenceSource {
 
 impl InfluenceSource {
     /// Returns the source for a [`stride`](Influences::stride), the number of influences per vertex.
-    pub fn of(stride: usize) -> Self {
+    fn of(stride: usize) -> Self {
         match stride {
             0 => Self::None,
             4 => Self::Four,

@@ -26,19 +26,19 @@ pub struct Shader {
 /// Meshes: all vertex and fragment stages of the scene and shadow passes.
 pub const MESH: Shader = Shader { label: "mesh", parts: &[FRAME, TONE, PALETTE, SKINNING, VERTEX, LIGHT, SURFACE] };
 /// The grid and the shadow on the ground.
-pub const GROUND_PLANE: Shader = Shader { label: "ground", parts: &[FRAME, LIGHT, GROUND] };
+pub(super) const GROUND_PLANE: Shader = Shader { label: "ground", parts: &[FRAME, LIGHT, GROUND] };
 /// Overlay lines.
-pub const LINES: Shader = Shader { label: "lines", parts: &[FRAME, TONE, LINE] };
+pub(super) const LINES: Shader = Shader { label: "lines", parts: &[FRAME, TONE, LINE] };
 /// Bones of the skeleton overlay.
-pub const BONES: Shader = Shader { label: "bones", parts: &[FRAME, TONE, BONE] };
+pub(super) const BONES: Shader = Shader { label: "bones", parts: &[FRAME, TONE, BONE] };
 /// Resets the depth buffer before the overlays that are drawn on top.
-pub const DEPTH_CLEAR: Shader = Shader { label: "clear depth", parts: &[CLEAR_DEPTH] };
+pub(super) const DEPTH_CLEAR: Shader = Shader { label: "clear depth", parts: &[CLEAR_DEPTH] };
 /// The gradient of the studio background.
-pub const BACKDROP: Shader = Shader { label: "background", parts: &[FRAME, BACKGROUND] };
+pub(super) const BACKDROP: Shader = Shader { label: "background", parts: &[FRAME, BACKGROUND] };
 /// Renders a mip level of a texture from the level above.
-pub const MIPS: Shader = Shader { label: "mips", parts: &[MIP] };
+pub(super) const MIPS: Shader = Shader { label: "mips", parts: &[MIP] };
 /// Copies the finished picture to the screen.
-pub const BLIT: Shader = Shader { label: "blit", parts: &[BLIT_PICTURE] };
+pub(super) const BLIT: Shader = Shader { label: "blit", parts: &[BLIT_PICTURE] };
 /// The vertex stages of meshes alone, without fragment stages.
 pub const SKINNED_VERTEX: Shader = Shader { label: "skinned vertex", parts: &[FRAME, PALETTE, SKINNING, VERTEX] };
 

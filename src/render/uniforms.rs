@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 
 /// Lights of a file beyond this number are ignored.
-pub const MAX_LIGHTS: usize = 8;
+pub(super) const MAX_LIGHTS: usize = 8;
 
 /// `Light` in frame.wgsl.
 #[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]

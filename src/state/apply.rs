@@ -4,17 +4,13 @@ use std::f32::consts::{PI, TAU};
 
 use glam::Vec3;
 
-use super::framing::{frame_all, resolve_camera, resolved_bounds};
+use super::framing::{DEFAULT_ASPECT, frame_all, resolve_camera, resolved_bounds};
 use super::maps::{self, reconciled_maps};
 use super::playhead::{active_clip, choice_of_clip, clip_of, clip_secs, play_range};
 use super::{CameraChoice, ClipChoice, Command, Fade, OrbitCamera, VertexChoice, ViewerState};
 use crate::anim::{LoopMode, TimeRange};
 use crate::library::{Library, Model};
 use crate::retarget::JointMap;
-
-/// Aspect ratio that resolves the automatic camera here, where the viewport is unknown; wide enough for most windows. Callers
-/// that know the viewport send `SetCamera` with [`resolve_camera`] first.
-const DEFAULT_ASPECT: f32 = 16.0 / 9.0;
 
 const MAX_NAME_CHARS: usize = 80;
 
@@ -78,9 +74,8 @@ fn replace(state: &mut ViewerState, new: ViewerState) {
     let default = ViewerState::default();
     let wanted = new.clone();
     *state = new;
-    if !wanted.playhead.time_secs.is_finite() {
-        state.playhead.time_secs = default.playhead.time_secs;
-    }
+    state.playhead.time_secs = default.playhead.time_secs;
+    seek(state, None, wanted.playhead.time_secs);
     let finite = |fade: &Fade| fade.time_secs.is_finite() && fade.elapsed_secs.is_finite();
     state.playhead.fade = wanted.playhead.fade.filter(finite);
     state.playback.speed = default.playback.speed;

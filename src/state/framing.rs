@@ -35,6 +35,10 @@ pub fn resolved_bounds(library: &Library, state: &ViewerState) -> Bounds {
     }
 }
 
+/// Aspect ratio where the viewport is unknown; suits most windows. [`apply`](super::apply) resolves the automatic camera with
+/// it, so callers that know the viewport send `SetCamera` with [`resolve_camera`] first.
+pub const DEFAULT_ASPECT: f32 = 1.6;
+
 /// Returns the columns and rows of panes in a viewport of this aspect ratio. The comparison of skinning methods is laid out
 /// along the longer side.
 pub fn panes(state: &ViewerState, aspect: f32) -> [u32; 2] {

@@ -231,7 +231,7 @@ pub fn to_link(state: &ViewerState) -> String {
     }
     for (key, values) in &state.page.unknown {
         if key != "show" {
-            values.split('\n').for_each(|value| push(key, value));
+            values.iter().for_each(|value| push(key, value));
         }
     }
     text
@@ -257,8 +257,7 @@ pub fn to_object(state: &ViewerState) -> Value {
         object.insert(key.name.to_owned(), (key.write)(state).json());
     }
     for (key, values) in state.page.unknown.iter().filter(|(key, _)| *key != "show") {
-        let mut values: Vec<&str> = values.split('\n').collect();
-        let value = if values.len() == 1 { json!(values.remove(0)) } else { json!(values) };
+        let value = if let [value] = &values[..] { json!(value) } else { json!(values) };
         object.insert(key.clone(), value);
     }
     Value::Object(object)
@@ -317,13 +316,12 @@ fn set_value(state: &mut ViewerState, key: &str, value: &str, errors: &mut Vec<L
         Read::Bad(expected) => expected,
         Read::Unknown => {
             errors.push(LinkError::UnknownKey { key: key.to_owned() });
-            let kept = state.page.unknown.entry(key.to_owned());
-            kept.and_modify(|kept| *kept = format!("{kept}\n{value}")).or_insert_with(|| value.to_owned());
+            state.page.unknown.entry(key.to_owned()).or_default().push(value.to_owned());
             return;
         }
         Read::UnknownShow(words) => {
             errors.extend(words.iter().map(|word| LinkError::UnknownShow { value: word.clone() }));
-            state.page.unknown.insert("show".to_owned(), words.join(","));
+            state.page.unknown.insert("show".to_owned(), words);
             return;
         }
     };

@@ -138,7 +138,7 @@ fn fitting_map(
 }
 
 /// Returns the proposed map of a motion; None if there is nothing to propose.
-pub fn proposed(library: &Library, motion: usize) -> Option<JointMap> {
+pub(super) fn proposed(library: &Library, motion: usize) -> Option<JointMap> {
     let proposal = library.proposal(motion).filter(|proposal| !proposal.pairs.is_empty())?;
     let (model, motion) = (library.active()?, library.motions().get(motion)?);
     Some(proposal.to_map(&model.asset, &motion.asset))

@@ -18,7 +18,7 @@ pub use apply::apply;
 pub use camera::{CameraChoice, OrbitCamera};
 pub use command::Command;
 pub use framing::{
-    frame_all, front_yaw_radians, pane_aspect, panes, resolve_camera, resolved_bounds, split_ratio,
+    DEFAULT_ASPECT, frame_all, front_yaw_radians, pane_aspect, panes, resolve_camera, resolved_bounds, split_ratio,
     world_from_file_camera,
 };
 pub use history::History;
@@ -28,7 +28,7 @@ pub use link::{
     most_similar_link, public_link, shown_files,
 };
 pub use map_edit::{MapEdit, muted_properties};
-pub use maps::{MapProblem, MotionMap, NumberedMap, active_map, active_maps, proposed, reconciled_maps};
+pub use maps::{MapProblem, MotionMap, NumberedMap, active_map, active_maps, reconciled_maps};
 pub use names::{title, written_skeleton};
 pub use playhead::{
     PoseSampler, active_clip, choice_of_clip, clip_secs, manual_degrees, manual_rotation, play_range, world_from_model,

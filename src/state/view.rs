@@ -82,7 +82,7 @@ impl ViewerState {
     }
 
     /// Returns the groups that undo covers.
-    pub fn undoable(&self) -> UndoableEdits<'_> {
+    pub(super) fn undoable(&self) -> UndoableEdits<'_> {
         let Self { retarget, edits, inspect, display, .. } = self;
         UndoableEdits { retarget, edits, inspect, display }
     }
@@ -98,7 +98,7 @@ impl ViewerState {
 
 /// The groups of a [`ViewerState`] that undo covers.
 #[derive(Debug, PartialEq)]
-pub struct UndoableEdits<'a> {
+pub(super) struct UndoableEdits<'a> {
     retarget: &'a RetargetEdits,
     edits: &'a Edits,
     inspect: &'a Inspect,
@@ -251,8 +251,8 @@ impl Default for CameraOptions {
 pub struct PageOptions {
     /// Show nothing but the viewport and the transport.
     pub embed: bool,
-    /// Unknown link keys, preserved when the link is written again.
-    pub unknown: BTreeMap<String, String>,
+    /// Unknown link keys with all their values, preserved when the link is written again; for `show`, its unknown words.
+    pub unknown: BTreeMap<String, Vec<String>>,
 }
 
 /// A vertex of a primitive of a mesh instance; all are indices into the asset's lists.

@@ -19,7 +19,6 @@ use crate::frame::Frame;
 use crate::library::{Library, Model};
 use crate::state::{ViewerState, active_clip, clip_secs};
 
-pub use crate::editor::short_name;
 pub use keys::{KEY_TABLE, KeyHelp};
 pub use output::{Output, PathPurpose, Saved, UiAction};
 pub use tabs::Tab;
@@ -123,7 +122,7 @@ pub struct Layout {
     pub clips_open: bool,
     /// The inspector, on the right, is open. Ignored on a narrow screen.
     pub inspector_open: bool,
-    /// On a narrow screen the panels are sheets over the viewport, one at a time.
+    /// On a narrow screen the panels are sheets over the viewport, one at a time. Closed on a wide one.
     pub sheet: Option<Sheet>,
     /// The chosen inspector tab. The Scene tab stands in for Motion while there are no motions.
     pub tab: Tab,
@@ -171,6 +170,12 @@ impl UiState {
         }
     }
 
+    /// Shows the joint table of a motion that the user maps manually.
+    pub fn on_map_started(&mut self) {
+        self.layout.tab = Tab::Motion;
+        (self.layout.inspector_open, self.layout.sheet) = (true, Some(Sheet::Inspector));
+    }
+
     /// Drops what was begun for a motion, whose index may now be another's.
     pub fn on_motions_changed(&mut self) {
         self.motion.other_motions();
@@ -179,7 +184,7 @@ impl UiState {
 }
 
 /// Screens narrower than this get sheets instead of side panels.
-pub const NARROW_WIDTH: f32 = 700.0;
+const NARROW_WIDTH: f32 = 700.0;
 
 /// Shows the panels and returns the rectangle that they leave for the viewport.
 pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Output) -> Rect {

@@ -148,9 +148,9 @@ pub fn seconds(time_secs: f64, duration_secs: f64) -> String {
     format!("{time_secs:.2} / {duration_secs:.2} s")
 }
 
-/// Returns the current frame and the last one, `count`. Frames are numbered from 0.
-pub fn frames(frame: f64, count: f64) -> String {
-    format!("Frame {frame:.0} / {count:.0}")
+/// Returns the numbers of the current and the last frame, counted from 0.
+pub fn frames(frame: f64, last: f64) -> String {
+    format!("Frame {frame:.0} / {last:.0}")
 }
 
 /// Returns the accessible name of a foot's contact track.
@@ -210,9 +210,9 @@ pub fn reset_all_joints(count: usize) -> String {
     format!("Reset all {count}")
 }
 
-/// Returns the heading of a joint's transform relative to its parent.
-pub fn local_transform(parent: &str) -> String {
-    format!("Local, in {parent}")
+/// Returns the heading of a joint's transform relative to its parent; a root has none.
+pub fn local_transform(parent: Option<&str>) -> String {
+    parent.map_or_else(|| "Local, no parent".to_owned(), |parent| format!("Local, in {parent}"))
 }
 
 /// Returns the title of a vertex; `number` is the one in the file.

@@ -66,13 +66,13 @@ fn times(ui: &mut Ui, shown: &Shown<'_>) {
     let (time_secs, duration_secs) = (shown.clip_time_secs(), f64::from(clip.duration_secs()));
     let per_sec = shown.frames_per_sec();
     let frame = (time_secs * per_sec + 1e-4).floor();
-    let frames = (duration_secs * per_sec).round();
+    let last = (duration_secs * per_sec).round();
     ui.vertical(|ui| {
         ui.spacing_mut().item_spacing.y = 1.0;
         ui.add_space(5.0);
         let seconds = text::seconds(time_secs, duration_secs);
         ui.add(egui::Label::new(RichText::new(seconds).color(palette.text)).extend());
-        let frames = text::frames(frame, frames);
+        let frames = text::frames(frame, last);
         ui.add(egui::Label::new(RichText::new(frames).small().color(palette.weak_text)).extend())
             .on_hover_text(format!("{per_sec:.0} frames per second"));
     });

@@ -308,7 +308,7 @@ fn lights_and_cameras() {
         { "type": "point", "color": [1, 0.5, 0], "intensity": 40, "range": 3 },
         { "type": "spot", "spot": { "outerConeAngle": 0.5 } } ] } });
     let asset = read(build);
-    let lens = CameraProjection::Perspective { y_fov_radians: 0.5, aspect: None, near: 0.1, far: None };
+    let lens = CameraProjection::Perspective { y_fov_radians: 0.5, near: 0.1, far: None };
     assert_eq!((asset.cameras[0].name.as_str(), asset.cameras[0].projection), ("eye", lens));
     let spot = LightKind::Spot { inner_cone_radians: 0.0, outer_cone_radians: 0.5 };
     assert_eq!(asset.lights.iter().map(|light| light.kind).collect::<Vec<_>>(), [spot, LightKind::Point]);

@@ -20,3 +20,5 @@ mod coursework;
 mod data_folder;
 #[path = "../support/random.rs"]
 mod random;
+#[path = "../support/skeletons.rs"]
+mod skeletons;

@@ -1,14 +1,15 @@
 //! .obj with .skel and .attach: invalid files first, then behaviour, then real files against the exercise's formula in double
 //! precision.
 
-use gaitway::anim::model_from_joint;
+use gaitway::anim::{Skeleton, Transform, model_from_joint};
 use gaitway::asset::{Asset, Warning};
-use gaitway::formats::{FileSet, LoadError, LoadOptions, convert, load, missing_files};
+use gaitway::formats::{FileSet, LoadError, LoadOptions, WriteError, convert, load, missing_files, write_model};
 use gaitway::mesh::{AlphaMode, DeformedVertices, SkinningMode, deform, write_palette};
 use glam::{Affine3A, DMat4, DVec3, Vec2, Vec3};
 
 use crate::coursework::{Exercise, pose};
 use crate::data_folder::data_folder;
+use crate::skeletons::joint;
 
 /// A square of two triangles, bound to two joints.
 pub const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
@@ -67,6 +68,33 @@ fn an_invalid_obj_is_rejected_with_place_and_reason() {
     for (obj, wanted) in cases {
         check_error(load(&set(&[("m.obj", obj)])), wanted);
     }
+}
+
+#[test]
+fn a_query_is_not_part_of_the_name() {
+    let obj = "https://example.org/m.obj?path=a/b.c";
+    let files = set(&[(obj, SQUARE)]);
+    assert_eq!(missing_files(&files), ["m.skel", "m.attach"]);
+    let asset = load(&files).unwrap_or_else(|problem| panic!("{problem}"));
+    assert_eq!(asset.meshes[0].name, "m");
+    let rig = [(&*obj.replace("m.obj", "m.skel"), TWO_JOINTS), (&*obj.replace("m.obj", "m.attach"), ROWS)];
+    assert_eq!(missing_files(&set(&[&[(obj, SQUARE)], &rig[..]].concat())), [""; 0]);
+    // In a path, folders may be named like this.
+    assert_eq!(missing_files(&set(&[("a#1/m.obj", SQUARE)])), ["m.skel", "m.attach"]);
+}
+
+#[test]
+fn a_model_of_another_hierarchy_cannot_be_written() {
+    let files =
+        set(&[("m.obj", SQUARE), ("m.skel", "0 0 0 -1\n1 0 0 0\n1 0 0 1\n"), ("m.attach", "0 0\n0 0\n0 0\n0 0\n")]);
+    let other = Skeleton::new(vec![
+        joint("hips", None, Transform::IDENTITY),
+        joint("left", Some(0), Transform::IDENTITY),
+        joint("right", Some(0), Transform::IDENTITY),
+    ])
+    .unwrap();
+    let error = write_model(&files, "m.obj", &other, &[]).unwrap_err();
+    assert_eq!(error, WriteError::OtherParent { file: "m.obj".to_owned(), joint: "right".to_owned() });
 }
 
 #[test]

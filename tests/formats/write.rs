@@ -2,7 +2,9 @@
 
 use gaitway::anim::{Clip, ClipBuilder, Interpolation, JointIndex, Keys};
 use gaitway::asset::Asset;
-use gaitway::formats::{FileSet, LoadOptions, WriteError, convert, load, write_model, write_motion};
+use gaitway::formats::{
+    FileSet, LoadError, LoadOptions, WriteError, convert, load, load_named, write_model, write_motion,
+};
 use glam::{Mat4, Quat, Vec3};
 use serde_json::{Value, json};
 
@@ -245,11 +247,14 @@ fn unwritable_input_is_an_error() {
     let keys = Keys::Scale(vec![Vec3::NAN]);
     builder.channel(JointIndex(0), Interpolation::Linear, &[0.0], keys).expect("values are not checked there");
     let error = write_motion(&asset, &asset.skeleton, &[&builder.build()]).unwrap_err();
-    assert!(matches!(error, WriteError::NotFinite { .. }), "{error}");
+    assert_eq!(error, WriteError::NotFinite { clip: "bad".to_owned(), joint: "#0".to_owned() });
     let other = load(&one("walk.bvh", TWO_JOINTS.into())).expect("readable");
     let error = write_model(&files, "model.glb", &other.skeleton, &[]).unwrap_err();
     assert!(matches!(error, WriteError::OtherSkeleton { nodes: 1, joints: 2, .. }), "{error}");
-    assert!(matches!(write_model(&files, "other.glb", &asset.skeleton, &[]), Err(WriteError::Read(_))));
+    let error = write_model(&files, "other.glb", &asset.skeleton, &[]).unwrap_err();
+    assert_eq!(error.to_string(), "“other.glb” is not among the files (model.glb)");
+    let error = load_named(&files, "other.glb", &LoadOptions::default()).unwrap_err();
+    assert!(matches!(&error, LoadError::NoSuchFile { name, .. } if name == "other.glb"), "{error}");
     let no_data = one("model.gltf", br#"{"asset":{"version":"2.0"},"buffers":[{"byteLength":4}]}"#.to_vec());
     assert!(matches!(convert(&no_data, &LoadOptions::default()), Err(WriteError::NoBuffer { .. })));
 }

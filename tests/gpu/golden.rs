@@ -70,7 +70,7 @@ fn pixel_count(size: [u32; 2]) -> usize {
 fn draw(gpu: &Gpu, model: Model) -> Vec<u8> {
     let Gpu { device, queue } = gpu;
     let mut library = Library::default();
-    library.set(model);
+    library.add(model);
     let state = ViewerState { playhead: Playhead { time_secs: 0.3, ..Default::default() }, ..Default::default() };
     let mut frame = Frame::default();
     evaluate(&library, &state, SIZE[0] as f32 / SIZE[1] as f32, &mut frame);

@@ -35,6 +35,23 @@ fn anything_but_a_map_is_refused() {
 }
 
 #[test]
+fn errors_in_explained_maps_keep_their_place() {
+    // As `gaitway map --json` prints it, with members of its own at the beginning, between others and at the end.
+    let text = |source: &str| {
+        format!(
+            "{{ \"unused_sources\": [\n  \"é\"],\n  \"gaitway_map\": 1, \"joints\": {{\n  \"head\": {{ \"reason\": \"a,\nb\", \"source\": {source}, \"slot\": null }},\n  \"tip\": {{ \"slot\": null, \"confidence\": 1 }} }}, \"warnings\": [] }}"
+        )
+        .replace("a,\n", "a, ")
+    };
+    let map = JointMapFile::from_json(&text("2")).expect("an explained map");
+    assert_eq!(map.joints["head"].source, Some(SourceRef::Number(2)));
+    assert_eq!(map.joints.len(), 2);
+    let message = JointMapFile::from_json(&text("1.5")).expect_err("a source").to_string();
+    let line = text("1.5").lines().nth(3).map_or(0, |line| line.find("1.5").map_or(0, |at| at + 3));
+    assert!(message.ends_with(&format!("at line 4 column {line}")), "{message}");
+}
+
+#[test]
 fn errors_give_the_path_of_a_wrong_member() {
     let joint = |entry: &str| format!(r#"{{"gaitway_map": 1, "joints": {{"head": {entry}}}}}"#);
     check_refused(r#"{"gaitway_map": 1, "joint": {}}"#, "unknown field `joint`, expected one of");

@@ -55,7 +55,7 @@ fn missing_and_ambiguous_joints_are_refused() {
     check_refused(&map(&[("spine", name("neck"))]), "joints.spine: the model has no joint “spine”; nearest: spine2");
     check_refused(&map(&[("tip", name("Neck1"))]), "joints.tip.source: the motion has no joint “Neck1”; nearest: neck");
     check_refused(&map(&[("xyz", name("neck"))]), "the model has no joint “xyz”");
-    check_refused(&map(&[("tip", Some(SourceRef::Number(5)))]), "no channel 5: it has 5 joints, 0 to 4");
+    check_refused(&map(&[("tip", Some(SourceRef::Number(5)))]), "no joint 5: it has 5, 0 to 4");
     check_refused(&map(&[("#6", name("neck"))]), "the model has no node 6: it has 6");
     check_refused(&map(&[("#x", name("neck"))]), "the model has no node x");
     check_refused(&map(&[("twin", name("neck"))]), "2 joints of the model are called “twin”: write one of #1, #2");

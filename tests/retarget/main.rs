@@ -6,9 +6,12 @@ mod data_folder;
 mod pairs_of_people;
 #[path = "../support/random.rs"]
 mod random;
+#[path = "../support/skeletons.rs"]
+mod skeletons;
 
 mod coursework;
 mod feet;
 mod figure;
 mod laws;
+mod layers;
 mod pairs;

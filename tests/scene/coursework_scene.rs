@@ -5,8 +5,9 @@ use std::process::Command as Process;
 use std::slice::from_ref;
 
 use gaitway::files::{OpenError, open_paths};
+use gaitway::formats::{FileSet, load};
 use gaitway::frame::{Frame, VertexFormula, evaluate, joint_matrices, pick_vertex, pose_document, vertex_formula};
-use gaitway::library::Library;
+use gaitway::library::{Library, Model};
 use gaitway::mesh::{DeformedVertices, Geometry, SkinningMode, Topology, smooth_normals};
 use gaitway::state::{
     ClipChoice, Command, Display, Edits, History, Playhead, Show, UpAxis, VertexChoice, ViewerState, apply, from_link,
@@ -267,14 +268,18 @@ fn smooth_normals_are_weighted_by_angle() {
     assert!(smooth_normals(&[Geometry { topology: Topology::Lines, ..cube }])[0].is_empty());
 }
 
+fn loaded(files: &FileSet, name: &str) -> Model {
+    Model::new(name.to_owned(), load(files).expect("readable"), Vec::new())
+}
+
 #[test]
 fn a_surface_is_smooth_across_parts() {
     let normals = |between: &str| -> Vec<f64> {
-        let mut files = gaitway::formats::FileSet::default();
+        let mut files = FileSet::default();
         // Two triangles at a right angle along the second axis.
         let obj = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n{between}f 1 3 4\n");
         files.insert("m.obj", obj.into_bytes());
-        let library = library_of(gaitway::files::open_bytes(&files, "m.obj".to_owned()).expect("it opens").model);
+        let library = library_of(loaded(&files, "m.obj"));
         let state = ViewerState {
             display: Display { show: Show { smooth: true, ..Show::default() }, ..Display::default() },
             ..ViewerState::default()
@@ -304,10 +309,10 @@ fn the_pose_document_has_normals_of_smooth_surfaces() {
 
 #[test]
 fn several_parts_are_one_mesh_in_file_order() {
-    let mut files = gaitway::formats::FileSet::default();
+    let mut files = FileSet::default();
     let obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 5 5 5\ng a\nf 3 4 1\ng b\nf 1 2 3\n";
     files.insert("parts.obj", obj.as_bytes().to_vec());
-    let library = library_of(gaitway::files::open_bytes(&files, "parts.obj".to_owned()).expect("it opens").model);
+    let library = library_of(loaded(&files, "parts.obj"));
     let expected = [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y, DVec3::splat(5.0)];
     let document = pose_document(&library, &ViewerState::default());
     assert_eq!(positions(&document), expected);

@@ -12,7 +12,7 @@ fn walker_with_crossfade() -> Library {
     let asset = library.active().expect("a model").asset.clone();
     let map = JointMap { crossfade_secs: 0.4, ..propose(&asset, &asset).to_map(&asset, &asset) };
     library.set_motions(vec![Motion::new("dance.glb".to_owned(), asset)]);
-    library.borrow(Some(&map));
+    library.borrow_each(vec![Some(map)]);
     assert_eq!(library.borrow_errors(), []);
     library
 }

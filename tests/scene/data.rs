@@ -12,7 +12,7 @@ use crate::data_folder::data_folder;
 
 pub fn library_of(model: Model) -> Library {
     let mut library = Library::default();
-    library.set(model);
+    library.add(model);
     library
 }
 

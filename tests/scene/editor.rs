@@ -2,10 +2,12 @@
 
 use std::path::PathBuf;
 
-use gaitway::editor::{Contents, Editor, Event};
+use gaitway::editor::{Contents, Editor, Event, Export};
 use gaitway::files::{Role, read_paths};
-use gaitway::library::Model;
-use gaitway::state::{CameraChoice, ClipChoice, Command, Inspect, OrbitCamera, RetargetEdits, Show, UpAxis};
+use gaitway::library::{Library, Model, Motion};
+use gaitway::state::{
+    CameraChoice, ClipChoice, Command, Inspect, OrbitCamera, RetargetEdits, Show, Sources, UpAxis, ViewerState,
+};
 
 fn contents(files: &[&str]) -> Contents {
     let files: Vec<PathBuf> = files.iter().map(PathBuf::from).collect();
@@ -121,6 +123,30 @@ fn motions_without_a_joint_in_common_are_refused_until_the_user_maps_them() {
 }
 
 #[test]
+fn a_manual_map_does_not_start_without_room_for_the_motion() {
+    let mut editor = editor("sample:morphs");
+    editor.open(contents(&["sample:walk"]), None, &mut any).expect_err("does not fit");
+    editor.map_refused_manually();
+    let walk = editor.library().motions()[0].clone();
+    let again = Motion::new("again.glb".to_owned(), walk.asset.clone());
+    let refused = Contents { motions: Some(vec![again]), ..Contents::default() };
+    editor.open(refused, None, &mut any).expect_err("does not fit");
+    // A view fills the library in the meantime.
+    let others = (1..Library::MAX_MOTIONS).map(|number| Motion::new(format!("{number}.glb"), walk.asset.clone()));
+    let motions: Vec<Motion> = [walk.clone()].into_iter().chain(others).collect();
+    let motion = motions.iter().map(|motion| motion.origin.clone()).collect();
+    let now = editor.state().clone();
+    let view = ViewerState { sources: Sources { motion, ..now.sources }, ..now };
+    let contents = Contents { motions: Some(motions), ..Contents::default() };
+    editor.open(contents, Some(view), &mut any).expect("the model stays");
+    assert_eq!(editor.library().motions().len(), Library::MAX_MOTIONS);
+    editor.take_events();
+    editor.map_refused_manually();
+    let events = editor.take_events();
+    assert!(matches!(&events[..], [Event::Problem(problem)] if problem.contains("at most 64 motions")), "{events:?}");
+}
+
+#[test]
 fn framing_uses_the_viewports_aspect() {
     let mut editor = editor("sample:pilot");
     let framed = |editor: &mut Editor, aspect: f32| {
@@ -153,4 +179,15 @@ fn a_state_about_other_files_is_ignored() {
     assert_eq!(editor.state().playback.speed, 3.0);
     editor.apply_partial(&serde_json::json!({ "speed": 2, "fov": "wide" })).expect_err("all or none");
     assert_eq!(editor.state().playback.speed, 3.0);
+}
+
+#[test]
+fn an_exported_clip_is_called_by_its_own_name() {
+    let editor = editor("sample:pilot");
+    let titles = editor.library().active().expect("a model").clip_titles().to_vec();
+    assert!(titles.len() > 1, "{titles:?}");
+    for (clip, title) in titles.iter().enumerate() {
+        let name = editor.export(Export::Clip { clip }).expect("it has keys").name;
+        assert_eq!(name, format!("Pilot-{title}.glb"));
+    }
 }

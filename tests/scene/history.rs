@@ -64,7 +64,7 @@ fn a_command_that_changes_nothing_is_not_a_step() {
 fn two_models() -> (Library, ModelId, ModelId) {
     let mut library = Library::default();
     let model = |source: &str| Model::new(source.to_owned(), walker().active().unwrap().asset.clone(), Vec::new());
-    let first = library.set(model("first.glb"));
+    let first = library.add(model("first.glb"));
     let second = library.add(model("second.glb"));
     (library, first, second)
 }

@@ -161,7 +161,10 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
         ("page.embed", with(&|state| state.page.embed = true)),
         (
             "page.unknown",
-            with(&|state| state.page.unknown = BTreeMap::from([("zoo".to_owned(), "3:x\n4:y".to_owned())])),
+            with(&|state| {
+                let values = vec!["3:x\n4:y".to_owned(), "5:z".to_owned()];
+                state.page.unknown = BTreeMap::from([("zoo".to_owned(), values)]);
+            }),
         ),
     ]
 }
@@ -373,6 +376,10 @@ fn unknown_keys_are_kept() {
     assert_eq!(errors.len(), 4, "{errors:?}");
     assert!(state.display.show.skeleton);
     assert_eq!(to_link(&state), link);
+    // A line break does not separate values.
+    let (state, _) = from_link("v=1&foo=a%0Ab");
+    assert_eq!(to_link(&state), "v=1&foo=a%0Ab");
+    assert_eq!(to_object(&state)["foo"], "a\nb");
 }
 
 #[test]

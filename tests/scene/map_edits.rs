@@ -113,7 +113,7 @@ fn animal(names: &[&str]) -> Arc<Asset> {
 /// Checks the pairs of target and source after swapping sides; all are indices in the file.
 fn check_swapped(model: &[&str], motion: &[&str], pairs: &[(usize, usize)], expected: &[(usize, usize)]) {
     let mut library = Library::default();
-    library.set(Model::new("beast.glb".to_owned(), animal(model), Vec::new()));
+    library.add(Model::new("beast.glb".to_owned(), animal(model), Vec::new()));
     library.set_motions(vec![Motion::new("run.bvh".to_owned(), animal(motion))]);
     let mut state = ViewerState::default();
     apply(&mut state, &library, Command::EditMap { motion: 0, edit: MapEdit::Clear });

@@ -34,7 +34,7 @@ fn check(scene: &Value) {
         contents.motions.unwrap_or_default()
     });
     library.set_motions(motions.collect());
-    library.borrow(None);
+    library.borrow_each(vec![None; library.motions().len()]);
     assert!(library.borrow_errors().is_empty(), "{link}: {:?}", library.borrow_errors());
     let named_clip = match &wanted.playhead.clip {
         ClipChoice::Named(name) => Some(name.clone()),

@@ -87,9 +87,10 @@ fn sorting_errors_say_what_to_do() {
         Ok(sorted) => panic!("{sorted:?}"),
         Err(error) => error,
     };
-    let names: Vec<String> = (0..9).map(|index| format!("{index}.gltf")).collect();
-    let nine: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), MESH)).collect();
-    assert!(matches!(fails(Role::Any, &nine), SortError::TooManyModels { max: 8 }));
+    let names: Vec<String> = (0..65).map(|index| format!("{index}.gltf")).collect();
+    let models: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), MESH)).collect();
+    assert!(matches!(fails(Role::Any, &models[..9]), SortError::TooManyModels { max: 8 }));
+    assert!(matches!(fails(Role::Any, &models), SortError::TooManyModels { max: 8 }));
     let none = fails(Role::Model, &[("a.bvh", BVH), ("b.bvh", BVH)]);
     assert!(matches!(&none, SortError::NoModel { .. }), "{none}");
     let maps = fails(Role::Any, &[("a.bvh", BVH), ("a.json", MAP), ("b.json", MAP)]);
@@ -101,7 +102,7 @@ fn sorting_errors_say_what_to_do() {
     assert!(matches!(fails(Role::Any, &[("notes.txt", "hello")]), SortError::Load(_)));
     let many: Vec<(String, &str)> = (0..65).map(|index| (format!("{index}.bvh"), BVH)).collect();
     let many: Vec<(&str, &str)> = many.iter().map(|(name, text)| (name.as_str(), *text)).collect();
-    assert!(matches!(fails(Role::Any, &many), SortError::TooManyMotions { found: 65, .. }));
+    assert!(matches!(fails(Role::Any, &many), SortError::TooManyMotions { max: 64 }));
 }
 
 #[test]
@@ -145,6 +146,35 @@ fn files_from_an_archive_have_its_name_as_origin() {
     let cut = write(&folder, "cut.zip", b"PK\x03\x04 and no more");
     let cut = open_paths(&[cut]).expect_err("it is no archive").to_string();
     assert!(cut.starts_with("cut.zip: not a readable zip"), "{cut}");
+    std::fs::remove_dir_all(&folder).expect("it was created");
+}
+
+#[test]
+fn motions_of_a_folder_have_its_name_as_origin() {
+    let folder = temporary_folder("mixed");
+    let model = write(&folder, "m.gltf", MESH.as_bytes());
+    write(&folder, "moves/a.bvh", BVH.as_bytes());
+    let moves = folder.join("moves");
+    for paths in [[moves.clone(), model.clone()], [model, moves]] {
+        let contents = read_paths(&paths, Role::Any).expect("a model and a motion");
+        assert_eq!(contents.models[0].model.origin, "m.gltf");
+        let motions: Vec<_> =
+            contents.motions.iter().flatten().map(|motion| (&*motion.source, &*motion.origin)).collect();
+        assert_eq!(motions, [("a.bvh", "moves")]);
+    }
+    std::fs::remove_dir_all(&folder).expect("it was created");
+}
+
+#[test]
+fn folders_have_a_limit_of_files_together() {
+    let folder = temporary_folder("many");
+    let folders = ["a", "b"].map(|name| folder.join(name));
+    for folder in &folders {
+        std::fs::create_dir_all(folder).expect("it can be created");
+        (0..2049).for_each(|file| std::fs::write(folder.join(file.to_string()), "").expect("it can be written"));
+    }
+    let error = read_paths(&folders, Role::Any).expect_err("too many");
+    assert!(matches!(&error, OpenError::TooManyFiles { path, max: 4096 } if *path == folders[1]), "{error}");
     std::fs::remove_dir_all(&folder).expect("it was created");
 }
 

@@ -26,7 +26,7 @@ fn walker_with_larger_source() -> (Library, ViewerState) {
     let mut library = walker();
     let asset = library.active().expect("a model").asset.clone();
     library.set_motions(vec![Motion::new("twice.glb".to_owned(), Arc::new(doubled(&asset)))]);
-    library.borrow(None);
+    library.borrow_each(vec![None]);
     assert_eq!(library.borrow_errors(), []);
     let model = library.active().expect("a model");
     let clip = choice_of_clip(model, model.asset.clips.len());

@@ -80,6 +80,9 @@ fn values_out_of_range_are_clamped() {
         ..ViewerState::default()
     };
     assert_eq!(after(&library, [Command::Replace(Box::new(bad))]), expected);
+    let before_the_start =
+        ViewerState { playhead: Playhead { time_secs: -1.0, ..Playhead::default() }, ..ViewerState::default() };
+    assert_eq!(after(&library, [Command::Replace(Box::new(before_the_start))]), ViewerState::default());
 }
 
 #[test]

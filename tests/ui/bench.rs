@@ -31,7 +31,7 @@ pub fn sample_bench(size: [f32; 2]) -> Harness<'static, Bench> {
 /// The sample with the sample's own clips to borrow, as if they came from other files.
 pub fn motion_bench(size: [f32; 2], motions: &[&str]) -> Harness<'static, Bench> {
     let mut library = Library::default();
-    library.set(samples::load("walker").expect("the sample is there"));
+    library.add(samples::load("walker").expect("the sample is there"));
     let asset = library.active().expect("just set").asset.clone();
     library.set_motions(motions.iter().map(|name| Motion::new((*name).to_owned(), asset.clone())).collect());
     bench_of(size, library)
@@ -39,7 +39,7 @@ pub fn motion_bench(size: [f32; 2], motions: &[&str]) -> Harness<'static, Bench>
 
 pub fn bench(size: [f32; 2], model: Model) -> Harness<'static, Bench> {
     let mut library = Library::default();
-    library.set(model);
+    library.add(model);
     bench_of(size, library)
 }
 

@@ -78,7 +78,7 @@ fn a_model_without_meshes_has_no_vertices_to_look_at() {
     let mut harness = strip(WIDE);
     press(&mut harness, text::VERTEX_PROBE);
     let mut library = Library::default();
-    library.set(model_with_clips(2));
+    library.add(model_with_clips(2));
     harness.state_mut().editor = Editor::new(library, ViewerState::default());
     harness.run();
     assert!(harness.query_by_label(text::VERTEX_PROBE).is_none());

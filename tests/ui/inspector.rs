@@ -14,7 +14,7 @@ fn the_tree_shows_all_joints_and_chooses_one() {
     let skeleton = &harness.state().library().active().unwrap().asset.skeleton;
     let hand = skeleton.source_index(skeleton.find("LeftHand").unwrap());
     assert_eq!(commands, [Command::SelectJoint(Some(hand))]);
-    assert!(harness.query_by_label(&text::local_transform("LeftLowerArm")).is_some());
+    assert!(harness.query_by_label(&text::local_transform(Some("LeftLowerArm"))).is_some());
     assert!(harness.query_all_by_label_contains("Position").count() >= 2, "local and world");
     assert_eq!(press(&mut harness, text::DESELECT_JOINT), [Command::SelectJoint(None)]);
 }

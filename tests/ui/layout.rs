@@ -3,7 +3,7 @@
 use egui_kittest::kittest::Queryable;
 use gaitway::ui::{PathPrompt, PathPurpose, Progress, Sheet, Tab, UiAction, text};
 
-use crate::bench::{NARROW, WIDE, bench, model_with_clips, press, sample_bench};
+use crate::bench::{NARROW, WIDE, bench, model_with_clips, motion_bench, press, sample_bench};
 
 #[test]
 fn panels_fold_away_and_come_back() {
@@ -31,6 +31,19 @@ fn a_narrow_screen_has_sheets_one_at_a_time() {
     assert!(harness.query_by_label(text::REST_POSE).is_none());
     press(&mut harness, text::CLOSE_SHEET);
     assert_eq!(harness.state().panels.layout.sheet, None);
+}
+
+#[test]
+fn mapping_manually_shows_the_joint_table() {
+    for size in [WIDE, NARROW] {
+        let mut harness = motion_bench(size, &["walk.bvh"]);
+        harness.state_mut().panels.layout.inspector_open = false;
+        harness.run();
+        assert!(harness.query_by_label(Tab::Motion.label()).is_none());
+        harness.state_mut().panels.on_map_started();
+        harness.run();
+        assert!(harness.query_by_label(Tab::Motion.label()).is_some(), "{size:?}");
+    }
 }
 
 /// The picture is what a sheet leaves free: the character stays in sight while a clip is chosen.

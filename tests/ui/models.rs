@@ -9,7 +9,7 @@ use crate::bench::{NARROW, WIDE, bench_of, press, sample_bench};
 
 fn two_models() -> Library {
     let mut library = Library::default();
-    let first = library.set(samples::load("walker").expect("the sample is there"));
+    let first = library.add(samples::load("walker").expect("the sample is there"));
     let asset = library.get(first).expect("just set").asset.clone();
     library.add(Model::new("folder/other.glb".to_owned(), asset, Vec::new()));
     library

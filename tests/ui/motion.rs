@@ -561,7 +561,7 @@ fn bench_of_chain(joints: usize) -> Harness<'static, Bench> {
     let names: Vec<String> = (0..joints).map(|index| format!("Tentacle{index}")).collect();
     let asset = skeletons::asset(skeletons::chain(names.iter().map(String::as_str), glam::Vec3::Y * 0.01));
     let mut library = Library::default();
-    library.set(Model::new("squid.glb".to_owned(), asset, Vec::new()));
+    library.add(Model::new("squid.glb".to_owned(), asset, Vec::new()));
     let asset = library.active().expect("just set").asset.clone();
     library.set_motions(vec![Motion::new("swim.bvh".to_owned(), asset)]);
     let mut harness = bench_of(WIDE, library);

@@ -75,6 +75,12 @@ export async function follow(link, { items = [], motionItems = [], link: heldLin
 const areSame = (items, others) => items.length === others.length && items.every((item, index) => item === others[index]);
 
 /**
+ * Returns the last part of a path or URL, without its query.
+ * @param {string} address
+ */
+const fileName = (address) => address.split(/[?#]/)[0].split("/").pop();
+
+/**
  * Says what of a link could not be loaded, and offers to try again.
  * @param {string[]} problems
  * @param {string} link
@@ -85,7 +91,9 @@ export function showMissing(problems, link, isUnchanged = false) {
   sayProblem(problems.join(" "));
   showList("missing-parts", problems);
   const models = linkedFiles(link).filter(({ role }) => role === "model");
-  const isModel = models.some(({ name }) => problems.some((problem) => problem.startsWith(`${name}:`)));
+  // A problem may name the absolute URL of a relative one, or only the file.
+  const failed = problems.map((problem) => fileName(problem.split(": ")[0]));
+  const isModel = models.some(({ name }) => failed.includes(fileName(name)));
   byId("missing-title").textContent = `${isModel ? "The model in" : "Part of"} this link couldn't be loaded`;
   byId("missing-rest").textContent = isUnchanged ? "The current view stays as it was." : "Everything that could be loaded is shown.";
   button("missing-again").onclick = () => {

@@ -148,15 +148,10 @@ pub fn cameras(root: &Root, skeleton: &Skeleton) -> Result<Vec<Camera>, Problem>
         let place = format!("nodes[{index}].camera");
         let camera = get(&root.cameras, camera.value(), &place, "cameras")?;
         let projection = match (&camera.perspective, &camera.orthographic) {
-            (Some(lens), _) => CameraProjection::Perspective {
-                y_fov_radians: lens.yfov,
-                aspect: lens.aspect_ratio,
-                near: lens.znear,
-                far: lens.zfar,
-            },
-            (None, Some(lens)) => {
-                CameraProjection::Orthographic { x_mag: lens.xmag, y_mag: lens.ymag, near: lens.znear, far: lens.zfar }
+            (Some(lens), _) => {
+                CameraProjection::Perspective { y_fov_radians: lens.yfov, near: lens.znear, far: lens.zfar }
             }
+            (None, Some(lens)) => CameraProjection::Orthographic { y_mag: lens.ymag, near: lens.znear, far: lens.zfar },
             (None, None) => return Err(Problem::new(place, "a perspective or orthographic camera", "neither")),
         };
         let name = match camera.name.as_deref().unwrap_or_default() {
@@ -186,7 +181,6 @@ pub fn lights(document: &Document, skeleton: &Skeleton, warnings: &mut Warnings)
             continue;
         };
         lights.push(Light {
-            name: shared_name(light.name.as_deref().unwrap_or_default()),
             joint,
             color: Vec3::from(light.color),
             intensity: light.intensity,

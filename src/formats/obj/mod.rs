@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 use glam::Affine3A;
 
-use super::file_set::bare_name;
+use super::file_set::{bare_name, without_query};
 use super::gltf::image_header;
 use super::{FileSet, LoadError, extension};
 use crate::anim::{Joint, Skeleton, Transform, model_from_joint};
@@ -44,7 +44,7 @@ pub(super) fn missing_files(files: &FileSet, file: &str, bytes: &[u8]) -> Vec<St
     let mut missing = Vec::new();
     for kind in ["obj", "skel", "attach"] {
         if companion(files, file, kind).is_none() {
-            missing.extend(sibling(file, kind).map(|name| bare_name(&name).to_owned()));
+            missing.extend(sibling_name(file, kind));
         }
     }
     if !is_obj(file) {
@@ -62,14 +62,16 @@ pub(super) fn missing_files(files: &FileSet, file: &str, bytes: &[u8]) -> Vec<St
     missing
 }
 
-/// The same name with another extension.
+/// The same path or URL with another extension. A URL keeps its query.
 fn sibling(file: &str, kind: &str) -> Option<String> {
-    let bare = bare_name(file);
-    let length = extension(file).len();
-    // A URL may have a query after the name.
-    let end = file.len() - bare.len() + bare.split(['?', '#']).next().unwrap_or(bare).len();
-    let stem = file.get(..end.checked_sub(length)?)?;
-    Some(format!("{stem}{kind}{}", file.get(end..)?))
+    let path = without_query(file);
+    let stem = path.get(..path.len().checked_sub(extension(file).len())?)?;
+    Some(format!("{stem}{kind}{}", &file[path.len()..]))
+}
+
+/// The bare name with another extension.
+fn sibling_name(file: &str, kind: &str) -> Option<String> {
+    sibling(without_query(file), kind).map(|name| bare_name(&name).to_owned())
 }
 
 /// Finds the file of another kind that belongs to `file`: the one with the same stem, else the only one if there is only one
@@ -92,7 +94,7 @@ fn companion<'a>(files: &'a FileSet, file: &str, kind: &str) -> Option<(&'a str,
 
 /// The error for companions without an .obj.
 pub(super) fn without_obj(file: &str) -> LoadError {
-    let uri = sibling(file, "obj").map_or_else(|| "the .obj".to_owned(), |name| bare_name(&name).to_owned());
+    let uri = sibling_name(file, "obj").unwrap_or_else(|| "the .obj".to_owned());
     LoadError::MissingFile { file: file.to_owned(), place: "the mesh it belongs to".to_owned(), uri }
 }
 
@@ -107,8 +109,8 @@ pub(super) fn load(
     if obj.faces.is_empty() {
         return Err(Problem::new("the whole file", "a face (a line that begins with “f”)", "none").in_file(file));
     }
-    let stem = sibling(file, "").unwrap_or_default();
-    let stem = bare_name(&stem).trim_end_matches('.');
+    let stem = sibling_name(file, "").unwrap_or_default();
+    let stem = stem.trim_end_matches('.');
     let rig = rig(files, file, stem, obj.positions.len(), &mut warnings)?;
     let (skeleton, skin, influences) = match rig {
         None => (lone_joint(stem), None, Influences::default()),
@@ -147,7 +149,7 @@ fn rig(
     let missing = |place: &str, kind: &str| LoadError::MissingFile {
         file: file.to_owned(),
         place: place.to_owned(),
-        uri: sibling(file, kind).map_or_else(String::new, |name| bare_name(&name).to_owned()),
+        uri: sibling_name(file, kind).unwrap_or_default(),
     };
     let ((skel_file, skel), (attach_file, attach)) =
         match (companion(files, file, "skel"), companion(files, file, "attach")) {

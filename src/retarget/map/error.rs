@@ -57,7 +57,7 @@ pub enum MapError {
         count: usize,
     },
     /// A source number is not that of a joint of the motion.
-    #[error("{path}: the motion has no channel {number}: it has {count} joints, 0 to {}", .count.saturating_sub(1))]
+    #[error("{path}: the motion has no joint {number}: it has {count}, 0 to {}", .count.saturating_sub(1))]
     SourceOutOfRange {
         /// JSON path of the reference, such as `joints.head.source` or `muted_channels[0].source`.
         path: String,

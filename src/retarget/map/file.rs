@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use serde::de::{Error, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
+use serde_json::value::RawValue;
 
 use super::error::MapError;
 use super::joint_map::{MapEntry, MutedChannel};
@@ -99,8 +100,8 @@ impl JointMapFile {
             Ok(None) => return Err(MapError::NotAMap),
             Err(error) => return Err(MapError::NotJson { message: error.to_string() }),
         }
-        let stripped = without_explanations(text);
-        let text = stripped.as_deref().unwrap_or(text);
+        let blanked = without_explanations(text);
+        let text = blanked.as_deref().unwrap_or(text);
         serde_path_to_error::deserialize(&mut serde_json::Deserializer::from_str(text)).map_err(|error| {
             let path = error.path().to_string();
             MapError::Json { path, message: error.into_inner().to_string() }
@@ -117,21 +118,45 @@ impl JointMapFile {
     }
 }
 
-/// Removes what `gaitway map --json` adds to a map, so that its output can be used as one. That output is recognised by its
-/// "unused_sources"; None for any other text, which is read strictly.
+/// The members of an object by name, with their JSON.
+type Members<'a> = BTreeMap<String, &'a RawValue>;
+
+/// Blanks what `gaitway map --json` adds to a map, so that its output can be used as one and errors keep their line and column.
+/// That output is recognised by its "unused_sources"; None for any other text, which is read strictly.
 fn without_explanations(text: &str) -> Option<String> {
-    let mut form: serde_json::Value = serde_json::from_str(text).ok()?;
-    let map = form.as_object_mut()?;
-    map.remove("unused_sources")?;
-    map.remove("unmapped_targets");
-    map.remove("warnings");
-    let entries = map.get_mut("joints").and_then(serde_json::Value::as_object_mut);
-    for entry in entries.into_iter().flat_map(|joints| joints.values_mut()).filter_map(|entry| entry.as_object_mut()) {
-        for explanation in ["slot", "reason", "confidence"] {
-            entry.remove(explanation);
-        }
+    let map: Members = serde_json::from_str(text).ok()?;
+    map.get("unused_sources")?;
+    let mut blanked = text.to_owned().into_bytes();
+    blank_members(&mut blanked, text, text, &["unused_sources", "unmapped_targets", "warnings"]);
+    let joints: Members =
+        map.get("joints").and_then(|joints| serde_json::from_str(joints.get()).ok()).unwrap_or_default();
+    for entry in joints.values() {
+        blank_members(&mut blanked, text, entry.get(), &["slot", "reason", "confidence"]);
     }
-    Some(form.to_string())
+    String::from_utf8(blanked).ok()
+}
+
+/// Overwrites members of `object`, a part of `text`, with spaces in `blanked`, a copy of `text`.
+fn blank_members(blanked: &mut [u8], text: &str, object: &str, names: &[&str]) {
+    let start_of = |part: &str| part.as_ptr() as usize - text.as_ptr() as usize;
+    let members: Members = serde_json::from_str(object).unwrap_or_default();
+    let mut members: Vec<(usize, usize, bool)> = members
+        .iter()
+        .map(|(name, value)| (start_of(value.get()), value.get().len(), names.contains(&name.as_str())))
+        .collect();
+    members.sort_unstable();
+    let mut before = start_of(object) + object.find('{').map_or(0, |brace| brace + 1);
+    let mut is_first = true;
+    for (start, length, is_unwanted) in members {
+        let blank = |byte: &mut u8| *byte = if *byte == b'\n' { b'\n' } else { b' ' };
+        if is_unwanted {
+            blanked[before..start + length].iter_mut().for_each(blank);
+        } else if std::mem::take(&mut is_first) {
+            // The comma after a blanked member.
+            blanked[before..start].iter_mut().take_while(|byte| **byte != b'"').for_each(blank);
+        }
+        before = start + length;
+    }
 }
 
 impl Default for JointMapFile {

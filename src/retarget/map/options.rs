@@ -56,7 +56,7 @@ pub enum RootPart {
     Freeze,
 }
 
-/// Whether translations or scales of joints other than the hips are carried over.
+/// Whether translations (of joints other than the hips) or scales (of all mapped joints) are carried over.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Keep {

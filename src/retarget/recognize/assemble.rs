@@ -89,37 +89,43 @@ impl Search<'_> {
         joints.iter().copied().find(|&joint| joint != above && self.tree.is_under(joint, above))
     }
 
+    /// The ancestors of a joint among `joints`, in their order.
+    fn above(&self, joints: &[JointIndex], below: JointIndex) -> impl DoubleEndedIterator<Item = JointIndex> {
+        joints.iter().copied().filter(move |&joint| joint != below && self.tree.is_under(below, joint))
+    }
+
+    /// The upper half of a limb: the first ancestor by a sure word, then by a vague one, then the last by the joint it hangs on.
+    fn upper_of(&self, lower: JointIndex, [sure, vague, base]: [&[JointIndex]; 3]) -> Option<JointIndex> {
+        let first = |joints| self.above(joints, lower).next();
+        first(sure).or_else(|| first(vague)).or_else(|| self.above(base, lower).next_back())
+    }
+
+    /// The joint between the upper half of a limb and its end, if there is only one.
+    fn only_between(&self, upper: JointIndex, ends: &[JointIndex]) -> Option<JointIndex> {
+        match self.tree.path(upper, self.under(ends, upper)?).as_slice() {
+            [between, _] => Some(*between),
+            _ => None,
+        }
+    }
+
     fn leg(&self, side: Side) -> Limb {
         let all = |word| self.all(Some(side), word);
         let (thighs, hips, legs, shins) = (all(Word::UpperLeg), all(Word::Hip), all(Word::Leg), all(Word::LowerLeg));
         let (feet, toes) = (all(Word::Foot), all(Word::Toes));
-        let above = |joints: &[JointIndex], below: JointIndex| {
-            joints
-                .iter()
-                .copied()
-                .filter(|&joint| joint != below && self.tree.is_under(below, joint))
-                .collect::<Vec<_>>()
-        };
-        let first_of = |lower| {
-            above(&thighs, lower).first().or(above(&legs, lower).first()).or(above(&hips, lower).last()).copied()
-        };
+        let upper_of = |lower| self.upper_of(lower, [&thighs, &legs, &hips]);
         let mut lower = shins.first().copied();
-        let mut upper = lower.and_then(first_of);
+        let mut upper = lower.and_then(upper_of);
         if lower.is_none() {
             upper = thighs.first().copied();
             lower = match upper {
                 Some(upper) => self.under(&legs, upper),
                 None => legs.first().and_then(|&first| self.under(&legs, first)).or(legs.first().copied()),
             };
-            upper = upper.or_else(|| lower.and_then(first_of));
+            upper = upper.or_else(|| lower.and_then(upper_of));
         }
         // An unnamed joint between thigh and foot is the shin.
         if let (Some(upper), None) = (upper, lower) {
-            let foot = self.under(&feet, upper);
-            lower = foot.and_then(|foot| match self.tree.path(upper, foot).as_slice() {
-                [between, _] => Some(*between),
-                _ => None,
-            });
+            lower = self.only_between(upper, &feet);
         }
         // In many game rigs, feet follow a control and are not descendants of the leg.
         let end = lower.and_then(|lower| self.under(&feet, lower).or(feet.first().copied()));
@@ -131,30 +137,16 @@ impl Search<'_> {
         let all = |word| self.all(Some(side), word);
         let (collars, shoulders, uppers) = (all(Word::Clavicle), all(Word::Shoulder), all(Word::UpperArm));
         let (arms, lowers, hands) = (all(Word::Arm), all(Word::LowerArm), all(Word::Hand));
-        let above = |joints: &[JointIndex], below: JointIndex| {
-            joints
-                .iter()
-                .copied()
-                .filter(|&joint| joint != below && self.tree.is_under(below, joint))
-                .collect::<Vec<_>>()
-        };
-        let first_of = |lower| {
-            above(&uppers, lower).first().or(above(&arms, lower).first()).or(above(&shoulders, lower).last()).copied()
-        };
         let mut lower = lowers.first().copied();
-        let mut upper = lower.and_then(first_of);
+        let mut upper = lower.and_then(|lower| self.upper_of(lower, [&uppers, &arms, &shoulders]));
         if lower.is_none() {
             upper = uppers.first().or(arms.first()).or(shoulders.last()).copied();
-            lower = upper.and_then(|upper| {
-                let hand = || self.under(&hands, upper);
-                self.under(&arms, upper).or_else(|| match self.tree.path(upper, hand()?).as_slice() {
-                    [between, _] => Some(*between),
-                    _ => None,
-                })
-            });
+            lower = upper.and_then(|upper| self.under(&arms, upper).or_else(|| self.only_between(upper, &hands)));
         }
         let end = lower.and_then(|lower| self.under(&hands, lower));
-        let extra = upper.and_then(|upper| above(&collars, upper).last().or(above(&shoulders, upper).last()).copied());
+        let extra = upper.and_then(|upper| {
+            self.above(&collars, upper).next_back().or_else(|| self.above(&shoulders, upper).next_back())
+        });
         Limb { extra, upper, lower, end }
     }
 

@@ -1,5 +1,5 @@
-//! Translations and scales of joints other than the hips, and morph weights: copied between equal skeletons, converted on
-//! request, otherwise left out so that limbs keep their lengths.
+//! Translations of joints other than the hips, scales of all joints, and morph weights: copied between equal skeletons,
+//! converted on request, otherwise left out so that limbs keep their lengths.
 
 use glam::{DQuat, DVec3, Vec3};
 

@@ -1,5 +1,7 @@
 //! Joints without a source may play one of the model's own clips, which loops with its own duration.
 
+use std::ops::Mul;
+
 use crate::anim::{Channel, Clip, ClipBuilder, Interpolation, JointIndex, Keys, Pose, SampleCursor, Skeleton};
 use crate::asset::Asset;
 use crate::retarget::map::ResolvedMap;
@@ -105,7 +107,8 @@ pub fn bake_layers(model: &Asset, clip: &Clip, layers: &[LayerClip], baking: &Ba
                 Some(repeat) => repeated_times(&source.timelines()[channel.timeline as usize], repeat),
                 None => (vec![0.0], vec![0]),
             };
-            let keys = select_keys(channel, &kept);
+            let stretch = repeat.as_ref().map_or(1.0, |repeat| repeat.stretch);
+            let keys = select_keys(channel, &kept, stretch);
             let added = builder.channel(channel.joint, channel.interpolation, &times, keys);
             debug_assert!(added.is_ok(), "{added:?}");
         }
@@ -161,18 +164,33 @@ fn repeated_times(times: &[f32], repeat: &Repeat) -> (Vec<f32>, Vec<usize>) {
     (repeated, kept)
 }
 
-/// The channel's keys with these indices.
-fn select_keys(channel: &Channel, kept: &[usize]) -> Keys {
-    fn select<T: Copy>(values: &[T], kept: &[usize], per_key: usize) -> Vec<T> {
-        kept.iter().flat_map(|&key| values[key * per_key..(key + 1) * per_key].iter().copied()).collect()
-    }
-    let per_key = if channel.interpolation == Interpolation::CubicSpline { 3 } else { 1 };
+/// The channel's keys with these indices, for times multiplied by `stretch`.
+fn select_keys(channel: &Channel, kept: &[usize], stretch: f64) -> Keys {
+    let is_spline = channel.interpolation == Interpolation::CubicSpline;
     match &channel.keys {
-        Keys::Translation(values) => Keys::Translation(select(values, kept, per_key)),
-        Keys::Scale(values) => Keys::Scale(select(values, kept, per_key)),
-        Keys::Rotation(values) => Keys::Rotation(select(values, kept, per_key)),
+        Keys::Translation(values) => Keys::Translation(select(values, kept, 1, is_spline, stretch)),
+        Keys::Scale(values) => Keys::Scale(select(values, kept, 1, is_spline, stretch)),
+        Keys::Rotation(values) => Keys::Rotation(select(values, kept, 1, is_spline, stretch)),
         Keys::MorphWeights { values, targets } => {
-            Keys::MorphWeights { values: select(values, kept, per_key * targets), targets: *targets }
+            Keys::MorphWeights { values: select(values, kept, *targets, is_spline, stretch), targets: *targets }
         }
     }
+}
+
+/// `width`: values per entry. A spline has three entries per key: in-tangent, value, out-tangent.
+fn select<T>(values: &[T], kept: &[usize], width: usize, is_spline: bool, stretch: f64) -> Vec<T>
+where
+    T: Copy + Mul<f32, Output = T>,
+{
+    let per_key = if is_spline { 3 * width } else { width };
+    // Tangents are per second.
+    let tangent_factor = (1.0 / stretch) as f32;
+    let mut selected = Vec::with_capacity(kept.len() * per_key);
+    for &key in kept {
+        for (index, &value) in values[key * per_key..(key + 1) * per_key].iter().enumerate() {
+            let is_tangent = is_spline && index / width != 1;
+            selected.push(if is_tangent { value * tangent_factor } else { value });
+        }
+    }
+    selected
 }

@@ -329,7 +329,7 @@ pub(super) fn write_show(state: &ViewerState) -> Written {
     let (mut show, mut inspect) = (state.display.show, state.inspect);
     let flags = show_flags(&mut show, &mut inspect).into_iter();
     let words = flags.filter(|(_, flag, when)| **flag == *when).map(|(word, ..)| word.to_owned());
-    Written::Text(joined(words.chain(state.page.unknown.get("show").cloned())))
+    Written::Text(joined(words.chain(state.page.unknown.get("show").cloned().unwrap_or_default())))
 }
 
 pub(super) fn read_show(state: &mut ViewerState, text: &str) -> Read {

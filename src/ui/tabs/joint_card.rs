@@ -88,15 +88,14 @@ fn reset_buttons(ui: &mut Ui, shown: &Shown<'_>, joint: usize, out: &mut Output)
 
 /// Translation, rotation and scale, relative to the parent and to the world.
 fn transforms(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, local: &Transform) {
-    let parent =
-        asset.skeleton.parent(joint).map_or("no parent".into(), |parent| title(Some(shown.state), asset, parent));
+    let parent = asset.skeleton.parent(joint).map(|parent| title(Some(shown.state), asset, parent));
     let (heads, _) = ui.allocate_exact_size(vec2(ui.available_width(), 12.0), Sense::hover());
     for (axis, name) in ["X", "Y", "Z"].into_iter().enumerate() {
         let right = heads.left() + 60.0 + (heads.width() - 60.0) / 3.0 * (axis + 1) as f32;
         let (at, font) = (pos2(right, heads.center().y), egui::FontId::proportional(11.0));
         ui.painter().text(at, egui::Align2::RIGHT_CENTER, name, font, style::palette(ui).weak_text);
     }
-    transform(ui, &text::local_transform(&parent), local);
+    transform(ui, &text::local_transform(parent.as_deref()), local);
     let character = shown.frame.characters.first();
     if let Some(world) = character.and_then(|character| character.world_from_joint.get(joint.get())) {
         transform(ui, "World", &decomposed(world));

@@ -22,7 +22,7 @@ impl Default for PictureSettings {
     }
 }
 
-/// Supported by every device that Gaitway runs on.
+/// Supported by nearly every device. WebGL2 guarantees only 2048, so the app may save a smaller image.
 const MAX_PICTURE_SIZE: u32 = 4096;
 
 pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {

@@ -27,7 +27,7 @@ const GESTURES: [(&str, &str); 8] = [
 
 impl Help {
     /// Shows the help if it has been open since the last pass; clears `is_open` when the user closes it.
-    pub fn show(&mut self, context: &Context) {
+    pub(super) fn show(&mut self, context: &Context) {
         // Not in the pass that opens it: that click would count as one outside the modal and close it again.
         if self.is_open && self.was_open {
             self.modal(context);

@@ -19,7 +19,7 @@ use egui::{PaintCallback, Painter, Rect, Sense, Shape, Ui, vec2};
 use super::tabs::formula;
 use super::{Output, Shown, UiAction, UiState, keys, style, text};
 use crate::frame::PickedJoint;
-use crate::state::Background;
+use crate::state::{Background, DEFAULT_ASPECT};
 
 /// What the viewport remembers.
 #[derive(Debug)]
@@ -34,13 +34,13 @@ pub struct ViewportState {
 
 impl Default for ViewportState {
     fn default() -> Self {
-        Self { aspect: 1.6, hovered_joint: None, hovered: None, grab: None }
+        Self { aspect: DEFAULT_ASPECT, hovered_joint: None, hovered: None, grab: None }
     }
 }
 
 impl ViewportState {
     /// Forgets the joint under the pointer.
-    pub fn clear_hover(&mut self) {
+    pub(in crate::ui) fn clear_hover(&mut self) {
         (self.hovered, self.hovered_joint) = (None, None);
     }
 }

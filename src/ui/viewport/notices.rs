@@ -45,7 +45,7 @@ pub struct Toast {
 
 impl Toast {
     /// Extra time to reach the Undo button.
-    pub const UNDOABLE_SECS: f64 = 3.5;
+    pub(crate) const UNDOABLE_SECS: f64 = 3.5;
 }
 
 impl Messages {
@@ -55,7 +55,7 @@ impl Messages {
     }
 
     /// Shows the load under way, the error and the toast in the viewport's lower left corner.
-    pub fn show(&mut self, ui: &Ui, viewport: Rect, shown: &Shown<'_>, out: &mut Output) {
+    pub(super) fn show(&mut self, ui: &Ui, viewport: Rect, shown: &Shown<'_>, out: &mut Output) {
         self.expire_toast(ui);
         if self.toast.is_none() && self.error.is_none() && self.progress.is_none() {
             return;

@@ -1,6 +1,6 @@
 //! Controls that all panels share: section titles, switches, segmented buttons, labelled sliders, rows and cards.
 
-use egui::{Color32, CornerRadius, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, vec2};
+use egui::{Color32, Rect, Response, RichText, Sense, Stroke, Ui, Vec2, WidgetInfo, vec2};
 
 use super::style;
 use crate::ui::text;
@@ -39,9 +39,7 @@ pub fn switch(ui: &mut Ui, label: &str, on: bool) -> bool {
     painter.rect_filled(track, 9.0, fill);
     let knob = egui::pos2(egui::lerp(track.left() + 9.0..=track.right() - 9.0, how_on), track.center().y);
     painter.circle_filled(knob, 6.5, if on { palette.on_accent } else { palette.weak_text });
-    if response.has_focus() {
-        painter.rect_stroke(rect.expand(1.0), style::CORNER, Stroke::new(1.0, palette.accent), StrokeKind::Inside);
-    }
+    style::focus_ring(ui, &response, rect.expand(1.0), style::CORNER, 1.0);
     response.clicked()
 }
 
@@ -80,15 +78,9 @@ pub fn segmented_about<T: Copy + PartialEq>(
 fn segment(ui: &Ui, cell: Rect, response: &Response, on: bool, label: &str) {
     let palette = style::palette(ui);
     let inner = cell.shrink(2.0);
-    let corner = CornerRadius::same(style::CORNER - 2);
-    if on {
-        ui.painter().rect_filled(inner, corner, palette.chosen);
-    } else if response.hovered() {
-        ui.painter().rect_filled(inner, corner, palette.hover);
-    }
-    if response.has_focus() {
-        ui.painter().rect_stroke(inner, corner, Stroke::new(1.0, palette.accent), StrokeKind::Inside);
-    }
+    let corner = style::CORNER - 2;
+    ui.painter().rect_filled(inner, corner, style::fill(&palette, response, on));
+    style::focus_ring(ui, response, inner, corner, 1.0);
     let font = egui::FontId::proportional(13.0);
     let color = if on { palette.accent } else { palette.text };
     ui.painter().text(cell.center(), egui::Align2::CENTER_CENTER, label, font, color);
@@ -187,17 +179,8 @@ pub fn list_row(ui: &mut Ui, name: &str, right: &str, chosen: bool) -> Response 
     let mut cut = false;
     if ui.is_rect_visible(rect) {
         let palette = style::palette(ui);
-        let fill = if chosen {
-            palette.chosen
-        } else if response.hovered() {
-            palette.hover
-        } else {
-            Color32::TRANSPARENT
-        };
-        ui.painter().rect_filled(rect, style::CORNER, fill);
-        if response.has_focus() {
-            ui.painter().rect_stroke(rect, style::CORNER, Stroke::new(1.0, palette.accent), StrokeKind::Inside);
-        }
+        ui.painter().rect_filled(rect, style::CORNER, style::fill(&palette, &response, chosen));
+        style::focus_ring(ui, &response, rect, style::CORNER, 1.0);
         let mut left = rect.shrink2(Vec2::new(10.0, 0.0));
         if !right.is_empty() {
             let font = egui::FontId::proportional(12.0);

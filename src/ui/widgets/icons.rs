@@ -2,6 +2,7 @@
 
 use egui::{Color32, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2};
 
+use self::Mark::{Arc, Arrow, Bar, Dot, Fill, Line, Outline, Ring};
 use super::style;
 use crate::ui::text;
 
@@ -39,20 +40,10 @@ pub fn icon_button_sized(ui: &mut Ui, icon: Icon, label: &str, chosen: bool, siz
     response.widget_info(|| WidgetInfo::selected(egui::accesskit::Role::Button, ui.is_enabled(), chosen, label));
     if ui.is_rect_visible(rect) {
         let palette = style::palette(ui);
-        let fill = if chosen {
-            palette.chosen
-        } else if response.is_pointer_button_down_on() {
-            palette.pressed
-        } else if response.hovered() {
-            palette.hover
-        } else {
-            Color32::TRANSPARENT
-        };
+        let is_pressed = !chosen && response.is_pointer_button_down_on();
+        let fill = if is_pressed { palette.pressed } else { style::fill(&palette, &response, chosen) };
         ui.painter().rect_filled(rect, style::CORNER, fill);
-        if response.has_focus() {
-            let stroke = Stroke::new(1.5, palette.accent);
-            ui.painter().rect_stroke(rect, style::CORNER, stroke, egui::StrokeKind::Inside);
-        }
+        style::focus_ring(ui, &response, rect, style::CORNER, 1.5);
         let color = if !ui.is_enabled() {
             palette.weak_text.gamma_multiply(0.5)
         } else if chosen {
@@ -87,124 +78,136 @@ pub fn play_button(ui: &mut Ui, playing: bool, size: f32) -> Response {
     response.on_hover_text(format!("{label} (Space)"))
 }
 
-/// Paints an icon into a square.
-pub fn paint(painter: &Painter, icon: Icon, square: Rect, color: Color32) {
-    let at = |x: f32, y: f32| square.min + vec2(x, y) * square.width();
-    let unit = square.width();
-    let thin = Stroke::new((unit * 0.095).max(1.3), color);
-    let line = |points: &[(f32, f32)]| {
-        painter.line(points.iter().map(|&(x, y)| at(x, y)).collect(), thin);
-    };
-    let fill = |points: &[(f32, f32)]| {
-        painter.add(Shape::convex_polygon(points.iter().map(|&(x, y)| at(x, y)).collect(), color, Stroke::NONE));
-    };
-    let bar = |x0: f32, y0: f32, x1: f32, y1: f32| {
-        painter.rect_filled(Rect::from_two_pos(at(x0, y0), at(x1, y1)), unit * 0.06, color);
-    };
-    let outline = |x0: f32, y0: f32, x1: f32, y1: f32| {
-        let rect = Rect::from_two_pos(at(x0, y0), at(x1, y1));
-        painter.rect_stroke(rect, unit * 0.14, thin, egui::StrokeKind::Middle);
-    };
-    match icon {
-        Icon::Play => fill(&[(0.2, 0.05), (0.95, 0.5), (0.2, 0.95)]),
-        Icon::Pause => {
-            bar(0.14, 0.08, 0.4, 0.92);
-            bar(0.6, 0.08, 0.86, 0.92);
-        }
-        Icon::StepBack => {
-            bar(0.1, 0.12, 0.24, 0.88);
-            fill(&[(0.92, 0.12), (0.92, 0.88), (0.34, 0.5)]);
-        }
-        Icon::StepForward => {
-            bar(0.76, 0.12, 0.9, 0.88);
-            fill(&[(0.08, 0.12), (0.66, 0.5), (0.08, 0.88)]);
-        }
-        Icon::Loop => {
-            arc(painter, at(0.5, 0.5), unit * 0.4, -60.0, 210.0, thin);
-            let tip = at(0.5, 0.5) + unit * 0.4 * vec2((-60.0_f32).to_radians().cos(), (-60.0_f32).to_radians().sin());
-            arrow_head(painter, tip, vec2(-0.87, -0.5), unit * 0.3, color);
-        }
-        Icon::Once => {
-            line(&[(0.02, 0.5), (0.62, 0.5)]);
-            arrow_head(painter, at(0.78, 0.5), vec2(1.0, 0.0), unit * 0.3, color);
-            bar(0.86, 0.18, 0.98, 0.82);
-        }
-        Icon::PingPong => {
-            line(&[(0.2, 0.5), (0.8, 0.5)]);
-            arrow_head(painter, at(1.0, 0.5), vec2(1.0, 0.0), unit * 0.3, color);
-            arrow_head(painter, at(0.0, 0.5), vec2(-1.0, 0.0), unit * 0.3, color);
-        }
-        Icon::PanelLeft => {
-            outline(0.02, 0.1, 0.98, 0.9);
-            line(&[(0.36, 0.1), (0.36, 0.9)]);
-        }
-        Icon::PanelRight => {
-            outline(0.02, 0.1, 0.98, 0.9);
-            line(&[(0.64, 0.1), (0.64, 0.9)]);
-        }
-        Icon::Clips => {
-            for y in [0.18, 0.5, 0.82] {
-                painter.circle_filled(at(0.1, y), unit * 0.08, color);
-                line(&[(0.32, y), (0.98, y)]);
-            }
-        }
-        Icon::Sliders => {
-            for (y, x) in [(0.2, 0.7), (0.5, 0.3), (0.8, 0.6)] {
-                line(&[(0.02, y), (0.98, y)]);
-                painter.circle_filled(at(x, y), unit * 0.13, color);
-            }
-        }
-        Icon::Open => {
-            line(&[
-                (0.06, 0.86),
-                (0.06, 0.16),
-                (0.38, 0.16),
-                (0.5, 0.3),
-                (0.94, 0.3),
-                (0.94, 0.86),
-                (0.06, 0.86),
-                (0.06, 0.7),
-            ]);
-        }
-        Icon::Samples => {
-            for (x, y) in [(0.06, 0.06), (0.58, 0.06), (0.06, 0.58), (0.58, 0.58)] {
-                outline(x, y, x + 0.36, y + 0.36);
-            }
-        }
-        Icon::Help => {
-            painter.circle_stroke(at(0.5, 0.5), unit * 0.47, thin);
-            arc(painter, at(0.5, 0.4), unit * 0.16, -180.0, 90.0, thin);
-            line(&[(0.5, 0.56), (0.5, 0.64)]);
-            painter.circle_filled(at(0.5, 0.77), unit * 0.065, color);
-        }
-        Icon::Close => {
-            line(&[(0.15, 0.15), (0.85, 0.85)]);
-            line(&[(0.85, 0.15), (0.15, 0.85)]);
-        }
-        Icon::Undo | Icon::Redo => {
-            let x = |x: f32| if icon == Icon::Undo { x } else { 1.0 - x };
-            let curve = [(0.1, 0.36), (0.62, 0.36), (0.8, 0.43), (0.88, 0.6), (0.8, 0.77), (0.62, 0.84), (0.36, 0.84)];
-            line(&curve.map(|(along, y)| (x(along), y)));
-            line(&[(x(0.36), 0.1), (x(0.1), 0.36), (x(0.36), 0.62)]);
-        }
-        Icon::MarkIn => line(&[(0.7, 0.08), (0.35, 0.08), (0.35, 0.92), (0.7, 0.92)]),
-        Icon::MarkOut => line(&[(0.3, 0.08), (0.65, 0.08), (0.65, 0.92), (0.3, 0.92)]),
-        Icon::Frame => {
-            for (x, y, dx, dy) in [
-                (0.05, 0.05, 0.28, 0.28),
-                (0.95, 0.05, -0.28, 0.28),
-                (0.05, 0.95, 0.28, -0.28),
-                (0.95, 0.95, -0.28, -0.28),
-            ] {
-                line(&[(x + dx, y), (x, y), (x, y + dy)]);
-            }
-            painter.circle_filled(at(0.5, 0.5), unit * 0.14, color);
+/// A shape of an icon, in a square with corners (0, 0) and (1, 1), Y down.
+#[derive(Debug, Clone, Copy)]
+enum Mark {
+    Line(&'static [(f32, f32)]),
+    /// A filled convex polygon.
+    Fill(&'static [(f32, f32)]),
+    /// A filled rectangle, by two corners.
+    Bar((f32, f32), (f32, f32)),
+    /// A rounded rectangle, by two corners.
+    Outline((f32, f32), (f32, f32)),
+    /// A filled circle: centre and radius.
+    Dot((f32, f32), f32),
+    /// A circle: centre and radius.
+    Ring((f32, f32), f32),
+    /// Part of a circle: centre, radius, and two angles in degrees, clockwise from the right.
+    Arc((f32, f32), f32, (f32, f32)),
+    /// An arrow head: tip and direction.
+    Arrow((f32, f32), (f32, f32)),
+}
+
+const PLAY: &[Mark] = &[Fill(&[(0.2, 0.05), (0.95, 0.5), (0.2, 0.95)])];
+const PAUSE: &[Mark] = &[Bar((0.14, 0.08), (0.4, 0.92)), Bar((0.6, 0.08), (0.86, 0.92))];
+const STEP_BACK: &[Mark] = &[Bar((0.1, 0.12), (0.24, 0.88)), Fill(&[(0.92, 0.12), (0.92, 0.88), (0.34, 0.5)])];
+const STEP_FORWARD: &[Mark] = &[Bar((0.76, 0.12), (0.9, 0.88)), Fill(&[(0.08, 0.12), (0.66, 0.5), (0.08, 0.88)])];
+const LOOP: &[Mark] = &[Arc((0.5, 0.5), 0.4, (-60.0, 210.0)), Arrow((0.7, 0.1536), (-0.87, -0.5))];
+const ONCE: &[Mark] =
+    &[Line(&[(0.02, 0.5), (0.62, 0.5)]), Arrow((0.78, 0.5), (1.0, 0.0)), Bar((0.86, 0.18), (0.98, 0.82))];
+const PING_PONG: &[Mark] =
+    &[Line(&[(0.2, 0.5), (0.8, 0.5)]), Arrow((1.0, 0.5), (1.0, 0.0)), Arrow((0.0, 0.5), (-1.0, 0.0))];
+const PANEL_LEFT: &[Mark] = &[Outline((0.02, 0.1), (0.98, 0.9)), Line(&[(0.36, 0.1), (0.36, 0.9)])];
+const PANEL_RIGHT: &[Mark] = &[Outline((0.02, 0.1), (0.98, 0.9)), Line(&[(0.64, 0.1), (0.64, 0.9)])];
+const CLIPS: &[Mark] = &[
+    Dot((0.1, 0.18), 0.08),
+    Line(&[(0.32, 0.18), (0.98, 0.18)]),
+    Dot((0.1, 0.5), 0.08),
+    Line(&[(0.32, 0.5), (0.98, 0.5)]),
+    Dot((0.1, 0.82), 0.08),
+    Line(&[(0.32, 0.82), (0.98, 0.82)]),
+];
+const SLIDERS: &[Mark] = &[
+    Line(&[(0.02, 0.2), (0.98, 0.2)]),
+    Dot((0.7, 0.2), 0.13),
+    Line(&[(0.02, 0.5), (0.98, 0.5)]),
+    Dot((0.3, 0.5), 0.13),
+    Line(&[(0.02, 0.8), (0.98, 0.8)]),
+    Dot((0.6, 0.8), 0.13),
+];
+const FOLDER: &[(f32, f32)] =
+    &[(0.06, 0.86), (0.06, 0.16), (0.38, 0.16), (0.5, 0.3), (0.94, 0.3), (0.94, 0.86), (0.06, 0.86), (0.06, 0.7)];
+const OPEN: &[Mark] = &[Line(FOLDER)];
+const SAMPLES: &[Mark] = &[
+    Outline((0.06, 0.06), (0.42, 0.42)),
+    Outline((0.58, 0.06), (0.94, 0.42)),
+    Outline((0.06, 0.58), (0.42, 0.94)),
+    Outline((0.58, 0.58), (0.94, 0.94)),
+];
+const HELP: &[Mark] = &[
+    Ring((0.5, 0.5), 0.47),
+    Arc((0.5, 0.4), 0.16, (-180.0, 90.0)),
+    Line(&[(0.5, 0.56), (0.5, 0.64)]),
+    Dot((0.5, 0.77), 0.065),
+];
+const CLOSE: &[Mark] = &[Line(&[(0.15, 0.15), (0.85, 0.85)]), Line(&[(0.85, 0.15), (0.15, 0.85)])];
+const MARK_IN: &[Mark] = &[Line(&[(0.7, 0.08), (0.35, 0.08), (0.35, 0.92), (0.7, 0.92)])];
+const MARK_OUT: &[Mark] = &[Line(&[(0.3, 0.08), (0.65, 0.08), (0.65, 0.92), (0.3, 0.92)])];
+const FRAME: &[Mark] = &[
+    Line(&[(0.33, 0.05), (0.05, 0.05), (0.05, 0.33)]),
+    Line(&[(0.67, 0.05), (0.95, 0.05), (0.95, 0.33)]),
+    Line(&[(0.33, 0.95), (0.05, 0.95), (0.05, 0.67)]),
+    Line(&[(0.67, 0.95), (0.95, 0.95), (0.95, 0.67)]),
+    Dot((0.5, 0.5), 0.14),
+];
+const TURN_BACK: &[(f32, f32)] =
+    &[(0.1, 0.36), (0.62, 0.36), (0.8, 0.43), (0.88, 0.6), (0.8, 0.77), (0.62, 0.84), (0.36, 0.84)];
+const UNDO: &[Mark] = &[Line(TURN_BACK), Line(&[(0.36, 0.1), (0.1, 0.36), (0.36, 0.62)])];
+
+impl Icon {
+    fn marks(self) -> &'static [Mark] {
+        match self {
+            Self::Play => PLAY,
+            Self::Pause => PAUSE,
+            Self::StepBack => STEP_BACK,
+            Self::StepForward => STEP_FORWARD,
+            Self::Loop => LOOP,
+            Self::Once => ONCE,
+            Self::PingPong => PING_PONG,
+            Self::PanelLeft => PANEL_LEFT,
+            Self::PanelRight => PANEL_RIGHT,
+            Self::Clips => CLIPS,
+            Self::Sliders => SLIDERS,
+            Self::Open => OPEN,
+            Self::Samples => SAMPLES,
+            Self::Help => HELP,
+            Self::Close => CLOSE,
+            Self::MarkIn => MARK_IN,
+            Self::MarkOut => MARK_OUT,
+            Self::Frame => FRAME,
+            // Redo is its mirror image.
+            Self::Undo | Self::Redo => UNDO,
         }
     }
 }
 
+/// Paints an icon into a square.
+pub fn paint(painter: &Painter, icon: Icon, square: Rect, color: Color32) {
+    let unit = square.width();
+    let is_mirrored = icon == Icon::Redo;
+    let at = |(x, y): (f32, f32)| square.min + unit * vec2(if is_mirrored { 1.0 - x } else { x }, y);
+    let points = |list: &[(f32, f32)]| list.iter().map(|&point| at(point)).collect::<Vec<_>>();
+    let thin = Stroke::new((unit * 0.095).max(1.3), color);
+    for &mark in icon.marks() {
+        let shape = match mark {
+            Line(list) => Shape::line(points(list), thin),
+            Fill(list) => Shape::convex_polygon(points(list), color, Stroke::NONE),
+            Bar(from, to) => Shape::rect_filled(Rect::from_two_pos(at(from), at(to)), unit * 0.06, color),
+            Outline(from, to) => {
+                let rect = Rect::from_two_pos(at(from), at(to));
+                Shape::rect_stroke(rect, unit * 0.14, thin, egui::StrokeKind::Middle)
+            }
+            Dot(center, radius) => Shape::circle_filled(at(center), unit * radius, color),
+            Ring(center, radius) => Shape::circle_stroke(at(center), unit * radius, thin),
+            Arc(center, radius, degrees) => arc(at(center), unit * radius, degrees, thin),
+            Arrow(tip, (x, y)) => arrow_head(at(tip), vec2(x, y), unit * 0.3, color),
+        };
+        painter.add(shape);
+    }
+}
+
 /// Angles run clockwise from the right.
-fn arc(painter: &Painter, center: Pos2, radius: f32, from_degrees: f32, to_degrees: f32, stroke: Stroke) {
+fn arc(center: Pos2, radius: f32, (from_degrees, to_degrees): (f32, f32), stroke: Stroke) -> Shape {
     let steps = 20;
     let points = (0..=steps)
         .map(|step| {
@@ -212,12 +215,12 @@ fn arc(painter: &Painter, center: Pos2, radius: f32, from_degrees: f32, to_degre
             pos2(center.x + radius * angle.cos(), center.y + radius * angle.sin())
         })
         .collect();
-    painter.line(points, stroke);
+    Shape::line(points, stroke)
 }
 
-fn arrow_head(painter: &Painter, tip: Pos2, direction: Vec2, size: f32, color: Color32) {
+fn arrow_head(tip: Pos2, direction: Vec2, size: f32, color: Color32) -> Shape {
     let side = direction.rot90();
     let back = tip - direction * size;
     let points = vec![tip, back + side * size * 0.62, back - side * size * 0.62];
-    painter.add(Shape::convex_polygon(points, color, Stroke::NONE));
+    Shape::convex_polygon(points, color, Stroke::NONE)
 }

@@ -4,8 +4,8 @@
 use std::sync::Arc;
 
 use egui::{
-    Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, Shadow, Stroke, Style, TextStyle,
-    Theme, Vec2, Visuals,
+    Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, Rect, Response, Shadow, Stroke,
+    StrokeKind, Style, TextStyle, Theme, Ui, Vec2, Visuals,
 };
 
 /// The colours of a theme, named by their purpose.
@@ -173,4 +173,23 @@ fn visuals(theme: Theme, palette: &Palette) -> Visuals {
     widgets.noninteractive.bg_stroke = Stroke::new(1.0, palette.line);
     widgets.active.bg_stroke = Stroke::new(1.0, palette.accent);
     visuals
+}
+
+/// Returns the background of a button or row.
+pub fn fill(palette: &Palette, response: &Response, is_chosen: bool) -> Color32 {
+    if is_chosen {
+        palette.chosen
+    } else if response.hovered() {
+        palette.hover
+    } else {
+        Color32::TRANSPARENT
+    }
+}
+
+/// Draws a ring inside `rect` while the control has keyboard focus.
+pub fn focus_ring(ui: &Ui, response: &Response, rect: Rect, corner: u8, width: f32) {
+    if response.has_focus() {
+        let stroke = Stroke::new(width, palette(ui).accent);
+        ui.painter().rect_stroke(rect, corner, stroke, StrokeKind::Inside);
+    }
 }

@@ -1,5 +1,6 @@
 //! Why a file cannot be written.
 
+use crate::anim::{JointIndex, Skeleton};
 use crate::formats::LoadError;
 
 /// Everything that prevents writing a GLB. The user sees these texts.
@@ -19,10 +20,10 @@ pub enum WriteError {
     NotFinite {
         /// Name of the clip.
         clip: String,
-        /// Name of the joint that the channel animates.
+        /// Name of the joint that the channel animates; `#NODE` without one.
         joint: String,
     },
-    /// The skeleton given for the clips is not the file's.
+    /// The skeleton given for the clips has another number of joints than the file.
     #[error("the clips are for {joints} joints, but {file} has {nodes} nodes: they belong to another model")]
     OtherSkeleton {
         /// Name of the model's file in the set.
@@ -31,6 +32,14 @@ pub enum WriteError {
         nodes: usize,
         /// Number of joints in the given skeleton.
         joints: usize,
+    },
+    /// The skeleton given for the clips has as many joints as the file, but another hierarchy.
+    #[error("the clips belong to another model: joint {joint} does not have the parent that it has in {file}")]
+    OtherParent {
+        /// Name of the model's file in the set.
+        file: String,
+        /// The first such joint: its name in the given skeleton; `#NODE` without one.
+        joint: String,
     },
     /// The glTF's first buffer has neither a URI nor a binary chunk.
     #[error("{file}: its first buffer has no data, so that there is nothing to append to")]
@@ -44,4 +53,12 @@ pub enum WriteError {
         /// Length of the whole GLB.
         bytes: usize,
     },
+}
+
+/// Returns a joint's name; of one without a name, its number in the file.
+pub(in crate::formats) fn joint_label(skeleton: &Skeleton, joint: JointIndex) -> String {
+    match skeleton.name(joint) {
+        "" => format!("#{}", skeleton.source_index(joint)),
+        name => name.to_owned(),
+    }
 }

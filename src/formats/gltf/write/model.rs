@@ -16,15 +16,14 @@ use crate::asset::Warnings;
 use crate::formats::gltf::accessor::Bytes;
 use crate::formats::gltf::document::{Document, json_error, size};
 use crate::formats::gltf::{container, data, resolve_buffers};
-use crate::formats::{FileSet, LoadError};
+use crate::formats::{FileSet, named};
 
 /// Writes the file `file` of the set as a self-contained GLB, with `clips` (of `skeleton`, which was loaded from the same file)
 /// after its own. Its first buffer is the beginning of the new one; indices, numbers and everything unknown are preserved. Only
 /// a node with a matrix that a clip animates gets translation, rotation and scale instead, because the specification forbids
 /// animating a matrix. A GLB without anything to add or embed is returned unchanged.
 pub fn model(files: &FileSet, file: &str, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
-    let bytes =
-        files.get(file).ok_or_else(|| LoadError::NoModel { found: files.names().map(str::to_owned).collect() })?;
+    let bytes = named(files, file)?;
     let container = container::open(file, bytes)?;
     let root = Document::read(file, container.json)?.root;
     let mut json: Object = serde_json::from_slice(container.json).map_err(|problem| json_error(file, &problem))?;
