@@ -105,6 +105,11 @@ impl App {
         self.panels.messages.error.as_deref()
     }
 
+    /// The notice that the user sees.
+    pub fn notice(&self) -> Option<&str> {
+        self.panels.messages.toast.as_ref().map(|toast| toast.text.as_str())
+    }
+
     fn open(&mut self, contents: Contents, view: Option<ViewerState>) -> Result<(), String> {
         self.panels.messages.clear_error();
         let opened = self.editor.open(contents, view, &mut |model| self.viewport.admit(model));

@@ -6,7 +6,7 @@ use anyhow::{Context, Error, bail};
 use clap::Args;
 
 use crate::anim::{JointIndex, Skeleton};
-use crate::editor::{Contents, Editor, Event, OpenedModel};
+use crate::editor::{Contents, Editor, Event, OpenedMap, OpenedModel};
 use crate::files::{Opened, Role, open_view, read_map, read_paths};
 use crate::library::Motion;
 use crate::retarget::JointMapFile;
@@ -51,7 +51,7 @@ pub(super) fn open_map(path: &Path) -> anyhow::Result<JointMapFile> {
 pub(super) fn open_editor(opened: Opened, arguments: &MotionArguments) -> anyhow::Result<Editor> {
     let Opened { model, model_files, mut motions, map, .. } = opened;
     let map = match &arguments.map {
-        Some(path) => Some(open_map(path)?),
+        Some(path) => Some(OpenedMap { name: path.display().to_string(), map: open_map(path)? }),
         None => map,
     };
     if let Some(path) = &arguments.motion {
@@ -60,9 +60,10 @@ pub(super) fn open_editor(opened: Opened, arguments: &MotionArguments) -> anyhow
     if motions.is_empty() && arguments.map.is_some() {
         bail!("--map: expected a motion to apply the map to; add --motion FILE");
     }
-    if let Some(map) = &map {
+    if let Some(OpenedMap { name, map }) = &map {
         for motion in &motions {
-            map.resolve(&model.asset, &motion.asset).with_context(|| motion.source.clone())?;
+            let context = || format!("{name}: doesn't fit {}", motion.source);
+            map.resolve(&model.asset, &motion.asset).with_context(context)?;
         }
     }
     let models = vec![OpenedModel { model, files: model_files }];

@@ -10,14 +10,23 @@ use crate::state::MEMBER_SEPARATOR;
 pub struct Contents {
     /// The first becomes active; the others join the model list.
     pub models: Vec<OpenedModel>,
-    /// `None` keeps the motions already loaded.
+    /// Added to the motions already loaded. Together with models, an empty list removes those; `None` keeps them.
     pub motions: Option<Vec<Motion>>,
     /// A joint map for the motions; `None` if none was opened.
-    pub map: Option<JointMapFile>,
+    pub map: Option<OpenedMap>,
     /// The map is one of the user's local files.
     pub is_map_private: bool,
     /// What could not be opened although the rest could.
     pub problems: Vec<String>,
+}
+
+/// A joint map that was just read.
+#[derive(Debug)]
+pub struct OpenedMap {
+    /// Name of its file, for messages.
+    pub name: String,
+    /// The map itself.
+    pub map: JointMapFile,
 }
 
 /// A model that is not in the library yet.

@@ -12,7 +12,7 @@ mod names;
 mod open;
 mod steps;
 
-pub use contents::{Contents, ModelFiles, OpenedModel, container_of};
+pub use contents::{Contents, ModelFiles, OpenedMap, OpenedModel, container_of};
 pub use event::Event;
 pub use export::{Export, ExportedFile};
 pub use names::{name_and_place, short_name};
@@ -23,6 +23,7 @@ use serde_json::Value;
 
 use crate::library::{Library, ModelId, Motion};
 use crate::state::{Command, DEFAULT_ASPECT, History, ViewerState, from_object};
+use motions::ClipIdentity;
 use open::Shelved;
 
 /// Decides whether a model can be shown, for example whether it fits on the graphics device. The error is for the user.
@@ -38,6 +39,10 @@ pub struct Editor {
     shelf: BTreeMap<ModelId, Shelved>,
     /// Motions that don't fit the model, until the user decides what to do with them.
     refused: Vec<Motion>,
+    /// The retargeted clip to return to once its map has pairs again.
+    waiting_clip: Option<ClipIdentity>,
+    /// Name of the joint map's file while it is being opened.
+    opened_map: Option<String>,
     /// A joint map was opened from the user's local files.
     has_private_map: bool,
     /// Errors about retargeted clips that have been reported.
@@ -64,6 +69,8 @@ impl Editor {
             history: History::default(),
             shelf: BTreeMap::new(),
             refused: Vec::new(),
+            waiting_clip: None,
+            opened_map: None,
             has_private_map: false,
             reported: Vec::new(),
             aspect: DEFAULT_ASPECT,
@@ -114,6 +121,7 @@ impl Editor {
         self.is_changed |= !matches!(command, Command::Advance(_));
         self.needs_redraw = true;
         let affects_retargeting = affects_retargeting(&command);
+        let playing = self.retargeted_clip().filter(|_| !matches!(command, Command::Replace(_)));
         let reframes = matches!(command, Command::SetUp(_));
         self.notify_follow(&command);
         let command = self.prepare_camera(command);
@@ -124,6 +132,7 @@ impl Editor {
         if affects_retargeting {
             let problems = self.retarget();
             self.report(problems);
+            self.follow_clip(playing);
         }
     }
 

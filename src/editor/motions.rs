@@ -5,11 +5,12 @@ use super::{Admit, Contents, Editor, Event, short_name};
 use crate::library::{BorrowError, BorrowedClip, Library, Motion, names_checksum};
 use crate::retarget::{JointMap, JointMapFile, MapError, propose};
 use crate::state::{
-    ClipChoice, Command, MapEdit, MotionMap, NumberedMap, RetargetEdits, ViewerState, active_clip, active_maps,
-    choice_of_clip, reconciled_maps,
+    ClipChoice, Command, MapEdit, MapProblem, MotionMap, NumberedMap, RetargetEdits, ViewerState, active_clip,
+    active_maps, choice_of_clip, reconciled_maps,
 };
 
 /// Identifies a motion's clip across models, with the time in it.
+#[derive(Debug, Clone)]
 pub(super) struct ClipIdentity {
     origin: String,
     source: String,
@@ -40,15 +41,14 @@ impl Editor {
         if let Some(view) = view {
             return self.open_view(view, motions, map, admit);
         }
+        self.check_room(&motions)?;
         let before = self.snapshot();
-        let problems = self.add_motions(motions.clone(), map.map(MotionMap::Names))?;
-        let first = self.library.motions().len() - motions.len();
-        let is_new = |(_, borrowed): &(usize, &BorrowedClip)| borrowed.motion >= first;
-        let clips = self.library.active().map_or(0, |model| model.borrowed_clips().filter(is_new).count());
+        let problems = self.add_motions(motions.clone(), map.map(MotionMap::Names));
+        let clips = self.clips_of_last(motions.len());
         if clips == 0 && !motions.is_empty() {
-            if let Some((state, loaded)) = before {
-                self.library.restore(loaded);
-                self.state = state;
+            if let Some(before) = before {
+                self.library.restore(before.loaded);
+                self.state = before.state;
             }
             self.retarget();
             self.refused = motions;
@@ -64,22 +64,39 @@ impl Editor {
         Ok(())
     }
 
-    /// Appends motions with their maps, replacing motions of the same origins. Returns the problems.
-    fn add_motions(
-        &mut self,
-        motions: Vec<Motion>,
-        maps: impl IntoIterator<Item = MotionMap>,
-    ) -> Result<Vec<String>, String> {
-        let is_replaced = |known: &Motion| motions.iter().any(|motion| motion.origin == known.origin);
-        let mut all: Vec<Motion> = self.library.motions().iter().filter(|known| !is_replaced(known)).cloned().collect();
-        all.extend(motions);
-        let (found, max) = (all.len(), Library::MAX_MOTIONS);
+    /// Checks that the library has room for these motions beside the loaded ones.
+    pub(super) fn check_room(&self, motions: &[Motion]) -> Result<(), String> {
+        let (found, max) = (self.others(motions).count() + motions.len(), Library::MAX_MOTIONS);
         if found > max {
             return Err(format!("expected at most {max} motions in all, found {found}; remove some first"));
         }
+        Ok(())
+    }
+
+    /// Appends motions with their maps, replacing motions of the same origins. Returns the problems.
+    pub(super) fn add_motions(
+        &mut self,
+        motions: Vec<Motion>,
+        maps: impl IntoIterator<Item = MotionMap>,
+    ) -> Vec<String> {
+        let mut all: Vec<Motion> = self.others(&motions).cloned().collect();
+        all.extend(motions);
         self.state.retarget.map.extend(maps);
         self.set_motions(all);
-        Ok(self.retarget())
+        self.retarget()
+    }
+
+    /// Returns the loaded motions whose origins are not among those of `motions`.
+    fn others(&self, motions: &[Motion]) -> impl Iterator<Item = &Motion> {
+        let is_other = |known: &&Motion| !motions.iter().any(|motion| motion.origin == known.origin);
+        self.library.motions().iter().filter(is_other)
+    }
+
+    /// Number of clips retargeted from the last `count` motions.
+    pub(super) fn clips_of_last(&self, count: usize) -> usize {
+        let first = self.library.motions().len().saturating_sub(count);
+        let is_new = |(_, borrowed): &(usize, &BorrowedClip)| borrowed.motion >= first;
+        self.library.active().map_or(0, |model| model.borrowed_clips().filter(is_new).count())
     }
 
     fn set_motions(&mut self, motions: Vec<Motion>) {
@@ -113,7 +130,10 @@ impl Editor {
         for (index, motion) in self.library.motions().iter().enumerate() {
             match map.to_joint_map(&model.asset, &motion.asset) {
                 Ok(map) => fitting.push((index, short_name(&motion.source), map)),
-                Err(error) => problem = problem.or(Some(format!("{}: {error}", motion.source))),
+                Err(error) => {
+                    let problem_of_first = MapProblem::NoFit { motion: motion.source.clone(), problem: error };
+                    problem = problem.or(Some(self.map_problem(&problem_of_first)));
+                }
             }
         }
         if let Some(problem) = problem.filter(|_| fitting.is_empty()) {
@@ -133,10 +153,20 @@ impl Editor {
         Ok(())
     }
 
+    /// Returns the message about a map, with the name of its file if it has just been opened.
+    fn map_problem(&self, problem: &MapProblem) -> String {
+        match (&self.opened_map, problem) {
+            (Some(file), MapProblem::NoFit { motion, problem }) => {
+                format!("{file}: doesn't fit {}: {problem}", short_name(motion))
+            }
+            _ => problem.to_string(),
+        }
+    }
+
     /// Retargets the motions' clips if anything they depend on has changed; returns problems not reported before.
     pub(super) fn retarget(&mut self) -> Vec<String> {
         let (maps, problems) = reconciled_maps(&self.library, &self.state);
-        let mut new: Vec<String> = problems.iter().map(ToString::to_string).collect();
+        let mut new: Vec<String> = problems.iter().map(|problem| self.map_problem(problem)).collect();
         if maps != self.state.retarget.map {
             self.record(Command::ReconcileMaps);
             self.is_changed = true;
@@ -164,18 +194,42 @@ impl Editor {
     /// Plays this clip if the model has it, otherwise the first retargeted one; does nothing for `None`.
     pub(super) fn choose_retargeted(&mut self, choice: Option<ClipIdentity>) {
         let (Some(choice), Some(model)) = (choice, self.library.active()) else { return };
-        let is_choice = |borrowed: &BorrowedClip| {
-            let motion = self.library.motions().get(borrowed.motion);
-            borrowed.source_clip == choice.source_clip && motion.is_some_and(|motion| choice.is_of(motion))
-        };
-        let found = model.borrowed_clips().find(|(_, borrowed)| is_choice(borrowed));
-        if let Some((clip, _)) = found.or_else(|| model.borrowed_clips().next()) {
-            let found = found.is_some();
-            let clip = choice_of_clip(model, clip);
+        let first = model.borrowed_clips().next().map(|(clip, _)| choice_of_clip(model, clip));
+        if let Some(clip) = self.find_retargeted(&choice) {
             self.apply(Command::SetClip(clip));
-            if found {
-                self.apply(Command::Seek(choice.time_secs));
-            }
+            self.apply(Command::Seek(choice.time_secs));
+        } else if let Some(first) = first {
+            self.apply(Command::SetClip(first));
+        }
+    }
+
+    fn find_retargeted(&self, wanted: &ClipIdentity) -> Option<ClipChoice> {
+        let model = self.library.active()?;
+        let is_wanted = |borrowed: &BorrowedClip| {
+            let motion = self.library.motions().get(borrowed.motion);
+            borrowed.source_clip == wanted.source_clip && motion.is_some_and(|motion| wanted.is_of(motion))
+        };
+        let (clip, _) = model.borrowed_clips().find(|(_, borrowed)| is_wanted(borrowed))?;
+        Some(choice_of_clip(model, clip))
+    }
+
+    /// Makes this clip active at the time and in the range that the state has; false if the model lacks it.
+    pub(super) fn keep_retargeted(&mut self, clip: &ClipIdentity) -> bool {
+        let found = self.find_retargeted(clip);
+        if let Some(clip) = &found {
+            self.state.playhead.clip.clone_from(clip);
+        }
+        found.is_some()
+    }
+
+    /// Keeps the clip that was active before its map changed. A map without pairs leaves no clip: the rest pose is active until
+    /// the clip is back, unless the user chooses another one.
+    pub(super) fn follow_clip(&mut self, playing: Option<ClipIdentity>) {
+        let waited = self.waiting_clip.take().filter(|_| self.state.playhead.clip == ClipChoice::RestPose);
+        let Some(clip) = playing.or(waited) else { return };
+        if !self.keep_retargeted(&clip) {
+            self.state.playhead.clip = ClipChoice::RestPose;
+            self.waiting_clip = Some(clip);
         }
     }
 
@@ -214,11 +268,12 @@ impl Editor {
         let (origin, name) = (motion.origin.clone(), short_name(&motion.origin));
         let others = self.library.motions().iter().filter(|motion| motion.origin != origin).cloned().collect();
         let before = self.snapshot();
-        let playing = self.retargeted_clip();
+        let playing = before.as_ref().and_then(|before| before.playing.clone());
         self.keep_motions(others);
         self.remember(before);
         match playing {
             Some(_) if self.library.motions().is_empty() => self.apply(Command::SetClip(ClipChoice::First)),
+            Some(clip) if self.keep_retargeted(&clip) => {}
             playing => self.choose_retargeted(playing),
         }
         self.notify_undoable(format!("Removed motion {name}."));
@@ -247,16 +302,15 @@ impl Editor {
                 maps.push(map);
             }
         }
-        let before = self.snapshot();
-        match self.add_motions(refused, maps) {
-            Ok(problems) => {
-                self.remember(before);
-                self.report(problems);
-                self.events.push(Event::MapStarted);
-                (self.needs_redraw, self.is_changed) = (true, true);
-            }
-            Err(error) => self.report(vec![error]),
+        if let Err(error) = self.check_room(&refused) {
+            return self.report(vec![error]);
         }
+        let before = self.snapshot();
+        let problems = self.add_motions(refused, maps);
+        self.remember(before);
+        self.report(problems);
+        self.events.push(Event::MapStarted);
+        (self.needs_redraw, self.is_changed) = (true, true);
     }
 }
 

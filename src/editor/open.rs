@@ -8,15 +8,24 @@ use super::names::is_obj;
 use super::{Admit, Contents, Editor, Event, ModelFiles, OTHER_FILES, OpenedModel, short_name};
 use crate::library::{Library, Loaded, Model, ModelId, Motion};
 use crate::retarget::JointMapFile;
-use crate::state::{Command, MotionMap, RetargetEdits, Sources, ViewerState, apply};
+use crate::state::{ClipChoice, Command, MotionMap, RetargetEdits, Sources, ViewerState, apply};
 
 /// What is kept of a loaded model besides the model.
 #[derive(Debug, Default)]
 pub(super) struct Shelved {
     /// The files it was read from; `None` for generated samples.
     pub files: Option<ModelFiles>,
-    /// The view and motions it had when another model was activated.
-    last_view: Option<(ViewerState, Vec<Motion>)>,
+    /// What was loaded when another model was activated.
+    last_view: Option<Snapshot>,
+}
+
+/// What was loaded and set at one moment.
+#[derive(Debug, Clone)]
+pub(super) struct Snapshot {
+    pub state: ViewerState,
+    pub loaded: Loaded,
+    /// The active clip if it was retargeted.
+    pub playing: Option<ClipIdentity>,
 }
 
 /// What was opened together with models.
@@ -43,6 +52,8 @@ impl Editor {
     /// The message for the user if none of the files can be used; nothing has changed then.
     pub fn open(&mut self, contents: Contents, view: Option<ViewerState>, admit: Admit<'_>) -> Result<(), String> {
         let Contents { models, motions, map, is_map_private, problems } = contents;
+        let (file, map) = map.map(|opened| (opened.name, opened.map)).unzip();
+        self.opened_map = file;
         self.has_private_map |= is_map_private;
         self.refused.clear();
         let opened = match motions {
@@ -50,13 +61,15 @@ impl Editor {
             Some(motions) => self.open_motions(motions, map, view, admit),
             None => map.map_or(Ok(()), |map| self.apply_map_file(&map)),
         };
+        self.opened_map = None;
         (self.needs_redraw, self.is_changed) = (true, true);
         self.report(problems);
         opened
     }
 
     /// Activates the first model, or the one that the view names, and lists the others. The current one stays in the list, and
-    /// stays active if the new one is not admitted. Without new motions, the loaded ones are retargeted to the new model.
+    /// stays active if the new one is not admitted. The loaded motions are retargeted to the new model, unless a view or
+    /// an empty list of motions replaces them.
     fn open_models(
         &mut self,
         mut models: Vec<OpenedModel>,
@@ -64,6 +77,12 @@ impl Editor {
         admit: Admit<'_>,
     ) -> Result<(), String> {
         let Companions { motions, map, view } = companions;
+        let is_view = view.is_some();
+        let keeps_motions = !is_view && motions.as_ref().is_none_or(|motions| !motions.is_empty());
+        let motions = motions.unwrap_or_default();
+        if keeps_motions {
+            self.check_room(&motions)?;
+        }
         let named = view.as_ref().and_then(|view| view.sources.model.first());
         let at = models.iter().position(|opened| Some(&opened.model.origin) == named).unwrap_or(0);
         models.swap(0, at);
@@ -72,7 +91,7 @@ impl Editor {
         let (name, origin) = (short_name(&first.model.source), first.model.origin.clone());
         let lacks_joints = is_obj(&name) && first.model.asset.skins.is_empty();
         let before = self.snapshot();
-        let playing = self.retargeted_clip();
+        let playing = before.as_ref().and_then(|before| before.playing.clone());
         let known = self.library.models().len();
         let id = self.add(first);
         if let Err(error) = self.admit(&before, admit) {
@@ -84,31 +103,24 @@ impl Editor {
         let others: Vec<String> = others.map(|(name, _)| name).collect();
         self.library.show(id);
         self.close_jointless(id);
-        let (is_view, was_loaded) = (view.is_some(), before.is_some());
+        let was_loaded = before.is_some();
         self.remember(before);
         let evicted = self.evict();
-        let keeps_motions = motions.is_none() && !is_view;
-        if !keeps_motions {
-            self.library.set_motions(motions.unwrap_or_default());
-        }
-        match view {
-            Some(view) => self.set_view(view),
-            None => self.state = self.view_of_new_model(origin, keeps_motions),
-        }
-        if is_view {
-            self.events.push(Event::ViewOpened);
-        }
+        self.events.extend(is_view.then_some(Event::ViewOpened));
         self.events.push(Event::ModelOpened);
-        let has_map = map.is_some();
-        self.state.retarget.map.extend(map.map(MotionMap::Names));
-        let problems = self.retarget();
         let about_motions = if keeps_motions {
-            self.carry_motions_over(playing)
+            self.state = self.view_of_new_model(origin, keeps_motions);
+            self.carry_motions_over(playing, motions, map)
         } else {
-            if is_view || !self.library.motions().is_empty() || has_map {
-                self.report(problems);
+            self.library.set_motions(motions);
+            match view {
+                Some(view) => self.set_view(view),
+                None => self.state = self.view_of_new_model(origin, keeps_motions),
             }
-            self.choose_first_motion(is_view)
+            self.state.retarget.map.extend(map.map(MotionMap::Names));
+            let problems = self.retarget();
+            self.report(problems);
+            None
         };
         if was_loaded && !is_view {
             let is_new = self.library.models().len() + evicted.len() > known;
@@ -131,21 +143,31 @@ impl Editor {
         old.for_model(ViewerState { sources, retarget, ..ViewerState::default() })
     }
 
-    /// Keeps the loaded motions that fit the new model, and keeps playing their clip; returns the notice about dropped ones.
-    fn carry_motions_over(&mut self, playing: Option<ClipIdentity>) -> Option<String> {
-        let dropped = self.drop_incompatible_motions();
-        self.choose_retargeted(playing);
-        dropped
-    }
-
-    /// Plays the first retargeted clip, unless a view chooses the clip; returns the notice about the motions.
-    fn choose_first_motion(&mut self, is_view: bool) -> Option<String> {
-        if let Some(motion) = self.library.motions().first().filter(|_| !is_view) {
-            let first = ClipIdentity::first_of(motion);
-            self.choose_retargeted(Some(first));
+    /// Keeps the loaded motions that fit the new model and adds the new ones. Plays the first new clip, otherwise the one that
+    /// was playing. Returns the notice about added and dropped motions.
+    fn carry_motions_over(
+        &mut self,
+        playing: Option<ClipIdentity>,
+        new: Vec<Motion>,
+        map: Option<JointMapFile>,
+    ) -> Option<String> {
+        let mut maps = map.map(MotionMap::Names);
+        if new.is_empty() {
+            self.state.retarget.map.extend(maps.take());
         }
-        let clips = self.library.active().map_or(0, |model| model.borrowed_clips().count());
-        (clips > 0).then(|| added_from(clips, self.library.motions()))
+        self.retarget();
+        let dropped = self.drop_incompatible_motions();
+        if new.is_empty() {
+            self.choose_retargeted(playing);
+            return dropped;
+        }
+        let problems = self.add_motions(new.clone(), maps);
+        self.report(problems);
+        self.choose_retargeted(new.first().map(ClipIdentity::first_of));
+        let clips = self.clips_of_last(new.len());
+        let sentences = [(clips > 0).then(|| added_from(clips, &new)), dropped];
+        let sentences: Vec<String> = sentences.into_iter().flatten().collect();
+        (!sentences.is_empty()).then(|| sentences.join(" "))
     }
 
     /// Closes the jointless model of an .obj once it has been opened again with its joints.
@@ -161,29 +183,31 @@ impl Editor {
     }
 
     /// Checks that the active model can be shown; if not, restores what was active before.
-    pub(super) fn admit(&mut self, before: &Option<(ViewerState, Loaded)>, admit: Admit<'_>) -> Result<(), String> {
+    pub(super) fn admit(&mut self, before: &Option<Snapshot>, admit: Admit<'_>) -> Result<(), String> {
         let Some(Err(error)) = self.library.active().map(admit) else { return Ok(()) };
-        if let Some((_, loaded)) = before {
-            self.library.restore(loaded.clone());
+        if let Some(before) = before {
+            self.library.restore(before.loaded.clone());
             self.retarget();
         }
         Err(error)
     }
 
     /// Returns what undo restores; `None` before anything is loaded.
-    pub(super) fn snapshot(&self) -> Option<(ViewerState, Loaded)> {
-        self.library.active().map(|_| (self.state.clone(), self.library.loaded()))
+    pub(super) fn snapshot(&self) -> Option<Snapshot> {
+        self.library.active()?;
+        let (state, loaded) = (self.state.clone(), self.library.loaded());
+        Some(Snapshot { state, loaded, playing: self.retargeted_clip() })
     }
 
     /// Adds the changes since the snapshot to the history as a step, and shelves the view of the previously active model.
-    pub(super) fn remember(&mut self, before: Option<(ViewerState, Loaded)>) {
-        let Some((state, loaded)) = before else { return };
-        if loaded.model != self.library.loaded().model
-            && let Some(shelved) = self.shelf.get_mut(&loaded.model)
+    pub(super) fn remember(&mut self, before: Option<Snapshot>) {
+        let Some(before) = before else { return };
+        if before.loaded.model != self.library.loaded().model
+            && let Some(shelved) = self.shelf.get_mut(&before.loaded.model)
         {
-            shelved.last_view = Some((state.clone(), loaded.motions.clone()));
+            shelved.last_view = Some(before.clone());
         }
-        self.history.opened(state, loaded);
+        self.history.opened(before.state, before.loaded);
     }
 
     /// Adds a model to the library and activates it; if the same file is already loaded, activates that model.
@@ -248,37 +272,43 @@ impl Editor {
         Ok(())
     }
 
-    /// Activates another loaded model with the view it had. Motions added since then are retargeted to it, and the active
-    /// retargeted clip keeps playing.
+    /// Activates another loaded model with the view it had: its clip, time and range. Motions added since then are retargeted
+    /// to it. A model that was never active plays the retargeted clip that is active.
     ///
     /// # Errors
     /// The message for the user if it cannot be shown; nothing changes then.
     pub fn activate(&mut self, id: ModelId, admit: Admit<'_>) -> Result<(), String> {
         let before = self.snapshot();
-        let Some((_, loaded)) = before.as_ref().filter(|(_, loaded)| loaded.model != id) else { return Ok(()) };
-        let playing = self.retargeted_clip();
-        let current = loaded.motions.clone();
+        let Some(current) = before.clone().filter(|before| before.loaded.model != id) else { return Ok(()) };
         if !self.library.show(id) {
             return Ok(());
         }
         self.admit(&before, admit)?;
         self.remember(before);
-        let last_view = self.shelf.get(&id).and_then(|shelved| shelved.last_view.clone());
+        let last = self.shelf.get(&id).and_then(|shelved| shelved.last_view.clone());
         let origin = self.library.active().map(|model| model.origin.clone()).unwrap_or_default();
-        let (last_view, mut motions) = last_view.unwrap_or_else(|| (ViewerState::of_model(origin.clone()), Vec::new()));
+        let is_first_time = last.is_none();
+        let (view, mut motions, playing) = match last {
+            Some(last) => (last.state, last.loaded.motions, last.playing),
+            None => (ViewerState::of_model(origin.clone()), Vec::new(), current.playing),
+        };
         // Motions loaded since then take precedence.
-        motions.retain(|known| !current.iter().any(|motion| motion.origin == known.origin));
-        motions.extend(current);
+        motions.retain(|known| !current.loaded.motions.iter().any(|motion| motion.origin == known.origin));
+        motions.extend(current.loaded.motions);
         motions.truncate(Library::MAX_MOTIONS);
         let motion = Contents::motion_sources(&motions, Some(&origin));
         let old = std::mem::take(&mut self.state);
-        self.state = old.for_model(ViewerState { sources: Sources { motion, ..last_view.sources }, ..last_view });
+        self.state = old.for_model(ViewerState { sources: Sources { motion, ..view.sources }, ..view });
         self.library.set_motions(motions);
         self.retarget();
         if let Some(dropped) = self.drop_incompatible_motions() {
             self.notify(dropped);
         }
-        self.choose_retargeted(playing);
+        match playing {
+            playing if is_first_time => self.choose_retargeted(playing),
+            Some(clip) if !self.keep_retargeted(&clip) => self.apply(Command::SetClip(ClipChoice::First)),
+            _ => {}
+        }
         (self.needs_redraw, self.is_changed) = (true, true);
         Ok(())
     }

@@ -1,8 +1,8 @@
-//! Undo and redo. A notice says when that activates another model, or removes or restores a motion: the user may have opened it
-//! long ago.
+//! Undo and redo. A notice says when that activates, lists or closes another model, or removes or restores a motion: the user
+//! may have opened it long ago.
 
-use super::short_name;
-use super::{Editor, Event};
+use super::motions::ClipIdentity;
+use super::{Editor, Event, short_name};
 use crate::library::ModelId;
 
 impl Editor {
@@ -28,46 +28,43 @@ impl Editor {
 
     /// Undoes the last step; returns false if there is none.
     pub fn undo(&mut self) -> bool {
-        let before = self.loaded_names();
+        let (before, playing) = (self.loaded_names(), self.retargeted_clip());
         let done = self.history.undo(&mut self.state, &mut self.library);
         if done {
-            self.finish_step(before, "Ctrl+Y");
+            self.finish_step(before, playing, "Ctrl+Y");
         }
         done
     }
 
     /// Redoes the last undone step; returns false if there is none.
     pub fn redo(&mut self) -> bool {
-        let before = self.loaded_names();
+        let (before, playing) = (self.loaded_names(), self.retargeted_clip());
         let done = self.history.redo(&mut self.state, &mut self.library);
         if done {
-            self.finish_step(before, "Ctrl+Z");
+            self.finish_step(before, playing, "Ctrl+Z");
         }
         done
     }
 
-    fn finish_step(&mut self, before: LoadedNames, opposite: &str) {
+    fn finish_step(&mut self, before: LoadedNames, playing: Option<ClipIdentity>, opposite: &str) {
         (self.needs_redraw, self.is_changed) = (true, true);
         self.events.push(Event::Stepped);
         let problems = self.retarget();
         self.report(problems);
         let after = self.loaded_names();
-        let removed = missing_from(&before.motions, &after.motions);
-        let added = missing_from(&after.motions, &before.motions);
-        if !removed.is_empty() {
-            self.notify(format!("Removed motion {removed}. {opposite} brings it back."));
-        } else if !added.is_empty() {
-            self.notify(format!("Added motion {added} again."));
-        } else if let (Some((old_id, old)), Some((id, name))) = (before.model, after.model)
-            && old_id != id
-        {
-            self.notify(format!("Back to {name}. {opposite} returns to {old}."));
+        let is_same_model = before.model.as_ref().map(|(id, _)| id) == after.model.as_ref().map(|(id, _)| id);
+        if is_same_model {
+            self.follow_clip(playing);
+        }
+        if let Some(text) = step_notice(&before, &after, opposite) {
+            self.notify(text);
         }
     }
 
     fn loaded_names(&self) -> LoadedNames {
         LoadedNames {
             model: self.library.active().map(|model| (model.id, short_name(&model.source))),
+            listed: self.library.models().iter().map(|model| (model.id, short_name(&model.source))).collect(),
             motions: self.library.motions().iter().map(|motion| short_name(&motion.source)).collect(),
         }
     }
@@ -75,11 +72,34 @@ impl Editor {
 
 struct LoadedNames {
     model: Option<(ModelId, String)>,
+    listed: Vec<(ModelId, String)>,
     motions: Vec<String>,
 }
 
-/// Returns the names that are not in `others`, separated by commas.
-fn missing_from(names: &[String], others: &[String]) -> String {
-    let missing: Vec<&str> = names.iter().filter(|name| !others.contains(name)).map(String::as_str).collect();
-    missing.join(", ")
+/// Returns what a step did to models and motions; `None` for edits alone.
+fn step_notice(before: &LoadedNames, after: &LoadedNames, opposite: &str) -> Option<String> {
+    if let (Some((old_id, old)), Some((id, name))) = (&before.model, &after.model)
+        && old_id != id
+    {
+        return Some(format!("Back to {name}. {opposite} returns to {old}."));
+    }
+    let motion = |name: &String| name.clone();
+    if let Some(removed) = missing_from(&before.motions, &after.motions, motion) {
+        return Some(format!("Removed motion {removed}. {opposite} brings it back."));
+    }
+    if let Some(added) = missing_from(&after.motions, &before.motions, motion) {
+        return Some(format!("Added motion {added} again."));
+    }
+    let model = |(_, name): &(ModelId, String)| name.clone();
+    if let Some(closed) = missing_from(&before.listed, &after.listed, model) {
+        return Some(format!("Closed {closed}. {opposite} reopens it."));
+    }
+    let reopened = missing_from(&after.listed, &before.listed, model)?;
+    Some(format!("Reopened {reopened}. {opposite} closes it."))
+}
+
+/// Returns the names of what is not in `others`, separated by commas.
+fn missing_from<T: PartialEq>(all: &[T], others: &[T], name: impl Fn(&T) -> String) -> Option<String> {
+    let missing: Vec<String> = all.iter().filter(|one| !others.contains(one)).map(name).collect();
+    (!missing.is_empty()).then(|| missing.join(", "))
 }

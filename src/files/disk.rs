@@ -10,10 +10,9 @@ use super::read::{FilesRead, Item, read_items};
 use super::source::{Content, Located, MAX_FOLDER_FILES, Progress, Reading, Source};
 use super::{OpenError, Role, SortError, decode_images, view};
 use crate::asset::{Asset, Image};
-use crate::editor::{Contents, ModelFiles, OpenedModel};
+use crate::editor::{Contents, ModelFiles, OpenedMap, OpenedModel};
 use crate::formats::FileSet;
 use crate::library::{ImageData, Model, Motion};
-use crate::retarget::JointMapFile;
 use crate::samples;
 use crate::state::ViewerState;
 
@@ -27,7 +26,7 @@ pub struct Opened {
     /// Motions to borrow, in addition to the model's own clips.
     pub motions: Vec<Motion>,
     /// `None` if no file is a joint map.
-    pub map: Option<JointMapFile>,
+    pub map: Option<OpenedMap>,
     /// Names of all files that were read.
     pub files: Vec<String>,
 }

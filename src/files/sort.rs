@@ -1,6 +1,7 @@
 //! Sorts a set of files by content: models, motions to borrow, a joint map.
 
 use crate::asset::{Asset, Image};
+use crate::editor::OpenedMap;
 use crate::formats::{FileSet, LoadError, LoadOptions, load, load_noticing_images, main_files};
 use crate::library::Library;
 use crate::retarget::{JointMapFile, MapError};
@@ -25,7 +26,7 @@ pub struct Sorted {
     /// Files to borrow clips from.
     pub motions: Vec<(String, Asset)>,
     /// `None` if no file is a joint map.
-    pub map: Option<JointMapFile>,
+    pub map: Option<OpenedMap>,
 }
 
 /// Why a set of files cannot be used.
@@ -91,6 +92,13 @@ pub(super) fn sort_noticing_images(
     let mut sorted = Sorted { map: find_map(files)?, ..Sorted::default() };
     let names = main_files(files);
     if names.is_empty() && (sorted.map.is_none() || role == Role::Model) {
+        // Nothing but JSON was meant as a joint map, unless it is one and a model is required.
+        if sorted.map.is_none()
+            && let Some((name, bytes)) = files.iter().next()
+            && files.iter().all(|(name, _)| is_json(name))
+        {
+            read_map(name, bytes)?;
+        }
         // The error says what is there instead.
         return load(files).map(|_| sorted).map_err(SortError::from);
     }
@@ -128,20 +136,24 @@ fn few_names(files: &[(String, Asset)]) -> Vec<String> {
 }
 
 /// Finds the joint map among the files: JSON with the key `gaitway_map`. Other JSON is ignored.
-fn find_map(files: &FileSet) -> Result<Option<JointMapFile>, SortError> {
-    let mut found: Option<(String, JointMapFile)> = None;
+fn find_map(files: &FileSet) -> Result<Option<OpenedMap>, SortError> {
+    let mut found: Option<OpenedMap> = None;
     for (name, bytes) in files.iter() {
         let has_key = || bytes.windows(13).any(|window| window == b"\"gaitway_map\"");
-        if !name.to_lowercase().ends_with(".json") || !has_key() {
+        if !is_json(name) || !has_key() {
             continue;
         }
         let map = read_map(name, bytes)?;
-        if let Some((first, _)) = found {
-            return Err(SortError::SeveralMaps { found: vec![first, name.to_owned()] });
+        if let Some(first) = found {
+            return Err(SortError::SeveralMaps { found: vec![first.name, name.to_owned()] });
         }
-        found = Some((name.to_owned(), map));
+        found = Some(OpenedMap { name: name.to_owned(), map });
     }
-    Ok(found.map(|(_, map)| map))
+    Ok(found)
+}
+
+fn is_json(name: &str) -> bool {
+    name.to_lowercase().ends_with(".json")
 }
 
 /// Parses a joint map; errors refer to it as `file`.

@@ -86,8 +86,9 @@ impl FileSet {
 
     fn unpack(&mut self, archive_name: &str, bytes: &[u8]) -> Result<(), LoadError> {
         let error = |problem: String| LoadError::Archive { file: archive_name.to_owned(), problem };
-        let mut archive = zip::ZipArchive::new(Cursor::new(bytes))
-            .map_err(|problem| error(format!("not a readable zip: {problem}")))?;
+        let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).map_err(|_| {
+            error("not a readable zip: its list of files is missing or damaged (cut short?)".to_owned())
+        })?;
         let entries = archive.len();
         if entries > MAX_ARCHIVE_ENTRIES {
             return Err(error(format!("{entries} files in the archive; at most {MAX_ARCHIVE_ENTRIES} are read")));

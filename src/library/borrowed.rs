@@ -22,6 +22,8 @@ pub struct BorrowedClip {
     pub motion: usize,
     /// Index into the motion's clips.
     pub source_clip: usize,
+    /// What it is called if its file gives it no name: the file, and its number there if the file has several.
+    pub(super) file_title: String,
     /// The joint whose travel is the character's. `None` if nothing is translated.
     pub root: Option<JointIndex>,
     /// Frame rate the source was authored at; retargeting may add keys between its frames.
@@ -102,6 +104,7 @@ pub(super) fn borrow(
             layers: layers.clone(),
             motion: index,
             source_clip,
+            file_title: file_title(source, source_clip, motion.asset.clips.len()),
             root,
             frames_per_sec: motion
                 .asset
@@ -116,4 +119,11 @@ pub(super) fn borrow(
         })
     };
     clips.map(borrow).collect()
+}
+
+fn file_title(source: &str, clip: usize, count: usize) -> String {
+    let path = source.split(['?', '#']).next().unwrap_or(source);
+    let name = path.rsplit(['/', '\\', ':']).next().unwrap_or(path);
+    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+    if count > 1 { format!("{stem} {clip}") } else { stem.to_owned() }
 }

@@ -59,7 +59,7 @@ impl Model {
     /// another.
     pub fn new(source: String, asset: impl Into<Arc<Asset>>, images: Vec<Option<ImageData>>) -> Self {
         let asset = asset.into();
-        let clip_titles = unique_titles(asset.clips.iter());
+        let clip_titles = unique_titles(&asset.clips, &[]);
         let rig = Rig::new(&asset);
         let extent = Extent::new(&asset, &rig);
         Self {
@@ -124,7 +124,7 @@ impl Model {
     /// Replaces the borrowed clips.
     pub(super) fn set_borrowed(&mut self, borrowed: Vec<BorrowedClip>) {
         self.borrowed = borrowed;
-        self.clip_titles = unique_titles(self.clips());
+        self.clip_titles = unique_titles(&self.asset.clips, &self.borrowed);
         let own = self.asset.clips.len();
         if let Ok(mut swept) = self.swept.lock() {
             swept.retain(|key, _| key.clip.is_none_or(|clip| clip < own));
@@ -260,11 +260,14 @@ impl Model {
     }
 }
 
-fn unique_titles<'a>(clips: impl Iterator<Item = &'a Clip>) -> Vec<String> {
+/// Titles by index: each clip's name, otherwise its number in its own file.
+fn unique_titles(own: &[Clip], borrowed: &[BorrowedClip]) -> Vec<String> {
+    let own = own.iter().enumerate().map(|(index, clip)| (clip, format!("Clip {index}")));
+    let borrowed = borrowed.iter().map(|borrowed| (&borrowed.clip, borrowed.file_title.clone()));
     let mut seen: BTreeMap<String, usize> = BTreeMap::new();
     let mut titles = Vec::new();
-    for (index, clip) in clips.enumerate() {
-        let base = if clip.name().trim().is_empty() { format!("Clip {index}") } else { clip.name().to_owned() };
+    for (clip, unnamed) in own.chain(borrowed) {
+        let base = if clip.name().trim().is_empty() { unnamed } else { clip.name().to_owned() };
         let mut title = base.clone();
         loop {
             let count = seen.entry(title.clone()).or_insert(0);

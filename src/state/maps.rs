@@ -39,7 +39,7 @@ pub enum MapProblem {
     )]
     OtherFiles,
     /// A map by names that fits none of the motions.
-    #[error("the joint map fits no motion that is open: {motion}: {problem}")]
+    #[error("the joint map doesn't fit {motion}: {problem}")]
     NoFit {
         /// [Source](crate::library::Motion::source) of the first motion it was tried with.
         motion: String,

@@ -3,7 +3,7 @@
 use egui::{Context, Key, Modifiers};
 
 use super::transport::range_here;
-use super::{Output, Shown, UiAction, UiState, motion, text};
+use super::{Output, Shown, UiAction, UiState, motion, text, typing};
 use crate::anim::LoopMode;
 use crate::state::{CameraChoice, Command, Show, choice_of_clip};
 
@@ -140,14 +140,12 @@ pub const KEY_TABLE: &[KeyHelp] = &[
     },
 ];
 
-/// Handles keys unless a text field or another control has the keyboard; shortcuts work whenever no text field has it.
+/// Handles keys unless a control has the keyboard, and shortcuts with modifiers unless the user is typing into a field.
 pub(super) fn listen(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
-    if local.messages.path_prompt.is_some() || local.motion.is_picking() {
+    if local.messages.path_prompt.is_some() || local.motion.is_picking() || typing::is_typing(context) {
         return;
     }
-    if !context.text_edit_focused() {
-        shortcuts(context, out);
-    }
+    shortcuts(context, out);
     if context.egui_wants_keyboard_input() {
         return;
     }

@@ -9,10 +9,11 @@ mod output;
 mod tabs;
 pub mod text;
 mod transport;
+mod typing;
 mod viewport;
 mod widgets;
 
-use egui::{Rect, Ui};
+use egui::{Context, Rect, Ui};
 
 use crate::anim::Clip;
 use crate::frame::Frame;
@@ -28,10 +29,15 @@ pub use viewport::notices::{Messages, Progress, Toast};
 pub use viewport::overlays::overlays;
 pub use viewport::path_prompt::PathPrompt;
 pub use viewport::{ViewportSlot, ViewportState, viewport};
-pub use widgets::style::install;
 
 use viewport::{overlays, sheet};
 use widgets::{controls, icons, scrub, style};
+
+/// Prepares a context: fonts, styles, and what goes to a field instead of to shortcuts.
+pub fn install(context: &Context) {
+    style::install(context);
+    typing::install(context);
+}
 
 /// What the interface shows. `frame` is what is on the screen: one behind while a command is being applied.
 #[derive(Clone, Copy)]

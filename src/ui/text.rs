@@ -345,12 +345,37 @@ pub const ROOT_TURN: &str = "Root motion: turn";
 pub const EXTRACT_ROOT_MOTION: &str = "Extract root motion";
 /// Accessible name of the choice of what unmapped joints do.
 pub const UNMAPPED_JOINTS: &str = "Unmapped joints";
+/// Button that saves the model's file with the current clip.
+pub const SAVE_GLB: &str = "Save GLB";
+/// Button that saves the current clip with its skeleton, without the meshes.
+pub const SAVE_CLIP: &str = "Save the clip alone";
+/// Button that shows the motion's skeleton.
+pub const SHOW_SOURCE: &str = "Show it beside the model";
+/// The same button while the skeleton is shown.
+pub const HIDE_SOURCE: &str = "Hide it";
+/// Why those buttons are disabled while one of the model's own clips is active.
+pub const NEEDS_BORROWED_CLIP: &str = "Choose a borrowed clip in the clip list first.";
+/// Button that opens the motion's skeleton as the model.
+pub const OPEN_INSTEAD: &str = "Open it instead of the model";
+/// Heading of a source's channels that the model ignores.
+pub const IGNORED_CHANNELS: &str = "Ignored channels";
+/// Button that ends ignoring channels.
+pub const USE_ALL_CHANNELS: &str = "Use all channels";
+/// Heading of the choice of rest poses.
+pub const REST_POSE_ALIGNMENT: &str = "Rest-pose alignment";
+/// Heading of the figures about rotations relative to the source.
+pub const ROTATION_ERROR: &str = "Rotation error";
 /// Heading of the three rotation offset fields of a mapped joint.
 pub const ROTATION_OFFSET: &str = "Rotation offset";
 
 /// Returns the accessible name of the rotation offset field for an axis.
 pub fn rotation_offset_about(axis: &str) -> String {
     format!("{ROTATION_OFFSET} about {axis}")
+}
+
+/// Returns the accessible name of the switch that ignores a source's channels of one property.
+pub fn ignore_channels(property: &str) -> String {
+    format!("Ignore {property}")
 }
 
 /// Returns the summary of the map; `sources` counts all nodes of the motion.

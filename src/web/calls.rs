@@ -8,7 +8,7 @@ use wasm_bindgen::prelude::*;
 
 use super::page::{Page, page, state_of_link};
 use crate::app::{App, Message, Opening, Reply, ScriptCall};
-use crate::editor::Contents;
+use crate::editor::{Contents, short_name};
 use crate::files::{Item, OpenError, Role, open_items, open_view};
 use crate::frame::pose_document;
 use crate::library::Motion;
@@ -122,7 +122,7 @@ pub async fn begin() -> Result<(), JsError> {
     with_app(&page, App::begin).map_err(error)
 }
 
-/// Returns the contents of the live regions as `{model, clip, playing, problem}`; no clip means the rest pose.
+/// Returns the contents of the live regions as `{model, clip, playing, notice, problem}`; no clip means the rest pose.
 #[wasm_bindgen]
 pub fn summary() -> Result<String, JsError> {
     let page = page().map_err(error)?;
@@ -130,8 +130,14 @@ pub fn summary() -> Result<String, JsError> {
         let state = app.state();
         let model = app.library().active();
         let clip = model.and_then(|model| model.clip_titles().get(active_clip(model, state)?));
-        json!({ "model": state.sources.model.join(", "), "clip": clip, "playing": state.playback.playing, "problem": app.problem() })
-            .to_string()
+        json!({
+            "model": model.map_or_else(String::new, |model| short_name(&model.source)),
+            "clip": clip,
+            "playing": state.playback.playing,
+            "notice": app.notice(),
+            "problem": app.problem(),
+        })
+        .to_string()
     };
     with_app(&page, summary).map_err(error)
 }

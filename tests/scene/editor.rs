@@ -1,13 +1,20 @@
 //! The editor without a shell: opening, activating, closing and undoing, with their notices.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
-use gaitway::editor::{Contents, Editor, Event, Export};
+use gaitway::anim::{ClipBuilder, Interpolation, JointIndex, Keys, TimeRange};
+use gaitway::asset::Asset;
+use gaitway::editor::{Contents, Editor, Event, Export, OpenedMap};
 use gaitway::files::{Role, read_paths};
 use gaitway::library::{Library, Model, Motion};
+use gaitway::retarget::JointMapFile;
+use gaitway::samples;
 use gaitway::state::{
-    CameraChoice, ClipChoice, Command, Inspect, OrbitCamera, RetargetEdits, Show, Sources, UpAxis, ViewerState,
+    CameraChoice, ClipChoice, Command, Inspect, MapEdit, OrbitCamera, RetargetEdits, Show, Sources, UpAxis,
+    ViewerState, active_clip,
 };
+use glam::Vec3;
 
 fn contents(files: &[&str]) -> Contents {
     let files: Vec<PathBuf> = files.iter().map(PathBuf::from).collect();
@@ -28,6 +35,30 @@ fn editor(first: &str) -> Editor {
 fn open(editor: &mut Editor, file: &str) -> Vec<Event> {
     editor.open(contents(&[file]), None, &mut any).expect("fits");
     editor.take_events()
+}
+
+/// The walker's clips as a motion of this name.
+fn motion(name: &str) -> Motion {
+    Motion::new(name.to_owned(), samples::load("walker").expect("is generated").asset)
+}
+
+fn open_motion(editor: &mut Editor, name: &str) {
+    let contents = Contents { motions: Some(vec![motion(name)]), ..Contents::default() };
+    editor.open(contents, None, &mut any).expect("fits");
+    editor.take_events();
+}
+
+fn motions(editor: &Editor) -> Vec<&str> {
+    editor.library().motions().iter().map(|motion| motion.source.as_str()).collect()
+}
+
+fn id_of(editor: &Editor, source: &str) -> gaitway::library::ModelId {
+    editor.library().models().iter().find(|model| model.source == source).expect("is listed").id
+}
+
+fn title(editor: &Editor) -> Option<&str> {
+    let model = editor.library().active()?;
+    Some(&model.clip_titles()[active_clip(model, editor.state())?])
 }
 
 fn active(editor: &Editor) -> &str {
@@ -144,6 +175,125 @@ fn a_manual_map_does_not_start_without_room_for_the_motion() {
     editor.map_refused_manually();
     let events = editor.take_events();
     assert!(matches!(&events[..], [Event::Problem(problem)] if problem.contains("at most 64 motions")), "{events:?}");
+}
+
+#[test]
+fn a_model_returns_with_its_clip_time_and_range() {
+    let mut editor = editor("sample:pilot");
+    open_motion(&mut editor, "dance.glb");
+    editor.apply(Command::SetPlaying(false));
+    editor.apply(Command::SetRange(Some(TimeRange { start_secs: 0.2, end_secs: 0.6 })));
+    editor.apply(Command::Seek(0.4));
+    let (playhead, playing) = (editor.state().playhead.clone(), title(&editor).map(str::to_owned));
+    assert!(playing.is_some());
+    open(&mut editor, "sample:walker");
+    editor.close(id_of(&editor, "sample:walker"), &mut any).expect("fits");
+    assert_eq!((active(&editor), &editor.state().playhead), ("sample:pilot", &playhead));
+    // Also beside a motion that was added to another model.
+    open(&mut editor, "sample:walker");
+    open_motion(&mut editor, "other.glb");
+    editor.activate(id_of(&editor, "sample:pilot"), &mut any).expect("fits");
+    assert_eq!(motions(&editor), ["dance.glb", "other.glb"]);
+    let now = &editor.state().playhead;
+    assert_eq!((now.time_secs, now.range), (playhead.time_secs, playhead.range));
+    assert_eq!(title(&editor).map(str::to_owned), playing);
+}
+
+#[test]
+fn a_model_with_motions_keeps_the_loaded_ones() {
+    let mut editor = editor("sample:pilot");
+    open_motion(&mut editor, "dance.glb");
+    let mut both = contents(&["sample:walker"]);
+    both.motions = Some(vec![motion("other.glb")]);
+    editor.open(both, None, &mut any).expect("fits");
+    assert_eq!(motions(&editor), ["dance.glb", "other.glb"]);
+    let model = editor.library().active().expect("a model");
+    let playing = active_clip(model, editor.state()).and_then(|clip| model.borrowed(clip)).expect("a borrowed clip");
+    assert_eq!((playing.motion, playing.source_clip), (1, 0), "the first new clip");
+    assert_eq!(notices(&editor.take_events()), ["Opened Walker. Added 3 clips from other.glb."]);
+    // What does not fit is named.
+    let mut both = contents(&["sample:morphs"]);
+    both.motions = Some(vec![motion("third.glb")]);
+    editor.open(both, None, &mut any).expect("the model is fine");
+    let events = editor.take_events();
+    assert_eq!(motions(&editor), ["third.glb"], "stays to be mapped by hand");
+    let [text] = notices(&events)[..] else { panic!("{events:?}") };
+    assert!(text.ends_with("Removed motions dance.glb, other.glb: they don't fit this model."), "{text}");
+    assert!(events.iter().any(|event| matches!(event, Event::Problem(text) if text.starts_with("third.glb: "))));
+}
+
+#[test]
+fn undo_says_which_models_it_brings_back() {
+    let mut editor = editor("sample:pilot");
+    open_motion(&mut editor, "dance.glb");
+    editor.open_motion_alone(0, &mut any).expect("fits");
+    editor.take_events();
+    editor.undo();
+    assert_eq!(notices(&editor.take_events()), ["Back to Pilot. Ctrl+Y returns to dance.glb."]);
+    open(&mut editor, "sample:creature");
+    editor.close(id_of(&editor, "sample:pilot"), &mut any).expect("is not active");
+    editor.take_events();
+    editor.undo();
+    assert_eq!(notices(&editor.take_events()), ["Reopened Pilot. Ctrl+Y closes it."]);
+    editor.redo();
+    assert_eq!(notices(&editor.take_events()), ["Closed Pilot. Ctrl+Z reopens it."]);
+}
+
+#[test]
+fn the_rest_pose_is_active_while_a_map_is_empty() {
+    let mut editor = editor("sample:pilot");
+    open_motion(&mut editor, "dance.glb");
+    let playing = editor.state().playhead.clip.clone();
+    editor.apply(Command::EditMap { motion: 0, edit: MapEdit::Clear });
+    assert_eq!(editor.state().playhead.clip, ClipChoice::RestPose);
+    editor.undo();
+    assert_eq!(editor.state().playhead.clip, playing);
+    editor.redo();
+    assert_eq!(editor.state().playhead.clip, ClipChoice::RestPose);
+    editor.apply(Command::SetMap { motion: 0, map: None });
+    assert_eq!(editor.state().playhead.clip, playing);
+    // A clip that the user chose meanwhile stays.
+    editor.apply(Command::EditMap { motion: 0, edit: MapEdit::Clear });
+    editor.apply(Command::SetClip(ClipChoice::First));
+    editor.undo();
+    assert_eq!(editor.state().playhead.clip, ClipChoice::First);
+}
+
+#[test]
+fn a_faulty_map_is_blamed_on_its_own_file() {
+    let mut editor = editor("sample:pilot");
+    let map = r#"{"gaitway_map": 1, "joints": {"nope": {"source": 0}}}"#;
+    let map = || Some(OpenedMap { name: "map.json".to_owned(), map: JointMapFile::from_json(map).expect("is valid") });
+    let both = Contents { motions: Some(vec![motion("dance.glb")]), map: map(), ..Contents::default() };
+    editor.open(both, None, &mut any).expect("the motion fits");
+    let expected = "map.json: doesn't fit dance.glb: joints.nope: ";
+    let events = editor.take_events();
+    let is_expected = |event: &Event| matches!(event, Event::Problem(text) if text.starts_with(expected));
+    assert!(events.iter().any(is_expected), "{events:?}");
+    let alone = Contents { map: map(), ..Contents::default() };
+    let error = editor.open(alone, None, &mut any).expect_err("fits nothing");
+    assert!(error.starts_with(expected), "{error}");
+}
+
+#[test]
+fn an_unnamed_borrowed_clip_is_called_like_its_file() {
+    let mut editor = editor("sample:pilot");
+    let unnamed = |source: &str, count: usize| {
+        let walker = samples::load("walker").expect("is generated").asset;
+        let mut parts = Arc::into_inner(walker).expect("of one model").into_parts();
+        let clip = |_| {
+            let mut clip = ClipBuilder::new("", &parts.skeleton);
+            let keys = Keys::Translation(vec![Vec3::ZERO, Vec3::Y]);
+            clip.channel(JointIndex(0), Interpolation::Linear, &[0.0, 1.0], keys).expect("two keys");
+            clip.build()
+        };
+        parts.clips = (0..count).map(clip).collect();
+        Motion::new(source.to_owned(), Arc::new(Asset::new(parts).expect("valid indices")))
+    };
+    let motions = Some(vec![unnamed("folder/one.glb", 1), unnamed("https://example.org/two.glb?a=b.c", 2)]);
+    editor.open(Contents { motions, ..Contents::default() }, None, &mut any).expect("fits");
+    let model = editor.library().active().expect("a model");
+    assert_eq!(model.clip_titles()[model.asset.clips.len()..], ["one", "two 0", "two 1"]);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use egui::{PointerButton, Pos2, pos2, vec2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use gaitway::state::{ClipChoice, Command, Inspect, Show};
 use gaitway::ui::{Saved, Tab, UiAction, text};
 
@@ -162,16 +162,18 @@ fn the_motion_tab_tells_the_fit_and_puts_the_source_on_the_stage() {
     press(&mut harness, Tab::Motion.label());
     press(&mut harness, "Fit");
     assert!(harness.query_by_label_contains("Choose a borrowed clip").is_some());
+    press(&mut harness, "Files");
+    for label in [text::SAVE_GLB, text::SAVE_CLIP, text::SHOW_SOURCE] {
+        assert!(harness.get_by_label(label).accesskit_node().is_disabled(), "{label}: the clip is the model's own");
+    }
+    press(&mut harness, "Fit");
     press(&mut harness, "Walk (2)");
     assert!(harness.query_all_by_label_contains("Mean: 0.0").count() == 2, "a copy fits");
     assert!(harness.query_by_label("Mapped: 100 %").is_some());
     press(&mut harness, "Files");
-    harness.get_by_label("Show it beside the model").scroll_to_me();
+    harness.get_by_label(text::SHOW_SOURCE).scroll_to_me();
     harness.run();
-    assert_eq!(
-        press(&mut harness, "Show it beside the model"),
-        [Command::SetShow(Show { source: true, ..Show::default() })]
-    );
+    assert_eq!(press(&mut harness, text::SHOW_SOURCE), [Command::SetShow(Show { source: true, ..Show::default() })]);
     assert_eq!(harness.state().frame.characters.len(), 2);
     assert_eq!(harness.query_all_by_label_contains(&text::foot_contacts("")).count(), 2, "a lane for each foot");
 }

@@ -82,7 +82,7 @@ fn view_sets_camera_and_background() {
 fn the_file_report_counts_and_groups() {
     let mut harness = bench(WIDE, model_with_clips(3));
     press(&mut harness, Tab::File.label());
-    for (name, value) in [(text::FORMAT, "glb"), (text::CLIPS, "3"), (text::NODES, "1")] {
+    for (name, value) in [(text::FORMAT, "GLB"), (text::CLIPS, "3"), (text::NODES, "1")] {
         assert!(harness.query_by_label(&text::fact(name, value)).is_some(), "{name}");
     }
     assert!(harness.query_by_label_contains("KHR_texture_transform").is_some());

@@ -1,11 +1,12 @@
 //! Keyboard shortcuts and their table.
 
-use egui::Key;
+use egui::{Event, Key};
+use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use gaitway::state::{CameraChoice, ClipChoice, Command};
 use gaitway::ui::{KEY_TABLE, UiAction, text};
 
-use crate::bench::{WIDE, press, press_key, sample_bench};
+use crate::bench::{Bench, WIDE, press, press_key, sample_bench};
 
 #[test]
 fn keys_do_what_the_help_says() {
@@ -62,6 +63,65 @@ fn typing_is_not_taken_for_keys() {
     harness.run();
     assert!(press_key(&mut harness, Key::F).is_empty());
     assert!(press_key(&mut harness, Key::Space).is_empty());
+}
+
+/// The events of typing a key and letting go of it.
+fn typed(key: Key, text: &str) -> Vec<Event> {
+    let event = |pressed| {
+        let modifiers = egui::Modifiers::NONE;
+        Event::Key { key, physical_key: None, pressed, repeat: false, modifiers }
+    };
+    let text = (!text.is_empty()).then(|| Event::Text(text.to_owned()));
+    [event(true)].into_iter().chain(text).chain([event(false)]).collect()
+}
+
+/// Sends all events in one frame, as a slow machine does; returns the commands.
+fn in_one_frame(harness: &mut Harness<'_, Bench>, events: impl IntoIterator<Item = Event>) -> Vec<Command> {
+    harness.state_mut().commands.clear();
+    harness.input_mut().events.extend(events);
+    harness.step();
+    harness.run();
+    std::mem::take(&mut harness.state_mut().commands)
+}
+
+fn click(at: egui::Pos2) -> Vec<Event> {
+    let button = egui::PointerButton::Primary;
+    let event = |pressed| Event::PointerButton { pos: at, button, pressed, modifiers: egui::Modifiers::NONE };
+    vec![Event::PointerMoved(at), event(true), event(false)]
+}
+
+#[test]
+fn a_number_typed_in_the_frame_of_its_click_is_no_shortcut() {
+    let mut harness = sample_bench(WIDE);
+    let at = harness.get_by_label(text::SPEED_VALUE).rect().center();
+    let events = [click(at), typed(Key::Num2, "2"), typed(Key::Enter, "")].concat();
+    assert_eq!(in_one_frame(&mut harness, events), [Command::SetSpeed(2.0)]);
+    // What follows Enter no longer goes to the field.
+    let events = [click(at), typed(Key::Num3, "3"), typed(Key::Enter, ""), typed(Key::Space, " ")].concat();
+    assert_eq!(in_one_frame(&mut harness, events), [Command::SetSpeed(3.0), Command::TogglePlaying]);
+}
+
+#[test]
+fn a_name_typed_in_the_frame_of_its_click_is_no_shortcut() {
+    let mut harness = sample_bench(WIDE);
+    harness.state_mut().editor.apply(Command::SelectJoint(Some(1)));
+    harness.run();
+    let at = harness.get_by_label(text::RENAME).rect().center();
+    let name = [typed(Key::C, "c"), typed(Key::S, "s"), typed(Key::Space, " "), typed(Key::W, "w")].concat();
+    let select = Event::Key {
+        key: Key::A,
+        physical_key: None,
+        pressed: true,
+        repeat: false,
+        modifiers: egui::Modifiers::COMMAND,
+    };
+    let events = [click(at), vec![select], name.clone(), typed(Key::Enter, "")].concat();
+    let renamed = Command::RenameJoint { joint: 1, name: "cs w".to_owned() };
+    assert_eq!(in_one_frame(&mut harness, events), [renamed]);
+    // Esc only leaves the field.
+    let events = [click(at), name, typed(Key::Escape, "")].concat();
+    assert!(in_one_frame(&mut harness, events).is_empty());
+    assert_eq!(harness.state().state().selection.joint, Some(1));
 }
 
 #[test]

@@ -187,8 +187,8 @@ fn files_are_asked_of_the_host() {
     press(&mut harness, "Save map");
     press(&mut harness, "Load map");
     press(&mut harness, "Walk (2)");
-    press(&mut harness, "Save GLB");
-    reach(&mut harness, "Open it instead of the model");
+    press(&mut harness, text::SAVE_GLB);
+    reach(&mut harness, text::OPEN_INSTEAD);
     reach(&mut harness, "Remove motion");
     let expected = [
         UiAction::Save(Saved::File(Export::Map { motion: 0 })),
@@ -357,7 +357,7 @@ fn a_joint_chosen_anywhere_opens_in_the_table() {
     assert!(harness.query_by_label("Source of Neck").is_none());
     // Far down, what opens is not left below the edge.
     reach(&mut harness, "Edit LeftHand");
-    let inside = harness.get_by_label("Leave out scale").rect();
+    let inside = harness.get_by_label(&text::ignore_channels("scale")).rect();
     assert!(inside.bottom() < WIDE[1] - 100.0, "{inside:?}");
     // As a click in the picture does; the table scrolls to it.
     harness.state_mut().change(|state| {
@@ -433,14 +433,14 @@ fn channels_of_a_source_are_left_out() {
     let neck = number(&harness, "Neck");
     press(&mut harness, "Edit Neck");
     let mute = |property, muted| [edit(MapEdit::Mute { source: neck, property, muted })];
-    assert_eq!(reach(&mut harness, "Leave out rotation"), mute(MutedProperty::Rotation, true));
+    assert_eq!(reach(&mut harness, &text::ignore_channels("rotation")), mute(MutedProperty::Rotation, true));
     assert!(harness.query_by_label_contains("Neck follows").is_some());
     assert!(harness.query_by_label_contains("rotation left out)").is_some());
     assert_eq!(muted_properties(&map(&harness, 0), neck), [false, true, false]);
-    assert_eq!(reach(&mut harness, "Leave out rotation"), mute(MutedProperty::Rotation, false));
-    reach(&mut harness, "Leave out scale");
+    assert_eq!(reach(&mut harness, &text::ignore_channels("rotation")), mute(MutedProperty::Rotation, false));
+    reach(&mut harness, &text::ignore_channels("scale"));
     press(&mut harness, "Options");
-    assert_eq!(reach(&mut harness, "Take everything in again"), [edit(MapEdit::UnmuteAll)]);
+    assert_eq!(reach(&mut harness, text::USE_ALL_CHANNELS), [edit(MapEdit::UnmuteAll)]);
 }
 
 #[test]
@@ -642,9 +642,9 @@ fn the_chosen_joint_fits_everywhere() {
             &text::rotation_offset_about("X"),
             &text::rotation_offset_about("Y"),
             &text::rotation_offset_about("Z"),
-            "Leave out rotation",
-            "Leave out translation",
-            "Leave out scale",
+            &text::ignore_channels("rotation"),
+            &text::ignore_channels("translation"),
+            &text::ignore_channels("scale"),
         ];
         for label in labels {
             harness.get_by_label(label).scroll_to_me();

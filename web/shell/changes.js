@@ -2,7 +2,7 @@
 import { markCard } from "./gallery.js";
 import { localFiles } from "./held.js";
 import { keepTypedAddressOnce, recordView } from "./history.js";
-import { say, sayProblem } from "./panels.js";
+import { say, sayNews, sayProblem } from "./panels.js";
 import { session } from "./session.js";
 
 const SUMMARY_DELAY_MS = 250;
@@ -15,6 +15,12 @@ let timer;
  * @type {string | null}
  */
 let announced = null;
+
+/**
+ * The app's notice, as announced last.
+ * @type {string | null}
+ */
+let announcedNotice = null;
 
 /**
  * Takes over the app's new link.
@@ -37,18 +43,31 @@ export function cancelSummary() {
   clearTimeout(timer);
 }
 
-/** Announces the current view and writes it to the address bar. */
+/** Takes back the last error, once something has been opened. */
+export function forgetProblem() {
+  announced = null;
+  sayProblem("");
+}
+
+/**
+ * Announces the current view and writes it to the address bar. Returns the model's name.
+ * @returns {string}
+ */
 export function summarize() {
-  if (session.app === null) return;
-  /** @type {{ model: string, clip: string | null, playing: boolean, problem: string | null }} */
-  const { model, clip, playing, problem } = JSON.parse(session.app.summary());
+  if (session.app === null) return "";
+  /** @type {{ model: string, clip: string | null, playing: boolean, notice: string | null, problem: string | null }} */
+  const { model, clip, playing, notice, problem } = JSON.parse(session.app.summary());
   say(`${model}: ${clip ?? "rest pose"}, ${clip !== null && playing ? "playing" : "paused"}`);
-  if (problem !== null && problem !== announced) sayProblem(problem);
+  // What is gone from the screen is no longer announced; errors that the page itself found stay.
+  if (problem !== announced) sayProblem(problem ?? "");
   announced = problem;
+  if (notice !== null && notice !== announcedNotice) sayNews(notice);
+  announcedNotice = notice;
   session.isLocal = localFiles(session.link).length > 0;
   markCard(session.link, session.isLocal);
-  document.title = model === "" ? "Gaitway" : `${model.split("/").pop()} – Gaitway`;
+  document.title = model === "" ? "Gaitway" : `${model} – Gaitway`;
   recordView();
+  return model;
 }
 
 addEventListener("pagehide", cancelSummary);

@@ -19,6 +19,9 @@ export const button = (id) => byId(id, HTMLButtonElement);
 /** @param {string} id */
 export const dialog = (id) => byId(id, HTMLDialogElement);
 
+/** Whether a dialog is open. It has to be answered before another one opens. */
+export const isDialogOpen = () => document.querySelector("dialog[open]") !== null;
+
 /** @param {string} id */
 export const field = (id) => byId(id, HTMLInputElement);
 

@@ -1,5 +1,5 @@
 // The dialog in which files, folders and URLs are chosen, and its keyboard shortcut.
-import { button, byId, dialog, field, focusCanvas } from "./dom.js";
+import { button, byId, dialog, field, focusCanvas, isDialogOpen } from "./dom.js";
 import { showGallery } from "./gallery.js";
 import { openByHand } from "./opening.js";
 import { panel } from "./panels.js";
@@ -30,7 +30,7 @@ const TEXTS = {
 
 /** @param {"any" | "motion"} [kind] */
 export function showOpenDialog(kind = "any") {
-  if (panel() !== null || dialog("open").open) return;
+  if (panel() !== null || isDialogOpen()) return;
   role = kind === "motion" ? kind : undefined;
   byId("open-form", HTMLFormElement).reset();
   const { title, what, example, sample } = TEXTS[kind];

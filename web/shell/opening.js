@@ -1,7 +1,7 @@
 // Opening: files and URLs from a script, a dialog or a drop become items, which the app shows. Files that a link waits for
 // complete it.
 import { awaited, forgetAwaited, showAwaited } from "./awaited.js";
-import { summarize } from "./changes.js";
+import { forgetProblem, summarize } from "./changes.js";
 import { focusCanvas, frames, messageOf } from "./dom.js";
 import { extensionOf, heldItems, heldMotions, itemNamed, nameOf, setWith } from "./held.js";
 import { follow } from "./following.js";
@@ -27,9 +27,10 @@ export async function open(items, { as, isPrivate = true } = {}) {
   await running();
   try {
     const { shown, document } = await load(wanted, as, isPrivate);
-    announce(shown, document);
+    forgetProblem();
     await completeLink(wanted, true);
-    summarize();
+    // In place of the app's notice, which says less.
+    announce(shown, summarize(), document);
     return document;
   } catch (error) {
     // A motion may have arrived before its model.
@@ -99,13 +100,14 @@ function withCompanions(items) {
 
 /**
  * @param {"model" | "motion" | "map"} shown
+ * @param {string} model The name of the active model.
  * @param {InspectDocument} document
  */
-function announce(shown, { files, clips, borrowed_clips: borrowed, joints, triangles }) {
+function announce(shown, model, { clips, borrowed_clips: borrowed, joints, triangles }) {
   /** @type {(count: number, noun: string) => string} */
   const counted = (count, noun) => `${count} ${noun}${count === 1 ? "" : "s"}`;
   const texts = {
-    model: `Opened ${files.join(", ")}: ${counted(clips.length, "clip")}, ${counted(joints, "joint")}, ${counted(triangles, "triangle")}.`,
+    model: `Opened ${model}: ${counted(clips.length, "clip")}, ${counted(joints, "joint")}, ${counted(triangles, "triangle")}.`,
     motion: `Borrowed motion: ${counted(borrowed?.length ?? 0, "clip")} available.`,
     map: "Joint map applied.",
   };

@@ -4,13 +4,13 @@
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MapError {
     /// The text is not JSON.
-    #[error("not JSON: {message}")]
+    #[error("not JSON: {}", plain(.message))]
     NotJson {
         /// `serde_json`'s message, with line and column.
         message: String,
     },
     /// JSON without a `gaitway_map` member.
-    #[error("not a joint map: it has no “gaitway_map”")]
+    #[error("not a joint map: expected a JSON object with “gaitway_map” (1) and “joints”")]
     NotAMap,
     /// A version of the format other than 1.
     #[error("gaitway_map is {found}; this program reads version 1")]
@@ -19,7 +19,7 @@ pub enum MapError {
         found: String,
     },
     /// A member has the wrong type or value, is unknown, or appears twice.
-    #[error("{path}: {message}")]
+    #[error("{path}: {}", plain(.message))]
     Json {
         /// JSON path, such as `joints.head.source`.
         path: String,
@@ -131,6 +131,36 @@ pub enum MapError {
         "the model and the motion have no joint in common: neither names nor body parts agree. Write a map by hand, as docs/joint-maps.md says"
     )]
     NothingInCommon,
+}
+
+/// Rewrites `serde_json`'s message without its technical terms: “unknown field `sorce`, expected one of …”.
+fn plain(message: &str) -> String {
+    let (said, place) = match message.rsplit_once(" at line ") {
+        Some((said, place)) => (said, format!(" (line {})", place.replace(" column", ", column"))),
+        None => (message, String::new()),
+    };
+    // What follows the words, up to the comma, and what was expected.
+    let parts = |words: &str| said.strip_prefix(words)?.split_once(", expected ");
+    let text = if said.starts_with("EOF while parsing") {
+        "it ends too soon (cut short?)".to_owned()
+    } else if let Some((name, known)) = parts("unknown field ") {
+        format!("there is no member {name} here; expected {known}")
+    } else if let Some((value, known)) = parts("unknown variant ") {
+        format!("expected {known}, found {value}")
+    } else if let Some((found, expected)) = parts("invalid type: ").or_else(|| parts("invalid value: ")) {
+        format!("expected {expected}, found {found}")
+    } else if let Some(name) = said.strip_prefix("missing field ") {
+        format!("the member {name} is missing")
+    } else {
+        said.to_owned()
+    };
+    format!("{}{place}", quoted(&text))
+}
+
+/// Replaces backticks by quotation marks.
+fn quoted(text: &str) -> String {
+    let parts = text.split('`').enumerate();
+    parts.map(|(at, part)| if at % 2 == 1 { format!("“{part}”") } else { part.to_owned() }).collect()
 }
 
 fn nearest_text(nearest: &[String]) -> String {

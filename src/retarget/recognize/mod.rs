@@ -60,7 +60,7 @@ pub enum Reason {
     Geometry,
 }
 
-/// A text for the UI: “Mixamo name”, “where it lies”.
+/// A text for the UI: “Mixamo name”, “position in space”.
 impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -68,8 +68,8 @@ impl fmt::Display for Reason {
             Self::SameName => f.write_str("same name"),
             Self::Vocabulary(vocabulary) => write!(f, "{vocabulary} name"),
             Self::Words => f.write_str("words in its name"),
-            Self::Hierarchy => f.write_str("what it hangs on"),
-            Self::Geometry => f.write_str("where it lies"),
+            Self::Hierarchy => f.write_str("position in the hierarchy"),
+            Self::Geometry => f.write_str("position in space"),
         }
     }
 }

@@ -58,7 +58,7 @@ pub(super) fn show(
                 tab.picking = Some(Picking::new(pairing.index, row.number));
             }
             if source_is_shown(shown, pairing)
-                && ui.button("Click its source").on_hover_text("In the picture, on the motion's skeleton").clicked()
+                && ui.button("Click its source").on_hover_text("In the viewport, on the motion's skeleton").clicked()
             {
                 tab.clicking = Some(Clicking::Source { motion: pairing.index, target: row.number });
             }
@@ -219,7 +219,7 @@ fn turn_fields(ui: &mut Ui, turn: &mut Turn) -> bool {
 fn muting(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, source: JointIndex) -> Option<MapEdit> {
     let source = pairing.motion.asset.skeleton.source_index(source);
     let weak = style::palette(ui).weak_text;
-    ui.label(RichText::new("Left out of its source's motion").small().color(weak));
+    ui.label(RichText::new(text::IGNORED_CHANNELS).small().color(weak));
     let channels = [
         (MutedProperty::Rotation, "rotation", 1),
         (MutedProperty::Translation, "translation", 0),
@@ -231,7 +231,7 @@ fn muting(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, source: JointIndex
         for (property, name, at) in channels {
             let mut muted = now[at];
             let response = ui.checkbox(&mut muted, name);
-            if response.accessible_name(format!("Leave out {name}")).changed() {
+            if response.accessible_name(text::ignore_channels(name)).changed() {
                 edit = Some(MapEdit::Mute { source, property, muted });
             }
         }

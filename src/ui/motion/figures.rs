@@ -5,7 +5,7 @@ use egui::{RichText, Sense, Ui, WidgetInfo, vec2};
 use super::Pairing;
 use crate::retarget::Figures;
 use crate::state::active_clip;
-use crate::ui::{Shown, controls, style};
+use crate::ui::{Shown, controls, style, text};
 
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>) {
     let clip = active_clip(pairing.model, shown.state);
@@ -26,10 +26,10 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>) {
     let degrees = |value: Option<f64>| value.map(|value| format!("{value:.2}°"));
     let speed = |value: Option<f64>| value.map(|value| format!("{:.1} cm/s", 100.0 * value));
     controls::hint(ui, "Over the whole clip as it plays, with unmapped joints at rest.");
-    group(ui, "ORIENTATION ERROR", "Rotation error relative to the source.");
+    group(ui, &text::ROTATION_ERROR.to_uppercase(), "Difference from the source's rotations.");
     row(ui, "Mean", degrees(orientation_error_degrees_mean));
     row(ui, "Largest", degrees(orientation_error_degrees_max));
-    group(ui, "LIMB DIRECTION ERROR", "The angle between a limb and its source's: the visible error.");
+    group(ui, "LIMB DIRECTION ERROR", "Angle between a limb and its source: the visible error.");
     row(ui, "Mean", degrees(limb_direction_error_degrees_mean));
     row(ui, "Largest", degrees(limb_direction_error_degrees_max));
     group(ui, "FEET", "Measured while the source's foot is on the ground, next to the source's own slide.");

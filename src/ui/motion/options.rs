@@ -48,10 +48,10 @@ pub(super) fn show(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, out: &mut
     }
     controls::hint(ui, "Planted feet don't slide, and a hovering motion is lowered to the ground.");
 
-    controls::section(ui, "JOINTS THAT FOLLOW NOTHING");
+    controls::section(ui, &text::UNMAPPED_JOINTS.to_uppercase());
     unmapped(ui, pairing, map, out);
 
-    controls::section(ui, "REST POSES THAT ARE MATCHED");
+    controls::section(ui, &text::REST_POSE_ALIGNMENT.to_uppercase());
     let rest = map.rest;
     if let Some(model) = rest_choice(ui, "Model", rest.model) {
         out.commands.push(edit(MapEdit::Rest(RestChoices { model, ..rest })));
@@ -79,14 +79,14 @@ pub(super) fn show(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, out: &mut
         out.commands.push(edit(MapEdit::CrossfadeSecs(secs)));
     }
 
-    controls::section(ui, "LEFT OUT OF THE MOTION");
+    controls::section(ui, &text::IGNORED_CHANNELS.to_uppercase());
     let joints: BTreeSet<usize> = map.muted_channels.iter().map(|channel| channel.source).collect();
     match joints.len() {
-        0 => controls::hint(ui, "Nothing. Choose a joint in the table to leave out channels of its source."),
+        0 => controls::hint(ui, "None. To ignore channels of a joint's source, select the joint in the table."),
         count => {
-            let joints = if count == 1 { "joint".to_owned() } else { format!("{count} joints") };
-            controls::hint(ui, format!("Channels of {joints} of the motion."));
-            if ui.button("Take everything in again").clicked() {
+            let joints = if count == 1 { "1 joint".to_owned() } else { format!("{count} joints") };
+            controls::hint(ui, format!("Channels of {joints} in the motion."));
+            if ui.button(text::USE_ALL_CHANNELS).clicked() {
                 out.commands.push(edit(MapEdit::UnmuteAll));
             }
         }
@@ -97,7 +97,7 @@ pub(super) fn show(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, out: &mut
 pub(super) fn files(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, out: &mut Output) {
     let wide = |ui: &mut Ui, enabled: bool, text: &str| {
         let button = egui::Button::new(text).min_size(egui::vec2(ui.available_width(), 32.0));
-        ui.add_enabled(enabled, button).clicked()
+        ui.add_enabled(enabled, button).on_disabled_hover_text(text::NEEDS_BORROWED_CLIP).clicked()
     };
     controls::section(ui, "JOINT MAP");
     controls::hint(ui, "The source of each joint, as JSON. You can also drop a map anywhere.");
@@ -112,22 +112,23 @@ pub(super) fn files(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, out: 
     let clip = active_clip(pairing.model, shown.state).filter(|&clip| pairing.model.borrowed(clip).is_some());
     controls::hint(ui, "The model's file with the current clip added.");
     ui.add_space(2.0);
-    if wide(ui, clip.is_some(), "Save GLB")
+    if wide(ui, clip.is_some(), text::SAVE_GLB)
         && let Some(clip) = clip
     {
         out.actions.push(UiAction::Save(Saved::File(Export::Model { clip })));
     }
-    if wide(ui, clip.is_some(), "Save the clip alone")
+    if wide(ui, clip.is_some(), text::SAVE_CLIP)
         && let Some(clip) = clip
     {
         out.actions.push(UiAction::Save(Saved::File(Export::Clip { clip })));
     }
     controls::section(ui, "MOTION");
     let show = shown.state.display.show;
-    if wide(ui, true, if show.source { "Hide it" } else { "Show it beside the model" }) {
+    // The source of no other clip is shown.
+    if wide(ui, clip.is_some(), if show.source { text::HIDE_SOURCE } else { text::SHOW_SOURCE }) {
         out.commands.push(Command::SetShow(Show { source: !show.source, over: false, ..show }));
     }
-    if wide(ui, true, "Open it instead of the model") {
+    if wide(ui, true, text::OPEN_INSTEAD) {
         out.actions.push(UiAction::ShowMotionAlone(pairing.index));
     }
     if wide(ui, true, "Remove motion") {
@@ -212,6 +213,6 @@ fn unmapped(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, out: &mut Output
             }
         }
         None if clips.is_empty() => {}
-        None => controls::hint(ui, "They can also play one of the model's own clips, each on its own time."),
+        None => controls::hint(ui, "They can also play one of the model's own clips, which loops independently."),
     }
 }

@@ -28,7 +28,7 @@ fn contents(ui: &mut Ui, model: &Model) {
     let primitives = || asset.meshes.iter().flat_map(|mesh| &mesh.primitives);
     let size = model.rest_bounds().size();
     let rows = [
-        (text::FORMAT, asset.format.to_owned()),
+        (text::FORMAT, format_name(asset.format)),
         (text::NODES, grouped(asset.skeleton.len())),
         ("Skins", grouped(asset.skins.len())),
         ("Joints", grouped(model.rig().joint_count(asset))),
@@ -41,7 +41,7 @@ fn contents(ui: &mut Ui, model: &Model) {
         (text::CLIPS, grouped(asset.clips.len())),
         ("Cameras", grouped(asset.cameras.len())),
         ("Lights", grouped(asset.lights.len())),
-        ("Size", format!("{} × {} × {} m", short(size.x), short(size.y), short(size.z))),
+        ("Size", size_text(size.to_array())),
     ];
     controls::section(ui, "CONTENTS");
     controls::card(ui, |ui| {
@@ -143,6 +143,22 @@ fn fact(ui: &mut Ui, name: &str, value: &str) {
     };
     ui.painter().galley(rect.min, name_galley, palette.weak_text);
     ui.painter().galley(value_at, value_galley, palette.text);
+}
+
+/// A format as it is written in prose.
+fn format_name(format: &str) -> String {
+    if format == "gltf" { "glTF".to_owned() } else { format.to_uppercase() }
+}
+
+/// Formats a size with the same decimals for all three axes, as many as suit the largest.
+fn size_text(size: [f32; 3]) -> String {
+    let largest = size.into_iter().fold(0.0, f32::max);
+    let [x, y, z] = size.map(|length| match largest {
+        100.0..1e6 => format!("{length:.1}"),
+        0.01..100.0 => format!("{length:.3}"),
+        _ => short(length),
+    });
+    format!("{x} × {y} × {z} m")
 }
 
 /// Formats a number with thin spaces between thousands.

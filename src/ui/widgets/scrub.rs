@@ -22,17 +22,15 @@ pub enum Scrubbed {
 }
 
 /// Minimum distance between marks in points.
-const MARK_SPACING: f32 = 3.0;
-/// Number of adjacent marks that merge into a bar.
-const MIN_BAR_MARKS: usize = 8;
+const MARK_SPACING: f32 = 6.0;
 
 /// Positions of a clip's keys at the resolution of the bar, cached between frames.
 #[derive(Debug, Default)]
 pub struct KeyMarks {
     /// Identifies the clip and the width that the marks were computed for.
     computed_for: Option<(ModelId, usize, u32, u32, usize)>,
-    /// First and last key of each mark, from 0 (start) to 1 (end); equal for single keys.
-    spans: Vec<[f32; 2]>,
+    /// From 0 (start) to 1 (end). Of keys closer than [`MARK_SPACING`], only the first has a mark.
+    positions: Vec<f32>,
 }
 
 impl KeyMarks {
@@ -44,23 +42,24 @@ impl KeyMarks {
             return;
         }
         self.computed_for = Some(key);
-        self.spans.clear();
+        self.positions.clear();
         let duration = clip.duration_secs();
         if duration <= 0.0 {
             return;
         }
-        let slots = (width / MARK_SPACING).max(1.0) as usize;
+        let slots = width.max(1.0) as usize;
         let mut first_key = vec![None; slots + 1];
         for &time in clip.timelines().iter().flatten() {
             let position = time / duration;
             let slot = ((position * slots as f32).round() as usize).min(slots);
-            first_key[slot].get_or_insert(position);
+            let first = first_key[slot].get_or_insert(position);
+            *first = position.min(*first);
         }
-        for keys in first_key.chunk_by(|one, next| one.is_some() == next.is_some()) {
-            let Some((&Some(first), &Some(last))) = keys.first().zip(keys.last()) else { continue };
-            match keys.len() < MIN_BAR_MARKS {
-                true => self.spans.extend(keys.iter().flatten().map(|&key| [key, key])),
-                false => self.spans.push([first, last]),
+        let mut next = 0.0;
+        for position in first_key.into_iter().flatten() {
+            if position >= next {
+                self.positions.push(position);
+                next = position + MARK_SPACING / width;
             }
         }
     }
@@ -158,14 +157,9 @@ fn paint_rail(ui: &Ui, bar: &Bar, range: TimeRange, time_secs: f64, marks: &KeyM
     let played = Rect::from_x_y_ranges(start_x..=bar.x_of(time_secs).max(start_x), rail.y_range());
     painter.rect_filled(played, 2.5, palette.accent);
     let color = palette.weak_text.gamma_multiply(0.75);
-    for &span in &marks.spans {
-        let [first, last] = span.map(|position| rail.left() + position * rail.width());
-        if first == last {
-            painter.vline(first, rail.bottom() + 5.0..=rail.bottom() + 11.0, Stroke::new(1.0, color));
-        } else {
-            let keys = Rect::from_x_y_ranges(first..=last, rail.bottom() + 7.0..=rail.bottom() + 9.0);
-            painter.rect_filled(keys, 1.0, color.gamma_multiply(0.6));
-        }
+    for &position in &marks.positions {
+        let x = rail.left() + position * rail.width();
+        painter.vline(x, rail.bottom() + 5.0..=rail.bottom() + 11.0, Stroke::new(1.0, color));
     }
 }
 
