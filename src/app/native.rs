@@ -29,7 +29,8 @@ pub fn run_native(files: Vec<PathBuf>) -> Result<(), WindowError> {
     let files = if files.is_empty() { vec![samples::FIRST.into()] } else { files };
     let contents = read_paths(&files, Role::Model)?;
     let create: eframe::AppCreator<'_> = Box::new(move |cc| {
-        let app = App::new(cc, Box::new(Window::new(cc.egui_ctx.clone())), contents, None, |_| {})?;
+        let mut app = App::new(cc, Box::new(Window::new(cc.egui_ctx.clone())), |_| {})?;
+        app.open(contents, None)?;
         Ok(Box::new(app))
     });
     Ok(eframe::run_native("Gaitway", native_options(), create)?)

@@ -40,16 +40,13 @@ pub struct App {
 }
 
 impl App {
-    /// Opens `contents`, which has a model, in `view` if given. `inbox_ready` receives the queue through which everything else
-    /// arrives.
+    /// Starts without a model: call [`Self::open`] next. `inbox_ready` receives the queue through which everything else arrives.
     ///
     /// # Errors
-    /// If there is no wgpu device, or the model doesn't fit on it.
+    /// If there is no wgpu device.
     pub fn new(
         cc: &eframe::CreationContext<'_>,
         host: Box<dyn Host>,
-        contents: Contents,
-        view: Option<ViewerState>,
         inbox_ready: impl FnOnce(Inbox),
     ) -> Result<Self, String> {
         let gpu = cc.wgpu_render_state.clone().ok_or("there is no graphics device")?;
@@ -61,7 +58,7 @@ impl App {
         let inbox = Inbox::new(cc.egui_ctx.clone());
         let mut panels = UiState::default();
         panels.host.has_gallery = host.has_gallery();
-        let mut app = Self {
+        let app = Self {
             editor: Editor::default(),
             viewport: Viewport::new(gpu, device::samples(&info)),
             panels,
@@ -80,7 +77,6 @@ impl App {
             backend: device::backend_name(&info),
             closing,
         };
-        app.open(contents, view)?;
         inbox_ready(inbox);
         Ok(app)
     }
@@ -110,7 +106,12 @@ impl App {
         self.panels.messages.toast.as_ref().map(|toast| toast.text.as_str())
     }
 
-    fn open(&mut self, contents: Contents, view: Option<ViewerState>) -> Result<(), String> {
+    /// Opens `contents`, in `view` if given.
+    ///
+    /// # Errors
+    /// If the model doesn't fit on the device.
+    pub fn open(&mut self, contents: Contents, view: Option<ViewerState>) -> Result<(), String> {
+        self.context.request_repaint();
         self.panels.messages.clear_error();
         let opened = self.editor.open(contents, view, &mut |model| self.viewport.admit(model));
         self.show_events();

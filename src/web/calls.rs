@@ -265,7 +265,7 @@ pub(super) fn items_of(items: &Array) -> Result<Vec<Item>, String> {
         .collect()
 }
 
-fn with_app<T>(page: &Page, read: impl FnOnce(&mut App) -> T) -> Result<T, String> {
+pub(super) fn with_app<T>(page: &Page, read: impl FnOnce(&mut App) -> T) -> Result<T, String> {
     let mut app = page.runner.app_mut::<App>().ok_or_else(|| "Gaitway is busy or has stopped".to_owned())?;
     Ok(read(&mut app))
 }

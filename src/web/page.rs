@@ -2,9 +2,11 @@
 
 use std::cell::{Cell, RefCell};
 
+use futures_util::future::try_join;
 use js_sys::Array;
 use wasm_bindgen::prelude::*;
 
+use super::calls::with_app;
 use super::shell::{self, Shell};
 use crate::app::{App, Host, Inbox, set_fatal_hook, web_options};
 use crate::editor::{Contents, OpenedModel};
@@ -50,21 +52,29 @@ pub async fn run(
     shell: Shell,
 ) -> Result<String, JsError> {
     shell::set_shell(shell.clone());
-    let first = first_contents(&link, &items, &motion_items, is_private, &shell).await;
-    let (contents, state, problems) = first.map_err(|error| JsError::new(&error))?;
+    let first = first_contents(&link, &items, &motion_items, is_private, &shell);
+    // While the files arrive, the device and the pipelines that every model needs are made.
+    let ((), (contents, state, problems)) = try_join(start_app(canvas, &shell), first).await.map_err(|error| {
+        destroy();
+        JsError::new(&error)
+    })?;
+    let opened = page().and_then(|page| with_app(&page, |app| app.open(contents, Some(state))));
+    opened.flatten().map_err(|error| JsError::new(&error))?;
+    Ok(serde_json::json!(problems).to_string())
+}
+
+async fn start_app(canvas: web_sys::HtmlCanvasElement, shell: &Shell) -> Result<(), String> {
     let runner = eframe::WebRunner::new();
     let inbox_cell = std::rc::Rc::new(RefCell::new(None));
     let app_inbox_cell = inbox_cell.clone();
     let host = Box::new(PageHost { shell: shell.clone() });
-    let create: eframe::AppCreator<'static> = Box::new(move |cc| {
-        let app = App::new(cc, host, contents, Some(state), |inbox| *app_inbox_cell.borrow_mut() = Some(inbox))?;
-        Ok(Box::new(app))
-    });
-    runner.start(canvas, web_options(), create).await.map_err(|error| JsError::new(&text_of(&error)))?;
-    let inbox = inbox_cell.borrow_mut().take().ok_or_else(|| JsError::new("Gaitway couldn't start"))?;
-    let page = Page { runner, inbox, shell, loads: Cell::new(0) };
+    let create: eframe::AppCreator<'static> =
+        Box::new(move |cc| Ok(Box::new(App::new(cc, host, |inbox| *app_inbox_cell.borrow_mut() = Some(inbox))?)));
+    runner.start(canvas, web_options(), create).await.map_err(|error| text_of(&error))?;
+    let inbox = inbox_cell.borrow_mut().take().ok_or("Gaitway couldn't start")?;
+    let page = Page { runner, inbox, shell: shell.clone(), loads: Cell::new(0) };
     PAGE.with_borrow_mut(|slot| *slot = Some(std::rc::Rc::new(page)));
-    Ok(serde_json::json!(problems).to_string())
+    Ok(())
 }
 
 /// Loads the first contents: the items, otherwise the files of the link. Returns them with their view and the problems. If the

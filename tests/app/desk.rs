@@ -35,7 +35,9 @@ pub fn desk(first: &str) -> Option<Desk> {
             cc.wgpu_render_state = Some(gpu.clone());
             let (contents, ready) = (contents.take().expect("begins once"), ready.clone());
             let ready = move |inbox| *ready.borrow_mut() = Some(inbox);
-            App::new(&cc, Box::new(Window), contents, None, ready).expect("starts")
+            let mut app = App::new(&cc, Box::new(Window), ready).expect("starts");
+            app.open(contents, None).expect("fits");
+            app
         });
         // The harness adds a margin around its contents; the window has none.
         let whole = ui.ctx().content_rect();

@@ -90,6 +90,7 @@ async function startOn(bindings, renderer, [items, motionItems]) {
   /** @type {Promise<never>} */
   const aborted = new Promise((_, reject) => (abortStart = reject));
   aborted.catch(() => {});
+  const presentFrames = drawOffScreen(canvas, renderer);
   const link = linkWithoutMissing(session.link);
   /** @type {string[]} */
   let missing;
@@ -103,7 +104,7 @@ async function startOn(bindings, renderer, [items, motionItems]) {
   }
   session.app = bindings;
   canvas.addEventListener("webglcontextlost", () => stopped("The browser took the graphics context away."));
-  await showFirstFrame(canvas, aborted, bindings);
+  await showFirstFrame(canvas, aborted, bindings, presentFrames);
   showPanel(null);
   summarize();
   showMissing(missing, awaited()?.link ?? link);
@@ -126,9 +127,9 @@ function newCanvas() {
  * @param {HTMLCanvasElement} canvas
  * @param {Promise<never>} aborted
  * @param {Bindings} bindings
+ * @param {() => void} presentFrames Ends drawing off screen.
  */
-async function showFirstFrame(canvas, aborted, bindings) {
-  const presentFrames = drawOffScreen(canvas, backend);
+async function showFirstFrame(canvas, aborted, bindings, presentFrames) {
   // One for the panels, one for the scene, and one to be sure that both came before it.
   await frames(3);
   await Promise.race([bindings.begin(), aborted]);
