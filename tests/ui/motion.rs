@@ -575,7 +575,7 @@ fn bench_of_chain(joints: usize) -> Harness<'static, Bench> {
 fn a_frame_of_the_table_allocates_no_more_for_more_joints() {
     let frames = |joints: usize| {
         let mut harness = bench_of_chain(joints);
-        let mut run = |harness: &mut Harness<'static, Bench>, frames: usize| (0..frames).for_each(|_| harness.step());
+        let run = |harness: &mut Harness<'static, Bench>, frames: usize| (0..frames).for_each(|_| harness.step());
         let counted = allocations_after(&mut harness, |harness| run(harness, 20), |harness| run(harness, 50));
         assert!(harness.query_by_label_contains("Tentacle3 follows").is_some());
         counted
