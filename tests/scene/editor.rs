@@ -128,10 +128,6 @@ fn a_manual_map_does_not_start_without_room_for_the_motion() {
     editor.open(contents(&["sample:walk"]), None, &mut any).expect_err("does not fit");
     editor.map_refused_manually();
     let walk = editor.library().motions()[0].clone();
-    let again = Motion::new("again.glb".to_owned(), walk.asset.clone());
-    let refused = Contents { motions: Some(vec![again]), ..Contents::default() };
-    editor.open(refused, None, &mut any).expect_err("does not fit");
-    // A view fills the library in the meantime.
     let others = (1..Library::MAX_MOTIONS).map(|number| Motion::new(format!("{number}.glb"), walk.asset.clone()));
     let motions: Vec<Motion> = [walk.clone()].into_iter().chain(others).collect();
     let motion = motions.iter().map(|motion| motion.origin.clone()).collect();
@@ -139,6 +135,11 @@ fn a_manual_map_does_not_start_without_room_for_the_motion() {
     let view = ViewerState { sources: Sources { motion, ..now.sources }, ..now };
     let contents = Contents { motions: Some(motions), ..Contents::default() };
     editor.open(contents, Some(view), &mut any).expect("the model stays");
+    editor.remove_motion(1);
+    let again =
+        Contents { motions: Some(vec![Motion::new("again.glb".to_owned(), walk.asset)]), ..Contents::default() };
+    editor.open(again, None, &mut any).expect_err("does not fit");
+    editor.undo();
     assert_eq!(editor.library().motions().len(), Library::MAX_MOTIONS);
     editor.take_events();
     editor.map_refused_manually();
