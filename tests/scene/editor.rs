@@ -16,6 +16,8 @@ use gaitway::state::{
 };
 use glam::Vec3;
 
+use crate::data::moving_box;
+
 fn contents(files: &[&str]) -> Contents {
     let files: Vec<PathBuf> = files.iter().map(PathBuf::from).collect();
     read_paths(&files, Role::Any).expect("samples can be read")
@@ -156,20 +158,18 @@ fn motions_without_a_joint_in_common_are_refused_until_the_user_maps_them() {
 #[test]
 fn a_manual_map_does_not_start_without_room_for_the_motion() {
     let mut editor = editor("sample:morphs");
-    editor.open(contents(&["sample:walk"]), None, &mut any).expect_err("does not fit");
-    editor.map_refused_manually();
-    let walk = editor.library().motions()[0].clone();
-    let again = Motion::new("again.glb".to_owned(), walk.asset.clone());
-    let refused = Contents { motions: Some(vec![again]), ..Contents::default() };
-    editor.open(refused, None, &mut any).expect_err("does not fit");
-    // A view fills the library in the meantime.
-    let others = (1..Library::MAX_MOTIONS).map(|number| Motion::new(format!("{number}.glb"), walk.asset.clone()));
-    let motions: Vec<Motion> = [walk.clone()].into_iter().chain(others).collect();
+    let stranger = moving_box(0.5, &[0.0, 1.0], &[Vec3::ZERO, Vec3::X]).active().expect("a box").asset.clone();
+    let motions: Vec<Motion> =
+        (0..Library::MAX_MOTIONS).map(|number| Motion::new(format!("{number}.glb"), stranger.clone())).collect();
     let motion = motions.iter().map(|motion| motion.origin.clone()).collect();
     let now = editor.state().clone();
     let view = ViewerState { sources: Sources { motion, ..now.sources }, ..now };
     let contents = Contents { motions: Some(motions), ..Contents::default() };
     editor.open(contents, Some(view), &mut any).expect("the model stays");
+    editor.remove_motion(1);
+    let again = Contents { motions: Some(vec![Motion::new("again.glb".to_owned(), stranger)]), ..Contents::default() };
+    editor.open(again, None, &mut any).expect_err("does not fit");
+    editor.undo();
     assert_eq!(editor.library().motions().len(), Library::MAX_MOTIONS);
     editor.take_events();
     editor.map_refused_manually();
