@@ -121,7 +121,9 @@ impl Editor {
         self.is_changed |= !matches!(command, Command::Advance(_));
         self.needs_redraw = true;
         let affects_retargeting = affects_retargeting(&command);
-        let playing = self.retargeted_clip().filter(|_| !matches!(command, Command::Replace(_)));
+        // A whole view chooses its clip itself.
+        let is_map_edit = affects_retargeting && !matches!(command, Command::Replace(_));
+        let playing = if is_map_edit { self.retargeted_clip() } else { None };
         let reframes = matches!(command, Command::SetUp(_));
         self.notify_follow(&command);
         let command = self.prepare_camera(command);
@@ -132,6 +134,8 @@ impl Editor {
         if affects_retargeting {
             let problems = self.retarget();
             self.report(problems);
+        }
+        if is_map_edit {
             self.follow_clip(playing);
         }
     }

@@ -202,6 +202,7 @@ impl Editor {
     /// Adds the changes since the snapshot to the history as a step, and shelves the view of the previously active model.
     pub(super) fn remember(&mut self, before: Option<Snapshot>) {
         let Some(before) = before else { return };
+        self.waiting_clip = None;
         if before.loaded.model != self.library.loaded().model
             && let Some(shelved) = self.shelf.get_mut(&before.loaded.model)
         {

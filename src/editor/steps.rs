@@ -55,6 +55,8 @@ impl Editor {
         let is_same_model = before.model.as_ref().map(|(id, _)| id) == after.model.as_ref().map(|(id, _)| id);
         if is_same_model {
             self.follow_clip(playing);
+        } else {
+            self.waiting_clip = None;
         }
         if let Some(text) = step_notice(&before, &after, opposite) {
             self.notify(text);

@@ -189,3 +189,14 @@ pub fn short(number: f32) -> String {
         format!("{number:.3}")
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::size_text;
+
+    #[test]
+    fn the_lengths_of_a_size_have_the_same_decimals() {
+        assert_eq!(size_text([25.185, 79.029, 154.7]), "25.2 × 79.0 × 154.7 m");
+        assert_eq!(size_text([0.5, 1.8, 0.25]), "0.500 × 1.800 × 0.250 m");
+    }
+}

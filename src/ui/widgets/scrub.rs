@@ -184,3 +184,24 @@ fn flag(painter: &egui::Painter, x: f32, top: f32, side: f32, bottom: f32, color
     let points = vec![pos2(x, top), pos2(x + side * 7.0, top + 4.5), pos2(x, top + 9.0)];
     painter.add(Shape::convex_polygon(points, color, Stroke::NONE));
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{KeyMarks, MARK_SPACING};
+    use crate::anim::{ClipBuilder, Interpolation, Joint, JointIndex, Keys, Skeleton};
+    use crate::library::ModelId;
+
+    #[test]
+    fn marks_of_a_long_clip_stay_apart() {
+        let skeleton = Skeleton::new(vec![Joint::default()]).expect("one joint");
+        let times: Vec<f32> = (0..1800).map(|frame| frame as f32 / 30.0).collect();
+        let keys = Keys::Translation((0..1800).map(|frame| glam::Vec3::X * frame as f32).collect());
+        let mut clip = ClipBuilder::new("Long", &skeleton);
+        clip.channel(JointIndex(0), Interpolation::Linear, &times, keys).expect("as many keys as times");
+        let (mut marks, width) = (KeyMarks::default(), 372.0);
+        marks.refresh(&clip.build(), (ModelId::default(), 0), width);
+        assert!(marks.positions.len() > 40, "{}", marks.positions.len());
+        let gaps = marks.positions.windows(2).map(|pair| (pair[1] - pair[0]) * width);
+        gaps.for_each(|gap| assert!((MARK_SPACING - 0.01..2.0 * MARK_SPACING).contains(&gap), "{gap}"));
+    }
+}
