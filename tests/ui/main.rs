@@ -12,4 +12,5 @@ mod motion;
 mod picture;
 #[path = "../support/skeletons.rs"]
 mod skeletons;
+mod text_widths;
 mod transport;
