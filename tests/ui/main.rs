@@ -14,4 +14,5 @@ mod motion;
 mod picture;
 #[path = "../support/skeletons.rs"]
 mod skeletons;
+mod text_widths;
 mod transport;
