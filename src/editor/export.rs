@@ -117,7 +117,7 @@ impl Editor {
     /// Writes one clip with its skeleton.
     fn export_clip(&self, clip: usize) -> Result<ExportedFile, String> {
         let model = self.model()?;
-        let name = format!("{}.glb", self.stem_with_clip(Some(clip)));
+        let name = format!("{}-clip.glb", self.stem_with_clip(Some(clip)));
         let baked = self.baked_clip(clip)?;
         let clip = baked.clip.as_ref().or_else(|| model.clip(clip)).ok_or("there is no such clip")?;
         let bytes = write_motion(&model.asset, &written_skeleton(model, &self.state, None), &[clip])
