@@ -10,14 +10,11 @@ use crate::{GlyphInfo, GlyphPosition};
 
 /// Returns the numbers of the font's kerning lookups in the order in which they apply.
 pub fn lookups(font: &FontRef<'_>) -> Vec<u16> {
-    let features = font.gpos().and_then(|gpos| gpos.feature_list());
-    let mut lookups = Vec::new();
-    for list in features.iter() {
-        let kerning = list.feature_records().iter().filter(|record| record.feature_tag() == Tag::new(b"kern"));
-        for feature in kerning.filter_map(|record| record.feature(list.offset_data()).ok()) {
-            lookups.extend(feature.lookup_list_indices().iter().map(|index| index.get()));
-        }
-    }
+    let Ok(list) = font.gpos().and_then(|gpos| gpos.feature_list()) else { return Vec::new() };
+    let kerning = list.feature_records().iter().filter(|record| record.feature_tag() == Tag::new(b"kern"));
+    let features = kerning.filter_map(|record| record.feature(list.offset_data()).ok());
+    let mut lookups: Vec<u16> =
+        features.flat_map(|feature| feature.lookup_list_indices()).map(|index| index.get()).collect();
     lookups.sort_unstable();
     lookups.dedup();
     lookups

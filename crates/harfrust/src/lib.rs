@@ -3,9 +3,8 @@
 //!
 //! `harfrust` shapes every script there is. This crate has the part of its interface that epaint uses and does what Latin, Greek
 //! and Cyrillic in one font need: a glyph for each character (`cmap`), its advance (`hmtx`, `HVAR`), pair kerning (`GPOS`),
-//! letters and accents joined into one character (macOS writes file names that way), no width for
-//! invisible characters, and spaces of all widths.
-//! Widths equal those of `harfrust`; tests/ui/text_widths.rs holds that.
+//! letters and accents joined into one character (macOS writes file names that way), no width for invisible characters, and
+//! spaces of all widths. Texts are as wide as with `harfrust`; tests/ui/text_widths.rs holds that.
 //!
 //! Left out, because the interface's font has nothing of the kind: substitutions and ligatures (`GSUB`), marks positioned by
 //! anchors, right-to-left and complex scripts, the legacy `kern` table, and features on request. All kerning lookups apply to any
