@@ -47,7 +47,7 @@ fn errors_in_explained_maps_keep_their_line() {
     assert_eq!(map.joints["head"].source, Some(SourceRef::Number(2)));
     assert_eq!(map.joints.len(), 2);
     let message = JointMapFile::from_json(&text("1.5")).expect_err("a source").to_string();
-    assert!(message.contains("at line 4 column "), "{message}");
+    assert!(message.contains("(line 4, column "), "{message}");
 }
 
 #[test]

@@ -338,6 +338,6 @@ fn an_exported_clip_is_called_by_its_own_name() {
     assert!(titles.len() > 1, "{titles:?}");
     for (clip, title) in titles.iter().enumerate() {
         let name = editor.export(Export::Clip { clip }).expect("it has keys").name;
-        assert_eq!(name, format!("Pilot-{title}.glb"));
+        assert_eq!(name, format!("Pilot-{title}-clip.glb"));
     }
 }
