@@ -53,8 +53,8 @@ pub async fn run(
 ) -> Result<String, JsError> {
     shell::set_shell(shell.clone());
     let first = first_contents(&link, &items, &motion_items, is_private, &shell);
-    // While the files arrive, the device and the pipelines that every model needs are made.
-    let ((), (contents, state, problems)) = try_join(start_app(canvas, &shell), first).await.map_err(|error| {
+    // While the files arrive, the device and the pipelines that every model needs are made. The files first: they are far away.
+    let ((contents, state, problems), ()) = try_join(first, start_app(canvas, &shell)).await.map_err(|error| {
         destroy();
         JsError::new(&error)
     })?;

@@ -11,13 +11,25 @@ import { serve } from "./server.mjs";
 const FOLDER = "/some/folder/";
 
 /**
- * Waits until everything is stored.
+ * Waits until everything is stored, the program that runs at last.
  * @param {import("playwright-core").Page} page
  */
 const whenStored = (page) =>
   until(page, async () => {
     const registration = await navigator.serviceWorker.getRegistration();
-    return registration?.active?.state === "activated" && navigator.serviceWorker.controller !== null;
+    if (registration?.active?.state !== "activated" || navigator.serviceWorker.controller === null) return false;
+    const { script, wasm } = JSON.parse(document.querySelector('meta[name="gaitway-programs"]')?.getAttribute("content") ?? "{}")[(await window.gaitway.stats()).backend];
+    return (await caches.match(script)) !== undefined && (await caches.match(wasm)) !== undefined;
+  });
+
+/**
+ * The programs that are stored.
+ * @param {import("playwright-core").Page} page
+ */
+const storedPrograms = (page) =>
+  page.evaluate(async () => {
+    const files = await Promise.all((await caches.keys()).map(async (name) => (await caches.open(name)).keys()));
+    return files.flat().flatMap(({ url }) => url.match(/(webgpu|webgl2)-[0-9a-f]{16}\.wasm$/)?.[1] ?? []);
   });
 
 describe("after a visit", () => {
@@ -49,6 +61,7 @@ describe("after a visit", () => {
       const site = await serve({ [FOLDER]: dist });
       const address = `${site.origin}${FOLDER}`;
       const { context, page } = await visit(`${address}?renderer=${renderer}`);
+      assert.deepEqual(await storedPrograms(page), [renderer], "only the program that runs");
       await site.close();
       for (const [index, scene] of readScenes().entries()) {
         // The first as on a first visit, the others from their links.
@@ -91,6 +104,7 @@ describe("after a visit", () => {
     await whenReady(page);
     assert.match(await page.evaluate(() => location.hash), /model=sample:walker/, "the view stays");
     assert.equal((await page.evaluate(() => caches.keys())).length, 1, "the previous version is gone");
+    assert.equal((await storedPrograms(page)).length, 1, "the new version has the program without another visit");
     assert.deepEqual(page.troubles, []);
     await context.close();
     await site.close();

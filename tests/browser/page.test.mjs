@@ -274,15 +274,47 @@ describe("page without graphics", () => {
     await page.finish();
   });
 
+  /**
+   * Programs that the page has requested.
+   * @param {import("./browser.mjs").TestPage} page
+   */
+  const programs = (page) => page.requests.flatMap((url) => url.match(/(webgpu|webgl2)-[0-9a-f]{16}\.wasm$/)?.[1] ?? []);
+
   test("falls back to WebGL2 without asking", async () => {
     const page = await site.page({ before: () => void Object.defineProperty(Navigator.prototype, "gpu", { value: undefined }) });
     assert.equal((await stats(page)).backend, "webgl2");
+    assert.deepEqual(programs(page), ["webgl2"], "nobody downloads the other program");
     await page.finish();
   });
 
   test("uses WebGPU if there is an adapter", async () => {
     const page = await site.page({});
     assert.equal((await stats(page)).backend, "webgpu");
+    assert.deepEqual(programs(page), ["webgpu"]);
+    await page.finish();
+  });
+
+  test("takes the other program if there is no adapter", async () => {
+    const page = await site.page({ before: () => void Object.assign(GPU.prototype, { requestAdapter: async () => null }) });
+    assert.equal((await stats(page)).backend, "webgl2");
+    // The download of the likely one has begun and is aborted.
+    assert.equal(programs(page).at(-1), "webgl2");
+    await page.finish();
+  });
+
+  test("takes the other program if WebGPU has no device", async () => {
+    const page = await site.page({
+      before: () => {
+        Object.assign(GPUAdapter.prototype, {
+          requestDevice: async () => {
+            throw new DOMException("none today", "OperationError");
+          },
+        });
+      },
+    });
+    assert.equal((await stats(page)).backend, "webgl2");
+    assert.deepEqual(programs(page), ["webgpu", "webgl2"]);
+    assert.equal((await state(page)).model[0], "sample:walker", "the link is shown");
     await page.finish();
   });
 });
