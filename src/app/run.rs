@@ -173,6 +173,12 @@ impl App {
         }
     }
 
+    /// Creates pipelines that the first model will probably need, while it is on its way.
+    #[cfg(target_arch = "wasm32")]
+    pub fn warm_up(&mut self) {
+        self.viewport.scene.warm_up();
+    }
+
     /// Starts time: the first image is on screen.
     #[cfg(target_arch = "wasm32")]
     pub fn begin(&mut self) {

@@ -22,6 +22,12 @@ impl SceneTexture {
         Self { gpu, renderer, displayed: None }
     }
 
+    /// See [`Renderer::warm_up`].
+    #[cfg(target_arch = "wasm32")]
+    pub fn warm_up(&mut self) {
+        self.renderer.warm_up(&self.gpu.device);
+    }
+
     /// Uploads a model, and optionally the source beside it; evicts all others.
     pub fn upload(&mut self, model: &Model, beside: Option<&Model>) -> Result<(), UploadError> {
         self.renderer.upload(&self.gpu.device, &self.gpu.queue, model)?;

@@ -17,8 +17,7 @@ pub enum SkinningMode {
     /// Rigid transforms are blended as unit dual quaternions (Kavan, Collins, Žára, O'Sullivan 2008, "Geometric
     /// Skinning with Approximate Dual Quaternion Blending"). Scale and shear are factored out of each joint's matrix
     /// (`M = T·R·S`), blended linearly and applied first, as §4.2 of the paper suggests. With one influence the result
-    /// equals
-    /// `Linear` exactly.
+    /// equals `Linear` exactly.
     DualQuaternion,
 }
 

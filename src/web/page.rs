@@ -52,9 +52,18 @@ pub async fn run(
     shell: Shell,
 ) -> Result<String, JsError> {
     shell::set_shell(shell.clone());
-    let first = first_contents(&link, &items, &motion_items, is_private, &shell);
-    // While the files arrive, the device and the pipelines that every model needs are made. The files first: they are far away.
-    let ((contents, state, problems), ()) = try_join(first, start_app(canvas, &shell)).await.map_err(|error| {
+    let has_arrived = Cell::new(false);
+    let first = async {
+        let contents = first_contents(&link, &items, &motion_items, is_private, &shell).await;
+        has_arrived.set(true);
+        contents
+    };
+    // While the files arrive, the device and pipelines are made. The files are requested first: they are far away.
+    let app = async {
+        start_app(canvas, &shell).await?;
+        if has_arrived.get() { Ok(()) } else { with_app(&*page()?, App::warm_up) }
+    };
+    let ((contents, state, problems), ()) = try_join(first, app).await.map_err(|error| {
         destroy();
         JsError::new(&error)
     })?;

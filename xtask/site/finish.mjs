@@ -138,7 +138,7 @@ html = replaced(html, "<!-- scenes -->", cards.join("\n        "));
 // Of several scenes with one model the first, which is the plainest.
 const images = Object.fromEntries(scenes.map(({ model }, index) => [model, stills[index].large]).reverse());
 const firstLink = scenes.length === 0 ? "" : linkOf(scenes[0]);
-html = replaced(html, 'id="loading-still"', `id="loading-still" src="${stills[0]?.large ?? ""}" data-link="${escaped(firstLink)}" data-images="${escaped(JSON.stringify(images))}"`);
+html = replaced(html, 'id="loading-still"', `id="loading-still" data-link="${escaped(firstLink)}" data-images="${escaped(JSON.stringify(images))}"`);
 html = replaced(html, "<title>", `${head.join("\n    ")}\n    <title>`);
 
 const files = fs

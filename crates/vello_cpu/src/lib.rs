@@ -4,7 +4,7 @@
 //! epaint uses a complete 2D renderer to fill one white path at a time. This crate has just that part of its interface. A pixel
 //! gets the exact area that the path covers: every edge adds its signed area to an accumulation buffer, and a running sum along
 //! each row is the coverage, as in font-rs and stb_truetype. The absolute sum, limited to 1, is the non-zero winding rule except
-//! in pixels where edges of overlapping contours meet; `vello_cpu` computes the same.
+//! in pixels where edges of overlapping contours meet.
 //!
 //! Left out because the interface has no use for it: colours, images, gradients, strokes, clips and layers, blending of several
 //! fills, transforms other than a translation, and colour glyphs (epaint's feature `color_fonts` doesn't compile with this
