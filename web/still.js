@@ -1,6 +1,6 @@
 // Runs before anything is shown: picks the image that covers the page while it loads, and starts downloading the samples of
-// the link side by side with the program. It only looks for names it knows in the link's text, to guess what is worth
-// having early; the program reads the link.
+// the link side by side with the program, or its models just before the program is there: they may be large. It only guesses
+// what is worth having early; the program reads the link.
 
 (() => {
   const still = /** @type {HTMLImageElement} */ (document.getElementById("loading-still"));
@@ -31,12 +31,22 @@
     /** @type {Record<string, string[]>} */
     const samples = JSON.parse(meta?.content ?? "{}");
     const names = Object.keys(samples).filter((name) => has(link, `=sample:${name}`));
-    const files = names.flatMap((name) => samples[name]);
+    preload(names.flatMap((name) => samples[name]));
+  }
+
+  /** @param {string} link */
+  function preloadModels(link) {
+    preload(new URLSearchParams(link).getAll("model").filter((model) => /^https?:/.test(model) && URL.canParse(model)));
+  }
+
+  /** @param {string[]} files */
+  function preload(files) {
     document.head.append(...files.map((href) => Object.assign(document.createElement("link"), { rel: "preload", as: "fetch", crossOrigin: "", href })));
   }
 
   const asked = location.hash.slice(1);
   show(asked, false);
   preloadSamples(asked || first);
+  addEventListener("gaitway:nearly-loaded", () => preloadModels(asked), { once: true });
   addEventListener("gaitway:loading", ({ detail: { link, isLocal } }) => show(link, isLocal));
 })();

@@ -7,6 +7,9 @@ import { showCannotRun, showProgress } from "./panels.js";
 /** @typedef {import("./types.d.ts").Backend} Backend */
 /** @typedef {import("./types.d.ts").Bindings} Bindings */
 
+/** The rest of the download takes about as long as it takes a server to answer. */
+const NEARLY = 0.9;
+
 /** @typedef {{ compiled: Promise<WebAssembly.Module>, abort: () => void }} Download */
 
 const meta = /** @type {HTMLMetaElement} */ (document.querySelector('meta[name="gaitway-programs"]'));
@@ -104,6 +107,7 @@ async function compile(backend, signal) {
   /** @type {TransformStream<Uint8Array<ArrayBuffer>, Uint8Array<ArrayBuffer>>} */
   const counter = new TransformStream({
     transform(chunk, controller) {
+      if (received < NEARLY * bytes && received + chunk.byteLength >= NEARLY * bytes) dispatchEvent(new CustomEvent("gaitway:nearly-loaded"));
       received += chunk.byteLength;
       showProgress("Loading Gaitway", received, bytes);
       controller.enqueue(chunk);

@@ -157,5 +157,6 @@ declare global {
   interface WindowEventMap {
     "gaitway:loading": CustomEvent<{ link: string; isLocal: boolean }>;
     "gaitway:change": CustomEvent<null>;
+    "gaitway:nearly-loaded": CustomEvent<null>;
   }
 }
