@@ -16,6 +16,7 @@ const worker = /** @type {ServiceWorkerGlobalScope} */ (/** @type {unknown} */ (
 const { scope } = worker.registration;
 const PREFIX = `gaitway ${scope} `;
 const CACHE = PREFIX + VERSION;
+/** `_bg`: programs of earlier versions. */
 const HASHED = /-[0-9a-f]{16}(_bg)?\.\w+$/;
 
 worker.addEventListener("install", (event) => event.waitUntil(fill()));
@@ -32,15 +33,23 @@ async function fill() {
 
 /** Files of the programs that earlier versions stored: without them, this version would not work offline. */
 async function programsInUse() {
-  const stored = await Promise.all((await caches.keys()).filter((name) => name.startsWith(PREFIX)).map(async (name) => (await caches.open(name)).keys()));
+  const earlier = (await caches.keys()).filter((name) => name.startsWith(PREFIX) && name !== CACHE);
+  const stored = await Promise.all(earlier.map(async (name) => (await caches.open(name)).keys()));
   const isStored = (/** @type {string} */ program) => stored.flat().some(({ url }) => url.startsWith(`${scope}${program}-`));
-  return Object.keys(PROGRAMS).filter(isStored).flatMap((program) => PROGRAMS[program]);
+  const inUse = Object.keys(PROGRAMS).filter(isStored);
+  // Versions with one program for both back ends don't tell which is used.
+  const isUnknown = inUse.length === 0 && earlier.length > 0;
+  return (isUnknown ? Object.keys(PROGRAMS) : inUse).flatMap((program) => PROGRAMS[program]);
 }
 
 /** @param {string[]} files */
 async function keep(files) {
   const cache = await caches.open(CACHE);
-  await Promise.all(files.map(async (file) => cache.put(file, await fetched(file))));
+  const keepOne = async (/** @type {string} */ file) => {
+    // What has a hash in its name never changes.
+    if (!HASHED.test(file) || (await cache.match(file)) === undefined) await cache.put(file, await fetched(file));
+  };
+  await Promise.all(files.map(keepOne));
 }
 
 /** @param {string} file */
@@ -64,7 +73,8 @@ async function tidy() {
 
 worker.addEventListener("message", (event) => {
   const { data } = event;
-  if (data.use) worker.skipWaiting();
+  // Earlier versions of the page send the word alone.
+  if (data === "use" || data.use) worker.skipWaiting();
   const files = Object.values(PROGRAMS).flat();
   // Of another version if the page is older or newer than this worker.
   if (data.keep) event.waitUntil(keep(data.keep.filter((/** @type {string} */ file) => files.includes(file))));

@@ -95,9 +95,9 @@ pub fn native_options() -> eframe::NativeOptions {
     }
 }
 
-/// Returns the options for the page's canvas. The page is compiled with one back end.
+/// Returns the options for the page's canvas. They name both back ends; the program has one of them.
 #[cfg(target_arch = "wasm32")]
 pub fn web_options() -> eframe::WebOptions {
-    let compiled = wgpu::Backends::BROWSER_WEBGPU | wgpu::Backends::GL;
-    eframe::WebOptions { wgpu_options: configuration(Some(compiled)), ..Default::default() }
+    let backends = wgpu::Backends::BROWSER_WEBGPU | wgpu::Backends::GL;
+    eframe::WebOptions { wgpu_options: configuration(Some(backends)), ..Default::default() }
 }

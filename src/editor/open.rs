@@ -152,10 +152,14 @@ impl Editor {
         map: Option<JointMapFile>,
     ) -> Option<String> {
         let mut maps = map.map(MotionMap::Names);
-        if new.is_empty() {
+        let has_map_for_loaded = new.is_empty() && maps.is_some();
+        if has_map_for_loaded {
             self.state.retarget.map.extend(maps.take());
         }
-        self.retarget();
+        let problems = self.retarget();
+        if has_map_for_loaded {
+            self.report(problems);
+        }
         let dropped = self.drop_incompatible_motions();
         if new.is_empty() {
             self.choose_retargeted(playing);

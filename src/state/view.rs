@@ -18,7 +18,7 @@ use crate::retarget::{Feet, RootOptions, Unmapped};
 /// | `display` | no | yes |
 /// | `playback`, `camera_options`, `page` | no | no |
 ///
-/// [`ViewerState::for_model`] and [`ViewerState::undoable`] are the only code that depends on that. Joints are identified by
+/// [`ViewerState::for_model`] and `undoable` are the only code that depends on that. Joints are identified by
 /// their index in the file's own order, so that the state can be written down without the file.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]

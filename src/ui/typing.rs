@@ -19,11 +19,11 @@ pub(super) fn is_typing(context: &Context) -> bool {
 
 #[derive(Default)]
 struct Typing {
-    /// What had focus before the pass, and after egui took it away for Esc or gave it away for Tab.
+    /// What had focus before the pass, and after egui cleared it for Esc or moved it for Tab.
     was_focused: [Option<Id>; 2],
     /// Typed after an input that may move the focus, with all that followed.
     waiting: Vec<Event>,
-    /// The next pass has no input: a field opened by a click asks for focus in the pass after the click.
+    /// Withholds all input from the next pass: a field opened by a click asks for focus in the pass after the click.
     is_holding: bool,
 }
 

@@ -24,6 +24,8 @@ pub(super) struct Page {
 }
 
 thread_local! {
+    /// The shell may end an instance that is still starting.
+    static IS_DESTROYED: Cell<bool> = const { Cell::new(false) };
     static PAGE: RefCell<Option<std::rc::Rc<Page>>> = const { RefCell::new(None) };
 }
 
@@ -41,7 +43,8 @@ pub fn start() {
 
 /// Opens the link's files, or `items` (see [`super::calls::open`]) in the link's view, with the motions in `motion_items` and
 /// those that the link lists. `is_private` marks the items as the user's local files. Resolves once the first image has been
-/// requested, to a JSON list of problems; call [`super::calls::begin`] next. Rejects if no device is available.
+/// requested, to a JSON list of problems; call [`super::calls::begin`] next. Rejects, and leaves nothing
+/// behind, if no device is available, nothing could be opened or the model doesn't fit on the device.
 #[wasm_bindgen]
 pub async fn run(
     canvas: web_sys::HtmlCanvasElement,
@@ -63,12 +66,15 @@ pub async fn run(
         start_app(canvas, &shell).await?;
         if has_arrived.get() { Ok(()) } else { with_app(&*page()?, App::warm_up) }
     };
-    let ((contents, state, problems), ()) = try_join(first, app).await.map_err(|error| {
+    let started = async {
+        let ((contents, state, problems), ()) = try_join(first, app).await?;
+        with_app(&*page()?, |app| app.open(contents, Some(state)))??;
+        Ok::<_, String>(problems)
+    };
+    let problems = started.await.map_err(|error| {
         destroy();
         JsError::new(&error)
     })?;
-    let opened = page().and_then(|page| with_app(&page, |app| app.open(contents, Some(state))));
-    opened.flatten().map_err(|error| JsError::new(&error))?;
     Ok(serde_json::json!(problems).to_string())
 }
 
@@ -80,6 +86,10 @@ async fn start_app(canvas: web_sys::HtmlCanvasElement, shell: &Shell) -> Result<
     let create: eframe::AppCreator<'static> =
         Box::new(move |cc| Ok(Box::new(App::new(cc, host, |inbox| *app_inbox_cell.borrow_mut() = Some(inbox))?)));
     runner.start(canvas, web_options(), create).await.map_err(|error| text_of(&error))?;
+    if IS_DESTROYED.get() {
+        runner.destroy();
+        return Err("Gaitway was stopped".to_owned());
+    }
     let inbox = inbox_cell.borrow_mut().take().ok_or("Gaitway couldn't start")?;
     let page = Page { runner, inbox, shell: shell.clone(), loads: Cell::new(0) };
     PAGE.with_borrow_mut(|slot| *slot = Some(std::rc::Rc::new(page)));
@@ -174,6 +184,7 @@ pub(super) fn page() -> Result<std::rc::Rc<Page>, String> {
 /// Destroys this instance and releases its canvas.
 #[wasm_bindgen]
 pub fn destroy() {
+    IS_DESTROYED.set(true);
     if let Some(page) = PAGE.with_borrow_mut(Option::take) {
         page.runner.destroy();
     }

@@ -11,7 +11,7 @@ import { serve } from "./server.mjs";
 const FOLDER = "/some/folder/";
 
 /**
- * Waits until everything is stored, the program that runs at last.
+ * Waits until everything is stored, the running program last.
  * @param {import("playwright-core").Page} page
  */
 const whenStored = (page) =>

@@ -409,3 +409,18 @@ fn real_bvh_as_glb() {
         assert_eq!(again.skeleton.rest().locals, asset.skeleton.rest().locals, "{}", path.display());
     }
 }
+
+#[test]
+fn a_name_in_another_encoding_is_read_and_written() {
+    // “é” in Latin-1, which is not UTF-8.
+    let json =
+        b"{\"asset\": {\"version\": \"2.0\"}, \"nodes\": [{\"name\": \"Andr\xE9\"}], \"scenes\": [{\"nodes\": [0]}]}";
+    let files = one("model.gltf", json.to_vec());
+    let asset = load(&files).expect("loads");
+    assert_eq!(asset.skeleton.name(JointIndex(0)), "Andr\u{FFFD}");
+    let mut clip = ClipBuilder::new("Nod", &asset.skeleton);
+    clip.channel(JointIndex(0), Interpolation::Linear, &[0.0, 1.0], Keys::Translation(vec![Vec3::ZERO, Vec3::Y]))
+        .expect("two keys");
+    let written = write_model(&files, "model.gltf", &asset.skeleton, &[&clip.build()]).expect("writable");
+    assert_eq!(load(&one("model.glb", written)).expect("loads").clips[0].name(), "Nod");
+}

@@ -6,6 +6,7 @@
 export const BACKEND_NAMES = { webgpu: "WebGPU", webgl2: "WebGL2" };
 
 export const TRY_BROWSER = "Open this page in a current version of Chrome, Edge, Firefox or Safari.";
+export const TRY_DOWNLOAD = ["Check the connection and reload the page.", TRY_BROWSER];
 export const TRY_GRAPHICS = [
   "Turn on graphics (hardware) acceleration in the browser's settings, then restart the browser.",
   "Update the graphics driver.",

@@ -1,7 +1,7 @@
 // Instances of the program. Each is one wasm instance on one canvas; when one ends, another starts on a new canvas with the
 // same files and view.
 import { awaitFiles, awaited, showAwaited } from "./awaited.js";
-import { BACKEND_NAMES, TRY_GRAPHICS, hasBackend, missingCapabilities, otherBackend } from "./capabilities.js";
+import { BACKEND_NAMES, TRY_DOWNLOAD, TRY_GRAPHICS, hasBackend, missingCapabilities, otherBackend } from "./capabilities.js";
 import { summarize, viewChanged } from "./changes.js";
 import { button, byId, frames, messageOf } from "./dom.js";
 import { drawOffScreen } from "./first-frame.js";
@@ -28,6 +28,12 @@ import { share } from "./share.js";
  * @type {Backend}
  */
 let backend = "webgl2";
+
+/**
+ * Bindings of the instance that runs or starts.
+ * @type {Bindings | null}
+ */
+let current = null;
 
 /**
  * Aborts a start that is under way.
@@ -58,10 +64,19 @@ async function start(renderer) {
     throw new Error(lacking.missing.join(" "));
   }
   const problems = [];
+  let hasProgram = false;
   for (const attempt of renderer === null ? await backendsToTry() : [renderer]) {
-    const bindings = await loadProgram(attempt);
+    /** @type {Bindings} */
+    let bindings;
+    try {
+      bindings = await loadProgram(attempt);
+    } catch (error) {
+      problems.push(`The program couldn't be loaded: ${messageOf(error)}`);
+      continue;
+    }
+    hasProgram = true;
     readLinksWith(bindings);
-    session.link = awaited()?.link ?? session.link;
+    session.link = session.askedLink ?? awaited()?.link ?? session.link;
     awaitFiles(session.link);
     session.askedLink = null;
     const files = await Promise.all([heldItems(session.link), heldMotions(session.link)].map((items) => readOrReport(items, sayProblem)));
@@ -72,9 +87,17 @@ async function start(renderer) {
     }
     problems.push(problem);
   }
-  const other = renderer === null ? null : otherBackend(renderer);
-  showCannotRun(problems, other !== null && hasBackend(other) ? [`Open this page with ?renderer=${other} instead.`, ...TRY_GRAPHICS] : TRY_GRAPHICS);
+  showCannotRun(problems, hasProgram ? graphicsToTry(renderer) : TRY_DOWNLOAD);
   throw new Error(problems.join(" "));
+}
+
+/**
+ * What to try if there is no graphics device.
+ * @param {Backend | null} renderer
+ */
+function graphicsToTry(renderer) {
+  const other = renderer === null ? null : otherBackend(renderer);
+  return other !== null && hasBackend(other) ? [`Open this page with ?renderer=${other} instead.`, ...TRY_GRAPHICS] : TRY_GRAPHICS;
 }
 
 /**
@@ -86,7 +109,8 @@ async function start(renderer) {
 async function startOn(bindings, renderer, [items, motionItems]) {
   const canvas = newCanvas();
   byId("stage").replaceChildren(canvas);
-  backend = renderer;
+  [backend, current] = [renderer, bindings];
+  canvas.addEventListener("webglcontextlost", () => current === bindings && stopped("The browser took the graphics context away."));
   /** @type {Promise<never>} */
   const aborted = new Promise((_, reject) => (abortStart = reject));
   aborted.catch(() => {});
@@ -100,10 +124,10 @@ async function startOn(bindings, renderer, [items, motionItems]) {
     missing = JSON.parse(await Promise.race([run, aborted]));
   } catch (error) {
     if (panel() === "stopped") throw error;
+    end(bindings);
     return `${BACKEND_NAMES[renderer]}: ${messageOf(error)}`;
   }
   session.app = bindings;
-  canvas.addEventListener("webglcontextlost", () => stopped("The browser took the graphics context away."));
   await showFirstFrame(canvas, aborted, bindings, presentFrames);
   showPanel(null);
   summarize();
@@ -148,7 +172,7 @@ async function showFirstFrame(canvas, aborted, bindings, presentFrames) {
  * @returns {ShellCalls}
  */
 function callsFor(bindings) {
-  const isCurrent = () => session.app === bindings || session.app === null;
+  const isCurrent = () => current === bindings;
   return {
     choose: showOpenDialog,
     gallery: showGallery,
@@ -176,8 +200,8 @@ function stopped(message) {
   button("stopped-other").textContent = `Use ${BACKEND_NAMES[other]} instead`;
   button("stopped-other").onclick = () => launch(other);
   button("stopped-other").hidden = !hasBackend(other);
-  const ended = session.app;
-  session.app = null;
+  const ended = current;
+  session.app = current = null;
   showPanel("stopped");
   for (const dialog of document.querySelectorAll("dialog")) dialog.close();
   button("stopped-again").focus();
@@ -192,6 +216,7 @@ function stopped(message) {
 function end(instance) {
   stopRecording();
   if (session.app === instance) session.app = null;
+  if (current === instance) current = null;
   try {
     instance?.destroy();
   } catch {
@@ -200,7 +225,7 @@ function end(instance) {
 }
 
 session.restart = () => {
-  end(session.app);
+  end(current);
   launch(backend);
 };
 

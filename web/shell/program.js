@@ -1,8 +1,7 @@
-// Downloads and compiles the program, and loads its bindings. There is one program per back end; only the one that is used is
-// downloaded.
-import { TRY_BROWSER, forcedBackend, hasBackend } from "./capabilities.js";
-import { messageOf } from "./dom.js";
-import { showCannotRun, showProgress } from "./panels.js";
+// Downloads and compiles the program, and loads its bindings. There is one program per back end; the second is downloaded only
+// if the first can't be used.
+import { forcedBackend, hasBackend } from "./capabilities.js";
+import { showProgress } from "./panels.js";
 
 /** @typedef {import("./types.d.ts").Backend} Backend */
 /** @typedef {import("./types.d.ts").Bindings} Bindings */
@@ -52,7 +51,6 @@ export async function loadProgram(backend) {
   } catch (error) {
     // The next attempt downloads it again.
     delete downloads[backend];
-    showCannotRun([`The program couldn't be loaded: ${messageOf(error)}`], ["Check the connection and reload the page.", TRY_BROWSER]);
     throw error;
   }
 }
@@ -62,6 +60,8 @@ export async function loadProgram(backend) {
  * @param {Backend} backend
  */
 export async function keepProgram(backend) {
+  // In a frame of another site nothing is stored; a sandboxed one may not even ask.
+  if (parent !== window) return;
   const { script, wasm } = programs[backend];
   // `ready` never resolves if there is no service worker.
   const registration = await navigator.serviceWorker?.ready;
@@ -75,7 +75,7 @@ function cancel(backend) {
 }
 
 /**
- * Starts to download a program, unless that has been done.
+ * Starts to download a program, unless already started.
  * @param {Backend} backend
  */
 function download(backend) {
@@ -89,7 +89,7 @@ function download(backend) {
 function begin(backend) {
   const controller = new AbortController();
   const compiled = compile(backend, controller.signal);
-  // Whoever waits for it gets the error; nobody may.
+  // Avoids an unhandled rejection if nobody waits for it.
   compiled.catch(() => {});
   return { compiled, abort: () => controller.abort() };
 }

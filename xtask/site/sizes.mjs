@@ -39,6 +39,9 @@ for (const name of fs.readdirSync(folder, { recursive: true, encoding: "utf8" })
 for (const [part, size] of Object.entries(parts)) line(`all: ${part}`, size);
 for (const [program, budget] of Object.entries(BUDGETS)) {
   const brotli = parts.shell.brotli + parts[program].brotli;
-  console.log(`the page with ${program}: ${brotli.toLocaleString("en")} bytes with brotli, of at most ${budget.toLocaleString("en")}`);
-  if (brotli > budget) process.exitCode = 1;
+  console.log(`the page with ${program}: ${brotli.toLocaleString("en")} bytes with brotli`);
+  if (brotli > budget) {
+    console.error(`that is more than its budget of ${budget.toLocaleString("en")}`);
+    process.exitCode = 1;
+  }
 }

@@ -28,7 +28,7 @@ pub fn dist() -> PathBuf {
 
 /// `url` is the site's future URL, for link previews.
 pub fn build(features: &[&str], url: Option<&str>) -> anyhow::Result<()> {
-    // Cargo spends most of a build on one core, in link-time optimization: meanwhile the other optimizes the previous program.
+    // Cargo spends most of a build on one core, in link-time optimization: meanwhile another runs wasm-opt on the first program.
     thread::scope(|scope| {
         let mut optimizing = Vec::new();
         for back_end in BACK_ENDS {

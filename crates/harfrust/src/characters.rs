@@ -1,4 +1,4 @@
-//! What has to happen to characters before they become glyphs.
+//! Prepares characters for shaping: composition, invisible characters, widths of spaces.
 
 use crate::GlyphInfo;
 

@@ -44,7 +44,7 @@ fn add(position: &mut GlyphPosition, value: Value) {
     position.x_offset += i32::from(value.x_placement);
 }
 
-/// Returns what a subtable says about a pair, or `None` if the next subtable has the say.
+/// Returns what a subtable says about a pair, or `None` if the next subtable should be tried.
 fn pair_values(subtable: &PairPos<'_>, left: GlyphId, right: GlyphId) -> Result<Option<[Value; 2]>, ReadError> {
     match subtable {
         PairPos::Format1(pairs) => match pairs.coverage()?.get(left) {

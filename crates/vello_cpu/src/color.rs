@@ -6,7 +6,7 @@ use std::marker::PhantomData;
 #[derive(Debug, Clone, Copy)]
 pub enum Srgb {}
 
-/// A colour without transparency. Only white can be had.
+/// A colour without transparency. Only white is supported.
 #[derive(Debug, Clone, Copy)]
 pub struct OpaqueColor<Space>(PhantomData<Space>);
 

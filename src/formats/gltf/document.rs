@@ -59,8 +59,7 @@ pub struct Document<'a> {
 
 impl<'a> Document<'a> {
     pub fn read(file: &str, text: &'a [u8]) -> Result<Self, LoadError> {
-        // Checking the whole text once is faster than each string. Names in another encoding get replacement characters.
-        let text = str::from_utf8(text).map_or_else(|_| String::from_utf8_lossy(text), Cow::Borrowed);
+        let text = as_text(text);
         let root = match serde_json::from_str::<Root>(&text) {
             Ok(root) if !has_long_integer(text.as_bytes()) => {
                 check_version(file, Some(&root.asset.version), root.asset.min_version.as_deref())?;
@@ -88,6 +87,11 @@ impl<'a> Document<'a> {
         let pointer = place.replace("].", "/").replace(['.', '['], "/").replace(']', "");
         value.pointer(&format!("/{pointer}"))
     }
+}
+
+/// Names in another encoding than UTF-8 get replacement characters. Checking the whole text once is faster than each string.
+pub fn as_text(json: &[u8]) -> Cow<'_, str> {
+    str::from_utf8(json).map_or_else(|_| String::from_utf8_lossy(json), Cow::Borrowed)
 }
 
 /// Converts a byte count or offset. A value that is too large for this machine becomes one that is beyond any buffer.
@@ -223,14 +227,15 @@ fn has_long_integer(text: &[u8]) -> bool {
             while start > 0 && is_digit(start - 1) {
                 start -= 1;
             }
+            // To the end, so that a long run of digits is read once.
+            while is_digit(at) {
+                at += 1;
+            }
             // Not part of a fraction or a name.
-            if start.checked_sub(1).is_none_or(|before| b":,[ \t\r\n".contains(&text[before])) {
-                while is_digit(at) {
-                    at += 1;
-                }
-                if at - start >= DIGITS && text.get(at).is_none_or(|after| b",]} \t\r\n".contains(after)) {
-                    return true;
-                }
+            let is_integer = start.checked_sub(1).is_none_or(|before| b":,[ \t\r\n".contains(&text[before]))
+                && text.get(at).is_none_or(|after| b",]} \t\r\n".contains(after));
+            if is_integer && at - start >= DIGITS {
+                return true;
             }
         }
         at += DIGITS;

@@ -165,7 +165,7 @@ pub(super) fn show(
     tab.table.lines = Some(lines.clone());
     if lines.lines.is_empty() {
         let nothing = match lines.search.is_empty() {
-            true if lines.filter == Filter::Look => "There is nothing that needs a look.".to_owned(),
+            true if lines.filter == Filter::Look => "No joints need review.".to_owned(),
             true => "There are no such joints.".to_owned(),
             false => format!("No such joint is called “{}”.", lines.search),
         };

@@ -44,7 +44,7 @@ pub struct MotionTab {
     contents: Option<(Inputs, Rc<Contents>)>,
 }
 
-/// What [`Contents`] are made from.
+/// What [`Contents`] are made from. The proposal follows from model and motion.
 #[derive(Debug)]
 struct Inputs {
     model: ModelId,
@@ -95,7 +95,7 @@ impl MotionTab {
         (self.picking, self.clicking, self.typed, self.turn) = (None, None, None, None);
     }
 
-    /// Contents of the tab, made anew when a file, the map or a custom joint name changes.
+    /// Returns the tab's contents, rebuilt when a file, the map or a custom joint name changes.
     fn contents(&mut self, shown: &Shown<'_>, pairing: &Pairing<'_>) -> Rc<Contents> {
         if let Some((inputs, contents)) = &self.contents
             && inputs.are_those_of(shown, pairing)

@@ -332,7 +332,7 @@ impl Whole {
                 let turned = turned.is_some_and(|entry| entry.correction != glam::Quat::IDENTITY);
                 why.extend(conflict);
                 why.extend(muted);
-                why.extend(turned.then(|| "turned further".to_owned()));
+                why.extend(turned.then(|| "rotation offset".to_owned()));
             }
         }
         let target = pairing.target_title(joint).into_owned();

@@ -14,7 +14,7 @@ use super::{WriteError, glb};
 use crate::anim::{Clip, JointIndex, Skeleton};
 use crate::asset::Warnings;
 use crate::formats::gltf::accessor::Bytes;
-use crate::formats::gltf::document::{Document, json_error, size};
+use crate::formats::gltf::document::{Document, as_text, json_error, size};
 use crate::formats::gltf::{container, data, resolve_buffers};
 use crate::formats::{FileSet, named};
 
@@ -26,7 +26,8 @@ pub fn model(files: &FileSet, file: &str, skeleton: &Skeleton, clips: &[&Clip]) 
     let bytes = named(files, file)?;
     let container = container::open(file, bytes)?;
     let root = Document::read(file, container.json)?.root;
-    let mut json: Object = serde_json::from_slice(container.json).map_err(|problem| json_error(file, &problem))?;
+    let mut json: Object =
+        serde_json::from_str(&as_text(container.json)).map_err(|problem| json_error(file, &problem))?;
     if root.nodes.len() != skeleton.len() {
         let (nodes, joints) = (root.nodes.len(), skeleton.len());
         return Err(WriteError::OtherSkeleton { file: file.to_owned(), nodes, joints });
