@@ -1,7 +1,9 @@
 //! Picking in the viewport: a joint of the model, then its source, in the viewport if the motion's skeleton is shown there,
 //! otherwise in the list.
 
-use egui::{Align2, Area, Context, FontId, Id, Order, Painter, Pos2, Rect, Response, Stroke, Ui, pos2, vec2};
+use std::sync::Arc;
+
+use egui::{Align2, Area, Context, FontId, Galley, Id, Order, Painter, Pos2, Rect, Response, Stroke, Ui, pos2, vec2};
 
 use super::Pairing;
 use super::picker::Picking;
@@ -79,9 +81,7 @@ pub(in crate::ui) fn show(
             FontId::proportional(13.0),
             palette.on_accent,
         );
-        let tag = Rect::from_center_size(at - vec2(0.0, 24.0), galley.size() + vec2(16.0, 6.0));
-        painter.rect_filled(tag, 6.0, palette.accent);
-        painter.galley(tag.center() - galley.size() / 2.0, galley, palette.on_accent);
+        name_tag(painter, at, galley, &palette);
     }
     let clicked = response.interact_pointer_pos().filter(|_| response.clicked());
     if let Some((joint, _)) = clicked.and_then(|position| nearest(&places, position)) {
@@ -104,6 +104,13 @@ pub(in crate::ui) fn show(
         ui.ctx().request_repaint();
     }
     true
+}
+
+/// Paints a name above a joint.
+fn name_tag(painter: &Painter, at: Pos2, name: Arc<Galley>, palette: &style::Palette) {
+    let tag = Rect::from_center_size(at - vec2(0.0, 24.0), name.size() + vec2(16.0, 6.0));
+    painter.rect_filled(tag, 6.0, palette.accent);
+    painter.galley(tag.center() - name.size() / 2.0, name, palette.on_accent);
 }
 
 /// Returns to the table, and reopens the sheet that made room for the viewport.

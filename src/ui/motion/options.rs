@@ -24,22 +24,7 @@ const KEEPS: [(Keep, &str); 3] = [(Keep::Auto, "Automatic"), (Keep::Keep, "Keep"
 
 pub(super) fn show(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, out: &mut Output) {
     let edit = |edit| Command::EditMap { motion: pairing.index, edit };
-    let root = map.root;
-    let set = |root: RootOptions| Command::SetRoot(Some(root));
-    if let Some(horizontal) = parts(ui, text::ROOT_HORIZONTAL, root.horizontal) {
-        out.commands.push(set(RootOptions { horizontal, ..root }));
-    }
-    controls::hint(ui, "In place: the character walks on the spot and still sways.");
-    if let Some(vertical) = parts(ui, text::ROOT_VERTICAL, root.vertical) {
-        out.commands.push(set(RootOptions { vertical, ..root }));
-    }
-    if let Some(yaw) = parts(ui, text::ROOT_TURN, root.yaw) {
-        out.commands.push(set(RootOptions { yaw, ..root }));
-    }
-    ui.add_space(4.0);
-    if controls::switch(ui, text::EXTRACT_ROOT_MOTION, root.extract) {
-        out.commands.push(set(RootOptions { extract: !root.extract, ..root }));
-    }
+    root_motion(ui, map.root, out);
 
     controls::section(ui, "FEET");
     let planted = map.feet == Feet::Plant;
@@ -80,17 +65,42 @@ pub(super) fn show(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, out: &mut
     }
 
     controls::section(ui, &text::IGNORED_CHANNELS.to_uppercase());
+    if ignored_channels(ui, map) {
+        out.commands.push(edit(MapEdit::UnmuteAll));
+    }
+}
+
+/// What happens to each part of the root motion.
+fn root_motion(ui: &mut Ui, root: RootOptions, out: &mut Output) {
+    let set = |root: RootOptions| Command::SetRoot(Some(root));
+    if let Some(horizontal) = parts(ui, text::ROOT_HORIZONTAL, root.horizontal) {
+        out.commands.push(set(RootOptions { horizontal, ..root }));
+    }
+    controls::hint(ui, "In place: the character walks on the spot and still sways.");
+    if let Some(vertical) = parts(ui, text::ROOT_VERTICAL, root.vertical) {
+        out.commands.push(set(RootOptions { vertical, ..root }));
+    }
+    if let Some(yaw) = parts(ui, text::ROOT_TURN, root.yaw) {
+        out.commands.push(set(RootOptions { yaw, ..root }));
+    }
+    ui.add_space(4.0);
+    if controls::switch(ui, text::EXTRACT_ROOT_MOTION, root.extract) {
+        out.commands.push(set(RootOptions { extract: !root.extract, ..root }));
+    }
+}
+
+/// Returns whether all channels shall be used again.
+fn ignored_channels(ui: &mut Ui, map: &JointMap) -> bool {
     let joints: BTreeSet<usize> = map.muted_channels.iter().map(|channel| channel.source).collect();
     match joints.len() {
         0 => controls::hint(ui, "None. To ignore channels of a joint's source, select the joint in the table."),
         count => {
             let joints = if count == 1 { "1 joint".to_owned() } else { format!("{count} joints") };
             controls::hint(ui, format!("Channels of {joints} in the motion."));
-            if ui.button(text::USE_ALL_CHANNELS).clicked() {
-                out.commands.push(edit(MapEdit::UnmuteAll));
-            }
+            return ui.button(text::USE_ALL_CHANNELS).clicked();
         }
     }
+    false
 }
 
 /// Opening, saving and removing files.

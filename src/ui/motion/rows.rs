@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 
 use super::{Pairing, joint_text};
 use crate::anim::JointIndex;
-use crate::asset::Slot;
-use crate::retarget::{Contradiction, JointMap};
+use crate::asset::{Asset, Slot};
+use crate::retarget::{Contradiction, JointMap, Unmapped};
 use crate::state::muted_properties;
 
 /// Below this confidence a proposal counts as a guess.
@@ -280,6 +280,37 @@ impl Whole {
         Some(format!("shared with {}{and}", pairing.target_title(*first)))
     }
 
+    /// Whether the motion has this slot and nothing follows it.
+    fn has_free_source(&self, slot: Option<Slot>) -> bool {
+        self.source_slots.iter().any(|(source, other)| Some(*other) == slot && !self.followers.contains_key(source))
+    }
+
+    /// Returns the state of a pair and whether it needs review, and adds the reasons to `why`.
+    fn mapped_state(
+        &self,
+        pairing: &Pairing<'_>,
+        map: &JointMap,
+        (target, source): (JointIndex, JointIndex),
+        is_unsure: bool,
+        why: &mut Vec<String>,
+    ) -> (State, bool) {
+        let number = |asset: &Asset, joint| asset.skeleton.source_index(joint);
+        let conflict = self.conflict(pairing, target, source);
+        let muted = muted_text(muted_properties(map, number(&pairing.motion.asset, source)));
+        let standing = match (&conflict, &muted) {
+            (Some(_), _) => (State::Conflict, true),
+            (None, Some(_)) => (State::Muted, false),
+            (None, None) if is_unsure => (State::Guess, true),
+            (None, None) => (State::Sure, false),
+        };
+        let entry = map.joints.get(&number(&pairing.model.asset, target));
+        let is_turned = entry.is_some_and(|entry| entry.correction != glam::Quat::IDENTITY);
+        why.extend(conflict);
+        why.extend(muted);
+        why.extend(is_turned.then(|| "rotation offset".to_owned()));
+        standing
+    }
+
     fn row(
         &self,
         pairing: &Pairing<'_>,
@@ -302,39 +333,17 @@ impl Whole {
             (None, Some(None), None) => "deliberately none".to_owned(),
             _ => "follows nothing".to_owned(),
         });
-        let (mut state, mut look) = (State::Sure, false);
-        match source {
+        let (state, look) = match source {
             None => {
-                state = State::None;
-                // The motion has this slot, nothing follows it, and the map does not rule it out.
-                let is_free = |(source, other): (&JointIndex, &Slot)| {
-                    Some(*other) == slot && !self.followers.contains_key(source)
-                };
-                look = given.is_none() && self.source_slots.iter().any(is_free);
                 let own = map.joints.get(&number).and_then(|entry| entry.unmapped.as_ref());
-                match pairing.own_clip(own.unwrap_or(&map.unmapped)) {
-                    Some((clip, true)) => why.push(format!("first key of {}", pairing.clip_title(clip))),
-                    Some((clip, false)) => why.push(format!("plays {}", pairing.clip_title(clip))),
-                    None => {}
-                }
+                why.extend(unmapped_text(pairing, own.unwrap_or(&map.unmapped)));
+                (State::None, given.is_none() && self.has_free_source(slot))
             }
             Some(source) => {
-                let conflict = self.conflict(pairing, joint, source);
-                let muted = muted_text(muted_properties(map, pairing.motion.asset.skeleton.source_index(source)));
-                if conflict.is_some() {
-                    (state, look) = (State::Conflict, true);
-                } else if muted.is_some() {
-                    state = State::Muted;
-                } else if as_proposed.is_some_and(|pair| pair.confidence < UNSURE) {
-                    (state, look) = (State::Guess, true);
-                }
-                let turned = map.joints.get(&number);
-                let turned = turned.is_some_and(|entry| entry.correction != glam::Quat::IDENTITY);
-                why.extend(conflict);
-                why.extend(muted);
-                why.extend(turned.then(|| "rotation offset".to_owned()));
+                let is_unsure = as_proposed.is_some_and(|pair| pair.confidence < UNSURE);
+                self.mapped_state(pairing, map, (joint, source), is_unsure, &mut why)
             }
-        }
+        };
         let target = pairing.target_title(joint).into_owned();
         let source_text = source.map_or_else(|| "none".to_owned(), |source| joint_text(&pairing.motion.asset, source));
         let why = why.join(" · ");
@@ -353,6 +362,13 @@ impl Whole {
             depth: 0,
         }
     }
+}
+
+/// What a joint without a source plays instead of resting.
+fn unmapped_text(pairing: &Pairing<'_>, unmapped: &Unmapped) -> Option<String> {
+    let (clip, is_frozen) = pairing.own_clip(unmapped)?;
+    let title = pairing.clip_title(clip);
+    Some(if is_frozen { format!("first key of {title}") } else { format!("plays {title}") })
 }
 
 fn muted_text(muted: [bool; 3]) -> Option<String> {
