@@ -348,6 +348,10 @@ impl eframe::App for App {
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
+        // The page starts without a model, and a panel keeps the width that its first contents gave it.
+        if !self.has_begun && self.editor.library().active().is_none() {
+            return;
+        }
         self.timing.frames += 1;
         self.timing.cpu_secs = frame.info().cpu_usage.unwrap_or(0.0);
         let context = ui.ctx().clone();
