@@ -179,6 +179,18 @@ enum Request {
     View { state: Box<ViewerState>, with_model: bool, current_motions: Vec<Motion>, is_link: bool },
 }
 
+/// What the request is called in messages.
+fn first_name(request: &Request) -> String {
+    let name = match request {
+        Request::Items { items, .. } => items.first().map(|item| match item {
+            Item::File(name, _) => name.clone(),
+            Item::Address(address) => address.to_string_lossy().into_owned(),
+        }),
+        Request::View { state, .. } => state.sources.model.first().cloned(),
+    };
+    name.map_or_else(String::new, |name| short_name(&name))
+}
+
 /// What was opened.
 struct Opened {
     /// `model`, `motion` or `map`.
@@ -200,6 +212,7 @@ async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, String> {
         }
     };
     let shell_reports = matches!(request, Request::View { is_link: true, .. });
+    let name = first_name(&request);
     let opened: Result<(Contents, Option<Box<ViewerState>>), OpenError> = match request {
         Request::Items { items, role, is_private } => {
             let contents = open_items(items, role, &progress).await;
@@ -217,6 +230,8 @@ async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, String> {
         Ok((contents, state)) => show(page, contents, state, shell_reports).await,
         Err(problem) => {
             let problem = problem.to_string();
+            // Files in memory have had no progress that names them. The failure, in the same frame, ends it.
+            progress(&name, 0, 0);
             let failed = if shell_reports { Message::OpenFailedSilently } else { Message::OpenFailed(problem.clone()) };
             page.inbox.send(failed);
             Err(problem)
