@@ -72,12 +72,10 @@ async function tidy() {
 }
 
 worker.addEventListener("message", (event) => {
-  const { data } = event;
-  // Earlier versions of the page send the word alone.
-  if (data === "use" || data.use) worker.skipWaiting();
+  if (event.data === "use") return worker.skipWaiting();
   const files = Object.values(PROGRAMS).flat();
-  // Of another version if the page is older or newer than this worker.
-  if (data.keep) event.waitUntil(keep(data.keep.filter((/** @type {string} */ file) => files.includes(file))));
+  // A page of another version names files that this worker doesn't know.
+  event.waitUntil(keep(event.data.keep.filter((/** @type {string} */ file) => files.includes(file))));
 });
 
 worker.addEventListener("fetch", (event) => {

@@ -5,7 +5,7 @@ import os from "node:os";
 import path from "node:path";
 import zlib from "node:zlib";
 import { build } from "esbuild";
-import { dist } from "../../tests/browser/browser.mjs";
+import { dist, until } from "../../tests/browser/browser.mjs";
 import { serve } from "../../tests/browser/server.mjs";
 import { dataFile, repository } from "../../tests/three/data.mjs";
 
@@ -41,7 +41,7 @@ async function firstFrame(browser, address) {
   await session.send("Network.emulateNetworkConditions", NETWORK);
   await page.addInitScript(() => {
     addEventListener("DOMContentLoaded", async () => {
-      if (document.querySelector('meta[name="gaitway-programs"], meta[name="gaitway-module"]') === null) return;
+      if (document.querySelector('meta[name="gaitway-programs"]') === null) return;
       while (window.gaitway === undefined) await new Promise((resolve) => setTimeout(resolve));
       await window.gaitway.ready;
       // The first frame of playback, and the end of it.
@@ -50,19 +50,14 @@ async function firstFrame(browser, address) {
     });
   });
   await page.goto(address, { waitUntil: "commit" });
-  const wait = () => page.evaluate(() => performance.getEntriesByName("moving")[0]?.startTime ?? null);
-  let time = null;
-  for (const start = Date.now(); time === null && Date.now() - start < 60_000; ) {
-    time = await wait();
-    await new Promise((resolve) => setTimeout(resolve, 20));
-  }
-  if (time === null) throw new Error(`${address}: nothing moved for a minute`);
+  await until(page, () => performance.getEntriesByName("moving").length > 0);
+  const time = await page.evaluate(() => performance.getEntriesByName("moving")[0].startTime);
   await context.close();
   return time;
 }
 
 /**
- * Returns rows of name, median and ratio to three.js.
+ * Returns each page's times in milliseconds, by the page's name.
  * @param {Browser} browser
  */
 export async function measureFirstFrames(browser) {

@@ -170,6 +170,13 @@ impl Skeleton {
         skeleton
     }
 
+    /// Returns a joint's name, or `#NODE` if the name is empty or not unique, as joint maps have it.
+    pub fn label(&self, joint: JointIndex) -> String {
+        let name = self.name(joint);
+        let is_unique = self.joints().filter(|&other| self.name(other) == name).count() == 1;
+        if is_unique && !name.is_empty() { name.to_owned() } else { format!("#{}", self.source_index(joint)) }
+    }
+
     /// Returns a copy with another rest pose: one local transform per joint.
     pub(crate) fn with_rest(&self, locals: &[Transform]) -> Self {
         let mut skeleton = self.clone();

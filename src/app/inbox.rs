@@ -1,6 +1,7 @@
 //! Messages from outside the frame loop: finished loads, the script interface, the HTML shell. They are handled in order at the
 //! start of the next frame; sending one wakes the app.
 
+use std::cell::Cell;
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
 
@@ -35,7 +36,7 @@ pub enum Message {
 }
 
 /// Progress of a load.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Opening {
     /// Name of the file being read, as shown to the user.
     pub name: String,
@@ -56,6 +57,23 @@ pub enum ScriptCall {
     Screenshot(Reply<Vec<u8>>),
 }
 
+/// Numbers loads. One that was started earlier may finish later: only the latest is shown.
+#[derive(Debug, Default)]
+pub struct Loads(Cell<u32>);
+
+impl Loads {
+    /// Returns the number of a new load.
+    pub fn start(&self) -> u32 {
+        self.0.set(self.0.get() + 1);
+        self.0.get()
+    }
+
+    /// Whether no other load has been started since.
+    pub fn is_latest(&self, number: u32) -> bool {
+        self.0.get() == number
+    }
+}
+
 /// A queue that any code can send to.
 #[derive(Clone)]
 pub struct Inbox {
@@ -74,6 +92,11 @@ impl Inbox {
         if let Ok(mut queue) = self.queue.lock() {
             queue.push_back(message);
         }
+        self.wake();
+    }
+
+    /// Requests a frame.
+    pub fn wake(&self) {
         self.context.request_repaint();
     }
 

@@ -1,10 +1,9 @@
 //! The native window. Opens files from the command line, typed paths and dropped files; reads them in the background.
 
-use std::cell::Cell;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-use super::{App, Host, Inbox, Message, Opening, native_options};
+use super::{App, Host, Inbox, Loads, Message, Opening, native_options};
 use crate::editor::Contents;
 use crate::files::{OpenError, Role, read_paths};
 use crate::samples;
@@ -42,7 +41,7 @@ type Loaded = (u32, Result<Box<Contents>, String>);
 struct Window {
     context: egui::Context,
     /// Number of loads started. Only the latest is shown, whichever ends last.
-    loads: Cell<u32>,
+    loads: Loads,
     loaded: Receiver<Loaded>,
     sender: Sender<Loaded>,
 }
@@ -50,13 +49,12 @@ struct Window {
 impl Window {
     fn new(context: egui::Context) -> Self {
         let (sender, loaded) = channel();
-        Self { context, loads: Cell::new(0), loaded, sender }
+        Self { context, loads: Loads::default(), loaded, sender }
     }
 
     /// Reads files in the background; the result arrives in a later frame, unless something else is opened in the meantime.
     fn open(&self, paths: Vec<PathBuf>, role: Role, inbox: &Inbox) {
-        let number = self.loads.get() + 1;
-        self.loads.set(number);
+        let number = self.loads.start();
         let name = paths.first().and_then(|path| path.file_name()).map(|name| name.to_string_lossy().into_owned());
         let opening = Opening { name: name.unwrap_or_default(), received_bytes: 0, total_bytes: 0 };
         inbox.send(Message::OpenProgress(opening));
@@ -105,7 +103,7 @@ impl Host for Window {
 
     fn before_frame(&self, inbox: &Inbox) {
         while let Ok((number, loaded)) = self.loaded.try_recv() {
-            if number != self.loads.get() {
+            if !self.loads.is_latest(number) {
                 continue;
             }
             inbox.send(match loaded {
@@ -124,8 +122,8 @@ mod tests {
     fn only_the_latest_load_is_shown() {
         let context = egui::Context::default();
         let (window, inbox) = (Window::new(context.clone()), Inbox::new(context));
-        for (number, name) in [(2, "new"), (1, "old")] {
-            window.loads.set(2);
+        let [old, new] = [window.loads.start(), window.loads.start()];
+        for (number, name) in [(new, "new"), (old, "old")] {
             window.sender.send((number, Err(name.to_owned()))).expect("the window is open");
         }
         window.before_frame(&inbox);

@@ -111,7 +111,6 @@ impl App {
     /// # Errors
     /// If the model doesn't fit on the device.
     pub fn open(&mut self, contents: Contents, view: Option<ViewerState>) -> Result<(), String> {
-        self.context.request_repaint();
         self.panels.messages.clear_error();
         let opened = self.editor.open(contents, view, &mut |model| self.viewport.admit(model));
         self.show_events();

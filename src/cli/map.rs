@@ -5,8 +5,9 @@ use std::fmt::Write;
 use anyhow::{Context, bail};
 use serde_json::{Value, json};
 
-use super::motion::{joint_name, open_motion};
+use super::motion::open_motion;
 use super::{MapArguments, open, print_bytes, print_json};
+use crate::anim::Skeleton;
 use crate::retarget::{Contradiction, Proposal, propose};
 
 pub(super) fn run(arguments: &MapArguments) -> anyhow::Result<()> {
@@ -31,8 +32,8 @@ pub(super) fn run(arguments: &MapArguments) -> anyhow::Result<()> {
     if arguments.json {
         let mut document = serde_json::to_value(&map)?;
         explain(&proposal, &mut document, &model.skeleton);
-        let names = |skeleton, joints: &[_]| -> Vec<String> {
-            joints.iter().map(|&joint| joint_name(skeleton, joint)).collect()
+        let names = |skeleton: &Skeleton, joints: &[_]| -> Vec<String> {
+            joints.iter().map(|&joint| skeleton.label(joint)).collect()
         };
         document["unmapped_targets"] = json!(names(&model.skeleton, &proposal.unmapped_targets));
         document["unused_sources"] = json!(names(&motion.skeleton, &proposal.unused_sources));
@@ -46,7 +47,7 @@ pub(super) fn run(arguments: &MapArguments) -> anyhow::Result<()> {
     }
     let mut text = String::new();
     for pair in &proposal.pairs {
-        let (target, source) = (joint_name(&model.skeleton, pair.target), joint_name(&motion.skeleton, pair.source));
+        let (target, source) = (model.skeleton.label(pair.target), motion.skeleton.label(pair.source));
         let slot = pair.slot.map_or("", |slot| slot.name());
         // Writing to a string cannot fail.
         let _ =
@@ -58,7 +59,7 @@ pub(super) fn run(arguments: &MapArguments) -> anyhow::Result<()> {
 /// Adds slot, reason and confidence to each joint of a map's document.
 fn explain(proposal: &Proposal, document: &mut Value, skeleton: &crate::anim::Skeleton) {
     for pair in &proposal.pairs {
-        let entry = &mut document["joints"][joint_name(skeleton, pair.target)];
+        let entry = &mut document["joints"][skeleton.label(pair.target)];
         if entry.is_object() {
             entry["slot"] = json!(pair.slot.map(|slot| slot.name()));
             entry["reason"] = json!(pair.reason.to_string());

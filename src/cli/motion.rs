@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Error, bail};
 use clap::Args;
 
-use crate::anim::{JointIndex, Skeleton};
 use crate::editor::{Contents, Editor, Event, OpenedMap, OpenedModel};
 use crate::files::{Opened, Role, open_view, read_map, read_paths};
 use crate::library::Motion;
@@ -110,11 +109,4 @@ pub(super) fn apply_link(editor: &mut Editor, link: &str, arguments: &MotionArgu
 fn take_problems(editor: &mut Editor) -> Vec<String> {
     let events = editor.take_events().into_iter();
     events.filter_map(|event| if let Event::Problem(problem) = event { Some(problem) } else { None }).collect()
-}
-
-/// Returns a joint's name, or `#NODE` if the name is empty or not unique.
-pub(super) fn joint_name(skeleton: &Skeleton, joint: JointIndex) -> String {
-    let name = skeleton.name(joint);
-    let is_unique = skeleton.joints().filter(|&other| skeleton.name(other) == name).count() == 1;
-    if is_unique && !name.is_empty() { name.to_owned() } else { format!("#{}", skeleton.source_index(joint)) }
 }

@@ -3,7 +3,7 @@
 use anyhow::{Context, bail};
 use serde_json::{Value, json};
 
-use super::motion::{joint_name, open_map, open_motion};
+use super::motion::{open_map, open_motion};
 use super::{RetargetArguments, open, print_bytes, print_json};
 use crate::anim::{Clip, ClipQuery, JointIndex, find_clip};
 use crate::asset::Asset;
@@ -146,23 +146,23 @@ fn document(
     let mapped: Vec<Value> = map
         .pairs
         .iter()
-        .map(|pair| json!({ "target": joint_name(target, pair.target), "source": joint_name(source, pair.source) }))
+        .map(|pair| json!({ "target": target.label(pair.target), "source": source.label(pair.source) }))
         .collect();
     let is_in_skin = |joint: &JointIndex| model.skins.iter().any(|skin| skin.joints().contains(joint));
     let has_skins = !model.skins.is_empty();
     let unmapped: Vec<String> = target
         .joints()
         .filter(|joint| (!has_skins || is_in_skin(joint)) && map.source_of(*joint).is_none())
-        .map(|joint| joint_name(target, joint))
+        .map(|joint| target.label(joint))
         .collect();
     let is_animated =
         |joint: &JointIndex| motion.asset.clips.iter().flat_map(Clip::channels).any(|channel| channel.joint == *joint);
     let unused: Vec<String> = source
         .joints()
         .filter(|joint| is_animated(joint) && !map.pairs.iter().any(|pair| pair.source == *joint))
-        .map(|joint| joint_name(source, joint))
+        .map(|joint| source.label(joint))
         .collect();
-    let resampled: Vec<String> = retargeted.resampled.iter().map(|&joint| joint_name(target, joint)).collect();
+    let resampled: Vec<String> = retargeted.resampled.iter().map(|&joint| target.label(joint)).collect();
     let clip_warnings =
         warnings.iter().map(|(code, message)| json!({ "code": code, "message": message, "where": clip.name() }));
     let file_warnings = [model, &motion.asset].map(|asset| warning_documents(&asset.warnings));

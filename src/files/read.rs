@@ -5,7 +5,7 @@ use std::ffi::{OsStr, OsString};
 use super::origins::Origins;
 use super::source::{Content, Located, MAX_FOLDER_FILES, Progress, Reading, Source};
 use super::{OpenError, SortError};
-use crate::editor::container_of;
+use crate::editor::{container_of, short_name};
 use crate::formats::{FileSet, missing_files};
 use crate::library::Model;
 use crate::samples;
@@ -76,16 +76,20 @@ impl<S: Source> Reader<'_, S> {
     async fn add(&mut self, item: Item) -> Result<(), OpenError> {
         match item {
             Item::File(name, bytes) => {
+                (self.reading.progress)(&short_name(&name), 0, bytes.len() as u64);
                 self.reading.spend(&name, bytes.len() as u64)?;
                 self.labels.push(name.clone());
                 let known = self.keep(name.clone(), bytes)?;
                 self.files.origins.known.push((known, name));
                 Ok(())
             }
-            Item::Address(address) => match address.to_str().and_then(|address| address.strip_prefix("sample:")) {
-                Some(name) => self.add_sample(name).await,
-                None => self.add_address(&address).await,
-            },
+            Item::Address(address) => {
+                (self.reading.progress)(&short_name(&address.to_string_lossy()), 0, 0);
+                match address.to_str().and_then(|address| address.strip_prefix("sample:")) {
+                    Some(name) => self.add_sample(name).await,
+                    None => self.add_address(&address).await,
+                }
+            }
         }
     }
 

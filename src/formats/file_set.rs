@@ -125,6 +125,12 @@ pub(super) fn bare_name(path: &str) -> &str {
     path.rsplit(['/', '\\']).next().unwrap_or(path)
 }
 
+/// A file's own name without folders, query and extension.
+pub(crate) fn file_stem(name: &str) -> &str {
+    let bare = bare_name(without_query(name));
+    bare.rsplit_once('.').map_or(bare, |(stem, _)| stem)
+}
+
 /// Cuts the query and the fragment off a URL, which may contain slashes of their own. In a path, folders may be named with `?`
 /// or `#`.
 pub(super) fn without_query(name: &str) -> &str {

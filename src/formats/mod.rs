@@ -38,6 +38,7 @@ pub use gltf::WriteError;
 
 use crate::anim::{Clip, Skeleton};
 use crate::asset::{Asset, Image};
+pub(crate) use file_set::file_stem;
 use file_set::{bare_name, without_query};
 
 /// Limit on .obj, .skel and .attach files together. Beyond it, which no real scene reaches, companions are not looked up:
@@ -125,7 +126,7 @@ fn write_obj(
     }
     let mut joints = skeleton.joints();
     if let Some(joint) = joints.find(|&joint| skeleton.parent(joint) != asset.skeleton.parent(joint)) {
-        let joint = gltf::joint_label(skeleton, joint);
+        let joint = skeleton.label(joint);
         return Err(WriteError::OtherParent { file: name.to_owned(), joint });
     }
     gltf::write_asset(&asset, skeleton, clips)

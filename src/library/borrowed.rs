@@ -6,6 +6,7 @@ use glam::Affine3A;
 
 use crate::anim::{Clip, JointIndex};
 use crate::asset::Asset;
+use crate::formats::file_stem;
 use crate::retarget::{
     Body, Figures, FootTrack, JointMap, LayerClip, MapError, Proposal, ResolvedMap, RetargetError, Retargeting,
     StagePair, layer_clips, propose,
@@ -122,8 +123,6 @@ pub(super) fn borrow(
 }
 
 fn file_title(source: &str, clip: usize, count: usize) -> String {
-    let path = source.split(['?', '#']).next().unwrap_or(source);
-    let name = path.rsplit(['/', '\\', ':']).next().unwrap_or(path);
-    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+    let stem = file_stem(source.strip_prefix("sample:").unwrap_or(source));
     if count > 1 { format!("{stem} {clip}") } else { stem.to_owned() }
 }

@@ -1,5 +1,6 @@
 //! Functions for the shell's `window.gaitway` and dialogs. Documents are passed as JSON text, errors as messages for the user.
 
+use std::cell::RefCell;
 use std::rc::Rc;
 
 use js_sys::{Array, Function, Promise, Uint8Array};
@@ -179,18 +180,6 @@ enum Request {
     View { state: Box<ViewerState>, with_model: bool, current_motions: Vec<Motion>, is_link: bool },
 }
 
-/// What the request is called in messages.
-fn first_name(request: &Request) -> String {
-    let name = match request {
-        Request::Items { items, .. } => items.first().map(|item| match item {
-            Item::File(name, _) => name.clone(),
-            Item::Address(address) => address.to_string_lossy().into_owned(),
-        }),
-        Request::View { state, .. } => state.sources.model.first().cloned(),
-    };
-    name.map_or_else(String::new, |name| short_name(&name))
-}
-
 /// What was opened.
 struct Opened {
     /// `model`, `motion` or `map`.
@@ -203,16 +192,17 @@ struct Opened {
 
 /// Loads what was requested and shows it, unless another load starts in the meantime.
 async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, String> {
-    let number = page.loads.get() + 1;
-    page.loads.set(number);
+    let number = page.loads.start();
+    let latest = RefCell::new(Opening::default());
     let progress = |name: &str, received_bytes: u64, total_bytes: u64| {
-        if page.loads.get() == number {
-            let opening = Opening { name: name.to_owned(), received_bytes, total_bytes };
-            page.inbox.send(Message::OpenProgress(opening));
+        let opening = Opening { name: name.to_owned(), received_bytes, total_bytes };
+        // What is in memory is read at once: a frame that shows it would only delay it.
+        if received_bytes > 0 && page.loads.is_latest(number) {
+            page.inbox.send(Message::OpenProgress(opening.clone()));
         }
+        latest.replace(opening);
     };
     let shell_reports = matches!(request, Request::View { is_link: true, .. });
-    let name = first_name(&request);
     let opened: Result<(Contents, Option<Box<ViewerState>>), OpenError> = match request {
         Request::Items { items, role, is_private } => {
             let contents = open_items(items, role, &progress).await;
@@ -223,15 +213,15 @@ async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, String> {
             opened.map(|(contents, state)| (contents, Some(Box::new(state))))
         }
     };
-    if page.loads.get() != number {
+    if !page.loads.is_latest(number) {
         return Err("something else was opened in the meantime".to_owned());
     }
+    // Names what is opened or has failed, in the frame that shows it.
+    page.inbox.send(Message::OpenProgress(latest.take()));
     match opened {
         Ok((contents, state)) => show(page, contents, state, shell_reports).await,
         Err(problem) => {
             let problem = problem.to_string();
-            // Files in memory have had no progress that names them. The failure, in the same frame, ends it.
-            progress(&name, 0, 0);
             let failed = if shell_reports { Message::OpenFailedSilently } else { Message::OpenFailed(problem.clone()) };
             page.inbox.send(failed);
             Err(problem)

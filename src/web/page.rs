@@ -8,7 +8,7 @@ use wasm_bindgen::prelude::*;
 
 use super::calls::with_app;
 use super::shell::{self, Shell};
-use crate::app::{App, Host, Inbox, set_fatal_hook, web_options};
+use crate::app::{App, Host, Inbox, Loads, set_fatal_hook, web_options};
 use crate::editor::{Contents, OpenedModel};
 use crate::files::{Item, OpenError, Role, open_items, open_view};
 use crate::samples;
@@ -19,8 +19,7 @@ pub(super) struct Page {
     pub runner: eframe::WebRunner,
     pub inbox: Inbox,
     pub shell: Shell,
-    /// Loads started so far: of several in progress, only the last is shown.
-    pub loads: Cell<u32>,
+    pub loads: Loads,
 }
 
 thread_local! {
@@ -68,7 +67,9 @@ pub async fn run(
     };
     let started = async {
         let ((contents, state, problems), ()) = try_join(first, app).await?;
-        with_app(&*page()?, |app| app.open(contents, Some(state)))??;
+        let page = page()?;
+        with_app(&page, |app| app.open(contents, Some(state)))??;
+        page.inbox.wake();
         Ok::<_, String>(problems)
     };
     let problems = started.await.map_err(|error| {
@@ -91,7 +92,7 @@ async fn start_app(canvas: web_sys::HtmlCanvasElement, shell: &Shell) -> Result<
         return Err("Gaitway was stopped".to_owned());
     }
     let inbox = inbox_cell.borrow_mut().take().ok_or("Gaitway couldn't start")?;
-    let page = Page { runner, inbox, shell: shell.clone(), loads: Cell::new(0) };
+    let page = Page { runner, inbox, shell: shell.clone(), loads: Loads::default() };
     PAGE.with_borrow_mut(|slot| *slot = Some(std::rc::Rc::new(page)));
     Ok(())
 }

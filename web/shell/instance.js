@@ -10,10 +10,11 @@ import { showGallery } from "./gallery.js";
 import { heldItems, heldMotions } from "./held.js";
 import { linkWithoutMissing, readLinksWith } from "./links.js";
 import { readOrReport } from "./load.js";
+import { keepOffline } from "./offline.js";
 import { showOpenDialog } from "./open-dialog.js";
 import { panel, sayProblem, showCannotRun, showPanel, showProgress } from "./panels.js";
 import { arePrivate } from "./privacy.js";
-import { backendsToTry, keepProgram, loadProgram } from "./program.js";
+import { backendsToTry, loadProgram, programFiles } from "./program.js";
 import { download, startRecording, stopRecording } from "./recording.js";
 import { session } from "./session.js";
 import { share } from "./share.js";
@@ -82,7 +83,7 @@ async function start(renderer) {
     const files = await Promise.all([heldItems(session.link), heldMotions(session.link)].map((items) => readOrReport(items, sayProblem)));
     const problem = await startOn(bindings, attempt, files);
     if (problem === null) {
-      keepProgram(attempt);
+      keepOffline(programFiles(attempt));
       return;
     }
     problems.push(problem);

@@ -4,12 +4,24 @@ import { button, byId } from "./dom.js";
 import { openByHand } from "./opening.js";
 import { session } from "./session.js";
 
+/** In a frame of another site nobody visits this page, so nothing is stored; a sandboxed one may not even ask. */
+const isStored = parent === window && "serviceWorker" in navigator;
+
 export function install() {
   window.launchQueue?.setConsumer(async ({ files }) => openByHand(await Promise.all(files.map((handle) => handle.getFile()))));
-  // In a frame of another site nobody visits this page, so nothing is stored.
-  if (parent !== window || !("serviceWorker" in navigator)) return;
   // The first image comes first.
-  session.started.then(register, register);
+  if (isStored) session.started.then(register, register);
+}
+
+/**
+ * Has the service worker store files of the program that runs.
+ * @param {string[]} files
+ */
+export async function keepOffline(files) {
+  if (!isStored) return;
+  // `ready` never resolves if there is no service worker.
+  const { active } = await navigator.serviceWorker.ready;
+  active?.postMessage({ keep: files });
 }
 
 async function register() {
@@ -34,6 +46,6 @@ function offer(worker) {
     // Another tab may have activated it already.
     if (worker.state !== "installed") return location.reload();
     navigator.serviceWorker.addEventListener("controllerchange", () => location.reload(), { once: true });
-    worker.postMessage({ use: true });
+    worker.postMessage("use");
   };
 }

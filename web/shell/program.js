@@ -28,11 +28,17 @@ let instanceCount = 0;
 /** The back ends to try, in this order. Asks for an adapter, because a browser may have WebGPU and none. */
 export async function backendsToTry() {
   const adapter = await navigator.gpu?.requestAdapter().catch(() => null);
-  /** @type {Backend[]} */
-  const backends = adapter ? ["webgpu", "webgl2"] : ["webgl2"];
-  if (!adapter) cancel("webgpu");
-  return backends;
+  if (adapter) return /** @type {Backend[]} */ (["webgpu", "webgl2"]);
+  downloads.webgpu?.abort();
+  delete downloads.webgpu;
+  return /** @type {Backend[]} */ (["webgl2"]);
 }
+
+/**
+ * The files of a program, relative to the page.
+ * @param {Backend} backend
+ */
+export const programFiles = (backend) => [programs[backend].script, programs[backend].wasm];
 
 /**
  * Returns the bindings of a fresh instance.
@@ -56,42 +62,17 @@ export async function loadProgram(backend) {
 }
 
 /**
- * Has the service worker store a program, so that it runs offline.
- * @param {Backend} backend
- */
-export async function keepProgram(backend) {
-  // In a frame of another site nothing is stored; a sandboxed one may not even ask.
-  if (parent !== window) return;
-  const { script, wasm } = programs[backend];
-  // `ready` never resolves if there is no service worker.
-  const registration = await navigator.serviceWorker?.ready;
-  registration?.active?.postMessage({ keep: [script, wasm] });
-}
-
-/** @param {Backend} backend */
-function cancel(backend) {
-  downloads[backend]?.abort();
-  delete downloads[backend];
-}
-
-/**
  * Starts to download a program, unless already started.
  * @param {Backend} backend
  */
 function download(backend) {
-  return (downloads[backend] ??= begin(backend));
-}
-
-/**
- * @param {Backend} backend
- * @returns {Download}
- */
-function begin(backend) {
+  const started = downloads[backend];
+  if (started !== undefined) return started;
   const controller = new AbortController();
   const compiled = compile(backend, controller.signal);
   // Avoids an unhandled rejection if nobody waits for it.
   compiled.catch(() => {});
-  return { compiled, abort: () => controller.abort() };
+  return (downloads[backend] = { compiled, abort: () => controller.abort() });
 }
 
 /**

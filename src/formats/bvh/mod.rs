@@ -22,7 +22,7 @@ use super::{LoadError, LoadOptions};
 use crate::anim::{Clip, Joint, Skeleton, Transform};
 use crate::asset::{Asset, AssetParts, Warnings};
 use crate::formats::error::Problem;
-use crate::formats::file_set::{bare_name, without_query};
+use crate::formats::file_set::file_stem;
 use crate::formats::lines::{self, Lines};
 use frame_of_reference::FrameOfReference;
 use hierarchy::Hierarchy;
@@ -75,8 +75,7 @@ fn skeleton(hierarchy: &Hierarchy, frame: &FrameOfReference) -> Result<Skeleton,
 
 /// Names the clip after the file, which has no name for it.
 fn stem(file: &str) -> &str {
-    let bare = bare_name(without_query(file));
-    match bare.rsplit_once('.').map_or(bare, |(stem, _)| stem) {
+    match file_stem(file) {
         "" => "motion",
         stem => stem,
     }

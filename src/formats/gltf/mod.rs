@@ -28,7 +28,7 @@ use gltf::json::Root;
 
 pub(super) use images::{MAX_IMAGE_PIXELS, image_header};
 pub use write::WriteError;
-pub(super) use write::{asset as write_asset, joint_label, model as write_model, motion as write_motion};
+pub(super) use write::{asset as write_asset, model as write_model, motion as write_motion};
 
 /// Returns the decoded URIs of the files that a model refers to and that are not in the set. Empty if it cannot be read.
 pub(super) fn missing_files(files: &FileSet, file: &str, bytes: &[u8]) -> Vec<String> {

@@ -7,7 +7,7 @@ use glam::{DQuat, Quat, Vec3};
 use serde_json::json;
 use serde_json::value::RawValue;
 
-use super::error::{WriteError, joint_label};
+use super::WriteError;
 use super::glb::pad;
 use super::json::{Array, raw};
 use crate::anim::{Channel, Clip, Interpolation, Keys, Property, Skeleton};
@@ -107,7 +107,7 @@ fn animation(clip: &Clip, skeleton: &Skeleton, weights: bool, data: &mut Data) -
         };
         let (path, shape, width, numbers) = numbers(channel);
         if numbers.iter().any(|number| !number.is_finite()) {
-            let (clip, joint) = (clip.name().to_owned(), joint_label(skeleton, channel.joint));
+            let (clip, joint) = (clip.name().to_owned(), skeleton.label(channel.joint));
             return Err(WriteError::NotFinite { clip, joint });
         }
         let output = data.accessor(shape, width, &numbers, false);

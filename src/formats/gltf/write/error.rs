@@ -1,6 +1,5 @@
 //! Why a file cannot be written.
 
-use crate::anim::{JointIndex, Skeleton};
 use crate::formats::LoadError;
 
 /// Everything that prevents writing a GLB. The user sees these texts.
@@ -53,12 +52,4 @@ pub enum WriteError {
         /// Length of the whole GLB.
         bytes: usize,
     },
-}
-
-/// Returns a joint's name; of one without a name, its number in the file.
-pub(in crate::formats) fn joint_label(skeleton: &Skeleton, joint: JointIndex) -> String {
-    match skeleton.name(joint) {
-        "" => format!("#{}", skeleton.source_index(joint)),
-        name => name.to_owned(),
-    }
 }

@@ -13,6 +13,5 @@ mod motion;
 
 pub use asset::asset;
 pub use error::WriteError;
-pub(in crate::formats) use error::joint_label;
 pub use model::model;
 pub use motion::motion;
