@@ -2,7 +2,7 @@
 // name never changes; the page itself has a version, which this worker shares. A new version waits until a page asks for it.
 // Requests for anything else are left alone: other sites, files beside the page, ranges.
 
-/** The build sets these three. */
+/** The build sets these. */
 const VERSION = "";
 /** @type {string[]} */
 const FILES = [];
@@ -11,6 +11,11 @@ const FILES = [];
  * @type {Record<string, string[]>}
  */
 const PROGRAMS = {};
+/**
+ * The file of each part, stored once a model has needed it.
+ * @type {Record<string, string[]>}
+ */
+const PARTS = {};
 
 const worker = /** @type {ServiceWorkerGlobalScope} */ (/** @type {unknown} */ (self));
 const { scope } = worker.registration;
@@ -28,18 +33,19 @@ async function fill() {
   if (!page.ok || !text.includes(VERSION)) throw new Error("the page's version differs from this service worker's; a later visit tries again");
   // A redirected response can't answer a navigation, so the page is stored as a new one.
   await cache.put("./", new Response(text, { headers: page.headers }));
-  await keep([...FILES, ...(await programsInUse())]);
+  await keep([...FILES, ...(await filesInUse())]);
 }
 
-/** Files of the programs that earlier versions stored: without them, this version would not work offline. */
-async function programsInUse() {
+/** Files of the programs and parts that earlier versions stored: without them, this version would do less offline. */
+async function filesInUse() {
   const earlier = (await caches.keys()).filter((name) => name.startsWith(PREFIX) && name !== CACHE);
   const stored = await Promise.all(earlier.map(async (name) => (await caches.open(name)).keys()));
-  const isStored = (/** @type {string} */ program) => stored.flat().some(({ url }) => url.startsWith(`${scope}${program}-`));
-  const inUse = Object.keys(PROGRAMS).filter(isStored);
+  /** @param {Record<string, string[]>} table */
+  const inUse = (table) => Object.keys(table).filter((name) => stored.flat().some(({ url }) => url.startsWith(`${scope}${name}-`)));
+  const programs = inUse(PROGRAMS);
   // Versions with one program for both back ends don't tell which is used.
-  const isUnknown = inUse.length === 0 && earlier.length > 0;
-  return (isUnknown ? Object.keys(PROGRAMS) : inUse).flatMap((program) => PROGRAMS[program]);
+  const isUnknown = programs.length === 0 && earlier.length > 0;
+  return [...(isUnknown ? Object.keys(PROGRAMS) : programs).flatMap((name) => PROGRAMS[name]), ...inUse(PARTS).flatMap((name) => PARTS[name])];
 }
 
 /** @param {string[]} files */
@@ -73,7 +79,7 @@ async function tidy() {
 
 worker.addEventListener("message", (event) => {
   if (event.data === "use") return worker.skipWaiting();
-  const files = Object.values(PROGRAMS).flat();
+  const files = Object.values({ ...PROGRAMS, ...PARTS }).flat();
   // A page of another version names files that this worker doesn't know.
   event.waitUntil(keep(event.data.keep.filter((/** @type {string} */ file) => files.includes(file))));
 });

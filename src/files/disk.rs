@@ -5,13 +5,15 @@ use std::path::{Component, Path, PathBuf};
 use std::pin::pin;
 use std::task::{Context, Poll, Waker};
 
+use gaitway_part::Answer;
+
 use super::open::{open_items, open_read};
 use super::read::{FilesRead, Item, read_items};
 use super::source::{Content, Located, MAX_FOLDER_FILES, Progress, Reading, Source};
 use super::{OpenError, Role, SortError, decode_images, view};
 use crate::asset::{Asset, Image};
 use crate::editor::{Contents, ModelFiles, OpenedMap, OpenedModel};
-use crate::formats::FileSet;
+use crate::formats::{FileSet, Preparation};
 use crate::library::{ImageData, Model, Motion};
 use crate::samples;
 use crate::state::ViewerState;
@@ -151,6 +153,10 @@ impl Source for Disk {
             return Ok(None);
         }
         self.read(&Place::Path(file), path, reading).await.map(Some)
+    }
+
+    async fn convert(&self, preparation: &Preparation, _reading: &mut Reading<'_>) -> Result<Answer, OpenError> {
+        Ok(preparation.part.run(&preparation.input))
     }
 
     fn start_decoding(&self, _images: &[Image]) {}

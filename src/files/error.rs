@@ -98,6 +98,17 @@ pub enum OpenError {
         received: u64,
     },
 
+    /// A file needs a part of the page that cannot be downloaded.
+    #[error("{file}: needs Gaitway's {part}, which cannot be loaded: {problem}")]
+    PartMissing {
+        /// Name of the file.
+        file: String,
+        /// What the part is called.
+        part: &'static str,
+        /// Why not.
+        problem: String,
+    },
+
     /// The files were read, but cannot be used.
     #[error(transparent)]
     Files(#[from] SortError),

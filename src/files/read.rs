@@ -6,7 +6,7 @@ use super::origins::Origins;
 use super::source::{Content, Located, MAX_FOLDER_FILES, Progress, Reading, Source};
 use super::{OpenError, SortError};
 use crate::editor::{container_of, short_name};
-use crate::formats::{FileSet, missing_files};
+use crate::formats::{FileSet, missing_files, next_preparation};
 use crate::library::Model;
 use crate::samples;
 
@@ -56,6 +56,7 @@ pub(super) async fn read_items<S: Source>(
         reader.note_members();
     }
     reader.add_missing().await?;
+    reader.prepare().await?;
     reader.files.origins.container = container_of(model_label(&reader.labels)).to_owned();
     Ok(reader.files)
 }
@@ -162,6 +163,17 @@ impl<S: Source> Reader<'_, S> {
                 }
             }
             tried.extend(missing);
+        }
+        Ok(())
+    }
+
+    /// Converts what has to be plain glTF before it is loaded.
+    async fn prepare(&mut self) -> Result<(), OpenError> {
+        while let Some(preparation) = next_preparation(&self.files.set).map_err(SortError::from)? {
+            let answer = self.source.convert(&preparation, &mut self.reading).await?;
+            // Whatever follows is about the file again, not about the part.
+            (self.reading.progress)(&short_name(preparation.file()), 0, 0);
+            preparation.finish(&mut self.files.set, answer).map_err(SortError::from)?;
         }
         Ok(())
     }

@@ -2,8 +2,11 @@
 
 use std::ffi::OsStr;
 
+use gaitway_part::Answer;
+
 use super::OpenError;
 use crate::asset::{Asset, Image};
+use crate::formats::Preparation;
 use crate::library::ImageData;
 
 /// Called with the name of the file being read, the bytes received so far and the total, 0 if unknown.
@@ -39,6 +42,9 @@ pub(super) trait Source {
         path: &str,
         reading: &mut Reading<'_>,
     ) -> Result<Option<Vec<u8>>, OpenError>;
+
+    /// Runs a conversion's part. The outer error: it cannot be had.
+    async fn convert(&self, preparation: &Preparation, reading: &mut Reading<'_>) -> Result<Answer, OpenError>;
 
     fn start_decoding(&self, images: &[Image]) -> Self::Decoding;
 

@@ -101,6 +101,14 @@ pub enum LoadError {
         /// What is wrong with the archive, or with one of its entries.
         problem: String,
     },
+    /// A file could not be converted into plain glTF, which is what is loaded.
+    #[error("{file}: {problem}")]
+    Conversion {
+        /// Name of the file in the set.
+        file: String,
+        /// What the converter expected and found.
+        problem: String,
+    },
 }
 
 fn listed(names: &[String]) -> String {

@@ -14,6 +14,18 @@ const MAX_UNPACKED_BYTES: u64 = 1 << 30;
 pub struct FileSet {
     files: Vec<(String, Arc<[u8]>)>,
     unpacked_bytes: u64,
+    conversions: Vec<(String, Conversion)>,
+}
+
+/// What a file was before it was converted into plain glTF.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Conversion {
+    /// `None`: still the format of the glTF.
+    pub format: Option<&'static str>,
+    /// glTF extensions that the file no longer has.
+    pub extensions: Vec<String>,
+    /// What could not be carried over.
+    pub warnings: Vec<String>,
 }
 
 /// The file that a reference resolves to, and whether only its bare name matched.
@@ -45,6 +57,24 @@ impl FileSet {
             Some(file) => file.1 = bytes,
             None => self.files.push((name, bytes)),
         }
+    }
+
+    /// Replaces a file by what it was converted into.
+    pub(super) fn convert(&mut self, name: &str, bytes: impl Into<Arc<[u8]>>, conversion: Conversion) {
+        self.insert(name, bytes);
+        let known = self.conversions.iter_mut().find(|(of, _)| of == name);
+        match known {
+            Some((_, earlier)) => {
+                earlier.extensions.extend(conversion.extensions);
+                earlier.warnings.extend(conversion.warnings);
+            }
+            None => self.conversions.push((name.to_owned(), conversion)),
+        }
+    }
+
+    /// Returns what a file was before it was converted.
+    pub(super) fn conversion(&self, name: &str) -> Option<&Conversion> {
+        self.conversions.iter().find(|(of, _)| of == name).map(|(_, conversion)| conversion)
     }
 
     /// Returns the contents of the file with exactly this normalized name.
@@ -123,6 +153,12 @@ impl FileSet {
 
 pub(super) fn bare_name(path: &str) -> &str {
     path.rsplit(['/', '\\']).next().unwrap_or(path)
+}
+
+/// Returns the name in the set of a file `part` that was made of `base`, and the URI by which `base` refers to it.
+pub(super) fn beside(base: &str, part: &str) -> (String, String) {
+    let uri = format!("{}.{part}", bare_name(base));
+    (join(base, &uri), uri)
 }
 
 /// A file's own name without folders, query and extension.

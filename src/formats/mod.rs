@@ -28,6 +28,7 @@ mod file_set;
 mod gltf;
 mod lines;
 mod obj;
+mod prepare;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -35,6 +36,9 @@ use std::sync::Arc;
 pub use error::LoadError;
 pub use file_set::FileSet;
 pub use gltf::WriteError;
+#[cfg(not(target_arch = "wasm32"))]
+pub use prepare::prepare;
+pub use prepare::{Part, Preparation, next_preparation};
 
 use crate::anim::{Clip, Skeleton};
 use crate::asset::{Asset, Image};

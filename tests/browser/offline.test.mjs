@@ -5,6 +5,7 @@ import os from "node:os";
 import path from "node:path";
 import { after, before, describe, test } from "node:test";
 import { linkOf, readScenes } from "../../xtask/site/samples.mjs";
+import { dataFile, skipWithoutData } from "../three/data.mjs";
 import { BACK_ENDS, VIEWPORT, dist, launch, state, until, watched, whenReady } from "./browser.mjs";
 import { serve } from "./server.mjs";
 
@@ -75,6 +76,23 @@ describe("after a visit", () => {
       assert.deepEqual(page.troubles, []);
       await context.close();
     });
+
+  test("a part that was used works offline", { skip: skipWithoutData }, async () => {
+    const site = await serve({ [FOLDER]: dist });
+    const { context, page } = await visit(`${site.origin}${FOLDER}`);
+    const bytes = [...fs.readFileSync(dataFile("compressed/Fox-gltfpack-meshopt.glb"))];
+    /** @param {import("playwright-core").Page} page */
+    const openFox = (page) => page.evaluate(async (bytes) => (await window.gaitway.open({ "fox.glb": new Uint8Array(bytes) })).joints, bytes);
+    const joints = await openFox(page);
+    const stored = () => JSON.parse(document.querySelector('meta[name="gaitway-parts"]')?.getAttribute("content") ?? "{}").meshopt;
+    await until(page, async (file) => (await caches.match(file)) !== undefined, await page.evaluate(stored));
+    await site.close();
+    const offline = await context.newPage();
+    await offline.goto(page.url());
+    await whenReady(offline);
+    assert.deepEqual(await openFox(offline), joints);
+    await context.close();
+  });
 
   test("a new version is offered and waits", async () => {
     // Without the compressed copies, which would stay at the old version.

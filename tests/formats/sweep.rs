@@ -4,7 +4,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
 use gaitway::asset::Asset;
-use gaitway::formats::{FileSet, LoadError, load, missing_files};
+use gaitway::formats::{FileSet, LoadError, load, missing_files, prepare};
 
 use crate::data_folder::data_folder;
 
@@ -19,6 +19,7 @@ pub fn file_set(path: &Path) -> FileSet {
             files.insert(uri, bytes);
         }
     }
+    prepare(&mut files).unwrap_or_else(|problem| panic!("{}: {problem}", path.display()));
     files
 }
 
@@ -85,8 +86,6 @@ fn unreadable(name: &str) -> Option<&'static str> {
     let has = |part: &str| name.contains(part);
     if has("raco") {
         Some("KHR_draco_mesh_compression")
-    } else if has("meshopt") || has("Duck-vp-12") {
-        Some("EXT_meshopt_compression")
     } else if has("ktx2") {
         Some("KHR_texture_basisu")
     } else if has("Compatibility_05") {

@@ -29,6 +29,7 @@ export function dataFile(name) {
 
 /** Extensions that are supported; a file that requires any other is rejected. */
 const SUPPORTED = [
+  "EXT_meshopt_compression",
   "EXT_texture_webp",
   "KHR_lights_punctual",
   "KHR_materials_emissive_strength",

@@ -3,6 +3,7 @@
 import fs from "node:fs";
 import path from "node:path";
 import * as THREE from "three";
+import { MeshoptDecoder } from "three/examples/jsm/libs/meshopt_decoder.module.js";
 import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
 import { readGltf } from "./data.mjs";
 
@@ -41,7 +42,7 @@ function documentOf(file) {
 export async function loadScene(file, repair = () => {}) {
   // GLTFLoader takes a parsed document too, which its types don't say.
   const document = /** @type {string} */ (/** @type {unknown} */ (documentOf(file)));
-  const gltf = await new GLTFLoader().parseAsync(document, "");
+  const gltf = await new GLTFLoader().setMeshoptDecoder(MeshoptDecoder).parseAsync(document, "");
   repair(gltf);
   const mixer = new THREE.AnimationMixer(gltf.scene);
   const associations = gltf.parser.associations;

@@ -1,6 +1,7 @@
 // `window.gaitway`, the script interface.
 import { takeNews } from "./load.js";
 import { open } from "./opening.js";
+import { parts } from "./parts.js";
 import { running, session, unlessStopped } from "./session.js";
 
 /** @typedef {import("./types.d.ts").Gaitway} Gaitway */
@@ -19,6 +20,7 @@ function ask(name) {
 /** @type {Gaitway} */
 export const gaitway = {
   samples: JSON.parse(samples),
+  parts,
   get ready() {
     return session.started.then(() => undefined);
   },

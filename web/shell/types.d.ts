@@ -134,6 +134,11 @@ export interface State {
 export interface Gaitway {
   /** Files of each sample by the name after `sample:`, as URLs relative to the page. */
   samples: Record<string, string[]>;
+  /** For the program: see parts.js. */
+  parts: {
+    url(name: string): string | undefined;
+    run(name: string, module: Uint8Array<ArrayBuffer>, input: Uint8Array<ArrayBuffer>): Promise<Uint8Array>;
+  };
   /** Resolves once the first image is on screen; a new promise after each restart. */
   readonly ready: Promise<void>;
   open(items: Openable | Openable[] | FileList, options?: { as?: Role }): Promise<InspectDocument>;

@@ -68,8 +68,16 @@ async function putProgram(backend) {
   return { script: put("", backend, ".js", script), wasm: put("", backend, ".wasm", wasm), bytes: wasm.length };
 }
 
+/** @returns {Record<string, string>} */
+function putParts() {
+  const folder = path.join(programs, "parts");
+  const names = fs.readdirSync(folder).map((file) => path.parse(file).name);
+  return Object.fromEntries(names.map((name) => [name, put("parts", name, ".wasm", fs.readFileSync(path.join(folder, `${name}.wasm`)))]));
+}
+
 fs.rmSync(dist, { recursive: true, force: true });
 const [webgpu, webgl2] = await Promise.all(["webgpu", "webgl2"].map(putProgram));
+const parts = putParts();
 const samples = readSamples();
 const scenes = readScenes(samples);
 const addresses = Object.fromEntries(
@@ -120,6 +128,7 @@ const head = [
   '<link rel="manifest" href="manifest.webmanifest">',
   `<link rel="apple-touch-icon" href="${touchIcon}">`,
   `<meta name="gaitway-programs" content="${escaped(JSON.stringify({ webgpu, webgl2 }))}">`,
+  `<meta name="gaitway-parts" content="${escaped(JSON.stringify(parts))}">`,
   `<meta name="gaitway-samples" content="${escaped(JSON.stringify(addresses))}">`,
   // Many sites need an absolute URL.
   `<meta property="og:image" content="${escaped(url === undefined ? previewFile : new URL(previewFile, url).href)}">`,
@@ -149,6 +158,7 @@ const files = fs
 const version = hashOf(html, files.join("\n"), fs.readFileSync(path.join(dist, "manifest.webmanifest")), fs.readFileSync("web/sw.js"));
 fs.writeFileSync(index, replaced(html, "<title>", `<meta name="gaitway-version" content="${version}">\n    <title>`));
 const stored = { webgpu: [webgpu.script, webgpu.wasm], webgl2: [webgl2.script, webgl2.wasm] };
-const worker = text("web/sw.js").replace('VERSION = ""', `VERSION = "${version}"`).replace("FILES = []", `FILES = ${JSON.stringify(files)}`).replace("PROGRAMS = {}", `PROGRAMS = ${JSON.stringify(stored)}`);
+const storedParts = Object.fromEntries(Object.entries(parts).map(([name, file]) => [`parts/${name}`, [file]]));
+const worker = text("web/sw.js").replace('VERSION = ""', `VERSION = "${version}"`).replace("FILES = []", `FILES = ${JSON.stringify(files)}`).replace("PROGRAMS = {}", `PROGRAMS = ${JSON.stringify(stored)}`).replace("PARTS = {}", `PARTS = ${JSON.stringify(storedParts)}`);
 const { code } = await transform(worker, { minify: true, format: "iife", target: TARGET });
 fs.writeFileSync(path.join(dist, "sw.js"), code);

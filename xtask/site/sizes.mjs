@@ -1,13 +1,13 @@
 // Writes compressed copies of everything that compresses, for hosts that can send them, and prints what a visitor downloads:
-// the shell and one of the two programs. Fails if that exceeds a budget. Samples and images are counted apart, since each is
-// loaded when it is shown. Arguments: the folder, and the budgets in bytes with the WebGPU and with the WebGL2 program.
+// the shell and one of the two programs. Fails if that, or a part that some files need, exceeds its budget. Samples and images
+// are counted apart, since each is loaded when it is shown. Arguments: the folder, then `NAME=BYTES` for each program and part.
 import fs from "node:fs";
 import path from "node:path";
 import zlib from "node:zlib";
 
 const folder = process.argv[2];
-const [webgpu, webgl2] = process.argv.slice(3).map(Number);
-const BUDGETS = { webgpu, webgl2 };
+/** @type {Record<string, number>} */
+const BUDGETS = Object.fromEntries(process.argv.slice(3).map((argument) => [argument.split("=")[0], Number(argument.split("=")[1])]));
 const COMPRESSED_ALREADY = [".webp", ".jpg", ".png"];
 /** @typedef {{ raw: number, gzip: number, brotli: number }} Size */
 
@@ -19,10 +19,10 @@ const line = (name, { raw, gzip, brotli }) => console.log(`${name.padEnd(48)}${n
 /** @type {Record<string, Size>} */
 const parts = {};
 /** @param {string} name */
-const partOf = (name) => (name.includes(path.sep) ? name.split(path.sep)[0] : (Object.keys(BUDGETS).find((program) => name.startsWith(`${program}-`)) ?? "shell"));
+const partOf = (name) => Object.keys(BUDGETS).find((part) => name.startsWith(`${part}-`)) ?? (name.includes("/") ? name.split("/")[0] : "shell");
 console.log(`${"bytes".padEnd(48)}${"raw".padStart(12)}${"gzip".padStart(12)}${"brotli".padStart(12)}`);
-for (const name of fs.readdirSync(folder, { recursive: true, encoding: "utf8" }).sort()) {
-  const file = path.join(folder, name);
+for (const file of fs.readdirSync(folder, { recursive: true, encoding: "utf8" }).sort().map((name) => path.join(folder, name))) {
+  const name = path.relative(folder, file).split(path.sep).join("/");
   if (!fs.statSync(file).isFile()) continue;
   const bytes = fs.readFileSync(file);
   const size = { raw: bytes.length, gzip: bytes.length, brotli: bytes.length };
@@ -37,9 +37,10 @@ for (const name of fs.readdirSync(folder, { recursive: true, encoding: "utf8" })
   line(name, size);
 }
 for (const [part, size] of Object.entries(parts)) line(`all: ${part}`, size);
-for (const [program, budget] of Object.entries(BUDGETS)) {
-  const brotli = parts.shell.brotli + parts[program].brotli;
-  console.log(`the page with ${program}: ${brotli.toLocaleString("en")} bytes with brotli`);
+for (const [part, budget] of Object.entries(BUDGETS)) {
+  const isProgram = !part.includes("/");
+  const brotli = (isProgram ? parts.shell.brotli : 0) + parts[part].brotli;
+  console.log(`${isProgram ? "the page with " : ""}${part}: ${brotli.toLocaleString("en")} bytes with brotli`);
   if (brotli > budget) {
     console.error(`that is more than its budget of ${budget.toLocaleString("en")}`);
     process.exitCode = 1;

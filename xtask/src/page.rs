@@ -1,7 +1,7 @@
 //! The page: one program per back end, compiled, bound and optimized here; `xtask/site` makes a site of them.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::thread;
 
 use anyhow::{Context, anyhow};
@@ -9,6 +9,14 @@ use anyhow::{Context, anyhow};
 use crate::process::{repository, run, target_folder};
 
 const BACK_ENDS: [&str; 2] = ["webgpu", "webgl2"];
+
+/// The packages in parts/ that are modules of their own.
+const PARTS: [&str; 1] = ["meshopt"];
+
+/// Limit on a part's memory. A damaged file must not take all of a tab's.
+const MAX_PART_MEMORY: &str = "link-arg=--max-memory=2147483648";
+
+const FOR_THE_PAGE: [&str; 5] = ["--locked", "--target", "wasm32-unknown-unknown", "--profile", "web"];
 
 /// WebAssembly features that rustc uses today. Every browser with SIMD supports them.
 const WASM_FEATURES: [&str; 8] = [
@@ -39,22 +47,23 @@ pub fn build(features: &[&str], url: Option<&str>) -> anyhow::Result<()> {
             .into_iter()
             .try_for_each(|thread| thread.join().map_err(|_| anyhow!("wasm-opt's thread panicked"))?)
     })?;
+    PARTS.into_iter().try_for_each(build_part)?;
     let (dist, programs) = (dist(), programs());
     let mut arguments = vec!["xtask/site/finish.mjs", text(&dist)?, text(&programs)?];
     arguments.extend(url);
     run("node", &arguments)
 }
 
-/// Holds `BACK_END.js` and `BACK_END.wasm`.
+/// Holds `BACK_END.js`, `BACK_END.wasm` and `parts/PART.wasm`.
 fn programs() -> PathBuf {
     target_folder().join("page")
 }
 
 fn compile(back_end: &str, features: &[&str]) -> anyhow::Result<()> {
     let features = [&["viewer", back_end], features].concat().join(",");
-    let cargo = ["build", "--locked", "--bin", "gaitway", "--target", "wasm32-unknown-unknown", "--profile", "web"];
+    let cargo = [&["build", "--bin", "gaitway"], &FOR_THE_PAGE[..]].concat();
     run("cargo", &[&cargo[..], &["--no-default-features", "--features", &features]].concat())?;
-    let built = target_folder().join("wasm32-unknown-unknown/web/gaitway.wasm");
+    let built = compiled("gaitway");
     let folder = programs();
     let bind =
         ["--target", "web", "--no-typescript", "--out-name", back_end, "--out-dir", text(&folder)?, text(&built)?];
@@ -64,12 +73,29 @@ fn compile(back_end: &str, features: &[&str]) -> anyhow::Result<()> {
 fn optimize(back_end: &str) -> anyhow::Result<()> {
     let bound = programs().join(format!("{back_end}_bg.wasm"));
     let optimized = programs().join(format!("{back_end}.wasm"));
-    // The second round saves another 5 KB of brotli.
-    let wasm_opt = ["node_modules/binaryen/bin/wasm-opt", "--gufa", "-Oz", "--gufa", "-Oz"];
-    run("node", &[&wasm_opt, &WASM_FEATURES[..], &[text(&bound)?, "-o", text(&optimized)?]].concat())?;
+    wasm_opt(&bound, &optimized)?;
     Ok(fs::remove_file(bound)?)
 }
 
-fn text(path: &std::path::Path) -> anyhow::Result<&str> {
+fn wasm_opt(from: &Path, to: &Path) -> anyhow::Result<()> {
+    // The second round saves another 5 KB of brotli.
+    let wasm_opt = ["node_modules/binaryen/bin/wasm-opt", "--gufa", "-Oz", "--gufa", "-Oz"];
+    run("node", &[&wasm_opt, &WASM_FEATURES[..], &[text(from)?, "-o", text(to)?]].concat())
+}
+
+fn build_part(part: &str) -> anyhow::Result<()> {
+    let package = format!("gaitway-{part}");
+    let cargo = [&["rustc", "--package", &package, "--bin", &package], &FOR_THE_PAGE[..]].concat();
+    run("cargo", &[&cargo[..], &["--", "-C", MAX_PART_MEMORY]].concat())?;
+    let folder = programs().join("parts");
+    fs::create_dir_all(&folder)?;
+    wasm_opt(&compiled(&package), &folder.join(format!("{part}.wasm")))
+}
+
+fn compiled(program: &str) -> PathBuf {
+    target_folder().join(format!("wasm32-unknown-unknown/web/{program}.wasm"))
+}
+
+fn text(path: &Path) -> anyhow::Result<&str> {
     path.to_str().with_context(|| format!("{} is not UTF-8", path.display()))
 }

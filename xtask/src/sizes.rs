@@ -5,13 +5,14 @@ use anyhow::Context;
 use crate::page::dist;
 use crate::process::run;
 
-/// Compressed with brotli: the shell and the program for WebGPU, and for WebGL2.
-const MAX_BYTES: [&str; 2] = ["1250000", "1700000"];
+/// Limits in bytes, compressed with brotli: of the shell together with each program, and of each part by itself.
+const MAX_BYTES: [(&str, u32); 3] = [("webgpu", 1_250_000), ("webgl2", 1_700_000), ("parts/meshopt", 20_000)];
 
-/// If `limited`, fails when the page exceeds [`MAX_BYTES`].
+/// If `limited`, fails when anything exceeds [`MAX_BYTES`].
 pub fn compress_and_print(limited: bool) -> anyhow::Result<()> {
     let dist = dist();
     let folder = dist.to_str().context("the repository's path is not UTF-8")?;
-    let limits = if limited { MAX_BYTES } else { ["Infinity"; 2] };
-    run("node", &[&["xtask/site/sizes.mjs", folder], &limits[..]].concat())
+    let limit = |bytes: u32| if limited { bytes.to_string() } else { "Infinity".to_owned() };
+    let limits = MAX_BYTES.map(|(name, bytes)| format!("{name}={}", limit(bytes)));
+    run("node", &[&["xtask/site/sizes.mjs", folder], &limits.each_ref().map(String::as_str)[..]].concat())
 }

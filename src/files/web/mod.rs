@@ -2,9 +2,11 @@
 
 mod fetch;
 mod images;
+mod parts;
 
 use std::ffi::OsStr;
 
+use gaitway_part::Answer;
 use js_sys::{Array, Reflect};
 use wasm_bindgen::JsCast;
 
@@ -12,6 +14,7 @@ use super::source::{Content, Located, Progress, Reading, Source};
 use super::{Item, OpenError, Role, open, raw_address, view};
 use crate::asset::{Asset, Image};
 use crate::editor::Contents;
+use crate::formats::Preparation;
 use crate::library::{ImageData, Motion};
 use crate::samples;
 use crate::state::ViewerState;
@@ -95,6 +98,10 @@ impl Source for Web {
                 Ok(None)
             }
         }
+    }
+
+    async fn convert(&self, preparation: &Preparation, reading: &mut Reading<'_>) -> Result<Answer, OpenError> {
+        parts::convert(preparation, reading).await
     }
 
     fn start_decoding(&self, images: &[Image]) -> Vec<images::Decoding> {

@@ -13,7 +13,7 @@ use super::document::{Document, size};
 use crate::formats::error::Problem;
 
 /// Limit on the decoded data of one file. A page has 4 GiB for everything.
-const BUDGET_BYTES: usize = if cfg!(target_pointer_width = "32") { 512 << 20 } else { 1 << 30 };
+pub const BUDGET_BYTES: usize = if cfg!(target_pointer_width = "32") { 512 << 20 } else { 1 << 30 };
 
 /// The buffers of one file and the views into them.
 pub struct Accessors<'a> {

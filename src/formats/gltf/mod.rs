@@ -14,11 +14,13 @@ mod indices;
 mod influences;
 mod materials;
 mod meshes;
+pub(super) mod meshopt;
 mod nodes;
+mod object;
 mod skins;
 mod write;
 
-use crate::asset::{Asset, AssetParts, Image, Warnings};
+use crate::asset::{Asset, AssetParts, Image, Warning, Warnings};
 use crate::formats::error::Problem;
 use crate::formats::{FileSet, LoadError};
 use accessor::{Accessors, Bytes};
@@ -36,7 +38,8 @@ pub(super) fn missing_files(files: &FileSet, file: &str, bytes: &[u8]) -> Vec<St
         return Vec::new();
     };
     let root = &document.root;
-    let buffers = root.buffers.iter().filter_map(|buffer| buffer.uri.as_deref());
+    let buffers = root.buffers.iter().filter(|buffer| !meshopt::is_fallback(buffer));
+    let buffers = buffers.filter_map(|buffer| buffer.uri.as_deref());
     let images = root.images.iter().filter_map(|image| image.uri.as_deref());
     let mut seen = std::collections::BTreeSet::new();
     let mut uris: Vec<String> = Vec::new();
@@ -62,6 +65,10 @@ pub(super) fn load(
     let document = Document::read(file, container.json)?;
     let mut warnings = Warnings::default();
     extensions::check(file, &document.root, &mut warnings)?;
+    let conversion = files.conversion(file);
+    for problem in conversion.into_iter().flat_map(|conversion| &conversion.warnings) {
+        warnings.push(Warning::Other { code: "conversion", place: file.to_owned(), problem: problem.clone() });
+    }
     build(files, file, &container, &document, warnings, on_images).map_err(|problem| problem.in_file(file))
 }
 
@@ -89,8 +96,10 @@ fn build(
     let cameras = nodes::cameras(root, &skeleton)?;
     let lights = nodes::lights(document, &skeleton, &mut warnings)?;
     let humanoid = humanoid::humanoid(root, &skeleton, &mut warnings);
+    let conversion = files.conversion(file);
+    let decoded = conversion.into_iter().flat_map(|conversion| &conversion.extensions);
     let parts = AssetParts {
-        format: format(container, root),
+        format: conversion.and_then(|conversion| conversion.format).unwrap_or_else(|| format(container, root)),
         generator: root.asset.generator.clone().unwrap_or_default(),
         skeleton,
         scenes,
@@ -105,7 +114,7 @@ fn build(
         cameras,
         lights,
         humanoid,
-        extensions_used: root.extensions_used.clone(),
+        extensions_used: root.extensions_used.iter().chain(decoded).cloned().collect(),
         extensions_required: root.extensions_required.clone(),
     };
     let mut asset = Asset::new(parts)?;
@@ -133,30 +142,36 @@ fn resolve_buffers<'a>(
     root: &Root,
     warnings: &mut Warnings,
 ) -> Result<Vec<Option<Bytes<'a>>>, Problem> {
-    let mut buffers = Vec::with_capacity(root.buffers.len());
-    for (index, buffer) in root.buffers.iter().enumerate() {
-        let place = format!("buffers[{index}]");
-        let bytes = match (&buffer.uri, container.binary) {
-            (Some(uri), _) if data::is_data_uri(uri) => Bytes::Owned(data::data_uri(&format!("{place}.uri"), uri)?),
-            (Some(uri), _) => match data::file(files, file, uri, warnings) {
-                Some(bytes) => Bytes::Shared(bytes),
-                None => {
-                    let uri = data::decode_uri(uri).into_owned();
-                    return Err(Problem::MissingFile { place: format!("{place}.uri"), uri });
-                }
-            },
-            (None, Some(binary)) if index == 0 => Bytes::Borrowed(binary),
-            (None, _) => {
-                buffers.push(None);
-                continue;
+    (0..root.buffers.len()).map(|index| resolve_buffer(files, file, container, root, index, warnings)).collect()
+}
+
+/// Returns the bytes of a buffer; `None` if it has none.
+fn resolve_buffer<'a>(
+    files: &FileSet,
+    file: &str,
+    container: &Container<'a>,
+    root: &Root,
+    index: usize,
+    warnings: &mut Warnings,
+) -> Result<Option<Bytes<'a>>, Problem> {
+    let buffer = &root.buffers[index];
+    let place = format!("buffers[{index}]");
+    let bytes = match (&buffer.uri, container.binary) {
+        (Some(uri), _) if data::is_data_uri(uri) => Bytes::Owned(data::data_uri(&format!("{place}.uri"), uri)?),
+        (Some(uri), _) => match data::file(files, file, uri, warnings) {
+            Some(bytes) => Bytes::Shared(bytes),
+            None => {
+                let uri = data::decode_uri(uri).into_owned();
+                return Err(Problem::MissingFile { place: format!("{place}.uri"), uri });
             }
-        };
-        let found = bytes.as_slice().len();
-        let byte_length = size(buffer.byte_length);
-        if found < byte_length {
-            return Err(Problem::new(place, format!("{byte_length} bytes (byteLength)"), found));
-        }
-        buffers.push(Some(bytes));
+        },
+        (None, Some(binary)) if index == 0 => Bytes::Borrowed(binary),
+        (None, _) => return Ok(None),
+    };
+    let found = bytes.as_slice().len();
+    let byte_length = size(buffer.byte_length);
+    if found < byte_length {
+        return Err(Problem::new(place, format!("{byte_length} bytes (byteLength)"), found));
     }
-    Ok(buffers)
+    Ok(Some(bytes))
 }

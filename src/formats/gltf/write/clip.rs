@@ -9,8 +9,8 @@ use serde_json::value::RawValue;
 
 use super::WriteError;
 use super::glb::pad;
-use super::json::{Array, raw};
 use crate::anim::{Channel, Clip, Interpolation, Keys, Property, Skeleton};
+use crate::formats::gltf::object::{Array, raw};
 
 /// A rotation whose squared length is farther from 1 is normalized. Rounding stays far below, so a clip that was loaded is
 /// written back bit by bit.

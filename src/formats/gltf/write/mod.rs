@@ -7,11 +7,11 @@ mod asset;
 mod clip;
 mod error;
 mod glb;
-mod json;
 mod model;
 mod motion;
 
 pub use asset::asset;
 pub use error::WriteError;
+pub(super) use glb::glb;
 pub use model::model;
 pub use motion::motion;

@@ -9,12 +9,12 @@ use serde_json::json;
 use serde_json::value::RawValue;
 
 use super::clip::{self, Counts};
-use super::json::{Array, Object, raw};
 use super::{WriteError, glb};
 use crate::anim::{Clip, JointIndex, Skeleton};
 use crate::asset::Warnings;
 use crate::formats::gltf::accessor::Bytes;
 use crate::formats::gltf::document::{Document, as_text, json_error, size};
+use crate::formats::gltf::object::{Array, Object, raw};
 use crate::formats::gltf::{container, data, resolve_buffers};
 use crate::formats::{FileSet, named};
 

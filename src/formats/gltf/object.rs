@@ -35,6 +35,10 @@ impl Object {
         }
     }
 
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
     pub fn remove(&mut self, key: &str) {
         self.0.retain(|(other, _)| other != key);
     }
@@ -53,6 +57,17 @@ impl Object {
             array.extend(elements);
             self.set(key, &array);
         }
+    }
+
+    /// Removes strings from the array `key`, which is removed once it is empty. Returns those that were there.
+    pub fn remove_strings(&mut self, key: &str, strings: &[&str]) -> Vec<String> {
+        let Some(array) = self.read::<Vec<String>>(key) else { return Vec::new() };
+        let (removed, kept): (Vec<_>, Vec<_>) = array.into_iter().partition(|text| strings.contains(&text.as_str()));
+        match kept.is_empty() {
+            true => self.remove(key),
+            false => self.set(key, &kept),
+        }
+        removed
     }
 
     /// The number of elements of the array `key`.

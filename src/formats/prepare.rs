@@ -1,0 +1,95 @@
+//! The step between a set of files and [`load`](super::load): whatever needs a decoder of its own is converted into plain glTF.
+//! That is the only asynchronous part of loading, because the page has to download the decoder first.
+
+use gaitway_part::Answer;
+
+use super::gltf::meshopt;
+use super::{FileSet, LoadError, is_bvh, is_gltf};
+
+/// A decoder that few files need. Natively it is linked like any crate; the page downloads it when a file needs it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// `EXT_meshopt_compression` and `KHR_meshopt_compression`.
+    Meshopt,
+}
+
+impl Part {
+    /// Name of the package and of the page's module.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Meshopt => "meshopt",
+        }
+    }
+
+    /// What messages call it.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Meshopt => "meshopt decoder",
+        }
+    }
+
+    /// Runs the decoder in this process. A panic in it is an error.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn run(self, input: &[u8]) -> Answer {
+        let convert = match self {
+            Self::Meshopt => gaitway_meshopt::decode,
+        };
+        let stopped = |_| Err(format!("the {} stopped unexpectedly; the file may be damaged", self.title()));
+        std::panic::catch_unwind(|| convert(input)).unwrap_or_else(stopped)
+    }
+}
+
+/// One conversion: run `part` on `input`, then call [`finish`](Preparation::finish).
+#[derive(Debug)]
+pub struct Preparation {
+    /// The decoder to run.
+    pub part: Part,
+    /// What it converts.
+    pub input: Vec<u8>,
+    file: String,
+    decoding: meshopt::Decoding,
+}
+
+impl Preparation {
+    /// Name of the file in the set.
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// Puts what the part returned in the place of the file.
+    ///
+    /// # Errors
+    /// If the part returned an error.
+    pub fn finish(self, files: &mut FileSet, answer: Answer) -> Result<(), LoadError> {
+        let failed = |problem| LoadError::Conversion { file: self.file.clone(), problem };
+        let output = answer.map_err(failed)?;
+        let Some(bytes) = files.get(&self.file).cloned() else { return Ok(()) };
+        self.decoding.finish(files, &self.file, &bytes, &output.bytes)
+    }
+}
+
+/// Returns a conversion that can be done with the files that are in the set. `None` once there is none left.
+///
+/// # Errors
+/// If a file says wrongly what is to be converted.
+pub fn next_preparation(files: &FileSet) -> Result<Option<Preparation>, LoadError> {
+    for (name, bytes) in files.iter().filter(|(name, bytes)| is_gltf(name, bytes) && !is_bvh(name, bytes)) {
+        if let Some((decoding, input)) = meshopt::start(files, name, bytes)? {
+            return Ok(Some(Preparation { part: Part::Meshopt, input, file: name.to_owned(), decoding }));
+        }
+    }
+    Ok(None)
+}
+
+/// Converts whatever has to be converted before [`load`](super::load), with the decoders linked into this program.
+///
+/// # Errors
+/// If a file cannot be converted.
+#[cfg(not(target_arch = "wasm32"))]
+pub fn prepare(files: &mut FileSet) -> Result<(), LoadError> {
+    while let Some(preparation) = next_preparation(files)? {
+        let answer = preparation.part.run(&preparation.input);
+        preparation.finish(files, answer)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,80 @@
+// Parts of Gaitway that few files need: downloaded when a file needs one, and whatever goes wrong in one ends nothing else.
+import assert from "node:assert/strict";
+import { after, before, describe, test } from "node:test";
+import binaryen from "binaryen";
+import { skipWithoutData } from "../three/data.mjs";
+import { BACK_ENDS, meanDifference, open, picture, startSite, state, stats } from "./browser.mjs";
+
+const ROBOT = "compressed/RobotExpressive-gltfpack-meshopt.glb";
+/** The same file without compression. */
+const PLAIN_ROBOT = "compressed/RobotExpressive-gltfpack-quantized.glb";
+const FOX = "compressed/Fox-gltfpack-meshopt.glb";
+const VIEW = "clip=&camera=30,10,20,0,2,0";
+
+/** @param {import("./browser.mjs").TestPage} page */
+const requested = (page) => page.requests.filter((url) => url.includes("/parts/"));
+
+/**
+ * A module with the exports of a part.
+ * @param {string} body What it does when it runs.
+ */
+function module(body) {
+  const text = `(module
+    (memory (export "memory") 1000)
+    (func (export "input") (param i32) (result i32) (i32.const 0))
+    (func (export "run") ${body})
+    (func (export "output") (result i32) (i32.const 0))
+    (func (export "output_length") (result i32) (i32.const 0)))`;
+  return Buffer.from(binaryen.parseText(text).emitBinary());
+}
+
+for (const renderer of BACK_ENDS)
+  describe(`parts on ${renderer}`, { skip: skipWithoutData }, () => {
+    /** @type {import("./browser.mjs").Site} */
+    let site;
+    before(async () => {
+      site = await startSite();
+    });
+    after(() => site?.close());
+
+    test("a compressed model is a link like any other and looks like the original", async () => {
+      const plain = await site.page({ renderer, link: `model=${site.data(PLAIN_ROBOT)}&${VIEW}` });
+      assert.deepEqual(requested(plain), [], "nothing that the file doesn't need");
+      const expected = await picture(plain);
+      await plain.finish();
+      const page = await site.page({ renderer, link: `model=${site.data(ROBOT)}&${VIEW}` });
+      assert.equal(requested(page).length, 1);
+      assert.match(requested(page)[0], /\/parts\/meshopt-[0-9a-f]{16}\.wasm$/);
+      assert.equal((await stats(page)).backend, renderer);
+      const difference = meanDifference(await picture(page), expected);
+      assert.ok(difference < 0.5, `the pictures differ by ${difference} of 255`);
+      assert.deepEqual(page.troubles, []);
+      await page.finish();
+    });
+
+    /** @type {[string, Buffer | null, RegExp][]} */
+    const troubles = [
+      ["that can't be downloaded", null, /needs Gaitway's meshopt decoder, which cannot be loaded: .*cannot be reached/],
+      ["that traps", module("(unreachable)"), /meshopt decoder stopped \(.*unreachable.*\)/],
+      ["that never ends", module("(loop (br 0))"), /meshopt decoder stopped \(it took longer than 60 seconds\)/],
+      ["that answers nothing", module("(nop)"), /answer that cannot be read/],
+    ];
+    for (const [name, replacement, message] of troubles)
+      test(`a part ${name} is an error, and the page goes on`, async () => {
+        const page = await site.page({
+          renderer,
+          // A minute is long.
+          before: () => {
+            const { setTimeout } = window;
+            /** @type {any} */ (window).setTimeout = (/** @type {() => void} */ run, /** @type {number} */ millis) => setTimeout(run, millis === 60_000 ? 500 : millis);
+          },
+        });
+        await page.route("**/parts/*", (route) => (replacement === null ? route.abort() : route.fulfill({ body: replacement, contentType: "application/wasm" })));
+        await assert.rejects(open(page, site.data(FOX)), message);
+        assert.equal((await state(page)).model[0], "sample:walker", "the model is still there");
+        await page.unroute("**/parts/*");
+        await open(page, site.data(FOX));
+        assert.match((await state(page)).model[0], /Fox-gltfpack/);
+        await page.finish();
+      });
+  });

@@ -1,0 +1,64 @@
+// Parts of Gaitway that few files need: WebAssembly modules that convert something into plain glTF (parts/ in the sources). The
+// program downloads one when a file needs it; here it runs, in a worker that ends with the conversion.
+import { keepOffline } from "./offline.js";
+
+const meta = /** @type {HTMLMetaElement | null} */ (document.querySelector('meta[name="gaitway-parts"]'));
+/**
+ * URLs relative to the page, by name.
+ * @type {Record<string, string | undefined>}
+ */
+const files = JSON.parse(meta?.content ?? "{}");
+
+const MAX_SECS = 60;
+
+/**
+ * The whole script of a worker, so it uses nothing from outside. See parts/part/src/lib.rs for the module's exports.
+ * @param {MessageEvent<{ module: BufferSource, input: Uint8Array }>} event
+ */
+async function work({ data: { module, input } }) {
+  const { instance } = await WebAssembly.instantiate(module);
+  const { memory, input: place, run, output, output_length: length } = /** @type {any} */ (instance.exports);
+  // The place first: making it may replace the memory's buffer.
+  const start = place(input.length);
+  new Uint8Array(memory.buffer, start, input.length).set(input);
+  run();
+  postMessage(new Uint8Array(memory.buffer, output(), length()).slice());
+}
+
+export const parts = {
+  /** @param {string} name */
+  url: (name) => files[name],
+
+  /**
+   * Returns the module's answer.
+   * @param {string} name
+   * @param {Uint8Array<ArrayBuffer>} module
+   * @param {Uint8Array<ArrayBuffer>} input
+   * @returns {Promise<Uint8Array>}
+   */
+  async run(name, module, input) {
+    const file = files[name];
+    if (file !== undefined) keepOffline([file]);
+    // A sandboxed frame may start a worker from a blob, but not from a file.
+    // An error inside the promise doesn't reach `onerror` by itself.
+    const script = `onmessage = (event) => (${work})(event).catch((error) => setTimeout(() => { throw error; }));`;
+    const url = URL.createObjectURL(new Blob([script], { type: "text/javascript" }));
+    const worker = new Worker(url);
+    let timer = 0;
+    try {
+      return await new Promise((resolve, reject) => {
+        timer = window.setTimeout(() => reject(new Error(`it took longer than ${MAX_SECS} seconds`)), 1000 * MAX_SECS);
+        worker.onmessage = ({ data }) => resolve(data);
+        worker.onerror = (event) => {
+          event.preventDefault();
+          reject(new Error(event.message));
+        };
+        worker.postMessage({ module, input }, [module.buffer, input.buffer]);
+      });
+    } finally {
+      clearTimeout(timer);
+      worker.terminate();
+      URL.revokeObjectURL(url);
+    }
+  },
+};
