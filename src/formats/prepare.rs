@@ -3,12 +3,14 @@
 
 use gaitway_part::Answer;
 
-use super::gltf::meshopt;
+use super::gltf::{draco, meshopt};
 use super::{FileSet, LoadError, is_bvh, is_gltf};
 
 /// A decoder that few files need. Natively it is linked like any crate; the page downloads it when a file needs it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
+    /// `KHR_draco_mesh_compression`.
+    Draco,
     /// `EXT_meshopt_compression` and `KHR_meshopt_compression`.
     Meshopt,
 }
@@ -17,6 +19,7 @@ impl Part {
     /// Name of the package and of the page's module.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Draco => "draco",
             Self::Meshopt => "meshopt",
         }
     }
@@ -24,6 +27,7 @@ impl Part {
     /// What messages call it.
     pub fn title(self) -> &'static str {
         match self {
+            Self::Draco => "Draco decoder",
             Self::Meshopt => "meshopt decoder",
         }
     }
@@ -32,6 +36,7 @@ impl Part {
     #[cfg(not(target_arch = "wasm32"))]
     pub fn run(self, input: &[u8]) -> Answer {
         let convert = match self {
+            Self::Draco => gaitway_draco::decode,
             Self::Meshopt => gaitway_meshopt::decode,
         };
         let stopped = |_| Err(format!("the {} stopped unexpectedly; the file may be damaged", self.title()));
@@ -47,7 +52,14 @@ pub struct Preparation {
     /// What it converts.
     pub input: Vec<u8>,
     file: String,
-    decoding: meshopt::Decoding,
+    step: Step,
+}
+
+/// What to do with the decoder's answer.
+#[derive(Debug)]
+enum Step {
+    Draco(draco::Decoding),
+    Meshopt(meshopt::Decoding),
 }
 
 impl Preparation {
@@ -64,7 +76,10 @@ impl Preparation {
         let failed = |problem| LoadError::Conversion { file: self.file.clone(), problem };
         let output = answer.map_err(failed)?;
         let Some(bytes) = files.get(&self.file).cloned() else { return Ok(()) };
-        self.decoding.finish(files, &self.file, &bytes, &output.bytes)
+        match self.step {
+            Step::Draco(decoding) => decoding.finish(files, &self.file, &bytes, &output.bytes),
+            Step::Meshopt(decoding) => decoding.finish(files, &self.file, &bytes, &output.bytes),
+        }
     }
 }
 
@@ -74,8 +89,12 @@ impl Preparation {
 /// If a file says wrongly what is to be converted.
 pub fn next_preparation(files: &FileSet) -> Result<Option<Preparation>, LoadError> {
     for (name, bytes) in files.iter().filter(|(name, bytes)| is_gltf(name, bytes) && !is_bvh(name, bytes)) {
+        let preparation = |part, input, step| Ok(Some(Preparation { part, input, file: name.to_owned(), step }));
         if let Some((decoding, input)) = meshopt::start(files, name, bytes)? {
-            return Ok(Some(Preparation { part: Part::Meshopt, input, file: name.to_owned(), decoding }));
+            return preparation(Part::Meshopt, input, Step::Meshopt(decoding));
+        }
+        if let Some((decoding, input)) = draco::start(files, name, bytes)? {
+            return preparation(Part::Draco, input, Step::Draco(decoding));
         }
     }
     Ok(None)

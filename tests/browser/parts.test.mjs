@@ -5,11 +5,22 @@ import binaryen from "binaryen";
 import { skipWithoutData } from "../three/data.mjs";
 import { BACK_ENDS, meanDifference, open, picture, startSite, state, stats } from "./browser.mjs";
 
-const ROBOT = "compressed/RobotExpressive-gltfpack-meshopt.glb";
-/** The same file without compression. */
-const PLAIN_ROBOT = "compressed/RobotExpressive-gltfpack-quantized.glb";
+/** Files that need a part, with the same model without compression and a view of it. */
+const COMPRESSED = [
+  {
+    part: "meshopt",
+    compressed: "compressed/RobotExpressive-gltfpack-meshopt.glb",
+    plain: "compressed/RobotExpressive-gltfpack-quantized.glb",
+    view: "clip=&camera=30,10,20,0,2,0",
+  },
+  {
+    part: "draco",
+    compressed: "khronos/CesiumMan/glTF-Draco/CesiumMan.gltf",
+    plain: "khronos/CesiumMan/glTF/CesiumMan.gltf",
+    view: "clip=&camera=30,10,4,0,0.8,0",
+  },
+];
 const FOX = "compressed/Fox-gltfpack-meshopt.glb";
-const VIEW = "clip=&camera=30,10,20,0,2,0";
 
 /** @param {import("./browser.mjs").TestPage} page */
 const requested = (page) => page.requests.filter((url) => url.includes("/parts/"));
@@ -37,20 +48,21 @@ for (const renderer of BACK_ENDS)
     });
     after(() => site?.close());
 
-    test("a compressed model is a link like any other and looks like the original", async () => {
-      const plain = await site.page({ renderer, link: `model=${site.data(PLAIN_ROBOT)}&${VIEW}` });
-      assert.deepEqual(requested(plain), [], "nothing that the file doesn't need");
-      const expected = await picture(plain);
-      await plain.finish();
-      const page = await site.page({ renderer, link: `model=${site.data(ROBOT)}&${VIEW}` });
-      assert.equal(requested(page).length, 1);
-      assert.match(requested(page)[0], /\/parts\/meshopt-[0-9a-f]{16}\.wasm$/);
-      assert.equal((await stats(page)).backend, renderer);
-      const difference = meanDifference(await picture(page), expected);
-      assert.ok(difference < 0.5, `the pictures differ by ${difference} of 255`);
-      assert.deepEqual(page.troubles, []);
-      await page.finish();
-    });
+    for (const { part, compressed, plain, view } of COMPRESSED)
+      test(`a model compressed with ${part} is a link like any other and looks like the original`, async () => {
+        const original = await site.page({ renderer, link: `model=${site.data(plain)}&${view}` });
+        assert.deepEqual(requested(original), [], "nothing that the file doesn't need");
+        const expected = await picture(original);
+        await original.finish();
+        const page = await site.page({ renderer, link: `model=${site.data(compressed)}&${view}` });
+        assert.equal(requested(page).length, 1);
+        assert.match(requested(page)[0], new RegExp(`/parts/${part}-[0-9a-f]{16}\\.wasm$`));
+        assert.equal((await stats(page)).backend, renderer);
+        const difference = meanDifference(await picture(page), expected);
+        assert.ok(difference < 0.5, `the pictures differ by ${difference} of 255`);
+        assert.deepEqual(page.troubles, []);
+        await page.finish();
+      });
 
     /** @type {[string, Buffer | null, RegExp][]} */
     const troubles = [

@@ -31,6 +31,7 @@ export function dataFile(name) {
 const SUPPORTED = [
   "EXT_meshopt_compression",
   "EXT_texture_webp",
+  "KHR_draco_mesh_compression",
   "KHR_lights_punctual",
   "KHR_materials_emissive_strength",
   "KHR_materials_unlit",

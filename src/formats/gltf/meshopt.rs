@@ -12,12 +12,13 @@ use serde_json::{Map, Value};
 
 use super::accessor::{BUDGET_BYTES, Bytes};
 use super::container::{self, Container};
+use super::decoded::{self, without_extensions};
 use super::document::{Document, as_text, size};
 use super::object::Object;
-use super::{WriteError, resolve_buffer, write};
+use super::resolve_buffer;
 use crate::asset::Warnings;
 use crate::formats::error::Problem;
-use crate::formats::file_set::{Conversion, beside};
+use crate::formats::file_set::beside;
 use crate::formats::{FileSet, LoadError};
 
 const NAMES: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
@@ -45,20 +46,12 @@ pub struct Decoding {
     buffers: BTreeMap<usize, usize>,
 }
 
-/// Returns the decoder's input for a file with compressed views. `None` if it has none, or if loading it will say what is wrong
-/// with the file around them.
+/// Returns the decoder's input for a file with compressed views.
 pub fn start(files: &FileSet, file: &str, bytes: &[u8]) -> Result<Option<(Decoding, Vec<u8>)>, LoadError> {
-    let Ok(container) = container::open(file, bytes) else { return Ok(None) };
-    let mentions = |name: &str| container.json.windows(name.len()).any(|window| window == name.as_bytes());
-    if !NAMES.into_iter().any(mentions) {
-        return Ok(None);
-    }
-    let Ok(document) = Document::read(file, container.json) else { return Ok(None) };
-    match read_views(files, file, &container, &document) {
-        Ok((decoding, input)) => Ok((!decoding.views.is_empty()).then_some((decoding, input))),
-        Err(Problem::MissingFile { .. }) => Ok(None),
-        Err(problem) => Err(problem.in_file(file)),
-    }
+    decoded::start(file, bytes, &NAMES, |container, document| {
+        let (decoding, input) = read_views(files, file, container, document)?;
+        Ok((!decoding.views.is_empty()).then_some((decoding, input)))
+    })
 }
 
 fn read_views(
@@ -161,10 +154,10 @@ impl Decoding {
             let piece = rest.split_off(..range.len());
             if let (Some(piece), Some(data), Some(view)) = (piece, contents.get_mut(&buffer), views.get_mut(index)) {
                 data[range].copy_from_slice(piece);
-                without_extension(view);
+                without_extensions(view, &NAMES);
             }
         }
-        buffers.iter_mut().for_each(without_extension);
+        buffers.iter_mut().for_each(|buffer| without_extensions(buffer, &NAMES));
         for (buffer, data) in contents {
             let (name, uri) = beside(file, &format!("buffer{buffer}"));
             buffers[buffer].set("uri", &uri);
@@ -172,25 +165,6 @@ impl Decoding {
         }
         json.set("bufferViews", &views);
         json.set("buffers", &buffers);
-        json.remove_strings("extensionsRequired", &NAMES);
-        let extensions = json.remove_strings("extensionsUsed", &NAMES);
-        let json = serde_json::to_vec(&json).unwrap_or_default();
-        let too_large =
-            |problem: WriteError| LoadError::Conversion { file: file.to_owned(), problem: problem.to_string() };
-        let plain = match container.binary {
-            Some(binary) => write::glb(json, binary.to_vec()).map_err(too_large)?,
-            None => json,
-        };
-        files.convert(file, plain, Conversion { extensions, ..Conversion::default() });
-        Ok(())
-    }
-}
-
-fn without_extension(object: &mut Object) {
-    let Some(mut extensions) = object.read::<Object>("extensions") else { return };
-    NAMES.into_iter().for_each(|name| extensions.remove(name));
-    match extensions.is_empty() {
-        true => object.remove("extensions"),
-        false => object.set("extensions", &extensions),
+        decoded::replace(files, file, container.binary, json, &NAMES)
     }
 }
