@@ -277,7 +277,8 @@ fn damaged_real_files_never_panic() {
             let mut bytes = original.clone();
             for _ in 0..=random.below(2) {
                 // The beginning has the headers.
-                let at = start + random.below(if random.below(2) == 0 { 64 } else { length });
+                let within = if random.below(2) == 0 { 64 } else { length };
+                let at = start + random.below(within);
                 bytes[at] ^= 1 << random.below(8);
             }
             let mut files = one("model.gltf", model.clone());
