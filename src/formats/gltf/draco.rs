@@ -226,8 +226,7 @@ impl Rewritten {
             // Those of the file are of the data before it was compressed.
             for (key, bound) in ["min", "max"].into_iter().zip(bounds) {
                 if self.list[index].read::<Array>(key).is_some() {
-                    // As f64: a reader that goes through f64 may parse the shortest form of an f32 as its neighbour.
-                    self.list[index].set(key, &Value::from_iter(bound.iter().copied().map(f64::from)));
+                    self.list[index].set(key, &Value::from_iter(bound.iter().copied().map(number)));
                 }
             }
         }
@@ -254,4 +253,11 @@ impl Rewritten {
         accessor.set("count", &count);
         index
     }
+}
+
+/// Writes an integer as such, since a bound of integers must not have a fraction, not even of 0.
+fn number(bound: f32) -> Value {
+    let integer = bound as i64;
+    // As f64: a reader that goes through f64 may parse the shortest form of an f32 as its neighbour.
+    if integer as f32 == bound { integer.into() } else { f64::from(bound).into() }
 }
