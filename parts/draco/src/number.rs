@@ -55,6 +55,7 @@ impl Target {
         } else if normalized && !from.is_integral() && self != Self::F32 {
             number = (number * self.one() + 0.5).floor();
         }
+        let before = data.len();
         match self {
             Self::I8 => data.extend((number as i8).to_le_bytes()),
             Self::U8 => data.extend((number as u8).to_le_bytes()),
@@ -63,7 +64,19 @@ impl Target {
             Self::U32 => data.extend((number as u32).to_le_bytes()),
             Self::F32 => data.extend((number as f32).to_le_bytes()),
         }
-        number as f32
+        // What was written: quantized joints, for example, have a fraction before.
+        read(self.data_type(), &data[before..]).0 as f32
+    }
+
+    fn data_type(self) -> DataType {
+        match self {
+            Self::I8 => DataType::Int8,
+            Self::U8 => DataType::Uint8,
+            Self::I16 => DataType::Int16,
+            Self::U16 => DataType::Uint16,
+            Self::U32 => DataType::Uint32,
+            Self::F32 => DataType::Float32,
+        }
     }
 }
 
@@ -96,12 +109,15 @@ mod tests {
     fn components_are_converted_like_the_reference_decoder_does() {
         let check = |from: DataType, normalized, bytes: &[u8], component_type, expected: &[u8]| {
             let mut data = Vec::new();
-            Target::new(component_type).unwrap().append(from, normalized, bytes, &mut data);
+            let target = Target::new(component_type).unwrap();
+            let written = target.append(from, normalized, bytes, &mut data);
             assert_eq!(data, expected, "{from:?} {bytes:?} to {component_type}");
+            assert_eq!(written, read(target.data_type(), expected).0 as f32);
         };
         check(DataType::Float32, false, &1.25_f32.to_le_bytes(), 5126, &1.25_f32.to_le_bytes());
         check(DataType::Uint8, true, &[255], 5126, &1.0_f32.to_le_bytes());
         check(DataType::Uint8, false, &[255], 5126, &255.0_f32.to_le_bytes());
+        check(DataType::Float32, false, &29.003_f32.to_le_bytes(), 5123, &[29, 0]);
         check(DataType::Float32, true, &0.5_f32.to_le_bytes(), 5121, &[128]);
         check(DataType::Uint8, true, &[7], 5123, &[7, 0]);
         check(DataType::Int32, false, &(-5_i32).to_le_bytes(), 5120, &[251]);

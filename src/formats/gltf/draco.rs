@@ -226,7 +226,7 @@ impl Rewritten {
             // Those of the file are of the data before it was compressed.
             for (key, bound) in ["min", "max"].into_iter().zip(bounds) {
                 if self.list[index].read::<Array>(key).is_some() {
-                    self.list[index].set(key, &Value::from_iter(bound.iter().copied().map(number)));
+                    self.list[index].set(key, &bound.iter().copied().map(number).collect::<Value>());
                 }
             }
         }
