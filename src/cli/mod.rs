@@ -8,6 +8,8 @@ mod motion;
 mod output;
 mod pose;
 #[cfg(feature = "render")]
+mod quiet;
+#[cfg(feature = "render")]
 mod render;
 mod retarget;
 

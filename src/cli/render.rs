@@ -3,6 +3,7 @@
 use super::failure::{Failure, Outcome};
 use super::motion::{apply_link, open_editor};
 use super::output::{print_error, write_output};
+use super::quiet::Quiet;
 use super::{RenderArguments, apply_moment, open};
 use crate::editor::Editor;
 use crate::files::{Disk, encode_png};
@@ -17,7 +18,11 @@ pub(super) fn run(arguments: &RenderArguments, disk: &Disk) -> Outcome {
     let mut frame = Frame::default();
     evaluate(library, state, width as f32 / height as f32, &mut frame);
 
-    let (device, queue, adapter) = headless_device()?;
+    let quiet = Quiet::start();
+    let device = headless_device();
+    drop(quiet);
+    // Once more if it fails: what the driver says may explain why.
+    let (device, queue, adapter) = device.or_else(|_| headless_device())?;
     print_error(&format!("rendering with {} ({})", adapter.name, adapter.backend));
     let mut renderer = Renderer::new(&device, &queue, RendererOptions { samples: 4 });
     let source = source_on_stage(library, state).map(|source| source.model);
