@@ -61,7 +61,10 @@ fn expected_words(expected: &str) -> String {
         "a map" => "an object",
         "a sequence of 4 f32 values" => "an array of 4 numbers",
         _ if expected.starts_with("struct ") => "an object",
-        _ => return quoted(&expected.replace("any of: [", "one of ").replace("\"]", "\"")),
+        _ => match expected.strip_prefix("any of: [").and_then(|list| list.strip_suffix(']')) {
+            Some(list) => return format!("one of {}", curly(list, '"')),
+            None => return quoted(expected),
+        },
     };
     words.to_owned()
 }
@@ -72,33 +75,30 @@ fn found_words(found: &str) -> String {
         "map" => "an object",
         "unit value" => "null",
         _ => {
-            let value = ["integer ", "floating point ", "boolean ", "character "].iter();
-            let value = value.filter_map(|kind| found.strip_prefix(kind)).next();
-            return value.map_or_else(
-                || quoted(found.strip_prefix("string ").unwrap_or(found)),
-                |value| value.trim_matches('`').to_owned(),
-            );
+            if let Some(text) = found.strip_prefix("string \"").and_then(|text| text.strip_suffix('"')) {
+                return format!("“{text}”");
+            }
+            let number = ["integer ", "floating point ", "boolean "].iter().find_map(|kind| found.strip_prefix(kind));
+            return number.map_or_else(|| quoted(found), |number| number.trim_matches('`').to_owned());
         }
     };
     words.to_owned()
 }
 
-/// Replaces backticks and straight quotation marks by curly ones.
+/// Replaces backticks by quotation marks.
 fn quoted(text: &str) -> String {
-    let mut opens = false;
-    let mut curly = |letter: char| match letter {
-        '`' | '"' => {
-            opens = !opens;
-            if opens { '“' } else { '”' }
-        }
-        letter => letter,
-    };
-    text.chars().map(&mut curly).collect()
+    curly(text, '`')
+}
+
+/// Replaces pairs of `mark` by quotation marks.
+fn curly(text: &str, mark: char) -> String {
+    let parts = text.split(mark).enumerate();
+    parts.map(|(at, part)| if at % 2 == 1 { format!("“{part}”") } else { part.to_owned() }).collect()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::json_text::{plain, split_position};
 
     #[test]
     fn messages_have_no_types_of_rust() {
@@ -110,6 +110,10 @@ mod tests {
             ("invalid length 2, expected an array of length 3", "expected an array of length 3, found 2 elements"),
             ("invalid type: map, expected a sequence", "expected an array, found an object"),
             ("invalid type: integer `0`, expected any of: [\"A\", \"B\"]", "expected one of “A”, “B”, found 0"),
+            (
+                "invalid type: string \"x\", expected \"rest\" or {\"clip\": NAME}",
+                "expected \"rest\" or {\"clip\": NAME}, found “x”",
+            ),
             ("missing field `count`", "the member “count” is missing"),
             ("duplicate field `count`", "“count” appears twice; keep one of the two"),
             ("EOF while parsing a list", "it ends too soon (cut short?)"),

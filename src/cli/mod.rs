@@ -62,7 +62,8 @@ enum Action {
 
 #[derive(Debug, Args)]
 struct Files {
-    /// A model with its parts: files, folders, or `sample:NAME`.
+    /// A model with its parts: files, folders, `-` for standard input, or `sample:NAME`. One of several models in an archive or
+    /// a folder is `ARCHIVE#!/FILE`.
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
 }
@@ -106,7 +107,7 @@ struct MapArguments {
     /// The motion to map from.
     #[arg(long, value_name = "FILE")]
     motion: PathBuf,
-    /// Writes the map to this file, for manual editing.
+    /// Writes the map to this file, for manual editing; `-` for standard output.
     #[arg(long, value_name = "MAP.json")]
     out: Option<PathBuf>,
     /// Prints the map as JSON, with each joint's slot, reason and confidence.
@@ -133,7 +134,7 @@ struct RetargetArguments {
     /// Number of loops to write [default: as few as let layered clips of the model loop seamlessly].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
     loops: Option<u16>,
-    /// The file to write.
+    /// The file to write; `-` for standard output.
     #[arg(long, value_name = "OUT.glb")]
     out: PathBuf,
     /// Writes only the skeleton and the clip, without meshes.
@@ -209,7 +210,7 @@ arguments_of! {
 struct ConvertArguments {
     #[command(flatten)]
     input: Files,
-    /// The file to write.
+    /// The file to write; `-` for standard output.
     #[arg(long, value_name = "OUT.glb")]
     out: PathBuf,
     /// The unit of a .bvh [default: guessed from the size of its skeleton].
@@ -264,7 +265,7 @@ struct RenderArguments {
     input: Files,
     #[command(flatten)]
     motion: MotionArguments,
-    /// The image to write.
+    /// The image to write; `-` for standard output.
     #[arg(long, value_name = "PNG")]
     out: PathBuf,
     /// Width and height in pixels.

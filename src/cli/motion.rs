@@ -109,7 +109,8 @@ pub(super) fn apply_link(
     let errors = editor.library().borrow_errors().iter().map(ToString::to_string);
     let unreported: Vec<String> = errors.filter(|error| !problems.contains(error)).collect();
     problems.iter().chain(&unreported).for_each(|problem| warn(problem));
-    if !has_clip {
+    // A motion's first clip overrides the link's, too.
+    if !has_clip && arguments.motion.is_none() {
         warn_of_unknown_clip(editor);
     }
     Ok(())

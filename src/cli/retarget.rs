@@ -63,7 +63,10 @@ fn resolve_map(arguments: &RetargetArguments, model: &Model, motion: &Motion, di
         .in_file(&motion.source));
     }
     apply_options(&mut map, arguments);
-    map.resolve(&model.asset, &motion.asset).map_err(in_map)
+    map.resolve(&model.asset, &motion.asset).map_err(|problem| match &arguments.options.unmapped {
+        Some(_) if problem.path() == Some("unmapped.clip") => Failure::from(problem).at("--unmapped"),
+        _ => in_map(problem),
+    })
 }
 
 fn write(arguments: &RetargetArguments, opened: &Opened, clip: &Clip, disk: &Disk) -> Outcome {
@@ -204,6 +207,7 @@ fn text(map: &ResolvedMap, retargeted: &Retargeted, figures: &Figures) -> String
     let number = |value: Option<f64>, unit: &str| value.map_or("–".to_owned(), |value| format!("{value:.3}{unit}"));
     let kept = match retargeted.resampled.len() {
         0 => "all keys are the source's".to_owned(),
+        1 => "1 joint resampled".to_owned(),
         joints => format!("{joints} joints resampled"),
     };
     format!(

@@ -192,6 +192,10 @@ fn errors_in_a_map_name_its_file() {
         check_fails(&retarget, 1, says);
         check_fails(&pose, 1, says);
     }
+    std::fs::write(&map, json!({ "gaitway_map": 1, "joints": { "Head": { "source": "Head" } } }).to_string())
+        .expect("a map");
+    let of_option = [&retarget[..], &["--unmapped", "Fly"]].concat();
+    check_fails(&of_option, 1, "error: --unmapped: unmapped.clip: the model has no clip “Fly”");
 }
 
 /// Its rest pose and its clip are written as well, in the order in which they play.
