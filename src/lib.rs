@@ -57,6 +57,7 @@ pub mod asset;
 pub mod editor;
 pub mod formats;
 pub mod frame;
+mod json_text;
 pub mod library;
 pub mod mesh;
 pub mod retarget;

@@ -2,35 +2,40 @@
 
 use std::fmt::Write;
 
-use anyhow::{Context, bail};
 use serde_json::{Value, json};
 
+use super::failure::{Failure, Outcome};
 use super::motion::open_motion;
-use super::{MapArguments, open, print_bytes, print_json};
+use super::output::{is_standard_output, print_bytes, print_json, warn, write_output};
+use super::{MapArguments, open};
 use crate::anim::Skeleton;
+use crate::files::Disk;
 use crate::retarget::{Contradiction, Proposal, propose};
 
-pub(super) fn run(arguments: &MapArguments) -> anyhow::Result<()> {
-    let model = open(std::slice::from_ref(&arguments.model))?.model.asset;
-    let motion = open_motion(&arguments.motion)?.asset;
+pub(super) fn run(arguments: &MapArguments, disk: &Disk) -> Outcome {
+    let model = open(std::slice::from_ref(&arguments.model), disk)?.model.asset;
+    let motion = open_motion(&arguments.motion, disk)?.asset;
     let proposal = propose(&model, &motion);
     let map = proposal.to_map(&model, &motion).to_file(&model, &motion);
     for (file, found) in [(&arguments.model, &proposal.model), (&arguments.motion, &proposal.motion)] {
         if let Some(text) = contradictions_text(&found.contradictions) {
-            eprintln!("warning: {}: {text}", file.display());
+            warn(&format!("{}: {text}", file.display()));
         }
     }
     if proposal.pairs.is_empty() {
-        bail!(
+        return Err(Failure::new(
             "no joint of the model matches the motion by name, body part or position; write a map manually \
-             (docs/joint-maps.md)"
-        );
+             (docs/joint-maps.md)",
+        ));
     }
     if let Some(path) = &arguments.out {
-        std::fs::write(path, map.to_json()?).with_context(|| format!("{}", path.display()))?;
+        write_output(path, map.to_json()?.as_bytes(), &["json"], disk)?;
+        if is_standard_output(path) {
+            return Ok(());
+        }
     }
     if arguments.json {
-        let mut document = serde_json::to_value(&map)?;
+        let mut document = serde_json::to_value(&map).map_err(|error| error.to_string())?;
         explain(&proposal, &mut document, &model.skeleton);
         let names = |skeleton: &Skeleton, joints: &[_]| -> Vec<String> {
             joints.iter().map(|&joint| skeleton.label(joint)).collect()

@@ -2,14 +2,17 @@
 
 use std::fmt::Write;
 
+use super::failure::Outcome;
 use super::motion::{apply_link, open_editor};
-use super::{PoseArguments, apply_moment, open, print_bytes, print_json};
+use super::output::{print_bytes, print_json};
+use super::{PoseArguments, apply_moment, open};
+use crate::files::Disk;
 use crate::frame::pose_document;
 
-pub(super) fn run(arguments: &PoseArguments) -> anyhow::Result<()> {
-    let mut editor = open_editor(open(&arguments.input.files)?, &arguments.motion)?;
+pub(super) fn run(arguments: &PoseArguments, disk: &Disk) -> Outcome {
+    let mut editor = open_editor(open(&arguments.input.files, disk)?, &arguments.motion, disk)?;
     if let Some(link) = &arguments.view {
-        apply_link(&mut editor, link, &arguments.motion)?;
+        apply_link(&mut editor, link, &arguments.motion, arguments.moment.clip.is_some(), disk)?;
     }
     apply_moment(&mut editor, &arguments.moment, arguments.motion.motion.is_some())?;
     let document = pose_document(editor.library(), editor.state());

@@ -36,7 +36,7 @@ pub enum SortError {
     #[error(transparent)]
     Load(#[from] LoadError),
     /// Exactly one model was expected.
-    #[error("several models at once ({}); name one of them with its own files", found.join(", "))]
+    #[error("several models at once ({}); name one of them with its own files, in an archive as ARCHIVE#!/FILE", found.join(", "))]
     SeveralModels {
         /// What the models are called.
         found: Vec<String>,

@@ -41,7 +41,7 @@ pub enum LoadError {
     },
     /// The glTF has no version, has one other than 2.x, or has a `minVersion` other than 2.0.
     #[error(
-        "{file}: this is glTF {found}; Gaitway reads glTF 2.0. Convert it, for example by importing and exporting it again"
+        "{file}: this is glTF {found}; Gaitway reads glTF 2.0; convert it, for example by importing and exporting it again"
     )]
     UnsupportedVersion {
         /// Name of the file in the set.
@@ -59,16 +59,14 @@ pub enum LoadError {
         /// How to export or convert the file without the extension.
         advice: &'static str,
     },
-    /// The JSON is malformed or does not have the structure of a glTF.
-    #[error("{file}: not valid JSON for glTF, line {line}, column {column}: {problem}")]
+    /// The text is not JSON.
+    #[error("{file}: not valid JSON, {place}: {problem}")]
     Json {
         /// Name of the file in the set.
         file: String,
-        /// Line in the JSON text, from 1.
-        line: usize,
-        /// Byte in the line, from 1.
-        column: usize,
-        /// The JSON parser's message, after the path of the value if it is known.
+        /// Line and column, both from 1, or the JSON path in a GLB, whose text nobody sees.
+        place: String,
+        /// The JSON parser's message in plain words.
         problem: String,
     },
     /// Something else in the file is malformed, cut short or inconsistent.

@@ -107,23 +107,25 @@ pub fn load_noticing_images(
 
 /// Writes the set's model `name` (one of its [`main_files`]) as a self-contained GLB, with `clips` added after its own. The
 /// clips are for `skeleton`, which was loaded from the same file. The contents of a glTF are preserved to the letter: its
-/// first buffer is the beginning of the new one, and its JSON only grows. An .obj takes joint names and rest pose from
+/// first buffer is the beginning of the new one, and its JSON only grows. Other formats take joint names and rest pose from
 /// `skeleton`.
 pub fn write_model(files: &FileSet, name: &str, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
-    if let Some(bytes) = files.get(name).filter(|bytes| is_obj(name, bytes)) {
-        return write_obj(files, name, bytes, skeleton, clips);
+    let bytes = named(files, name)?;
+    if !is_converted(name, bytes) {
+        return gltf::write_model(files, name, skeleton, clips);
     }
-    gltf::write_model(files, name, skeleton, clips)
+    let asset = read(files, name, bytes, &LoadOptions::default(), &mut |_| ())?;
+    check_skeleton(name, &asset, skeleton)?;
+    let all: Vec<&Clip> = asset.clips.iter().chain(clips.iter().copied()).collect();
+    gltf::write_asset(&asset, skeleton, &all)
 }
 
-fn write_obj(
-    files: &FileSet,
-    name: &str,
-    bytes: &[u8],
-    skeleton: &Skeleton,
-    clips: &[&Clip],
-) -> Result<Vec<u8>, WriteError> {
-    let asset = obj::load(files, name, bytes, &mut |_| ())?;
+/// Whether a model of this format is written from the asset: it has no JSON that could be kept.
+fn is_converted(name: &str, bytes: &[u8]) -> bool {
+    is_bvh(name, bytes) || is_obj(name, bytes)
+}
+
+fn check_skeleton(name: &str, asset: &Asset, skeleton: &Skeleton) -> Result<(), WriteError> {
     let (nodes, joints) = (asset.skeleton.len(), skeleton.len());
     if nodes != joints {
         return Err(WriteError::OtherSkeleton { file: name.to_owned(), nodes, joints });
@@ -133,7 +135,7 @@ fn write_obj(
         let joint = skeleton.label(joint);
         return Err(WriteError::OtherParent { file: name.to_owned(), joint });
     }
-    gltf::write_asset(&asset, skeleton, clips)
+    Ok(())
 }
 
 /// Writes a GLB with nothing but the skeleton of an asset and `clips` for it. `skeleton` has the asset's joints; names and rest
@@ -145,13 +147,15 @@ pub fn write_motion(asset: &Asset, skeleton: &Skeleton, clips: &[&Clip]) -> Resu
 /// Converts the only model or motion of a set to GLB: a glTF with everything in it, a .bvh as skeleton and clip, an .obj in its
 /// rest pose.
 pub fn convert(files: &FileSet, options: &LoadOptions) -> Result<Vec<u8>, WriteError> {
-    let (name, bytes) = find_model(files)?;
+    convert_named(files, find_model(files)?.0, options)
+}
+
+/// Like [`convert`], for one of the set's [`main_files`].
+pub fn convert_named(files: &FileSet, name: &str, options: &LoadOptions) -> Result<Vec<u8>, WriteError> {
+    let bytes = named(files, name)?;
     let asset = read(files, name, bytes, options, &mut |_| ())?;
-    if is_bvh(name, bytes) {
-        return gltf::write_motion(&asset, &asset.skeleton, &asset.clips.iter().collect::<Vec<_>>());
-    }
-    if is_obj(name, bytes) {
-        return gltf::write_asset(&asset, &asset.skeleton, &[]);
+    if is_converted(name, bytes) {
+        return gltf::write_asset(&asset, &asset.skeleton, &asset.clips.iter().collect::<Vec<_>>());
     }
     gltf::write_model(files, name, &asset.skeleton, &[])
 }

@@ -4,8 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// A module may use only lower ranks and its own folder. ARCHITECTURE.md has the same table.
-const RANKS: [(&str, u32); 16] = [
+const RANKS: [(&str, u32); 17] = [
     ("anim", 0),
+    ("json_text", 0),
     ("mesh", 1),
     ("asset", 2),
     ("formats", 3),

@@ -38,7 +38,7 @@ fn invalid_chunks() {
     let mut no_json = Build::triangle().glb();
     no_json[16..20].copy_from_slice(b"what");
     check_bytes("model.glb", no_json, &["a JSON chunk"]);
-    check_bytes("model.glb", glb(b"{\"asset\":", &[]), &["not valid JSON", "line 1"]);
+    check_bytes("model.glb", glb(b"{\"asset\":", &[]), &["not valid JSON, asset: it ends too soon"]);
 }
 
 #[test]
@@ -59,6 +59,21 @@ fn invalid_json_is_located_by_line_and_column() {
     let deep = format!("{{\"asset\":{{\"version\":\"2.0\"}},\"extras\":{}", "[".repeat(100_000));
     check_bytes("model.gltf", deep.into_bytes(), &["not valid JSON"]);
     check_bytes("model.gltf", Vec::new(), &["it is empty"]);
+}
+
+/// No editor shows the text in a GLB, so that its lines help nobody.
+#[test]
+fn places_in_a_glb_are_json_paths() {
+    for (nodes, problem) in [
+        ("{},{\"mesh\":-1}", "model.glb: nodes[1].mesh: expected an index (0, 1, …), found -1"),
+        ("{},{\"children\":3}", "model.glb: nodes[1].children: expected an array, found 3"),
+        ("{},{\"scale\":[1,2]}", "model.glb: nodes[1].scale: expected an array of length 3, found 2 elements"),
+        ("{},{]", "model.glb: not valid JSON, nodes[1]: expected the name of a member"),
+        ("{ \"name\" : tail }", "model.glb: not valid JSON, nodes[0].name: expected"),
+    ] {
+        let text = format!("{{\"asset\":{{\"version\":\"2.0\"}},\n\"nodes\":[{nodes}]}}");
+        check_bytes("model.glb", glb(text.as_bytes(), &[]), &[problem]);
+    }
 }
 
 #[test]

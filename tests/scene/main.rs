@@ -7,6 +7,7 @@ mod allocations;
 
 mod cli;
 mod cli_motion;
+mod cli_output;
 #[path = "../support/coursework.rs"]
 mod coursework;
 mod coursework_scene;

@@ -39,12 +39,8 @@ export function renderScenes(wanted, samples) {
   const missing = images.filter(({ file }) => !fs.existsSync(file));
   if (missing.length > 0) run("cargo", ["build", "--release"]);
   const program = path.join(TARGET, "release", process.platform === "win32" ? "gaitway.exe" : "gaitway");
-  for (const { scene, link, file } of missing) {
-    // An interrupted run must not leave something that looks like an image.
-    const unfinished = `${file}.part`;
-    run(program, ["render", scene.model, "--view", link, "--size", scene.size, "--out", unfinished]);
-    fs.renameSync(unfinished, file);
-  }
+  for (const { scene, link, file } of missing)
+    run(program, ["render", scene.model, "--view", link, "--size", scene.size, "--out", file]);
   return images.map(({ file }) => file);
 }
 

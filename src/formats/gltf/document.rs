@@ -13,7 +13,9 @@ use gltf::json::{Index, Root, scene};
 use serde_json::value::RawValue;
 use serde_json::{Map, Value};
 
+use super::container::Container;
 use crate::formats::LoadError;
+use crate::json_text;
 
 /// The `target.node` of an animation channel that has none: an extension defines what it animates.
 const NO_NODE: u32 = u32::MAX;
@@ -58,14 +60,14 @@ pub struct Document<'a> {
 }
 
 impl<'a> Document<'a> {
-    pub fn read(file: &str, text: &'a [u8]) -> Result<Self, LoadError> {
-        let text = as_text(text);
+    pub fn read(file: &str, container: &Container<'a>) -> Result<Self, LoadError> {
+        let text = as_text(container.json);
         let root = match serde_json::from_str::<Root>(&text) {
             Ok(root) if !has_long_integer(text.as_bytes()) => {
                 check_version(file, Some(&root.asset.version), root.asset.min_version.as_deref())?;
                 root
             }
-            _ => read_loosened(file, &text)?,
+            _ => read_loosened(file, &text, container.is_glb)?,
         };
         Ok(Self { root, text, value: OnceCell::new() })
     }
@@ -104,18 +106,25 @@ pub fn target_node(node: Index<scene::Node>) -> Option<usize> {
     Some(node.value()).filter(|&node| node != NO_NODE as usize)
 }
 
-/// Wraps an error of the JSON parser.
-pub fn json_error(file: &str, problem: &serde_json::Error) -> LoadError {
-    let (line, column) = (problem.line(), problem.column());
-    let text = problem.to_string();
-    // The message ends with the position, which has fields of its own.
-    let problem = text.strip_suffix(&format!(" at line {line} column {column}")).unwrap_or(&text).to_owned();
-    LoadError::Json { file: file.to_owned(), line, column, problem }
+/// Wraps an error of the JSON parser about a text that is not JSON.
+pub fn json_error(file: &str, text: &str, is_glb: bool, problem: &serde_json::Error) -> LoadError {
+    let message = problem.to_string();
+    let (said, position) = json_text::split_position(&message);
+    // A GLB's text is usually one long line, and no editor shows it.
+    let path = is_glb.then(|| place(&path_at(text, offset_of(text, problem.line(), problem.column()))));
+    let place = path.filter(|path| !path.is_empty()).or(position).unwrap_or_default();
+    LoadError::Json { file: file.to_owned(), place, problem: json_text::plain(said) }
+}
+
+/// The byte at a line and column, both from 1.
+fn offset_of(text: &str, line: usize, column: usize) -> usize {
+    let before: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
+    before + column
 }
 
 /// Reads a text that the crate's types reject, or whose integers they may truncate.
-fn read_loosened(file: &str, text: &str) -> Result<Root, LoadError> {
-    let mut value: Value = serde_json::from_str(text).map_err(|problem| json_error(file, &problem))?;
+fn read_loosened(file: &str, text: &str, is_glb: bool) -> Result<Root, LoadError> {
+    let mut value: Value = serde_json::from_str(text).map_err(|problem| json_error(file, text, is_glb, &problem))?;
     // Other versions have another structure, so the version comes first.
     let asset = |key: &str| value.pointer(&format!("/asset/{key}")).filter(|value| !value.is_null()).map(self::text);
     check_version(file, asset("version").as_deref(), asset("minVersion").as_deref())?;
@@ -125,11 +134,12 @@ fn read_loosened(file: &str, text: &str) -> Result<Root, LoadError> {
     serde_json::from_str(&loosened).map_err(|problem| {
         let path = path_at(&loosened, problem.column());
         let (line, column) = position(text, &path);
-        let problem = match json_error(file, &problem) {
-            LoadError::Json { problem, .. } => format!("{}: {problem}", place(&path)),
-            other => other.to_string(),
-        };
-        LoadError::Json { file: file.to_owned(), line, column, problem }
+        let position = if is_glb { String::new() } else { format!(" (line {line}, column {column})") };
+        let message = problem.to_string();
+        let said = json_text::split_position(&message).0;
+        let (expected, found) =
+            json_text::expected_and_found(said).unwrap_or_else(|| ("valid glTF".to_owned(), json_text::plain(said)));
+        LoadError::Invalid { file: file.to_owned(), place: place(&path) + &position, expected, found }
     })
 }
 
@@ -140,7 +150,7 @@ enum Step {
     Element(usize),
 }
 
-/// The path to the value that a parser was reading when it stopped after `end` bytes of compact JSON.
+/// The path to the value that a parser was reading when it stopped after `end` bytes.
 fn path_at(text: &str, end: usize) -> Vec<Step> {
     let mut path = Vec::new();
     let mut at = 0;
@@ -158,7 +168,7 @@ fn path_at(text: &str, end: usize) -> Vec<Step> {
             (b'"', last) => {
                 length = string_length(rest);
                 let string = &rest[..length];
-                if let (Some(Step::Member(key)), true) = (last, rest[length..].starts_with(':')) {
+                if let (Some(Step::Member(key)), true) = (last, rest[length..].trim_start().starts_with(':')) {
                     *key = serde_json::from_str(string).unwrap_or_default();
                 }
             }

@@ -53,7 +53,7 @@ pub fn start(files: &FileSet, file: &str, bytes: &[u8]) -> Result<Option<(Decodi
     if !NAMES.into_iter().any(mentions) {
         return Ok(None);
     }
-    let Ok(document) = Document::read(file, container.json) else { return Ok(None) };
+    let Ok(document) = Document::read(file, &container) else { return Ok(None) };
     match read_views(files, file, &container, &document) {
         Ok((decoding, input)) => Ok((!decoding.views.is_empty()).then_some((decoding, input))),
         Err(Problem::MissingFile { .. }) => Ok(None),
@@ -144,7 +144,7 @@ impl Decoding {
     /// Replaces the file by one without compression. `decoded` has the views one after the other.
     pub fn finish(self, files: &mut FileSet, file: &str, bytes: &[u8], decoded: &[u8]) -> Result<(), LoadError> {
         let container = container::open(file, bytes)?;
-        let document = Document::read(file, container.json)?;
+        let document = Document::read(file, &container)?;
         let mut json: Object = serde_json::from_str(&as_text(container.json)).unwrap_or_default();
         let mut buffers: Vec<Object> = json.read("buffers").unwrap_or_default();
         let mut contents: BTreeMap<usize, Vec<u8>> = BTreeMap::new();

@@ -34,7 +34,7 @@ pub(super) use write::{asset as write_asset, model as write_model, motion as wri
 
 /// Returns the decoded URIs of the files that a model refers to and that are not in the set. Empty if it cannot be read.
 pub(super) fn missing_files(files: &FileSet, file: &str, bytes: &[u8]) -> Vec<String> {
-    let Ok(document) = container::open(file, bytes).and_then(|container| Document::read(file, container.json)) else {
+    let Ok(document) = container::open(file, bytes).and_then(|container| Document::read(file, &container)) else {
         return Vec::new();
     };
     let root = &document.root;
@@ -62,7 +62,7 @@ pub(super) fn load(
     on_images: &mut dyn FnMut(&[Image]),
 ) -> Result<Asset, LoadError> {
     let container = container::open(file, bytes)?;
-    let document = Document::read(file, container.json)?;
+    let document = Document::read(file, &container)?;
     let mut warnings = Warnings::default();
     extensions::check(file, &document.root, &mut warnings)?;
     let conversion = files.conversion(file);

@@ -103,8 +103,10 @@ impl JointMapFile {
         let blanked = without_explanations(text);
         let text = blanked.as_deref().unwrap_or(text);
         serde_path_to_error::deserialize(&mut serde_json::Deserializer::from_str(text)).map_err(|error| {
-            let path = error.path().to_string();
-            MapError::Json { path, message: error.into_inner().to_string() }
+            let (path, message) = (error.path().to_string(), error.into_inner().to_string());
+            // The text is JSON, so the parser misses the name of an option.
+            let option = "expected a name in quotation marks (see docs/joint-maps.md) at line ";
+            MapError::Json { path, message: message.replacen("expected value at line ", option, 1) }
         })
     }
 

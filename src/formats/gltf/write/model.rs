@@ -25,9 +25,10 @@ use crate::formats::{FileSet, named};
 pub fn model(files: &FileSet, file: &str, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
     let bytes = named(files, file)?;
     let container = container::open(file, bytes)?;
-    let root = Document::read(file, container.json)?.root;
+    let root = Document::read(file, &container)?.root;
+    let text = as_text(container.json);
     let mut json: Object =
-        serde_json::from_str(&as_text(container.json)).map_err(|problem| json_error(file, &problem))?;
+        serde_json::from_str(&text).map_err(|problem| json_error(file, &text, container.is_glb, &problem))?;
     if root.nodes.len() != skeleton.len() {
         let (nodes, joints) = (root.nodes.len(), skeleton.len());
         return Err(WriteError::OtherSkeleton { file: file.to_owned(), nodes, joints });
