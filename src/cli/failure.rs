@@ -12,23 +12,23 @@ use crate::retarget::{MapError, RetargetError};
 /// The result of a command or a part of one.
 pub(super) type Outcome<T = ()> = Result<T, Failure>;
 
-/// The member `error` of the document that `--json` prints. Unknown parts are left out.
+/// The member `error` of the document that `--json` prints. Unknown parts are left out. Boxed strings keep results small.
 #[derive(Debug, Default, Serialize)]
 pub(super) struct Failure {
     /// All of it, as people read it: `FILE: PLACE: expected X, found Y; HINT`.
     message: String,
     #[serde(skip_serializing_if = "Option::is_none")]
-    file: Option<String>,
+    file: Option<Box<str>>,
     /// A JSON path, or a line of a text format.
     #[serde(rename = "where", skip_serializing_if = "Option::is_none")]
-    place: Option<String>,
+    place: Option<Box<str>>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    expected: Option<String>,
+    expected: Option<Box<str>>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    found: Option<String>,
+    found: Option<Box<str>>,
     /// What to do, or what there is instead.
     #[serde(skip_serializing_if = "Option::is_none")]
-    hint: Option<String>,
+    hint: Option<Box<str>>,
 }
 
 impl Failure {
@@ -39,7 +39,7 @@ impl Failure {
     pub fn expected(expected: impl Into<String>, found: impl Into<String>) -> Self {
         let (expected, found) = (expected.into(), found.into());
         let message = format!("expected {expected}, found {found}");
-        Self { expected: Some(expected), found: Some(found), ..Self::default() }.saying(message)
+        Self::parts(None, None, Some(&expected), Some(&found)).saying(message)
     }
 
     /// Adds what to do.
@@ -51,14 +51,14 @@ impl Failure {
     /// Adds the place in the file, before the file itself.
     pub fn at(mut self, place: &str) -> Self {
         self.message = format!("{place}: {}", self.message);
-        self.place = Some(place.to_owned());
+        self.place = Some(place.into());
         self
     }
 
     /// Adds the name of the file.
     pub fn in_file(mut self, file: impl Display) -> Self {
         self.message = format!("{file}: {}", self.message);
-        self.file = Some(file.to_string());
+        self.file = Some(file.to_string().into());
         self
     }
 
@@ -71,13 +71,13 @@ impl Failure {
         self.message = message.to_string();
         let file = self.file.as_deref().unwrap_or_default();
         let text = self.message.strip_prefix(file).unwrap_or(&self.message);
-        self.hint = text.rsplit_once("; ").map(|(_, hint)| hint.to_owned());
+        self.hint = text.rsplit_once("; ").map(|(_, hint)| hint.into());
         self
     }
 
     /// Keeps the parts and adds the text that they are from.
     fn parts(file: Option<&str>, place: Option<&str>, expected: Option<&str>, found: Option<&str>) -> Self {
-        let [file, place, expected, found] = [file, place, expected, found].map(|part| part.map(str::to_owned));
+        let [file, place, expected, found] = [file, place, expected, found].map(|part| part.map(Into::into));
         Self { file, place, expected, found, ..Self::default() }
     }
 
@@ -112,7 +112,7 @@ fn map_parts(error: &MapError) -> Failure {
 fn sort_parts(error: &SortError) -> Failure {
     match error {
         SortError::Load(error) => load_parts(error),
-        SortError::Map { file, problem } => Failure { file: Some(file.clone()), ..map_parts(problem) },
+        SortError::Map { file, problem } => Failure { file: Some(file.as_str().into()), ..map_parts(problem) },
         _ => Failure::default(),
     }
 }
@@ -145,7 +145,7 @@ fn write_parts(error: &WriteError) -> Failure {
 
 fn borrow_parts(error: &BorrowError) -> Failure {
     match error {
-        BorrowError::Map { motion, problem } => Failure { file: Some(motion.clone()), ..map_parts(problem) },
+        BorrowError::Map { motion, problem } => Failure { file: Some(motion.as_str().into()), ..map_parts(problem) },
         BorrowError::Retarget { motion, .. } => Failure::of_file(motion),
     }
 }
