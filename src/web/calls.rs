@@ -73,19 +73,6 @@ pub fn is_private() -> Result<bool, JsError> {
     with_app(&page, |app| app.editor().is_private()).map_err(error)
 }
 
-/// Returns a QR code as a line of `0` and `1` per row; `None` if the text is too long to scan off a screen.
-#[wasm_bindgen]
-pub fn qr(text: &str) -> Option<String> {
-    let max_version = qrcodegen::Version::new(30);
-    let segments = qrcodegen::QrSegment::make_segments(text);
-    let (min_correction, min_version) = (qrcodegen::QrCodeEcc::Low, qrcodegen::Version::MIN);
-    let code =
-        qrcodegen::QrCode::encode_segments_advanced(&segments, min_correction, min_version, max_version, None, true)
-            .ok()?;
-    let row = |y| (0..code.size()).map(|x| if code.get_module(x, y) { '1' } else { '0' }).collect();
-    Some((0..code.size()).map(row).collect::<Vec<String>>().join("\n"))
-}
-
 /// Returns the link's keys as JSON.
 #[wasm_bindgen]
 pub fn state() -> Result<String, JsError> {

@@ -61,7 +61,6 @@ export interface Bindings {
   close_placeholder(): void;
   refuse(problem: string): void;
   is_private(): boolean;
-  qr(text: string): string | undefined;
   state(): string;
   pose(): string;
   stats(): string;
@@ -137,6 +136,7 @@ export interface Gaitway {
   /** For the program: see parts.js. */
   parts: {
     url(name: string): string | undefined;
+    convert(name: string, input: Uint8Array<ArrayBuffer>): Promise<Uint8Array>;
     run(name: string, module: Uint8Array<ArrayBuffer>, input: Uint8Array<ArrayBuffer>): Promise<Uint8Array>;
   };
   /** Resolves once the first image is on screen; a new promise after each restart. */

@@ -177,8 +177,9 @@ impl Decoding {
         let extensions = json.remove_strings("extensionsUsed", &NAMES);
         let json = serde_json::to_vec(&json).unwrap_or_default();
         let plain = match container.binary {
-            Some(binary) => write::glb(json, binary.to_vec()).map_err(|problem: WriteError| {
-                LoadError::Conversion { file: file.to_owned(), problem: problem.to_string() }
+            Some(binary) => write::glb(json, binary.to_vec()).map_err(|problem: WriteError| LoadError::Conversion {
+                file: file.to_owned(),
+                problem: problem.to_string(),
             })?,
             None => json,
         };
