@@ -1,5 +1,6 @@
 // Encodes a video frame by frame, however long each takes to draw. A part of the page that is downloaded when the first video
 // is recorded. Uses WebCodecs, and MediaRecorder where that is missing.
+//! Contains Mediabunny (MPL-2.0), unmodified; its source code: https://github.com/Vanilagy/mediabunny
 import { BufferTarget, Mp4OutputFormat, Output, Quality, VideoSample, VideoSampleSource, WebMOutputFormat, getFirstEncodableVideoCodec } from "mediabunny";
 
 /**
