@@ -42,7 +42,7 @@ export async function encode(video) {
   const canEncode = typeof VideoEncoder !== "undefined";
   const codec = canEncode ? await getFirstEncodableVideoCodec(isTransparent ? ALPHA_CODECS : CODECS, { width, height, quality }) : null;
   if (codec !== null) return encodeFrames(video, codec, quality);
-  if (isTransparent) throw new Error("This browser can't encode a transparent one. Use Chrome or Edge, or choose a background.");
+  if (isTransparent) throw new Error("this browser can't encode transparent ones. Use Chrome or Edge, or choose a background.");
   return recordFrames(video);
 }
 
@@ -74,7 +74,7 @@ async function encodeFrames(video, codec, quality) {
     await output.cancel();
     throw error;
   }
-  if (encodedCount !== frameCount || target.buffer === null) throw new Error(`The browser encoded ${encodedCount} of ${frameCount} frames.`);
+  if (encodedCount !== frameCount || target.buffer === null) throw new Error(`the browser encoded ${encodedCount} of ${frameCount} frames`);
   return { blob: new Blob([target.buffer]), extension: isMp4 ? "mp4" : "webm" };
 }
 
@@ -100,7 +100,7 @@ async function recordFrames(video) {
   const context = canvas.getContext("2d");
   const mimeType = typeof MediaRecorder === "undefined" ? undefined : RECORDER_TYPES.find((type) => MediaRecorder.isTypeSupported(type));
   const stream = mimeType === undefined ? undefined : canvas.captureStream?.(0);
-  if (context === null || mimeType === undefined || stream === undefined) throw new Error("This browser can't encode videos. Use a current version of Chrome, Edge, Firefox or Safari, or save images instead.");
+  if (context === null || mimeType === undefined || stream === undefined) throw new Error("this browser can't encode any. Use a current version of Chrome, Edge, Firefox or Safari, or save images instead.");
   const track = /** @type {CanvasCaptureMediaStreamTrack} */ (stream.getVideoTracks()[0]);
   const recorder = new MediaRecorder(stream, { mimeType, videoBitsPerSecond: RECORDER_BITS_PER_SEC });
   /** @type {Blob[]} */
@@ -108,7 +108,7 @@ async function recordFrames(video) {
   recorder.ondataavailable = ({ data }) => chunks.push(data);
   const stopped = new Promise((resolve, reject) => {
     recorder.onstop = resolve;
-    recorder.onerror = () => reject(new Error("The browser stopped encoding."));
+    recorder.onerror = () => reject(new Error("the browser stopped encoding"));
   });
   stopped.catch(() => {});
   try {
@@ -143,7 +143,7 @@ async function assertPlayable(blob) {
   try {
     await new Promise((resolve, reject) => {
       player.onloadeddata = resolve;
-      player.onerror = () => reject(new Error("The browser encoded no frames."));
+      player.onerror = () => reject(new Error("the browser encoded no frames"));
     });
   } finally {
     URL.revokeObjectURL(player.src);

@@ -192,6 +192,9 @@ pub fn destroy() {
 }
 
 pub(super) fn text_of(value: &JsValue) -> String {
+    if let Some(error) = value.dyn_ref::<js_sys::Error>() {
+        return error.message().into();
+    }
     value.as_string().unwrap_or_else(|| String::from(js_sys::Object::from(value.clone()).to_string()))
 }
 

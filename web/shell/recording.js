@@ -37,7 +37,7 @@ async function encode(video) {
   try {
     part = await import(new URL(file, document.baseURI).href);
   } catch (error) {
-    throw new Error(`Gaitway's video encoder can't be loaded. Check the connection and try again. (${messageOf(error)})`, { cause: error });
+    throw new Error(`the encoder can't be loaded. Check the connection and try again. (${messageOf(error)})`, { cause: error });
   }
   keepOffline([file]);
   return part.encode(video);
