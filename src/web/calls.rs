@@ -102,6 +102,14 @@ pub async fn screenshot() -> Result<Uint8Array, JsError> {
     settled(promise).await.map(JsValue::unchecked_into).map_err(error)
 }
 
+/// Returns the pixels of a frame of the video that is being recorded: RGBA rows from the top, with straight alpha.
+#[wasm_bindgen]
+pub async fn video_frame(index: u32) -> Result<Uint8Array, JsError> {
+    let page = page().map_err(error)?;
+    let pixels = with_app(&page, |app| app.video_frame(index)).flatten().map_err(error)?;
+    pixels.await.map(|pixels| Uint8Array::from(pixels.as_slice())).map_err(error)
+}
+
 /// Resolves when the first image has been drawn, and starts time.
 #[wasm_bindgen]
 pub async fn begin() -> Result<(), JsError> {

@@ -25,6 +25,7 @@ mod history;
 mod link;
 mod link_files;
 mod link_properties;
+mod loop_frames;
 mod manual_pose;
 mod map_edits;
 mod motion;

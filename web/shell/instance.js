@@ -2,7 +2,7 @@
 // same files and view.
 import { awaitFiles, awaited, showAwaited } from "./awaited.js";
 import { BACKEND_NAMES, TRY_DOWNLOAD, TRY_GRAPHICS, hasBackend, missingCapabilities, otherBackend } from "./capabilities.js";
-import { summarize, viewChanged } from "./changes.js";
+import { summarize, summarizeSoon, viewChanged } from "./changes.js";
 import { button, byId, frames, messageOf } from "./dom.js";
 import { drawOffScreen } from "./first-frame.js";
 import { follow, showMissing } from "./following.js";
@@ -15,7 +15,7 @@ import { showOpenDialog } from "./open-dialog.js";
 import { panel, sayProblem, showCannotRun, showPanel, showProgress } from "./panels.js";
 import { arePrivate } from "./privacy.js";
 import { backendsToTry, loadProgram, programFiles } from "./program.js";
-import { download, startRecording, stopRecording } from "./recording.js";
+import { cancelRecording, download, record } from "./recording.js";
 import { session } from "./session.js";
 import { share } from "./share.js";
 
@@ -178,8 +178,9 @@ function callsFor(bindings) {
     choose: showOpenDialog,
     gallery: showGallery,
     save: download,
-    startRecording,
-    stopRecording,
+    record: (name, width, height, framesPerSec, frameCount, isTransparent) =>
+      record(name, { width, height, framesPerSec, frameCount, isTransparent, frame: bindings.video_frame }).finally(summarizeSoon),
+    cancelRecording,
     share,
     progress: showProgress,
     changed: (link) => isCurrent() && viewChanged(link),
@@ -215,7 +216,7 @@ function stopped(message) {
 
 /** @param {Bindings | null} instance */
 function end(instance) {
-  stopRecording();
+  cancelRecording();
   if (session.app === instance) session.app = null;
   if (current === instance) current = null;
   try {

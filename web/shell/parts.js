@@ -1,5 +1,6 @@
-// Parts of Gaitway that few files need: WebAssembly modules that convert something into plain glTF (parts/ in the sources). The
-// program downloads one when a file needs it; here it runs, in a worker that ends with the conversion.
+// Parts of Gaitway that few visits need. Most are WebAssembly modules that convert something into plain glTF (parts/ in the
+// sources): the program downloads one when a file needs it; here it runs, in a worker that ends with the conversion. One is a
+// script that encodes videos (recording.js).
 import { keepOffline } from "./offline.js";
 
 const meta = /** @type {HTMLMetaElement | null} */ (document.querySelector('meta[name="gaitway-parts"]'));

@@ -33,8 +33,8 @@ export interface ShellCalls {
   choose(role: "any" | "motion"): void;
   gallery(): void;
   save(name: string, bytes: Uint8Array<ArrayBuffer>): void;
-  startRecording(): boolean;
-  stopRecording(name?: string): void;
+  record(name: string, width: number, height: number, framesPerSec: number, frameCount: number, isTransparent: boolean): Promise<string | undefined>;
+  cancelRecording(): void;
   share(link: string): void;
   progress(name: string, received: number, total: number): void;
   changed(link: string): void;
@@ -66,6 +66,7 @@ export interface Bindings {
   stats(): string;
   summary(): string;
   screenshot(): Promise<Uint8Array<ArrayBuffer>>;
+  video_frame(index: number): Promise<Uint8Array<ArrayBuffer>>;
   linked_files(link: string): string;
   shown_files(link: string): string;
   public_link(link: string, local: string[]): string;
