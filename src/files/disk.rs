@@ -1,6 +1,8 @@
 //! Opens files and folders on disk.
 
 use std::ffi::OsStr;
+use std::fs::File;
+use std::io::Read;
 use std::path::{Component, Path, PathBuf};
 use std::pin::pin;
 use std::task::{Context, Poll, Waker};
@@ -130,10 +132,15 @@ impl Source for Disk {
             Place::Embedded(bytes) => return Ok(bytes.to_vec()),
         };
         let failed = |source| OpenError::Read { path: path.clone(), source };
-        let length = std::fs::metadata(path).map_err(failed)?.len();
+        let file = File::open(path).map_err(failed)?;
+        let length = file.metadata().map_err(failed)?.len();
         (reading.progress)(name, 0, length);
-        reading.spend(name, length)?;
-        std::fs::read(path).map_err(failed)
+        reading.check(name, length)?;
+        let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or(0));
+        // A device or a pipe has a length of 0 and may never end. One byte more than is left shows that there is more.
+        file.take(reading.bytes_left() + 1).read_to_end(&mut bytes).map_err(failed)?;
+        reading.spend(name, bytes.len() as u64)?;
+        Ok(bytes)
     }
 
     async fn read_beside(
@@ -142,14 +149,7 @@ impl Source for Disk {
         path: &str,
         reading: &mut Reading<'_>,
     ) -> Result<Option<Vec<u8>>, OpenError> {
-        let relative = Path::new(path);
-        let is_relative = relative
-            .components()
-            .all(|part| matches!(part, Component::Normal(_) | Component::ParentDir | Component::CurDir));
-        let file = base.join(relative);
-        if !is_relative || !file.is_file() {
-            return Ok(None);
-        }
+        let Some(file) = file_below(base, Path::new(path)) else { return Ok(None) };
         self.read(&Place::Path(file), path, reading).await.map(Some)
     }
 
@@ -177,7 +177,24 @@ fn existing(path: &Path) -> PathBuf {
     of_stem.filter(|of_stem| of_stem.is_file()).unwrap_or_else(|| path.to_owned())
 }
 
-/// Adds all files of `folder`, named by their paths inside `root`.
+/// Returns the file at `path` if it lies in `folder` or below. `..`, an absolute path, a drive letter or a symbolic link may
+/// lead elsewhere, and a model must not read, let alone embed, what the user did not give.
+fn file_below(folder: &Path, path: &Path) -> Option<PathBuf> {
+    let is_inner = |part| matches!(part, Component::Normal(_) | Component::CurDir | Component::ParentDir);
+    let file = folder.join(path);
+    (path.components().all(is_inner) && is_below(folder, &file) && file.is_file()).then_some(file)
+}
+
+/// Whether a path that exists lies in `folder` or below, symbolic links resolved.
+fn is_below(folder: &Path, path: &Path) -> bool {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    match (folder.canonicalize(), path.canonicalize()) {
+        (Ok(folder), Ok(path)) => path.starts_with(folder),
+        _ => false,
+    }
+}
+
+/// Adds all files of `folder`, named by their paths inside `root`. Symbolic links out of it are left out.
 fn list_folder(root: &Path, folder: &Path, depth: usize, files: &mut Vec<(String, Place)>) -> Result<(), OpenError> {
     let failed = |source| OpenError::Read { path: folder.to_owned(), source };
     let entries = std::fs::read_dir(folder).map_err(failed)?;
@@ -189,7 +206,7 @@ fn list_folder(root: &Path, folder: &Path, depth: usize, files: &mut Vec<(String
             if depth < MAX_FOLDER_DEPTH && !path.is_symlink() {
                 list_folder(root, &path, depth + 1, files)?;
             }
-        } else if path.is_file() {
+        } else if path.is_file() && (!path.is_symlink() || is_below(root, &path)) {
             if files.len() >= MAX_FOLDER_FILES {
                 return Err(OpenError::TooManyFiles { path: root.to_owned(), max: MAX_FOLDER_FILES });
             }

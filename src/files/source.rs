@@ -91,6 +91,12 @@ impl<'a> Reading<'a> {
         Ok(())
     }
 
+    /// The rest of the budget.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn bytes_left(&self) -> u64 {
+        self.bytes_left
+    }
+
     /// Deducts bytes of the file `name` from the budget.
     pub fn spend(&mut self, name: &str, bytes: u64) -> Result<(), OpenError> {
         self.check(name, bytes)?;
