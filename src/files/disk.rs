@@ -9,11 +9,12 @@ use std::task::{Context, Poll, Waker};
 
 use super::open::{open_items, open_read};
 use super::read::{FilesRead, Item, read_items};
-use super::source::{Content, Located, MAX_FOLDER_FILES, Progress, Reading, Source};
+use super::source::{Content, Located, Progress, Reading, Source};
 use super::{OpenError, Role, SortError, decode_images, view};
 use crate::asset::{Asset, Image};
 use crate::editor::{Contents, ModelFiles, OpenedMap, OpenedModel};
 use crate::formats::FileSet;
+use crate::formats::limits::{MAX_FOLDER_DEPTH, MAX_FOLDER_FILES};
 use crate::library::{ImageData, Model, Motion};
 use crate::samples;
 use crate::state::ViewerState;
@@ -85,8 +86,6 @@ fn finish<T>(future: impl Future<Output = T>) -> T {
     }
 }
 
-const MAX_FOLDER_DEPTH: usize = 16;
-
 struct Disk;
 
 enum Place {
@@ -99,8 +98,6 @@ impl Source for Disk {
     /// The folder.
     type Base = PathBuf;
     type Decoding = ();
-
-    const MAX_BYTES: u64 = 2 << 30;
 
     fn locate(&self, address: &OsStr) -> Result<Located<Place, PathBuf>, OpenError> {
         let path = existing(Path::new(address));
@@ -241,5 +238,14 @@ mod tests {
         assert!(finish(read_items(&Disk, items, &progress)).is_err());
         assert!(finish(read_items(&Disk, vec![address], &progress)).is_err());
         assert_eq!(names.take(), ["fox.zip", "walk.bvh"], "what the error's title says");
+    }
+
+    /// A device has no length, and this one no end.
+    #[cfg(unix)]
+    #[test]
+    fn a_file_without_an_end_is_read_up_to_the_budget() {
+        let mut reading = Reading::with_budget(1 << 16);
+        let read = finish(Disk.read(&Place::Path("/dev/zero".into()), "zero", &mut reading));
+        assert!(matches!(read, Err(OpenError::TooLarge { .. })), "{read:?}");
     }
 }

@@ -8,6 +8,7 @@ mod humanoid;
 mod influences;
 mod invalid;
 mod lenient;
+mod limits;
 mod mutation;
 mod obj;
 mod sweep;

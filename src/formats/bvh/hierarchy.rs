@@ -62,8 +62,9 @@ impl Hierarchy {
         let mut nodes = 0;
         while lines.peek().is_some_and(|word| !is(word, "MOTION")) {
             hierarchy.statement(lines, &mut open, warnings)?;
-            budget.spend(Limit::Nodes, hierarchy.joints.len() + hierarchy.ends.len() - nodes, &lines.place())?;
-            nodes = hierarchy.joints.len() + hierarchy.ends.len();
+            let found = hierarchy.joints.len() + hierarchy.ends.len();
+            budget.spend(Limit::Nodes, found - nodes, &format_args!("line {}", lines.line))?;
+            nodes = found;
         }
         if let Some(open) = open.last() {
             let joint = match *open {
