@@ -127,10 +127,21 @@ fn listed(names: &[String]) -> String {
 /// An error at one place of a file. The loader adds the file name.
 #[derive(Debug)]
 pub(super) enum Problem {
-    Invalid { place: String, expected: String, found: String },
+    Invalid {
+        place: String,
+        expected: String,
+        found: String,
+    },
     /// One of the [limits](super::limits) on what is read.
-    Limit { place: String, expected: String, found: usize },
-    MissingFile { place: String, uri: String },
+    Limit {
+        place: String,
+        expected: String,
+        found: usize,
+    },
+    MissingFile {
+        place: String,
+        uri: String,
+    },
 }
 
 impl Problem {

@@ -43,14 +43,8 @@ pub enum Limit {
 
 impl Limit {
     /// All limits.
-    pub const ALL: [Self; 6] = [
-        Self::DataBytes,
-        Self::ImagePixels,
-        Self::Nodes,
-        Self::MorphWeights,
-        Self::SkinMatrices,
-        Self::DrawnVertices,
-    ];
+    pub const ALL: [Self; 6] =
+        [Self::DataBytes, Self::ImagePixels, Self::Nodes, Self::MorphWeights, Self::SkinMatrices, Self::DrawnVertices];
 
     /// The most that a file may have.
     pub fn max(self) -> usize {

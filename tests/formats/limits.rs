@@ -89,7 +89,10 @@ fn pixels_of_all_images() {
     assert_eq!(warnings(&[(side, side)]), [""; 0]);
     let second = warnings(&[(side, side), (1, 1)]);
     let limit = format!("more than {} pixels of images in all", Limit::ImagePixels.max());
-    assert!(matches!(&second[..], [warning] if warning.contains("images[1]") && warning.contains(&limit)), "{second:?}");
+    assert!(
+        matches!(&second[..], [warning] if warning.contains("images[1]") && warning.contains(&limit)),
+        "{second:?}"
+    );
     let wide = warnings(&[(side + 1, 1)]);
     assert!(matches!(&wide[..], [warning] if warning.contains(&format!("1 to {side} each way"))), "{wide:?}");
 }

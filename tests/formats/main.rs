@@ -4,6 +4,7 @@ mod behaviour;
 mod build_gltf;
 mod bvh;
 mod file_sets;
+mod fuzz;
 mod humanoid;
 mod influences;
 mod invalid;

@@ -260,7 +260,8 @@ fn unwritable_input_is_an_error() {
 /// Nothing can be read from such a buffer, so it stays as it is; what is added gets a buffer of its own.
 #[test]
 fn a_first_buffer_without_data_stays_without() {
-    let text = br#"{"asset":{"version":"2.0"},"buffers":[{"byteLength":4},{"byteLength":1,"uri":"data:,a"}],"nodes":[{}],
+    let text =
+        br#"{"asset":{"version":"2.0"},"buffers":[{"byteLength":4},{"byteLength":1,"uri":"data:,a"}],"nodes":[{}],
         "bufferViews":[{"buffer":0,"byteLength":4},{"buffer":1.0,"byteLength":1,"extensions":{"ANY":{"buffer":0}}}],
         "images":[{"uri":"skin.tga"}]}"#;
     let mut files = one("model.gltf", text.to_vec());

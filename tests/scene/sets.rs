@@ -151,7 +151,10 @@ fn nothing_outside_the_models_folder_is_read_with_it() {
     for uri in uris {
         let model = refers_to(uri);
         let problem = open_paths(std::slice::from_ref(&model)).map(|opened| opened.files).expect_err(uri);
-        assert!(matches!(&problem, OpenError::Files(SortError::Load(LoadError::MissingFile { .. }))), "{uri}: {problem}");
+        assert!(
+            matches!(&problem, OpenError::Files(SortError::Load(LoadError::MissingFile { .. }))),
+            "{uri}: {problem}"
+        );
         if uri.starts_with("..") {
             assert!(problem.to_string().contains("outside the model's folder"), "{problem}");
         }

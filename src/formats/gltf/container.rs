@@ -17,7 +17,8 @@ impl Container<'_> {
     /// Reports chunks that are not read.
     pub fn warn(&self, warnings: &mut Warnings) {
         if let Some(at) = self.repeated_chunk {
-            let (place, problem) = (format!("GLB chunk at byte {at}"), "a second one of its kind; only the first is read");
+            let (place, problem) =
+                (format!("GLB chunk at byte {at}"), "a second one of its kind; only the first is read");
             warnings.push(Warning::Other { code: "repeated-chunk", place, problem: problem.to_owned() });
         }
     }

@@ -22,9 +22,8 @@ pub fn images(
     let mut images = Vec::with_capacity(accessors.document.root.images.len());
     for (index, image) in accessors.document.root.images.iter().enumerate() {
         let place = format!("images[{index}]");
-        let bytes = image_bytes(files, file, accessors, image, &place, warnings).or_else(|problem| {
-            problem.leave_out("image", "the image is left out", warnings).map(|()| None)
-        })?;
+        let bytes = image_bytes(files, file, accessors, image, &place, warnings)
+            .or_else(|problem| problem.leave_out("image", "the image is left out", warnings).map(|()| None))?;
         let name = match (image.name.as_deref().unwrap_or_default(), &image.uri) {
             ("", Some(uri)) if !data::is_data_uri(uri) => data::decode_uri(uri).into_owned(),
             (name, _) => name.to_owned(),

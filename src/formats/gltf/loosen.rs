@@ -148,8 +148,10 @@ pub fn leave_out(root: &mut Value) -> BTreeMap<String, String> {
             &json!({ "input": NONE, "output": NONE }),
             found,
         );
-        let (channels, empty) =
-            (format!("animations[{index}].channels"), json!({ "sampler": NONE, "target": { "node": NONE, "path": "" } }));
+        let (channels, empty) = (
+            format!("animations[{index}].channels"),
+            json!({ "sampler": NONE, "target": { "node": NONE, "path": "" } }),
+        );
         replace::<animation::Channel>(animation.get_mut("channels"), &channels, &empty, found);
     }
     let no_animation = json!({ "channels": [], "samplers": [] });

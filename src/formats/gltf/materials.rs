@@ -121,7 +121,8 @@ impl TextureReader<'_> {
     fn data(&mut self, info: Option<DataTexture>, name: &str) -> Result<Option<TextureRef>, Problem> {
         let Some((index, uv_set, extensions)) = info else { return Ok(None) };
         let place = format!("{}.{name}", self.material);
-        let transform = extensions.map_or(Ok(None), |extensions| extension(extensions, "KHR_texture_transform", &place));
+        let transform =
+            extensions.map_or(Ok(None), |extensions| extension(extensions, "KHR_texture_transform", &place));
         let transform = match transform {
             Ok(transform) => transform,
             Err(problem) => {

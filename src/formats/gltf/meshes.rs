@@ -13,7 +13,9 @@ use super::influences::{self, InfluenceSet};
 use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
 use crate::formats::limits::Limit;
-use crate::mesh::{Geometry, Influences, MAX_INFLUENCES, Material, Mesh, MorphTarget, Topology, add_tangents, first_not_below};
+use crate::mesh::{
+    Geometry, Influences, MAX_INFLUENCES, Material, Mesh, MorphTarget, Topology, add_tangents, first_not_below,
+};
 
 pub fn meshes(accessors: &Accessors, materials: &[Material], warnings: &mut Warnings) -> Result<Vec<Mesh>, Problem> {
     let meshes = accessors.document.root.meshes.iter().enumerate();

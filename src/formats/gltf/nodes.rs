@@ -19,12 +19,7 @@ use crate::mesh::{Mesh, Skin};
 const MAX_SHARED_NAME: usize = 256;
 
 /// Builds one skeleton from all nodes. Its source indices are the file's node indices.
-pub fn skeleton(
-    root: &Root,
-    meshes: &[Mesh],
-    budget: &Budget,
-    warnings: &mut Warnings,
-) -> Result<Skeleton, Problem> {
+pub fn skeleton(root: &Root, meshes: &[Mesh], budget: &Budget, warnings: &mut Warnings) -> Result<Skeleton, Problem> {
     budget.spend(Limit::Nodes, root.nodes.len(), &"nodes")?;
     let mut joints: Vec<Joint> = Vec::with_capacity(root.nodes.len());
     for (index, node) in root.nodes.iter().enumerate() {
@@ -77,7 +72,8 @@ fn rest(node: &Node, place: &str, warnings: &mut Warnings) -> Result<Transform, 
     let transform = match node.matrix {
         Some(columns) => {
             if node.translation.is_some() || node.rotation.is_some() || node.scale.is_some() {
-                let problem = "it has a matrix together with translation, rotation or scale; the matrix is used".to_owned();
+                let problem =
+                    "it has a matrix together with translation, rotation or scale; the matrix is used".to_owned();
                 warnings.push(Warning::Other { code: "matrix-and-trs", place: place.to_owned(), problem });
             }
             let matrix = Mat4::from_cols_array(&columns);
@@ -185,9 +181,7 @@ pub fn cameras(document: &Document, skeleton: &Skeleton, warnings: &mut Warnings
 fn read_camera(root: &Root, node: &Node, camera: usize, joint: JointIndex, place: &str) -> Result<Camera, Problem> {
     let camera = get(&root.cameras, camera, &place, "cameras")?;
     let projection = match (&camera.perspective, &camera.orthographic) {
-        (Some(lens), _) => {
-            CameraProjection::Perspective { y_fov_radians: lens.yfov, near: lens.znear, far: lens.zfar }
-        }
+        (Some(lens), _) => CameraProjection::Perspective { y_fov_radians: lens.yfov, near: lens.znear, far: lens.zfar },
         (None, Some(lens)) => CameraProjection::Orthographic { y_mag: lens.ymag, near: lens.znear, far: lens.zfar },
         (None, None) => return Err(Problem::new(place, "a perspective or orthographic camera", "neither")),
     };

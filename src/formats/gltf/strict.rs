@@ -1,11 +1,13 @@
 //! Deserializes JSON whose structs must be objects. The derived readers of the `gltf` crate also accept an array and read its
 //! elements by position, which no glTF means; and a few bytes of JSON can stand for any number of large structs. So this wraps
-//! a deserializer: it asks for an object where a struct is expected, and counts them.
+//! a deserializer: it rejects an array where a struct is expected, and counts the structs.
 
 use std::cell::Cell;
 use std::fmt;
 
-use serde::de::{Deserialize, DeserializeSeed, Deserializer, EnumAccess, Error as _, MapAccess, SeqAccess, Visitor};
+use serde::de::{
+    Deserialize, DeserializeSeed, Deserializer, EnumAccess, Error as _, MapAccess, SeqAccess, Unexpected, Visitor,
+};
 
 /// Why a text could not be read.
 pub enum Error {
@@ -18,20 +20,22 @@ pub enum Error {
 pub fn from_str<'a, T: Deserialize<'a>>(text: &'a str, max_objects: usize) -> Result<T, Error> {
     let left = Cell::new(max_objects);
     let mut deserializer = serde_json::Deserializer::from_str(text);
-    let parsed = T::deserialize(Strict { inner: &mut deserializer, left: &left })
+    let parsed = T::deserialize(Strict { inner: &mut deserializer, is_struct: false, left: &left })
         .and_then(|value| deserializer.end().map(|()| value));
     parsed.map_err(|problem| if left.get() == 0 { Error::TooManyObjects } else { Error::Json(problem) })
 }
 
 struct Strict<'c, T> {
     inner: T,
+    /// Whether a visitor builds a struct.
+    is_struct: bool,
     /// How many more structs there may be; 0 after one too many.
     left: &'c Cell<usize>,
 }
 
 impl<'c, T> Strict<'c, T> {
     fn around<U>(&self, inner: U) -> Strict<'c, U> {
-        Strict { inner, left: self.left }
+        Strict { inner, is_struct: false, left: self.left }
     }
 }
 
@@ -49,8 +53,8 @@ impl<'de, D: Deserializer<'de>> Deserializer<'de> for Strict<'_, D> {
 
     fn deserialize_struct<V: Visitor<'de>>(
         self,
-        _name: &'static str,
-        _fields: &'static [&'static str],
+        name: &'static str,
+        fields: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Self::Error> {
         let left = self.left.get().saturating_sub(1);
@@ -58,8 +62,8 @@ impl<'de, D: Deserializer<'de>> Deserializer<'de> for Strict<'_, D> {
         if left == 0 {
             return Err(D::Error::custom("too many objects"));
         }
-        let visitor = self.around(visitor);
-        self.inner.deserialize_map(visitor)
+        let visitor = Strict { is_struct: true, ..self.around(visitor) };
+        self.inner.deserialize_struct(name, fields, visitor)
     }
 
     forward! {
@@ -149,6 +153,9 @@ impl<'de, V: Visitor<'de>> Visitor<'de> for Strict<'_, V> {
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, sequence: A) -> Result<Self::Value, A::Error> {
+        if self.is_struct {
+            return Err(A::Error::invalid_type(Unexpected::Seq, &self));
+        }
         let sequence = self.around(sequence);
         self.inner.visit_seq(sequence)
     }

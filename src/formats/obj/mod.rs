@@ -122,9 +122,7 @@ pub(super) fn load(
     if skin.is_some() {
         for geometry in &mut built.mesh.primitives {
             let count = influences.stride * geometry.file_vertex.len();
-            budget
-                .allocate(count, attach::INFLUENCE_BYTES, &"weights")
-                .map_err(|problem| problem.in_file(file))?;
+            budget.allocate(count, attach::INFLUENCE_BYTES, &"weights").map_err(|problem| problem.in_file(file))?;
             geometry.influences = mesh::copied(&influences, &geometry.file_vertex);
         }
     }

@@ -115,7 +115,7 @@ fn join_buffers(json: &mut Object, root: &Root, buffers: &[Option<Bytes>], outsi
     for (view, read) in views.iter_mut().zip(&root.buffer_views) {
         if let Some(&start) = starts.get(read.buffer.value()).filter(|_| read.buffer.value() > 0) {
             view.set("buffer", &0);
-            view.set("byteOffset", &(start + read.byte_offset.map_or(0, size)));
+            view.set("byteOffset", &start.saturating_add(read.byte_offset.map_or(0, size)));
         }
     }
     let first: Array = json.read::<Array>("buffers").unwrap_or_default().into_iter().take(1).collect();
