@@ -1,7 +1,9 @@
 //! Skeletons: joint names, hierarchy and rest pose. Every node of a file is a joint of one skeleton, so all ancestors
 //! of a joint are included, and meshes, cameras and lights are attached to joints.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
+use std::sync::OnceLock;
 
 use super::{Pose, Transform};
 
@@ -55,6 +57,8 @@ pub enum SkeletonError {
 pub struct Skeleton {
     names: Vec<String>,
     parents: Vec<Option<JointIndex>>,
+    /// Joints whose name no other joint has, found when a label is first needed.
+    has_unique_name: OnceLock<Vec<bool>>,
     rest: Pose,
     morph_ranges: Vec<Range<u32>>,
     /// Each joint's index in the list the skeleton was built from, and the inverse mapping.
@@ -161,7 +165,7 @@ impl Skeleton {
 
     /// Returns a copy with some joints renamed, given by their source index.
     pub fn with_names<'a>(&self, names: impl Iterator<Item = (usize, &'a str)>) -> Self {
-        let mut skeleton = self.clone();
+        let mut skeleton = Self { has_unique_name: OnceLock::new(), ..self.clone() };
         for (source, name) in names {
             if let Some(slot) = self.joint_of_source(source).and_then(|joint| skeleton.names.get_mut(joint.get())) {
                 name.clone_into(slot);
@@ -173,7 +177,7 @@ impl Skeleton {
     /// Returns a joint's name, or `#NODE` if the name is empty or not unique, as joint maps have it.
     pub fn label(&self, joint: JointIndex) -> String {
         let name = self.name(joint);
-        let is_unique = self.joints().filter(|&other| self.name(other) == name).count() == 1;
+        let is_unique = self.has_unique_name.get_or_init(|| unique(&self.names))[joint.get()];
         if is_unique && !name.is_empty() { name.to_owned() } else { format!("#{}", self.source_index(joint)) }
     }
 
@@ -190,6 +194,15 @@ impl Skeleton {
     pub fn joint_of_source(&self, source: usize) -> Option<JointIndex> {
         self.joint_of_source.get(source).copied()
     }
+}
+
+/// Whether each name occurs once.
+fn unique(names: &[String]) -> Vec<bool> {
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    for name in names {
+        *counts.entry(name).or_default() += 1;
+    }
+    names.iter().map(|name| counts[name.as_str()] == 1).collect()
 }
 
 /// Walks up from a joint that no root reaches. The joint itself may only hang below the cycle.

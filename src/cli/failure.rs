@@ -136,9 +136,7 @@ fn save_parts(error: &SaveError) -> Failure {
 fn write_parts(error: &WriteError) -> Failure {
     match error {
         WriteError::Read(error) => load_parts(error),
-        WriteError::OtherSkeleton { file, .. }
-        | WriteError::OtherParent { file, .. }
-        | WriteError::NoBuffer { file } => Failure::of_file(file),
+        WriteError::OtherSkeleton { file, .. } | WriteError::OtherParent { file, .. } => Failure::of_file(file),
         WriteError::EmptyClip { .. } | WriteError::NotFinite { .. } | WriteError::TooLarge { .. } => Failure::default(),
     }
 }

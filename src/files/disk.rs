@@ -2,6 +2,7 @@
 
 use std::cell::{Cell, RefCell};
 use std::ffi::OsStr;
+use std::fs::File;
 use std::io::Read;
 use std::path::{Component, Path, PathBuf};
 use std::pin::pin;
@@ -11,10 +12,11 @@ use gaitway_part::Answer;
 
 use super::open::open_read;
 use super::read::{FilesRead, Item, read_items};
-use super::source::{Content, Located, MAX_FOLDER_FILES, Progress, Reading, Source};
+use super::source::{Content, Located, Progress, Reading, Source};
 use super::{OpenError, Role, SortError, decode_images, view};
 use crate::asset::{Asset, Image};
 use crate::editor::{Contents, ModelFiles, OpenedMap, OpenedModel};
+use crate::formats::limits::{MAX_FOLDER_DEPTH, MAX_FOLDER_FILES};
 use crate::formats::{FileSet, LoadError, Preparation};
 use crate::library::{ImageData, Model, Motion};
 use crate::retarget::JointMapFile;
@@ -137,8 +139,8 @@ impl Disk {
         // Where there is such a path, it leads to the file that the input was redirected from.
         self.read.borrow_mut().push("/dev/stdin".into());
         let mut bytes = Vec::new();
-        // One byte more than the budget shows that there is more.
-        let most = Self::MAX_BYTES + 1;
+        // One byte more than is left shows that there is more.
+        let most = reading.bytes_left() + 1;
         std::io::stdin().take(most).read_to_end(&mut bytes).map_err(|source| OpenError::Read { path, source })?;
         reading.spend(STANDARD_INPUT_NAME, bytes.len() as u64)?;
         Ok(bytes)
@@ -176,8 +178,6 @@ fn finish<T>(future: impl Future<Output = T>) -> T {
     }
 }
 
-const MAX_FOLDER_DEPTH: usize = 16;
-
 pub(super) enum Place {
     Path(PathBuf),
     StandardInput,
@@ -189,8 +189,6 @@ impl Source for Disk {
     /// The folder.
     type Base = PathBuf;
     type Decoding = ();
-
-    const MAX_BYTES: u64 = 2 << 30;
 
     fn locate(&self, address: &OsStr) -> Result<Located<Place, PathBuf>, OpenError> {
         if address == STANDARD_STREAM && self.standard_input.get() != StandardInput::Ignored {
@@ -228,11 +226,16 @@ impl Source for Disk {
             Place::Embedded(bytes) => return Ok(bytes.to_vec()),
         };
         let failed = |source| OpenError::Read { path: path.clone(), source };
-        let length = std::fs::metadata(path).map_err(failed)?.len();
+        let file = File::open(path).map_err(failed)?;
+        let length = file.metadata().map_err(failed)?.len();
         (reading.progress)(name, 0, length);
-        reading.spend(name, length)?;
+        reading.check(name, length)?;
         self.read.borrow_mut().push(path.clone());
-        std::fs::read(path).map_err(failed)
+        let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or(0));
+        // A device or a pipe has a length of 0 and may never end. One byte more than is left shows that there is more.
+        file.take(reading.bytes_left() + 1).read_to_end(&mut bytes).map_err(failed)?;
+        reading.spend(name, bytes.len() as u64)?;
+        Ok(bytes)
     }
 
     async fn read_beside(
@@ -241,14 +244,7 @@ impl Source for Disk {
         path: &str,
         reading: &mut Reading<'_>,
     ) -> Result<Option<Vec<u8>>, OpenError> {
-        let relative = Path::new(path);
-        let is_relative = relative
-            .components()
-            .all(|part| matches!(part, Component::Normal(_) | Component::ParentDir | Component::CurDir));
-        let file = base.join(relative);
-        if !is_relative || !file.is_file() {
-            return Ok(None);
-        }
+        let Some(file) = file_below(base, Path::new(path)) else { return Ok(None) };
         self.read(&Place::Path(file), path, reading).await.map(Some)
     }
 
@@ -288,7 +284,24 @@ fn existing(path: &Path) -> PathBuf {
     of_stem.filter(|of_stem| of_stem.is_file()).unwrap_or_else(|| path.to_owned())
 }
 
-/// Adds all files of `folder`, named by their paths inside `root`.
+/// Returns the file at `path` if it lies in `folder` or below. `..`, an absolute path, a drive letter or a symbolic link may
+/// lead elsewhere, and a model must not read, let alone embed, what the user did not give.
+fn file_below(folder: &Path, path: &Path) -> Option<PathBuf> {
+    let is_inner = |part| matches!(part, Component::Normal(_) | Component::CurDir | Component::ParentDir);
+    let file = folder.join(path);
+    (path.components().all(is_inner) && is_below(folder, &file) && file.is_file()).then_some(file)
+}
+
+/// Whether a path that exists lies in `folder` or below, symbolic links resolved.
+fn is_below(folder: &Path, path: &Path) -> bool {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    match (folder.canonicalize(), path.canonicalize()) {
+        (Ok(folder), Ok(path)) => path.starts_with(folder),
+        _ => false,
+    }
+}
+
+/// Adds all files of `folder`, named by their paths inside `root`. Symbolic links out of it are left out.
 fn list_folder(root: &Path, folder: &Path, depth: usize, files: &mut Vec<(String, Place)>) -> Result<(), OpenError> {
     let failed = |source| OpenError::Read { path: folder.to_owned(), source };
     let entries = std::fs::read_dir(folder).map_err(failed)?;
@@ -300,7 +313,7 @@ fn list_folder(root: &Path, folder: &Path, depth: usize, files: &mut Vec<(String
             if depth < MAX_FOLDER_DEPTH && !path.is_symlink() {
                 list_folder(root, &path, depth + 1, files)?;
             }
-        } else if path.is_file() {
+        } else if path.is_file() && (!path.is_symlink() || is_below(root, &path)) {
             if files.len() >= MAX_FOLDER_FILES {
                 return Err(OpenError::TooManyFiles { path: root.to_owned(), max: MAX_FOLDER_FILES });
             }
@@ -335,5 +348,14 @@ mod tests {
         assert!(finish(read_items(&Disk::default(), items, &progress)).is_err());
         assert!(finish(read_items(&Disk::default(), vec![address], &progress)).is_err());
         assert_eq!(names.take(), ["fox.zip", "walk.bvh"], "what the error's title says");
+    }
+
+    /// A device has no length, and this one no end.
+    #[cfg(unix)]
+    #[test]
+    fn a_file_without_an_end_is_read_up_to_the_budget() {
+        let mut reading = Reading::with_budget(1 << 16);
+        let read = finish(Disk.read(&Place::Path("/dev/zero".into()), "zero", &mut reading));
+        assert!(matches!(read, Err(OpenError::TooLarge { .. })), "{read:?}");
     }
 }

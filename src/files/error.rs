@@ -19,7 +19,7 @@ pub enum OpenError {
         known: Vec<String>,
     },
     /// Together, the files exceed the memory budget.
-    #[error("{name}: more than {max} bytes in total{}", memory_hint())]
+    #[error("{name}: with it, more than {} MiB in all{}", max >> 20, memory_hint())]
     TooLarge {
         /// The file that exceeds it.
         name: String,

@@ -3,9 +3,10 @@
 use std::ffi::{OsStr, OsString};
 
 use super::origins::Origins;
-use super::source::{Content, Located, MAX_FOLDER_FILES, Progress, Reading, Source};
+use super::source::{Content, Located, Progress, Reading, Source};
 use super::{OpenError, SortError};
 use crate::editor::{container_of, short_name};
+use crate::formats::limits::MAX_FOLDER_FILES;
 use crate::formats::{FileSet, missing_files, next_preparation};
 use crate::library::Model;
 use crate::samples;
@@ -45,7 +46,7 @@ pub(super) async fn read_items<S: Source>(
     }
     let mut reader = Reader {
         source,
-        reading: Reading::new::<S>(progress),
+        reading: Reading::new(progress),
         files: FilesRead::default(),
         bases: Vec::new(),
         labels: Vec::new(),
@@ -195,7 +196,10 @@ impl<S: Source> Reader<'_, S> {
 
     /// Puts a file into the set and returns its name there.
     fn keep(&mut self, name: String, bytes: Vec<u8>) -> Result<String, OpenError> {
+        let (held, packed) = (self.files.set.byte_count(), bytes.len() as u64);
         let name = self.files.set.add(name, bytes).map_err(SortError::from)?;
+        let unpacked = self.files.set.byte_count().saturating_sub(held);
+        self.reading.spend(&name, unpacked.saturating_sub(packed))?;
         if !self.files.names.contains(&name) {
             self.files.names.push(name.clone());
         }

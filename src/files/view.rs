@@ -100,7 +100,7 @@ pub(super) async fn open_map<S: Source>(
 ) -> Result<JointMapFile, OpenError> {
     match source.locate(address)?.content {
         Content::File { place, name, .. } => {
-            let bytes = source.read(&place, &name, &mut Reading::new::<S>(progress)).await?;
+            let bytes = source.read(&place, &name, &mut Reading::new(progress)).await?;
             Ok(read_map(&name, &bytes)?)
         }
         Content::Folder(_) => Err(OpenError::Read { path: address.into(), source: ErrorKind::IsADirectory.into() }),

@@ -26,6 +26,7 @@ mod bvh;
 mod error;
 mod file_set;
 mod gltf;
+pub mod limits;
 mod lines;
 mod obj;
 mod prepare;

@@ -11,7 +11,7 @@ use super::page::{Page, page, state_of_link};
 use crate::app::{App, Message, Opening, Reply, ScriptCall};
 use crate::editor::{Contents, short_name};
 use crate::files::{Item, OpenError, Role, open_items, open_view};
-use crate::frame::pose_document;
+use crate::frame::PoseDocument;
 use crate::library::Motion;
 use crate::samples;
 use crate::state::{Command, MotionMap, ViewerState, active_clip, from_object, to_object, with_current_member};
@@ -84,7 +84,7 @@ pub fn state() -> Result<String, JsError> {
 #[wasm_bindgen]
 pub fn pose() -> Result<String, JsError> {
     let page = page().map_err(error)?;
-    with_app(&page, |app| pose_document(app.library(), app.state()).to_string()).map_err(error)
+    with_app(&page, |app| PoseDocument::new(app.library(), app.state()).to_string()).map_err(error)
 }
 
 #[wasm_bindgen]

@@ -7,7 +7,7 @@ use gaitway_meshopt::{Filter, Mode, View};
 use gltf::json::Buffer;
 use serde_json::{Map, Value};
 
-use super::accessor::{BUDGET_BYTES, Bytes};
+use super::accessor::Bytes;
 use super::container::{self, Container};
 use super::document::{Document, as_text, size};
 use super::object::Object;
@@ -15,6 +15,7 @@ use super::{WriteError, resolve_buffer, write};
 use crate::asset::Warnings;
 use crate::formats::error::Problem;
 use crate::formats::file_set::{Conversion, beside};
+use crate::formats::limits::Budget;
 use crate::formats::{FileSet, LoadError};
 
 const NAMES: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
@@ -135,9 +136,7 @@ impl Decoding {
             return Err(Problem::new(place(), expected, format!("{length} at {start}")));
         }
         let all = root.buffers.iter().fold(0_usize, |sum, buffer| sum.saturating_add(size(buffer.byte_length)));
-        if all > BUDGET_BYTES {
-            return Err(Problem::new("buffers", format!("at most {} MiB of data in all", BUDGET_BYTES >> 20), all));
-        }
+        Budget::default().allocate(all, 1, &"buffers")?;
         self.0.push(Place { view: index, buffer, range: start..start + length });
         Ok(())
     }
