@@ -31,7 +31,9 @@ pub(super) fn doubtful_rest(rest: FoundRest) -> Option<String> {
     let used = match rest.origin {
         RestOrigin::Moment(secs) => format!("the clip's pose at {secs:.2} s stands in for it"),
         RestOrigin::Mean => "the mean pose of the clip stands in for it".to_owned(),
-        RestOrigin::Map | RestOrigin::Motion | RestOrigin::Model => "no pose of the clip looks more like one".to_owned(),
+        RestOrigin::Map | RestOrigin::Motion | RestOrigin::Model => {
+            "no pose of the clip looks more like one".to_owned()
+        }
     };
     rest.is_doubtful().then(|| {
         format!(

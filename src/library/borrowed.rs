@@ -8,8 +8,8 @@ use crate::anim::{Clip, JointIndex};
 use crate::asset::Asset;
 use crate::formats::file_stem;
 use crate::retarget::{
-    Body, Figures, FootTrack, FoundRest, JointMap, LayerClip, MapError, Proposal, ResolvedMap, RetargetError, Retargeting,
-    StagePair, layer_clips, propose,
+    Body, Figures, FootTrack, FoundRest, JointMap, LayerClip, MapError, Proposal, ResolvedMap, RetargetError,
+    Retargeting, StagePair, layer_clips, propose,
 };
 
 /// A clip of a motion retargeted to a model; plays like one of the model's own.

@@ -52,7 +52,7 @@ impl<'a> Retargeting<'a> {
         let target_nodes = node_locals(&model.asset.skeleton);
         let target_skeleton = &model.asset.skeleton;
         let target_locals = target_rest(model.asset, &target_nodes, map.rest.model);
-        let SourceRest { locals, unmoved, target_from_source, found } = source_rest(RestInput {
+        let SourceRest { locals, unmoved, target_from_source, is_in_place, found } = source_rest(RestInput {
             source: source.asset,
             source_slots: source.slots,
             clip: source_clip,
@@ -72,6 +72,7 @@ impl<'a> Retargeting<'a> {
             source_slots: source.slots,
             target_slots: model.slots,
         });
+        let hips = hips.map(|hips| if is_in_place { hips } else { hips.resting_as_target() });
         Ok(Self { model, source, map, tracks, alignment, hips, rest: found })
     }
 

@@ -3,7 +3,7 @@
 
 use gaitway::anim::{Clip, Interpolation, Joint, JointIndex, Keys, Pose, SampleCursor, Skeleton};
 use gaitway::asset::{Asset, AssetParts, Slot};
-use gaitway::retarget::{Body, RestOrigin, ResolvedMap, Retargeting, propose, recognize};
+use gaitway::retarget::{Body, ResolvedMap, RestOrigin, Retargeting, propose, recognize};
 use glam::{DQuat, DVec3, Quat, Vec3};
 
 use crate::data_folder::data_folder;
@@ -44,14 +44,15 @@ fn world_rotations(skeleton: &Skeleton, clip: &Clip, time_secs: f32) -> Vec<DQua
     world
 }
 
-/// Largest angle between two clips of one skeleton, over some moments.
-fn largest_degrees(skeleton: &Skeleton, a: &Clip, b: &Clip) -> f64 {
+/// Largest angle between two clips of one skeleton, over some moments, and the joint that has it.
+fn largest_degrees<'a>(skeleton: &'a Skeleton, a: &Clip, b: &Clip) -> (f64, &'a str) {
     let moments = (0..=20).map(|step| a.duration_secs() * step as f32 / 20.0);
     let angles = moments.flat_map(|time| {
         let (a, b) = (world_rotations(skeleton, a, time), world_rotations(skeleton, b, time));
-        a.into_iter().zip(b).map(|(a, b)| degrees(a, b)).collect::<Vec<_>>()
+        let angles = skeleton.joints().map(|joint| (degrees(a[joint.get()], b[joint.get()]), skeleton.name(joint)));
+        angles.collect::<Vec<_>>()
     });
-    angles.fold(0.0, f64::max)
+    angles.fold((0.0, ""), |worst, angle| if angle.0 > worst.0 { angle } else { worst })
 }
 
 /// The clip of `figure` in a file whose nodes rest elsewhere. Only rotations of the body and the place of the hips differ.
@@ -75,7 +76,7 @@ fn check_bound_by_name(model: &Figure, motion: &Asset, by_name: &Clip) {
     assert_eq!(retargeting.motion_rest().origin, RestOrigin::Model);
     let found = retargeting.bake().unwrap().clip;
     let worst = largest_degrees(&model.asset.skeleton, by_name, &found);
-    assert!(worst < MAX_DEGREES, "{worst} degrees");
+    assert!(worst.0 < MAX_DEGREES, "{worst:?} degrees");
 }
 
 fn dancer(rig: &Rig, seed: u64) -> Figure {
@@ -98,7 +99,8 @@ fn a_clip_on_another_file_of_the_same_rig_is_bound_by_name() {
         };
         let model = dancer(&rig, 100 + seed);
         let degrees = [8.0, 40.0, 90.0, 180.0][seed as usize % 4];
-        let motion = rested(&model, |_| random.rotation(degrees), random.vec3());
+        let hips = random.vec3();
+        let motion = rested(&model, |_| random.rotation(degrees), hips);
         check_bound_by_name(&model, &motion, &model.asset.clips[0]);
     }
 }
@@ -245,7 +247,7 @@ fn a_rest_in_motion_is_found_out_on_another_rig() {
         let retargeting = Retargeting::new(body(&model), source, 0, map).unwrap();
         let done = retargeting.bake().unwrap();
         let figures = retargeting.figures(&done);
-        (largest_degrees(&model.asset.skeleton, &wanted, &done.clip), retargeting.motion_rest(), figures)
+        (largest_degrees(&model.asset.skeleton, &wanted, &done.clip).0, retargeting.motion_rest(), figures)
     };
     let (found, rest, _) = worst_of(&map);
     assert_eq!(rest.origin, RestOrigin::Mean);
@@ -255,7 +257,7 @@ fn a_rest_in_motion_is_found_out_on_another_rig() {
     assert!(taken > 25.0 && found < 0.6 * taken, "{found} and {taken} degrees");
     // What takes the rest for granted sees nothing; where feet point does.
     assert!(figures.orientation_error_degrees_max.unwrap() < 0.01, "{figures:?}");
-    assert!(figures.facing_error_degrees_max.unwrap() > 25.0, "{figures:?}");
+    assert!(figures.facing_error_degrees_max.unwrap() > 20.0, "{figures:?}");
 }
 
 #[test]
@@ -331,5 +333,5 @@ fn check_file_bound_by_name(model: &Asset, motion: &Asset, by_name: &Clip, name:
     assert_eq!(retargeting.motion_rest().origin, RestOrigin::Model, "{name}");
     let found = retargeting.bake().unwrap().clip;
     let worst = largest_degrees(&model.skeleton, by_name, &found);
-    assert!(worst < MAX_DEGREES, "{name}: {worst} degrees");
+    assert!(worst.0 < MAX_DEGREES, "{name}: {worst:?} degrees");
 }

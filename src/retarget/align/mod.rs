@@ -60,8 +60,7 @@ pub fn align(
     target_from_source: Option<DQuat>,
 ) -> Alignment {
     let pair_of_slot = pairs_of_slots(map, source.slots, target.slots);
-    let common_from =
-        |rest: &Rest| common_frame::common_from_model(&rest.world_pose(DQuat::IDENTITY), rest.slots);
+    let common_from = |rest: &Rest| common_frame::common_from_model(&rest.world_pose(DQuat::IDENTITY), rest.slots);
     let [common_from_source, common_from_target] = match target_from_source {
         Some(target_from_source) => {
             let common_from_target = common_from(target).unwrap_or(DQuat::IDENTITY);

@@ -3,7 +3,7 @@
 
 use glam::{Affine3A, DAffine3, DQuat};
 
-use super::same_rig::{Resting, SharedRest, shared_rest};
+use super::same_rig::{OwnRest, Resting, SharedRest, shared_rest};
 use super::stance::{Stance, Standing, best_standing};
 use crate::anim::{Clip, JointIndex, Skeleton, nearest_rotation};
 use crate::asset::{Asset, Humanoid};
@@ -53,6 +53,8 @@ pub struct SourceRest {
     pub unmoved: Vec<Local>,
     /// Turns the source's model space into the target's, if both are the same rig.
     pub target_from_source: Option<DQuat>,
+    /// The hips are where they rest. Otherwise they rest where the target's do.
+    pub is_in_place: bool,
     pub found: FoundRest,
 }
 
@@ -79,36 +81,31 @@ pub fn source_rest(input: RestInput) -> SourceRest {
         locals,
         unmoved: node_locals(skeleton),
         target_from_source: None,
+        is_in_place: true,
         found: FoundRest { origin, confidence },
     };
     if choice != RestChoice::Auto {
         return rest(locals, RestOrigin::Map, 1.0);
     }
-    let target = Resting { skeleton: input.target, locals: input.target_rest };
-    if let Some(shared) = shared_rest(target, Resting { skeleton, locals: &locals }, clip, map) {
-        return shared_source_rest(skeleton, shared);
-    }
     let stance = Stance::of(&WorldPose::new(skeleton, locals.clone(), DQuat::IDENTITY), slots);
+    let is_standing = stance.is_some_and(|stance| stance.confidence() >= MIN_CONFIDENCE);
+    let target = Resting { skeleton: input.target, locals: input.target_rest };
+    let own = OwnRest { resting: Resting { skeleton, locals: &locals }, is_standing };
+    if let Some(SharedRest { locals, unmoved, target_from_source }) = shared_rest(target, own, clip, map) {
+        return SourceRest {
+            unmoved,
+            target_from_source: Some(target_from_source),
+            is_in_place: is_standing,
+            ..rest(locals, RestOrigin::Model, 1.0)
+        };
+    }
     let confidence = stance.map_or(1.0, Stance::confidence);
-    let better = stance.filter(|_| confidence < MIN_CONFIDENCE);
+    let better = stance.filter(|_| !is_standing);
     match better.and_then(|stance| best_standing(skeleton, slots, clip, stance)) {
         Some(Standing { locals, stance, time_secs }) => {
             rest(locals, time_secs.map_or(RestOrigin::Mean, RestOrigin::Moment), stance.confidence())
         }
         None => rest(locals, RestOrigin::Motion, confidence),
-    }
-}
-
-/// Joints that the clip does not move stand as the model's do, as if the clip were on the model.
-fn shared_source_rest(skeleton: &Skeleton, shared: SharedRest) -> SourceRest {
-    let SharedRest { locals, is_shared, target_from_source } = shared;
-    let nodes = node_locals(skeleton).into_iter();
-    let unmoved = nodes.zip(&locals).zip(&is_shared).map(|((node, rest), &shared)| if shared { *rest } else { node });
-    SourceRest {
-        unmoved: unmoved.collect(),
-        locals,
-        target_from_source: Some(target_from_source),
-        found: FoundRest { origin: RestOrigin::Model, confidence: 1.0 },
     }
 }
 

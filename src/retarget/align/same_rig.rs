@@ -1,6 +1,8 @@
 //! Two files of one rig: the same joint names, hierarchy and local frames. What the motion's nodes rest in then says nothing:
 //! its clip means on the model what it means on its own skeleton, so the model's rest is the motion's.
 //!
+//! Where both rest alike anyway, this leaves them to the usual alignment, which also makes up for differences in build.
+//!
 //! Nothing in a file states its local frames, but each joint's offset lies in its parent's. A rest rotation leaves that
 //! offset as it is, whereas other axes turn it. A roll about the offset itself shows only in rests that hold the same pose.
 
@@ -11,7 +13,7 @@ use glam::{DMat3, DQuat, DVec3};
 use crate::anim::{Clip, JointIndex, Keys, Skeleton};
 use crate::retarget::map::{ResolvedMap, shared_names};
 use crate::retarget::math::{angle_between, degrees_between, unit};
-use crate::retarget::pose::{Local, WorldPose, ancestry};
+use crate::retarget::pose::{Local, WorldPose, ancestry, node_locals};
 
 /// Minimum share of the mapped joints that must share their names, and of these that must agree.
 const MIN_SHARE: f64 = 0.9;
@@ -28,8 +30,14 @@ const MIN_ROLL_DEGREES: f64 = 45.0;
 /// The pose around a joint is the same if the angles to all other offsets differ by less than this on average.
 const MAX_POSE_DEGREES: f64 = 10.0;
 
+/// Offsets that each one is compared with, at most.
+const MAX_COMPARED: usize = 100;
+
 /// Rolled joints that tell other axes. A single one may be posed.
 const MIN_ROLLED: usize = 2;
+
+/// World rotations closer than this are the same rest.
+const MAX_SAME_REST_DEGREES: f64 = 0.05;
 
 /// A skeleton in its rest.
 #[derive(Clone, Copy)]
@@ -42,14 +50,23 @@ pub struct Resting<'a> {
 #[derive(Debug)]
 pub struct SharedRest {
     pub locals: Vec<Local>,
-    /// The source's joints that rest as the model does: those that the clip moves, and all below them.
-    pub is_shared: Vec<bool>,
+    /// What joints do that the clip does not move: they stand as the model's nodes do, as if the clip were on the model.
+    pub unmoved: Vec<Local>,
     /// Turns the source's model space into the target's.
     pub target_from_source: DQuat,
 }
 
-/// Returns the source in the model's rest if both are the same rig, or None.
-pub fn shared_rest(target: Resting, source: Resting, clip: &Clip, map: &ResolvedMap) -> Option<SharedRest> {
+/// A skeleton in its own rest, whether or not that is worth anything.
+#[derive(Clone, Copy)]
+pub struct OwnRest<'a> {
+    pub resting: Resting<'a>,
+    /// The body stands, so that its hips are in their place.
+    pub is_standing: bool,
+}
+
+/// Returns the source in the model's rest if both are the same rig and rest differently, or None.
+pub fn shared_rest(target: Resting, own: OwnRest, clip: &Clip, map: &ResolvedMap) -> Option<SharedRest> {
+    let source = own.resting;
     let target_of = counterparts(target.skeleton, source.skeleton);
     let rigs = Rigs {
         target,
@@ -62,7 +79,7 @@ pub fn shared_rest(target: Resting, source: Resting, clip: &Clip, map: &Resolved
         return None;
     }
     let is_shared = moved_with_their_children(source.skeleton, clip, &target_of);
-    rigs.repose(is_shared)
+    rigs.repose(is_shared, own.is_standing)
 }
 
 /// The target joint of the same name, by source joint.
@@ -180,52 +197,76 @@ impl Rigs<'_> {
             .collect();
         let difference =
             |a: &[DVec3; 2], b: &[DVec3; 2]| (degrees_between(a[0], b[0]) - degrees_between(a[1], b[1])).abs();
-        let mean = |at: &[DVec3; 2]| {
-            directions.iter().map(|other| difference(at, other)).sum::<f64>() / directions.len() as f64
-        };
+        let others = directions.iter().step_by(directions.len().div_ceil(MAX_COMPARED).max(1));
+        let mean =
+            |at: &[DVec3; 2]| others.clone().map(|other| difference(at, other)).sum::<f64>() / others.len() as f64;
         directions.iter().map(mean).collect()
     }
 
-    /// Puts the shared joints of the source into the model's rest.
-    fn repose(&self, is_shared: Vec<bool>) -> Option<SharedRest> {
+    /// Puts the shared joints of the source into the model's rest, also in place unless it is in its own.
+    fn repose(&self, is_shared: Vec<bool>, is_in_place: bool) -> Option<SharedRest> {
         let source = self.source.skeleton;
-        let is_top = |joint: &JointIndex| {
-            is_shared[joint.get()] && !ancestry(source, *joint).skip(1).any(|above| is_shared[above.get()])
-        };
-        let tops: Vec<JointIndex> = source.joints().filter(is_top).collect();
-        let below = |top: &JointIndex| {
-            source.joints().filter(|&joint| ancestry(source, joint).any(|above| above == *top)).count()
-        };
-        let main = *tops.iter().rev().max_by_key(|top| below(top))?;
+        let tops = tops(source, &is_shared);
+        let (&main, _) = tops.iter().rev().max_by_key(|(_, below)| **below)?;
         let source_from_target = self.source_from_target(main)?;
         let size = self.size_ratio(&is_shared);
         let mut locals = self.source.locals.to_vec();
+        let rotations = self.turn(&mut locals, &is_shared, &self.target_pose, source_from_target);
+        let nodes = WorldPose::new(self.target.skeleton, node_locals(self.target.skeleton), DQuat::IDENTITY);
+        let mut unmoved = node_locals(source);
+        self.turn(&mut unmoved, &is_shared, &nodes, source_from_target);
+        let differs = |joint: JointIndex| {
+            let angle = angle_between(rotations[joint.get()], self.source_pose.rotation(joint));
+            is_shared[joint.get()] && angle.to_degrees() > MAX_SAME_REST_DEGREES
+        };
+        if !source.joints().any(differs) {
+            return None;
+        }
+        // The place of a moving root is as little a rest as its rotation.
+        for &top in tops.keys().filter(|_| !is_in_place) {
+            let Some(target) = self.target_of[top.get()] else { continue };
+            let position = source_from_target * self.target_pose.position(target) * size;
+            let parent_from_model = self.source_pose.parent_frame(source, top).inverse();
+            locals[top.get()].translation = parent_from_model.transform_point3(position);
+            unmoved[top.get()].translation = locals[top.get()].translation;
+        }
+        Some(SharedRest { locals, unmoved, target_from_source: source_from_target.conjugate() })
+    }
+
+    /// Turns the shared joints as the target's are in `pose`. Returns the rotations of all joints in the source's model
+    /// space.
+    fn turn(
+        &self,
+        locals: &mut [Local],
+        is_shared: &[bool],
+        pose: &WorldPose,
+        source_from_target: DQuat,
+    ) -> Vec<DQuat> {
+        let source = self.source.skeleton;
         let mut rotations: Vec<DQuat> = Vec::with_capacity(locals.len());
         for joint in source.joints() {
             let parent = source.parent(joint).map_or(DQuat::IDENTITY, |parent| rotations[parent.get()]);
             let rotation = match self.target_of[joint.get()].filter(|_| is_shared[joint.get()]) {
-                Some(target) => unit(source_from_target * self.target_pose.rotation(target)),
+                Some(target) => unit(source_from_target * pose.rotation(target)),
                 None => unit(parent * locals[joint.get()].rotation),
             };
             locals[joint.get()].rotation = unit(parent.conjugate() * rotation);
             rotations.push(rotation);
         }
-        // The place of a moving root is as little a rest as its rotation.
-        for &top in &tops {
-            let Some(target) = self.target_of[top.get()] else { continue };
-            let position = source_from_target * self.target_pose.position(target) * size;
-            let parent_from_model = self.source_pose.parent_frame(source, top).inverse();
-            locals[top.get()].translation = parent_from_model.transform_point3(position);
-        }
-        Some(SharedRest { locals, is_shared, target_from_source: source_from_target.conjugate() })
+        rotations
     }
 
     /// The turn from the target's model space to the source's: what lies above the moving joints differs, unless that is
     /// how two exporters write the same thing, which the source's own rest tells to a quarter turn.
     fn source_from_target(&self, top: JointIndex) -> Option<DQuat> {
         let target = self.target_of[top.get()]?;
-        let above = self.source_pose.parent_rotation(self.source.skeleton, top)
-            * self.target_pose.parent_rotation(self.target.skeleton, target).conjugate();
+        // Nothing moves what lies above, so it is where the nodes are, whatever a skin says.
+        let parent_rotation = |skeleton: &Skeleton, joint: JointIndex| {
+            let above = ancestry(skeleton, joint).skip(1);
+            above.fold(DQuat::IDENTITY, |below, joint| skeleton.rest().locals[joint.get()].rotation.as_dquat() * below)
+        };
+        let above =
+            parent_rotation(self.source.skeleton, top) * parent_rotation(self.target.skeleton, target).conjugate();
         let rests = self.source_pose.rotation(top) * self.target_pose.rotation(target).conjugate();
         let is_turned = angle_between(above, DQuat::IDENTITY).to_degrees() > 1.0;
         let contradicts = angle_between(above, rests).to_degrees() > 45.0;
@@ -246,6 +287,21 @@ impl Rigs<'_> {
         }
         if source > 0.0 && target > 0.0 { source / target } else { 1.0 }
     }
+}
+
+/// The shared joints that no other one is above, with the number of joints from there down.
+fn tops(skeleton: &Skeleton, is_shared: &[bool]) -> BTreeMap<JointIndex, usize> {
+    let mut tops = BTreeMap::new();
+    let mut top_of: Vec<Option<JointIndex>> = Vec::with_capacity(is_shared.len());
+    for joint in skeleton.joints() {
+        let above = skeleton.parent(joint).and_then(|parent| top_of[parent.get()]);
+        let top = above.or_else(|| is_shared[joint.get()].then_some(joint));
+        top_of.push(top);
+        if let Some(top) = top {
+            *tops.entry(top).or_default() += 1;
+        }
+    }
+    tops
 }
 
 /// The rotation nearest to this one that turns axes onto axes.

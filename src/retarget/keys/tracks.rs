@@ -53,12 +53,7 @@ pub struct SourceTracks<'a> {
 
 impl<'a> SourceTracks<'a> {
     /// `unmoved` is what joints do that the clip does not move.
-    pub fn new(
-        skeleton: &'a Skeleton,
-        clip: &'a Clip,
-        muted: &[(JointIndex, Property)],
-        unmoved: &[Local],
-    ) -> Self {
+    pub fn new(skeleton: &'a Skeleton, clip: &'a Clip, muted: &[(JointIndex, Property)], unmoved: &[Local]) -> Self {
         let mut tracks = Self {
             skeleton,
             clip,

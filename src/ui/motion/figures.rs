@@ -31,10 +31,18 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>) {
     group(ui, "LIMB DIRECTION ERROR", "Angle between a limb and its source: the visible error.");
     row(ui, "Mean", degrees(limb_direction_error_degrees_mean));
     row(ui, "Largest", degrees(limb_direction_error_degrees_max));
-    group(ui, "FACING ERROR", "Angle between hips, shoulders, feet or hands and the source's, as far as their build allows.");
+    group(
+        ui,
+        "FACING ERROR",
+        "Angle between hips, shoulders, feet or hands and the source's, as far as their build allows.",
+    );
     row(ui, "Mean", degrees(facing_error_degrees_mean));
     row(ui, "Largest", degrees(facing_error_degrees_max));
-    group(ui, &text::ROTATION_ERROR.to_uppercase(), "Difference from the source's rotations, each from its own rest pose.");
+    group(
+        ui,
+        &text::ROTATION_ERROR.to_uppercase(),
+        "Difference from the source's rotations, each from its own rest pose.",
+    );
     row(ui, "Mean", degrees(orientation_error_degrees_mean));
     row(ui, "Largest", degrees(orientation_error_degrees_max));
     group(ui, "FEET", "Measured while the source's foot is on the ground, next to the source's own slide.");
