@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use serde_json::{Value, json};
 
 use super::failure::{Failure, Outcome};
 use super::output::warn;
@@ -10,6 +11,7 @@ use super::{print_warnings, unknown_clip};
 use crate::editor::{Contents, Editor, Event, OpenedMap, OpenedModel};
 use crate::files::{Disk, Opened, Role, member_of};
 use crate::library::Motion;
+use crate::retarget::{FoundRest, RestOrigin};
 use crate::state::{ClipChoice, Command, Sources, ViewerState, active_clip, from_link};
 
 /// A motion to retarget to the model, and its joint map.
@@ -21,6 +23,38 @@ pub(super) struct MotionArguments {
     /// The joint map [default: as `gaitway map` proposes].
     #[arg(long, value_name = "MAP.json")]
     pub map: Option<PathBuf>,
+}
+
+/// Code of the warning that [`doubtful_rest`] words.
+pub(super) const DOUBTFUL_REST: &str = "doubtful-rest";
+
+/// A warning for a rest that is not certain, with what to do about it.
+pub(super) fn doubtful_rest(rest: FoundRest) -> Option<String> {
+    let used = match rest.origin {
+        RestOrigin::Moment(secs) => format!("the clip's pose at {secs:.2} s stands in for it"),
+        RestOrigin::Mean => "the mean pose of the clip stands in for it".to_owned(),
+        RestOrigin::Map | RestOrigin::Motion | RestOrigin::Model => {
+            "no pose of the clip looks more like one".to_owned()
+        }
+    };
+    rest.is_doubtful().then(|| {
+        format!(
+            "the source's rest looks like a pose in motion, and {used}; if feet, hands or hips are turned, try another \
+             --rest-motion (node, bind, first-frame)"
+        )
+    })
+}
+
+/// Where a rest comes from, for scripts.
+pub(super) fn rest_document(rest: FoundRest) -> Value {
+    let (origin, time_secs) = match rest.origin {
+        RestOrigin::Map => ("map", None),
+        RestOrigin::Motion => ("motion", None),
+        RestOrigin::Model => ("model", None),
+        RestOrigin::Moment(secs) => ("moment", Some(secs)),
+        RestOrigin::Mean => ("mean", None),
+    };
+    json!({ "origin": origin, "time_secs": time_secs, "confidence": rest.confidence, "doubtful": rest.is_doubtful() })
 }
 
 /// Opens one motion and prints its warnings.

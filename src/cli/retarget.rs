@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::failure::{Failure, Outcome};
-use super::motion::{open_map, open_motion};
+use super::motion::{DOUBTFUL_REST, doubtful_rest, open_map, open_motion, rest_document};
 use super::output::{is_standard_output, print_bytes, print_error, print_json, warn, write_output};
 use super::{RetargetArguments, open, unknown_clip};
 use crate::anim::{Clip, ClipQuery, JointIndex, find_clip};
@@ -31,11 +31,14 @@ pub(super) fn run(arguments: &RetargetArguments, disk: &Disk) -> Outcome {
         let message = "no joint above the hips is free for the extracted root motion; it stays on the hips".to_owned();
         warnings.push(("nowhere-to-extract", message));
     }
+    warnings.extend(doubtful_rest(pair.motion_rest()).map(|message| (DOUBTFUL_REST, message)));
     let clip = with_layers(&model.asset, &resolved, &retargeted, arguments.loops.map(usize::from), &mut warnings);
     write(arguments, &opened, &clip, disk)?;
     warnings.iter().for_each(|(_, message)| warn(message));
     if arguments.json {
-        return print_json(&document(&model.asset, &motion, &resolved, &retargeted, &clip, &figures, &warnings));
+        let mut document = document(&model.asset, &motion, &resolved, &retargeted, &clip, &figures, &warnings);
+        document["motion_rest"] = rest_document(pair.motion_rest());
+        return print_json(&document);
     }
     let text = text(&resolved, &retargeted, &figures);
     if is_standard_output(&arguments.out) {
@@ -214,8 +217,9 @@ fn text(map: &ResolvedMap, retargeted: &Retargeted, figures: &Figures) -> String
         "joints            {} mapped, {} of the body parts both have\n\
          keys              {} → {}: {kept}\n\
          hips              × {}\n\
-         orientation       mean error {}, max. {}\n\
          limb directions   mean error {}, max. {}\n\
+         facing            mean error {}, max. {}\n\
+         rotations         mean error {}, max. {}\n\
          foot slide        {} (source: {})\n\
          below ground      {}\n",
         map.pairs.len(),
@@ -223,10 +227,12 @@ fn text(map: &ResolvedMap, retargeted: &Retargeted, figures: &Figures) -> String
         retargeted.keys_in,
         retargeted.keys_out,
         number(retargeted.hips_scale, ""),
-        number(figures.orientation_error_degrees_mean, "°"),
-        number(figures.orientation_error_degrees_max, "°"),
         number(figures.limb_direction_error_degrees_mean, "°"),
         number(figures.limb_direction_error_degrees_max, "°"),
+        number(figures.facing_error_degrees_mean, "°"),
+        number(figures.facing_error_degrees_max, "°"),
+        number(figures.orientation_error_degrees_mean, "°"),
+        number(figures.orientation_error_degrees_max, "°"),
         number(figures.foot_slide_metres_per_sec, " m/s"),
         number(figures.foot_slide_source_metres_per_sec, " m/s"),
         number(figures.ground_penetration_metres_max, " m"),

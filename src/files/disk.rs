@@ -355,7 +355,7 @@ mod tests {
     #[test]
     fn a_file_without_an_end_is_read_up_to_the_budget() {
         let mut reading = Reading::with_budget(1 << 16);
-        let read = finish(Disk.read(&Place::Path("/dev/zero".into()), "zero", &mut reading));
+        let read = finish(Disk::default().read(&Place::Path("/dev/zero".into()), "zero", &mut reading));
         assert!(matches!(read, Err(OpenError::TooLarge { .. })), "{read:?}");
     }
 }

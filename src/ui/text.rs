@@ -343,6 +343,8 @@ pub const PICK_IN_VIEWPORT: &str = "Pick in viewport";
 pub const STOP_PICKING: &str = "Stop picking";
 /// Button on the viewport that ends picking.
 pub const DONE_PICKING: &str = "Done";
+/// A motion whose rest is not certain.
+pub const DOUBTFUL_REST: &str = "The motion's rest looks like a pose in motion. If feet, hands or hips are turned, choose another rest pose in Options.";
 /// Button that returns to the proposed map.
 pub const REMATCH: &str = "Re-match";
 /// Button that exchanges the sources of left and right joints.

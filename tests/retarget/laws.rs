@@ -29,7 +29,7 @@ fn retarget(model: &Figure, motion: &Figure, map: &ResolvedMap) -> Retargeted {
     Retargeting::new(body(model), body(motion), 0, map).unwrap().bake().unwrap()
 }
 
-fn degrees(a: DQuat, b: DQuat) -> f64 {
+pub fn degrees(a: DQuat, b: DQuat) -> f64 {
     let turn = a.conjugate() * b;
     (2.0 * turn.xyz().length().atan2(turn.w.abs())).to_degrees()
 }

@@ -15,3 +15,4 @@ mod figure;
 mod laws;
 mod layers;
 mod pairs;
+mod rests;

@@ -102,6 +102,7 @@ fn retarget_reports_the_documented_keys() {
         "keys_out",
         "resampled",
         "figures",
+        "motion_rest",
         "warnings",
     ] {
         assert!(report.get(key).is_some(), "{key}");
@@ -111,6 +112,8 @@ fn retarget_reports_the_documented_keys() {
         "orientation_error_degrees_max",
         "limb_direction_error_degrees_mean",
         "limb_direction_error_degrees_max",
+        "facing_error_degrees_mean",
+        "facing_error_degrees_max",
         "foot_slide_metres_per_sec",
         "foot_slide_source_metres_per_sec",
         "ground_penetration_metres_max",
