@@ -55,6 +55,8 @@ pub enum SkeletonError {
 pub struct Skeleton {
     names: Vec<String>,
     parents: Vec<Option<JointIndex>>,
+    /// All joints with their parents, sorted by depth: the order of a pose's lanes.
+    by_depth: Vec<(JointIndex, Option<JointIndex>)>,
     rest: Pose,
     morph_ranges: Vec<Range<u32>>,
     /// Each joint's index in the list the skeleton was built from, and the inverse mapping.
@@ -91,15 +93,18 @@ impl Skeleton {
             return Err(SkeletonError::Cycle { joint: first_on_cycle(&joints, unreached) });
         }
         let mut skeleton = Self { source_of_joint, joint_of_source, ..Self::default() };
+        let (mut locals, mut morph_weights) = (Vec::with_capacity(count), Vec::new());
         for &source in &skeleton.source_of_joint {
             let joint = &joints[source as usize];
             skeleton.names.push(joint.name.clone());
             skeleton.parents.push(joint.parent.map(|parent| skeleton.joint_of_source[parent]));
-            skeleton.rest.locals.push(joint.rest);
-            let start = skeleton.rest.morph_weights.len() as u32;
-            skeleton.rest.morph_weights.extend_from_slice(&joint.morph_weights);
+            locals.push(joint.rest);
+            let start = morph_weights.len() as u32;
+            morph_weights.extend_from_slice(&joint.morph_weights);
             skeleton.morph_ranges.push(start..start + joint.morph_weights.len() as u32);
         }
+        skeleton.by_depth = sorted_by_depth(&skeleton.parents);
+        skeleton.rest = Pose::new(&locals, morph_weights, skeleton.by_depth.iter().map(|&(joint, _)| joint));
         Ok(skeleton)
     }
 
@@ -136,6 +141,11 @@ impl Skeleton {
     /// Parents of all joints; each index is smaller than the joint's own.
     pub fn parents(&self) -> &[Option<JointIndex>] {
         &self.parents
+    }
+
+    /// All joints with their parents, sorted by depth.
+    pub(super) fn by_depth(&self) -> &[(JointIndex, Option<JointIndex>)] {
+        &self.by_depth
     }
 
     /// Children of a joint, siblings in the order of the source list. Scans all joints.
@@ -177,11 +187,11 @@ impl Skeleton {
         if is_unique && !name.is_empty() { name.to_owned() } else { format!("#{}", self.source_index(joint)) }
     }
 
-    /// Returns a copy with another rest pose: one local transform per joint.
-    pub(crate) fn with_rest(&self, locals: &[Transform]) -> Self {
+    /// Returns a copy whose rest pose has the local transforms of another pose; morph weights stay.
+    pub(crate) fn with_rest(&self, pose: &Pose) -> Self {
         let mut skeleton = self.clone();
-        for (slot, local) in skeleton.rest.locals.iter_mut().zip(locals) {
-            *slot = *local;
+        for (joint, local) in self.joints().zip(pose.locals()) {
+            skeleton.rest.set_local(joint, local);
         }
         skeleton
     }
@@ -190,6 +200,17 @@ impl Skeleton {
     pub fn joint_of_source(&self, source: usize) -> Option<JointIndex> {
         self.joint_of_source.get(source).copied()
     }
+}
+
+/// `parents` come before their children.
+fn sorted_by_depth(parents: &[Option<JointIndex>]) -> Vec<(JointIndex, Option<JointIndex>)> {
+    let mut depths: Vec<u32> = Vec::with_capacity(parents.len());
+    for parent in parents {
+        depths.push(parent.map_or(0, |parent| depths[parent.get()] + 1));
+    }
+    let mut joints: Vec<_> = (0..parents.len() as u32).map(JointIndex).zip(parents.iter().copied()).collect();
+    joints.sort_by_key(|(joint, _)| depths[joint.get()]);
+    joints
 }
 
 /// Walks up from a joint that no root reaches. The joint itself may only hang below the cycle.

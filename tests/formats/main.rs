@@ -10,6 +10,7 @@ mod invalid;
 mod lenient;
 mod mutation;
 mod obj;
+mod playback;
 mod sweep;
 mod tangents;
 mod write;
