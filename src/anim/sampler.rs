@@ -46,38 +46,49 @@ struct Group {
     lanes: BVec4A,
 }
 
-/// A channel that goes into rows.
-struct RowChannel<'a, T: Clone> {
+/// Where the values of a channel go.
+struct Place {
     group: usize,
     lane: usize,
-    /// None for a constant.
-    timeline: Option<usize>,
-    /// One value per key, a single one for a constant.
-    values: Cow<'a, [T]>,
+    /// [`CONSTANT`] for a channel that never changes.
+    timeline: usize,
+}
+
+const CONSTANT: usize = usize::MAX;
+
+/// Channels of one timeline whose joints share a group: the indices of their values, by lane.
+struct PlannedGroup {
+    timeline: usize,
+    group: usize,
+    channels: [Option<usize>; LANES],
+}
+
+/// Channels of one property that go into rows, with one value per key, or a single one if they never change.
+struct RowChannels<'a, T: Clone> {
+    places: Vec<Place>,
+    values: Vec<Cow<'a, [T]>>,
 }
 
 impl Sampler {
     /// `channels` must be valid for `timelines`, which the builder ensures; `rest` is the skeleton's.
     pub(super) fn new(timelines: &[Vec<f32>], channels: &[Channel], rest: &Pose) -> Self {
         let mut sampler = Self { timelines: vec![TimelineTracks::default(); timelines.len()], ..Self::default() };
-        let (mut translations, mut scales, mut rotations) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut translations, mut scales) = (RowChannels::default(), RowChannels::default());
+        let mut rotations = RowChannels::default();
         for (index, channel) in last_of_each_property(channels) {
             let (group, lane) = rest.place(channel.joint);
-            let timeline = channel.timeline as usize;
+            let place = Place { group, lane, timeline: channel.timeline as usize };
             match &channel.keys {
                 Keys::Translation(values) if let Some(values) = vectors_in_rows(channel.interpolation, values) => {
-                    let timeline = (values.len() > 1).then_some(timeline);
-                    translations.push(RowChannel { group, lane, timeline, values: Cow::Borrowed(values) });
+                    translations.push(place, Cow::Borrowed(values));
                 }
                 Keys::Scale(values) if let Some(values) = vectors_in_rows(channel.interpolation, values) => {
-                    let timeline = (values.len() > 1).then_some(timeline);
-                    scales.push(RowChannel { group, lane, timeline, values: Cow::Borrowed(values) });
+                    scales.push(place, Cow::Borrowed(values));
                 }
                 Keys::Rotation(values) if let Some(values) = rotations_in_rows(channel.interpolation, values) => {
-                    let timeline = (values.len() > 1).then_some(timeline);
-                    rotations.push(RowChannel { group, lane, timeline, values: Cow::Owned(values) });
+                    rotations.push(place, Cow::Owned(values));
                 }
-                _ => sampler.timelines[timeline].others.push(index as u32),
+                _ => sampler.timelines[place.timeline].others.push(index as u32),
             }
         }
         sampler.add_rows(timelines, translations, |tracks| &mut tracks.translations, vector_row);
@@ -86,33 +97,27 @@ impl Sampler {
         sampler
     }
 
-    /// `row_entry` makes a group's entry in the row of a key from its lanes' values.
+    /// `row_entry` makes a group's entry in the row of a key from its lanes' values, empty for lanes without a channel.
     fn add_rows<T: Clone, R>(
         &mut self,
         timelines: &[Vec<f32>],
-        mut channels: Vec<RowChannel<'_, T>>,
+        channels: RowChannels<'_, T>,
         tracks: impl Fn(&mut TimelineTracks) -> &mut Tracks<R>,
         row_entry: impl Fn(&[&[T]; LANES], usize) -> R,
     ) {
-        // A constant joins a timeline that its group has anyway.
-        channels.sort_by_key(|channel| (channel.group, channel.timeline.is_none(), channel.timeline));
-        for at in 1..channels.len() {
-            if channels[at].timeline.is_none() && channels[at].group == channels[at - 1].group {
-                channels[at].timeline = channels[at - 1].timeline;
-            }
-        }
-        channels.sort_by_key(|channel| (channel.timeline, channel.group));
-        for of_timeline in channels.chunk_by(|a, b| a.timeline == b.timeline) {
-            let (tracks, keys) = match of_timeline[0].timeline {
-                Some(timeline) => (tracks(&mut self.timelines[timeline]), timelines[timeline].len()),
+        let planned = planned_groups(channels.places);
+        for groups in planned.chunk_by(|a, b| a.timeline == b.timeline) {
+            let (tracks, keys) = match timelines.get(groups[0].timeline) {
+                Some(times) => (tracks(&mut self.timelines[groups[0].timeline]), times.len()),
                 None => (tracks(&mut self.constants), 1),
             };
-            let lanes: Vec<[&[T]; LANES]> = of_timeline.chunk_by(|a, b| a.group == b.group).map(lanes_of).collect();
-            tracks.groups = of_timeline.chunk_by(|a, b| a.group == b.group).map(group_of).collect();
-            tracks.rows = (0..keys)
-                .flat_map(|key| lanes.iter().map(move |lanes| (lanes, key)))
-                .map(|(lanes, key)| row_entry(lanes, key))
-                .collect();
+            let values_of = |channel: Option<usize>| channel.map_or(&[][..], |channel| &*channels.values[channel]);
+            let lanes: Vec<[&[T]; LANES]> = groups.iter().map(|group| group.channels.map(values_of)).collect();
+            tracks.groups = groups.iter().map(Group::from).collect();
+            tracks.rows.reserve_exact(keys * lanes.len());
+            for key in 0..keys {
+                tracks.rows.extend(lanes.iter().map(|lanes| row_entry(lanes, key)));
+            }
         }
     }
 
@@ -170,18 +175,51 @@ impl<T> Tracks<T> {
     }
 }
 
-/// Returns the values of each lane; empty for lanes without a channel.
-fn lanes_of<'a, T: Clone>(channels: &'a [RowChannel<'_, T>]) -> [&'a [T]; LANES] {
-    let mut lanes: [&[T]; LANES] = [&[]; LANES];
-    for channel in channels {
-        lanes[channel.lane] = &channel.values;
+impl<T: Clone> Default for RowChannels<'_, T> {
+    fn default() -> Self {
+        Self { places: Vec::new(), values: Vec::new() }
     }
-    lanes
 }
 
-fn group_of<T: Clone>(channels: &[RowChannel<'_, T>]) -> Group {
-    let lanes = lanes_of(channels).map(|values| !values.is_empty());
-    Group { index: channels[0].group as u32, lanes: BVec4A::from_array(lanes) }
+impl<'a, T: Clone> RowChannels<'a, T> {
+    fn push(&mut self, mut place: Place, values: Cow<'a, [T]>) {
+        if values.len() == 1 {
+            place.timeline = CONSTANT;
+        }
+        self.places.push(place);
+        self.values.push(values);
+    }
+}
+
+impl From<&PlannedGroup> for Group {
+    fn from(planned: &PlannedGroup) -> Self {
+        let lanes = planned.channels.map(|channel| channel.is_some());
+        Self { index: planned.group as u32, lanes: BVec4A::from_array(lanes) }
+    }
+}
+
+/// Groups channels by timeline and group, sorted. A constant joins a timeline that its group has anyway.
+fn planned_groups(mut places: Vec<Place>) -> Vec<PlannedGroup> {
+    let mut timeline_of_group = vec![CONSTANT; places.iter().map(|place| place.group + 1).max().unwrap_or(0)];
+    for place in places.iter().filter(|place| place.timeline != CONSTANT) {
+        timeline_of_group[place.group] = place.timeline;
+    }
+    for place in places.iter_mut().filter(|place| place.timeline == CONSTANT) {
+        place.timeline = timeline_of_group[place.group];
+    }
+    let mut order: Vec<[usize; 3]> =
+        places.iter().enumerate().map(|(channel, place)| [place.timeline, place.group, channel]).collect();
+    order.sort_unstable();
+    let mut planned: Vec<PlannedGroup> = Vec::new();
+    for [timeline, group, channel] in order {
+        if planned.last().is_none_or(|last| (last.timeline, last.group) != (timeline, group)) {
+            planned.push(PlannedGroup { timeline, group, channels: [None; LANES] });
+        }
+        if let Some(last) = planned.last_mut() {
+            last.channels[places[channel].lane] = Some(channel);
+        }
+    }
+    planned
 }
 
 /// Returns a lane's value at a key; constants have the same one at all keys.

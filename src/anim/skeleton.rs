@@ -204,12 +204,19 @@ impl Skeleton {
 
 /// `parents` come before their children.
 fn sorted_by_depth(parents: &[Option<JointIndex>]) -> Vec<(JointIndex, Option<JointIndex>)> {
-    let mut depths: Vec<u32> = Vec::with_capacity(parents.len());
-    for parent in parents {
-        depths.push(parent.map_or(0, |parent| depths[parent.get()] + 1));
+    let mut children: Vec<Vec<u32>> = vec![Vec::new(); parents.len()];
+    let mut joints = Vec::with_capacity(parents.len());
+    for (joint, parent) in (0..).zip(parents) {
+        match parent {
+            Some(parent) => children[parent.get()].push(joint),
+            None => joints.push((JointIndex(joint), None)),
+        }
     }
-    let mut joints: Vec<_> = (0..parents.len() as u32).map(JointIndex).zip(parents.iter().copied()).collect();
-    joints.sort_by_key(|(joint, _)| depths[joint.get()]);
+    let mut next = 0;
+    while let Some(&(parent, _)) = joints.get(next) {
+        joints.extend(children[parent.get()].iter().map(|&child| (JointIndex(child), Some(parent))));
+        next += 1;
+    }
     joints
 }
 
