@@ -83,5 +83,5 @@ fn check_asset(asset: &Asset) {
             assert!(geometry.file_vertex.iter().all(|&vertex| (vertex as usize) < mesh.file_vertex_count()));
         }
     }
-    assert!(asset.skeleton.rest().locals.iter().all(|local| local.is_finite()));
+    assert!(asset.skeleton.rest().locals().all(|local| local.is_finite()));
 }

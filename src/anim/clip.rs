@@ -118,8 +118,8 @@ impl<'a> ClipBuilder<'a> {
 
     /// Finishes the clip. Its duration is 0 if it has no channels.
     pub fn build(self) -> Clip {
-        let Self { name, duration_secs, timelines, channels, .. } = self;
-        let sampler = Sampler::new(&timelines, &channels);
+        let Self { skeleton, name, duration_secs, timelines, channels, .. } = self;
+        let sampler = Sampler::new(&timelines, &channels, skeleton.rest());
         Clip { name, duration_secs, timelines, channels, sampler }
     }
 }

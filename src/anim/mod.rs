@@ -15,13 +15,14 @@
 //!
 //! let mut pose = skeleton.rest().clone();
 //! clip.sample(&skeleton, 0.25, &mut SampleCursor::default(), &mut pose);
-//! assert_eq!(pose.locals[hips.get()].translation, Vec3::new(0.25, 0.0, 0.0));
+//! assert_eq!(pose.local(hips).translation, Vec3::new(0.25, 0.0, 0.0));
 //! # Ok(())
 //! # }
 //! ```
 
 mod channel;
 mod clip;
+mod kernels;
 mod playback;
 mod polar;
 mod pose;

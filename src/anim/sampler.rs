@@ -1,105 +1,124 @@
 //! Samples clips as defined in glTF 2.0 §3.11 and appendix C, optimized for playback.
 //!
-//! Most channels of real clips are LINEAR, and many share their key times. Their values are stored here a second time,
-//! key by key: a row holds the values of all channels of a timeline at one key, so one search and two adjacent rows
-//! serve them all. Rotations in rows are normalized and in a consistent hemisphere. Constant channels are kept apart.
-//! Everything else (STEP, CUBICSPLINE, morph weights) is read from the clip's own keys.
+//! Most channels of real clips are LINEAR, and many share their key times. Their values are stored here a second time, in the
+//! pose's groups of four joints: a row holds the values of all groups of a timeline at one key, so one search and two rows serve
+//! them all. Rotations in rows are normalized and in a consistent hemisphere. Constant channels make a timeline with a single
+//! key. Everything else (STEP, CUBICSPLINE, morph weights) is read from the clip's own keys.
 
-use glam::{Quat, Vec3, Vec3A, Vec4};
+use std::borrow::Cow;
+
+use glam::{BVec4A, Quat, Vec3, Vec4};
 
 use super::channel::{Channel, Interpolation, Keys};
-use super::{JointIndex, Pose, Skeleton};
+use super::kernels::{ArcKey, ArcWeight, LANES, Quatx4, Vec3x4, unit};
+use super::{Pose, Skeleton};
 
 #[derive(Debug, Clone, Default)]
 pub(super) struct Sampler {
-    constants: Constants,
     /// One per timeline of the clip.
     timelines: Vec<TimelineTracks>,
-}
-
-/// Values of the channels that never change.
-#[derive(Debug, Clone, Default)]
-struct Constants {
-    translations: Vec<(JointIndex, Vec3)>,
-    rotations: Vec<(JointIndex, Quat)>,
-    scales: Vec<(JointIndex, Vec3)>,
+    /// The channels that never change.
+    constants: TimelineTracks,
 }
 
 /// The channels of one timeline.
 #[derive(Debug, Clone, Default)]
 struct TimelineTracks {
-    translations: VectorTracks,
-    scales: VectorTracks,
-    rotations: RotationTracks,
+    translations: Tracks<Vec3x4>,
+    scales: Tracks<Vec3x4>,
+    rotations: Tracks<ArcKey>,
     /// Indices of the clip's channels that are not in rows.
     others: Vec<u32>,
 }
 
-/// LINEAR channels: row `key` of `rows` has one value per joint of `joints`.
-#[derive(Debug, Clone, Default)]
-struct VectorTracks {
-    joints: Vec<JointIndex>,
-    rows: Vec<Vec3A>,
+/// LINEAR channels of one property: row `key` of `rows` has one entry per group.
+#[derive(Debug, Clone)]
+struct Tracks<T> {
+    groups: Vec<Group>,
+    rows: Vec<T>,
 }
 
-/// LINEAR channels in groups of four. Adjacent rows are at most a right angle apart (as 4-vectors), so the shortest arc
-/// is the direct one.
-#[derive(Debug, Clone, Default)]
-struct RotationTracks {
-    joints: Vec<JointIndex>,
-    rows: Vec<[Quat; 4]>,
-    /// Cosine of the angle to the next row minus 1, from -1 to 0, four channels to a vector.
-    cosines: Vec<Vec4>,
+/// A group of the pose.
+#[derive(Debug, Clone, Copy)]
+struct Group {
+    index: u32,
+    /// Lanes whose joints have a channel here; others keep their values.
+    lanes: BVec4A,
 }
 
-/// A joint and its translations or scales, one per key.
-type VectorKeys<'a> = (JointIndex, &'a [Vec3]);
+/// Where the values of a channel go.
+struct Place {
+    group: usize,
+    lane: usize,
+    /// [`CONSTANT`] for a channel that never changes.
+    timeline: usize,
+}
+
+const CONSTANT: usize = usize::MAX;
+
+/// Channels of one timeline whose joints share a group: the indices of their values, by lane.
+struct PlannedGroup {
+    timeline: usize,
+    group: usize,
+    channels: [Option<usize>; LANES],
+}
+
+/// Channels of one property that go into rows, with one value per key, or a single one if they never change.
+struct RowChannels<'a, T: Clone> {
+    places: Vec<Place>,
+    values: Vec<Cow<'a, [T]>>,
+}
 
 impl Sampler {
-    /// `channels` must be valid for `timelines`, which the builder ensures.
-    pub(super) fn new(timelines: &[Vec<f32>], channels: &[Channel]) -> Self {
-        let mut sampler =
-            Self { constants: Constants::default(), timelines: vec![TimelineTracks::default(); timelines.len()] };
-        let mut vectors: Vec<[Vec<VectorKeys>; 2]> = vec![Default::default(); timelines.len()];
-        let mut rotations: Vec<Vec<(JointIndex, Vec<Quat>)>> = vec![Vec::new(); timelines.len()];
+    /// `channels` must be valid for `timelines`, which the builder ensures; `rest` is the skeleton's.
+    pub(super) fn new(timelines: &[Vec<f32>], channels: &[Channel], rest: &Pose) -> Self {
+        let mut sampler = Self { timelines: vec![TimelineTracks::default(); timelines.len()], ..Self::default() };
+        let (mut translations, mut scales) = (RowChannels::default(), RowChannels::default());
+        let mut rotations = RowChannels::default();
         for (index, channel) in last_of_each_property(channels) {
-            let timeline = channel.timeline as usize;
-            let keys = timelines[timeline].len();
-            let joint = channel.joint;
+            let (group, lane) = rest.place(channel.joint);
+            let place = Place { group, lane, timeline: channel.timeline as usize };
             match &channel.keys {
-                Keys::Translation(values) if let Some(value) = constant_vector(channel.interpolation, values) => {
-                    sampler.constants.translations.push((joint, value));
+                Keys::Translation(values) if let Some(values) = vectors_in_rows(channel.interpolation, values) => {
+                    translations.push(place, Cow::Borrowed(values));
                 }
-                Keys::Scale(values) if let Some(value) = constant_vector(channel.interpolation, values) => {
-                    sampler.constants.scales.push((joint, value));
+                Keys::Scale(values) if let Some(values) = vectors_in_rows(channel.interpolation, values) => {
+                    scales.push(place, Cow::Borrowed(values));
                 }
-                Keys::Translation(values) if channel.interpolation == Interpolation::Linear => {
-                    vectors[timeline][0].push((joint, values));
+                Keys::Rotation(values) if let Some(values) = rotations_in_rows(channel.interpolation, values) => {
+                    rotations.push(place, Cow::Owned(values));
                 }
-                Keys::Scale(values) if channel.interpolation == Interpolation::Linear => {
-                    vectors[timeline][1].push((joint, values));
-                }
-                Keys::Rotation(values) if channel.interpolation == Interpolation::Linear => {
-                    let values = continuous(values);
-                    match values[1..].iter().all(|value| *value == values[0]) {
-                        true => sampler.constants.rotations.push((joint, values[0])),
-                        false => rotations[timeline].push((joint, values)),
-                    }
-                }
-                Keys::Rotation(values) if keys == 1 => {
-                    let value = if channel.interpolation == Interpolation::CubicSpline { values[1] } else { values[0] };
-                    sampler.constants.rotations.push((joint, unit(value)));
-                }
-                _ => sampler.timelines[timeline].others.push(index as u32),
+                _ => sampler.timelines[place.timeline].others.push(index as u32),
             }
         }
-        for (at, tracks) in sampler.timelines.iter_mut().enumerate() {
-            let keys = timelines[at].len();
-            tracks.translations = VectorTracks::new(keys, &vectors[at][0]);
-            tracks.scales = VectorTracks::new(keys, &vectors[at][1]);
-            tracks.rotations = RotationTracks::new(keys, &rotations[at]);
-        }
+        sampler.add_rows(timelines, translations, |tracks| &mut tracks.translations, vector_row);
+        sampler.add_rows(timelines, scales, |tracks| &mut tracks.scales, vector_row);
+        sampler.add_rows(timelines, rotations, |tracks| &mut tracks.rotations, rotation_row);
         sampler
+    }
+
+    /// `row_entry` makes a group's entry in the row of a key from its lanes' values, empty for lanes without a channel.
+    fn add_rows<T: Clone, R>(
+        &mut self,
+        timelines: &[Vec<f32>],
+        channels: RowChannels<'_, T>,
+        tracks: impl Fn(&mut TimelineTracks) -> &mut Tracks<R>,
+        row_entry: impl Fn(&[&[T]; LANES], usize) -> R,
+    ) {
+        let planned = planned_groups(channels.places);
+        for groups in planned.chunk_by(|a, b| a.timeline == b.timeline) {
+            let (tracks, keys) = match timelines.get(groups[0].timeline) {
+                Some(times) => (tracks(&mut self.timelines[groups[0].timeline]), times.len()),
+                None => (tracks(&mut self.constants), 1),
+            };
+            let values_of = |channel: Option<usize>| channel.map_or(&[][..], |channel| &*channels.values[channel]);
+            let lanes: Vec<[&[T]; LANES]> = groups.iter().map(|group| group.channels.map(values_of)).collect();
+            tracks.groups = groups.iter().map(Group::from).collect();
+            tracks.rows.reserve_exact(keys * lanes.len());
+            for key in 0..keys {
+                tracks.rows.extend(lanes.iter().map(|lanes| row_entry(lanes, key)));
+            }
+        }
     }
 
     /// `timelines` and `channels` are those the sampler was made from.
@@ -112,28 +131,109 @@ impl Sampler {
         segments: &mut Vec<u32>,
         pose: &mut Pose,
     ) {
-        for &(joint, value) in &self.constants.translations {
-            pose.locals[joint.get()].translation = value;
-        }
-        for &(joint, value) in &self.constants.rotations {
-            pose.locals[joint.get()].rotation = value;
-        }
-        for &(joint, value) in &self.constants.scales {
-            pose.locals[joint.get()].scale = value;
-        }
+        self.constants.sample_rows(&Segment::new(&[0.0], 0, 0.0), pose);
         segments.resize(self.timelines.len(), 0);
         for ((tracks, times), segment) in self.timelines.iter().zip(timelines).zip(segments) {
             *segment = find_segment(times, time_secs, *segment as usize) as u32;
             let at = Segment::new(times, *segment as usize, time_secs);
-            let locals = &mut pose.locals[..];
-            tracks.translations.sample(&at, |joint, value| locals[joint.get()].translation = value);
-            tracks.scales.sample(&at, |joint, value| locals[joint.get()].scale = value);
-            tracks.rotations.sample(&at, |joint, value| locals[joint.get()].rotation = value);
+            tracks.sample_rows(&at, pose);
             for &index in &tracks.others {
                 sample_channel(&channels[index as usize], &at, skeleton, pose);
             }
         }
     }
+}
+
+impl TimelineTracks {
+    fn sample_rows(&self, at: &Segment, pose: &mut Pose) {
+        let groups = &mut pose.groups[..];
+        for (group, from, to) in self.translations.between(at) {
+            groups[group.index as usize].translation.replace(group.lanes, from.lerp(to, at.factor));
+        }
+        for (group, from, to) in self.scales.between(at) {
+            groups[group.index as usize].scale.replace(group.lanes, from.lerp(to, at.factor));
+        }
+        let weight = ArcWeight::new(at.factor);
+        for (group, from, to) in self.rotations.between(at) {
+            groups[group.index as usize].rotation.replace(group.lanes, from.slerp(to, &weight));
+        }
+    }
+}
+
+impl<T> Default for Tracks<T> {
+    fn default() -> Self {
+        Self { groups: Vec::new(), rows: Vec::new() }
+    }
+}
+
+impl<T> Tracks<T> {
+    /// Returns each group with its entries at both ends of a segment.
+    #[inline(always)]
+    fn between(&self, at: &Segment) -> impl Iterator<Item = (&Group, &T, &T)> {
+        let row = |key: usize| &self.rows[key * self.groups.len()..][..self.groups.len()];
+        self.groups.iter().zip(row(at.key)).zip(row(at.next)).map(|((group, from), to)| (group, from, to))
+    }
+}
+
+impl<T: Clone> Default for RowChannels<'_, T> {
+    fn default() -> Self {
+        Self { places: Vec::new(), values: Vec::new() }
+    }
+}
+
+impl<'a, T: Clone> RowChannels<'a, T> {
+    fn push(&mut self, mut place: Place, values: Cow<'a, [T]>) {
+        if values.len() == 1 {
+            place.timeline = CONSTANT;
+        }
+        self.places.push(place);
+        self.values.push(values);
+    }
+}
+
+impl From<&PlannedGroup> for Group {
+    fn from(planned: &PlannedGroup) -> Self {
+        let lanes = planned.channels.map(|channel| channel.is_some());
+        Self { index: planned.group as u32, lanes: BVec4A::from_array(lanes) }
+    }
+}
+
+/// Groups channels by timeline and group, sorted. A constant joins a timeline that its group has anyway.
+fn planned_groups(mut places: Vec<Place>) -> Vec<PlannedGroup> {
+    let mut timeline_of_group = vec![CONSTANT; places.iter().map(|place| place.group + 1).max().unwrap_or(0)];
+    for place in places.iter().filter(|place| place.timeline != CONSTANT) {
+        timeline_of_group[place.group] = place.timeline;
+    }
+    for place in places.iter_mut().filter(|place| place.timeline == CONSTANT) {
+        place.timeline = timeline_of_group[place.group];
+    }
+    let mut order: Vec<[usize; 3]> =
+        places.iter().enumerate().map(|(channel, place)| [place.timeline, place.group, channel]).collect();
+    order.sort_unstable();
+    let mut planned: Vec<PlannedGroup> = Vec::new();
+    for [timeline, group, channel] in order {
+        if planned.last().is_none_or(|last| (last.timeline, last.group) != (timeline, group)) {
+            planned.push(PlannedGroup { timeline, group, channels: [None; LANES] });
+        }
+        if let Some(last) = planned.last_mut() {
+            last.channels[places[channel].lane] = Some(channel);
+        }
+    }
+    planned
+}
+
+/// Returns a lane's value at a key; constants have the same one at all keys.
+fn lane_value<T: Copy>(values: &[T], key: usize, absent: T) -> T {
+    values.get(key).or(values.last()).copied().unwrap_or(absent)
+}
+
+fn vector_row(lanes: &[&[Vec3]; LANES], key: usize) -> Vec3x4 {
+    Vec3x4::new(lanes.map(|values| lane_value(values, key, Vec3::ZERO)))
+}
+
+fn rotation_row(lanes: &[&[Quat]; LANES], key: usize) -> ArcKey {
+    let at = |key| Quatx4::new(lanes.map(|values| lane_value(values, key, Quat::IDENTITY)));
+    ArcKey::new(at(key), at(key + 1))
 }
 
 /// Returns the channels with their indices, in order, without those that a later channel for the same property overrides.
@@ -145,140 +245,51 @@ fn last_of_each_property(channels: &[Channel]) -> Vec<(usize, &Channel)> {
     kept
 }
 
-/// Returns the value of a channel that never changes.
-fn constant_vector(interpolation: Interpolation, values: &[Vec3]) -> Option<Vec3> {
-    match interpolation {
-        Interpolation::Step | Interpolation::Linear => {
-            let first = *values.first()?;
-            values.iter().all(|value| *value == first).then_some(first)
-        }
+/// Returns the values of a LINEAR channel, a single one if it never changes; `None` for other channels that change.
+fn vectors_in_rows(interpolation: Interpolation, values: &[Vec3]) -> Option<&[Vec3]> {
+    let constant = match interpolation {
+        Interpolation::Step | Interpolation::Linear => values.iter().all(|value| *value == values[0]).then_some(0),
         Interpolation::CubicSpline => {
-            let first = *values.get(1)?;
-            let flat = |entry: &[Vec3]| *entry == [Vec3::ZERO, first, Vec3::ZERO];
-            (values.len() == 3 || values.chunks(3).all(flat)).then_some(first)
+            let flat = |entry: &[Vec3]| *entry == [Vec3::ZERO, values[1], Vec3::ZERO];
+            (values.len() == 3 || values.chunks(3).all(flat)).then_some(1)
         }
+    };
+    match constant {
+        Some(at) => Some(&values[at..=at]),
+        None => (interpolation == Interpolation::Linear).then_some(values),
     }
 }
 
-/// Normalizes rotations and flips each into the hemisphere of the one before it.
-fn continuous(values: &[Quat]) -> Vec<Quat> {
-    let mut values: Vec<Quat> = values.iter().map(|value| unit(*value)).collect();
-    for key in 1..values.len() {
-        if values[key - 1].dot(values[key]) < 0.0 {
-            values[key] = -values[key];
-        }
-    }
-    values
-}
-
-/// Normalizes a rotation. One that is normalized up to rounding is returned unchanged, a degenerate one becomes identity.
-fn unit(value: Quat) -> Quat {
-    let length_squared = value.length_squared();
-    if (length_squared - 1.0).abs() < 1e-6 {
-        return value;
-    }
-    let length = value.length();
-    if length.is_finite() && length > 0.0 { value / length } else { Quat::IDENTITY }
-}
-
-impl VectorTracks {
-    fn new(keys: usize, channels: &[(JointIndex, &[Vec3])]) -> Self {
-        let row = |key: usize| channels.iter().map(move |(_, values)| Vec3A::from(values[key]));
-        Self { joints: channels.iter().map(|(joint, _)| *joint).collect(), rows: (0..keys).flat_map(row).collect() }
-    }
-
-    #[inline(always)]
-    fn sample(&self, at: &Segment, mut write: impl FnMut(JointIndex, Vec3)) {
-        let [from, to] = [at.key, at.next].map(|key| &self.rows[key * self.joints.len()..][..self.joints.len()]);
-        for ((&joint, &from), &to) in self.joints.iter().zip(from).zip(to) {
-            write(joint, Vec3::from(from + (to - from) * at.factor));
-        }
-    }
-}
-
-/// Below this, [`arc_polynomial`] is not accurate enough: 26 degrees as 4-vectors, 52 as rotations.
-const MIN_COSINE: f32 = -0.1;
-
-impl RotationTracks {
-    fn new(keys: usize, channels: &[(JointIndex, Vec<Quat>)]) -> Self {
-        let value = |at: usize, key: usize| channels.get(at).map_or(Quat::IDENTITY, |(_, values)| values[key]);
-        // In f64, because the cosine of a small angle is close to 1.
-        let cosine = |at: usize, key: usize| {
-            let next = (key + 1).min(keys - 1);
-            let cos = value(at, key).as_dquat().normalize().dot(value(at, next).as_dquat().normalize());
-            (cos - 1.0).clamp(-1.0, 0.0) as f32
-        };
-        let groups = || (0..channels.len()).step_by(4);
-        let lanes = |at: usize| std::array::from_fn::<usize, 4, _>(|lane| at + lane);
-        Self {
-            joints: channels.iter().map(|(joint, _)| *joint).collect(),
-            rows: (0..keys).flat_map(|key| groups().map(move |at| lanes(at).map(|at| value(at, key)))).collect(),
-            cosines: (0..keys)
-                .flat_map(|key| groups().map(move |at| Vec4::from(lanes(at).map(|at| cosine(at, key)))))
-                .collect(),
-        }
-    }
-
-    #[inline(always)]
-    fn sample(&self, at: &Segment, mut write: impl FnMut(JointIndex, Quat)) {
-        let groups = self.joints.len().div_ceil(4);
-        let [from, to] = [at.key, at.next].map(|key| &self.rows[key * groups..][..groups]);
-        let cosines = &self.cosines[at.key * groups..][..groups];
-        let from_polynomial = arc_polynomial(1.0 - at.factor);
-        let to_polynomial = arc_polynomial(at.factor);
-        for (((joints, from), to), &cosines) in self.joints.chunks(4).zip(from).zip(to).zip(cosines) {
-            let (from_weights, to_weights) = if cosines.cmplt(Vec4::splat(MIN_COSINE)).any() {
-                (exact_weights(1.0 - at.factor, cosines), exact_weights(at.factor, cosines))
-            } else {
-                (evaluate(&from_polynomial, cosines), evaluate(&to_polynomial, cosines))
-            };
-            let (from_weights, to_weights) = (from_weights.to_array(), to_weights.to_array());
-            for (lane, &joint) in joints.iter().enumerate() {
-                write(joint, from[lane] * from_weights[lane] + to[lane] * to_weights[lane]);
+/// The same for rotations, normalized and each in the hemisphere of the one before it.
+fn rotations_in_rows(interpolation: Interpolation, values: &[Quat]) -> Option<Vec<Quat>> {
+    match (interpolation, values) {
+        (Interpolation::CubicSpline, &[_, value, _]) | (Interpolation::Step, &[value]) => Some(vec![unit(value)]),
+        (Interpolation::Linear, _) => {
+            let mut values: Vec<Quat> = values.iter().map(|value| unit(*value)).collect();
+            for key in 1..values.len() {
+                if values[key - 1].dot(values[key]) < 0.0 {
+                    values[key] = -values[key];
+                }
             }
+            if values.iter().all(|value| *value == values[0]) {
+                values.truncate(1);
+            }
+            Some(values)
         }
+        _ => None,
     }
-}
-
-/// `sin(factor · ω) / sin(ω)`, the weight of one end of an arc of angle ω, as a polynomial in `cos ω - 1`, lowest first
-/// (Eberly 2011, "A Fast and Accurate Algorithm for Computing SLERP"). The coefficients depend on the time only, so
-/// all channels share them. Exact at factors 0 and 1; elsewhere within 1e-8 down to [`MIN_COSINE`].
-fn arc_polynomial(factor: f32) -> [f32; 6] {
-    let mut coefficients = [factor; 6];
-    for i in 1..6 {
-        let (u, v) = (1.0 / (i * (2 * i + 1)) as f32, i as f32 / (2 * i + 1) as f32);
-        coefficients[i] = coefficients[i - 1] * (u * factor * factor - v);
-    }
-    coefficients
-}
-
-#[inline(always)]
-fn evaluate(polynomial: &[f32; 6], at: Vec4) -> Vec4 {
-    polynomial[..5]
-        .iter()
-        .rev()
-        .fold(Vec4::splat(polynomial[5]), |sum, &coefficient| sum * at + Vec4::splat(coefficient))
-}
-
-/// The weights of [`arc_polynomial`], exact for any angle up to a right one, which adjacent keys never exceed.
-#[cold]
-fn exact_weights(factor: f32, cosines: Vec4) -> Vec4 {
-    Vec4::from(cosines.to_array().map(|cosine| {
-        let angle = (1.0 + cosine).acos();
-        if angle > 0.0 { (factor * angle).sin() / angle.sin() } else { factor }
-    }))
 }
 
 /// Samples STEP, CUBICSPLINE and morph-weight channels from the clip's own keys.
 fn sample_channel(channel: &Channel, at: &Segment, skeleton: &Skeleton, pose: &mut Pose) {
-    let local = &mut pose.locals[channel.joint.get()];
+    let (joint, interpolation) = (channel.joint, channel.interpolation);
     match &channel.keys {
-        Keys::Translation(values) => local.translation = at.vec3(values, channel.interpolation),
-        Keys::Scale(values) => local.scale = at.vec3(values, channel.interpolation),
-        Keys::Rotation(values) => local.rotation = at.quat(values, channel.interpolation),
+        Keys::Translation(values) => pose.set_translation(joint, at.vec3(values, interpolation)),
+        Keys::Scale(values) => pose.set_scale(joint, at.vec3(values, interpolation)),
+        Keys::Rotation(values) => pose.set_rotation(joint, at.quat(values, interpolation)),
         Keys::MorphWeights { values, targets } => {
-            let range = skeleton.morph_range(channel.joint);
-            at.weights(values, *targets, channel.interpolation, &mut pose.morph_weights[range]);
+            let range = skeleton.morph_range(joint);
+            at.weights(values, *targets, interpolation, &mut pose.morph_weights[range]);
         }
     }
 }
@@ -342,18 +353,19 @@ impl Segment {
             + m1 * values[3 * self.next]
     }
 
+    /// Not normalized.
     fn quat(&self, values: &[Quat], interpolation: Interpolation) -> Quat {
         if interpolation != Interpolation::CubicSpline {
-            return unit(values[self.key]);
+            return values[self.key];
         }
         if self.factor == 0.0 {
-            return unit(values[3 * self.key + 1]);
+            return values[3 * self.key + 1];
         }
         let [p0, m0, p1, m1] = self.cubic_factors();
         let at = |index: usize| Vec4::from(values[index]);
         let sum =
             p0 * at(3 * self.key + 1) + m0 * at(3 * self.key + 2) + p1 * at(3 * self.next + 1) + m1 * at(3 * self.next);
-        unit(Quat::from_vec4(sum))
+        Quat::from_vec4(sum)
     }
 
     fn weights(&self, values: &[f32], targets: usize, interpolation: Interpolation, out: &mut [f32]) {

@@ -59,6 +59,8 @@ pub struct Skeleton {
     parents: Vec<Option<JointIndex>>,
     /// Joints whose name no other joint has, found when a label is first needed.
     has_unique_name: OnceLock<Vec<bool>>,
+    /// All joints with their parents, sorted by depth: the order of a pose's lanes.
+    by_depth: Vec<(JointIndex, Option<JointIndex>)>,
     rest: Pose,
     morph_ranges: Vec<Range<u32>>,
     /// Each joint's index in the list the skeleton was built from, and the inverse mapping.
@@ -95,15 +97,18 @@ impl Skeleton {
             return Err(SkeletonError::Cycle { joint: first_on_cycle(&joints, unreached) });
         }
         let mut skeleton = Self { source_of_joint, joint_of_source, ..Self::default() };
+        let (mut locals, mut morph_weights) = (Vec::with_capacity(count), Vec::new());
         for &source in &skeleton.source_of_joint {
             let joint = &joints[source as usize];
             skeleton.names.push(joint.name.clone());
             skeleton.parents.push(joint.parent.map(|parent| skeleton.joint_of_source[parent]));
-            skeleton.rest.locals.push(joint.rest);
-            let start = skeleton.rest.morph_weights.len() as u32;
-            skeleton.rest.morph_weights.extend_from_slice(&joint.morph_weights);
+            locals.push(joint.rest);
+            let start = morph_weights.len() as u32;
+            morph_weights.extend_from_slice(&joint.morph_weights);
             skeleton.morph_ranges.push(start..start + joint.morph_weights.len() as u32);
         }
+        skeleton.by_depth = sorted_by_depth(&skeleton.parents);
+        skeleton.rest = Pose::new(&locals, morph_weights, skeleton.by_depth.iter().map(|&(joint, _)| joint));
         Ok(skeleton)
     }
 
@@ -140,6 +145,11 @@ impl Skeleton {
     /// Parents of all joints; each index is smaller than the joint's own.
     pub fn parents(&self) -> &[Option<JointIndex>] {
         &self.parents
+    }
+
+    /// All joints with their parents, sorted by depth.
+    pub(super) fn by_depth(&self) -> &[(JointIndex, Option<JointIndex>)] {
+        &self.by_depth
     }
 
     /// Children of a joint, siblings in the order of the source list. Scans all joints.
@@ -181,11 +191,11 @@ impl Skeleton {
         if is_unique && !name.is_empty() { name.to_owned() } else { format!("#{}", self.source_index(joint)) }
     }
 
-    /// Returns a copy with another rest pose: one local transform per joint.
-    pub(crate) fn with_rest(&self, locals: &[Transform]) -> Self {
+    /// Returns a copy whose rest pose has the local transforms of another pose; morph weights stay.
+    pub(crate) fn with_rest(&self, pose: &Pose) -> Self {
         let mut skeleton = self.clone();
-        for (slot, local) in skeleton.rest.locals.iter_mut().zip(locals) {
-            *slot = *local;
+        for (joint, local) in self.joints().zip(pose.locals()) {
+            skeleton.rest.set_local(joint, local);
         }
         skeleton
     }
@@ -203,6 +213,24 @@ fn unique(names: &[String]) -> Vec<bool> {
         *counts.entry(name).or_default() += 1;
     }
     names.iter().map(|name| counts[name.as_str()] == 1).collect()
+}
+
+/// `parents` come before their children.
+fn sorted_by_depth(parents: &[Option<JointIndex>]) -> Vec<(JointIndex, Option<JointIndex>)> {
+    let mut children: Vec<Vec<u32>> = vec![Vec::new(); parents.len()];
+    let mut joints = Vec::with_capacity(parents.len());
+    for (joint, parent) in (0..).zip(parents) {
+        match parent {
+            Some(parent) => children[parent.get()].push(joint),
+            None => joints.push((JointIndex(joint), None)),
+        }
+    }
+    let mut next = 0;
+    while let Some(&(parent, _)) = joints.get(next) {
+        joints.extend(children[parent.get()].iter().map(|&child| (JointIndex(child), Some(parent))));
+        next += 1;
+    }
+    joints
 }
 
 /// Walks up from a joint that no root reaches. The joint itself may only hang below the cycle.

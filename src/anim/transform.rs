@@ -1,6 +1,6 @@
 //! Translation, rotation and scale of a joint relative to its parent.
 
-use glam::{Affine3A, Mat3A, Mat4, Quat, Vec3, Vec3A, Vec3Swizzles, Vec4, Vec4Swizzles};
+use glam::{Affine3A, Mat4, Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
 /// A local transform: `parent_from_joint = T · R · S`. Translation in the parent's units, rotation a unit quaternion.
@@ -45,37 +45,6 @@ impl Transform {
     /// Returns the matrix `parent_from_joint`.
     pub fn to_affine(&self) -> Affine3A {
         Affine3A::from_scale_rotation_translation(self.scale, self.rotation, self.translation)
-    }
-
-    /// Fused `to_from_parent * self.to_affine()`. Computes the rotation matrix four entries at a time and consumes them
-    /// in place, without assembling its columns.
-    #[inline]
-    pub(super) fn below(&self, to_from_parent: &Affine3A) -> Affine3A {
-        let quat = Vec4::from(self.rotation);
-        let twice = quat + quat;
-        let squares = quat * twice;
-        let products = quat.xxyw() * twice.zyzw();
-        let turns = quat.wwww() * twice.yzxw();
-        let scale = self.scale.extend(0.0);
-        // (xx, yy, zz), (xz, yx, zy) and (zx, xy, yz) of the matrix, column first.
-        let diagonal = (Vec4::ONE - squares.yxxw() - squares.zzyw()) * scale;
-        let plus = (products + turns) * self.scale.zxy().extend(0.0);
-        let minus = (products - turns) * scale;
-        let Mat3A { x_axis, y_axis, z_axis } = to_from_parent.matrix3;
-        let column = |x: Vec3A, y: Vec3A, z: Vec3A| x_axis * x + y_axis * y + z_axis * z;
-        let lane = |values: Vec4| Vec3A::from_vec4(values);
-        Affine3A {
-            matrix3: Mat3A::from_cols(
-                column(lane(diagonal.xxxx()), lane(plus.yyyy()), lane(minus.xxxx())),
-                column(lane(minus.yyyy()), lane(diagonal.yyyy()), lane(plus.zzzz())),
-                column(lane(plus.xxxx()), lane(minus.zzzz()), lane(diagonal.zzzz())),
-            ),
-            translation: column(
-                Vec3A::splat(self.translation.x),
-                Vec3A::splat(self.translation.y),
-                Vec3A::splat(self.translation.z),
-            ) + to_from_parent.translation,
-        }
     }
 
     /// Whether no component is infinite or NaN.

@@ -13,6 +13,7 @@ mod limits;
 mod meshopt;
 mod mutation;
 mod obj;
+mod playback;
 mod sweep;
 mod tangents;
 mod write;

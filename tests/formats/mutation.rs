@@ -119,7 +119,7 @@ fn check_asset(files: &FileSet, asset: &Asset) {
             geometry.validate(skinned(index)).expect("consistent geometry");
         }
     }
-    assert!(asset.skeleton.rest().locals.iter().all(|local| local.is_finite()));
+    assert!(asset.skeleton.rest().locals().all(|local| local.is_finite()));
     let clips: Vec<_> = asset.clips.iter().collect();
     for written in [write_motion(asset, &asset.skeleton, &clips), convert(files, &LoadOptions::default())] {
         match written {

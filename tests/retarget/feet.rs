@@ -21,7 +21,7 @@ fn walker(lift: f32) -> Figure {
     let mut clip = ClipBuilder::new("walk", skeleton);
     let times: Vec<f32> = (0..=60).map(|frame| frame as f32 / 30.0).collect();
     let hips = figure.joint(Slot::Hips);
-    let (rest, length) = (skeleton.rest().locals[hips.get()].translation, 0.87f32);
+    let (rest, length) = (skeleton.rest().local(hips).translation, 0.87f32);
     // The supporting leg turns from +20° to −20°; the hips follow so that its ankle stays.
     let angle = |time: f32, phase: f32| {
         let at = (time + phase).rem_euclid(2.0);

@@ -262,7 +262,7 @@ fn the_first_frame_can_be_the_rest() {
     for channel in motion.asset.clips[0].channels() {
         if let Keys::Rotation(values) = &channel.keys {
             let mut values = values.clone();
-            values[0] = skeleton.rest().locals[channel.joint.get()].rotation;
+            values[0] = skeleton.rest().local(channel.joint).rotation;
             let times = &motion.asset.clips[0].timelines()[channel.timeline as usize];
             clip.channel(channel.joint, channel.interpolation, times, Keys::Rotation(values)).unwrap();
         }

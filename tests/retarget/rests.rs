@@ -19,7 +19,7 @@ const MAX_DEGREES: f64 = 0.1;
 fn with_rest(skeleton: &Skeleton, mut rest: impl FnMut(JointIndex, &mut gaitway::anim::Transform)) -> Skeleton {
     let in_file = (0..skeleton.len()).filter_map(|number| skeleton.joint_of_source(number));
     let joints = in_file.map(|joint| {
-        let mut transform = skeleton.rest().locals[joint.get()];
+        let mut transform = skeleton.rest().local(joint);
         rest(joint, &mut transform);
         let parent = skeleton.parent(joint).map(|parent| skeleton.source_index(parent));
         let morph_weights = skeleton.rest().morph_weights[skeleton.morph_range(joint)].to_vec();
@@ -37,7 +37,7 @@ fn world_rotations(skeleton: &Skeleton, clip: &Clip, time_secs: f32) -> Vec<DQua
     let mut pose: Pose = skeleton.rest().clone();
     clip.sample(skeleton, time_secs, &mut SampleCursor::default(), &mut pose);
     let mut world: Vec<DQuat> = Vec::new();
-    for (local, parent) in pose.locals.iter().zip(skeleton.parents()) {
+    for (local, parent) in pose.locals().zip(skeleton.parents()) {
         let above = parent.map_or(DQuat::IDENTITY, |parent| world[parent.get()]);
         world.push((above * local.rotation.as_dquat()).normalize());
     }
@@ -158,7 +158,7 @@ fn the_same_names_with_other_axes_are_another_rig() {
 /// Rolls a joint's axes about the offset of its child, which stays as it is: only the rest shows it.
 fn roll(figure: &mut Figure, slot: Slot, child: Slot) {
     let (joint, child) = (figure.joint(slot), figure.joint(child));
-    let along = figure.asset.skeleton.rest().locals[child.get()].translation.normalize();
+    let along = figure.asset.skeleton.rest().local(child).translation.normalize();
     let turn = Quat::from_axis_angle(along, std::f32::consts::PI);
     let skeleton = with_rest(&figure.asset.skeleton, |other, rest| {
         if other == joint {
@@ -208,7 +208,7 @@ fn walk(figure: &mut Figure) {
     ];
     for (slot, swing, phase, bend) in swings {
         let joint = figure.joint(slot);
-        let rest = skeleton.rest().locals[joint.get()].rotation;
+        let rest = skeleton.rest().local(joint).rotation;
         // About the body's left side, which `t_pose` finds in the joint's axes.
         let axis = figure.t_pose[&slot].conjugate() * if slot == Slot::Hips { DVec3::Y } else { DVec3::X };
         let key = |time: &f32| {
@@ -226,7 +226,7 @@ fn walk(figure: &mut Figure) {
 fn resting_in_motion(figure: &Figure, time_secs: f32) -> Asset {
     let mut pose = figure.asset.skeleton.rest().clone();
     figure.asset.clips[0].sample(&figure.asset.skeleton, time_secs, &mut SampleCursor::default(), &mut pose);
-    let skeleton = with_rest(&figure.asset.skeleton, |joint, rest| *rest = pose.locals[joint.get()]);
+    let skeleton = with_rest(&figure.asset.skeleton, |joint, rest| *rest = pose.local(joint));
     alone(skeleton, figure.asset.clips[0].clone())
 }
 
@@ -267,7 +267,7 @@ fn a_rest_that_nothing_improves_is_doubtful() {
     // One leg in front for the whole clip.
     let (stride, joint) = (resting_in_motion(&walker, 0.22), walker.joint(Slot::Head));
     let mut clip = gaitway::anim::ClipBuilder::new("nod", &stride.skeleton);
-    let rest = stride.skeleton.rest().locals[joint.get()].rotation;
+    let rest = stride.skeleton.rest().local(joint).rotation;
     let keys = Keys::Rotation(vec![rest, rest * Quat::from_rotation_x(0.3)]);
     clip.channel(joint, Interpolation::Linear, &[0.0, 1.0], keys).unwrap();
     let clip = clip.build();
@@ -289,7 +289,7 @@ fn clips_of_real_rigs_survive_a_rest_in_motion() {
         let clip = &model.asset.clips[model.clip.unwrap()];
         let mut pose = skeleton.rest().clone();
         clip.sample(skeleton, 0.4 * clip.duration_secs(), &mut SampleCursor::default(), &mut pose);
-        let motion = alone(with_rest(skeleton, |joint, rest| *rest = pose.locals[joint.get()]), clip.clone());
+        let motion = alone(with_rest(skeleton, |joint, rest| *rest = pose.local(joint)), clip.clone());
         check_file_bound_by_name(&model.asset, &motion, clip, model.name);
         rigs += 1;
     }

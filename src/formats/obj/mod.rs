@@ -189,7 +189,7 @@ fn lone_joint(name: &str) -> Skeleton {
 /// All joints, in the file's order, bound in the rest pose.
 fn skin(name: &str, skeleton: &Skeleton) -> Result<Skin, Problem> {
     let mut world = Vec::new();
-    model_from_joint(skeleton, &skeleton.rest().locals, Affine3A::IDENTITY, &mut world);
+    model_from_joint(skeleton, skeleton.rest(), Affine3A::IDENTITY, &mut world);
     let joints: Vec<_> = (0..skeleton.len()).filter_map(|source| skeleton.joint_of_source(source)).collect();
     // Nothing is rotated at rest, so the inverse is a translation.
     let joint_from_bind =

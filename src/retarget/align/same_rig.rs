@@ -263,7 +263,7 @@ impl Rigs<'_> {
         // Nothing moves what lies above, so it is where the nodes are, whatever a skin says.
         let parent_rotation = |skeleton: &Skeleton, joint: JointIndex| {
             let above = ancestry(skeleton, joint).skip(1);
-            above.fold(DQuat::IDENTITY, |below, joint| skeleton.rest().locals[joint.get()].rotation.as_dquat() * below)
+            above.fold(DQuat::IDENTITY, |below, joint| skeleton.rest().local(joint).rotation.as_dquat() * below)
         };
         let above =
             parent_rotation(self.source.skeleton, top) * parent_rotation(self.target.skeleton, target).conjugate();

@@ -289,7 +289,7 @@ fn split_matrices(json: &mut Object, clip: &Clip, skeleton: &Skeleton) {
 }
 
 fn parts(skeleton: &Skeleton, joint: JointIndex) -> Vec<(&'static str, Box<RawValue>)> {
-    let rest = skeleton.rest().locals[joint.get()];
+    let rest = skeleton.rest().local(joint);
     // As f64: the shortest decimal form of an f32 may be parsed as its neighbour by readers that go through f64.
     vec![
         ("translation", raw(&rest.translation.as_dvec3().to_array())),

@@ -68,7 +68,7 @@ fn node(skeleton: &Skeleton, joint: JointIndex, children: &[usize]) -> Value {
     if !skeleton.name(joint).is_empty() {
         node["name"] = json!(skeleton.name(joint));
     }
-    let rest = skeleton.rest().locals[joint.get()];
+    let rest = skeleton.rest().local(joint);
     let mut set_unless = |key: &str, numbers: &[f32], default: f32, last: f32| {
         let (end, others) = numbers.split_last().unwrap_or((&last, &[]));
         if *end != last || others.iter().any(|number| *number != default) {
