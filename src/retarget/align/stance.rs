@@ -92,7 +92,7 @@ fn add_rotations(sum: &mut Vec<Local>, locals: &[Local]) {
     }
     for (sum, local) in sum.iter_mut().zip(locals) {
         let side = if sum.rotation.dot(local.rotation) < 0.0 { -1.0 } else { 1.0 };
-        sum.rotation = sum.rotation + local.rotation * side;
+        sum.rotation += local.rotation * side;
     }
 }
 
