@@ -1,0 +1,139 @@
+//! Converts an FBX file to glTF, in memory.
+//!
+//! ufbx (C) reads the file: ASCII and binary, versions 3000 to 7700. This crate writes what it finds as one GLB in metres,
+//! right-handed with Y up: the hierarchy under its own names, meshes with skins and blend shapes, materials, cameras,
+//! lights, and every take as a clip. It is a crate of its own, since the page downloads it as a separate wasm module, only
+//! for those who open an FBX file. README.md says how both are built and what isn't carried over.
+
+#![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![deny(unsafe_code)]
+
+mod clip;
+mod fit;
+mod glb;
+#[cfg(target_arch = "wasm32")]
+mod libc;
+mod material;
+mod mesh;
+mod node;
+mod tolerance;
+mod warnings;
+
+use glb::Glb;
+use warnings::Warnings;
+
+/// Largest file that is read.
+const MAX_FILE_BYTES: usize = 1 << 29;
+/// What ufbx may allocate while it reads, and for the scene.
+const MAX_TEMPORARY_BYTES: usize = 1 << 29;
+const MAX_SCENE_BYTES: usize = 1 << 30;
+const MAX_ALLOCATIONS: usize = 1 << 24;
+/// Deepest node hierarchy.
+const MAX_DEPTH: u32 = 1000;
+/// Most nodes, and with them most objects of any kind that become nodes.
+const MAX_NODES: usize = 1 << 16;
+
+/// A glTF in memory, and what could not be carried over.
+#[derive(Debug)]
+pub struct Converted {
+    /// The bytes of a `.glb` file. External textures are named by the last part of their path.
+    pub glb: Vec<u8>,
+    /// Sentences for the user.
+    pub warnings: Vec<String>,
+}
+
+/// Converts the bytes of a whole `.fbx` file.
+///
+/// # Errors
+///
+/// Returns a message for the user (what was expected, what was found and what to do) if the file can't be read or exceeds a
+/// limit.
+pub fn convert(bytes: &[u8]) -> Result<Converted, String> {
+    check_head(bytes)?;
+    let scene = ufbx::load_memory(bytes, options()).map_err(|error| explain(&error))?;
+    if scene.nodes.count > MAX_NODES {
+        return Err(format!(
+            "the FBX file is too large: expected at most {MAX_NODES} objects, found {}. Export a part of the scene.",
+            scene.nodes.count
+        ));
+    }
+    let mut glb = Glb::default();
+    let mut warnings = Warnings::default();
+    warnings.add_scene(&scene);
+    let materials = material::write(&scene, &mut glb, &mut warnings);
+    let mut nodes = node::Nodes::new(&scene);
+    let morphs = mesh::write(&scene, &materials, &mut nodes, &mut glb, &mut warnings)?;
+    node::add_cameras_and_lights(&scene, &mut nodes, &mut glb, &mut warnings);
+    nodes.write(&mut glb);
+    clip::write(&scene, &nodes, &morphs, &mut glb, &mut warnings)?;
+    Ok(Converted { glb: glb.write()?, warnings: warnings.into_sentences() })
+}
+
+/// Rejects what isn't FBX, in words that ufbx has no context for.
+fn check_head(bytes: &[u8]) -> Result<(), String> {
+    if bytes.len() > MAX_FILE_BYTES {
+        return Err(format!(
+            "the FBX file is too large: expected at most {MAX_FILE_BYTES} bytes, found {}. Export it without textures.",
+            bytes.len()
+        ));
+    }
+    if bytes.is_empty() {
+        return Err("the FBX file is empty: download or export it again.".to_owned());
+    }
+    Ok(())
+}
+
+fn options() -> ufbx::LoadOpts<'static> {
+    let limit = |memory_limit| ufbx::AllocatorOpts {
+        memory_limit,
+        allocation_limit: MAX_ALLOCATIONS,
+        ..Default::default()
+    };
+    ufbx::LoadOpts {
+        temp_allocator: limit(MAX_TEMPORARY_BYTES),
+        result_allocator: limit(MAX_SCENE_BYTES),
+        node_depth_limit: MAX_DEPTH,
+        generate_missing_normals: true,
+        normalize_normals: true,
+        clean_skin_weights: true,
+        use_blender_pbr_material: true,
+        // Scaling the geometry instead of the root keeps joints free of a scale of 0.01. Geometric transforms are baked into
+        // the meshes here, because ufbx leaves blend shapes out when it does so itself.
+        space_conversion: ufbx::SpaceConversion::ModifyGeometry,
+        geometry_transform_handling: ufbx::GeometryTransformHandling::Preserve,
+        inherit_mode_handling: ufbx::InheritModeHandling::Compensate,
+        handedness_conversion_axis: ufbx::MirrorAxis::X,
+        target_axes: ufbx::axes_right_handed_y_up(),
+        target_unit_meters: 1.0,
+        ..Default::default()
+    }
+}
+
+/// Says what ufbx found and what to do about it.
+fn explain(error: &ufbx::Error) -> String {
+    use ufbx::ErrorType;
+    let found = &*error.description;
+    match error.type_ {
+        ErrorType::UnrecognizedFileFormat => "this is not an FBX file: expected \"Kaydara FBX Binary\" or \
+            \"; FBX … project file\" at its start. Check the extension, or export it again."
+            .to_owned(),
+        ErrorType::TruncatedFile => {
+            "the FBX file ends too early: expected more bytes. Download or export it again.".to_owned()
+        }
+        ErrorType::UnsupportedVersion => format!(
+            "unsupported FBX version {}: expected 3000 to 7700. Convert it with a newer program, for example Blender.",
+            error.info()
+        ),
+        ErrorType::MemoryLimit | ErrorType::AllocationLimit | ErrorType::OutOfMemory => format!(
+            "the FBX file needs too much memory: expected at most {MAX_SCENE_BYTES} bytes. Export a part of the scene."
+        ),
+        ErrorType::NodeDepthLimit => format!(
+            "the FBX file nests objects too deeply: expected at most {MAX_DEPTH} levels. Flatten its hierarchy."
+        ),
+        _ => {
+            let info = error.info();
+            let detail = if info.is_empty() { String::new() } else { format!(" ({info})") };
+            format!("the FBX file is damaged: {found}{detail}. Export it again, or try another FBX version.")
+        }
+    }
+}

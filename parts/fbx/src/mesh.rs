@@ -1,0 +1,487 @@
+//! Meshes with their skins and blend shapes.
+//!
+//! A mesh of FBX has its attributes per corner of a face. Corners that agree in all of them become one vertex; each material
+//! becomes a primitive. An unskinned mesh takes in the geometric transform of its node; a skinned one has it in its inverse
+//! bind matrices.
+
+use ufbx::{BlendShape, Face, Matrix, Mesh, MeshPart, Node, Scene, SkinDeformer, Vec3};
+
+use crate::glb::{ARRAY_BUFFER, Glb, List, Object, check_size, indices, numbers, quoted};
+use crate::material::UvNames;
+use crate::node::{Nodes, columns};
+use crate::warnings::Warnings;
+
+/// Most influences per vertex: four sets of four.
+const MAX_INFLUENCES: usize = 16;
+const MAX_JOINTS: usize = 1 << 16;
+
+/// A glTF node whose mesh has blend shapes.
+pub struct Morph<'a> {
+    pub node: usize,
+    pub mesh: &'a Mesh,
+}
+
+/// Writes the meshes of all nodes and returns those with blend shapes.
+pub fn write<'a>(
+    scene: &'a Scene,
+    materials: &[UvNames],
+    nodes: &mut Nodes,
+    glb: &mut Glb,
+    warnings: &mut Warnings,
+) -> Result<Vec<Morph<'a>>, String> {
+    let mut meshes = Meshes { materials, written: Vec::new(), skins: Vec::new(), nodes, glb, warnings };
+    let mut morphs = Vec::new();
+    for node in &scene.nodes {
+        let attributes = node.all_attribs.into_iter().filter_map(ufbx::as_mesh);
+        for mesh in attributes {
+            let Some(place) = meshes.attach(node, mesh)? else { continue };
+            if shapes(mesh).next().is_some() {
+                morphs.push(Morph { node: place, mesh });
+            }
+        }
+    }
+    Ok(morphs)
+}
+
+/// Returns the shapes of a mesh in the order of its morph targets: name, shape and default weight.
+pub fn shapes(mesh: &Mesh) -> impl Iterator<Item = (&str, &BlendShape, f64)> {
+    let channels = mesh.blend_deformers.into_iter().flat_map(|deformer| &deformer.channels);
+    channels.flat_map(|channel| {
+        let many = channel.keyframes.count > 1;
+        channel.keyframes.into_iter().map(move |key| {
+            let shape = &*key.shape.element.name;
+            let channel = &*channel.element.name;
+            let name = if (many && !shape.is_empty()) || channel.is_empty() { shape } else { channel };
+            (name, &*key.shape, key.effective_weight)
+        })
+    })
+}
+
+struct Meshes<'a> {
+    materials: &'a [UvNames],
+    /// glTF mesh and skin of what has been written, or none if nothing in it is visible.
+    written: Vec<(Identity, Option<(usize, Option<usize>)>)>,
+    skins: Vec<(Vec<usize>, Vec<f32>, usize)>,
+    nodes: &'a mut Nodes,
+    glb: &'a mut Glb,
+    warnings: &'a mut Warnings,
+}
+
+/// What makes two instances of a mesh the same glTF mesh.
+#[derive(PartialEq)]
+struct Identity {
+    mesh: u32,
+    geometry: Option<[f32; 16]>,
+    materials: Vec<u32>,
+}
+
+impl Meshes<'_> {
+    /// Puts a mesh on its node, or on a leaf if the node has one already, and returns where.
+    fn attach(&mut self, node: &Node, mesh: &Mesh) -> Result<Option<usize>, String> {
+        let Some(mut place) = self.nodes.index(node) else { return Ok(None) };
+        let skin = mesh.skin_deformers.into_iter().find(|skin| skin.clusters.count > 0);
+        let identity = Identity {
+            mesh: mesh.element.typed_id,
+            geometry: skin.is_none().then(|| columns(&node.geometry_to_node)),
+            materials: node.materials.into_iter().map(|material| material.element.typed_id).collect(),
+        };
+        let known = self.written.iter().find(|(other, _)| *other == identity).map(|(_, written)| *written);
+        let written = match known {
+            Some(written) => written,
+            None => {
+                let written = self.write_skinned(node, mesh, skin)?;
+                self.written.push((identity, written));
+                written
+            }
+        };
+        let Some((index, skin)) = written else { return Ok(None) };
+        if self.nodes.entries.get(place).is_some_and(|entry| entry.mesh.is_some()) {
+            place = self.nodes.add_leaf(place, ufbx::identity_quat());
+        }
+        if let Some(entry) = self.nodes.entries.get_mut(place) {
+            (entry.mesh, entry.skin) = (Some(index), skin);
+        }
+        Ok(Some(place))
+    }
+
+    fn write_skinned(
+        &mut self,
+        node: &Node,
+        mesh: &Mesh,
+        skin: Option<&SkinDeformer>,
+    ) -> Result<Option<(usize, Option<usize>)>, String> {
+        let Some(index) = self.write_mesh(node, mesh, skin)? else { return Ok(None) };
+        let skin = skin.map(|skin| self.skin(node, mesh, skin)).transpose()?;
+        Ok(Some((index, skin)))
+    }
+
+    /// Writes a mesh; none if nothing in it is visible.
+    fn write_mesh(&mut self, node: &Node, mesh: &Mesh, skin: Option<&SkinDeformer>) -> Result<Option<usize>, String> {
+        let name = if mesh.element.name.is_empty() { &*node.element.name } else { &*mesh.element.name };
+        let skipped = mesh.num_point_faces + mesh.num_line_faces;
+        self.warnings.left_out(skipped, "point or line", "points or lines", "only triangles and polygons are converted");
+        if mesh.skin_deformers.count > 1 {
+            self.warnings.add(format!("Mesh \"{name}\": only the first of several skins was used."));
+        }
+        let influences = skin.map(|skin| self.influences(mesh, skin, name));
+        let geometry = if skin.is_some() { ufbx::identity_matrix() } else { finite(node.geometry_to_node) };
+        let shape = Shape::new(mesh, geometry, influences);
+        let mut primitives = List::default();
+        for part in mesh.material_parts.into_iter().filter(|part| part.num_triangles > 0) {
+            let material = node.materials.into_iter().nth(part.index as usize);
+            let material = material.map(|material| material.element.typed_id as usize);
+            let uv_names = material.and_then(|material| self.materials.get(material)).map_or(&[][..], Vec::as_slice);
+            if let Some(mut primitive) = shape.primitive(part, uv_names, self.glb)? {
+                if let Some(material) = material {
+                    primitive.index("material", material);
+                }
+                primitives.push(&primitive.end());
+            }
+        }
+        if primitives.is_empty() {
+            return Ok(None);
+        }
+        let mut json = Object::new();
+        if !name.is_empty() {
+            json.string("name", name);
+        }
+        json.raw("primitives", &primitives.json());
+        add_targets(mesh, &mut json);
+        Ok(Some(self.glb.meshes.push(&json.end())))
+    }
+
+    /// Returns the influences of each vertex, strongest first, with sum 1. What no cluster moves follows the mesh's own node.
+    fn influences(&mut self, mesh: &Mesh, skin: &SkinDeformer, name: &str) -> Vec<Vec<(u16, f32)>> {
+        if !matches!(skin.skinning_method, ufbx::SkinningMethod::Linear | ufbx::SkinningMethod::Rigid) {
+            self.warnings.add(format!("Mesh \"{name}\": dual quaternion skinning became linear."));
+        }
+        let own_node = skin.clusters.count as u16;
+        let mut most = 0;
+        let influences = (0..mesh.num_vertices).map(|vertex| {
+            let mut influences: Vec<(u16, f64)> = weights(skin, vertex).collect();
+            most = most.max(influences.len());
+            influences.sort_by(|a, b| b.1.total_cmp(&a.1));
+            influences.truncate(MAX_INFLUENCES);
+            let sum: f64 = influences.iter().map(|&(_, weight)| weight).sum();
+            if sum > 0.0 && sum.is_finite() {
+                influences.into_iter().map(|(joint, weight)| (joint, (weight / sum) as f32)).collect()
+            } else {
+                vec![(own_node, 1.0)]
+            }
+        });
+        let influences = influences.collect();
+        if most > MAX_INFLUENCES {
+            self.warnings.add(format!(
+                "Mesh \"{name}\": a vertex follows {most} joints; the strongest {MAX_INFLUENCES} were kept."
+            ));
+        }
+        influences
+    }
+
+    /// Writes a skin: a joint per cluster, and the mesh's own node for vertices that no cluster moves.
+    fn skin(&mut self, node: &Node, mesh: &Mesh, skin: &SkinDeformer) -> Result<usize, String> {
+        if skin.clusters.count >= MAX_JOINTS {
+            return Err(format!(
+                "mesh \"{}\" is bound to too many joints: expected less than {MAX_JOINTS}, found {}.",
+                &*mesh.element.name, skin.clusters.count
+            ));
+        }
+        let own_node = mesh.element.instances.into_iter().next().unwrap_or(node);
+        let clusters = skin.clusters.into_iter().map(|cluster| {
+            (cluster.bone_node.as_deref().unwrap_or(own_node), finite(cluster.geometry_to_bone))
+        });
+        let unbound = (0..mesh.num_vertices).any(|vertex| weights(skin, vertex).next().is_none());
+        let extra = unbound.then(|| (own_node, finite(own_node.geometry_to_node)));
+        let (mut joints, mut matrices) = (Vec::new(), Vec::new());
+        for (joint, joint_from_bind) in clusters.chain(extra) {
+            joints.extend(self.nodes.index(joint));
+            matrices.extend(columns(&joint_from_bind));
+        }
+        let known = self.skins.iter().find(|(others, bind, _)| *others == joints && *bind == matrices);
+        if let Some((_, _, index)) = known {
+            return Ok(*index);
+        }
+        let unique = self.unique_joints(&joints);
+        let bind = self.glb.floats(&matrices, "MAT4", None, false);
+        let mut json = Object::new();
+        if !skin.element.name.is_empty() {
+            json.string("name", &skin.element.name);
+        }
+        json.index("inverseBindMatrices", bind).raw("joints", &indices(&unique));
+        let index = self.glb.skins.push(&json.end());
+        self.skins.push((joints, matrices, index));
+        Ok(index)
+    }
+
+    /// A glTF skin lists a node once. Where two clusters bind to one joint differently, the second gets a leaf below it.
+    fn unique_joints(&mut self, joints: &[usize]) -> Vec<usize> {
+        let mut seen = std::collections::BTreeSet::new();
+        joints
+            .iter()
+            .map(|&joint| {
+                if seen.insert(joint) { joint } else { self.nodes.add_leaf(joint, ufbx::identity_quat()) }
+            })
+            .collect()
+    }
+}
+
+/// Returns cluster and weight of each influence on a vertex that has an effect.
+fn weights(skin: &SkinDeformer, vertex: usize) -> impl Iterator<Item = (u16, f64)> {
+    let (begin, count) =
+        skin.vertices.get(vertex).map_or((0, 0), |vertex| (vertex.weight_begin as usize, vertex.num_weights as usize));
+    let weights = skin.weights.get(begin..begin.saturating_add(count)).unwrap_or_default();
+    weights.iter().filter(|weight| weight.weight > 0.0 && weight.weight.is_finite()).map(|weight| {
+        (weight.cluster_index.min(u32::from(u16::MAX)) as u16, weight.weight)
+    })
+}
+
+/// Adds the default weights and names of the morph targets.
+fn add_targets(mesh: &Mesh, json: &mut Object) {
+    let weights: Vec<f64> = shapes(mesh).map(|(_, _, weight)| weight).collect();
+    if weights.is_empty() {
+        return;
+    }
+    let mut names = List::default();
+    for (name, _, _) in shapes(mesh) {
+        names.push(&quoted(name));
+    }
+    json.raw("weights", &numbers(&weights));
+    json.raw("extras", &format!("{{\"targetNames\":{}}}", names.json()));
+}
+
+/// A mesh prepared for writing its primitives.
+struct Shape<'a> {
+    mesh: &'a Mesh,
+    /// Applied to positions and offsets.
+    geometry: Matrix,
+    normals: Matrix,
+    mirrored: bool,
+    influences: Option<Vec<Vec<(u16, f32)>>>,
+}
+
+/// Attributes per corner, then per vertex.
+struct Vertices {
+    /// Place of each vertex in the mesh's own list.
+    ids: Vec<u32>,
+    normals: Vec<[f32; 3]>,
+    uvs: Vec<Vec<[f32; 2]>>,
+    colors: Vec<[f32; 4]>,
+}
+
+impl<'a> Shape<'a> {
+    fn new(mesh: &'a Mesh, geometry: Matrix, influences: Option<Vec<Vec<(u16, f32)>>>) -> Shape<'a> {
+        let normals = ufbx::matrix_for_normals(&geometry);
+        Shape { mesh, geometry, normals, mirrored: ufbx::matrix_determinant(&geometry) < 0.0, influences }
+    }
+
+    /// Writes what belongs to one material; none if it has no triangle.
+    fn primitive(&self, part: &MeshPart, uv_names: &[String], glb: &mut Glb) -> Result<Option<Object>, String> {
+        let corners = self.corners(part);
+        if corners.is_empty() {
+            return Ok(None);
+        }
+        check_size(glb.len().saturating_add(corners.len().saturating_mul(4)))?;
+        let mut vertices = self.at_corners(&corners, uv_names);
+        let triangles = vertices.merge()?;
+        check_size(glb.len().saturating_add(vertices.bytes(self.influences.is_some())))?;
+        let mut attributes = Object::new();
+        let positions: Vec<f32> = vertices.ids.iter().flat_map(|&id| self.position(id)).collect();
+        attributes.index("POSITION", glb.floats(&positions, "VEC3", Some(ARRAY_BUFFER), true));
+        if !vertices.normals.is_empty() {
+            let accessor = glb.floats(vertices.normals.as_flattened(), "VEC3", Some(ARRAY_BUFFER), false);
+            attributes.index("NORMAL", accessor);
+        }
+        for (set, uvs) in vertices.uvs.iter().enumerate() {
+            let accessor = glb.floats(uvs.as_flattened(), "VEC2", Some(ARRAY_BUFFER), false);
+            attributes.index(&format!("TEXCOORD_{set}"), accessor);
+        }
+        if !vertices.colors.is_empty() {
+            let accessor = glb.floats(vertices.colors.as_flattened(), "VEC4", Some(ARRAY_BUFFER), false);
+            attributes.index("COLOR_0", accessor);
+        }
+        self.add_influences(&vertices.ids, &mut attributes, glb);
+        let mut primitive = Object::new();
+        primitive.raw("attributes", &attributes.end());
+        primitive.index("indices", glb.triangles(&triangles, vertices.ids.len()));
+        self.add_shapes(&vertices.ids, &mut primitive, glb)?;
+        Ok(Some(primitive))
+    }
+
+    /// Returns the corners of the part's triangles.
+    fn corners(&self, part: &MeshPart) -> Vec<u32> {
+        let mesh = self.mesh;
+        let mut corners = Vec::with_capacity(3 * part.num_triangles);
+        let mut polygon = vec![0; 3 * mesh.max_face_triangles];
+        for &index in &part.face_indices {
+            let hole = mesh.face_hole.get(index as usize).copied().unwrap_or(false);
+            let Some(&face) = mesh.faces.get(index as usize).filter(|face| face.num_indices >= 3 && !hole) else {
+                continue;
+            };
+            let start = corners.len();
+            if face.num_indices == 3 {
+                corners.extend(face.index_begin..face.index_begin + 3);
+            } else {
+                corners.extend_from_slice(triangulated(mesh, face, &mut polygon));
+            }
+            if self.mirrored {
+                corners[start..].chunks_exact_mut(3).for_each(|triangle| triangle.swap(1, 2));
+            }
+        }
+        corners
+    }
+
+    fn at_corners(&self, corners: &[u32], uv_names: &[String]) -> Vertices {
+        let mesh = self.mesh;
+        let id = |corner: u32| mesh.vertex_indices.get(corner as usize).copied().unwrap_or(0);
+        let normals = &mesh.vertex_normal;
+        let uv_set = |name: &str| {
+            let named = mesh.uv_sets.into_iter().find(|set| &*set.name == name);
+            named.or(mesh.uv_sets.first()).map(|set| &set.vertex_uv)
+        };
+        let mut sets: Vec<_> = uv_names.iter().filter_map(|name| uv_set(name)).collect();
+        if sets.is_empty() {
+            sets.extend(mesh.uv_sets.first().map(|set| &set.vertex_uv));
+        }
+        let uvs = sets.into_iter().map(|set| {
+            let uv = |&corner| value(&set.values, &set.indices, corner).unwrap_or_default();
+            corners.iter().map(uv).map(|uv| [real(uv.x), real(1.0 - uv.y)]).collect()
+        });
+        let color = mesh.color_sets.first().map(|set| &set.vertex_color);
+        Vertices {
+            ids: corners.iter().map(|&corner| id(corner)).collect(),
+            normals: if normals.exists {
+                let normal = |&corner| value(&normals.values, &normals.indices, corner).unwrap_or_default();
+                corners.iter().map(normal).map(|normal| self.normal(normal)).collect()
+            } else {
+                Vec::new()
+            },
+            uvs: uvs.collect(),
+            colors: color.map_or_else(Vec::new, |set| {
+                let color = |&corner| value(&set.values, &set.indices, corner).unwrap_or_default();
+                let rgba = |c: ufbx::Vec4| [linear(c.x), linear(c.y), linear(c.z), real(c.w).clamp(0.0, 1.0)];
+                corners.iter().map(color).map(rgba).collect()
+            }),
+        }
+    }
+
+    fn position(&self, id: u32) -> [f32; 3] {
+        let position = self.mesh.vertices.get(id as usize).copied().unwrap_or_default();
+        let position = ufbx::transform_position(&self.geometry, position);
+        [position.x, position.y, position.z].map(real)
+    }
+
+    fn normal(&self, normal: Vec3) -> [f32; 3] {
+        let normal = ufbx::vec3_normalize(ufbx::transform_direction(&self.normals, normal));
+        let normal = [normal.x, normal.y, normal.z].map(real);
+        if normal == [0.0; 3] { [0.0, 1.0, 0.0] } else { normal }
+    }
+
+    /// Adds as many sets of four joints as the part needs.
+    fn add_influences(&self, ids: &[u32], attributes: &mut Object, glb: &mut Glb) {
+        let Some(influences) = &self.influences else { return };
+        let of = |id: &u32| influences.get(*id as usize).map_or(&[][..], Vec::as_slice);
+        let most = ids.iter().map(|id| of(id).len()).max().unwrap_or(0);
+        for set in 0..most.div_ceil(4).max(1) {
+            let (mut joints, mut weights) = (Vec::with_capacity(4 * ids.len()), Vec::with_capacity(4 * ids.len()));
+            for id in ids {
+                for place in 4 * set..4 * set + 4 {
+                    let (joint, weight) = of(id).get(place).copied().unwrap_or_default();
+                    joints.push(joint);
+                    weights.push(weight);
+                }
+            }
+            attributes.index(&format!("JOINTS_{set}"), glb.joints(&joints));
+            attributes.index(&format!("WEIGHTS_{set}"), glb.floats(&weights, "VEC4", Some(ARRAY_BUFFER), false));
+        }
+    }
+
+    fn add_shapes(&self, ids: &[u32], primitive: &mut Object, glb: &mut Glb) -> Result<(), String> {
+        let mut targets = List::default();
+        let mut offsets = vec![[0.0; 3]; self.mesh.num_vertices];
+        for (_, shape, _) in shapes(self.mesh) {
+            check_size(glb.len().saturating_add(ids.len() * 16))?;
+            let mut changed = Vec::new();
+            for (&vertex, &offset) in shape.offset_vertices.into_iter().zip(&shape.position_offsets) {
+                if let Some(place) = offsets.get_mut(vertex as usize) {
+                    let offset = ufbx::transform_direction(&self.geometry, offset);
+                    *place = [offset.x, offset.y, offset.z].map(real);
+                    changed.push(vertex as usize);
+                }
+            }
+            let (mut elements, mut values) = (Vec::new(), Vec::new());
+            for (element, &id) in ids.iter().enumerate() {
+                let offset = offsets.get(id as usize).copied().unwrap_or_default();
+                if offset != [0.0; 3] {
+                    elements.push(element as u32);
+                    values.extend(offset);
+                }
+            }
+            targets.push(&format!("{{\"POSITION\":{}}}", glb.sparse(ids.len(), &elements, &values)));
+            for vertex in changed {
+                offsets[vertex] = [0.0; 3];
+            }
+        }
+        if !targets.is_empty() {
+            primitive.raw("targets", &targets.json());
+        }
+        Ok(())
+    }
+}
+
+impl Vertices {
+    /// Merges corners with the same attributes and returns a vertex number per corner.
+    fn merge(&mut self) -> Result<Vec<u32>, String> {
+        let mut triangles = vec![0; self.ids.len()];
+        let mut streams = vec![ufbx::VertexStream::new(&mut self.ids)];
+        if !self.normals.is_empty() {
+            streams.push(ufbx::VertexStream::new(&mut self.normals));
+        }
+        streams.extend(self.uvs.iter_mut().map(|uvs| ufbx::VertexStream::new(uvs)));
+        if !self.colors.is_empty() {
+            streams.push(ufbx::VertexStream::new(&mut self.colors));
+        }
+        let limits = ufbx::AllocatorOpts { memory_limit: crate::MAX_TEMPORARY_BYTES, ..Default::default() };
+        let count = ufbx::generate_indices(&mut streams, &mut triangles, limits)
+            .map_err(|error| format!("a mesh is too large to convert: {}.", &*error.description))?;
+        drop(streams);
+        self.ids.truncate(count);
+        self.normals.truncate(count);
+        self.uvs.iter_mut().for_each(|uvs| uvs.truncate(count));
+        self.colors.truncate(count);
+        Ok(triangles)
+    }
+
+    /// Returns about how many bytes the vertices take.
+    fn bytes(&self, skinned: bool) -> usize {
+        let width = 6 + 2 * self.uvs.len() + if self.colors.is_empty() { 0 } else { 4 } + if skinned { 6 } else { 0 };
+        self.ids.len().saturating_mul(4 * width)
+    }
+}
+
+fn triangulated<'a>(mesh: &Mesh, face: Face, polygon: &'a mut [u32]) -> &'a [u32] {
+    if polygon.len() / 3 + 2 < face.num_indices as usize {
+        return &[];
+    }
+    let triangles = ufbx::triangulate_face(polygon, mesh, face) as usize;
+    polygon.get(..3 * triangles).unwrap_or_default()
+}
+
+fn value<T: Copy>(values: &[T], indices: &[u32], corner: u32) -> Option<T> {
+    indices.get(corner as usize).and_then(|&index| values.get(index as usize)).copied()
+}
+
+fn real(value: f64) -> f32 {
+    let value = value as f32;
+    if value.is_finite() { value } else { 0.0 }
+}
+
+/// Vertex colours are painted in sRGB, as Blender and three.js take them; glTF has them linear.
+fn linear(value: f64) -> f32 {
+    let value = if value.is_finite() { value.clamp(0.0, 1.0) } else { 0.0 };
+    (if value <= 0.04045 { value / 12.92 } else { libm::pow((value + 0.055) / 1.055, 2.4) }) as f32
+}
+
+/// Returns the matrix, or the identity if an element isn't finite.
+fn finite(matrix: Matrix) -> Matrix {
+    if columns(&matrix).iter().all(|element| element.is_finite()) { matrix } else { ufbx::identity_matrix() }
+}

@@ -1,0 +1,58 @@
+//! What could not be carried over, in sentences.
+
+use std::collections::BTreeMap;
+
+use ufbx::Scene;
+
+/// Sentences for the user, each once.
+#[derive(Default)]
+pub struct Warnings(Vec<String>);
+
+impl Warnings {
+    /// Adds a sentence.
+    pub fn add(&mut self, sentence: String) {
+        if !self.0.contains(&sentence) {
+            self.0.push(sentence);
+        }
+    }
+
+    /// Adds "3 curves left out: …" if there are any.
+    pub fn left_out(&mut self, count: usize, one: &str, many: &str, reason: &str) {
+        if count > 0 {
+            let noun = if count == 1 { one } else { many };
+            self.add(format!("{count} {noun} left out: {reason}."));
+        }
+    }
+
+    /// Adds what ufbx had to correct and what glTF has no place for.
+    pub fn add_scene(&mut self, scene: &Scene) {
+        let mut corrected: BTreeMap<&str, usize> = BTreeMap::new();
+        for warning in &scene.metadata.warnings {
+            *corrected.entry(&warning.description).or_default() += warning.count.max(1);
+        }
+        for (description, count) in corrected {
+            let times = if count > 1 { format!(" ({count} times)") } else { String::new() };
+            self.add(format!("Damaged FBX data corrected: {description}{times}."));
+        }
+        self.left_out(
+            scene.nurbs_curves.count + scene.nurbs_surfaces.count + scene.nurbs_trim_surfaces.count,
+            "NURBS object",
+            "NURBS objects",
+            "convert NURBS to polygons before exporting",
+        );
+        self.left_out(scene.line_curves.count, "line object", "line objects", "only meshes are converted");
+        self.left_out(
+            scene.cache_deformers.count,
+            "geometry cache",
+            "geometry caches",
+            "bake the deformation to a skeleton or blend shapes",
+        );
+        let constraints = scene.constraints.as_ref().iter().filter(|constraint| constraint.active).count();
+        self.left_out(constraints, "constraint", "constraints", "bake the animation before exporting if it moves wrongly");
+    }
+
+    /// Returns the sentences in the order they were added.
+    pub fn into_sentences(self) -> Vec<String> {
+        self.0
+    }
+}
