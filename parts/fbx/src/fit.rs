@@ -144,9 +144,11 @@ impl Track<'_> {
         if step == 0.0 {
             return vec![0.0; self.width];
         }
-        let one = self.value(time + step, Some(value));
-        let two = self.value(time + 2.0 * step, Some(value));
-        (0..self.width).map(|i| (4.0 * one[i] - 3.0 * value[i] - two[i]) / (2.0 * step)).collect()
+        let [one, two, three] = [1.0, 2.0, 3.0].map(|steps| self.value(time + steps * step, Some(value)));
+        // Exact for a cubic, as translations between two keys are.
+        (0..self.width)
+            .map(|i| (18.0 * one[i] - 11.0 * value[i] - 9.0 * two[i] + 2.0 * three[i]) / (6.0 * step))
+            .collect()
     }
 
     /// Returns whether one span over all of the pieces follows the function.

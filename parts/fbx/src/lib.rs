@@ -80,6 +80,10 @@ fn check_head(bytes: &[u8]) -> Result<(), String> {
     if bytes.is_empty() {
         return Err("the FBX file is empty: download or export it again.".to_owned());
     }
+    if bytes.starts_with(b"Kaydara FBX Binary") && !bytes.starts_with(b"Kaydara FBX Binary  \0\x1a\0") {
+        return Err("the FBX file is damaged: its zero bytes were changed, as by a transfer as text. Download it again."
+            .to_owned());
+    }
     Ok(())
 }
 

@@ -401,10 +401,13 @@ impl<'a> Shape<'a> {
         for (_, shape, _) in shapes(self.mesh) {
             check_size(glb.len().saturating_add(ids.len() * 16))?;
             let mut changed = Vec::new();
-            for (&vertex, &offset) in shape.offset_vertices.into_iter().zip(&shape.position_offsets) {
+            // Blender stores a factor per vertex, ufbx applies it.
+            let factors = shape.offset_weights.into_iter().copied().chain(std::iter::repeat(1.0));
+            let moved = shape.offset_vertices.into_iter().zip(&shape.position_offsets).zip(factors);
+            for ((&vertex, &offset), factor) in moved {
                 if let Some(place) = offsets.get_mut(vertex as usize) {
                     let offset = ufbx::transform_direction(&self.geometry, offset);
-                    *place = [offset.x, offset.y, offset.z].map(real);
+                    *place = [offset.x, offset.y, offset.z].map(|component| real(component * factor));
                     changed.push(vertex as usize);
                 }
             }

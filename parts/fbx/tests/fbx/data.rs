@@ -1,0 +1,225 @@
+//! Every FBX of the test data, compared with ufbx's own evaluation, and with what other programs exported.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+use ufbx::{Anim, Scene};
+
+use crate::glb::Glb;
+
+/// Parts of a clip's duration that miss the keys of every file.
+const TIMES: [f64; 5] = [0.0731, 0.2877, 0.4519, 0.6613, 0.9427];
+
+/// Returns the folder of real files: `GAITWAY_DATA`, or else `../shared/data` beside the repository. Without it this prints
+/// `skipped: …` and returns none; with `GAITWAY_REQUIRE_DATA=1` it panics instead.
+pub fn folder() -> Option<PathBuf> {
+    let folder = match std::env::var_os("GAITWAY_DATA") {
+        Some(folder) => PathBuf::from(folder),
+        None => Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
+    };
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    let missing = format!("no real files at {}: set GAITWAY_DATA", folder.display());
+    assert!(std::env::var("GAITWAY_REQUIRE_DATA").as_deref() != Ok("1"), "{missing}");
+    println!("skipped: {missing}");
+    None
+}
+
+/// Returns all FBX files below a folder, in order.
+pub fn files(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let mut open = vec![folder.to_owned()];
+    while let Some(folder) = open.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                open.push(path);
+            } else if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("fbx")) {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+/// Loads a file with none of the conversions that the converter relies on, but for axes and units at the root.
+fn reference(bytes: &[u8]) -> Option<ufbx::SceneRoot> {
+    let options = ufbx::LoadOpts {
+        target_axes: ufbx::axes_right_handed_y_up(),
+        target_unit_meters: 1.0,
+        ..Default::default()
+    };
+    ufbx::load_memory(bytes, options).ok()
+}
+
+fn evaluated(scene: &Scene, anim: &Anim, time: f64) -> ufbx::SceneRoot {
+    let options = ufbx::EvaluateOpts { evaluate_skinning: true, ..Default::default() };
+    ufbx::evaluate_scene(scene, anim, time, options).unwrap()
+}
+
+/// Returns the world positions of all named nodes by name, in depth-first order.
+fn positions(scene: &Scene) -> HashMap<String, Vec<[f64; 3]>> {
+    let mut found: HashMap<String, Vec<[f64; 3]>> = HashMap::new();
+    let mut open: Vec<&ufbx::Node> = vec![&scene.root_node];
+    while let Some(node) = open.pop() {
+        if !node.is_root && !node.element.name.is_empty() {
+            let m = &node.node_to_world;
+            found.entry(node.element.name.to_string()).or_default().push([m.m03, m.m13, m.m23]);
+        }
+        let mut children: Vec<&ufbx::Node> = node.children.into_iter().collect();
+        children.reverse();
+        open.extend(children);
+    }
+    found
+}
+
+/// Returns all vertices that belong to a triangle, in world space; none if a skin isn't linear or follows two skins.
+fn vertices(scene: &Scene) -> Option<Vec<[f64; 3]>> {
+    let mut all = Vec::new();
+    for node in &scene.nodes {
+        for mesh in node.all_attribs.into_iter().filter_map(ufbx::as_mesh) {
+            let linear = |skin: &ufbx::SkinDeformer| {
+                matches!(skin.skinning_method, ufbx::SkinningMethod::Linear | ufbx::SkinningMethod::Rigid)
+            };
+            if !mesh.skin_deformers.into_iter().all(linear) || mesh.skin_deformers.count > 1 {
+                return None;
+            }
+            let faces = mesh.faces.into_iter().zip(0..);
+            let faces = faces.filter(|(_, face)| !mesh.face_hole.get(*face).copied().unwrap_or(false));
+            for (face, _) in faces.filter(|(face, _)| face.num_indices >= 3) {
+                for corner in face.index_begin..face.index_begin + face.num_indices {
+                    let vertex = mesh.skinned_position[corner as usize];
+                    let local = mesh.skinned_is_local;
+                    let p = if local { ufbx::transform_position(&node.geometry_to_world, vertex) } else { vertex };
+                    all.push([p.x, p.y, p.z]);
+                }
+            }
+        }
+    }
+    Some(all)
+}
+
+/// Returns the greatest distance from a point to the nearest of others, both ways, up to `limit`.
+fn distance(a: &[[f64; 3]], b: &[[f64; 3]], limit: f64) -> f64 {
+    let one_way = |from: &[[f64; 3]], to: &[[f64; 3]]| {
+        let mut sorted = to.to_vec();
+        sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let nearest = |p: &[f64; 3]| {
+            let start = sorted.partition_point(|q| q[0] < p[0] - limit);
+            let near = sorted[start..].iter().take_while(|q| q[0] <= p[0] + limit);
+            near.map(|q| (0..3).map(|i| (p[i] - q[i]).powi(2)).sum::<f64>().sqrt()).fold(f64::INFINITY, f64::min)
+        };
+        from.iter().map(nearest).fold(0.0, f64::max)
+    };
+    one_way(a, b).max(one_way(b, a))
+}
+
+fn size<'a>(points: impl IntoIterator<Item = &'a [f64; 3]>) -> f64 {
+    let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    for point in points {
+        for axis in 0..3 {
+            bounds[0][axis] = bounds[0][axis].min(point[axis]);
+            bounds[1][axis] = bounds[1][axis].max(point[axis]);
+        }
+    }
+    let size = (0..3).map(|axis| bounds[1][axis] - bounds[0][axis]).fold(0.0, f64::max);
+    if size > 0.0 { size } else { 1.0 }
+}
+
+/// What one comparison found, relative to the model's size.
+#[derive(Default, Debug, Clone, Copy)]
+struct Errors {
+    joints: f64,
+    vertices: f64,
+}
+
+/// Compares one time of one clip, or the rest.
+fn compare(glb: &Glb, clip: Option<(usize, f64)>, expected: &Scene, size: f64) -> Errors {
+    let pose = glb.pose(clip);
+    let mut found: HashMap<&str, Vec<[f64; 3]>> = HashMap::new();
+    for index in glb.depth_first() {
+        if let Some(name) = glb.list("nodes")[index]["name"].as_str() {
+            let [x, y, z, _] = pose.worlds[index][3];
+            found.entry(name).or_default().push([x, y, z]);
+        }
+    }
+    let mut errors = Errors::default();
+    for (name, expected) in positions(expected) {
+        let found = found.get(&*name).unwrap_or_else(|| panic!("node {name} is missing"));
+        assert_eq!(found.len(), expected.len(), "nodes named {name}");
+        for (a, b) in found.iter().zip(&expected) {
+            let error = (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt() / size;
+            errors.joints = errors.joints.max(error);
+        }
+    }
+    if let Some(expected) = vertices(expected).filter(|vertices| !vertices.is_empty()) {
+        errors.vertices = distance(&glb.vertices(&pose), &expected, 0.01 * size) / size;
+    }
+    errors
+}
+
+/// Compares a whole file and returns the largest errors and the number of comparisons.
+fn check(bytes: &[u8], converted: &[u8]) -> (Errors, usize) {
+    let glb = Glb::new(converted);
+    let scene = reference(bytes).unwrap();
+    let rest = positions(&scene);
+    let vertices = vertices(&evaluated(&scene, &scene.anim, 0.0)).unwrap_or_default();
+    let size = size(rest.values().flatten().chain(&vertices));
+    let mut largest = Errors::default();
+    let mut count = 0;
+    let mut clips = glb.list("animations").iter().enumerate().peekable();
+    for stack in &scene.anim_stacks {
+        let Some((clip, _)) = clips.next_if(|(_, clip)| clip["name"].as_str().unwrap_or("") == &*stack.element.name) else {
+            continue;
+        };
+        let duration = glb.duration(clip);
+        let start = if stack.time_begin < stack.time_end { stack.time_begin } else { first_key(stack) };
+        for part in TIMES {
+            let time = part * duration;
+            let errors = compare(&glb, Some((clip, time)), &evaluated(&scene, &stack.anim, start + time), size);
+            largest.joints = largest.joints.max(errors.joints);
+            largest.vertices = largest.vertices.max(errors.vertices);
+            count += 1;
+        }
+    }
+    assert!(clips.next().is_none(), "a clip without a stack");
+    (largest, count)
+}
+
+fn first_key(stack: &ufbx::AnimStack) -> f64 {
+    let props = stack.layers.into_iter().flat_map(|layer| &layer.anim_props);
+    let curves = props.flat_map(|prop| prop.anim_value.curves.iter().flatten());
+    curves.map(|curve| curve.min_time).fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn every_file_moves_as_in_ufbx() {
+    let Some(folder) = folder() else { return };
+    let files = files(&folder);
+    assert!(files.len() >= 280, "{} files", files.len());
+    let (mut converted, mut comparisons, mut worst) = (0, 0, Errors::default());
+    let mut faults = Vec::new();
+    for path in &files {
+        let name = path.strip_prefix(&folder).unwrap().display();
+        let bytes = std::fs::read(path).unwrap();
+        match gaitway_fbx::convert(&bytes) {
+            Ok(result) => {
+                let (errors, count) = check(&bytes, &result.glb);
+                if errors.joints > 1e-4 || errors.vertices > 1e-4 {
+                    faults.push(format!("{name}: {errors:?} of size"));
+                } else {
+                    worst.joints = worst.joints.max(errors.joints);
+                    worst.vertices = worst.vertices.max(errors.vertices);
+                }
+                converted += 1;
+                comparisons += count;
+                println!("{name}: {} bytes, {errors:?}, {:?}", result.glb.len(), result.warnings);
+            }
+            Err(error) => faults.push(format!("{name}: {error}")),
+        }
+    }
+    println!("{converted} of {} files, {comparisons} comparisons, largest errors of size {worst:?}", files.len());
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
