@@ -9,6 +9,7 @@ use crate::fit::{self, Corner, Keys, Space, Track, fit};
 use crate::glb::{Glb, List, Object, check_size, quoted};
 use crate::mesh::Morph;
 use crate::node::{Nodes, finite};
+use crate::sort::sort;
 use crate::tolerance::{Tolerance, Tolerances};
 use crate::warnings::Warnings;
 
@@ -84,7 +85,7 @@ impl<'a> Curves<'a> {
         let props = layers.flat_map(|layer: &AnimLayer| &layer.anim_props);
         let mut properties: Vec<_> =
             props.map(|prop| (prop.element.element_id, &*prop.prop_name, &*prop.anim_value)).collect();
-        properties.sort_by_key(|&(element, ..)| element);
+        sort(&mut properties, |a, b| a.0 < b.0);
         let weights = |&(element, name, value): &(u32, &str, &'a AnimValue)| {
             let layer = stack.anim.layers.into_iter().any(|layer| layer.element.element_id == element);
             (layer && name == "Weight").then_some(value)
@@ -157,7 +158,7 @@ impl<'a> Drivers<'a> {
             ));
         }
         corners.retain(|corner| (0.0..=end).contains(&corner.time));
-        corners.sort_by(|a, b| a.time.total_cmp(&b.time));
+        sort(&mut corners, |a, b| a.time < b.time);
         corners.dedup_by(|later, earlier| {
             let same = later.time == earlier.time;
             earlier.jump |= same && later.jump;
@@ -398,7 +399,7 @@ impl<'a> Clip<'a, '_> {
             }
         }
         if !others.is_empty() {
-            others.sort_unstable();
+            sort(&mut others, |a, b| a < b);
             warnings.add(format!("Clip \"{clip}\": animated {} left out.", others.join(", ")));
         }
     }

@@ -151,16 +151,23 @@ fn number(value: f64) -> String {
     }
     let text = digits.to_string();
     let point = text.len() as i32 + exponent;
-    if exponent >= 0 && point <= 15 {
-        format!("{sign}{text}{}", "0".repeat(exponent as usize))
-    } else if exponent < 0 && point > 0 {
-        let (whole, fraction) = text.split_at(point as usize);
-        format!("{sign}{whole}.{fraction}")
-    } else if exponent < 0 && point > -5 {
-        format!("{sign}0.{}{text}", "0".repeat(-point as usize))
-    } else {
-        format!("{sign}{text}e{exponent}")
+    let mut json = String::from(sign);
+    if !(-4..=15).contains(&point) {
+        let _ = write!(json, "{text}e{exponent}");
+        return json;
     }
+    if point <= 0 {
+        json.push_str("0.");
+        (point..0).for_each(|_| json.push('0'));
+    }
+    for (place, digit) in text.chars().enumerate() {
+        if place > 0 && place as i32 == point {
+            json.push('.');
+        }
+        json.push(digit);
+    }
+    (0..exponent).for_each(|_| json.push('0'));
+    json
 }
 
 /// Rounds to `count` significant digits: value ≈ digits · 10^exponent.

@@ -11,11 +11,12 @@
 mod clip;
 mod fit;
 mod glb;
-#[cfg(target_arch = "wasm32")]
 mod libc;
 mod material;
 mod mesh;
 mod node;
+mod raw;
+mod sort;
 mod tolerance;
 mod warnings;
 
@@ -24,13 +25,7 @@ use warnings::Warnings;
 
 /// Largest file that is read.
 const MAX_FILE_BYTES: usize = 1 << 29;
-/// What ufbx may allocate while it reads, and for the scene.
-const MAX_TEMPORARY_BYTES: usize = 1 << 29;
-const MAX_SCENE_BYTES: usize = 1 << 30;
-const MAX_ALLOCATIONS: usize = 1 << 24;
-/// Deepest node hierarchy.
-const MAX_DEPTH: u32 = 1000;
-/// Most nodes, and with them most objects of any kind that become nodes.
+/// Most nodes.
 const MAX_NODES: usize = 1 << 16;
 
 /// A glTF in memory, and what could not be carried over.
@@ -50,7 +45,7 @@ pub struct Converted {
 /// limit.
 pub fn convert(bytes: &[u8]) -> Result<Converted, String> {
     check_head(bytes)?;
-    let scene = ufbx::load_memory(bytes, options()).map_err(|error| explain(&error))?;
+    let scene = raw::load(bytes).map_err(|error| explain(&error))?;
     if scene.nodes.count > MAX_NODES {
         return Err(format!(
             "the FBX file is too large: expected at most {MAX_NODES} objects, found {}. Export a part of the scene.",
@@ -87,32 +82,6 @@ fn check_head(bytes: &[u8]) -> Result<(), String> {
     Ok(())
 }
 
-fn options() -> ufbx::LoadOpts<'static> {
-    let limit = |memory_limit| ufbx::AllocatorOpts {
-        memory_limit,
-        allocation_limit: MAX_ALLOCATIONS,
-        ..Default::default()
-    };
-    ufbx::LoadOpts {
-        temp_allocator: limit(MAX_TEMPORARY_BYTES),
-        result_allocator: limit(MAX_SCENE_BYTES),
-        node_depth_limit: MAX_DEPTH,
-        generate_missing_normals: true,
-        normalize_normals: true,
-        clean_skin_weights: true,
-        use_blender_pbr_material: true,
-        // Scaling the geometry instead of the root keeps joints free of a scale of 0.01. Geometric transforms are baked into
-        // the meshes here, because ufbx leaves blend shapes out when it does so itself.
-        space_conversion: ufbx::SpaceConversion::ModifyGeometry,
-        geometry_transform_handling: ufbx::GeometryTransformHandling::Preserve,
-        inherit_mode_handling: ufbx::InheritModeHandling::Compensate,
-        handedness_conversion_axis: ufbx::MirrorAxis::X,
-        target_axes: ufbx::axes_right_handed_y_up(),
-        target_unit_meters: 1.0,
-        ..Default::default()
-    }
-}
-
 /// Says what ufbx found and what to do about it.
 fn explain(error: &ufbx::Error) -> String {
     use ufbx::ErrorType;
@@ -129,10 +98,12 @@ fn explain(error: &ufbx::Error) -> String {
             error.info()
         ),
         ErrorType::MemoryLimit | ErrorType::AllocationLimit | ErrorType::OutOfMemory => format!(
-            "the FBX file needs too much memory: expected at most {MAX_SCENE_BYTES} bytes. Export a part of the scene."
+            "the FBX file needs too much memory: expected at most {} bytes. Export a part of the scene.",
+            raw::MAX_SCENE_BYTES
         ),
         ErrorType::NodeDepthLimit => format!(
-            "the FBX file nests objects too deeply: expected at most {MAX_DEPTH} levels. Flatten its hierarchy."
+            "the FBX file nests objects too deeply: expected at most {} levels. Flatten its hierarchy.",
+            raw::MAX_DEPTH
         ),
         _ => {
             let info = error.info();

@@ -9,6 +9,8 @@ use ufbx::{BlendShape, Face, Matrix, Mesh, MeshPart, Node, Scene, SkinDeformer, 
 use crate::glb::{ARRAY_BUFFER, Glb, List, Object, check_size, indices, numbers, quoted};
 use crate::material::UvNames;
 use crate::node::{Nodes, columns};
+use crate::raw;
+use crate::sort::sort;
 use crate::warnings::Warnings;
 
 /// Most influences per vertex: four sets of four.
@@ -160,7 +162,7 @@ impl Meshes<'_> {
         let influences = (0..mesh.num_vertices).map(|vertex| {
             let mut influences: Vec<(u16, f64)> = weights(skin, vertex).collect();
             most = most.max(influences.len());
-            influences.sort_by(|a, b| b.1.total_cmp(&a.1));
+            sort(&mut influences, |a, b| a.1 > b.1);
             influences.truncate(MAX_INFLUENCES);
             let sum: f64 = influences.iter().map(|&(_, weight)| weight).sum();
             if sum > 0.0 && sum.is_finite() {
@@ -215,11 +217,12 @@ impl Meshes<'_> {
 
     /// A glTF skin lists a node once. Where two clusters bind to one joint differently, the second gets a leaf below it.
     fn unique_joints(&mut self, joints: &[usize]) -> Vec<usize> {
-        let mut seen = std::collections::BTreeSet::new();
+        let mut seen = vec![false; self.nodes.entries.len()];
         joints
             .iter()
-            .map(|&joint| {
-                if seen.insert(joint) { joint } else { self.nodes.add_leaf(joint, ufbx::identity_quat()) }
+            .map(|&joint| match std::mem::replace(&mut seen[joint], true) {
+                true => self.nodes.add_leaf(joint, ufbx::identity_quat()),
+                false => joint,
             })
             .collect()
     }
@@ -435,18 +438,15 @@ impl Vertices {
     /// Merges corners with the same attributes and returns a vertex number per corner.
     fn merge(&mut self) -> Result<Vec<u32>, String> {
         let mut triangles = vec![0; self.ids.len()];
-        let mut streams = vec![ufbx::VertexStream::new(&mut self.ids)];
+        let mut streams = vec![raw::stream(&mut self.ids)];
         if !self.normals.is_empty() {
-            streams.push(ufbx::VertexStream::new(&mut self.normals));
+            streams.push(raw::stream(&mut self.normals));
         }
-        streams.extend(self.uvs.iter_mut().map(|uvs| ufbx::VertexStream::new(uvs)));
+        streams.extend(self.uvs.iter_mut().map(|uvs| raw::stream(uvs)));
         if !self.colors.is_empty() {
-            streams.push(ufbx::VertexStream::new(&mut self.colors));
+            streams.push(raw::stream(&mut self.colors));
         }
-        let limits = ufbx::AllocatorOpts { memory_limit: crate::MAX_TEMPORARY_BYTES, ..Default::default() };
-        let count = ufbx::generate_indices(&mut streams, &mut triangles, limits)
-            .map_err(|error| format!("a mesh is too large to convert: {}.", &*error.description))?;
-        drop(streams);
+        let count = raw::merge(&mut streams, &mut triangles)?;
         self.ids.truncate(count);
         self.normals.truncate(count);
         self.uvs.iter_mut().for_each(|uvs| uvs.truncate(count));

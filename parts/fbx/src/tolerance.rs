@@ -1,8 +1,9 @@
 //! How far a joint's keys may be off, so that no joint of the model moves noticeably.
 //!
 //! Every joint is to stay within 0.01° and within 0.01 mm per metre of the model's size. The errors of a joint's ancestors
-//! add up in it, and a turned ancestor moves it the more the farther away it is. So the allowance is shared evenly along
-//! the longest chain of animated joints, and a rotation gets less the longer the chain below it is.
+//! add up in it, and a turned ancestor moves it the more the farther away it is. So the allowance is shared along the longest
+//! chain of animated joints, as errors that are independent of each other add up, and a rotation gets less the longer the
+//! chain below it is.
 
 use ufbx::{Matrix, Node, Scene};
 
@@ -62,7 +63,7 @@ impl Tolerances {
                 longest[parent] = longest[parent].max(longest[index]);
             }
         }
-        (0..count).map(|index| self.of_node(index, f64::from(longest[index].max(1)))).collect()
+        (0..count).map(|index| self.of_node(index, f64::from(longest[index].max(1)).sqrt())).collect()
     }
 
     fn of_node(&self, index: usize, chain: f64) -> Tolerance {

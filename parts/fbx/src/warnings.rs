@@ -1,7 +1,5 @@
 //! What could not be carried over, in sentences.
 
-use std::collections::BTreeMap;
-
 use ufbx::Scene;
 
 /// Sentences for the user, each once.
@@ -26,13 +24,15 @@ impl Warnings {
 
     /// Adds what ufbx had to correct and what glTF has no place for.
     pub fn add_scene(&mut self, scene: &Scene) {
-        let mut corrected: BTreeMap<&str, usize> = BTreeMap::new();
-        for warning in &scene.metadata.warnings {
-            *corrected.entry(&warning.description).or_default() += warning.count.max(1);
-        }
-        for (description, count) in corrected {
+        let corrections = scene.metadata.warnings.as_ref();
+        for (index, warning) in corrections.iter().enumerate() {
+            let same = |other: &&ufbx::Warning| *other.description == *warning.description;
+            if corrections[..index].iter().any(|other| same(&other)) {
+                continue;
+            }
+            let count: usize = corrections.iter().filter(same).map(|warning| warning.count.max(1)).sum();
             let times = if count > 1 { format!(" ({count} times)") } else { String::new() };
-            self.add(format!("Damaged FBX data corrected: {description}{times}."));
+            self.add(format!("Damaged FBX data corrected: {}{times}.", &*warning.description));
         }
         self.left_out(
             scene.nurbs_curves.count + scene.nurbs_surfaces.count + scene.nurbs_trim_surfaces.count,
