@@ -108,12 +108,10 @@ impl<'a> Curves<'a> {
         let times = curves.filter(|curve| !curve.keyframes.is_empty()).map(|curve| (curve.min_time, curve.max_time));
         let (first, last) =
             times.fold((f64::INFINITY, f64::NEG_INFINITY), |range, (from, to)| (range.0.min(from), range.1.max(to)));
-        let [from, to] = if stack.time_begin < stack.time_end {
-            [stack.time_begin, stack.time_end]
-        } else {
-            [first, last]
-        };
-        let valid = first.is_finite() && last.is_finite() && from.is_finite() && (0.0..=MAX_SECS).contains(&(to - from));
+        let [from, to] =
+            if stack.time_begin < stack.time_end { [stack.time_begin, stack.time_end] } else { [first, last] };
+        let valid =
+            first.is_finite() && last.is_finite() && from.is_finite() && (0.0..=MAX_SECS).contains(&(to - from));
         valid.then_some([from, to])
     }
 }
@@ -191,7 +189,8 @@ fn add_corners(curve: &AnimCurve, [from, to]: [f64; 2], corners: &mut Vec<Corner
             continue;
         }
         let wanted = (gap / period).ceil();
-        let wanted = if extrapolation.repeat_count < 0 { wanted } else { wanted.min(extrapolation.repeat_count.into()) };
+        let wanted =
+            if extrapolation.repeat_count < 0 { wanted } else { wanted.min(extrapolation.repeat_count.into()) };
         let room = (MAX_CORNERS / keys.len().max(1)) as f64;
         let after = gap == to - last;
         for repetition in 0..wanted.min(room) as usize {
@@ -315,7 +314,8 @@ impl<'a> Clip<'a, '_> {
         for morph in morphs {
             let channels: Vec<_> =
                 morph.mesh.blend_deformers.into_iter().flat_map(|deformer| &deformer.channels).collect();
-            let values = channels.iter().flat_map(|channel| self.curves.of(channel.element.element_id, &["DeformPercent"]));
+            let values =
+                channels.iter().flat_map(|channel| self.curves.of(channel.element.element_id, &["DeformPercent"]));
             let mut drivers = Drivers { values: values.collect() };
             if !drivers.is_animated() {
                 continue;
@@ -374,10 +374,8 @@ impl<'a> Clip<'a, '_> {
         let mut sampler = Object::new();
         sampler.index("input", input).string("interpolation", interpolation).index("output", output);
         let sampler = self.samplers.push(&sampler.end());
-        self.channels.push(&format!(
-            "{{\"sampler\":{sampler},\"target\":{{\"node\":{node},\"path\":{}}}}}",
-            quoted(path)
-        ));
+        self.channels
+            .push(&format!("{{\"sampler\":{sampler},\"target\":{{\"node\":{node},\"path\":{}}}}}", quoted(path)));
         Ok(())
     }
 
@@ -447,7 +445,8 @@ fn shape_weights(channel: &ufbx::BlendChannel, weight: f64, out: &mut [f64]) {
     let keys = channel.keyframes.as_ref();
     let negative = keys.iter().rposition(|key| key.target_weight < 0.0).map_or(0, |last| last + 1);
     // Beyond 0 on the side without shapes, the nearest shape of the other side is extrapolated.
-    let mut previous = if weight > 0.0 { negative.checked_sub(1) } else { Some(negative).filter(|&first| first < keys.len()) };
+    let mut previous =
+        if weight > 0.0 { negative.checked_sub(1) } else { Some(negative).filter(|&first| first < keys.len()) };
     let mut next = None;
     let mut visit = |index: usize| {
         (previous, next) = (next, Some(index));

@@ -5,8 +5,8 @@
 //! keys that the rest doesn't need are left out. What is linear, stepped or constant anyway is written as such.
 
 /// Where between two keys the fit is compared with the function. Unevenly spaced, so that a motion that repeats inside a
-/// piece is noticed.
-const CHECKS: [f64; 5] = [0.13, 0.31, 0.5, 0.69, 0.87];
+/// piece is noticed, and close to the ends, where steep tangents act.
+const CHECKS: [f64; 7] = [0.04, 0.15, 0.31, 0.5, 0.69, 0.85, 0.96];
 /// Most halvings of one piece.
 const MAX_HALVINGS: u32 = 10;
 /// Most pieces that are merged into one, which bounds the time for merging.
@@ -107,9 +107,11 @@ impl Track<'_> {
         value
     }
 
-    /// Returns the value just after a jump, whose time may have been rounded.
+    /// Returns the value just after a jump, whose time may have been rounded down.
     fn after(&mut self, time: f32, align: &[f64]) -> Vec<f64> {
-        self.value(f64::from(time) + 2.0 * f64::from(time.next_up() - time), Some(align))
+        let here = self.at(time, Some(align));
+        let later = self.value(f64::from(time) + 2.0 * f64::from(time.next_up() - time), Some(align));
+        if self.error(&here, &later) < 0.5 * self.error(&later, align) { here } else { later }
     }
 
     /// Adds the pieces from one corner to the next.
@@ -165,7 +167,8 @@ impl Track<'_> {
         };
         pieces.iter().enumerate().all(|(index, piece)| {
             let [from, to] = piece.times.map(f64::from);
-            let inside = CHECKS.iter().zip(&piece.checks).all(|(at, expected)| close(from + at * (to - from), expected));
+            let inside =
+                CHECKS.iter().zip(&piece.checks).all(|(at, expected)| close(from + at * (to - from), expected));
             inside && (index + 1 == pieces.len() || close(to, &piece.ends[3]))
         })
     }
@@ -317,7 +320,8 @@ impl Span<'_> {
             (Interpolation::Linear, Space::Rotation) => slerp(dot(start, end), t),
         };
         for (i, out) in out.iter_mut().enumerate() {
-            *out = weights[0] * start[i] + weights[1] * slope_start[i] + weights[2] * slope_end[i] + weights[3] * end[i];
+            *out =
+                weights[0] * start[i] + weights[1] * slope_start[i] + weights[2] * slope_end[i] + weights[3] * end[i];
         }
         if space == Space::Rotation {
             let length = dot(out, out).sqrt();
@@ -330,12 +334,7 @@ impl Span<'_> {
 
 fn hermite(t: f64, duration: f64) -> [f64; 4] {
     let (t2, t3) = (t * t, t * t * t);
-    [
-        2.0 * t3 - 3.0 * t2 + 1.0,
-        duration * (t3 - 2.0 * t2 + t),
-        duration * (t3 - t2),
-        3.0 * t2 - 2.0 * t3,
-    ]
+    [2.0 * t3 - 3.0 * t2 + 1.0, duration * (t3 - 2.0 * t2 + t), duration * (t3 - t2), 3.0 * t2 - 2.0 * t3]
 }
 
 fn slerp(cosine: f64, t: f64) -> [f64; 4] {
@@ -394,7 +393,8 @@ mod tests {
     #[test]
     fn steps_are_steps() {
         let jumps = [0.0, 1.0, 2.0, 3.0].map(|time| Corner { time, jump: true });
-        let keys = fitted(Space::Linear, 1, &jumps, |t, out| out[0] = if t < 1.0 { 1.0 } else { t.floor().min(2.0) * 2.0 });
+        let keys =
+            fitted(Space::Linear, 1, &jumps, |t, out| out[0] = if t < 1.0 { 1.0 } else { t.floor().min(2.0) * 2.0 });
         assert_eq!(keys.interpolation, Interpolation::Step);
         assert_eq!((keys.times, keys.values), (vec![0.0, 1.0, 2.0, 3.0], vec![1.0, 2.0, 4.0, 4.0]));
     }

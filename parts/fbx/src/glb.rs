@@ -332,10 +332,7 @@ impl Glb {
             document.raw("extensionsUsed", &names.json());
         }
         if !self.lights.is_empty() {
-            document.raw(
-                "extensions",
-                &format!("{{\"KHR_lights_punctual\":{{\"lights\":{}}}}}", self.lights.json()),
-            );
+            document.raw("extensions", &format!("{{\"KHR_lights_punctual\":{{\"lights\":{}}}}}", self.lights.json()));
         }
         let mut scene = Object::new();
         if !self.scene_roots.is_empty() {
@@ -416,7 +413,8 @@ mod tests {
 
     #[test]
     fn numbers_read_back_as_the_same_float() {
-        let cases = [0.1_f32, 1.0, -2.5, 1e-38, 1e-45, 3.4e38, 1234567.0, 16777216.0, 0.001, 9.999_999, -1e10, 123_456.79];
+        let cases =
+            [0.1_f32, 1.0, -2.5, 1e-38, 1e-45, 3.4e38, 1234567.0, 16777216.0, 0.001, 9.999_999, -1e10, 123_456.79];
         let more = (0..2000_u32).map(|seed| f32::from_bits(seed.wrapping_mul(2_654_435_761)));
         for value in cases.into_iter().chain(more.filter(|value| value.is_finite())) {
             let text = number(f64::from(value));

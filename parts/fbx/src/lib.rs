@@ -52,6 +52,13 @@ pub fn convert(bytes: &[u8]) -> Result<Converted, String> {
             scene.nodes.count
         ));
     }
+    if scene.nodes.count < 2 {
+        return Err(
+            "the FBX file has no objects: expected meshes, joints or a clip, found none. Export it again with \
+            the objects selected."
+                .to_owned(),
+        );
+    }
     let mut glb = Glb::default();
     let mut warnings = Warnings::default();
     warnings.add_scene(&scene);
@@ -76,8 +83,10 @@ fn check_head(bytes: &[u8]) -> Result<(), String> {
         return Err("the FBX file is empty: download or export it again.".to_owned());
     }
     if bytes.starts_with(b"Kaydara FBX Binary") && !bytes.starts_with(b"Kaydara FBX Binary  \0\x1a\0") {
-        return Err("the FBX file is damaged: its zero bytes were changed, as by a transfer as text. Download it again."
-            .to_owned());
+        return Err(
+            "the FBX file is damaged: its zero bytes were changed, as by a transfer as text. Download it again."
+                .to_owned(),
+        );
     }
     Ok(())
 }

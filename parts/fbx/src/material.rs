@@ -14,7 +14,8 @@ const CLAMP_TO_EDGE: usize = 33071;
 
 /// Writes all materials; a mesh part refers to them by their number in the scene.
 pub fn write(scene: &Scene, glb: &mut Glb, warnings: &mut Warnings) -> Vec<UvNames> {
-    let mut textures = Textures { files: Vec::new(), samplers: Vec::new(), written: Vec::new(), webp: Vec::new(), glb, warnings };
+    let mut textures =
+        Textures { files: Vec::new(), samplers: Vec::new(), written: Vec::new(), webp: Vec::new(), glb, warnings };
     scene.materials.into_iter().map(|material| write_material(material, &mut textures)).collect()
 }
 
@@ -106,12 +107,7 @@ fn add_details(material: &Material, json: &mut Object, textures: &mut Textures, 
 
 /// Adds metalness and roughness. glTF reads roughness from green and metalness from blue of one texture: a grey roughness map
 /// serves for a surface that is no metal, and a map connected to both is taken to be packed that way.
-fn add_metal_and_roughness(
-    material: &Material,
-    surface: &mut Object,
-    textures: &mut Textures,
-    uv_names: &mut UvNames,
-) {
+fn add_metal_and_roughness(material: &Material, surface: &mut Object, textures: &mut Textures, uv_names: &mut UvNames) {
     let pbr = &material.pbr;
     let (metal_map, rough_map) = (used(&pbr.metalness), used(&pbr.roughness));
     let metal = if pbr.metalness.has_value { unit(pbr.metalness.value_vec4.x) } else { 0.0 };
@@ -155,7 +151,8 @@ fn roughness(material: &Material) -> f64 {
 /// Returns the opacity, and whether the surface is to be blended.
 fn opacity(material: &Material, warnings: &mut Warnings) -> (f64, bool) {
     let pbr = &material.pbr;
-    let map = if pbr.opacity.has_value || pbr.opacity.texture.is_some() { &pbr.opacity } else { &pbr.transmission_color };
+    let map =
+        if pbr.opacity.has_value || pbr.opacity.texture.is_some() { &pbr.opacity } else { &pbr.transmission_color };
     let phong = matches!(material.shader_type, ShaderType::FbxLambert | ShaderType::FbxPhong | ShaderType::Unknown);
     let is_opacity = std::ptr::eq(map, &raw const pbr.opacity);
     if let Some(texture) = used(map).filter(|_| is_opacity || phong) {

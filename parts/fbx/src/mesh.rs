@@ -121,7 +121,12 @@ impl Meshes<'_> {
     fn write_mesh(&mut self, node: &Node, mesh: &Mesh, skin: Option<&SkinDeformer>) -> Result<Option<usize>, String> {
         let name = if mesh.element.name.is_empty() { &*node.element.name } else { &*mesh.element.name };
         let skipped = mesh.num_point_faces + mesh.num_line_faces;
-        self.warnings.left_out(skipped, "point or line", "points or lines", "only triangles and polygons are converted");
+        self.warnings.left_out(
+            skipped,
+            "point or line",
+            "points or lines",
+            "only triangles and polygons are converted",
+        );
         if mesh.skin_deformers.count > 1 {
             self.warnings.add(format!("Mesh \"{name}\": only the first of several skins was used."));
         }
@@ -189,9 +194,10 @@ impl Meshes<'_> {
             ));
         }
         let own_node = mesh.element.instances.into_iter().next().unwrap_or(node);
-        let clusters = skin.clusters.into_iter().map(|cluster| {
-            (cluster.bone_node.as_deref().unwrap_or(own_node), finite(cluster.geometry_to_bone))
-        });
+        let clusters = skin
+            .clusters
+            .into_iter()
+            .map(|cluster| (cluster.bone_node.as_deref().unwrap_or(own_node), finite(cluster.geometry_to_bone)));
         let unbound = (0..mesh.num_vertices).any(|vertex| weights(skin, vertex).next().is_none());
         let extra = unbound.then(|| (own_node, finite(own_node.geometry_to_node)));
         let (mut joints, mut matrices) = (Vec::new(), Vec::new());
@@ -233,9 +239,10 @@ fn weights(skin: &SkinDeformer, vertex: usize) -> impl Iterator<Item = (u16, f64
     let (begin, count) =
         skin.vertices.get(vertex).map_or((0, 0), |vertex| (vertex.weight_begin as usize, vertex.num_weights as usize));
     let weights = skin.weights.get(begin..begin.saturating_add(count)).unwrap_or_default();
-    weights.iter().filter(|weight| weight.weight > 0.0 && weight.weight.is_finite()).map(|weight| {
-        (weight.cluster_index.min(u32::from(u16::MAX)) as u16, weight.weight)
-    })
+    weights
+        .iter()
+        .filter(|weight| weight.weight > 0.0 && weight.weight.is_finite())
+        .map(|weight| (weight.cluster_index.min(u32::from(u16::MAX)) as u16, weight.weight))
 }
 
 /// Adds the default weights and names of the morph targets.

@@ -165,10 +165,8 @@ fn add_transform(node: &mut Object, transform: &Transform) {
 
 /// Returns the 16 elements of a glTF matrix.
 pub fn columns(m: &Matrix) -> [f32; 16] {
-    [
-        m.m00, m.m10, m.m20, 0.0, m.m01, m.m11, m.m21, 0.0, m.m02, m.m12, m.m22, 0.0, m.m03, m.m13, m.m23, 1.0,
-    ]
-    .map(|element| element as f32)
+    [m.m00, m.m10, m.m20, 0.0, m.m01, m.m11, m.m21, 0.0, m.m02, m.m12, m.m22, 0.0, m.m03, m.m13, m.m23, 1.0]
+        .map(|element| element as f32)
 }
 
 /// Adds cameras and lights on leaves that turn them: FBX cameras look along +X and lights shine along -Y, glTF's along -Z.
@@ -255,7 +253,8 @@ fn write_light(light: &ufbx::Light, glb: &mut Glb) -> usize {
     json.string("type", kind);
     if kind == "spot" {
         let half = |degrees: f64| (degrees / 2.0).to_radians();
-        let outer = if light.outer_angle > 0.0 && light.outer_angle <= 180.0 { half(light.outer_angle) } else { half(45.0) };
+        let outer =
+            if light.outer_angle > 0.0 && light.outer_angle <= 180.0 { half(light.outer_angle) } else { half(45.0) };
         let inner = if light.inner_angle > 0.0 { half(light.inner_angle).min(outer * 0.999) } else { 0.0 };
         let mut cone = Object::new();
         cone.number("innerConeAngle", inner).number("outerConeAngle", outer);

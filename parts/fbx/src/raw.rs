@@ -64,10 +64,7 @@ pub fn stream<T: Copy>(attribute: &mut [T]) -> Stream<'_> {
 /// Merges vertices that agree in all streams: moves the different ones to the front, writes the number of each into
 /// `indices` and returns their count.
 pub fn merge(streams: &mut [Stream], indices: &mut [u32]) -> Result<usize, String> {
-    let raw: Vec<RawVertexStream> = streams
-        .iter()
-        .map(|stream| RawVertexStream { ..stream.raw })
-        .collect();
+    let raw: Vec<RawVertexStream> = streams.iter().map(|stream| RawVertexStream { ..stream.raw }).collect();
     if raw.iter().any(|stream| stream.vertex_count < indices.len()) {
         return Err("a mesh has attributes of different lengths: export it again.".to_owned());
     }

@@ -67,7 +67,7 @@ impl Tolerances {
     }
 
     fn of_node(&self, index: usize, chain: f64) -> Tolerance {
-        let share = DISTANCE * self.size / (2.0 * chain);
+        let share = DISTANCE * self.size / (2.5 * chain);
         // Rotations and scales of a node with nothing below it still move its mesh.
         let reach = self.reach[index].max(0.05 * self.size);
         Tolerance {
@@ -90,7 +90,7 @@ fn size(nodes: &[&Node]) -> f64 {
             }
         }
     };
-    for node in nodes {
+    for node in nodes.iter().filter(|node| !node.is_root) {
         include(position(&node.node_to_world));
         for &vertex in node.mesh.as_ref().map_or(&[][..], |mesh| mesh.vertices.as_ref()) {
             let vertex = ufbx::transform_position(&node.geometry_to_world, vertex);

@@ -48,7 +48,12 @@ impl Warnings {
             "bake the deformation to a skeleton or blend shapes",
         );
         let constraints = scene.constraints.as_ref().iter().filter(|constraint| constraint.active).count();
-        self.left_out(constraints, "constraint", "constraints", "bake the animation before exporting if it moves wrongly");
+        self.left_out(
+            constraints,
+            "constraint",
+            "constraints",
+            "bake the animation before exporting if it moves wrongly",
+        );
     }
 
     /// Returns the sentences in the order they were added.

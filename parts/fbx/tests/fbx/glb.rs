@@ -130,7 +130,8 @@ impl Glb {
         }
         let mut worlds = vec![IDENTITY; nodes.len()];
         let roots = self.json["scenes"][0]["nodes"].as_array().map_or(&[][..], Vec::as_slice);
-        let mut open: Vec<(usize, Matrix)> = roots.iter().map(|root| (root.as_u64().unwrap() as usize, IDENTITY)).collect();
+        let mut open: Vec<(usize, Matrix)> =
+            roots.iter().map(|root| (root.as_u64().unwrap() as usize, IDENTITY)).collect();
         while let Some((index, parent)) = open.pop() {
             worlds[index] = multiply(&parent, &matrix(&locals[index]));
             for child in nodes[index]["children"].as_array().map_or(&[][..], Vec::as_slice) {
@@ -163,9 +164,16 @@ impl Glb {
             "CUBICSPLINE" => {
                 let (leaving, arriving) = (value(a, 2), value(b, 0));
                 let (t2, t3) = (t * t, t * t * t);
-                let weights = [2.0 * t3 - 3.0 * t2 + 1.0, duration * (t3 - 2.0 * t2 + t), 3.0 * t2 - 2.0 * t3, duration * (t3 - t2)];
+                let weights = [
+                    2.0 * t3 - 3.0 * t2 + 1.0,
+                    duration * (t3 - 2.0 * t2 + t),
+                    3.0 * t2 - 2.0 * t3,
+                    duration * (t3 - t2),
+                ];
                 (0..width)
-                    .map(|i| weights[0] * start[i] + weights[1] * leaving[i] + weights[2] * end[i] + weights[3] * arriving[i])
+                    .map(|i| {
+                        weights[0] * start[i] + weights[1] * leaving[i] + weights[2] * end[i] + weights[3] * arriving[i]
+                    })
                     .collect()
             }
             _ if rotation => slerp(&start, &end, t),
@@ -205,7 +213,13 @@ impl Glb {
         matrices.collect()
     }
 
-    fn primitive(&self, primitive: &Value, weights: &[f64], palette: Option<&[Matrix]>, world: &Matrix) -> Vec<[f64; 3]> {
+    fn primitive(
+        &self,
+        primitive: &Value,
+        weights: &[f64],
+        palette: Option<&[Matrix]>,
+        world: &Matrix,
+    ) -> Vec<[f64; 3]> {
         let attributes = &primitive["attributes"];
         let mut positions = self.accessor(&attributes["POSITION"]);
         let targets = primitive["targets"].as_array().map_or(&[][..], Vec::as_slice);
