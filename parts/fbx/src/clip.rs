@@ -14,13 +14,15 @@ use crate::tolerance::{Tolerance, Tolerances};
 use crate::warnings::Warnings;
 
 /// Most evaluations of a transform in one file; beyond, curves are followed less closely.
-const MAX_EVALUATIONS: u64 = 12_000_000;
+const MAX_EVALUATIONS: u64 = 8_000_000;
 /// Most keys of one channel, with all repetitions.
 const MAX_CORNERS: usize = 1 << 18;
 /// Most keys of all channels.
 const MAX_KEYS: usize = 1 << 23;
 /// Longest clip, in seconds: a day.
 const MAX_SECS: f64 = 86_400.0;
+/// How many of the key times written last are looked through for the same ones.
+const MAX_COMPARED: usize = 64;
 /// How far a blend shape's weight may be off.
 const WEIGHT_TOLERANCE: f64 = 1e-4;
 
@@ -44,9 +46,13 @@ pub fn write(
     let mut keys = 0;
     for stack in &scene.anim_stacks {
         let curves = Curves::new(stack);
+        // Mixamo's files, for one, have an empty take besides the clip.
+        if curves.properties.is_empty() {
+            continue;
+        }
         let name = &*stack.element.name;
         let Some(range) = curves.range(stack) else {
-            warnings.add(format!("Clip \"{name}\" left out: it has no keys, or times out of range."));
+            warnings.add(format!("Clip \"{name}\" left out: it has no keys, or is longer than a day."));
             continue;
         };
         let mut clip = Clip {
@@ -352,7 +358,8 @@ impl<'a> Clip<'a, '_> {
             return Err(format!("the animation has too many keys: expected at most {MAX_KEYS}. Export fewer takes."));
         }
         check_size(self.glb.len().saturating_add(4 * keys.values.len()))?;
-        let input = match self.times.iter().find(|(times, _)| *times == keys.times) {
+        let recent = self.times.iter().rev().take(MAX_COMPARED);
+        let input = match recent.into_iter().find(|(times, _)| *times == keys.times) {
             Some(&(_, accessor)) => accessor,
             None => {
                 let accessor = self.glb.floats(&keys.times, "SCALAR", None, true);
@@ -387,7 +394,7 @@ impl<'a> Clip<'a, '_> {
                 || ROTATION_PROPERTIES.contains(&name)
                 || SCALE_PROPERTIES.contains(&name)
                 || ["DeformPercent", "Weight"].contains(&name);
-            let known = self.scene.elements.into_iter().nth(element as usize).is_some_and(|element| {
+            let known = self.scene.elements.as_ref().get(element as usize).is_some_and(|element| {
                 use ufbx::ElementType::{Camera, Light, Material, Node, Texture};
                 matches!(element.type_, Camera | Light | Material | Node | Texture)
             });

@@ -62,7 +62,8 @@ struct Piece {
     times: [f32; 2],
     /// Value at the start, slope at the start, slope at the end, value at the end.
     ends: [Vec<f64>; 4],
-    checks: [Vec<f64>; CHECKS.len()],
+    /// Values at `CHECKS`, one after the other.
+    checks: Vec<f64>,
 }
 
 /// Fits keys to a track from the first to the last corner.
@@ -119,7 +120,10 @@ impl Track<'_> {
         let [from, to] = times.map(f64::from);
         let duration = to - from;
         let slopes = [self.slope(from, duration, &start), self.slope(to, -duration, &end)];
-        let checks = CHECKS.map(|at| self.value(from + at * duration, Some(&start)));
+        let mut checks = Vec::with_capacity(CHECKS.len() * self.width);
+        for at in CHECKS {
+            checks.extend(self.value(from + at * duration, Some(&start)));
+        }
         let [slope_start, slope_end] = slopes;
         let piece = Piece { times, ends: [start, slope_start, slope_end, end], checks };
         let middle = ((from + to) / 2.0) as f32;
@@ -167,8 +171,10 @@ impl Track<'_> {
         };
         pieces.iter().enumerate().all(|(index, piece)| {
             let [from, to] = piece.times.map(f64::from);
-            let inside =
-                CHECKS.iter().zip(&piece.checks).all(|(at, expected)| close(from + at * (to - from), expected));
+            let inside = CHECKS
+                .iter()
+                .zip(piece.checks.chunks_exact(self.width))
+                .all(|(at, expected)| close(from + at * (to - from), expected));
             inside && (index + 1 == pieces.len() || close(to, &piece.ends[3]))
         })
     }
@@ -187,8 +193,8 @@ impl Track<'_> {
             return self.constant(runs, &last);
         }
         let stepped = runs.iter().flatten().all(|piece| {
-            let values = piece.checks.iter().chain([&piece.ends[3]]);
-            values.into_iter().all(|value| self.error(value, &piece.ends[0]) <= self.tolerance)
+            let mut values = piece.checks.chunks_exact(self.width).chain([&piece.ends[3][..]]);
+            values.all(|value| self.error(value, &piece.ends[0]) <= self.tolerance)
         });
         if stepped {
             return self.steps(runs, &last);
@@ -206,8 +212,9 @@ impl Track<'_> {
     }
 
     fn is_constant(&self, runs: &[Vec<Piece>], last: &[f64]) -> bool {
-        let values = runs.iter().flatten().flat_map(|piece| piece.checks.iter().chain(&piece.ends[..1]));
-        values.chain(std::iter::once(&last.to_vec())).all(|value| self.error(value, last) <= self.tolerance)
+        let values =
+            runs.iter().flatten().flat_map(|piece| piece.checks.chunks_exact(self.width).chain([&piece.ends[0][..]]));
+        values.into_iter().all(|value| self.error(value, last) <= self.tolerance)
     }
 
     fn constant(&self, runs: &[Vec<Piece>], (end, value): &(f32, Vec<f64>)) -> Keys {

@@ -31,7 +31,8 @@ pub fn write<'a>(
     glb: &mut Glb,
     warnings: &mut Warnings,
 ) -> Result<Vec<Morph<'a>>, String> {
-    let mut meshes = Meshes { materials, written: Vec::new(), skins: Vec::new(), nodes, glb, warnings };
+    let written = (0..scene.meshes.count).map(|_| Vec::new()).collect();
+    let mut meshes = Meshes { materials, written, skins: Vec::new(), nodes, glb, warnings };
     let mut morphs = Vec::new();
     for node in &scene.nodes {
         let attributes = node.all_attribs.into_iter().filter_map(ufbx::as_mesh);
@@ -61,8 +62,8 @@ pub fn shapes(mesh: &Mesh) -> impl Iterator<Item = (&str, &BlendShape, f64)> {
 
 struct Meshes<'a> {
     materials: &'a [UvNames],
-    /// glTF mesh and skin of what has been written, or none if nothing in it is visible.
-    written: Vec<(Identity, Option<(usize, Option<usize>)>)>,
+    /// What has been written of each mesh: glTF mesh and skin, or none if nothing in it is visible.
+    written: Vec<Vec<(Identity, Option<(usize, Option<usize>)>)>>,
     skins: Vec<(Vec<usize>, Vec<f32>, usize)>,
     nodes: &'a mut Nodes,
     glb: &'a mut Glb,
@@ -72,7 +73,6 @@ struct Meshes<'a> {
 /// What makes two instances of a mesh the same glTF mesh.
 #[derive(PartialEq)]
 struct Identity {
-    mesh: u32,
     geometry: Option<[f32; 16]>,
     materials: Vec<u32>,
 }
@@ -83,16 +83,16 @@ impl Meshes<'_> {
         let Some(mut place) = self.nodes.index(node) else { return Ok(None) };
         let skin = mesh.skin_deformers.into_iter().find(|skin| skin.clusters.count > 0);
         let identity = Identity {
-            mesh: mesh.element.typed_id,
             geometry: skin.is_none().then(|| columns(&node.geometry_to_node)),
             materials: node.materials.into_iter().map(|material| material.element.typed_id).collect(),
         };
-        let known = self.written.iter().find(|(other, _)| *other == identity).map(|(_, written)| *written);
+        let id = mesh.element.typed_id as usize;
+        let known = self.written[id].iter().find(|(other, _)| *other == identity).map(|(_, written)| *written);
         let written = match known {
             Some(written) => written,
             None => {
                 let written = self.write_skinned(node, mesh, skin)?;
-                self.written.push((identity, written));
+                self.written[id].push((identity, written));
                 written
             }
         };
@@ -135,7 +135,7 @@ impl Meshes<'_> {
         let shape = Shape::new(mesh, geometry, influences);
         let mut primitives = List::default();
         for part in mesh.material_parts.into_iter().filter(|part| part.num_triangles > 0) {
-            let material = node.materials.into_iter().nth(part.index as usize);
+            let material = node.materials.as_ref().get(part.index as usize);
             let material = material.map(|material| material.element.typed_id as usize);
             let uv_names = material.and_then(|material| self.materials.get(material)).map_or(&[][..], Vec::as_slice);
             if let Some(mut primitive) = shape.primitive(part, uv_names, self.glb)? {
@@ -210,6 +210,7 @@ impl Meshes<'_> {
             return Ok(*index);
         }
         let unique = self.unique_joints(&joints);
+        self.nodes.join(&unique);
         let bind = self.glb.floats(&matrices, "MAT4", None, false);
         let mut json = Object::new();
         if !skin.element.name.is_empty() {

@@ -10,11 +10,31 @@ pub struct Entry {
     name: Option<String>,
     transform: Transform,
     children: Vec<usize>,
+    /// The node without a parent that this one is below, or itself.
+    root: usize,
     visible: bool,
+    hides_children: bool,
     pub mesh: Option<usize>,
     pub skin: Option<usize>,
     camera: Option<usize>,
     light: Option<usize>,
+}
+
+impl Entry {
+    fn new(transform: Transform, root: usize) -> Entry {
+        Entry {
+            name: None,
+            transform,
+            children: Vec::new(),
+            root,
+            visible: true,
+            hides_children: false,
+            mesh: None,
+            skin: None,
+            camera: None,
+            light: None,
+        }
+    }
 }
 
 /// The glTF nodes: those of the file in ufbx's order, without its root, then leaves that carry what a node can't.
@@ -23,6 +43,8 @@ pub struct Nodes {
     roots: Vec<usize>,
     /// glTF node of each ufbx node; none for the root.
     of_typed_id: Vec<Option<usize>>,
+    /// Whether all nodes need a common one above them.
+    needs_root: bool,
 }
 
 impl Nodes {
@@ -35,18 +57,18 @@ impl Nodes {
                 count += 1;
             }
         }
-        let mut nodes = Nodes { entries: Vec::with_capacity(count), roots: Vec::new(), of_typed_id };
+        let mut nodes = Nodes { entries: Vec::with_capacity(count), roots: Vec::new(), of_typed_id, needs_root: false };
+        // Parents come before their children.
         for node in scene.nodes.into_iter().filter(|node| !node.is_root) {
-            nodes.entries.push(Entry {
+            let parent = node.parent.as_deref().and_then(|parent| nodes.index(parent));
+            let root = parent.and_then(|parent| nodes.entries.get(parent)).map(|parent| parent.root);
+            let entry = Entry {
                 name: name(node),
-                transform: finite(node.local_transform),
                 children: node.children.into_iter().filter_map(|child| nodes.index(child)).collect(),
                 visible: node.visible,
-                mesh: None,
-                skin: None,
-                camera: None,
-                light: None,
-            });
+                ..Entry::new(finite(node.local_transform), root.unwrap_or(nodes.entries.len()))
+            };
+            nodes.entries.push(entry);
         }
         nodes.roots = scene.root_node.children.into_iter().filter_map(|child| nodes.index(child)).collect();
         nodes.hide_lower_levels_of_detail(scene);
@@ -61,21 +83,19 @@ impl Nodes {
     /// Adds a nameless node below another one and returns its index.
     pub fn add_leaf(&mut self, parent: usize, rotation: Quat) -> usize {
         let index = self.entries.len();
-        let transform = Transform { rotation, ..ufbx::identity_transform() };
-        self.entries.push(Entry {
-            name: None,
-            transform,
-            children: Vec::new(),
-            visible: true,
-            mesh: None,
-            skin: None,
-            camera: None,
-            light: None,
-        });
+        let root = self.entries.get(parent).map_or(index, |parent| parent.root);
+        self.entries.push(Entry::new(Transform { rotation, ..ufbx::identity_transform() }, root));
         if let Some(parent) = self.entries.get_mut(parent) {
             parent.children.push(index);
         }
         index
+    }
+
+    /// Notes that a skin has these joints. glTF wants a common root for them, which FBX's nameless one is if there are several.
+    pub fn join(&mut self, joints: &[usize]) {
+        let mut roots = joints.iter().filter_map(|&joint| self.entries.get(joint)).map(|entry| entry.root);
+        let first = roots.next();
+        self.needs_root |= roots.any(|root| Some(root) != first);
     }
 
     /// A group's children are versions of one object: only the first, the finest, is visible.
@@ -83,14 +103,32 @@ impl Nodes {
         for group in scene.lod_groups.into_iter().flat_map(|group| &group.element.instances) {
             for level in group.children.into_iter().skip(1) {
                 if let Some(entry) = self.index(level).and_then(|index| self.entries.get_mut(index)) {
-                    entry.visible = false;
+                    (entry.visible, entry.hides_children) = (false, true);
                 }
             }
         }
     }
 
+    /// A hidden node hides only its own mesh, whereas glTF's hide all below: those that would hide other meshes stay visible.
+    fn show_what_hides_others(&mut self) {
+        let mut has_mesh = vec![false; self.entries.len()];
+        // Children, and leaves even more, come after their parents.
+        for index in (0..self.entries.len()).rev() {
+            let below = self.entries[index].children.iter().any(|&child| has_mesh[child]);
+            let entry = &mut self.entries[index];
+            has_mesh[index] = below || entry.mesh.is_some();
+            entry.visible |= !entry.hides_children && (below || entry.mesh.is_none());
+        }
+    }
+
     /// Writes the nodes and the scene.
-    pub fn write(&self, glb: &mut Glb) {
+    pub fn write(&mut self, glb: &mut Glb) {
+        self.show_what_hides_others();
+        if self.needs_root {
+            let root = self.entries.len();
+            let children = std::mem::replace(&mut self.roots, vec![root]);
+            self.entries.push(Entry { children, ..Entry::new(ufbx::identity_transform(), root) });
+        }
         for entry in &self.entries {
             let mut node = Object::new();
             if let Some(name) = &entry.name {

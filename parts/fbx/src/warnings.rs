@@ -2,15 +2,27 @@
 
 use ufbx::Scene;
 
+/// Most sentences.
+const MAX_SENTENCES: usize = 100;
+
 /// Sentences for the user, each once.
 #[derive(Default)]
-pub struct Warnings(Vec<String>);
+pub struct Warnings {
+    sentences: Vec<String>,
+    /// How many more there would have been.
+    more: usize,
+}
 
 impl Warnings {
     /// Adds a sentence.
     pub fn add(&mut self, sentence: String) {
-        if !self.0.contains(&sentence) {
-            self.0.push(sentence);
+        if self.sentences.contains(&sentence) {
+            return;
+        }
+        if self.sentences.len() < MAX_SENTENCES {
+            self.sentences.push(sentence);
+        } else {
+            self.more += 1;
         }
     }
 
@@ -57,7 +69,10 @@ impl Warnings {
     }
 
     /// Returns the sentences in the order they were added.
-    pub fn into_sentences(self) -> Vec<String> {
-        self.0
+    pub fn into_sentences(mut self) -> Vec<String> {
+        if self.more > 0 {
+            self.sentences.push(format!("{} more warnings.", self.more));
+        }
+        self.sentences
     }
 }

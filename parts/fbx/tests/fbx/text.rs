@@ -140,6 +140,9 @@ pub fn character() -> String {
     two_joints().text()
 }
 
+/// The skin's object in `two_joints`: the fifth.
+const SKIN: i64 = 5;
+
 /// `Hips` at the origin and `Spine` 100 units above; the quad's lower half follows the one, its upper half the other.
 fn two_joints() -> Fbx {
     let mut fbx = Fbx::new(1.0);
@@ -333,6 +336,116 @@ fn materials_and_textures_are_carried_over() {
     assert_eq!(glb.list("meshes")[0]["primitives"][0]["material"], 0);
     let uvs = glb.accessor(&glb.list("meshes")[0]["primitives"][0]["attributes"]["TEXCOORD_0"]);
     assert_eq!(uvs[..2], [0.0, 1.0], "V points down in glTF");
+}
+
+#[test]
+fn joints_of_separate_trees_get_a_common_root() {
+    let mut fbx = two_joints();
+    let arm = fbx.node("Arm", "LimbNode", 0, &[]);
+    let contents = "Indexes: *1 {\na: 0\n}\nWeights: *1 {\na: 1\n}\n\
+        Transform: *16 {\na: 1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1\n}\n\
+        TransformLink: *16 {\na: 1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1\n}";
+    let cluster = fbx.object("Deformer", "", "Cluster", contents);
+    fbx.connect(cluster, SKIN);
+    fbx.connect(arm, cluster);
+    let (glb, _) = fbx.glb();
+    assert_eq!(glb.list("scenes")[0]["nodes"].as_array().unwrap().len(), 1);
+    assert_near(position(&glb, None, "Arm"), [0.0; 3]);
+}
+
+#[test]
+fn vertices_that_no_joint_moves_stay_with_their_mesh() {
+    let mut fbx = Fbx::new(100.0);
+    let joint = fbx.node("joint", "LimbNode", 0, &[("Lcl Translation", [0.0, 7.0, 0.0])]);
+    let body = fbx.node("Body", "Mesh", 0, &[("Lcl Translation", [3.0, 0.0, 0.0])]);
+    let mesh = fbx.quad(body);
+    let skin = fbx.object("Deformer", "", "Skin", "");
+    fbx.connect(skin, mesh);
+    let contents = "Indexes: *1 {\na: 0\n}\nWeights: *1 {\na: 0.5\n}\n\
+        Transform: *16 {\na: 1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1\n}\n\
+        TransformLink: *16 {\na: 1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1\n}";
+    let cluster = fbx.object("Deformer", "", "Cluster", contents);
+    fbx.connect(cluster, skin);
+    fbx.connect(joint, cluster);
+    let (glb, _) = fbx.glb();
+    let vertices = glb.vertices(&glb.pose(None));
+    for expected in [[-1.0, 6.0, 0.0], [4.0, -1.0, 0.0], [4.0, 1.0, 0.0], [2.0, 1.0, 0.0]] {
+        assert!(vertices.contains(&expected), "{expected:?} in {vertices:?}");
+    }
+}
+
+#[test]
+fn more_influences_than_four_take_further_sets() {
+    for (count, sets) in [(5, 2), (16, 4), (20, 4)] {
+        let mut fbx = Fbx::new(100.0);
+        let body = fbx.node("Body", "Mesh", 0, &[]);
+        let mesh = fbx.quad(body);
+        let skin = fbx.object("Deformer", "", "Skin", "");
+        fbx.connect(skin, mesh);
+        for joint in 0..count {
+            let node = fbx.node(&format!("joint{joint}"), "LimbNode", 0, &[]);
+            let contents = format!(
+                "Indexes: *4 {{\na: 0,1,2,3\n}}\nWeights: *4 {{\na: {0},{0},{0},{0}\n}}\n\
+                 Transform: *16 {{\na: 1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1\n}}\n\
+                 TransformLink: *16 {{\na: 1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1\n}}",
+                joint + 1
+            );
+            let cluster = fbx.object("Deformer", "", "Cluster", &contents);
+            fbx.connect(cluster, skin);
+            fbx.connect(node, cluster);
+        }
+        let (glb, warnings) = fbx.glb();
+        let attributes = &glb.list("meshes")[0]["primitives"][0]["attributes"];
+        let written = (0..5).filter(|set| !attributes[format!("JOINTS_{set}")].is_null()).count();
+        assert_eq!(written, sets, "{count} influences");
+        assert_eq!(warnings.len(), usize::from(count > 16), "{warnings:?}");
+        assert!(
+            glb.accessor(&attributes["WEIGHTS_0"])[0] > glb.accessor(&attributes["WEIGHTS_1"])[0],
+            "strongest first"
+        );
+    }
+}
+
+#[test]
+fn hidden_meshes_hide_nothing_else() {
+    let mut fbx = Fbx::new(1.0);
+    let hidden = "Properties70: {\nP: \"Visibility\", \"Visibility\", \"\", \"A\",0\n}";
+    let mut nodes = [("lone", 0), ("parent", 0), ("child", 0)];
+    for (name, node) in &mut nodes {
+        *node = fbx.object("Model", name, "Mesh", if *name == "child" { "" } else { hidden });
+        fbx.quad(*node);
+    }
+    let [(_, lone), (_, parent), (_, child)] = nodes;
+    fbx.connect(lone, 0);
+    fbx.connect(parent, 0);
+    fbx.connect(child, parent);
+    let (glb, _) = fbx.glb();
+    let hides = |name| !glb.list("nodes")[glb.node(name)]["extensions"]["KHR_node_visibility"].is_null();
+    assert_eq!(["lone", "parent", "child"].map(hides), [true, false, false]);
+}
+
+#[test]
+fn cameras_and_lights_look_along_their_fbx_axes() {
+    let mut fbx = Fbx::new(100.0);
+    for (name, kind) in [("eye", "Camera"), ("lamp", "Light")] {
+        let node = fbx.node(name, kind, 0, &[]);
+        let attribute = fbx.object("NodeAttribute", name, kind, "");
+        fbx.connect(attribute, node);
+    }
+    let (glb, _) = fbx.glb();
+    let pose = glb.pose(None);
+    let forward = |key: &str| {
+        let holds =
+            |node: &serde_json::Value| !node[key].is_null() || !node["extensions"]["KHR_lights_punctual"].is_null();
+        let index = match key {
+            "camera" => glb.list("nodes").iter().position(|node| !node[key].is_null()),
+            _ => glb.list("nodes").iter().position(|node| holds(node) && node["camera"].is_null()),
+        };
+        let [x, y, z, _] = pose.worlds[index.unwrap()][2];
+        [-x, -y, -z]
+    };
+    assert_near(forward("camera"), [1.0, 0.0, 0.0]);
+    assert_near(forward("light"), [0.0, -1.0, 0.0]);
 }
 
 #[test]
