@@ -45,7 +45,7 @@ pub struct Converted {
 /// limit.
 pub fn convert(bytes: &[u8]) -> Result<Converted, String> {
     check_head(bytes)?;
-    let scene = raw::load(bytes).map_err(|error| explain(&error))?;
+    let scene = raw::load(bytes)?;
     if scene.nodes.count > MAX_NODES {
         return Err(format!(
             "the FBX file is too large: expected at most {MAX_NODES} objects, found {}. Export a part of the scene.",
@@ -89,35 +89,4 @@ fn check_head(bytes: &[u8]) -> Result<(), String> {
         );
     }
     Ok(())
-}
-
-/// Says what ufbx found and what to do about it.
-fn explain(error: &ufbx::Error) -> String {
-    use ufbx::ErrorType;
-    let found = &*error.description;
-    match error.type_ {
-        ErrorType::UnrecognizedFileFormat => "this is not an FBX file: expected \"Kaydara FBX Binary\" or \
-            \"; FBX … project file\" at its start. Check the extension, or export it again."
-            .to_owned(),
-        ErrorType::TruncatedFile => {
-            "the FBX file ends too early: expected more bytes. Download or export it again.".to_owned()
-        }
-        ErrorType::UnsupportedVersion => format!(
-            "unsupported FBX version {}: expected 3000 to 7700. Convert it with a newer program, for example Blender.",
-            error.info()
-        ),
-        ErrorType::MemoryLimit | ErrorType::AllocationLimit | ErrorType::OutOfMemory => format!(
-            "the FBX file needs too much memory: expected at most {} bytes. Export a part of the scene.",
-            raw::MAX_SCENE_BYTES
-        ),
-        ErrorType::NodeDepthLimit => format!(
-            "the FBX file nests objects too deeply: expected at most {} levels. Flatten its hierarchy.",
-            raw::MAX_DEPTH
-        ),
-        _ => {
-            let info = error.info();
-            let detail = if info.is_empty() { String::new() } else { format!(" ({info})") };
-            format!("the FBX file is damaged: {found}{detail}. Export it again, or try another FBX version.")
-        }
-    }
 }

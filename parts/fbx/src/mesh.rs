@@ -62,12 +62,19 @@ pub fn shapes(mesh: &Mesh) -> impl Iterator<Item = (&str, &BlendShape, f64)> {
 
 struct Meshes<'a> {
     materials: &'a [UvNames],
-    /// What has been written of each mesh: glTF mesh and skin, or none if nothing in it is visible.
-    written: Vec<Vec<(Identity, Option<(usize, Option<usize>)>)>>,
+    /// What has been written of each mesh, or none if nothing in it is visible.
+    written: Vec<Vec<(Identity, Option<Written>)>>,
     skins: Vec<(Vec<usize>, Vec<f32>, usize)>,
     nodes: &'a mut Nodes,
     glb: &'a mut Glb,
     warnings: &'a mut Warnings,
+}
+
+/// A glTF mesh and its skin.
+#[derive(Clone, Copy)]
+struct Written {
+    mesh: usize,
+    skin: Option<usize>,
 }
 
 /// What makes two instances of a mesh the same glTF mesh.
@@ -96,12 +103,12 @@ impl Meshes<'_> {
                 written
             }
         };
-        let Some((index, skin)) = written else { return Ok(None) };
+        let Some(written) = written else { return Ok(None) };
         if self.nodes.entries.get(place).is_some_and(|entry| entry.mesh.is_some()) {
             place = self.nodes.add_leaf(place, ufbx::identity_quat());
         }
         if let Some(entry) = self.nodes.entries.get_mut(place) {
-            (entry.mesh, entry.skin) = (Some(index), skin);
+            (entry.mesh, entry.skin) = (Some(written.mesh), written.skin);
         }
         Ok(Some(place))
     }
@@ -111,10 +118,10 @@ impl Meshes<'_> {
         node: &Node,
         mesh: &Mesh,
         skin: Option<&SkinDeformer>,
-    ) -> Result<Option<(usize, Option<usize>)>, String> {
+    ) -> Result<Option<Written>, String> {
         let Some(index) = self.write_mesh(node, mesh, skin)? else { return Ok(None) };
         let skin = skin.map(|skin| self.skin(node, mesh, skin)).transpose()?;
-        Ok(Some((index, skin)))
+        Ok(Some(Written { mesh: index, skin }))
     }
 
     /// Writes a mesh; none if nothing in it is visible.

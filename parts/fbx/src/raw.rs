@@ -11,13 +11,16 @@ use ufbx::{RawAllocatorOpts, RawLoadOpts, RawVertexStream, SceneRoot};
 /// What ufbx may allocate while it reads or sorts vertices.
 const MAX_TEMPORARY_BYTES: usize = 1 << 29;
 /// What the scene may take.
-pub const MAX_SCENE_BYTES: usize = 1 << 30;
+const MAX_SCENE_BYTES: usize = 1 << 30;
 const MAX_ALLOCATIONS: usize = 1 << 24;
 /// Deepest node hierarchy.
-pub const MAX_DEPTH: u32 = 1000;
+const MAX_DEPTH: u32 = 1000;
 
-/// Reads a file.
-pub fn load(bytes: &[u8]) -> Result<SceneRoot, ufbx::Error> {
+const NOT_FBX: &str = "this is not an FBX file: expected \"Kaydara FBX Binary\" or \"; FBX … project file\" at its start. \
+    Check the extension, or export it again.";
+
+/// Reads a file. Its errors are for the user.
+pub fn load(bytes: &[u8]) -> Result<SceneRoot, String> {
     let options = RawLoadOpts {
         temp_allocator: limit(MAX_TEMPORARY_BYTES),
         result_allocator: limit(MAX_SCENE_BYTES),
@@ -34,11 +37,42 @@ pub fn load(bytes: &[u8]) -> Result<SceneRoot, ufbx::Error> {
         handedness_conversion_axis: ufbx::MirrorAxis::X,
         target_axes: ufbx::axes_right_handed_y_up(),
         target_unit_meters: 1.0,
-        file_format: ufbx::FileFormat::Unknown,
         ..RawLoadOpts::default()
     };
     // SAFETY: the options are those that a program in C would set: all others are zero, and none holds a pointer.
-    unsafe { ufbx::load_memory_raw(bytes, &options) }
+    let scene = unsafe { ufbx::load_memory_raw(bytes, &options) }.map_err(|error| explain(&error))?;
+    // ufbx reads OBJ as well, unless that is left out of it, as it is in wasm.
+    if scene.metadata.file_format != ufbx::FileFormat::Fbx {
+        return Err(NOT_FBX.to_owned());
+    }
+    Ok(scene)
+}
+
+/// Says what ufbx found and what to do about it.
+fn explain(error: &ufbx::Error) -> String {
+    use ufbx::ErrorType;
+    let found = &*error.description;
+    match error.type_ {
+        ErrorType::UnrecognizedFileFormat | ErrorType::FeatureDisabled => NOT_FBX.to_owned(),
+        ErrorType::TruncatedFile => {
+            "the FBX file ends too early: expected more bytes. Download or export it again.".to_owned()
+        }
+        ErrorType::UnsupportedVersion => format!(
+            "unsupported FBX version {}: expected 3000 to 7700. Convert it with a newer program, for example Blender.",
+            error.info()
+        ),
+        ErrorType::MemoryLimit | ErrorType::AllocationLimit | ErrorType::OutOfMemory => format!(
+            "the FBX file needs too much memory: expected at most {MAX_SCENE_BYTES} bytes. Export a part of the scene."
+        ),
+        ErrorType::NodeDepthLimit => format!(
+            "the FBX file nests objects too deeply: expected at most {MAX_DEPTH} levels. Flatten its hierarchy."
+        ),
+        _ => {
+            let info = error.info();
+            let detail = if info.is_empty() { String::new() } else { format!(" ({info})") };
+            format!("the FBX file is damaged: {found}{detail}. Export it again, or try another FBX version.")
+        }
+    }
 }
 
 fn limit(memory_limit: usize) -> RawAllocatorOpts {

@@ -253,21 +253,40 @@ fn every_file_moves_as_in_ufbx() {
     assert!(converted >= files.len() - 2, "one of the files is damaged, and one has no objects");
 }
 
-/// Vertices of one frame as another program exported them: OBJ, FBX, clip, frame from the clip's start, and what an OBJ's coordinates have to be
-/// multiplied by.
-const FRAMES: [(&str, &[&str], &str, f64, [f64; 3]); 10] = [
-    ("blender_279_sausage_base_0", &["blender_279_sausage_7400_binary"], "Base", 0.0, [1.0; 3]),
-    ("blender_279_sausage_spin_15", &["blender_279_sausage_7400_binary"], "Spin", 15.0, [1.0; 3]),
+/// The vertices of one frame as another program exported them.
+struct Frame {
+    obj: &'static str,
+    files: &'static [&'static str],
+    clip: &'static str,
+    /// From the clip's start.
+    frame: f64,
+    /// What the OBJ's coordinates are multiplied by.
+    factors: [f64; 3],
+}
+
+const fn frame(
+    obj: &'static str,
+    files: &'static [&'static str],
+    clip: &'static str,
+    frame: f64,
+    factors: [f64; 3],
+) -> Frame {
+    Frame { obj, files, clip, frame, factors }
+}
+
+const FRAMES: [Frame; 10] = [
+    frame("blender_279_sausage_base_0", &["blender_279_sausage_7400_binary"], "Base", 0.0, [1.0; 3]),
+    frame("blender_279_sausage_spin_15", &["blender_279_sausage_7400_binary"], "Spin", 15.0, [1.0; 3]),
     // The same numbers as the OBJ's, but said to be centimetres; the take begins a frame earlier.
-    ("blender_279_sausage_base_0", &["blender_279_sausage_6100_ascii"], "Base", 1.0, [0.01; 3]),
-    ("blender_279_sausage_spin_15", &["blender_279_sausage_6100_ascii"], "Spin", 16.0, [0.01; 3]),
-    ("maya_game_sausage_deform_8", &DEFORM, "deform", 8.0, [0.01; 3]),
-    ("maya_game_sausage_spin_7", &SPIN, "spin", 7.0, [0.01; 3]),
+    frame("blender_279_sausage_base_0", &["blender_279_sausage_6100_ascii"], "Base", 1.0, [0.01; 3]),
+    frame("blender_279_sausage_spin_15", &["blender_279_sausage_6100_ascii"], "Spin", 16.0, [0.01; 3]),
+    frame("maya_game_sausage_deform_8", &DEFORM, "deform", 8.0, [0.01; 3]),
+    frame("maya_game_sausage_spin_7", &SPIN, "spin", 7.0, [0.01; 3]),
     // This take begins at frame 1.
-    ("maya_game_sausage_wiggle_10", &WIGGLE, "wiggle", 9.0, [0.01; 3]),
-    ("maya_game_sausage_wiggle_lefthanded_10", &WIGGLE, "wiggle", 9.0, [0.01, 0.01, -0.01]),
-    ("motionbuilder_sausage_rrss_12", &MOTION_BUILDER, "Take 001", 12.0, [0.01; 3]),
-    ("motionbuilder_sausage_rrss_36", &MOTION_BUILDER, "Take 001", 36.0, [0.01; 3]),
+    frame("maya_game_sausage_wiggle_10", &WIGGLE, "wiggle", 9.0, [0.01; 3]),
+    frame("maya_game_sausage_wiggle_lefthanded_10", &WIGGLE, "wiggle", 9.0, [0.01, 0.01, -0.01]),
+    frame("motionbuilder_sausage_rrss_12", &MOTION_BUILDER, "Take 001", 12.0, [0.01; 3]),
+    frame("motionbuilder_sausage_rrss_36", &MOTION_BUILDER, "Take 001", 36.0, [0.01; 3]),
 ];
 
 const DEFORM: [&str; 4] = [
@@ -294,7 +313,7 @@ const MOTION_BUILDER: [&str; 2] = ["motionbuilder_sausage_rrss_7700_ascii", "mot
 fn frames_look_as_other_programs_exported_them() {
     let Some(folder) = folder() else { return };
     let folder = folder.join("fbx/ufbx");
-    for (obj, files, clip, frame, factors) in FRAMES {
+    for Frame { obj, files, clip, frame, factors } in FRAMES {
         let text =
             String::from_utf8_lossy(&std::fs::read(folder.join(obj).with_extension("obj")).unwrap()).into_owned();
         let expected: Vec<[f64; 3]> = text
@@ -318,6 +337,39 @@ fn frames_look_as_other_programs_exported_them() {
             let error = distance(&found, &expected, 0.1 * size) / size;
             println!("{file} at {time} s: {error} of size from {obj}");
             assert!(error < 1e-3, "{file} at {time} s: {error} of size from {obj}");
+        }
+    }
+}
+
+/// FBX files beside what FBX2glTF made of them, at 30 keys per second.
+const OTHER_CONVERTER: [[&str; 2]; 4] = [
+    ["threejs/Samba_Dancing.fbx", "threejs/Samba_Dancing.glb"],
+    ["cosc422/original/Mannequin/run.fbx", "cosc422/mannequin_run.glb"],
+    ["fbx/cmu_91_48.fbx", "mesh2motion/cmu_91_48.glb"],
+    ["fbx/cmu_91_51.fbx", "mesh2motion/cmu_91_51.glb"],
+];
+
+#[test]
+fn clips_move_as_another_converter_sees_them() {
+    let Some(folder) = folder() else { return };
+    for [fbx, glb] in OTHER_CONVERTER {
+        let converted = gaitway_fbx::convert(&std::fs::read(folder.join(fbx)).unwrap()).unwrap();
+        let (ours, theirs) = (Glb::new(&converted.glb), Glb::new(&std::fs::read(folder.join(glb)).unwrap()));
+        let named = |glb: &Glb, clip| -> HashMap<String, [f64; 3]> {
+            let pose = glb.pose(Some((0, clip)));
+            let nodes = glb.list("nodes").iter().zip(pose.worlds);
+            let named = nodes.filter_map(|(node, world)| Some((node["name"].as_str()?.to_owned(), world[3])));
+            named.map(|(name, [x, y, z, _])| (name, [x, y, z])).collect()
+        };
+        for frame in [0, 5, 17] {
+            let time = f64::from(frame) / 30.0;
+            let (ours, theirs) = (named(&ours, time), named(&theirs, time));
+            let common: Vec<_> = theirs.iter().filter_map(|(name, place)| Some((ours.get(name)?, place))).collect();
+            let size = size(common.iter().map(|(ours, _)| *ours));
+            let error = common.iter().map(|(a, b)| (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f64::max));
+            let error = error.fold(0.0, f64::max) / size;
+            println!("{fbx} at {time} s: {} joints within {error} of size {size}", common.len());
+            assert!(common.len() > 40 && error < 1e-5, "{fbx} at {time} s: {} joints, {error}", common.len());
         }
     }
 }

@@ -67,12 +67,15 @@ impl Glb {
         let count = accessor["count"].as_u64().unwrap() as usize;
         let mut values = match &accessor["bufferView"] {
             Value::Null => vec![0.0; count * width],
-            view => self.read(view, &accessor["componentType"], count * width),
+            view => {
+                let offset = accessor["byteOffset"].as_u64().unwrap_or(0) as usize;
+                self.read(view, offset, &accessor["componentType"], count * width)
+            }
         };
         if let Some(sparse) = accessor["sparse"].as_object() {
             let count = sparse["count"].as_u64().unwrap() as usize;
-            let places = self.read(&sparse["indices"]["bufferView"], &sparse["indices"]["componentType"], count);
-            let elements = self.read(&sparse["values"]["bufferView"], &accessor["componentType"], count * width);
+            let places = self.read(&sparse["indices"]["bufferView"], 0, &sparse["indices"]["componentType"], count);
+            let elements = self.read(&sparse["values"]["bufferView"], 0, &accessor["componentType"], count * width);
             for (place, element) in places.iter().zip(elements.chunks(width)) {
                 values[*place as usize * width..][..width].copy_from_slice(element);
             }
@@ -80,17 +83,22 @@ impl Glb {
         values
     }
 
-    fn read(&self, view: &Value, kind: &Value, count: usize) -> Vec<f64> {
+    /// Reads the elements of a view without gaps between them.
+    fn read(&self, view: &Value, offset: usize, kind: &Value, count: usize) -> Vec<f64> {
         let view = &self.list("bufferViews")[view.as_u64().unwrap() as usize];
-        let start = view["byteOffset"].as_u64().unwrap() as usize;
-        let bytes = &self.bin[start..start + view["byteLength"].as_u64().unwrap() as usize];
-        let values: Vec<f64> = match kind.as_u64().unwrap() {
+        let start = view["byteOffset"].as_u64().unwrap_or(0) as usize;
+        let size = match kind.as_u64().unwrap() {
+            5121 => 1,
+            5123 => 2,
+            _ => 4,
+        };
+        let bytes = &self.bin[start..start + view["byteLength"].as_u64().unwrap() as usize][offset..][..count * size];
+        match kind.as_u64().unwrap() {
             5121 => bytes.iter().map(|&byte| f64::from(byte)).collect(),
             5123 => bytes.chunks(2).map(|b| f64::from(u16::from_le_bytes(b.try_into().unwrap()))).collect(),
             5125 => bytes.chunks(4).map(|b| f64::from(u32::from_le_bytes(b.try_into().unwrap()))).collect(),
             _ => bytes.chunks(4).map(|b| f64::from(f32::from_le_bytes(b.try_into().unwrap()))).collect(),
-        };
-        values[..count].to_vec()
+        }
     }
 
     /// Evaluates the nodes: at rest, or a clip at a time.
