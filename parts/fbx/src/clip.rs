@@ -13,12 +13,16 @@ use crate::sort::sort;
 use crate::tolerance::{Tolerance, Tolerances};
 use crate::warnings::Warnings;
 
-/// Most evaluations of a transform in one file; beyond, curves are followed less closely.
-const MAX_EVALUATIONS: u64 = 8_000_000;
+/// Evaluations of a transform for halving pieces, at least and per key; when they are used up, curves are followed less
+/// closely.
+const MIN_EVALUATIONS: u64 = 2_000_000;
+const EVALUATIONS_PER_KEY: u64 = 40;
 /// Most keys of one channel, with all repetitions.
 const MAX_CORNERS: usize = 1 << 18;
-/// Most keys of all channels.
-const MAX_KEYS: usize = 1 << 23;
+/// Most keys that are looked at in a file, counting those of repetitions and shared curves wherever they appear.
+const MAX_KEYS: usize = 1 << 22;
+/// Most keys that curves which repeat themselves have in these repetitions; beyond, they are followed less closely.
+const MAX_REPEATED_KEYS: usize = 1 << 16;
 /// Longest clip, in seconds: a day.
 const MAX_SECS: f64 = 86_400.0;
 /// How many of the key times written last are looked through for the same ones.
@@ -42,8 +46,7 @@ pub fn write(
     warnings: &mut Warnings,
 ) -> Result<(), String> {
     let tolerances = Tolerances::new(scene);
-    let mut budget = MAX_EVALUATIONS;
-    let mut keys = 0;
+    let mut limits = Limits { evaluations: MIN_EVALUATIONS, keys: MAX_KEYS, repeated_keys: MAX_REPEATED_KEYS };
     for stack in &scene.anim_stacks {
         let curves = Curves::new(stack);
         // Mixamo's files, for one, have an empty take besides the clip.
@@ -60,8 +63,7 @@ pub fn write(
             anim: &stack.anim,
             curves,
             range,
-            budget: &mut budget,
-            keys: &mut keys,
+            limits: &mut limits,
             glb,
             times: Vec::new(),
             samplers: List::default(),
@@ -72,10 +74,17 @@ pub fn write(
         clip.warn(warnings, name);
         clip.finish(name);
     }
-    if budget == 0 {
+    if limits.evaluations == 0 || limits.repeated_keys < 2 {
         warnings.add("The animation has too many keys to follow each one exactly: it was simplified.".to_owned());
     }
     Ok(())
+}
+
+/// What is left of the limits for the whole file.
+struct Limits {
+    evaluations: u64,
+    keys: usize,
+    repeated_keys: usize,
 }
 
 /// The animated properties of a stack, by element.
@@ -147,12 +156,12 @@ impl<'a> Drivers<'a> {
     }
 
     /// Returns the times of all keys within the range, from its start, and whether the value may jump there.
-    fn corners(&self, [from, to]: [f64; 2]) -> Result<Vec<Corner>, String> {
+    fn corners(&self, [from, to]: [f64; 2], limits: &mut Limits) -> Result<Vec<Corner>, String> {
         let end = (to - from) as f32;
         let mut corners = vec![Corner { time: 0.0, jump: false }, Corner { time: end, jump: false }];
         if self.vary() {
             for curve in self.values.iter().flat_map(|value| curves(value)) {
-                add_corners(curve, [from, to], &mut corners);
+                add_corners(curve, [from, to], &mut corners, limits);
             }
         }
         if corners.len() > MAX_CORNERS {
@@ -160,6 +169,11 @@ impl<'a> Drivers<'a> {
                 "an animation curve has too many keys: expected at most {MAX_CORNERS}, found {}. Export it with fewer.",
                 corners.len()
             ));
+        }
+        limits.keys = limits.keys.saturating_sub(corners.len());
+        limits.evaluations += EVALUATIONS_PER_KEY * corners.len() as u64;
+        if limits.keys == 0 {
+            return Err(format!("the animation has too many keys: expected at most {MAX_KEYS}. Export fewer takes."));
         }
         corners.retain(|corner| (0.0..=end).contains(&corner.time));
         sort(&mut corners, |a, b| a.time < b.time);
@@ -173,7 +187,7 @@ impl<'a> Drivers<'a> {
 }
 
 /// Adds the keys of a curve and of its repetitions within the range.
-fn add_corners(curve: &AnimCurve, [from, to]: [f64; 2], corners: &mut Vec<Corner>) {
+fn add_corners(curve: &AnimCurve, [from, to]: [f64; 2], corners: &mut Vec<Corner>, limits: &mut Limits) {
     let keys: Vec<(f64, bool)> = curve
         .keyframes
         .into_iter()
@@ -197,9 +211,11 @@ fn add_corners(curve: &AnimCurve, [from, to]: [f64; 2], corners: &mut Vec<Corner
         let wanted = (gap / period).ceil();
         let wanted =
             if extrapolation.repeat_count < 0 { wanted } else { wanted.min(extrapolation.repeat_count.into()) };
-        let room = (MAX_CORNERS / keys.len().max(1)) as f64;
+        let room = (limits.repeated_keys / keys.len().max(1)) as f64;
+        let count = wanted.min(room) as usize;
+        limits.repeated_keys -= count * keys.len();
         let after = gap == to - last;
-        for repetition in 0..wanted.min(room) as usize {
+        for repetition in 0..count {
             let start = repetition as f64 * period;
             for &(time, jump) in &keys {
                 // How far the key is from the nearest end of the curve, in this repetition.
@@ -218,8 +234,7 @@ struct Clip<'a, 'b> {
     curves: Curves<'a>,
     /// Start and end in the file's time.
     range: [f64; 2],
-    budget: &'b mut u64,
-    keys: &'b mut usize,
+    limits: &'b mut Limits,
     glb: &'b mut Glb,
     /// Key times that have been written, with their accessors: channels with the same keys share them.
     times: Vec<(Vec<f32>, usize)>,
@@ -288,7 +303,7 @@ impl<'a> Clip<'a, '_> {
         drivers: &Drivers,
         tolerance: &Tolerance,
     ) -> Result<(), String> {
-        let corners = drivers.corners(self.range)?;
+        let corners = drivers.corners(self.range, self.limits)?;
         let Some(&(path, flags, width)) = PARTS.get(part) else { return Ok(()) };
         let (anim, start, rest) = (self.anim, self.range[0], finite(node.local_transform));
         let mut sample = |time: f64, out: &mut [f64]| {
@@ -301,7 +316,7 @@ impl<'a> Clip<'a, '_> {
             width,
             space: if part == 1 { Space::Rotation } else { Space::Linear },
             tolerance: [tolerance.translation, tolerance.rotation, tolerance.scale][part],
-            budget: self.budget,
+            budget: &mut self.limits.evaluations,
         };
         let allowed = track.tolerance;
         let keys = fit(&mut track, &corners);
@@ -327,7 +342,7 @@ impl<'a> Clip<'a, '_> {
                 continue;
             }
             drivers.values.extend(&self.curves.layer_weights);
-            let corners = drivers.corners(self.range)?;
+            let corners = drivers.corners(self.range, self.limits)?;
             let (anim, start) = (self.anim, self.range[0]);
             let mut sample = |time: f64, out: &mut [f64]| {
                 let mut rest = out;
@@ -344,7 +359,7 @@ impl<'a> Clip<'a, '_> {
                 width,
                 space: Space::Linear,
                 tolerance: WEIGHT_TOLERANCE,
-                budget: self.budget,
+                budget: &mut self.limits.evaluations,
             };
             let keys = fit(&mut track, &corners);
             self.push(&keys, morph.node, "weights")?;
@@ -353,10 +368,6 @@ impl<'a> Clip<'a, '_> {
     }
 
     fn push(&mut self, keys: &Keys, node: usize, path: &str) -> Result<(), String> {
-        *self.keys += keys.times.len();
-        if *self.keys > MAX_KEYS {
-            return Err(format!("the animation has too many keys: expected at most {MAX_KEYS}. Export fewer takes."));
-        }
         check_size(self.glb.len().saturating_add(4 * keys.values.len()))?;
         let recent = self.times.iter().rev().take(MAX_COMPARED);
         let input = match recent.into_iter().find(|(times, _)| *times == keys.times) {

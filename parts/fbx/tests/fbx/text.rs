@@ -444,6 +444,26 @@ fn cameras_and_lights_look_along_their_fbx_axes() {
 }
 
 #[test]
+fn repeating_curves_repeat_but_not_for_ever() {
+    let repeat = |secs: f64, period: f64| {
+        let mut fbx = Fbx::new(100.0);
+        let node = fbx.node("a", "Null", 0, &[]);
+        let layer = fbx.take("loop", secs);
+        fbx.curve(layer, (node, "Lcl Translation", "d|X"), 4, &[(0.0, 0.0), (period, 1.0)]);
+        let text =
+            fbx.text().replace("KeyVer: 4008", "KeyVer: 4008\nPost-Extrapolation: {\nType: R\nRepetition: -1\n}");
+        Glb::new(&gaitway_fbx::convert(text.as_bytes()).unwrap().glb)
+    };
+    let glb = repeat(10.0, 2.0);
+    for time in [0.5, 2.5, 7.25, 9.75] {
+        assert_near(position(&glb, Some((0, time)), "a"), [time % 2.0 / 2.0, 0.0, 0.0]);
+    }
+    let start = std::time::Instant::now();
+    assert_eq!(repeat(80_000.0, 1e-4).duration(0), 80_000.0);
+    assert!(start.elapsed().as_secs() < 30, "{:?}", start.elapsed());
+}
+
+#[test]
 fn what_is_not_fbx_says_so() {
     for (bytes, expected) in [
         (&b""[..], "the FBX file is empty"),
