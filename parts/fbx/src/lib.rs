@@ -9,6 +9,7 @@
 #![deny(unsafe_code)]
 
 mod clip;
+mod curves;
 mod fit;
 mod glb;
 mod libc;
@@ -16,6 +17,7 @@ mod material;
 mod mesh;
 mod node;
 mod raw;
+mod shape;
 mod sort;
 mod tolerance;
 mod warnings;

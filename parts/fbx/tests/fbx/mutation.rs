@@ -107,6 +107,17 @@ fn damaged_files_convert_or_say_why_not() {
         }
     }
     println!("{count} mutations of {} files: {converted} converted, slowest {slowest:?}", seeds.len());
+    if let Some(peak) = peak_bytes() {
+        println!("peak memory {} MB", peak >> 20);
+        assert!(peak < 2 << 30, "{peak} bytes");
+    }
+}
+
+/// Returns the most memory that this process has used, where the system tells.
+fn peak_bytes() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    line.trim().strip_suffix(" kB")?.trim().parse::<u64>().ok().map(|kilobytes| kilobytes << 10)
 }
 
 /// Reads a GLB completely: every index in range, every number finite, weights of sum 1.
