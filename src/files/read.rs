@@ -34,7 +34,7 @@ pub(super) struct FilesRead {
 /// Files referring to files that refer to files.
 const MAX_ROUNDS: usize = 4;
 /// Tell the model among the items by its name.
-const MODEL_EXTENSIONS: [&str; 7] = [".glb", ".gltf", ".vrm", ".vrma", ".bvh", ".obj", ".zip"];
+const MODEL_EXTENSIONS: [&str; 8] = [".glb", ".gltf", ".vrm", ".vrma", ".fbx", ".bvh", ".obj", ".zip"];
 
 pub(super) async fn read_items<S: Source>(
     source: &S,
@@ -57,7 +57,6 @@ pub(super) async fn read_items<S: Source>(
         reader.note_members();
     }
     reader.add_missing().await?;
-    reader.prepare().await?;
     reader.files.origins.container = container_of(model_label(&reader.labels)).to_owned();
     Ok(reader.files)
 }
@@ -145,18 +144,17 @@ impl<S: Source> Reader<'_, S> {
         Ok(())
     }
 
-    /// Reads the files that the set refers to and that lie next to the named ones. The loader reports those that are not
-    /// there, and whether that matters.
+    /// Converts what has to be plain glTF, and reads the files that the set refers to and that lie next to the named ones. The
+    /// loader reports those that are not there, and whether that matters.
     async fn add_missing(&mut self) -> Result<(), OpenError> {
-        if self.bases.is_empty() {
-            return Ok(());
-        }
         let mut tried: Vec<String> = Vec::new();
         for _ in 0..MAX_ROUNDS {
+            // First, since what it makes may refer to more files. Others can be converted only with files that are still missing.
+            self.prepare().await?;
             let missing = missing_files(&self.files.set);
             let missing: Vec<String> = missing.into_iter().filter(|path| !tried.contains(path)).collect();
-            if missing.is_empty() {
-                break;
+            if missing.is_empty() || self.bases.is_empty() {
+                return Ok(());
             }
             for path in &missing {
                 if let Some(bytes) = self.read_beside(path).await? {
@@ -165,10 +163,10 @@ impl<S: Source> Reader<'_, S> {
             }
             tried.extend(missing);
         }
-        Ok(())
+        self.prepare().await
     }
 
-    /// Converts what has to be plain glTF before it is loaded.
+    /// Converts what can be converted with the files that are there.
     async fn prepare(&mut self) -> Result<(), OpenError> {
         while let Some(preparation) = next_preparation(&self.files.set).map_err(SortError::from)? {
             let answer = self.source.convert(&preparation, &mut self.reading).await?;

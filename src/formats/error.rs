@@ -8,7 +8,7 @@ use crate::mesh::GeometryError;
 pub enum LoadError {
     /// No file of the set is a model or motion.
     #[error(
-        "no model among the files ({}); Gaitway reads .glb, .gltf with its files, .vrm, .vrma, .bvh, .obj (with .skel and .attach), a .zip of these, or a joint map (.json)",
+        "no model among the files ({}); Gaitway reads .glb, .gltf with its files, .vrm, .vrma, .fbx, .bvh, .obj (with .skel and .attach), a .zip of these, or a joint map (.json)",
         listed(found)
     )]
     NoModel {

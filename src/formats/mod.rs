@@ -193,6 +193,10 @@ fn find_model(files: &FileSet) -> Result<(&str, &Arc<[u8]>), LoadError> {
                 if obj::is_companion(name) {
                     return Some(obj::without_obj(name));
                 }
+                if is_fbx(name, bytes) {
+                    let problem = "an FBX file is loaded after `prepare` has converted it".to_owned();
+                    return Some(LoadError::Conversion { file: name.to_owned(), problem });
+                }
                 let format = foreign_format(name, bytes)?;
                 Some(LoadError::UnsupportedFormat { file: name.to_owned(), format })
             })
@@ -228,15 +232,16 @@ fn is_gltf(name: &str, bytes: &[u8]) -> bool {
         && bytes.windows(7).take(4096).any(|window| window == b"\"asset\"")
 }
 
+/// Until it is converted.
+fn is_fbx(name: &str, bytes: &[u8]) -> bool {
+    bytes.starts_with(b"Kaydara FBX") || (extension(name) == "fbx" && !bytes.starts_with(b"glTF"))
+}
+
 fn foreign_format(name: &str, bytes: &[u8]) -> Option<&'static str> {
-    if bytes.starts_with(b"Kaydara FBX") {
-        return Some("FBX");
-    }
     if bytes.starts_with(b"xof ") {
         return Some("DirectX .x");
     }
     match extension(name).as_str() {
-        "fbx" => Some("FBX"),
         "x" => Some("DirectX .x"),
         "dae" => Some("COLLADA"),
         "blend" => Some("Blender's own"),

@@ -3,12 +3,15 @@
 
 use gaitway_part::Answer;
 
+use super::file_set::Conversion;
 use super::gltf::meshopt;
-use super::{FileSet, LoadError, is_bvh, is_gltf};
+use super::{FileSet, LoadError, is_bvh, is_fbx, is_gltf};
 
 /// A decoder that few files need. Natively it is linked like any crate; the page downloads it when a file needs it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
+    /// Models and motions of Autodesk's format.
+    Fbx,
     /// `EXT_meshopt_compression` and `KHR_meshopt_compression`.
     Meshopt,
 }
@@ -17,6 +20,7 @@ impl Part {
     /// Name of the package and of the page's module.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Fbx => "fbx",
             Self::Meshopt => "meshopt",
         }
     }
@@ -24,6 +28,7 @@ impl Part {
     /// What messages call it.
     pub fn title(self) -> &'static str {
         match self {
+            Self::Fbx => "FBX reader",
             Self::Meshopt => "meshopt decoder",
         }
     }
@@ -32,6 +37,7 @@ impl Part {
     #[cfg(not(target_arch = "wasm32"))]
     pub fn run(self, input: &[u8]) -> Answer {
         let convert = match self {
+            Self::Fbx => gaitway_fbx::convert,
             Self::Meshopt => gaitway_meshopt::decode,
         };
         let stopped = |_| Err(format!("the {} stopped unexpectedly; the file may be damaged", self.title()));
@@ -47,7 +53,16 @@ pub struct Preparation {
     /// What it converts.
     pub input: Vec<u8>,
     file: String,
-    decoding: meshopt::Decoding,
+    step: Step,
+}
+
+/// What the part's output is.
+#[derive(Debug)]
+enum Step {
+    /// A GLB in the place of a file of this format.
+    Whole(&'static str),
+    /// Buffer views of a glTF.
+    Views(meshopt::Decoding),
 }
 
 impl Preparation {
@@ -63,8 +78,18 @@ impl Preparation {
     pub fn finish(self, files: &mut FileSet, answer: Answer) -> Result<(), LoadError> {
         let failed = |problem| LoadError::Conversion { file: self.file.clone(), problem };
         let output = answer.map_err(failed)?;
-        let Some(bytes) = files.get(&self.file).cloned() else { return Ok(()) };
-        self.decoding.finish(files, &self.file, &bytes, &output.bytes)
+        match self.step {
+            Step::Whole(format) => {
+                let conversion =
+                    Conversion { format: Some(format), warnings: output.warnings, ..Conversion::default() };
+                files.convert(&self.file, output.bytes, conversion);
+            }
+            Step::Views(decoding) => {
+                let Some(bytes) = files.get(&self.file).cloned() else { return Ok(()) };
+                decoding.finish(files, &self.file, &bytes, &output.bytes)?;
+            }
+        }
+        Ok(())
     }
 }
 
@@ -73,9 +98,18 @@ impl Preparation {
 /// # Errors
 /// If a file says wrongly what is to be converted.
 pub fn next_preparation(files: &FileSet) -> Result<Option<Preparation>, LoadError> {
-    for (name, bytes) in files.iter().filter(|(name, bytes)| is_gltf(name, bytes) && !is_bvh(name, bytes)) {
+    for (name, bytes) in files.iter() {
+        let file = || name.to_owned();
+        if is_fbx(name, bytes) {
+            let (part, step) = (Part::Fbx, Step::Whole("fbx"));
+            return Ok(Some(Preparation { part, input: bytes.to_vec(), file: file(), step }));
+        }
+        if !is_gltf(name, bytes) || is_bvh(name, bytes) {
+            continue;
+        }
         if let Some((decoding, input)) = meshopt::start(files, name, bytes)? {
-            return Ok(Some(Preparation { part: Part::Meshopt, input, file: name.to_owned(), decoding }));
+            let (part, step) = (Part::Meshopt, Step::Views(decoding));
+            return Ok(Some(Preparation { part, input, file: file(), step }));
         }
     }
     Ok(None)

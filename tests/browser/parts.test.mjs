@@ -3,12 +3,13 @@ import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
 import binaryen from "binaryen";
 import { skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, meanDifference, open, picture, startSite, state, stats } from "./browser.mjs";
+import { BACK_ENDS, meanDifference, open, picture, pose, startSite, state, stats, whenBorrowed } from "./browser.mjs";
 
 const ROBOT = "compressed/RobotExpressive-gltfpack-meshopt.glb";
 /** The same file without compression. */
 const PLAIN_ROBOT = "compressed/RobotExpressive-gltfpack-quantized.glb";
 const FOX = "compressed/Fox-gltfpack-meshopt.glb";
+const SAMBA = "threejs/Samba_Dancing.fbx";
 const VIEW = "clip=&camera=30,10,20,0,2,0";
 
 /** @param {import("./browser.mjs").TestPage} page */
@@ -50,6 +51,23 @@ for (const renderer of BACK_ENDS)
       assert.ok(difference < 0.5, `the pictures differ by ${difference} of 255`);
       assert.deepEqual(page.troubles, []);
       await page.finish();
+    });
+
+    test("an FBX file is a link like any other, as a model and as a motion", async () => {
+      const samba = site.data(SAMBA);
+      const page = await site.page({ renderer, link: `model=${samba}&play=0&t=1` });
+      assert.equal(requested(page).length, 1);
+      assert.match(requested(page)[0], /\/parts\/fbx-[0-9a-f]{16}\.wasm$/);
+      const { model, clip } = await state(page);
+      assert.deepEqual([model, clip], [[samba], undefined], "the first clip is the default");
+      const { nodes } = await pose(page);
+      const hips = nodes.find(({ name }) => name === "mixamorig:Hips")?.world ?? [];
+      assert.ok(hips[13] > 0.5 && hips[13] < 1.5, `in metres: the hips are at ${hips[13]}`);
+      await page.finish();
+      const borrowing = await site.page({ renderer, link: `model=${site.data("threejs/Xbot.glb")}&motion=${samba}` });
+      await whenBorrowed(borrowing, 1);
+      assert.deepEqual(borrowing.troubles, []);
+      await borrowing.finish();
     });
 
     /** @type {[string, Buffer | null, RegExp][]} */

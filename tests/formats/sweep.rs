@@ -8,8 +8,12 @@ use gaitway::formats::{FileSet, LoadError, load, missing_files, prepare};
 
 use crate::data_folder::data_folder;
 
-/// A model with the files that it refers to, as a user would drop them.
+/// A model with the files that it refers to, as a user would drop them, ready to be loaded.
 pub fn file_set(path: &Path) -> FileSet {
+    prepared(path).unwrap_or_else(|problem| panic!("{}: {problem}", path.display()))
+}
+
+fn prepared(path: &Path) -> Result<FileSet, LoadError> {
     let folder = path.parent().expect("a file lies in a folder");
     let mut files = FileSet::default();
     files
@@ -19,8 +23,8 @@ pub fn file_set(path: &Path) -> FileSet {
             files.insert(uri, bytes);
         }
     }
-    prepare(&mut files).unwrap_or_else(|problem| panic!("{}: {problem}", path.display()));
-    files
+    prepare(&mut files)?;
+    Ok(files)
 }
 
 pub fn models_under(folder: &Path, extensions: &[&str], out: &mut Vec<PathBuf>) {
@@ -49,7 +53,7 @@ fn sweep(folders: &[&str], extensions: &[&str], check: impl Fn(&str, Result<Asse
     let mut failures = Vec::new();
     for path in &paths {
         let name = path.strip_prefix(&data).expect("found there").to_string_lossy().into_owned();
-        match catch_unwind(AssertUnwindSafe(|| check(&name, load(&file_set(path))))) {
+        match catch_unwind(AssertUnwindSafe(|| check(&name, prepared(path).and_then(|files| load(&files))))) {
             Ok(Ok(())) => {}
             Ok(Err(problem)) => failures.push(format!("{name}: {problem}")),
             Err(_) => failures.push(format!("{name}: panicked")),
@@ -222,9 +226,20 @@ fn the_validators_valid_files_load() {
 
 #[test]
 fn foreign_formats_are_rejected_with_advice() {
-    sweep(&["threejs", "cosc422/original"], &["fbx", "x"], |_, result| match result {
+    sweep(&["cosc422/original"], &["x"], |_, result| match result {
         Err(problem @ LoadError::UnsupportedFormat { .. }) if problem.to_string().contains("Blender") => Ok(()),
         other => Err(format!("{other:?}")),
+    });
+}
+
+/// Whether the conversion is right is tested in parts/fbx; here, that its result is loaded and called FBX.
+#[test]
+fn fbx_files_load_or_say_why_not() {
+    sweep(&["threejs", "cosc422/original", "fbx"], &["fbx"], |_, result| match result {
+        Ok(asset) if asset.format == "fbx" => consistent(&asset),
+        Ok(asset) => Err(format!("its format is {}", asset.format)),
+        Err(LoadError::Conversion { problem, .. }) if problem.contains("FBX") => Ok(()),
+        Err(problem) => Err(problem.to_string()),
     });
 }
 

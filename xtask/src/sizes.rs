@@ -6,9 +6,10 @@ use crate::page::dist;
 use crate::process::run;
 
 /// Limits in bytes, compressed with brotli: of the shell together with each program, and of each part by itself.
-const MAX_BYTES: [(&str, u32); 5] = [
+const MAX_BYTES: [(&str, u32); 6] = [
     ("webgpu", 1_250_000),
     ("webgl2", 1_700_000),
+    ("parts/fbx", 125_000),
     ("parts/meshopt", 20_000),
     ("parts/qr", 10_000),
     ("parts/video", 52_000),

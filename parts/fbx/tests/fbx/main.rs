@@ -1,0 +1,6 @@
+//! Tests of the converter, on text made here and on real files.
+
+mod data;
+mod glb;
+mod mutation;
+mod text;
