@@ -15,11 +15,14 @@ pub const MAX_ARCHIVE_FILES: usize = 10_000;
 pub const MAX_FOLDER_FILES: usize = 4096;
 /// Folders inside folders.
 pub const MAX_FOLDER_DEPTH: usize = 16;
+/// A joint map, which is held as a tree of values.
+pub const MAX_MAP_BYTES: usize = 16 << 20;
 /// Width and height of an image in pixels.
 pub const MAX_IMAGE_SIDE: u32 = 16_384;
 /// Decoded images of a model. Larger ones are scaled down until they fit.
 pub const MAX_IMAGE_BYTES: u64 = 512 << 20;
-/// Objects in the JSON of a glTF: each takes a few hundred bytes, however short its text is.
+/// Objects in the JSON of a glTF, and values in its unknown extensions: an object takes a few hundred bytes, however short its
+/// text is.
 pub const MAX_JSON_OBJECTS: usize = 1 << 21;
 /// Values in a JSON text that has to be corrected, and is held as a tree.
 pub const MAX_JSON_VALUES: usize = 1 << 24;

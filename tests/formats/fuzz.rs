@@ -93,6 +93,11 @@ fn every_reader_survives_damaged_files() {
 }
 
 #[test]
+fn what_fuzzing_found_stays_fixed() {
+    entries::map(br#"{"gaitway_map":1,"joints":{"a":{"source":0,"correction":[0,0,0,1e39]}}}"#);
+}
+
+#[test]
 fn every_entry_point_has_a_fuzz_target() {
     let manifest = include_str!("../../fuzz/Cargo.toml");
     for (name, _) in entries::ENTRIES {

@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
+use gaitway::files::read_map;
 use gaitway::formats::limits::{
     Limit, MAX_ARCHIVE_FILES, MAX_FOLDER_DEPTH, MAX_FOLDER_FILES, MAX_IMAGE_BYTES, MAX_IMAGE_SIDE, MAX_JSON_OBJECTS,
-    MAX_JSON_VALUES, MAX_READ_BYTES,
+    MAX_JSON_VALUES, MAX_MAP_BYTES, MAX_READ_BYTES,
 };
 use gaitway::formats::load;
 use serde_json::{Value, json};
@@ -66,6 +67,12 @@ fn objects_are_counted_before_they_are_built() {
     assert!(problem.contains(&format!("at most {MAX_JSON_VALUES} values in all")), "{problem}");
 }
 
+#[test]
+fn a_joint_map_of_any_size() {
+    let problem = read_map("map.json", &vec![b' '; MAX_MAP_BYTES + 1]).expect_err("over the limit").to_string();
+    assert!(problem.contains("map.json") && problem.contains("at most 16777216 bytes"), "{problem}");
+}
+
 /// Images over the limit are left out; the model is shown without them.
 #[test]
 fn pixels_of_all_images() {
@@ -111,6 +118,7 @@ fn the_limits_are_those_of_the_documentation() {
         ("pixels of an image's width or height", u64::from(MAX_IMAGE_SIDE)),
         ("MiB of decoded images", MAX_IMAGE_BYTES >> 20),
         ("JSON objects", MAX_JSON_OBJECTS as u64),
+        ("MiB of a joint map", MAX_MAP_BYTES as u64 >> 20),
         ("JSON values", MAX_JSON_VALUES as u64),
     ];
     for (name, max) in counted.into_iter().chain(others) {

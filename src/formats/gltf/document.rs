@@ -121,7 +121,7 @@ fn too_many(file: &str, max: usize, what: &str) -> LoadError {
 }
 
 /// Whether a text can be held as a tree of values.
-fn fits_in_memory(text: &str) -> bool {
+pub fn fits_in_memory(text: &str) -> bool {
     text.bytes().filter(|byte| matches!(byte, b',' | b'[' | b'{')).count() <= MAX_JSON_VALUES
 }
 

@@ -124,7 +124,7 @@ fn clean(value: &mut Value, key: Option<&str>) {
 /// Returns an integer that is not negative, also if it is written as 3.0 or 3e2 (§2.7). `None` if it is not exact.
 pub fn whole(value: &Value) -> Option<u64> {
     const EXACT: f64 = (1_u64 << 53) as f64;
-    let float = |value: f64| (value >= 0.0 && value <= EXACT && value.fract() == 0.0).then_some(value as u64);
+    let float = |value: f64| ((0.0..=EXACT).contains(&value) && value.fract() == 0.0).then_some(value as u64);
     value.as_u64().or_else(|| float(value.as_f64()?))
 }
 

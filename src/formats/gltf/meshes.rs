@@ -8,6 +8,7 @@ use gltf::json::{self, Accessor, Index};
 use serde_json::Value;
 
 use super::accessor::{Accessors, get};
+use super::document::fits_in_memory;
 use super::indices;
 use super::influences::{self, InfluenceSet};
 use crate::asset::{Warning, Warnings};
@@ -55,7 +56,7 @@ fn targets(primitive: &Primitive) -> &[JsonMorphTarget] {
 
 /// Names of morph targets are not in the specification, but most exporters write them to the mesh's extras.
 fn target_names(mesh: &json::Mesh, targets: usize) -> Vec<String> {
-    let extras = mesh.extras.as_ref().filter(|_| targets > 0);
+    let extras = mesh.extras.as_ref().filter(|extras| targets > 0 && fits_in_memory(extras.get()));
     let extras: Value = extras.and_then(|extras| serde_json::from_str(extras.get()).ok()).unwrap_or_default();
     let name = |target: usize| extras.get("targetNames")?.as_array()?.get(target)?.as_str();
     (0..targets).map(|target| name(target).unwrap_or_default().to_owned()).collect()

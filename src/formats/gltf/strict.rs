@@ -1,6 +1,6 @@
 //! Deserializes JSON whose structs must be objects. The derived readers of the `gltf` crate also accept an array and read its
 //! elements by position, which no glTF means; and a few bytes of JSON can stand for any number of large structs. So this wraps
-//! a deserializer: it rejects an array where a struct is expected, and counts the structs.
+//! a deserializer: it rejects an array where a struct is expected, and counts the structs and the values of unknown extensions.
 
 use std::cell::Cell;
 use std::fmt;
@@ -16,7 +16,7 @@ pub enum Error {
     Json(serde_json::Error),
 }
 
-/// Parses a text with at most `max_objects` structs.
+/// Parses a text with at most `max_objects` structs and values of unknown extensions.
 pub fn from_str<'a, T: Deserialize<'a>>(text: &'a str, max_objects: usize) -> Result<T, Error> {
     let left = Cell::new(max_objects);
     let mut deserializer = serde_json::Deserializer::from_str(text);
@@ -29,11 +29,17 @@ struct Strict<'c, T> {
     inner: T,
     /// Whether a visitor builds a struct.
     is_struct: bool,
-    /// How many more structs there may be; 0 after one too many.
+    /// How many more structs and values there may be; 0 after one too many.
     left: &'c Cell<usize>,
 }
 
 impl<'c, T> Strict<'c, T> {
+    fn count<E: serde::de::Error>(&self) -> Result<(), E> {
+        let left = self.left.get().saturating_sub(1);
+        self.left.set(left);
+        if left == 0 { Err(E::custom("too many objects")) } else { Ok(()) }
+    }
+
     fn around<U>(&self, inner: U) -> Strict<'c, U> {
         Strict { inner, is_struct: false, left: self.left }
     }
@@ -57,17 +63,19 @@ impl<'de, D: Deserializer<'de>> Deserializer<'de> for Strict<'_, D> {
         fields: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Self::Error> {
-        let left = self.left.get().saturating_sub(1);
-        self.left.set(left);
-        if left == 0 {
-            return Err(D::Error::custom("too many objects"));
-        }
+        self.count::<D::Error>()?;
         let visitor = Strict { is_struct: true, ..self.around(visitor) };
         self.inner.deserialize_struct(name, fields, visitor)
     }
 
+    /// The contents of an extension without a type, each a value of its own.
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Self::Error> {
+        self.count::<D::Error>()?;
+        let visitor = self.around(visitor);
+        self.inner.deserialize_any(visitor)
+    }
+
     forward! {
-        deserialize_any();
         deserialize_bool();
         deserialize_i8();
         deserialize_i16();

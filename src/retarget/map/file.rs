@@ -76,6 +76,10 @@ fn unique_entries<'de, D: Deserializer<'de>>(
                 if entries.contains_key(&name) {
                     return Err(A::Error::custom(format!("“{name}” appears twice; keep one of the two")));
                 }
+                // Beyond 32 bits it would be infinite, which no map can be written with.
+                if !entry.correction.is_finite() {
+                    return Err(A::Error::custom(format!("a number in the correction of “{name}” is too large")));
+                }
                 entries.insert(name, entry);
             }
             Ok(entries)
