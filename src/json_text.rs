@@ -1,5 +1,5 @@
-//! The messages of `serde_json` in plain words: joint maps and glTF files are written by people, too, who know neither Rust nor
-//! its types.
+//! What `serde_json` says in plain words, and where: joint maps and glTF files are written by people, too, who know neither Rust
+//! nor its types.
 
 /// Splits a message from the position that it ends with, as “line 3, column 4”.
 pub fn split_position(message: &str) -> (&str, Option<String>) {
@@ -94,6 +94,78 @@ fn quoted(text: &str) -> String {
 fn curly(text: &str, mark: char) -> String {
     let parts = text.split(mark).enumerate();
     parts.map(|(at, part)| if at % 2 == 1 { format!("“{part}”") } else { part.to_owned() }).collect()
+}
+
+/// The byte at a line and column, both from 1.
+pub fn offset_of(text: &str, line: usize, column: usize) -> usize {
+    let before: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
+    before + column
+}
+
+/// A step from a JSON value to one inside it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Step {
+    /// By its name.
+    Member(String),
+    /// By its number.
+    Element(usize),
+}
+
+/// The path to the value that a parser was reading when it stopped after `end` bytes.
+pub fn path_at(text: &str, end: usize) -> Vec<Step> {
+    let mut path = Vec::new();
+    let mut at = 0;
+    while at < end.min(text.len()) {
+        let rest = &text[at..];
+        let mut length = 1;
+        match (rest.as_bytes()[0], path.last_mut()) {
+            // Stopped at its beginning: what it is was the problem, not what is in it.
+            (b'{' | b'[', _) if at + 1 >= end => {}
+            (b'{', _) => path.push(Step::Member(String::new())),
+            (b'[', _) => path.push(Step::Element(0)),
+            (b'}' | b']', _) => drop(path.pop()),
+            (b',', Some(Step::Member(key))) => key.clear(),
+            (b',', Some(Step::Element(index))) => *index += 1,
+            (b'"', last) => {
+                length = string_length(rest);
+                let string = &rest[..length];
+                if let (Some(Step::Member(key)), true) = (last, rest[length..].trim_start().starts_with(':')) {
+                    *key = serde_json::from_str(string).unwrap_or_default();
+                }
+            }
+            _ => {}
+        }
+        at += length.max(rest.chars().next().map_or(1, char::len_utf8));
+    }
+    path
+}
+
+/// Bytes of the string that the text begins with, with its quotation marks.
+fn string_length(text: &str) -> usize {
+    let mut escaped = false;
+    for (at, letter) in text.char_indices().skip(1) {
+        match letter {
+            _ if escaped => escaped = false,
+            '\\' => escaped = true,
+            '"' => return at + 1,
+            _ => {}
+        }
+    }
+    text.len()
+}
+
+/// A path as messages have it: `meshes[0].primitives[1].mode`.
+pub fn place(path: &[Step]) -> String {
+    let mut place = String::new();
+    for step in path {
+        match step {
+            Step::Member(key) if key.is_empty() => {}
+            Step::Member(key) if place.is_empty() => place.push_str(key),
+            Step::Member(key) => place.extend([".", key]),
+            Step::Element(index) => place.push_str(&format!("[{index}]")),
+        }
+    }
+    place
 }
 
 #[cfg(test)]

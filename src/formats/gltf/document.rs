@@ -20,7 +20,7 @@ use super::strict;
 use crate::asset::{Warning, Warnings};
 use crate::formats::LoadError;
 use crate::formats::limits::{MAX_JSON_OBJECTS, MAX_JSON_VALUES};
-use crate::json_text;
+use crate::json_text::{self, Step, offset_of, path_at, place};
 
 /// The parsed JSON of a file. No index in it has been checked.
 pub struct Document<'a> {
@@ -109,12 +109,6 @@ pub fn message(problem: &serde_json::Error) -> String {
     json_text::plain(json_text::split_position(&problem.to_string()).0)
 }
 
-/// The byte at a line and column, both from 1.
-fn offset_of(text: &str, line: usize, column: usize) -> usize {
-    let before: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
-    before + column
-}
-
 fn too_many(file: &str, max: usize, what: &str) -> LoadError {
     let (expected, found) = (format!("at most {max} {what} in all"), "more".to_owned());
     LoadError::Invalid { file: file.to_owned(), place: "JSON".to_owned(), expected, found }
@@ -158,70 +152,6 @@ fn read_loosened(file: &str, text: &str, is_glb: bool) -> Result<(Root, BTreeMap
             json_text::expected_and_found(said).unwrap_or_else(|| ("valid glTF".to_owned(), json_text::plain(said)));
         LoadError::Invalid { file: file.to_owned(), place: place(&path) + &position, expected, found }
     })
-}
-
-/// A step from a JSON value to one inside it.
-#[derive(Debug, Clone, PartialEq, Eq)]
-enum Step {
-    Member(String),
-    Element(usize),
-}
-
-/// The path to the value that a parser was reading when it stopped after `end` bytes.
-fn path_at(text: &str, end: usize) -> Vec<Step> {
-    let mut path = Vec::new();
-    let mut at = 0;
-    while at < end.min(text.len()) {
-        let rest = &text[at..];
-        let mut length = 1;
-        match (rest.as_bytes()[0], path.last_mut()) {
-            // Stopped at its beginning: what it is was the problem, not what is in it.
-            (b'{' | b'[', _) if at + 1 >= end => {}
-            (b'{', _) => path.push(Step::Member(String::new())),
-            (b'[', _) => path.push(Step::Element(0)),
-            (b'}' | b']', _) => drop(path.pop()),
-            (b',', Some(Step::Member(key))) => key.clear(),
-            (b',', Some(Step::Element(index))) => *index += 1,
-            (b'"', last) => {
-                length = string_length(rest);
-                let string = &rest[..length];
-                if let (Some(Step::Member(key)), true) = (last, rest[length..].trim_start().starts_with(':')) {
-                    *key = serde_json::from_str(string).unwrap_or_default();
-                }
-            }
-            _ => {}
-        }
-        at += length.max(rest.chars().next().map_or(1, char::len_utf8));
-    }
-    path
-}
-
-/// Bytes of the string that the text begins with, with its quotation marks.
-fn string_length(text: &str) -> usize {
-    let mut escaped = false;
-    for (at, letter) in text.char_indices().skip(1) {
-        match letter {
-            _ if escaped => escaped = false,
-            '\\' => escaped = true,
-            '"' => return at + 1,
-            _ => {}
-        }
-    }
-    text.len()
-}
-
-/// A path as messages have it: `meshes[0].primitives[1].mode`.
-fn place(path: &[Step]) -> String {
-    let mut place = String::new();
-    for step in path {
-        match step {
-            Step::Member(key) if key.is_empty() => {}
-            Step::Member(key) if place.is_empty() => place.push_str(key),
-            Step::Member(key) => place.extend([".", key]),
-            Step::Element(index) => place.push_str(&format!("[{index}]")),
-        }
-    }
-    place
 }
 
 fn check_version(file: &str, version: Option<&str>, min_version: Option<&str>) -> Result<(), LoadError> {

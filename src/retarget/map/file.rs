@@ -11,6 +11,7 @@ use super::error::MapError;
 use super::joint_map::{MapEntry, MutedChannel};
 use super::options::{Feet, Keep, RestChoices, RootOptions};
 use super::unmapped::Unmapped;
+use crate::json_text::{offset_of, path_at, place};
 
 /// A joint map as written in a file. Joints that it does not name have no source.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -106,11 +107,11 @@ impl JointMapFile {
         }
         let blanked = without_explanations(text);
         let text = blanked.as_deref().unwrap_or(text);
-        serde_path_to_error::deserialize(&mut serde_json::Deserializer::from_str(text)).map_err(|error| {
-            let (path, message) = (error.path().to_string(), error.into_inner().to_string());
+        serde_json::from_str(text).map_err(|error| {
+            let path = place(&path_at(text, offset_of(text, error.line(), error.column())));
             // The text is JSON, so the parser misses the name of an option.
             let option = "expected a name in quotation marks (see docs/joint-maps.md) at line ";
-            MapError::Json { path, message: message.replacen("expected value at line ", option, 1) }
+            MapError::Json { path, message: error.to_string().replacen("expected value at line ", option, 1) }
         })
     }
 
