@@ -34,12 +34,12 @@ pub fn write(
     for stack in &scene.anim_stacks {
         let curves = Curves::new(stack);
         // Mixamo's files, for one, have an empty take besides the clip.
-        if curves.properties.is_empty() {
+        if !curves.have_keys() {
             continue;
         }
         let name = &*stack.element.name;
         let Some(range) = curves.range(stack) else {
-            warnings.add(format!("Clip \"{name}\" left out: it has no keys, or is longer than a day."));
+            warnings.add(format!("Clip \"{name}\" left out: it is longer than a day."));
             continue;
         };
         let mut clip = Clip {

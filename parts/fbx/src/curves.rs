@@ -76,7 +76,12 @@ impl<'a> Curves<'a> {
         own.filter(|(_, name, _)| names.contains(name)).map(|&(_, _, value)| value)
     }
 
-    /// Returns the time range of the stack, or that of its keys; none without keys or with absurd times.
+    /// Returns whether there is any key.
+    pub fn have_keys(&self) -> bool {
+        self.properties.iter().flat_map(|(_, _, value)| curves(value)).any(|curve| !curve.keyframes.is_empty())
+    }
+
+    /// Returns the time range of the stack, or that of its keys; none if that is absurd.
     pub fn range(&self, stack: &AnimStack) -> Option<[f64; 2]> {
         let curves = self.properties.iter().flat_map(|(_, _, value)| curves(value));
         let times = curves.filter(|curve| !curve.keyframes.is_empty()).map(|curve| (curve.min_time, curve.max_time));

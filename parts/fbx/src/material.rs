@@ -105,28 +105,44 @@ fn add_details(material: &Material, json: &mut Object, textures: &mut Textures, 
     }
 }
 
-/// Adds metalness and roughness. glTF reads roughness from green and metalness from blue of one texture: a grey roughness map
-/// serves for a surface that is no metal, and a map connected to both is taken to be packed that way.
+/// Adds metalness and roughness. glTF reads roughness from green and metalness from blue of one texture: a map connected to
+/// both is taken to be packed that way, and a grey roughness map serves for a surface that is no metal. What is left out is
+/// replaced by a middling value, since the one beside a texture means nothing.
 fn add_metal_and_roughness(material: &Material, surface: &mut Object, textures: &mut Textures, uv_names: &mut UvNames) {
     let pbr = &material.pbr;
     let (metal_map, rough_map) = (used(&pbr.metalness), used(&pbr.roughness));
     let metal = if pbr.metalness.has_value { unit(pbr.metalness.value_vec4.x) } else { 0.0 };
-    let glossy = pbr.glossiness.texture.is_some();
-    let packed = match (metal_map, rough_map) {
-        (Some(metal), Some(rough)) => same_file(metal, rough).then_some(rough),
-        (None, Some(rough)) if metal == 0.0 => Some(rough),
-        _ => None,
+    let packed = metal_map.zip(rough_map).is_some_and(|(metal, rough)| same_file(metal, rough));
+    let name = &*material.element.name;
+    let mut left_out = |map: &str| {
+        textures
+            .warnings
+            .add(format!("Material \"{name}\": {map} map left out; glTF needs roughness and metalness in one image."));
     };
-    if packed.is_none() && (metal_map.is_some() || rough_map.is_some() || glossy) {
-        textures.warnings.add(format!(
-            "Material \"{}\": separate metalness, roughness or glossiness maps left out; glTF needs both in one image.",
-            &*material.element.name
-        ));
+    if metal_map.is_some() && !packed {
+        left_out("metalness");
     }
-    let packed = packed.and_then(|texture| textures.reference(texture, uv_names));
-    surface.number("metallicFactor", if packed.is_some() && metal_map.is_some() { 1.0 } else { metal });
-    surface.number("roughnessFactor", if packed.is_some() { 1.0 } else { roughness(material) });
-    if let Some(texture) = packed {
+    let inverted = used(&pbr.glossiness).is_some();
+    if inverted {
+        left_out("glossiness");
+    }
+    let needs_metal = metal_map.is_none() && metal > 0.0;
+    if rough_map.is_some() && needs_metal {
+        left_out("roughness");
+    }
+    let texture = rough_map.filter(|_| !needs_metal).and_then(|texture| textures.reference(texture, uv_names));
+    let metallic = match metal_map {
+        Some(_) if packed && texture.is_some() => 1.0,
+        Some(_) => 0.0,
+        None => metal,
+    };
+    let rough = match (&texture, rough_map.is_some() || inverted) {
+        (Some(_), _) => 1.0,
+        (None, true) => 0.5,
+        (None, false) => roughness(material),
+    };
+    surface.number("metallicFactor", metallic).number("roughnessFactor", rough);
+    if let Some(texture) = texture {
         surface.raw("metallicRoughnessTexture", &texture.end());
     }
 }

@@ -11,7 +11,7 @@ use ufbx::{RawAllocatorOpts, RawLoadOpts, RawVertexStream, SceneRoot};
 /// What ufbx may allocate while it reads or sorts vertices.
 const MAX_TEMPORARY_BYTES: usize = 1 << 29;
 /// What the scene may take.
-const MAX_SCENE_BYTES: usize = 1 << 30;
+const MAX_SCENE_BYTES: usize = 3 << 28;
 const MAX_ALLOCATIONS: usize = 1 << 24;
 /// Deepest node hierarchy.
 const MAX_DEPTH: u32 = 1000;

@@ -339,6 +339,34 @@ fn materials_and_textures_are_carried_over() {
 }
 
 #[test]
+fn a_separate_roughness_map_stays_and_a_metalness_map_goes() {
+    let mut fbx = Fbx::new(1.0);
+    let node = fbx.node("a", "Mesh", 0, &[]);
+    fbx.quad(node);
+    // The identity of 3ds Max's metal and roughness material.
+    let material = "ShadingModel: \"unknown\"\nProperties70: {\n\
+        P: \"3dsMax|ClassIDa\", \"int\", \"Integer\", \"\",-804315648\n\
+        P: \"3dsMax|ClassIDb\", \"int\", \"Integer\", \"\",-1099438848\n\
+        P: \"3dsMax|main|metalness\", \"Float\", \"\", \"A\",0.7\n\
+        P: \"3dsMax|main|roughness\", \"Float\", \"\", \"A\",0.3\n\
+        P: \"3dsMax|main|useGlossiness\", \"Integer\", \"\", \"A\",2\n}";
+    let material = fbx.object("Material", "steel", "", material);
+    fbx.connect(material, node);
+    for map in ["metalness", "roughness"] {
+        let texture =
+            fbx.object("Texture", map, "", &format!("RelativeFilename: \"{map}.png\"\nFileName: \"{map}.png\""));
+        fbx.connect_property(texture, material, &format!("3dsMax|main|{map}_map"));
+    }
+    let (glb, warnings) = fbx.glb();
+    let surface = &glb.list("materials")[0]["pbrMetallicRoughness"];
+    assert_eq!(surface["metallicFactor"], 0, "{surface}");
+    assert_eq!(surface["roughnessFactor"], 1);
+    assert_eq!(glb.list("images").len(), 1);
+    assert_eq!(glb.list("images")[0]["uri"], "roughness.png");
+    assert!(warnings.len() == 1 && warnings[0].contains("metalness map"), "{warnings:?}");
+}
+
+#[test]
 fn joints_of_separate_trees_get_a_common_root() {
     let mut fbx = two_joints();
     let arm = fbx.node("Arm", "LimbNode", 0, &[]);
