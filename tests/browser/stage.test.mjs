@@ -13,11 +13,11 @@ const FOREARM = "mixamorig:LeftForeArm";
 
 // The canvas has no elements to ask for. Places at the end of the View tab, in a window of 1280×800.
 /** @type {Place} */
-const WIDTH = [1030, 512];
+const WIDTH = [1035, 510];
 /** @type {Place} */
-const HEIGHT = [1130, 512];
+const HEIGHT = [1133, 510];
 /** @type {Place} */
-const TRANSPARENT = [1248, 545];
+const TRANSPARENT = [1244, 544];
 /** @type {Place} */
 const SAVE_IMAGE = [1125, 580];
 /** @type {Place} */
@@ -169,7 +169,8 @@ for (const renderer of BACK_ENDS)
           await apply(page, { range: "0.1,0.5" });
           await openViewTab(page);
           for (const [field, pixels] of /** @type {const} */ ([[WIDTH, 320], [HEIGHT, 180]])) {
-            await press(page, field);
+            // Its blinking cursor never comes to rest.
+            await page.mouse.click(...field);
             await page.keyboard.type(`${pixels}\n`);
             await untilStill(page);
           }

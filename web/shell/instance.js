@@ -2,7 +2,7 @@
 // same files and view.
 import { awaitFiles, awaited, showAwaited } from "./awaited.js";
 import { BACKEND_NAMES, TRY_DOWNLOAD, TRY_GRAPHICS, hasBackend, missingCapabilities, otherBackend } from "./capabilities.js";
-import { summarize, summarizeSoon, viewChanged } from "./changes.js";
+import { summarize, viewChanged } from "./changes.js";
 import { button, byId, frames, messageOf } from "./dom.js";
 import { drawOffScreen } from "./first-frame.js";
 import { follow, showMissing } from "./following.js";
@@ -178,8 +178,7 @@ function callsFor(bindings) {
     choose: showOpenDialog,
     gallery: showGallery,
     save: download,
-    record: (name, width, height, framesPerSec, frameCount, isTransparent) =>
-      record(name, { width, height, framesPerSec, frameCount, isTransparent, frame: bindings.video_frame }).finally(summarizeSoon),
+    record: (name, width, height, framesPerSec, frameCount, isTransparent) => record(name, { width, height, framesPerSec, frameCount, isTransparent, frame: bindings.video_frame }),
     cancelRecording,
     share,
     progress: showProgress,
