@@ -108,10 +108,15 @@ impl JointMapFile {
         let blanked = without_explanations(text);
         let text = blanked.as_deref().unwrap_or(text);
         serde_json::from_str(text).map_err(|error| {
-            let path = place(&path_at(text, offset_of(text, error.line(), error.column())));
+            let message = error.to_string();
+            let end = offset_of(text, error.line(), error.column()).min(text.len());
+            // The parser has read one byte more than a number, but all of a list or an object that is too short.
+            let is_whole = ["missing field", "invalid length"].iter().any(|start| message.starts_with(start));
+            let is_past = !is_whole && matches!(text.as_bytes()[..end].last(), Some(b'}' | b']'));
+            let path = place(&path_at(text, end - usize::from(is_past)));
             // The text is JSON, so the parser misses the name of an option.
             let option = "expected a name in quotation marks (see docs/joint-maps.md) at line ";
-            MapError::Json { path, message: error.to_string().replacen("expected value at line ", option, 1) }
+            MapError::Json { path, message: message.replacen("expected value at line ", option, 1) }
         })
     }
 
