@@ -242,7 +242,7 @@ fn every_file_moves_as_in_ufbx() {
                 worst = worst.max(errors);
                 converted += 1;
                 comparisons += count;
-                println!("{name}: {} bytes, {errors:?}, {:?}", result.glb.len(), result.warnings);
+                println!("{name}: {} bytes, {errors:?}, {:?}", result.bytes.len(), result.warnings);
             }
             Err(error) if reference(&bytes).is_none_or(|scene| scene.nodes.count == 1) => println!("{name}: {error}"),
             Err(error) => faults.push(format!("{name}: {error}")),
