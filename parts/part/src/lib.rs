@@ -1,5 +1,5 @@
 //! A *part* of Gaitway converts something that few files contain into plain glTF. Natively it is a crate like any other; on the
-//! page it is a WebAssembly module of its own, downloaded when a file needs it and run in a worker (`web/part-worker.js`), so
+//! page it is a WebAssembly module of its own, downloaded when a file needs it and run in a worker (`web/shell/parts.js`), so
 //! that it can be stopped, and so that a trap ends nothing but the conversion.
 //!
 //! A part is one function from bytes to an [`Answer`]. [`module!`] exports it: the caller writes the input to where `input(length)`
