@@ -53,8 +53,14 @@ function decoded(page, file, framesPerSec) {
     const durationSecs = video.duration;
     // One seek beyond the end, since a frame that was recorded last has no duration.
     for (let index = 0; (index - 1) / framesPerSec < durationSecs; index++) {
+      // The new frame can be drawn a moment after the seek; past the end there is none.
+      const presented = new Promise((resolve) => {
+        video.requestVideoFrameCallback(resolve);
+        setTimeout(resolve, 2000);
+      });
       video.currentTime = (index + 0.5) / framesPerSec;
       await next("seeked");
+      await presented;
       context.clearRect(0, 0, width, height);
       context.drawImage(video, 0, 0);
       const { data } = context.getImageData(0, 0, width, height);
