@@ -97,7 +97,8 @@ async function nextFrame({ frame, signal }, index) {
 async function recordFrames(video) {
   const { width, height, framesPerSec, frameCount } = video;
   const canvas = Object.assign(document.createElement("canvas"), { width, height });
-  const context = canvas.getContext("2d");
+  // In memory: from the graphics device, frames would arrive while the recorder is paused.
+  const context = canvas.getContext("2d", { willReadFrequently: true });
   const mimeType = typeof MediaRecorder === "undefined" ? undefined : RECORDER_TYPES.find((type) => MediaRecorder.isTypeSupported(type));
   const stream = mimeType === undefined ? undefined : canvas.captureStream?.(0);
   if (context === null || mimeType === undefined || stream === undefined) throw new Error("this browser can't encode any. Use a current version of Chrome, Edge, Firefox or Safari, or save images instead.");

@@ -291,7 +291,7 @@ impl App {
         let has_motion = self.shown().is_animated();
         let state = self.editor.state();
         let is_moving = (state.playback.playing && has_motion) || state.is_turning();
-        if !self.has_begun || !is_moving || self.panels.holds_time {
+        if !self.has_begun || !is_moving || self.panels.holds_time || self.recording.is_some() {
             return;
         }
         let (secs, unsmoothed_secs) = context.input(|input| (input.stable_dt, input.unstable_dt));

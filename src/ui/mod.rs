@@ -203,7 +203,7 @@ const NARROW_WIDTH: f32 = 700.0;
 
 /// Shows the panels and returns the rectangle that they leave for the viewport.
 pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Output) -> Rect {
-    local.holds_time = local.host.recording.is_some();
+    local.holds_time = false;
     let narrow = is_narrow(ui);
     let bottom = egui::Frame::new().inner_margin(egui::Margin { left: 12, right: 12, top: 2, bottom: 6 });
     egui::Panel::bottom("transport")
