@@ -1,9 +1,9 @@
-//! The fuzz targets' entry points, fed with damaged files for a moment: `cargo fuzz` needs a nightly toolchain, and looks for
-//! hours. `GAITWAY_FUZZ_SECS` sets the time for each reader, a second by default.
+//! The fuzz targets' entry points, fed with some damaged files: `cargo fuzz` needs a nightly toolchain, and looks for hours.
+//! `GAITWAY_FUZZ_SECS` looks for longer here, for that time for each reader.
 
 use std::io::{Cursor, Write};
 use std::panic::catch_unwind;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use zip::write::SimpleFileOptions;
 
@@ -14,6 +14,9 @@ use crate::random::Random;
 
 #[path = "../../fuzz/entries.rs"]
 mod entries;
+
+/// Damaged files for each reader by default.
+const CASES: usize = 1000;
 
 /// No input is so large that reading it takes this long, even without optimization.
 const MAX_SECS: f64 = 10.0;
@@ -56,15 +59,14 @@ fn seeds(entry: &str) -> Vec<Vec<u8>> {
     }
 }
 
-/// Damages the seeds again and again until the time is over. Returns how often.
-fn run(entry: entries::Entry, time: Duration) -> usize {
+/// Damages the seeds again and again. Returns how often.
+fn run(entry: entries::Entry, is_over: impl Fn(usize) -> bool) -> usize {
     let (name, read) = entry;
     let seeds = seeds(name);
     seeds.iter().for_each(|seed| read(seed));
     let mut random = Random(0x5DEE_CE66_D123_4567);
-    let start = Instant::now();
     let mut cases = 0;
-    while start.elapsed() < time {
+    while !is_over(cases) {
         let mut input = seeds[random.below(seeds.len())].clone();
         for _ in 0..=random.below(3) {
             input = if input.is_empty() { input } else { damage(&input, &mut random) };
@@ -84,9 +86,14 @@ fn run(entry: entries::Entry, time: Duration) -> usize {
 
 #[test]
 fn every_reader_survives_damaged_files() {
-    let secs = std::env::var("GAITWAY_FUZZ_SECS").ok().and_then(|secs| secs.parse().ok()).unwrap_or(1.0);
+    let secs: Option<f64> = std::env::var("GAITWAY_FUZZ_SECS").ok().and_then(|secs| secs.parse().ok());
     for entry in entries::ENTRIES {
-        let cases = run(entry, Duration::from_secs_f64(secs));
+        let start = Instant::now();
+        // By default the same files on every machine.
+        let cases = run(entry, |cases| match secs {
+            Some(secs) => start.elapsed().as_secs_f64() >= secs,
+            None => cases == CASES,
+        });
         println!("{}: {cases} damaged files", entry.0);
         assert!(cases > 0);
     }
