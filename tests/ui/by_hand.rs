@@ -173,7 +173,7 @@ fn the_motion_tab_tells_the_fit_and_puts_the_source_on_the_stage() {
     }
     press(&mut harness, "Fit");
     press(&mut harness, "Walk (2)");
-    assert!(harness.query_all_by_label_contains("Mean: 0.0").count() == 2, "a copy fits");
+    assert_eq!(harness.query_all_by_label_contains("Mean: 0.0").count(), 3, "a copy fits: limbs, facing, rotations");
     assert!(harness.query_by_label("Mapped: 100 %").is_some());
     press(&mut harness, "Files");
     harness.get_by_label(text::SHOW_SOURCE).scroll_to_me();
