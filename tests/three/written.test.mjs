@@ -49,13 +49,17 @@ async function issues(file, withWarnings = false) {
   return counts;
 }
 
+/** What compression rounds; the validator can't look into compressed data to find it in the original. */
+const ROUNDED = ["ACCESSOR_VECTOR3_NON_UNIT"];
+
 /**
  * @param {string} original
  * @param {string} file
  */
 async function noNewErrors(original, file) {
   const [before, found] = await Promise.all([issues(original), issues(file)]);
-  for (const [code, count] of Object.entries(found))
+  const isCompressed = (readGltf(original).json.extensionsRequired ?? []).includes("EXT_meshopt_compression");
+  for (const [code, count] of Object.entries(found).filter(([code]) => !isCompressed || !ROUNDED.includes(code)))
     assert.ok(count <= (before[code] ?? 0), `${code}: ${count} times, but ${before[code] ?? 0} times in the original`);
 }
 
