@@ -32,7 +32,7 @@ use failure::{Failure, Outcome};
 use motion::MotionArguments;
 use output::{is_standard_output, print_error, print_json, warn};
 
-/// Drop in a glTF character, watch it move, and see why it bends the way it does.
+/// Drop in a glTF or FBX character, watch it move, and see why it bends the way it does.
 #[derive(Debug, Parser)]
 #[command(name = "gaitway", version, about, args_conflicts_with_subcommands = true)]
 struct Arguments {

@@ -96,7 +96,7 @@ impl Preparation {
 /// Returns a conversion that can be done with the files that are in the set. `None` once there is none left.
 ///
 /// # Errors
-/// If a file says wrongly what is to be converted.
+/// If a file describes its compressed data wrongly.
 pub fn next_preparation(files: &FileSet) -> Result<Option<Preparation>, LoadError> {
     for (name, bytes) in files.iter() {
         let file = || name.to_owned();

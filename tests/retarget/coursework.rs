@@ -8,7 +8,8 @@ use gaitway::retarget::{
 };
 use glam::{Affine3A, Quat, Vec3};
 
-use crate::data_folder::{data_folder, read};
+use crate::data_folder::data_folder;
+use crate::real::read;
 
 fn retarget(model: &Asset, motion: &Asset, clip: usize, map: &ResolvedMap) -> Retargeted {
     let slots = [recognize(model).humanoid(), recognize(motion).humanoid()];

@@ -9,9 +9,10 @@ use gaitway::retarget::{
 };
 use glam::{Quat, Vec3};
 
-use crate::data_folder::{data_folder, read};
+use crate::data_folder::data_folder;
 use crate::figure::{Figure, Rig, build};
 use crate::laws::{body, map};
+use crate::real::read;
 
 /// Two steps of a second each: one foot stays in contact while the body passes over it and the other leg swings. `lift` is the
 /// height of the whole clip above the ground.

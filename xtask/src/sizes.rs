@@ -7,8 +7,8 @@ use crate::process::run;
 
 /// Limits in bytes, compressed with brotli: of the shell together with each program, and of each part by itself.
 const MAX_BYTES: [(&str, u32); 6] = [
-    ("webgpu", 1_260_000),
-    ("webgl2", 1_720_000),
+    ("webgpu", 1_250_000),
+    ("webgl2", 1_700_000),
     ("parts/fbx", 127_000),
     ("parts/meshopt", 20_000),
     ("parts/qr", 18_000),

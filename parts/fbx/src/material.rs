@@ -164,7 +164,7 @@ fn roughness(material: &Material) -> f64 {
     }
 }
 
-/// Returns the opacity, and whether the surface is to be blended.
+/// Returns the opacity and whether the surface needs alpha blending.
 fn opacity(material: &Material, warnings: &mut Warnings) -> (f64, bool) {
     let pbr = &material.pbr;
     let map =

@@ -35,8 +35,8 @@ struct Place {
 /// with the file around them.
 pub fn start(files: &FileSet, file: &str, bytes: &[u8]) -> Result<Option<(Decoding, Vec<u8>)>, LoadError> {
     let Ok(container) = container::open(file, bytes) else { return Ok(None) };
-    let mentions = |name: &str| container.json.windows(name.len()).any(|window| window == name.as_bytes());
-    if !NAMES.into_iter().any(mentions) {
+    let json = as_text(container.json);
+    if !NAMES.into_iter().any(|name| json.contains(name)) {
         return Ok(None);
     }
     let Ok(document) = Document::read(file, &container) else { return Ok(None) };

@@ -5,26 +5,11 @@ use std::path::{Path, PathBuf};
 
 use ufbx::{Anim, Scene};
 
+use crate::data_folder::data_folder;
 use crate::glb::Glb;
 
 /// Parts of a clip's duration that miss the keys of every file.
 const TIMES: [f64; 5] = [0.0731, 0.2877, 0.4519, 0.6613, 0.9427];
-
-/// Returns the folder of real files: `GAITWAY_DATA`, or else `../shared/data` beside the repository. Without it this prints
-/// `skipped: …` and returns none; with `GAITWAY_REQUIRE_DATA=1` it panics instead.
-pub fn folder() -> Option<PathBuf> {
-    let folder = match std::env::var_os("GAITWAY_DATA") {
-        Some(folder) => PathBuf::from(folder),
-        None => Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
-    };
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    let missing = format!("no real files at {}: set GAITWAY_DATA", folder.display());
-    assert!(std::env::var("GAITWAY_REQUIRE_DATA").as_deref() != Ok("1"), "{missing}");
-    println!("skipped: {missing}");
-    None
-}
 
 /// Returns all FBX files below a folder, in order.
 pub fn files(folder: &Path) -> Vec<PathBuf> {
@@ -224,7 +209,7 @@ fn first_key(stack: &ufbx::AnimStack) -> f64 {
 
 #[test]
 fn every_file_moves_as_in_ufbx() {
-    let Some(folder) = folder() else { return };
+    let Some(folder) = data_folder() else { return };
     let files = files(&folder);
     assert!(files.len() >= 280, "{} files", files.len());
     let (mut converted, mut comparisons, mut worst) = (0, 0, Errors::default());
@@ -311,7 +296,7 @@ const MOTION_BUILDER: [&str; 2] = ["motionbuilder_sausage_rrss_7700_ascii", "mot
 
 #[test]
 fn frames_look_as_other_programs_exported_them() {
-    let Some(folder) = folder() else { return };
+    let Some(folder) = data_folder() else { return };
     let folder = folder.join("fbx/ufbx");
     for Frame { obj, files, clip, frame, factors } in FRAMES {
         let text =
@@ -351,7 +336,7 @@ const OTHER_CONVERTER: [[&str; 2]; 4] = [
 
 #[test]
 fn clips_move_as_another_converter_sees_them() {
-    let Some(folder) = folder() else { return };
+    let Some(folder) = data_folder() else { return };
     for [fbx, glb] in OTHER_CONVERTER {
         let converted = gaitway_fbx::convert(&std::fs::read(folder.join(fbx)).unwrap()).unwrap();
         let (ours, theirs) = (Glb::new(&converted.bytes), Glb::new(&std::fs::read(folder.join(glb)).unwrap()));

@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use crate::data;
+use crate::data_folder::data_folder;
 use crate::glb::Glb;
 use crate::text;
 
@@ -35,7 +36,7 @@ impl Random {
 /// Returns small files of all kinds: text made here, and real ones where there are.
 fn seeds() -> Vec<Vec<u8>> {
     let mut seeds = vec![text::character().into_bytes(), text::cube().into_bytes()];
-    if let Some(folder) = data::folder() {
+    if let Some(folder) = data_folder() {
         let small = data::files(&folder).into_iter().map(|path| std::fs::read(path).unwrap());
         seeds.extend(small.filter(|bytes| bytes.len() < 60_000));
     }

@@ -64,6 +64,22 @@ impl Fbx {
         writeln!(self.connections, "C: \"OO\",{child},{parent}").unwrap();
     }
 
+    /// Binds vertices to a joint, with weights, where the joint is at this height.
+    fn cluster(&mut self, skin: i64, joint: i64, weights: &[(u32, f64)], height: f64) {
+        let (count, list) = (weights.len(), |texts: Vec<String>| texts.join(","));
+        let vertices = list(weights.iter().map(|(vertex, _)| vertex.to_string()).collect());
+        let weights = list(weights.iter().map(|(_, weight)| weight.to_string()).collect());
+        let contents = format!(
+            "Indexes: *{count} {{\na: {vertices}\n}}\nWeights: *{count} {{\na: {weights}\n}}\n\
+             Transform: *16 {{\na: 1,0,0,0,0,1,0,0,0,0,1,0,0,{},0,1\n}}\n\
+             TransformLink: *16 {{\na: 1,0,0,0,0,1,0,0,0,0,1,0,0,{height},0,1\n}}",
+            -height
+        );
+        let cluster = self.object("Deformer", "", "Cluster", &contents);
+        self.connect(cluster, skin);
+        self.connect(joint, cluster);
+    }
+
     fn connect_property(&mut self, child: i64, parent: i64, property: &str) {
         writeln!(self.connections, "C: \"OP\",{child},{parent}, \"{property}\"").unwrap();
     }
@@ -152,16 +168,8 @@ fn two_joints() -> Fbx {
     let mesh = fbx.quad(body);
     let skin = fbx.object("Deformer", "", "Skin", "");
     fbx.connect(skin, mesh);
-    for (joint, vertices, height) in [(hips, "0,1", 0.0), (spine, "2,3", 100.0)] {
-        let contents = format!(
-            "Indexes: *2 {{\na: {vertices}\n}}\nWeights: *2 {{\na: 1,1\n}}\n\
-             Transform: *16 {{\na: 1,0,0,0,0,1,0,0,0,0,1,0,0,{},0,1\n}}\n\
-             TransformLink: *16 {{\na: 1,0,0,0,0,1,0,0,0,0,1,0,0,{height},0,1\n}}",
-            -height
-        );
-        let cluster = fbx.object("Deformer", "", "Cluster", &contents);
-        fbx.connect(cluster, skin);
-        fbx.connect(joint, cluster);
+    for (joint, vertices, height) in [(hips, 0, 0.0), (spine, 2, 100.0)] {
+        fbx.cluster(skin, joint, &[(vertices, 1.0), (vertices + 1, 1.0)], height);
     }
     let blend = fbx.object("Deformer", "", "BlendShape", "");
     fbx.connect(blend, mesh);
@@ -370,12 +378,7 @@ fn a_separate_roughness_map_stays_and_a_metalness_map_goes() {
 fn joints_of_separate_trees_get_a_common_root() {
     let mut fbx = two_joints();
     let arm = fbx.node("Arm", "LimbNode", 0, &[]);
-    let contents = "Indexes: *1 {\na: 0\n}\nWeights: *1 {\na: 1\n}\n\
-        Transform: *16 {\na: 1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1\n}\n\
-        TransformLink: *16 {\na: 1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1\n}";
-    let cluster = fbx.object("Deformer", "", "Cluster", contents);
-    fbx.connect(cluster, SKIN);
-    fbx.connect(arm, cluster);
+    fbx.cluster(SKIN, arm, &[(0, 1.0)], 0.0);
     let (glb, _) = fbx.glb();
     assert_eq!(glb.list("scenes")[0]["nodes"].as_array().unwrap().len(), 1);
     assert_near(position(&glb, None, "Arm"), [0.0; 3]);
@@ -389,12 +392,7 @@ fn vertices_that_no_joint_moves_stay_with_their_mesh() {
     let mesh = fbx.quad(body);
     let skin = fbx.object("Deformer", "", "Skin", "");
     fbx.connect(skin, mesh);
-    let contents = "Indexes: *1 {\na: 0\n}\nWeights: *1 {\na: 0.5\n}\n\
-        Transform: *16 {\na: 1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1\n}\n\
-        TransformLink: *16 {\na: 1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1\n}";
-    let cluster = fbx.object("Deformer", "", "Cluster", contents);
-    fbx.connect(cluster, skin);
-    fbx.connect(joint, cluster);
+    fbx.cluster(skin, joint, &[(0, 0.5)], 0.0);
     let (glb, _) = fbx.glb();
     let vertices = glb.vertices(&glb.pose(None));
     for expected in [[-1.0, 6.0, 0.0], [4.0, -1.0, 0.0], [4.0, 1.0, 0.0], [2.0, 1.0, 0.0]] {
@@ -412,15 +410,8 @@ fn more_influences_than_four_take_further_sets() {
         fbx.connect(skin, mesh);
         for joint in 0..count {
             let node = fbx.node(&format!("joint{joint}"), "LimbNode", 0, &[]);
-            let contents = format!(
-                "Indexes: *4 {{\na: 0,1,2,3\n}}\nWeights: *4 {{\na: {0},{0},{0},{0}\n}}\n\
-                 Transform: *16 {{\na: 1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1\n}}\n\
-                 TransformLink: *16 {{\na: 1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1\n}}",
-                joint + 1
-            );
-            let cluster = fbx.object("Deformer", "", "Cluster", &contents);
-            fbx.connect(cluster, skin);
-            fbx.connect(node, cluster);
+            let weight = f64::from(joint + 1);
+            fbx.cluster(skin, node, &[0, 1, 2, 3].map(|vertex| (vertex, weight)), 0.0);
         }
         let (glb, warnings) = fbx.glb();
         let attributes = &glb.list("meshes")[0]["primitives"][0]["attributes"];

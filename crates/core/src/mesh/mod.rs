@@ -12,12 +12,12 @@ mod skinning;
 mod tangents;
 
 pub use bounds::Bounds;
-pub(crate) use geometry::first_not_below;
+pub use geometry::first_not_below;
 pub use geometry::{Geometry, GeometryError, Influences, MAX_INFLUENCES, Mesh, MorphTarget, Topology};
 pub use material::{AlphaMode, Filter, Material, MipFilter, Sampler, Texture, TextureRef, UvTransform, Wrap};
 pub use normals::smooth_normals;
 pub use palette::{PaletteEntry, SkinningMode, palette_entry, write_palette};
 pub use skin::{Skin, SkinError};
-pub(crate) use skinning::deform_vertex;
+pub use skinning::deform_vertex;
 pub use skinning::{DeformedVertices, deform};
 pub use tangents::{add_tangents, corner_tangents};

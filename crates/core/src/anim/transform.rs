@@ -38,7 +38,7 @@ impl Transform {
     }
 
     /// Whether the scale is positive on all axes. Only then is the rotation the joint's whole orientation.
-    pub(crate) fn is_upright(&self) -> bool {
+    pub fn is_upright(&self) -> bool {
         self.scale.min_element() > 0.0
     }
 

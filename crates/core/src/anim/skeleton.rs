@@ -192,7 +192,7 @@ impl Skeleton {
     }
 
     /// Returns a copy whose rest pose has the local transforms of another pose; morph weights stay.
-    pub(crate) fn with_rest(&self, pose: &Pose) -> Self {
+    pub fn with_rest(&self, pose: &Pose) -> Self {
         let mut skeleton = self.clone();
         for (joint, local) in self.joints().zip(pose.locals()) {
             skeleton.rest.set_local(joint, local);

@@ -4,7 +4,7 @@ use glam::{DMat3, DQuat, DVec3};
 
 /// Returns the rotation nearest to a matrix whose columns have been normalized, by the polar iteration of Higham
 /// ("Computing the polar decomposition", 1986). Of a mirrored matrix the x axis is flipped first. None for a singular one.
-pub(crate) fn nearest_rotation(matrix: &DMat3) -> Option<DQuat> {
+pub fn nearest_rotation(matrix: &DMat3) -> Option<DQuat> {
     let mirrored = if matrix.determinant() < 0.0 { -1.0 } else { 1.0 };
     let axis = |axis: DVec3| axis.try_normalize();
     let mut basis = DMat3::from_cols(axis(matrix.x_axis * mirrored)?, axis(matrix.y_axis)?, axis(matrix.z_axis)?);

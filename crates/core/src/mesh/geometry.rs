@@ -155,7 +155,7 @@ pub enum GeometryError {
 
 /// Returns the position of the first index that is not below `count`. Looks for the largest first: without early exit, that
 /// search is vectorized.
-pub(crate) fn first_not_below<T: Copy + Ord + TryInto<usize>>(indices: &[T], count: usize) -> Option<usize> {
+pub fn first_not_below<T: Copy + Ord + TryInto<usize>>(indices: &[T], count: usize) -> Option<usize> {
     let is_outside = |index: T| index.try_into().map_or(true, |index| index >= count);
     let largest = indices.iter().copied().max()?;
     if is_outside(largest) { indices.iter().position(|&index| is_outside(index)) } else { None }

@@ -50,13 +50,12 @@ impl Pose {
 
     /// Local transforms of all joints.
     pub fn locals(&self) -> impl ExactSizeIterator<Item = Transform> + '_ {
-        self.lane_of_joint.iter().map(|&lane| self.groups[lane as usize / LANES].get(lane as usize % LANES))
+        (0..self.len() as u32).map(|joint| self.local(JointIndex(joint)))
     }
 
     /// Returns a joint's local transform; `None` if there is no such joint.
     pub fn get(&self, joint: JointIndex) -> Option<Transform> {
-        let lane = *self.lane_of_joint.get(joint.get())? as usize;
-        Some(self.groups[lane / LANES].get(lane % LANES))
+        (joint.get() < self.len()).then(|| self.local(joint))
     }
 
     /// Returns the local transform of one of the skeleton's joints.

@@ -1,7 +1,7 @@
 //! Skeletons, poses and clips. Independent of files, GPU, user interface and clock.
 //!
 //! ```
-//! use gaitway::anim::{ClipBuilder, Interpolation, Joint, Keys, SampleCursor, Skeleton};
+//! use gaitway_core::anim::{ClipBuilder, Interpolation, Joint, Keys, SampleCursor, Skeleton};
 //! use glam::Vec3;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -33,7 +33,7 @@ mod transform;
 pub use channel::{Channel, ChannelError, Interpolation, Keys, Property};
 pub use clip::{Clip, ClipBuilder, ClipQuery, SampleCursor, find_clip};
 pub use playback::{LoopMode, TimeRange, clip_time};
-pub(crate) use polar::nearest_rotation;
+pub use polar::nearest_rotation;
 pub use pose::{Pose, model_from_joint};
 pub use skeleton::{Joint, JointIndex, Skeleton, SkeletonError};
 pub use transform::Transform;

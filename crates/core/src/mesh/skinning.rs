@@ -57,7 +57,7 @@ pub fn deform(
 
 /// Like [`deform`] for a single vertex. Returns its morphed bind position and its skinned position. `scratch` is a
 /// buffer.
-pub(crate) fn deform_vertex(
+pub fn deform_vertex(
     geometry: &Geometry,
     vertex: usize,
     morph_weights: &[f32],
