@@ -73,7 +73,7 @@ fn print(name: &str, rig: &Rig, count: usize, stage: Stage) {
                 rig.clip.sample(&rig.skeleton, character.time_secs, &mut character.cursor, &mut pose);
             }
             if stage == Stage::All || stage == Stage::Model {
-                model_from_joint(&rig.skeleton, &black_box(&pose).locals, Affine3A::IDENTITY, &mut world);
+                model_from_joint(&rig.skeleton, black_box(&pose), Affine3A::IDENTITY, &mut world);
             }
             if stage == Stage::All || stage == Stage::Palette {
                 write_palette(&rig.skin, black_box(&world), SkinningMode::Linear, &mut palette);

@@ -20,7 +20,7 @@ fn main() -> anyhow::Result<()> {
         clip.sample(&asset.skeleton, time_secs.parse()?, &mut SampleCursor::default(), &mut pose);
     }
     let mut world_from_joint = Vec::new();
-    model_from_joint(&asset.skeleton, &pose.locals, Affine3A::IDENTITY, &mut world_from_joint);
+    model_from_joint(&asset.skeleton, &pose, Affine3A::IDENTITY, &mut world_from_joint);
 
     for mode in [SkinningMode::Linear, SkinningMode::Rigid, SkinningMode::DualQuaternion] {
         let (mut min, mut max) = (Vec3::INFINITY, Vec3::NEG_INFINITY);

@@ -24,7 +24,7 @@ fn main() -> anyhow::Result<()> {
     clip.sample(&asset.skeleton, time_secs, &mut cursor, &mut pose);
 
     let mut world_from_joint = Vec::new();
-    model_from_joint(&asset.skeleton, &pose.locals, Affine3A::IDENTITY, &mut world_from_joint);
+    model_from_joint(&asset.skeleton, &pose, Affine3A::IDENTITY, &mut world_from_joint);
     println!("“{}” at {time_secs} s of {} s", clip.name(), clip.duration_secs());
     for (joint, world_from_joint) in asset.skeleton.joints().zip(&world_from_joint) {
         let [x, y, z] = world_from_joint.translation.to_array();

@@ -1,4 +1,4 @@
-//! Gaitway: drop in a glTF character, watch it move, and see why it bends the way it does.
+//! Gaitway: drop in a glTF or FBX character, watch it move, and see why it bends the way it does.
 //!
 //! One core with three front ends: a web page, a native window and a command line. A module uses only the layers below it;
 //! ARCHITECTURE.md lists them and `tests/core/layering.rs` enforces them.
@@ -52,13 +52,14 @@
 // Files are untrusted: whatever is wrong with them must be reported, never panic.
 #![warn(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
-pub mod anim;
+pub use gaitway_core::{anim, mesh};
+
 pub mod asset;
 pub mod editor;
 pub mod formats;
 pub mod frame;
+mod json_text;
 pub mod library;
-pub mod mesh;
 pub mod retarget;
 pub mod samples;
 pub mod state;

@@ -12,7 +12,7 @@ const FILES = [];
  */
 const PROGRAMS = {};
 /**
- * The file of each part, stored once a model has needed it.
+ * The file of each part, stored once it has been needed.
  * @type {Record<string, string[]>}
  */
 const PARTS = {};

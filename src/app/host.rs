@@ -4,6 +4,21 @@ use super::Inbox;
 use crate::files::Role;
 use crate::state::ViewerState;
 
+/// A video to record.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Video {
+    /// File name without its extension, which depends on what the host can encode.
+    pub name: String,
+    /// Width and height in pixels, both even.
+    pub size: [u32; 2],
+    /// Frame rate.
+    pub frames_per_sec: u32,
+    /// Number of frames.
+    pub frame_count: u32,
+    /// Keeps the frames' alpha.
+    pub transparent: bool,
+}
+
 /// Implemented by the page and by the window. All calls come from the loop's thread; results arrive through the inbox.
 pub trait Host {
     /// Lets the user choose files; returns false if the platform has no file dialog.
@@ -34,18 +49,18 @@ pub trait Host {
         Ok(())
     }
 
-    /// Starts recording the canvas.
+    /// Starts recording a video: asks for one frame after the other with [`App::video_frame`](super::App::video_frame), saves the
+    /// file, and sends [`Message::Recorded`](super::Message::Recorded) at the end, whatever it is.
     ///
     /// # Errors
     /// The message for the user if that is unsupported.
-    fn start_recording(&self) -> Result<(), String> {
+    fn record(&self, video: Video, inbox: &Inbox) -> Result<(), String> {
+        let _ = (video, inbox);
         Err("Couldn't record a video: only the page can. Open this link there, or save images instead.".to_owned())
     }
 
-    /// Stops the recording and saves it under this name; without a name, discards it.
-    fn stop_recording(&self, name: Option<&str>) {
-        let _ = name;
-    }
+    /// Ends the recording without saving it.
+    fn cancel_recording(&self) {}
 
     /// Opens files dropped on the window, as one set.
     fn open_dropped(&self, files: Vec<egui::DroppedFileHandle>, inbox: &Inbox);

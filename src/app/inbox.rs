@@ -31,6 +31,8 @@ pub enum Message {
     Failed(String),
     /// A file written in the background is ready to save.
     Save(ExportedFile),
+    /// The recording has ended: the name of the saved video, `None` if it was cancelled, or why there is none.
+    Recorded(Result<Option<String>, String>),
     /// A call from the script interface.
     Script(ScriptCall),
 }

@@ -14,7 +14,7 @@ mod timing;
 mod viewport;
 
 pub use device::{FatalHook, set_fatal_hook};
-pub use host::Host;
+pub use host::{Host, Video};
 pub use inbox::{Inbox, Loads, Message, Opening, Reply, ScriptCall};
 pub use run::App;
 

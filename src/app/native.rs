@@ -1,11 +1,12 @@
 //! The native window. Opens files from the command line, typed paths and dropped files; reads them in the background.
 
-use std::path::PathBuf;
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use super::{App, Host, Inbox, Loads, Message, Opening, native_options};
 use crate::editor::Contents;
-use crate::files::{OpenError, Role, read_paths};
+use crate::files::{Disk, OpenError, Role, save_file};
 use crate::samples;
 use crate::state::ViewerState;
 
@@ -26,17 +27,25 @@ pub enum WindowError {
 /// If the files cannot be read, or no window or graphics device is available.
 pub fn run_native(files: Vec<PathBuf>) -> Result<(), WindowError> {
     let files = if files.is_empty() { vec![samples::FIRST.into()] } else { files };
-    let contents = read_paths(&files, Role::Model)?;
+    let disk = Disk::default();
+    let contents = disk.read_paths(&files, Role::Model)?;
+    let files_read = disk.files_read();
     let create: eframe::AppCreator<'_> = Box::new(move |cc| {
-        let mut app = App::new(cc, Box::new(Window::new(cc.egui_ctx.clone())), |_| {})?;
+        let window = Window::new(cc.egui_ctx.clone(), files_read);
+        let mut app = App::new(cc, Box::new(window), |_| {})?;
         app.open(contents, None)?;
         Ok(Box::new(app))
     });
     Ok(eframe::run_native("Gaitway", native_options(), create)?)
 }
 
-/// A load's number, with what was read or why nothing could be.
-type Loaded = (u32, Result<Box<Contents>, String>);
+/// The result of a load.
+struct Loaded {
+    number: u32,
+    /// What was read, or why nothing could be.
+    contents: Result<Box<Contents>, String>,
+    files_read: Vec<PathBuf>,
+}
 
 struct Window {
     context: egui::Context,
@@ -44,12 +53,14 @@ struct Window {
     loads: Loads,
     loaded: Receiver<Loaded>,
     sender: Sender<Loaded>,
+    /// Every file read so far, none of which is overwritten.
+    files_read: RefCell<Vec<PathBuf>>,
 }
 
 impl Window {
-    fn new(context: egui::Context) -> Self {
+    fn new(context: egui::Context, files_read: Vec<PathBuf>) -> Self {
         let (sender, loaded) = channel();
-        Self { context, loads: Loads::default(), loaded, sender }
+        Self { context, loads: Loads::default(), loaded, sender, files_read: RefCell::new(files_read) }
     }
 
     /// Reads files in the background; the result arrives in a later frame, unless something else is opened in the meantime.
@@ -60,9 +71,10 @@ impl Window {
         inbox.send(Message::OpenProgress(opening));
         let (sender, context) = (self.sender.clone(), self.context.clone());
         std::thread::spawn(move || {
-            let opened = read_paths(&paths, role).map(Box::new).map_err(|error| error.to_string());
+            let disk = Disk::default();
+            let contents = disk.read_paths(&paths, role).map(Box::new).map_err(|error| error.to_string());
             // Fails only if the window was closed in the meantime.
-            let _ = sender.send((number, opened));
+            let _ = sender.send(Loaded { number, contents, files_read: disk.files_read() });
             context.request_repaint();
         });
     }
@@ -82,7 +94,7 @@ impl Host for Window {
     }
 
     fn save_path(&self, path: &str, bytes: &[u8]) -> Result<(), String> {
-        std::fs::write(path, bytes).map_err(|error| format!("{path}: {error}"))
+        save_file(Path::new(path), bytes, &self.files_read.borrow()).map_err(|error| error.to_string())
     }
 
     fn open_dropped(&self, files: Vec<egui::DroppedFileHandle>, inbox: &Inbox) {
@@ -102,11 +114,12 @@ impl Host for Window {
     }
 
     fn before_frame(&self, inbox: &Inbox) {
-        while let Ok((number, loaded)) = self.loaded.try_recv() {
+        while let Ok(Loaded { number, contents, files_read }) = self.loaded.try_recv() {
+            self.files_read.borrow_mut().extend(files_read);
             if !self.loads.is_latest(number) {
                 continue;
             }
-            inbox.send(match loaded {
+            inbox.send(match contents {
                 Ok(contents) => Message::Opened { contents, state: None, reply: None },
                 Err(error) => Message::OpenFailed(error),
             });
@@ -121,13 +134,26 @@ mod tests {
     #[test]
     fn only_the_latest_load_is_shown() {
         let context = egui::Context::default();
-        let (window, inbox) = (Window::new(context.clone()), Inbox::new(context));
+        let (window, inbox) = (Window::new(context.clone(), Vec::new()), Inbox::new(context));
         let [old, new] = [window.loads.start(), window.loads.start()];
         for (number, name) in [(new, "new"), (old, "old")] {
-            window.sender.send((number, Err(name.to_owned()))).expect("the window is open");
+            let loaded = Loaded { number, contents: Err(name.to_owned()), files_read: Vec::new() };
+            window.sender.send(loaded).expect("the window is open");
         }
         window.before_frame(&inbox);
         assert!(matches!(inbox.take(), Some(Message::OpenFailed(name)) if name == "new"));
         assert!(inbox.take().is_none());
+    }
+
+    #[test]
+    fn a_file_that_was_opened_is_not_saved_over() {
+        let path = std::env::temp_dir().join(format!("gaitway-opened-{}.bvh", std::process::id()));
+        std::fs::write(&path, "HIERARCHY").expect("a file");
+        let window = Window::new(egui::Context::default(), vec![path.clone()]);
+        let text = path.to_str().expect("a plain path");
+        let error = window.save_path(text, b"a picture").expect_err("it would be lost");
+        assert!(error.starts_with(text), "{error}");
+        assert_eq!(std::fs::read(&path).expect("still there"), b"HIERARCHY");
+        std::fs::remove_file(&path).expect("it was created");
     }
 }

@@ -1,74 +1,77 @@
-//! Recording a video of one loop of the clip: hides the panels, plays from the start, and records the canvas.
+//! Recording a video of one loop of the clip. The host asks for one frame after the other and encodes it, so the video is the
+//! same however long a frame takes. What is on screen stays as it is.
 
-use super::App;
-use crate::state::{Command, active_clip, play_range};
+use super::save::saved;
+use super::{App, Video};
+use crate::library::ModelId;
+use crate::render::read_pixels;
+use crate::state::{Background, LoopFrames};
+use crate::ui::{RecordingProgress, VideoSettings};
 
 pub(super) struct Recording {
-    /// egui's time at the start; `None` while the panels are still on the canvas.
-    start_secs: Option<f64>,
-    /// Number of frames laid out without panels.
-    bare_frames: u32,
-    length_secs: f64,
-    /// Restored afterwards.
-    was_playing: bool,
-    time_secs: f64,
+    frames: LoopFrames,
+    model: ModelId,
+    size: [u32; 2],
+    transparent: bool,
+    /// Says if the size differs from the requested one.
+    remark: Option<String>,
 }
 
 impl App {
-    /// Hides the panels; recording starts once only the viewport is on the canvas.
-    pub(super) fn prepare_recording(&mut self) {
-        let Some(model) = self.editor.library().active() else { return };
-        let Some(clip) = active_clip(model, self.editor.state()) else { return };
-        let range = play_range(model, clip, self.editor.state());
-        self.recording = Some(Recording {
-            start_secs: None,
-            bare_frames: 0,
-            length_secs: range.length_secs() / self.editor.state().playback.speed,
-            was_playing: self.editor.state().playback.playing,
-            time_secs: self.editor.state().playhead.time_secs,
-        });
-        self.panels.host.is_recording = true;
-        self.apply(Command::SetPlaying(false));
-        self.apply(Command::Seek(range.start_secs));
-    }
-
-    pub(super) fn update_recording(&mut self, context: &egui::Context) {
-        let Some(recording) = &mut self.recording else { return };
-        context.request_repaint();
-        let now_secs = context.input(|input| input.time);
-        let Some(start_secs) = recording.start_secs else {
-            // The first one counted is the frame in which the button was pressed.
-            recording.bare_frames += 1;
-            if recording.bare_frames > 2 {
-                recording.start_secs = Some(now_secs);
-                match self.host.start_recording() {
-                    Ok(()) => self.apply(Command::SetPlaying(true)),
-                    Err(error) => {
-                        self.end_recording();
-                        self.add_error(&error);
-                    }
-                }
+    pub(super) fn start_recording(&mut self, settings: VideoSettings) {
+        // Most codecs take only even sizes.
+        let size = self.viewport.picture_size(settings.size).map(|edge| (edge & !1).max(2));
+        let (library, state) = (self.editor.library(), self.editor.state());
+        let Some(model) = library.active() else { return };
+        let aspect = size[0] as f32 / size[1] as f32;
+        let Some(frames) = LoopFrames::new(library, state, aspect, settings.frames_per_sec) else { return };
+        let transparent = settings.transparent || state.display.background == Background::Transparent;
+        let (frame_count, model) = (frames.count(), model.id);
+        let name = self.editor.file_stem();
+        let video = Video { name, size, frames_per_sec: settings.frames_per_sec, frame_count, transparent };
+        match self.host.record(video, &self.inbox) {
+            Ok(()) => {
+                let remark = (size != settings.size).then(|| format!("It is {} × {} pixels.", size[0], size[1]));
+                self.recording = Some(Recording { frames, model, size, transparent, remark });
+                self.panels.host.recording = Some(RecordingProgress { frames_done: 0, frame_count });
             }
-            return;
-        };
-        if now_secs - start_secs >= recording.length_secs {
-            self.stop_recording(true);
+            Err(error) => self.add_error(&error),
         }
     }
 
-    /// Stops recording; discards the video unless the loop is complete.
-    pub(super) fn stop_recording(&mut self, is_complete: bool) {
-        let name = self.video_name();
-        self.host.stop_recording(is_complete.then_some(name.as_str()));
-        self.end_recording();
-        self.toast(if is_complete { format!("Saved {name}.") } else { "Recording cancelled.".to_owned() });
+    /// Draws a frame of the video that is being recorded and returns its pixels: RGBA rows from the top, with straight alpha.
+    ///
+    /// # Errors
+    /// If no video is being recorded, the model was replaced, or the graphics device was lost.
+    pub fn video_frame(&mut self, index: u32) -> Result<impl Future<Output = Result<Vec<u8>, String>> + use<>, String> {
+        let library = self.editor.library();
+        let recording = self.recording.as_ref().ok_or("no video is being recorded")?;
+        if library.active().map(|model| model.id) != Some(recording.model) {
+            return Err("another model was opened meanwhile".to_owned());
+        }
+        let state = recording.frames.state(library, index);
+        let (size, transparent) = (recording.size, recording.transparent);
+        let (device, queue, texture) = self.viewport.draw_off_screen(library, &state, size, transparent);
+        if let Some(progress) = &mut self.panels.host.recording {
+            progress.frames_done = index;
+        }
+        self.context.request_repaint();
+        Ok(async move {
+            let pixels = read_pixels(&device, &queue, &texture).await;
+            if pixels.is_empty() { Err("the graphics device was lost".to_owned()) } else { Ok(pixels) }
+        })
     }
 
-    /// Restores the panels and the playback.
-    fn end_recording(&mut self) {
+    /// Ends the recording: the video was saved under a name, cancelled, or failed.
+    pub(super) fn end_recording(&mut self, saved_name: Result<Option<String>, String>) {
+        self.panels.host.recording = None;
         let Some(recording) = self.recording.take() else { return };
-        self.panels.host.is_recording = false;
-        self.apply(Command::Seek(recording.time_secs));
-        self.apply(Command::SetPlaying(recording.was_playing));
+        match saved_name {
+            Ok(Some(name)) => self.toast(saved(&name, recording.remark.as_deref())),
+            Ok(None) => self.toast("Recording cancelled.".to_owned()),
+            Err(error) => self.add_error(&format!("Couldn't record the video: {error}")),
+        }
+        // The page announces the notice to screen readers.
+        self.host.state_changed(self.editor.state());
     }
 }

@@ -148,6 +148,7 @@ impl App {
             Message::Save(file) => {
                 self.save_file(&file);
             }
+            Message::Recorded(saved_name) => self.end_recording(saved_name),
             Message::Commands(commands) => commands.into_iter().for_each(|command| self.apply(command)),
             Message::Script(call) => self.script(call),
         }
@@ -246,8 +247,8 @@ impl App {
             }
             UiAction::UsePath(PathPurpose::Save(what), path) => return self.save_to(what, &path),
             UiAction::Save(what) => return self.save(what),
-            UiAction::Record => return self.prepare_recording(),
-            UiAction::StopRecording => return self.stop_recording(false),
+            UiAction::Record(settings) => return self.start_recording(settings),
+            UiAction::CancelRecording => return self.host.cancel_recording(),
             UiAction::ShareLink => return self.share(),
         };
         self.show_events();
@@ -290,7 +291,7 @@ impl App {
         let has_motion = self.shown().is_animated();
         let state = self.editor.state();
         let is_moving = (state.playback.playing && has_motion) || state.is_turning();
-        if !self.has_begun || !is_moving || self.panels.holds_time {
+        if !self.has_begun || !is_moving || self.panels.holds_time || self.recording.is_some() {
             return;
         }
         let (secs, unsmoothed_secs) = context.input(|input| (input.stable_dt, input.unstable_dt));
@@ -365,12 +366,14 @@ impl eframe::App for App {
         let (has_input, rect, slot) = self.lay_out(ui, &mut output);
         self.output = output;
         self.advance(&context);
-        self.update_recording(&context);
         if !std::mem::replace(&mut self.is_laid_out, true) {
             // The panels come first, the scene a frame later: both in one frame would block the page for too long.
             context.request_repaint();
         } else if rect.is_positive() {
-            self.draw(rect, context.pixels_per_point());
+            // While recording, the renderer's textures have the video's size: the screen keeps its image unless a script waits.
+            if self.recording.is_none() || !self.after_draw.is_empty() || !self.screenshots.is_empty() {
+                self.draw(rect, context.pixels_per_point());
+            }
             slot.fill(|rect| self.viewport.scene.paint(rect));
             let shown =
                 Shown { library: self.editor.library(), state: self.editor.state(), frame: &self.viewport.frame };

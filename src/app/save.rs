@@ -66,10 +66,6 @@ impl App {
         }
     }
 
-    pub(super) fn video_name(&self) -> String {
-        format!("{}.webm", self.editor.file_stem())
-    }
-
     /// Renders the current view at another size as a PNG.
     fn image(
         &mut self,
@@ -82,7 +78,9 @@ impl App {
             let ([width, height], [asked_width, asked_height]) = (size, asked);
             format!("It is {width} × {height} pixels: this device can't draw {asked_width} × {asked_height}.")
         });
-        let (device, queue, texture) = self.viewport.draw_to_texture(&self.editor, size, transparent);
+        let (device, queue, texture) =
+            self.viewport.draw_off_screen(self.editor.library(), self.editor.state(), size, transparent);
+        self.viewport.give_image_away();
         async move { Ok(ExportedFile { name, bytes: read_png(&device, &queue, &texture).await?, remark }) }
     }
 
@@ -99,7 +97,7 @@ impl App {
     }
 }
 
-fn saved(name: &str, remark: Option<&str>) -> String {
+pub(super) fn saved(name: &str, remark: Option<&str>) -> String {
     let remark = remark.map_or_else(String::new, |remark| format!(" {remark}"));
     format!("Saved {name}.{remark}")
 }

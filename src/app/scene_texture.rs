@@ -52,13 +52,16 @@ impl SceneTexture {
         }
     }
 
-    /// Draws an image that is not for the screen, to a texture that is not drawn to again.
-    pub fn draw_to_texture(&mut self, frame: &Frame, size: [u32; 2]) -> (wgpu::Device, wgpu::Queue, wgpu::Texture) {
+    /// Draws an image that is not for the screen. The screen keeps the one before, unless that has the same size.
+    pub fn draw_off_screen(&mut self, frame: &Frame, size: [u32; 2]) -> (wgpu::Device, wgpu::Queue, wgpu::Texture) {
         self.renderer.draw(&self.gpu.device, &self.gpu.queue, frame, size);
-        let image = self.last_image();
-        self.renderer.give_output_away(&self.gpu.device);
         self.displayed = None;
-        image
+        self.last_image()
+    }
+
+    /// Never draws to the texture of the last image again.
+    pub fn give_image_away(&mut self) {
+        self.renderer.give_output_away(&self.gpu.device);
     }
 
     /// Returns the callback that paints the last image into a rectangle of its size.

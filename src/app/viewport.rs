@@ -5,7 +5,7 @@ use eframe::egui_wgpu::RenderState;
 use super::scene_texture::SceneTexture;
 use crate::editor::Editor;
 use crate::frame::{Frame, evaluate};
-use crate::library::{Model, ModelId};
+use crate::library::{Library, Model, ModelId};
 use crate::state::{Background, Display, ViewerState, source_on_stage};
 
 pub(super) struct Viewport {
@@ -56,20 +56,26 @@ impl Viewport {
         fitted(size, self.scene.max_size())
     }
 
-    /// Draws the current view at another size, to a texture of its own. The viewport is redrawn afterwards.
-    pub fn draw_to_texture(
+    /// Draws a view that is not for the screen. The texture stays as it is until the next image is drawn. The viewport is redrawn
+    /// afterwards.
+    pub fn draw_off_screen(
         &mut self,
-        editor: &Editor,
+        library: &Library,
+        state: &ViewerState,
         size: [u32; 2],
         transparent: bool,
     ) -> (wgpu::Device, wgpu::Queue, wgpu::Texture) {
-        let state = editor.state();
         let background = if transparent { Background::Transparent } else { state.display.background };
         let state = ViewerState { display: Display { background, ..state.display }, ..state.clone() };
         let mut frame = Frame::default();
-        evaluate(editor.library(), &state, aspect(size), &mut frame);
+        evaluate(library, &state, aspect(size), &mut frame);
         self.needs_redraw = true;
-        self.scene.draw_to_texture(&frame, size)
+        self.scene.draw_off_screen(&frame, size)
+    }
+
+    /// Keeps the texture of the last image as it is for good.
+    pub fn give_image_away(&mut self) {
+        self.scene.give_image_away();
     }
 }
 

@@ -85,7 +85,7 @@ pub struct MeshInstance {
 }
 
 /// An encoded image, its size already read from the header and within bounds.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Image {
     /// The file's name for it, else its URI; may be empty.
     pub name: String,

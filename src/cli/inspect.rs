@@ -4,12 +4,14 @@ use std::fmt::Write;
 
 use serde_json::Value;
 
-use super::{InspectArguments, open, print_bytes, print_json};
-use crate::files::Opened;
+use super::failure::Outcome;
+use super::output::{print_bytes, print_json};
+use super::{InspectArguments, open};
+use crate::files::{Disk, Opened};
 use crate::library::inspect;
 
-pub(super) fn run(arguments: &InspectArguments) -> anyhow::Result<()> {
-    let opened = open(&arguments.input.files)?;
+pub(super) fn run(arguments: &InspectArguments, disk: &Disk) -> Outcome {
+    let opened = open(&arguments.input.files, disk)?;
     let document = inspect(&opened.model, &opened.files);
     if arguments.json {
         return print_json(&document);

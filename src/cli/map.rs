@@ -2,35 +2,46 @@
 
 use std::fmt::Write;
 
-use anyhow::{Context, bail};
 use serde_json::{Value, json};
 
-use super::motion::open_motion;
-use super::{MapArguments, open, print_bytes, print_json};
+use super::failure::{Failure, Outcome};
+use super::motion::{DOUBTFUL_REST, doubtful_rest, open_motion};
+use super::output::{is_standard_output, print_bytes, print_json, warn, write_output};
+use super::{MapArguments, open};
 use crate::anim::Skeleton;
-use crate::retarget::{Contradiction, Proposal, propose};
+use crate::files::Disk;
+use crate::retarget::{Body, Contradiction, Proposal, ResolvedMap, Retargeting, propose};
 
-pub(super) fn run(arguments: &MapArguments) -> anyhow::Result<()> {
-    let model = open(std::slice::from_ref(&arguments.model))?.model.asset;
-    let motion = open_motion(&arguments.motion)?.asset;
-    let proposal = propose(&model, &motion);
-    let map = proposal.to_map(&model, &motion).to_file(&model, &motion);
+pub(super) fn run(arguments: &MapArguments, disk: &Disk) -> Outcome {
+    let opened_model = open(std::slice::from_ref(&arguments.model), disk)?.model;
+    let opened_motion = open_motion(&arguments.motion, disk)?;
+    let (model, motion) = (&opened_model.asset, &opened_motion.asset);
+    let proposal = propose(model, motion);
+    let map = proposal.to_map(model, motion).to_file(model, motion);
     for (file, found) in [(&arguments.model, &proposal.model), (&arguments.motion, &proposal.motion)] {
         if let Some(text) = contradictions_text(&found.contradictions) {
-            eprintln!("warning: {}: {text}", file.display());
+            warn(&format!("{}: {text}", file.display()));
         }
     }
     if proposal.pairs.is_empty() {
-        bail!(
+        return Err(Failure::new(
             "no joint of the model matches the motion by name, body part or position; write a map manually \
-             (docs/joint-maps.md)"
-        );
+             (docs/joint-maps.md)",
+        ));
+    }
+    let resolved = map.resolve(model, motion)?;
+    let doubtful = doubtful_rests(opened_model.body(), opened_motion.body(), &resolved);
+    for (clip, message) in &doubtful {
+        eprintln!("warning: {}: {clip}: {message}", arguments.motion.display());
     }
     if let Some(path) = &arguments.out {
-        std::fs::write(path, map.to_json()?).with_context(|| format!("{}", path.display()))?;
+        write_output(path, map.to_json()?.as_bytes(), &["json"], disk)?;
+        if is_standard_output(path) {
+            return Ok(());
+        }
     }
     if arguments.json {
-        let mut document = serde_json::to_value(&map)?;
+        let mut document = serde_json::to_value(&map).map_err(|error| error.to_string())?;
         explain(&proposal, &mut document, &model.skeleton);
         let names = |skeleton: &Skeleton, joints: &[_]| -> Vec<String> {
             joints.iter().map(|&joint| skeleton.label(joint)).collect()
@@ -42,7 +53,10 @@ pub(super) fn run(arguments: &MapArguments) -> anyhow::Result<()> {
             let place: Vec<&str> = found.contradictions.iter().map(place).collect();
             Some(json!({ "code": "sides-contradict", "message": text, "where": place.join(", ") }))
         });
-        document["warnings"] = warnings.collect();
+        let doubtful = doubtful.iter();
+        let doubtful =
+            doubtful.map(|(clip, message)| json!({ "code": DOUBTFUL_REST, "message": message, "where": clip }));
+        document["warnings"] = warnings.chain(doubtful).collect();
         return print_json(&document);
     }
     let mut text = String::new();
@@ -54,6 +68,16 @@ pub(super) fn run(arguments: &MapArguments) -> anyhow::Result<()> {
             writeln!(text, "{target:<32} {source:<32} {slot:<24} {:>4.0} %  {}", 100.0 * pair.confidence, pair.reason);
     }
     print_bytes(text.as_bytes())
+}
+
+/// Names of the clips whose rest is not certain, each with a warning.
+fn doubtful_rests(model: Body, motion: Body, map: &ResolvedMap) -> Vec<(String, String)> {
+    let clips = motion.asset.clips.iter().enumerate();
+    let doubtful = clips.filter_map(|(index, clip)| {
+        let rest = Retargeting::new(model, motion, index, map).ok()?.motion_rest();
+        Some((clip.name().to_owned(), doubtful_rest(rest)?))
+    });
+    doubtful.collect()
 }
 
 /// Adds slot, reason and confidence to each joint of a map's document.

@@ -1,31 +1,38 @@
 //! The command line: thin wrappers around the functions that the page uses.
 
 mod convert;
+mod failure;
 mod inspect;
 mod map;
 mod motion;
+mod output;
 mod pose;
+#[cfg(feature = "render")]
+mod quiet;
 #[cfg(feature = "render")]
 mod render;
 mod retarget;
 
-use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::{Context, bail};
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::error::ErrorKind;
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use serde_json::json;
 
 use crate::anim::{ClipQuery, LoopMode, find_clip};
+use crate::asset::Warnings;
 use crate::editor::Editor;
-use crate::files::{Opened, open_paths};
+use crate::files::{Disk, Opened};
 use crate::library::Model;
 use crate::mesh::SkinningMode;
 use crate::retarget::{Feet, Keep, RestChoice, RootPart};
 use crate::state::{ClipChoice, Command, active_clip, choice_of_clip};
+use failure::{Failure, Outcome};
 use motion::MotionArguments;
+use output::{is_standard_output, print_error, print_json, warn};
 
-/// Drop in a glTF character, watch it move, and see why it bends the way it does.
+/// Drop in a glTF or FBX character, watch it move, and see why it bends the way it does.
 #[derive(Debug, Parser)]
 #[command(name = "gaitway", version, about, args_conflicts_with_subcommands = true)]
 struct Arguments {
@@ -55,7 +62,8 @@ enum Action {
 
 #[derive(Debug, Args)]
 struct Files {
-    /// A model with its parts: files, folders, or `sample:NAME`.
+    /// A model with its parts: files, folders, `-` for standard input, or `sample:NAME`. One of several models in an archive or
+    /// a folder is `ARCHIVE#!/FILE`.
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
 }
@@ -74,7 +82,7 @@ struct InspectArguments {
 struct Moment {
     /// A clip's name or index [default: the rest pose]. With --motion, clips of the motion come first, and the default is its
     /// first clip.
-    #[arg(long, value_name = "CLIP")]
+    #[arg(long, value_name = "CLIP", allow_negative_numbers = true)]
     clip: Option<String>,
     /// Seconds into the clip, clamped to its end.
     #[arg(long, value_name = "SECS", allow_negative_numbers = true)]
@@ -99,7 +107,7 @@ struct MapArguments {
     /// The motion to map from.
     #[arg(long, value_name = "FILE")]
     motion: PathBuf,
-    /// Writes the map to this file, for manual editing.
+    /// Writes the map to this file, for manual editing; `-` for standard output.
     #[arg(long, value_name = "MAP.json")]
     out: Option<PathBuf>,
     /// Prints the map as JSON, with each joint's slot, reason and confidence.
@@ -112,11 +120,11 @@ struct RetargetArguments {
     /// The model to animate.
     #[arg(long, value_name = "FILE")]
     model: PathBuf,
-    /// The file with the clip to retarget: .glb, .gltf, .vrma, .bvh.
+    /// The file with the clip to retarget: .glb, .gltf, .vrma, .fbx, .bvh.
     #[arg(long, value_name = "FILE")]
     motion: PathBuf,
     /// A clip's name or index in the motion [default: its first].
-    #[arg(long, value_name = "CLIP")]
+    #[arg(long, value_name = "CLIP", allow_negative_numbers = true)]
     clip: Option<String>,
     /// The joint map [default: as `gaitway map` proposes].
     #[arg(long, value_name = "MAP.json")]
@@ -126,7 +134,7 @@ struct RetargetArguments {
     /// Number of loops to write [default: as few as let layered clips of the model loop seamlessly].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
     loops: Option<u16>,
-    /// The file to write.
+    /// The file to write; `-` for standard output.
     #[arg(long, value_name = "OUT.glb")]
     out: PathBuf,
     /// Writes only the skeleton and the clip, without meshes.
@@ -168,7 +176,7 @@ struct RetargetOptions {
     #[arg(long, value_enum)]
     rest_motion: Option<RestArgument>,
     /// What unmapped joints do: `rest`, or play the model's own clip of this name or index.
-    #[arg(long, value_name = "rest|CLIP")]
+    #[arg(long, value_name = "rest|CLIP", allow_negative_numbers = true)]
     unmapped: Option<String>,
 }
 
@@ -202,7 +210,7 @@ arguments_of! {
 struct ConvertArguments {
     #[command(flatten)]
     input: Files,
-    /// The file to write.
+    /// The file to write; `-` for standard output.
     #[arg(long, value_name = "OUT.glb")]
     out: PathBuf,
     /// The unit of a .bvh [default: guessed from the size of its skeleton].
@@ -257,7 +265,7 @@ struct RenderArguments {
     input: Files,
     #[command(flatten)]
     motion: MotionArguments,
-    /// The image to write.
+    /// The image to write; `-` for standard output.
     #[arg(long, value_name = "PNG")]
     out: PathBuf,
     /// Width and height in pixels.
@@ -275,58 +283,98 @@ struct RenderArguments {
 
 /// Runs the command line and returns its exit status.
 pub fn main() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
+    let arguments = match Arguments::try_parse().and_then(check_usage) {
         Ok(arguments) => arguments,
-        Err(error) => {
-            // Help and version go to stdout and are not errors; everything else is incorrect usage. If printing fails, there is
-            // nowhere left to report it.
+        // Help and version go to stdout and are not errors. If printing fails, there is nowhere left to report it.
+        Err(error) if !error.use_stderr() => {
             let _ = error.print();
-            return if error.use_stderr() { ExitCode::from(2) } else { ExitCode::SUCCESS };
+            return ExitCode::SUCCESS;
+        }
+        Err(error) => {
+            let _ = error.print();
+            print_failure(&Failure::new(usage_message(&error)));
+            return ExitCode::from(2);
         }
     };
     match run(arguments) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error:#}");
+        Err(failure) => {
+            print_error(&format!("error: {}", failure.message()));
+            print_failure(&failure);
             ExitCode::from(1)
         }
     }
 }
 
-fn run(arguments: Arguments) -> anyhow::Result<()> {
+/// Prints the document of a failure if the arguments, right or wrong, have `--json`.
+fn print_failure(failure: &Failure) {
+    if std::env::args_os().any(|argument| argument == "--json") {
+        // What failed may be standard output itself.
+        let _ = print_json(&json!({ "error": failure }));
+    }
+}
+
+/// What is wrong with the arguments, in one line: the first paragraph of clap's text.
+fn usage_message(error: &clap::Error) -> String {
+    let text = error.render().to_string();
+    let first = text.trim_start_matches("error: ").split("\n\n").next().unwrap_or_default();
+    first.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// Refuses what clap cannot: two documents on standard output.
+fn check_usage(arguments: Arguments) -> Result<Arguments, clap::Error> {
+    let is_used_twice = match &arguments.action {
+        Some(Action::Map(map)) => map.json && map.out.as_deref().is_some_and(is_standard_output),
+        Some(Action::Retarget(retarget)) => retarget.json && is_standard_output(&retarget.out),
+        _ => false,
+    };
+    if is_used_twice {
+        let message = "--json and --out - both write to standard output; write one of them to a file";
+        return Err(Arguments::command().error(ErrorKind::ArgumentConflict, message));
+    }
+    Ok(arguments)
+}
+
+fn run(arguments: Arguments) -> Outcome {
+    let disk = Disk::with_standard_input();
     match arguments.action {
-        Some(Action::Inspect(arguments)) => inspect::run(&arguments),
-        Some(Action::Map(arguments)) => map::run(&arguments),
-        Some(Action::Pose(arguments)) => pose::run(&arguments),
-        Some(Action::Retarget(arguments)) => retarget::run(&arguments),
-        Some(Action::Convert(arguments)) => convert::run(&arguments),
+        Some(Action::Inspect(arguments)) => inspect::run(&arguments, &disk),
+        Some(Action::Map(arguments)) => map::run(&arguments, &disk),
+        Some(Action::Pose(arguments)) => pose::run(&arguments, &disk),
+        Some(Action::Retarget(arguments)) => retarget::run(&arguments, &disk),
+        Some(Action::Convert(arguments)) => convert::run(&arguments, &disk),
         #[cfg(feature = "render")]
-        Some(Action::Render(arguments)) => render::run(&arguments),
+        Some(Action::Render(arguments)) => render::run(&arguments, &disk),
         None => open_window(arguments.files),
     }
 }
 
 #[cfg(feature = "viewer")]
-fn open_window(files: Vec<PathBuf>) -> anyhow::Result<()> {
+fn open_window(files: Vec<PathBuf>) -> Outcome {
     Ok(crate::app::run_native(files)?)
 }
 
 #[cfg(not(feature = "viewer"))]
-fn open_window(_files: Vec<PathBuf>) -> anyhow::Result<()> {
-    bail!("this gaitway was built without the viewer; build it with the feature `viewer` to open a window")
+fn open_window(_files: Vec<PathBuf>) -> Outcome {
+    Err(Failure::new("this gaitway was built without the viewer; build it with the feature `viewer` to open a window"))
 }
 
 /// Opens a model and prints its warnings.
-fn open(files: &[PathBuf]) -> anyhow::Result<Opened> {
-    let opened = open_paths(files)?;
-    for warning in opened.model.asset.warnings.iter() {
-        eprintln!("warning: {warning}");
-    }
+fn open(files: &[PathBuf], disk: &Disk) -> Outcome<Opened> {
+    let opened = disk.open_paths(files)?;
+    print_warnings(&opened.model.source, &opened.model.asset.warnings);
     Ok(opened)
 }
 
+/// Prints the warnings of a file.
+fn print_warnings(file: &str, warnings: &Warnings) {
+    for warning in warnings.iter() {
+        warn(&format!("{file}: {warning}"));
+    }
+}
+
 /// Applies the given options and keeps the rest. With `has_motion`, retargeted clips come first.
-fn apply_moment(editor: &mut Editor, moment: &Moment, has_motion: bool) -> anyhow::Result<()> {
+fn apply_moment(editor: &mut Editor, moment: &Moment, has_motion: bool) -> Outcome {
     editor.apply(Command::SetPlaying(false));
     if let Some(model) = editor.library().active() {
         let retargeted = |name: &str| retargeted_clip(model, name).filter(|_| has_motion);
@@ -341,11 +389,11 @@ fn apply_moment(editor: &mut Editor, moment: &Moment, has_motion: bool) -> anyho
     if let (Some(name), Some(model)) = (&moment.clip, editor.library().active())
         && active_clip(model, editor.state()).is_none()
     {
-        bail!("expected the name or index of a clip, found “{name}”; {}", clips_text(model));
+        return Err(unknown_clip(name, model.clip_titles()).in_file(&model.source));
     }
     if let Some(time_secs) = moment.time {
         if !time_secs.is_finite() {
-            bail!("--time {time_secs}: expected a number of seconds");
+            return Err(Failure::expected("a number of seconds", time_secs.to_string()).at("--time"));
         }
         editor.apply(Command::SetRange(None));
         editor.apply(Command::SetLoopMode(LoopMode::Once));
@@ -368,25 +416,11 @@ fn retargeted_clip(model: &Model, name: &str) -> Option<ClipChoice> {
     Some(choice_of_clip(model, clip))
 }
 
-fn clips_text(model: &Model) -> String {
-    let titles = model.clip_titles();
-    match titles {
-        [] => "the model has no clips".to_owned(),
-        titles => format!("its clips are {}", titles.join(", ")),
-    }
-}
-
-/// Prints a document to standard output. A closed pipe is not an error.
-fn print_json(document: &serde_json::Value) -> anyhow::Result<()> {
-    let mut text = serde_json::to_vec(document).context("the document cannot be written as JSON")?;
-    text.push(b'\n');
-    print_bytes(&text)
-}
-
-fn print_bytes(text: &[u8]) -> anyhow::Result<()> {
-    match std::io::stdout().lock().write_all(text) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(error).context("standard output"),
-        _ => Ok(()),
+fn unknown_clip(name: &str, clips: &[String]) -> Failure {
+    let failure = Failure::expected("the name or index of a clip", format!("“{name}”"));
+    match clips {
+        [] => failure.with_hint("there are no clips"),
+        clips => failure.with_hint(format!("its clips are {}", clips.join(", "))),
     }
 }
 

@@ -2,19 +2,22 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Error, bail};
 use clap::Args;
+use serde_json::{Value, json};
 
+use super::failure::{Failure, Outcome};
+use super::output::warn;
+use super::{print_warnings, unknown_clip};
 use crate::editor::{Contents, Editor, Event, OpenedMap, OpenedModel};
-use crate::files::{Opened, Role, open_view, read_map, read_paths};
+use crate::files::{Disk, Opened, Role, member_of};
 use crate::library::Motion;
-use crate::retarget::JointMapFile;
-use crate::state::{ClipChoice, Command, Sources, ViewerState, from_link};
+use crate::retarget::{FoundRest, RestOrigin};
+use crate::state::{ClipChoice, Command, Sources, ViewerState, active_clip, from_link};
 
 /// A motion to retarget to the model, and its joint map.
 #[derive(Debug, Default, Args)]
 pub(super) struct MotionArguments {
-    /// A motion to retarget to the model: .glb, .gltf, .vrma, .bvh.
+    /// A motion to retarget to the model: .glb, .gltf, .vrma, .fbx, .bvh.
     #[arg(long, value_name = "FILE")]
     pub motion: Option<PathBuf>,
     /// The joint map [default: as `gaitway map` proposes].
@@ -22,55 +25,86 @@ pub(super) struct MotionArguments {
     pub map: Option<PathBuf>,
 }
 
-/// Opens one motion and prints its warnings.
-pub(super) fn open_motion(path: &Path) -> anyhow::Result<Motion> {
-    let contents = read_paths(&[path.to_owned()], Role::Motion)?;
-    let motions = contents.motions.unwrap_or_default();
-    let count = motions.len();
-    let Some(motion) = motions.into_iter().next().filter(|_| count == 1) else {
-        bail!("{}: expected one motion, found {count}", path.display());
+/// Code of the warning that [`doubtful_rest`] words.
+pub(super) const DOUBTFUL_REST: &str = "doubtful-rest";
+
+/// A warning for a rest that is not certain, with what to do about it.
+pub(super) fn doubtful_rest(rest: FoundRest) -> Option<String> {
+    let used = match rest.origin {
+        RestOrigin::Moment(secs) => format!("the clip's pose at {secs:.2} s stands in for it"),
+        RestOrigin::Mean => "the mean pose of the clip stands in for it".to_owned(),
+        RestOrigin::Map | RestOrigin::Motion | RestOrigin::Model => {
+            "no pose of the clip looks more like one".to_owned()
+        }
     };
-    print_warnings(&motion);
+    rest.is_doubtful().then(|| {
+        format!(
+            "the source's rest looks like a pose in motion, and {used}; if feet, hands or hips are turned, try another \
+             --rest-motion (node, bind, first-frame)"
+        )
+    })
+}
+
+/// Where a rest comes from, for scripts.
+pub(super) fn rest_document(rest: FoundRest) -> Value {
+    let (origin, time_secs) = match rest.origin {
+        RestOrigin::Map => ("map", None),
+        RestOrigin::Motion => ("motion", None),
+        RestOrigin::Model => ("model", None),
+        RestOrigin::Moment(secs) => ("moment", Some(secs)),
+        RestOrigin::Mean => ("mean", None),
+    };
+    json!({ "origin": origin, "time_secs": time_secs, "confidence": rest.confidence, "doubtful": rest.is_doubtful() })
+}
+
+/// Opens one motion and prints its warnings.
+pub(super) fn open_motion(path: &Path, disk: &Disk) -> Outcome<Motion> {
+    let contents = disk.read_paths(&[path.to_owned()], Role::Motion)?;
+    let mut motions = contents.motions.unwrap_or_default();
+    if let Some(member) = member_of(path) {
+        motions.retain(|motion| motion.source == member);
+    }
+    let names: Vec<&str> = motions.iter().map(|motion| motion.source.as_str()).collect();
+    let found = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+    let Ok([motion]) = <[Motion; 1]>::try_from(motions) else {
+        return Err(Failure::expected("one motion", found).in_file(path.display()));
+    };
+    print_warnings(&motion.source, &motion.asset.warnings);
     Ok(motion)
 }
 
-fn print_warnings(motion: &Motion) {
-    for warning in motion.asset.warnings.iter() {
-        eprintln!("warning: {}: {warning}", motion.source);
-    }
-}
-
-pub(super) fn open_map(path: &Path) -> anyhow::Result<JointMapFile> {
-    let bytes = std::fs::read(path).with_context(|| format!("{}", path.display()))?;
-    Ok(read_map(&path.display().to_string(), &bytes)?)
+pub(super) fn open_map(path: &Path, disk: &Disk) -> Outcome<OpenedMap> {
+    Ok(OpenedMap { name: path.display().to_string(), map: disk.read_map(path)? })
 }
 
 /// Opens model, motions and map in an editor, paused in the rest pose. The options' motion and map override those that came
 /// with the model.
-pub(super) fn open_editor(opened: Opened, arguments: &MotionArguments) -> anyhow::Result<Editor> {
+pub(super) fn open_editor(opened: Opened, arguments: &MotionArguments, disk: &Disk) -> Outcome<Editor> {
     let Opened { model, model_files, mut motions, map, .. } = opened;
-    let map = match &arguments.map {
-        Some(path) => Some(OpenedMap { name: path.display().to_string(), map: open_map(path)? }),
-        None => map,
-    };
+    let map = arguments.map.as_deref().map(|path| open_map(path, disk)).transpose()?.or(map);
     if let Some(path) = &arguments.motion {
-        motions = vec![open_motion(path)?];
+        motions = vec![open_motion(path, disk)?];
     }
     if motions.is_empty() && arguments.map.is_some() {
-        bail!("--map: expected a motion to apply the map to; add --motion FILE");
+        return Err(Failure::expected("a motion to apply the map to", "none")
+            .with_hint("add --motion FILE")
+            .at("--map"));
     }
     if let Some(OpenedMap { name, map }) = &map {
         for motion in &motions {
-            let context = || format!("{name}: doesn't fit {}", motion.source);
-            map.resolve(&model.asset, &motion.asset).with_context(context)?;
+            let problem = |problem| Failure::from(problem).in_file(name);
+            map.resolve(&model.asset, &motion.asset).map_err(problem)?;
         }
     }
     let models = vec![OpenedModel { model, files: model_files }];
     let contents = Contents { models, motions: Some(motions), map, ..Contents::default() };
     let mut editor = Editor::default();
-    editor.open(contents, None, &mut |_| Ok(())).map_err(Error::msg)?;
-    if let Some(problem) = take_problems(&mut editor).first() {
-        bail!("{problem}");
+    editor.open(contents, None, &mut |_| Ok(()))?;
+    if let Some(error) = editor.library().borrow_errors().first() {
+        return Err(error.clone().into());
+    }
+    if let Some(problem) = take_problems(&mut editor).into_iter().next() {
+        return Err(problem.into());
     }
     editor.apply(Command::SetPlaying(false));
     editor.apply(Command::SetClip(ClipChoice::RestPose));
@@ -78,31 +112,51 @@ pub(super) fn open_editor(opened: Opened, arguments: &MotionArguments) -> anyhow
 }
 
 /// Applies the view of a link to the open model, with those of its motions and maps that are files on disk. Command-line options
-/// override the link. Warns about anything unused.
-pub(super) fn apply_link(editor: &mut Editor, link: &str, arguments: &MotionArguments) -> anyhow::Result<()> {
+/// override the link; `has_clip` if that includes its clip. Warns about anything unused.
+pub(super) fn apply_link(
+    editor: &mut Editor,
+    link: &str,
+    arguments: &MotionArguments,
+    has_clip: bool,
+    disk: &Disk,
+) -> Outcome {
     let fragment = link.split_once('#').map_or(link, |(_, fragment)| fragment);
     let (view, errors) = from_link(fragment);
-    errors.iter().for_each(|error| eprintln!("warning: {error}"));
+    errors.iter().for_each(|error| warn(&error.to_string()));
     let now = editor.state().clone();
     let keeps_motions = arguments.motion.is_some() || view.sources.motion.is_empty();
     let motion = if keeps_motions { now.sources.motion } else { view.sources.motion };
     let retarget = if arguments.map.is_some() { now.retarget } else { view.retarget };
     let sources = Sources { model: now.sources.model, motion, ..view.sources };
     let held = if keeps_motions { editor.library().motions().to_vec() } else { Vec::new() };
-    let (mut contents, view) = open_view(ViewerState { sources, retarget, ..view }, false, &held)?;
-    std::mem::take(&mut contents.problems).iter().for_each(|problem| eprintln!("warning: {problem}"));
+    let (mut contents, view) = disk.open_view(ViewerState { sources, retarget, ..view }, false, &held)?;
+    std::mem::take(&mut contents.problems).iter().for_each(|problem| warn(problem));
     if keeps_motions {
         contents.motions = Some(held);
     } else {
-        contents.motions.iter().flatten().for_each(print_warnings);
+        let motions = contents.motions.iter().flatten();
+        motions.for_each(|motion| print_warnings(&motion.source, &motion.asset.warnings));
     }
-    editor.open(contents, Some(view), &mut |_| Ok(())).map_err(Error::msg)?;
+    editor.open(contents, Some(view), &mut |_| Ok(()))?;
     let problems = take_problems(editor);
     // The editor keeps an empty map to itself, since it may be about to be edited.
     let errors = editor.library().borrow_errors().iter().map(ToString::to_string);
     let unreported: Vec<String> = errors.filter(|error| !problems.contains(error)).collect();
-    problems.iter().chain(&unreported).for_each(|problem| eprintln!("warning: {problem}"));
+    problems.iter().chain(&unreported).for_each(|problem| warn(problem));
+    // A motion's first clip overrides the link's, too.
+    if !has_clip && arguments.motion.is_none() {
+        warn_of_unknown_clip(editor);
+    }
     Ok(())
+}
+
+fn warn_of_unknown_clip(editor: &Editor) {
+    if let (Some(model), ClipChoice::Named(name)) = (editor.library().active(), &editor.state().playhead.clip)
+        && active_clip(model, editor.state()).is_none()
+    {
+        let failure = unknown_clip(name, model.clip_titles()).at("clip");
+        warn(&format!("--view: {}; the rest pose is used", failure.message()));
+    }
 }
 
 /// Takes the editor's events and returns the problems among them.

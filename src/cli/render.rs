@@ -1,24 +1,29 @@
 //! `gaitway render`: renders the same image as the page, without a window.
 
-use anyhow::{Context, bail};
-
+use super::failure::{Failure, Outcome};
 use super::motion::{apply_link, open_editor};
+use super::output::{print_error, write_output};
+use super::quiet::Quiet;
 use super::{RenderArguments, apply_moment, open};
 use crate::editor::Editor;
-use crate::files::encode_png;
+use crate::files::{Disk, encode_png};
 use crate::frame::{Frame, evaluate};
 use crate::render::{Renderer, RendererOptions, headless_device, read_pixels};
 use crate::state::{CameraChoice, Command, OrbitCamera, resolve_camera, source_on_stage};
 
-pub(super) fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
-    let editor = open_requested_view(arguments)?;
+pub(super) fn run(arguments: &RenderArguments, disk: &Disk) -> Outcome {
+    let editor = open_requested_view(arguments, disk)?;
     let (library, state) = (editor.library(), editor.state());
     let [width, height] = arguments.size;
     let mut frame = Frame::default();
     evaluate(library, state, width as f32 / height as f32, &mut frame);
 
-    let (device, queue, adapter) = headless_device()?;
-    eprintln!("rendering with {} ({})", adapter.name, adapter.backend);
+    let quiet = Quiet::start();
+    let device = headless_device();
+    drop(quiet);
+    // Once more if it fails: what the driver says may explain why.
+    let (device, queue, adapter) = device.or_else(|_| headless_device())?;
+    print_error(&format!("rendering with {} ({})", adapter.name, adapter.backend));
     let mut renderer = Renderer::new(&device, &queue, RendererOptions { samples: 4 });
     let source = source_on_stage(library, state).map(|source| source.model);
     for model in library.models().iter().chain(source) {
@@ -27,20 +32,19 @@ pub(super) fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     renderer.draw(&device, &queue, &frame, arguments.size);
     let pixels = pollster::block_on(read_pixels(&device, &queue, renderer.output()));
     let Some(png) = encode_png(width, height, &pixels) else {
-        bail!("couldn't read the image back from the graphics device");
+        return Err(Failure::new("couldn't read the image back from the graphics device"));
     };
-    let out = &arguments.out;
-    std::fs::write(out, png).with_context(|| format!("{}", out.display()))
+    write_output(&arguments.out, &png, &["png"], disk)
 }
 
 /// Opens the link's view, overridden by the other options.
-fn open_requested_view(arguments: &RenderArguments) -> anyhow::Result<Editor> {
-    let mut editor = open_editor(open(&arguments.input.files)?, &arguments.motion)?;
+fn open_requested_view(arguments: &RenderArguments, disk: &Disk) -> Outcome<Editor> {
+    let mut editor = open_editor(open(&arguments.input.files, disk)?, &arguments.motion, disk)?;
     let [width, height] = arguments.size;
     let aspect = width as f32 / height as f32;
     editor.set_aspect(aspect);
     if let Some(link) = &arguments.view {
-        apply_link(&mut editor, link, &arguments.motion)?;
+        apply_link(&mut editor, link, &arguments.motion, arguments.moment.clip.is_some(), disk)?;
     }
     apply_moment(&mut editor, &arguments.moment, arguments.motion.motion.is_some())?;
     if let Some([yaw_degrees, pitch_degrees, distance]) = arguments.camera {

@@ -1,36 +1,27 @@
 //! `gaitway retarget`: appends a retargeted clip to a model, and reports how well it fits.
 
-use anyhow::{Context, bail};
 use serde_json::{Value, json};
 
-use super::motion::{open_map, open_motion};
-use super::{RetargetArguments, open, print_bytes, print_json};
+use super::failure::{Failure, Outcome};
+use super::motion::{DOUBTFUL_REST, doubtful_rest, open_map, open_motion, rest_document};
+use super::output::{is_standard_output, print_bytes, print_error, print_json, warn, write_output};
+use super::{RetargetArguments, open, unknown_clip};
 use crate::anim::{Clip, ClipQuery, JointIndex, find_clip};
 use crate::asset::Asset;
-use crate::files::read_set;
-use crate::formats::{main_files, write_model, write_motion};
-use crate::library::{Motion, map_for, warning_documents};
+use crate::editor::ModelFiles;
+use crate::files::{Disk, Opened};
+use crate::formats::{write_model, write_motion};
+use crate::library::{Model, Motion, map_for, warning_documents};
 use crate::retarget::{
-    ClipRef, Figures, JointMap, ResolvedMap, Retargeted, Retargeting, Unmapped, bake_layers, baking, layer_clips,
+    ClipRef, Figures, JointMap, MapError, ResolvedMap, Retargeted, Retargeting, Unmapped, bake_layers, baking,
+    layer_clips,
 };
 
-pub(super) fn run(arguments: &RetargetArguments) -> anyhow::Result<()> {
-    let files = std::slice::from_ref(&arguments.model);
-    let model = open(files)?.model;
-    let motion = open_motion(&arguments.motion)?;
-    let given = arguments.map.as_deref().map(open_map).transpose()?;
-    let given = given.map(|file| file.look_up_joints(&model.asset, &motion.asset)).transpose()?;
-    let (mut map, proposal) = map_for(&model.asset, &motion.asset, given.as_ref());
-    if proposal.is_some_and(|proposal| proposal.pairs.is_empty()) {
-        bail!(
-            "{}: no joint in common with {}, neither by name nor by body part; write a map manually and pass it with --map \
-             (docs/joint-maps.md)",
-            motion.source,
-            model.source
-        );
-    }
-    apply_options(&mut map, arguments);
-    let resolved = map.resolve(&model.asset, &motion.asset)?;
+pub(super) fn run(arguments: &RetargetArguments, disk: &Disk) -> Outcome {
+    let opened = open(std::slice::from_ref(&arguments.model), disk)?;
+    let model = &opened.model;
+    let motion = open_motion(&arguments.motion, disk)?;
+    let resolved = resolve_map(arguments, model, &motion, disk)?;
     let source_clip = choose_clip(&motion, arguments.clip.as_deref())?;
     let pair = Retargeting::new(model.body(), motion.body(), source_clip, &resolved)?;
     let retargeted = pair.bake()?;
@@ -40,32 +31,66 @@ pub(super) fn run(arguments: &RetargetArguments) -> anyhow::Result<()> {
         let message = "no joint above the hips is free for the extracted root motion; it stays on the hips".to_owned();
         warnings.push(("nowhere-to-extract", message));
     }
+    warnings.extend(doubtful_rest(pair.motion_rest()).map(|message| (DOUBTFUL_REST, message)));
     let clip = with_layers(&model.asset, &resolved, &retargeted, arguments.loops.map(usize::from), &mut warnings);
-
-    let bytes = if arguments.clip_only {
-        write_motion(&model.asset, &model.asset.skeleton, &[&clip])?
-    } else {
-        let set = read_set(files)?;
-        if set.is_empty() {
-            bail!(
-                "{}: this sample is generated and has no file to add a clip to; use --clip-only to write skeleton and clip",
-                model.source
-            );
-        }
-        let names = main_files(&set);
-        let [name] = names.as_slice() else {
-            bail!("{}: expected one model to write, found {}", arguments.model.display(), names.len());
-        };
-        write_model(&set, name, &model.asset.skeleton, &[&clip])?
-    };
-    std::fs::write(&arguments.out, bytes).with_context(|| format!("{}", arguments.out.display()))?;
-    for (_, message) in &warnings {
-        eprintln!("warning: {message}");
-    }
+    write(arguments, &opened, &clip, disk)?;
+    warnings.iter().for_each(|(_, message)| warn(message));
     if arguments.json {
-        return print_json(&document(&model.asset, &motion, &resolved, &retargeted, &clip, &figures, &warnings));
+        let mut document = document(&model.asset, &motion, &resolved, &retargeted, &clip, &figures, &warnings);
+        document["motion_rest"] = rest_document(pair.motion_rest());
+        return print_json(&document);
     }
-    print_bytes(text(&resolved, &retargeted, &figures).as_bytes())
+    let text = text(&resolved, &retargeted, &figures);
+    if is_standard_output(&arguments.out) {
+        print_error(text.trim_end());
+        return Ok(());
+    }
+    print_bytes(text.as_bytes())
+}
+
+/// Returns the given map or else the proposed one, with the command line's options.
+fn resolve_map(arguments: &RetargetArguments, model: &Model, motion: &Motion, disk: &Disk) -> Outcome<ResolvedMap> {
+    let given = arguments.map.as_deref().map(|path| open_map(path, disk)).transpose()?;
+    let in_map = |problem: MapError| match &given {
+        Some(opened) => Failure::from(problem).in_file(&opened.name),
+        None => problem.into(),
+    };
+    let looked_up = given.as_ref().map(|opened| opened.map.look_up_joints(&model.asset, &motion.asset));
+    let (mut map, proposal) = map_for(&model.asset, &motion.asset, looked_up.transpose().map_err(in_map)?.as_ref());
+    if proposal.is_some_and(|proposal| proposal.pairs.is_empty()) {
+        return Err(Failure::new(format!(
+            "no joint in common with {}, neither by name nor by body part; write a map manually and pass it with --map \
+             (docs/joint-maps.md)",
+            model.source
+        ))
+        .in_file(&motion.source));
+    }
+    apply_options(&mut map, arguments);
+    map.resolve(&model.asset, &motion.asset).map_err(|problem| match &arguments.options.unmapped {
+        Some(_) if problem.path() == Some("unmapped.clip") => Failure::from(problem).at("--unmapped"),
+        _ => in_map(problem),
+    })
+}
+
+fn write(arguments: &RetargetArguments, opened: &Opened, clip: &Clip, disk: &Disk) -> Outcome {
+    let Opened { model, model_files, .. } = opened;
+    let skeleton = &model.asset.skeleton;
+    if arguments.clip_only {
+        return write_output(&arguments.out, &write_motion(&model.asset, skeleton, &[clip])?, &["glb"], disk);
+    }
+    let Some(ModelFiles { set, name }) = model_files else {
+        let problem =
+            "this sample is generated and has no file to add a clip to; use --clip-only to write skeleton and clip";
+        return Err(Failure::new(problem).in_file(&model.source));
+    };
+    let bytes = write_model(set, name, skeleton, &[clip])?;
+    write_output(&arguments.out, &bytes, &model_extensions(&model.asset), disk)
+}
+
+/// The extensions that fit a model as GLB: VRM files are GLB, and stay VRM when they are written.
+pub(super) fn model_extensions(asset: &Asset) -> Vec<&'static str> {
+    let own = ["vrm", "vrma"].into_iter().filter(|extension| *extension == asset.format);
+    ["glb"].into_iter().chain(own).collect()
 }
 
 /// Applies the command line's options, which override the map.
@@ -93,19 +118,15 @@ fn apply_options(map: &mut JointMap, arguments: &RetargetArguments) {
 }
 
 /// Finds a clip by name or index; the first if none was requested.
-fn choose_clip(motion: &Motion, requested: Option<&str>) -> anyhow::Result<usize> {
+fn choose_clip(motion: &Motion, requested: Option<&str>) -> Outcome<usize> {
     let clips = &motion.asset.clips;
     if clips.is_empty() {
-        bail!("{}: expected a clip to retarget, found none", motion.source);
+        return Err(Failure::expected("a clip to retarget", "none").in_file(&motion.source));
     }
     let Some(requested) = requested else { return Ok(0) };
-    find_clip(clips.iter(), ClipQuery::NameOrIndex(requested)).with_context(|| {
-        let names: Vec<&str> = clips.iter().map(Clip::name).collect();
-        format!(
-            "{}: expected the name or index of a clip, found “{requested}”; its clips are {}",
-            motion.source,
-            names.join(", ")
-        )
+    find_clip(clips.iter(), ClipQuery::NameOrIndex(requested)).ok_or_else(|| {
+        let names: Vec<String> = clips.iter().map(|clip| clip.name().to_owned()).collect();
+        unknown_clip(requested, &names).in_file(&motion.source)
     })
 }
 
@@ -189,14 +210,16 @@ fn text(map: &ResolvedMap, retargeted: &Retargeted, figures: &Figures) -> String
     let number = |value: Option<f64>, unit: &str| value.map_or("–".to_owned(), |value| format!("{value:.3}{unit}"));
     let kept = match retargeted.resampled.len() {
         0 => "all keys are the source's".to_owned(),
+        1 => "1 joint resampled".to_owned(),
         joints => format!("{joints} joints resampled"),
     };
     format!(
         "joints            {} mapped, {} of the body parts both have\n\
          keys              {} → {}: {kept}\n\
          hips              × {}\n\
-         orientation       mean error {}, max. {}\n\
          limb directions   mean error {}, max. {}\n\
+         facing            mean error {}, max. {}\n\
+         rotations         mean error {}, max. {}\n\
          foot slide        {} (source: {})\n\
          below ground      {}\n",
         map.pairs.len(),
@@ -204,10 +227,12 @@ fn text(map: &ResolvedMap, retargeted: &Retargeted, figures: &Figures) -> String
         retargeted.keys_in,
         retargeted.keys_out,
         number(retargeted.hips_scale, ""),
-        number(figures.orientation_error_degrees_mean, "°"),
-        number(figures.orientation_error_degrees_max, "°"),
         number(figures.limb_direction_error_degrees_mean, "°"),
         number(figures.limb_direction_error_degrees_max, "°"),
+        number(figures.facing_error_degrees_mean, "°"),
+        number(figures.facing_error_degrees_max, "°"),
+        number(figures.orientation_error_degrees_mean, "°"),
+        number(figures.orientation_error_degrees_max, "°"),
         number(figures.foot_slide_metres_per_sec, " m/s"),
         number(figures.foot_slide_source_metres_per_sec, " m/s"),
         number(figures.ground_penetration_metres_max, " m"),

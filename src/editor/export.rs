@@ -134,10 +134,8 @@ impl Editor {
         let mut remark = None;
         let skeleton = written_skeleton(model, &self.state, None);
         let bytes = match self.files_of(model) {
-            Some(ModelFiles { set, name }) if !name.to_lowercase().ends_with(".bvh") => {
-                write_model(set, name, &skeleton, &clips)
-            }
-            _ => {
+            Some(ModelFiles { set, name }) => write_model(set, name, &skeleton, &clips),
+            None => {
                 remark = Some("Skeleton and clip only: this model has no file to add a clip to.".to_owned());
                 write_motion(&model.asset, &skeleton, &clips)
             }

@@ -4,39 +4,41 @@ use std::io::Cursor;
 
 use image::{ImageReader, Limits};
 
-use super::images::{MAX_BYTES, MAX_EDGE, byte_count, fitted, push_decoded};
+use super::images::{byte_count, fitted, largest_edge, push_decoded};
 use crate::asset::{Asset, Image};
+use crate::formats::limits::MAX_IMAGE_SIDE;
 use crate::library::ImageData;
+
+/// What a decoder may need besides the pixels, which may have 16 bits a channel.
+const DECODER_BYTES: u64 = 64 << 20;
 
 /// Returns one entry per image of the asset; `None` for one that cannot be decoded, for which a warning is added.
 pub fn decode_images(asset: &mut Asset) -> Vec<Option<ImageData>> {
-    let mut bytes_left = MAX_BYTES;
+    let largest_edge = largest_edge(&asset.images);
     let mut decoded = Vec::with_capacity(asset.images.len());
     for index in 0..asset.images.len() {
-        let outcome = decode(&asset.images[index], bytes_left);
-        if let Ok((data, _)) = &outcome {
-            bytes_left = bytes_left.saturating_sub(byte_count(data.size().into()));
-        }
+        let outcome = decode(&asset.images[index], largest_edge);
         push_decoded(asset, &mut decoded, outcome);
     }
     decoded
 }
 
-/// Returns the image and its size before it was scaled down to fit the device.
-fn decode(image: &Image, max_bytes: u64) -> Result<(ImageData, [u32; 2]), String> {
+/// Returns the image, scaled down to `largest_edge`, and its size before that.
+fn decode(image: &Image, largest_edge: u32) -> Result<(ImageData, [u32; 2]), String> {
     let mut reader = ImageReader::new(Cursor::new(&image.bytes)).with_guessed_format().map_err(|e| e.to_string())?;
+    // The decoder reads the header in its own way.
     let mut limits = Limits::default();
-    limits.max_image_width = Some(MAX_EDGE);
-    limits.max_image_height = Some(MAX_EDGE);
-    limits.max_alloc = Some(max_bytes);
+    limits.max_image_width = Some(MAX_IMAGE_SIDE);
+    limits.max_image_height = Some(MAX_IMAGE_SIDE);
+    limits.max_alloc = Some(2 * byte_count([image.width, image.height]) + DECODER_BYTES);
     reader.limits(limits);
     let pixels = reader.decode().map_err(|e| e.to_string())?.into_rgba8();
     let (width, height) = pixels.dimensions();
     let full_size = [width, height];
-    if width == 0 || height == 0 || byte_count(full_size) > max_bytes {
+    if width == 0 || height == 0 {
         return Err(format!("{width} × {height} pixels"));
     }
-    let pixels = match fitted(width, height) {
+    let pixels = match fitted(width, height, largest_edge) {
         Some([width, height]) => image::imageops::thumbnail(&pixels, width, height),
         None => pixels,
     };

@@ -1,22 +1,27 @@
 //! Opens files and folders on disk.
 
+use std::cell::{Cell, RefCell};
 use std::ffi::OsStr;
+use std::fs::File;
+use std::io::Read;
 use std::path::{Component, Path, PathBuf};
 use std::pin::pin;
 use std::task::{Context, Poll, Waker};
 
 use gaitway_part::Answer;
 
-use super::open::{open_items, open_read};
+use super::open::open_read;
 use super::read::{FilesRead, Item, read_items};
-use super::source::{Content, Located, MAX_FOLDER_FILES, Progress, Reading, Source};
+use super::source::{Content, Located, Progress, Reading, Source};
 use super::{OpenError, Role, SortError, decode_images, view};
 use crate::asset::{Asset, Image};
 use crate::editor::{Contents, ModelFiles, OpenedMap, OpenedModel};
-use crate::formats::{FileSet, Preparation};
+use crate::formats::limits::{MAX_FOLDER_DEPTH, MAX_FOLDER_FILES};
+use crate::formats::{FileSet, LoadError, Preparation};
 use crate::library::{ImageData, Model, Motion};
+use crate::retarget::JointMapFile;
 use crate::samples;
-use crate::state::ViewerState;
+use crate::state::{MEMBER_SEPARATOR, ViewerState};
 
 /// One model with the motions and the joint map that were opened along with it.
 #[derive(Debug)]
@@ -33,38 +38,126 @@ pub struct Opened {
     pub files: Vec<String>,
 }
 
-/// Opens exactly one model from files, folders and samples (`sample:NAME`), together with the files they refer to, motions
-/// and a joint map. A motion by itself is opened as a model.
+/// Opens exactly one model: see [`Disk::open_paths`].
 pub fn open_paths(paths: &[PathBuf]) -> Result<Opened, OpenError> {
-    finish(async { only_model(read_items(&Disk, items(paths), NO_PROGRESS).await?).await })
+    Disk::default().open_paths(paths)
 }
 
-/// Reads files, folders and samples, and the files they refer to, without parsing them.
-pub fn read_set(paths: &[PathBuf]) -> Result<FileSet, OpenError> {
-    Ok(finish(read_items(&Disk, items(paths), NO_PROGRESS))?.set)
-}
-
-/// Opens whatever the files are: models, motions, a joint map, or several of these.
+/// Opens whatever the files are: see [`Disk::read_paths`].
 pub fn read_paths(paths: &[PathBuf], role: Role) -> Result<Contents, OpenError> {
-    finish(open_items(&Disk, items(paths), role, NO_PROGRESS))
+    Disk::default().read_paths(paths, role)
 }
 
-/// Opens the files of a view that are on disk, except for its model if `with_model` is not set and for motions that are
-/// among `held`. See `view` for the details.
+/// Opens the files of a view: see [`Disk::open_view`].
 pub fn open_view(view: ViewerState, with_model: bool, held: &[Motion]) -> Result<(Contents, ViewerState), OpenError> {
-    finish(view::open_view(&Disk, view, with_model, held, NO_PROGRESS))
+    Disk::default().open_view(view, with_model, held)
+}
+
+/// The file system. It remembers which files it has read, so that none of them is overwritten.
+#[derive(Debug, Default)]
+pub struct Disk {
+    read: RefCell<Vec<PathBuf>>,
+    standard_input: Cell<StandardInput>,
+}
+
+/// What the path `-` stands for.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+enum StandardInput {
+    /// A file of that name.
+    #[default]
+    Ignored,
+    Unread,
+    Read,
+}
+
+/// The path that stands for standard input or output.
+pub const STANDARD_STREAM: &str = "-";
+/// What standard input is called in messages.
+const STANDARD_INPUT_NAME: &str = "stdin";
+
+impl Disk {
+    /// Returns a file system where the path `-` stands for standard input.
+    pub fn with_standard_input() -> Self {
+        Self { standard_input: Cell::new(StandardInput::Unread), ..Self::default() }
+    }
+
+    /// Opens exactly one model from files, folders and samples (`sample:NAME`), together with the files they refer to, motions
+    /// and a joint map. A motion by itself is opened as a model. `ARCHIVE#!/FILE` is one of several models in an archive or a
+    /// folder.
+    pub fn open_paths(&self, paths: &[PathBuf]) -> Result<Opened, OpenError> {
+        let members: Vec<&str> = paths.iter().filter_map(|path| member_of(path)).collect();
+        finish(async { only_model(self, self.read_all(paths).await?, &members).await })
+    }
+
+    /// Reads files, folders and samples, and the files they refer to, without parsing them.
+    pub fn read_set(&self, paths: &[PathBuf]) -> Result<FileSet, OpenError> {
+        Ok(finish(self.read_all(paths))?.set)
+    }
+
+    /// Opens whatever the files are: models, motions, a joint map, or several of these.
+    pub fn read_paths(&self, paths: &[PathBuf], role: Role) -> Result<Contents, OpenError> {
+        finish(async { open_read(self, self.read_all(paths).await?, role).await })
+    }
+
+    /// Opens the files of a view that are on disk, except for its model if `with_model` is not set and for motions that are
+    /// among `held`. See `view` for the details.
+    pub fn open_view(
+        &self,
+        view: ViewerState,
+        with_model: bool,
+        held: &[Motion],
+    ) -> Result<(Contents, ViewerState), OpenError> {
+        finish(view::open_view(self, view, with_model, held, NO_PROGRESS))
+    }
+
+    /// Opens a joint map.
+    pub fn read_map(&self, path: &Path) -> Result<JointMapFile, OpenError> {
+        finish(view::open_map(self, path.as_os_str(), NO_PROGRESS))
+    }
+
+    /// Returns the paths of all files that were read, including those that others refer to.
+    pub fn files_read(&self) -> Vec<PathBuf> {
+        self.read.borrow().clone()
+    }
+
+    async fn read_all(&self, paths: &[PathBuf]) -> Result<FilesRead, OpenError> {
+        let items = paths.iter().map(|path| Item::Address(path.into())).collect();
+        let read = read_items(self, items, NO_PROGRESS).await?;
+        let mut members = paths.iter().filter_map(|path| member_of(path));
+        if let Some(name) = members.find(|member| read.set.get(member).is_none()) {
+            let found = read.set.names().map(str::to_owned).collect();
+            return Err(SortError::from(LoadError::NoSuchFile { name: name.to_owned(), found }).into());
+        }
+        Ok(read)
+    }
+
+    fn read_standard_input(&self, reading: &mut Reading<'_>) -> Result<Vec<u8>, OpenError> {
+        let path = PathBuf::from(STANDARD_STREAM);
+        if self.standard_input.replace(StandardInput::Read) == StandardInput::Read {
+            return Err(OpenError::StandardInputTwice);
+        }
+        // Where there is such a path, it leads to the file that the input was redirected from.
+        self.read.borrow_mut().push("/dev/stdin".into());
+        let mut bytes = Vec::new();
+        // One byte more than is left shows that there is more.
+        let most = reading.bytes_left() + 1;
+        std::io::stdin().take(most).read_to_end(&mut bytes).map_err(|source| OpenError::Read { path, source })?;
+        reading.spend(STANDARD_INPUT_NAME, bytes.len() as u64)?;
+        Ok(bytes)
+    }
 }
 
 const NO_PROGRESS: Progress<'_> = &|_, _, _| ();
 
-fn items(paths: &[PathBuf]) -> Vec<Item> {
-    paths.iter().map(|path| Item::Address(path.into())).collect()
-}
-
-async fn only_model(read: FilesRead) -> Result<Opened, OpenError> {
+/// Opens the only model of a set, or the one that is among `members`.
+async fn only_model(disk: &Disk, read: FilesRead, members: &[&str]) -> Result<Opened, OpenError> {
     let mut files = read.names.clone();
     let has_sample = !read.samples.is_empty();
-    let Contents { models, motions, map, .. } = open_read(&Disk, read, Role::Model).await?;
+    let Contents { mut models, motions, map, .. } = open_read(disk, read, Role::Model).await?;
+    let is_named = |opened: &OpenedModel| opened.files.as_ref().is_some_and(|files| members.contains(&&*files.name));
+    if models.iter().any(is_named) {
+        models.retain(is_named);
+    }
     let several = |models: Vec<OpenedModel>| SortError::SeveralModels {
         found: models.into_iter().map(|opened| opened.model.source).collect(),
     };
@@ -85,12 +178,9 @@ fn finish<T>(future: impl Future<Output = T>) -> T {
     }
 }
 
-const MAX_FOLDER_DEPTH: usize = 16;
-
-struct Disk;
-
-enum Place {
+pub(super) enum Place {
     Path(PathBuf),
+    StandardInput,
     Embedded(&'static [u8]),
 }
 
@@ -100,9 +190,12 @@ impl Source for Disk {
     type Base = PathBuf;
     type Decoding = ();
 
-    const MAX_BYTES: u64 = 2 << 30;
-
     fn locate(&self, address: &OsStr) -> Result<Located<Place, PathBuf>, OpenError> {
+        if address == STANDARD_STREAM && self.standard_input.get() != StandardInput::Ignored {
+            let (place, name) = (Place::StandardInput, STANDARD_INPUT_NAME.to_owned());
+            let content = Content::File { place, name: name.clone(), full_name: name.clone(), origin: None };
+            return Ok(Located { content, base: PathBuf::new(), label: name });
+        }
         let path = existing(Path::new(address));
         let label = path.file_name().map_or_else(String::new, lossy);
         if path.is_dir() {
@@ -129,13 +222,20 @@ impl Source for Disk {
     async fn read(&self, place: &Place, name: &str, reading: &mut Reading<'_>) -> Result<Vec<u8>, OpenError> {
         let path = match place {
             Place::Path(path) => path,
+            Place::StandardInput => return self.read_standard_input(reading),
             Place::Embedded(bytes) => return Ok(bytes.to_vec()),
         };
         let failed = |source| OpenError::Read { path: path.clone(), source };
-        let length = std::fs::metadata(path).map_err(failed)?.len();
+        let file = File::open(path).map_err(failed)?;
+        let length = file.metadata().map_err(failed)?.len();
         (reading.progress)(name, 0, length);
-        reading.spend(name, length)?;
-        std::fs::read(path).map_err(failed)
+        reading.check(name, length)?;
+        self.read.borrow_mut().push(path.clone());
+        let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or(0));
+        // A device or a pipe has a length of 0 and may never end. One byte more than is left shows that there is more.
+        file.take(reading.bytes_left() + 1).read_to_end(&mut bytes).map_err(failed)?;
+        reading.spend(name, bytes.len() as u64)?;
+        Ok(bytes)
     }
 
     async fn read_beside(
@@ -144,14 +244,7 @@ impl Source for Disk {
         path: &str,
         reading: &mut Reading<'_>,
     ) -> Result<Option<Vec<u8>>, OpenError> {
-        let relative = Path::new(path);
-        let is_relative = relative
-            .components()
-            .all(|part| matches!(part, Component::Normal(_) | Component::ParentDir | Component::CurDir));
-        let file = base.join(relative);
-        if !is_relative || !file.is_file() {
-            return Ok(None);
-        }
+        let Some(file) = file_below(base, Path::new(path)) else { return Ok(None) };
         self.read(&Place::Path(file), path, reading).await.map(Some)
     }
 
@@ -170,6 +263,11 @@ impl Source for Disk {
     }
 }
 
+/// Returns the file that a path names inside an archive or a folder: `FILE` of `ARCHIVE#!/FILE`.
+pub fn member_of(path: &Path) -> Option<&str> {
+    Some(path.to_str()?.split_once(MEMBER_SEPARATOR)?.1)
+}
+
 /// Returns the path of the file that is meant: links mark files with `file:`, and a model of several files may go by the name
 /// they share.
 fn existing(path: &Path) -> PathBuf {
@@ -179,11 +277,31 @@ fn existing(path: &Path) -> PathBuf {
     if let Some(marked) = path.to_str().and_then(|path| path.strip_prefix("file:")) {
         return existing(Path::new(marked));
     }
+    if let Some((container, _)) = path.to_str().and_then(|path| path.split_once(MEMBER_SEPARATOR)) {
+        return existing(Path::new(container));
+    }
     let of_stem = path.file_name().map(|stem| path.with_file_name(lossy(stem) + ".obj"));
     of_stem.filter(|of_stem| of_stem.is_file()).unwrap_or_else(|| path.to_owned())
 }
 
-/// Adds all files of `folder`, named by their paths inside `root`.
+/// Returns the file at `path` if it lies in `folder` or below. `..`, an absolute path, a drive letter or a symbolic link may
+/// lead elsewhere, and a model must not read, let alone embed, what the user did not give.
+fn file_below(folder: &Path, path: &Path) -> Option<PathBuf> {
+    let is_inner = |part| matches!(part, Component::Normal(_) | Component::CurDir | Component::ParentDir);
+    let file = folder.join(path);
+    (path.components().all(is_inner) && is_below(folder, &file) && file.is_file()).then_some(file)
+}
+
+/// Whether a path that exists lies in `folder` or below, symbolic links resolved.
+fn is_below(folder: &Path, path: &Path) -> bool {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    match (folder.canonicalize(), path.canonicalize()) {
+        (Ok(folder), Ok(path)) => path.starts_with(folder),
+        _ => false,
+    }
+}
+
+/// Adds all files of `folder`, named by their paths inside `root`. Symbolic links out of it are left out.
 fn list_folder(root: &Path, folder: &Path, depth: usize, files: &mut Vec<(String, Place)>) -> Result<(), OpenError> {
     let failed = |source| OpenError::Read { path: folder.to_owned(), source };
     let entries = std::fs::read_dir(folder).map_err(failed)?;
@@ -195,7 +313,7 @@ fn list_folder(root: &Path, folder: &Path, depth: usize, files: &mut Vec<(String
             if depth < MAX_FOLDER_DEPTH && !path.is_symlink() {
                 list_folder(root, &path, depth + 1, files)?;
             }
-        } else if path.is_file() {
+        } else if path.is_file() && (!path.is_symlink() || is_below(root, &path)) {
             if files.len() >= MAX_FOLDER_FILES {
                 return Err(OpenError::TooManyFiles { path: root.to_owned(), max: MAX_FOLDER_FILES });
             }
@@ -227,8 +345,17 @@ mod tests {
         let progress = |name: &str, _, _| RefCell::borrow_mut(&names).push(name.to_owned());
         let address = Item::Address("nowhere/walk.bvh".into());
         let items = vec![Item::File("a/fox.zip".to_owned(), b"PK\x03\x04".to_vec())];
-        assert!(finish(read_items(&Disk, items, &progress)).is_err());
-        assert!(finish(read_items(&Disk, vec![address], &progress)).is_err());
+        assert!(finish(read_items(&Disk::default(), items, &progress)).is_err());
+        assert!(finish(read_items(&Disk::default(), vec![address], &progress)).is_err());
         assert_eq!(names.take(), ["fox.zip", "walk.bvh"], "what the error's title says");
+    }
+
+    /// A device has no length, and this one no end.
+    #[cfg(unix)]
+    #[test]
+    fn a_file_without_an_end_is_read_up_to_the_budget() {
+        let mut reading = Reading::with_budget(1 << 16);
+        let read = finish(Disk::default().read(&Place::Path("/dev/zero".into()), "zero", &mut reading));
+        assert!(matches!(read, Err(OpenError::TooLarge { .. })), "{read:?}");
     }
 }

@@ -19,7 +19,7 @@ pub enum OpenError {
         known: Vec<String>,
     },
     /// Together, the files exceed the memory budget.
-    #[error("{name}: more than {max} bytes in total{}", memory_hint())]
+    #[error("{name}: with it, more than {} MiB in all{}", max >> 20, memory_hint())]
     TooLarge {
         /// The file that exceeds it.
         name: String,
@@ -28,13 +28,16 @@ pub enum OpenError {
     },
 
     /// A file or folder on disk cannot be read.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {}", path.display(), describe(source))]
     Read {
         /// Its path.
         path: PathBuf,
         /// The underlying error, usually from the operating system.
         source: std::io::Error,
     },
+    /// Standard input was named a second time.
+    #[error("-: standard input can be read only once; name a file instead")]
+    StandardInputTwice,
     /// The folders that are opened together have too many files, counting subfolders.
     #[error("{}: more than {max} files out of folders; name the model's own files instead", path.display())]
     TooManyFiles {
@@ -112,6 +115,24 @@ pub enum OpenError {
     /// The files were read, but cannot be used.
     #[error(transparent)]
     Files(#[from] SortError),
+}
+
+/// Describes an error of the operating system without its number.
+pub(crate) fn describe(problem: &std::io::Error) -> String {
+    use std::io::ErrorKind;
+    let text = match problem.kind() {
+        ErrorKind::NotFound => "there is no such file",
+        ErrorKind::PermissionDenied => "permission denied",
+        ErrorKind::IsADirectory => "this is a folder, not a file",
+        ErrorKind::NotADirectory => "a part of this path is a file, not a folder",
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "there is no space left",
+        ErrorKind::ReadOnlyFilesystem => "the disk is read-only",
+        _ => {
+            let text = problem.to_string();
+            return text.rsplit_once(" (os error").map_or(text.clone(), |(text, _)| text.to_owned());
+        }
+    };
+    text.to_owned()
 }
 
 fn memory_hint() -> &'static str {

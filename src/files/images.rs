@@ -3,13 +3,9 @@
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use crate::asset::{Asset, Warning};
+use crate::asset::{Asset, Image, Warning};
+use crate::formats::limits::{MAX_IMAGE_BYTES, MAX_IMAGE_SIDE};
 use crate::library::ImageData;
-
-/// Larger images are refused by their header.
-pub(super) const MAX_EDGE: u32 = 16_384;
-/// All images of a model together.
-pub(super) const MAX_BYTES: u64 = 1 << 30;
 
 /// Longest edge in pixels that the device can hold. The page decodes its first model before the device is known, with a size
 /// that every common device supports. The command line keeps images as they are.
@@ -20,9 +16,19 @@ pub fn set_largest_image(pixels: u32) {
     DEVICE_EDGE.store(pixels.max(1), Ordering::Relaxed);
 }
 
-/// Returns the size to scale an image down to, or `None` if it fits the device.
-pub(super) fn fitted(width: u32, height: u32) -> Option<[u32; 2]> {
-    let largest = DEVICE_EDGE.load(Ordering::Relaxed);
+/// Returns the longest edge in pixels to which a model's images are scaled down: what the device can hold, halved until all of
+/// them fit into memory.
+pub(super) fn largest_edge(images: &[Image]) -> u32 {
+    let mut edge = DEVICE_EDGE.load(Ordering::Relaxed).min(MAX_IMAGE_SIDE);
+    let size = |image: &Image, edge| fitted(image.width, image.height, edge).unwrap_or([image.width, image.height]);
+    while edge > 1 && images.iter().map(|image| byte_count(size(image, edge))).sum::<u64>() > MAX_IMAGE_BYTES {
+        edge /= 2;
+    }
+    edge
+}
+
+/// Returns the size to scale an image down to, or `None` if its edges are no longer than `largest`.
+pub(super) fn fitted(width: u32, height: u32, largest: u32) -> Option<[u32; 2]> {
     let edge = width.max(height);
     let scaled = |length: u32| (u64::from(length) * u64::from(largest) / u64::from(edge.max(1))).max(1) as u32;
     (edge > largest).then(|| [scaled(width), scaled(height)])
@@ -33,13 +39,18 @@ pub(super) fn byte_count([width, height]: [u32; 2]) -> u64 {
     4 * u64::from(width) * u64::from(height)
 }
 
-/// Appends the outcome for the asset's next image, which was `full_size` before it was scaled down, and warns about it.
+/// Appends the outcome for the asset's next image, which was `full_size` before it was scaled down, and warns about it. An
+/// image without bytes was reported when the model was read.
 pub(super) fn push_decoded(
     asset: &mut Asset,
     decoded: &mut Vec<Option<ImageData>>,
     outcome: Result<(ImageData, [u32; 2]), String>,
 ) {
     let index = decoded.len();
+    if asset.images.get(index).is_some_and(|image| image.bytes.is_empty()) {
+        decoded.push(None);
+        return;
+    }
     let name = asset.images.get(index).map(|image| image.name.clone()).filter(|name| !name.is_empty());
     let name = name.unwrap_or_else(|| index.to_string());
     match outcome {
@@ -59,7 +70,9 @@ pub(super) fn push_decoded(
 
 fn scaled_down(image: &str, [full_width, full_height]: [u32; 2], [width, height]: [u32; 2]) -> Warning {
     let problem = format!(
-        "{full_width} × {full_height} pixels are more than this device can hold; scaled down to {width} × {height}"
+        "{full_width} × {full_height} pixels are more than this device can hold, or with the other images more than {} MiB; \
+         scaled down to {width} × {height}",
+        MAX_IMAGE_BYTES >> 20
     );
     Warning::Other { code: "image-made-smaller", place: image.to_owned(), problem }
 }
@@ -70,11 +83,18 @@ mod tests {
 
     #[test]
     fn scaling_down_keeps_the_aspect() {
-        set_largest_image(1000);
-        assert_eq!(fitted(1000, 1000), None);
-        assert_eq!(fitted(4000, 2000), Some([1000, 500]));
-        assert_eq!(fitted(1, 5000), Some([1, 1000]));
-        set_largest_image(u32::MAX);
-        assert_eq!(fitted(u32::MAX, 1), None);
+        assert_eq!(fitted(1000, 1000, 1000), None);
+        assert_eq!(fitted(4000, 2000, 1000), Some([1000, 500]));
+        assert_eq!(fitted(1, 5000, 1000), Some([1, 1000]));
+    }
+
+    /// Four images of 8192 × 8192 pixels would take a gigabyte.
+    #[test]
+    fn images_are_halved_until_all_fit() {
+        let image = |side| Image { width: side, height: side, ..Image::default() };
+        assert_eq!(largest_edge(&[image(8192), image(8192)]), MAX_IMAGE_SIDE);
+        assert_eq!(largest_edge(&[8192; 4].map(image)), 4096);
+        assert_eq!(largest_edge(&[image(8192), image(8192), image(64)]), 4096);
+        assert_eq!(largest_edge(&[]), MAX_IMAGE_SIDE);
     }
 }

@@ -12,6 +12,8 @@ mod open;
 mod origins;
 mod png;
 mod read;
+#[cfg(not(target_arch = "wasm32"))]
+mod save;
 mod sort;
 mod source;
 mod view;
@@ -22,11 +24,15 @@ pub use address::raw_address;
 #[cfg(not(target_arch = "wasm32"))]
 pub use decode::decode_images;
 #[cfg(not(target_arch = "wasm32"))]
-pub use disk::{Opened, open_paths, open_view, read_paths, read_set};
+pub use disk::{Disk, Opened, STANDARD_STREAM, member_of, open_paths, open_view, read_paths};
 pub use error::OpenError;
+#[cfg(not(target_arch = "wasm32"))]
+pub(crate) use error::describe;
 pub use images::set_largest_image;
 pub use png::encode_png;
 pub use read::Item;
+#[cfg(not(target_arch = "wasm32"))]
+pub use save::{SaveError, is_stream, save_file};
 pub use sort::{Role, SortError, Sorted, read_map, sort};
 pub use source::Progress;
 #[cfg(target_arch = "wasm32")]

@@ -3,9 +3,10 @@
 use std::ffi::{OsStr, OsString};
 
 use super::origins::Origins;
-use super::source::{Content, Located, MAX_FOLDER_FILES, Progress, Reading, Source};
+use super::source::{Content, Located, Progress, Reading, Source};
 use super::{OpenError, SortError};
 use crate::editor::{container_of, short_name};
+use crate::formats::limits::MAX_FOLDER_FILES;
 use crate::formats::{FileSet, missing_files, next_preparation};
 use crate::library::Model;
 use crate::samples;
@@ -33,7 +34,7 @@ pub(super) struct FilesRead {
 /// Files referring to files that refer to files.
 const MAX_ROUNDS: usize = 4;
 /// Tell the model among the items by its name.
-const MODEL_EXTENSIONS: [&str; 7] = [".glb", ".gltf", ".vrm", ".vrma", ".bvh", ".obj", ".zip"];
+const MODEL_EXTENSIONS: [&str; 8] = [".glb", ".gltf", ".vrm", ".vrma", ".fbx", ".bvh", ".obj", ".zip"];
 
 pub(super) async fn read_items<S: Source>(
     source: &S,
@@ -45,7 +46,7 @@ pub(super) async fn read_items<S: Source>(
     }
     let mut reader = Reader {
         source,
-        reading: Reading::new::<S>(progress),
+        reading: Reading::new(progress),
         files: FilesRead::default(),
         bases: Vec::new(),
         labels: Vec::new(),
@@ -56,7 +57,6 @@ pub(super) async fn read_items<S: Source>(
         reader.note_members();
     }
     reader.add_missing().await?;
-    reader.prepare().await?;
     reader.files.origins.container = container_of(model_label(&reader.labels)).to_owned();
     Ok(reader.files)
 }
@@ -144,18 +144,17 @@ impl<S: Source> Reader<'_, S> {
         Ok(())
     }
 
-    /// Reads the files that the set refers to and that lie next to the named ones. The loader reports those that are not
-    /// there, and whether that matters.
+    /// Converts what has to be plain glTF, and reads the files that the set refers to and that lie next to the named ones. The
+    /// loader reports those that are not there, and whether that matters.
     async fn add_missing(&mut self) -> Result<(), OpenError> {
-        if self.bases.is_empty() {
-            return Ok(());
-        }
         let mut tried: Vec<String> = Vec::new();
         for _ in 0..MAX_ROUNDS {
+            // First, since what it makes may refer to more files. Others can be converted only with files that are still missing.
+            self.prepare().await?;
             let missing = missing_files(&self.files.set);
             let missing: Vec<String> = missing.into_iter().filter(|path| !tried.contains(path)).collect();
-            if missing.is_empty() {
-                break;
+            if missing.is_empty() || self.bases.is_empty() {
+                return Ok(());
             }
             for path in &missing {
                 if let Some(bytes) = self.read_beside(path).await? {
@@ -164,10 +163,10 @@ impl<S: Source> Reader<'_, S> {
             }
             tried.extend(missing);
         }
-        Ok(())
+        self.prepare().await
     }
 
-    /// Converts what has to be plain glTF before it is loaded.
+    /// Converts what can be converted with the files that are there.
     async fn prepare(&mut self) -> Result<(), OpenError> {
         while let Some(preparation) = next_preparation(&self.files.set).map_err(SortError::from)? {
             let answer = self.source.convert(&preparation, &mut self.reading).await?;
@@ -195,7 +194,10 @@ impl<S: Source> Reader<'_, S> {
 
     /// Puts a file into the set and returns its name there.
     fn keep(&mut self, name: String, bytes: Vec<u8>) -> Result<String, OpenError> {
+        let (held, packed) = (self.files.set.byte_count(), bytes.len() as u64);
         let name = self.files.set.add(name, bytes).map_err(SortError::from)?;
+        let unpacked = self.files.set.byte_count().saturating_sub(held);
+        self.reading.spend(&name, unpacked.saturating_sub(packed))?;
         if !self.files.names.contains(&name) {
             self.files.names.push(name.clone());
         }

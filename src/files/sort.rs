@@ -2,6 +2,7 @@
 
 use crate::asset::{Asset, Image};
 use crate::editor::OpenedMap;
+use crate::formats::limits::MAX_MAP_BYTES;
 use crate::formats::{FileSet, LoadError, LoadOptions, load, load_noticing_images, main_files};
 use crate::library::Library;
 use crate::retarget::{JointMapFile, MapError};
@@ -36,7 +37,7 @@ pub enum SortError {
     #[error(transparent)]
     Load(#[from] LoadError),
     /// Exactly one model was expected.
-    #[error("several models at once ({}); name one of them with its own files", found.join(", "))]
+    #[error("several models at once ({}); name one of them with its own files, in an archive as ARCHIVE#!/FILE", found.join(", "))]
     SeveralModels {
         /// What the models are called.
         found: Vec<String>,
@@ -60,6 +61,16 @@ pub enum SortError {
         file: String,
         /// Why it is invalid.
         problem: MapError,
+    },
+    /// A joint map is larger than any could be.
+    #[error("{file}: expected a joint map of at most {max} bytes, found {found}")]
+    MapTooLarge {
+        /// Name of the file.
+        file: String,
+        /// [`MAX_MAP_BYTES`].
+        max: usize,
+        /// Its size.
+        found: usize,
     },
     /// At most one joint map can be opened.
     #[error("several joint maps at once ({}); open only one of them", found.join(", "))]
@@ -158,6 +169,9 @@ fn is_json(name: &str) -> bool {
 
 /// Parses a joint map; errors refer to it as `file`.
 pub fn read_map(file: &str, bytes: &[u8]) -> Result<JointMapFile, SortError> {
+    if bytes.len() > MAX_MAP_BYTES {
+        return Err(SortError::MapTooLarge { file: file.to_owned(), max: MAX_MAP_BYTES, found: bytes.len() });
+    }
     JointMapFile::from_json(&String::from_utf8_lossy(bytes))
         .map_err(|problem| SortError::Map { file: file.to_owned(), problem })
 }

@@ -7,13 +7,11 @@ use gaitway_part::Answer;
 use super::OpenError;
 use crate::asset::{Asset, Image};
 use crate::formats::Preparation;
+use crate::formats::limits::MAX_READ_BYTES;
 use crate::library::ImageData;
 
 /// Called with the name of the file being read, the bytes received so far and the total, 0 if unknown.
 pub type Progress<'a> = &'a dyn Fn(&str, u64, u64);
-
-/// Limit on files out of folders that are opened together.
-pub(super) const MAX_FOLDER_FILES: usize = 4096;
 
 /// Where files are read from. The futures of the disk are ready at once.
 pub(super) trait Source {
@@ -23,9 +21,6 @@ pub(super) trait Source {
     type Base: PartialEq;
     /// Images being decoded.
     type Decoding;
-
-    /// The most that is held in memory at once.
-    const MAX_BYTES: u64;
 
     /// Finds what an address stands for. Whether it exists may turn out only when it is read.
     fn locate(&self, address: &OsStr) -> Result<Located<Self::Place, Self::Base>, OpenError>;
@@ -81,20 +76,30 @@ pub(super) enum Content<P> {
 pub(super) struct Reading<'a> {
     pub progress: Progress<'a>,
     bytes_left: u64,
-    max_bytes: u64,
 }
 
 impl<'a> Reading<'a> {
-    pub fn new<S: Source>(progress: Progress<'a>) -> Self {
-        Self { progress, bytes_left: S::MAX_BYTES, max_bytes: S::MAX_BYTES }
+    pub fn new(progress: Progress<'a>) -> Self {
+        Self { progress, bytes_left: MAX_READ_BYTES }
     }
 
     /// Checks that this many bytes of the file `name` fit the budget.
     pub fn check(&self, name: &str, bytes: u64) -> Result<(), OpenError> {
         if bytes > self.bytes_left {
-            return Err(OpenError::TooLarge { name: name.to_owned(), max: self.max_bytes });
+            return Err(OpenError::TooLarge { name: name.to_owned(), max: MAX_READ_BYTES });
         }
         Ok(())
+    }
+
+    #[cfg(test)]
+    pub fn with_budget(bytes_left: u64) -> Self {
+        Self { progress: &|_, _, _| (), bytes_left }
+    }
+
+    /// The rest of the budget.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn bytes_left(&self) -> u64 {
+        self.bytes_left
     }
 
     /// Deducts bytes of the file `name` from the budget.

@@ -93,10 +93,14 @@ async fn open_models<S: Source>(
     Ok(contents)
 }
 
-async fn open_map<S: Source>(source: &S, address: &OsStr, progress: Progress<'_>) -> Result<JointMapFile, OpenError> {
+pub(super) async fn open_map<S: Source>(
+    source: &S,
+    address: &OsStr,
+    progress: Progress<'_>,
+) -> Result<JointMapFile, OpenError> {
     match source.locate(address)?.content {
         Content::File { place, name, .. } => {
-            let bytes = source.read(&place, &name, &mut Reading::new::<S>(progress)).await?;
+            let bytes = source.read(&place, &name, &mut Reading::new(progress)).await?;
             Ok(read_map(&name, &bytes)?)
         }
         Content::Folder(_) => Err(OpenError::Read { path: address.into(), source: ErrorKind::IsADirectory.into() }),

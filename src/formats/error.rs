@@ -1,6 +1,6 @@
 //! Why a load failed: the file, the place in it, what was expected, what was found and, if known, what to do.
 
-use crate::asset::AssetError;
+use crate::asset::{AssetError, Warning, Warnings};
 use crate::mesh::GeometryError;
 
 /// Everything that makes a set of files unreadable. The user sees these texts.
@@ -8,7 +8,7 @@ use crate::mesh::GeometryError;
 pub enum LoadError {
     /// No file of the set is a model or motion.
     #[error(
-        "no model among the files ({}); Gaitway reads .glb, .gltf with its files, .vrm, .vrma, .bvh, .obj (with .skel and .attach), a .zip of these, or a joint map (.json)",
+        "no model among the files ({}); Gaitway reads .glb, .gltf with its files, .vrm, .vrma, .fbx, .bvh, .obj (with .skel and .attach), a .zip of these, or a joint map (.json)",
         listed(found)
     )]
     NoModel {
@@ -41,7 +41,7 @@ pub enum LoadError {
     },
     /// The glTF has no version, has one other than 2.x, or has a `minVersion` other than 2.0.
     #[error(
-        "{file}: this is glTF {found}; Gaitway reads glTF 2.0. Convert it, for example by importing and exporting it again"
+        "{file}: this is glTF {found}; Gaitway reads glTF 2.0; convert it, for example by importing and exporting it again"
     )]
     UnsupportedVersion {
         /// Name of the file in the set.
@@ -59,16 +59,14 @@ pub enum LoadError {
         /// How to export or convert the file without the extension.
         advice: &'static str,
     },
-    /// The JSON is malformed or does not have the structure of a glTF.
-    #[error("{file}: not valid JSON for glTF, line {line}, column {column}: {problem}")]
+    /// The text is not JSON.
+    #[error("{file}: not valid JSON, {place}: {problem}")]
     Json {
         /// Name of the file in the set.
         file: String,
-        /// Line in the JSON text, from 1.
-        line: usize,
-        /// Byte in the line, from 1.
-        column: usize,
-        /// The JSON parser's message, after the path of the value if it is known.
+        /// Line and column, both from 1, or the JSON path in a GLB, whose text nobody sees.
+        place: String,
+        /// The JSON parser's message in plain words.
         problem: String,
     },
     /// Something else in the file is malformed, cut short or inconsistent.
@@ -84,7 +82,7 @@ pub enum LoadError {
         found: String,
     },
     /// A file that the model needs is not in the set.
-    #[error("{file}: {place} is “{uri}”, which is not among the files; drop it together with the model")]
+    #[error("{file}: {place} is “{uri}”, which {}; drop it together with the model", where_missing(uri))]
     MissingFile {
         /// Name of the file that needs it.
         file: String,
@@ -111,6 +109,15 @@ pub enum LoadError {
     },
 }
 
+/// Files above the model's folder are not looked for, so they may well exist.
+fn where_missing(uri: &str) -> &'static str {
+    if uri.split(['/', '\\']).any(|part| part == "..") || uri.starts_with('/') {
+        "may lie outside the model's folder and is not among the files"
+    } else {
+        "is not among the files"
+    }
+}
+
 fn listed(names: &[String]) -> String {
     const MAX_NAMES: usize = 8;
     if names.is_empty() {
@@ -126,8 +133,21 @@ fn listed(names: &[String]) -> String {
 /// An error at one place of a file. The loader adds the file name.
 #[derive(Debug)]
 pub(super) enum Problem {
-    Invalid { place: String, expected: String, found: String },
-    MissingFile { place: String, uri: String },
+    Invalid {
+        place: String,
+        expected: String,
+        found: String,
+    },
+    /// One of the [limits](super::limits) on what is read.
+    Limit {
+        place: String,
+        expected: String,
+        found: usize,
+    },
+    MissingFile {
+        place: String,
+        uri: String,
+    },
 }
 
 impl Problem {
@@ -135,10 +155,21 @@ impl Problem {
         Self::Invalid { place: place.into(), expected: expected.into(), found: found.to_string() }
     }
 
+    /// Reports a problem with a part that is left out, unless it concerns the whole model. `outcome` says what happens instead.
+    pub fn leave_out(self, code: &'static str, outcome: &str, warnings: &mut Warnings) -> Result<(), Self> {
+        let Self::Invalid { place, expected, found } = self else { return Err(self) };
+        let problem = format!("expected {expected}, found {found}; {outcome}");
+        warnings.push(Warning::Other { code, place, problem });
+        Ok(())
+    }
+
     pub fn in_file(self, file: &str) -> LoadError {
         let file = file.to_owned();
         match self {
             Self::Invalid { place, expected, found } => LoadError::Invalid { file, place, expected, found },
+            Self::Limit { place, expected, found } => {
+                LoadError::Invalid { file, place, expected, found: found.to_string() }
+            }
             Self::MissingFile { place, uri } => LoadError::MissingFile { file, place, uri },
         }
     }

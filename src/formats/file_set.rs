@@ -4,16 +4,15 @@ use std::io::{Cursor, Read};
 use std::sync::Arc;
 
 use super::LoadError;
+use super::limits::{MAX_ARCHIVE_FILES, MAX_READ_BYTES};
 
-const MAX_ARCHIVE_ENTRIES: usize = 10_000;
-/// All archives of a set together.
-const MAX_UNPACKED_BYTES: u64 = 1 << 30;
+/// Deflate makes nothing smaller than this.
+const MAX_COMPRESSION: u64 = 1032;
 
 /// Files by path, with `/` between folders, in the order they were added.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct FileSet {
     files: Vec<(String, Arc<[u8]>)>,
-    unpacked_bytes: u64,
     conversions: Vec<(String, Conversion)>,
 }
 
@@ -92,6 +91,11 @@ impl FileSet {
         self.files.is_empty()
     }
 
+    /// Returns the size of all files together.
+    pub fn byte_count(&self) -> u64 {
+        self.files.iter().map(|(_, bytes)| bytes.len() as u64).sum()
+    }
+
     /// Returns the normalized names and contents, in the order the files were added.
     pub fn iter(&self) -> impl Iterator<Item = (&str, &Arc<[u8]>)> {
         self.files.iter().map(|(name, bytes)| (name.as_str(), bytes))
@@ -120,31 +124,32 @@ impl FileSet {
             error("not a readable zip: its list of files is missing or damaged (cut short?)".to_owned())
         })?;
         let entries = archive.len();
-        if entries > MAX_ARCHIVE_ENTRIES {
-            return Err(error(format!("{entries} files in the archive; at most {MAX_ARCHIVE_ENTRIES} are read")));
+        if entries > MAX_ARCHIVE_FILES {
+            return Err(error(format!("{entries} files in the archive; at most {MAX_ARCHIVE_FILES} are read")));
         }
+        // The archive is in memory together with what is unpacked from it.
+        let mut bytes_left = MAX_READ_BYTES.saturating_sub(self.byte_count() + bytes.len() as u64);
         for index in 0..entries {
             let entry = archive.by_index(index).map_err(|problem| error(format!("entry {index}: {problem}")))?;
             let name = entry.name().map_err(|problem| error(format!("entry {index}: {problem}")))?.into_owned();
             if entry.is_dir() || name.starts_with("__MACOSX/") || bare_name(&name).starts_with("._") {
                 continue;
             }
-            let too_large =
-                || error(format!("unpacks to more than {} MiB, which is not read", MAX_UNPACKED_BYTES >> 20));
+            let too_large = || {
+                let max = MAX_READ_BYTES >> 20;
+                error(format!("packed and unpacked, more than {max} MiB in all, the most that is read at once"))
+            };
             // Trusting an oversized header saves work; one that understates the size is caught while unpacking.
-            let bytes_left = MAX_UNPACKED_BYTES.saturating_sub(self.unpacked_bytes);
             if entry.size() > bytes_left {
                 return Err(too_large());
             }
-            let mut content = Vec::new();
+            let likely = entry.size().min(entry.compressed_size().saturating_mul(MAX_COMPRESSION));
+            let mut content = Vec::with_capacity(usize::try_from(likely).unwrap_or(0));
             entry
                 .take(bytes_left + 1)
                 .read_to_end(&mut content)
                 .map_err(|problem| error(format!("“{name}” cannot be unpacked: {problem}")))?;
-            if content.len() as u64 > bytes_left {
-                return Err(too_large());
-            }
-            self.unpacked_bytes += content.len() as u64;
+            bytes_left = bytes_left.checked_sub(content.len() as u64).ok_or_else(too_large)?;
             self.insert(name, content);
         }
         Ok(())

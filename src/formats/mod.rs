@@ -26,6 +26,7 @@ mod bvh;
 mod error;
 mod file_set;
 mod gltf;
+pub mod limits;
 mod lines;
 mod obj;
 mod prepare;
@@ -107,23 +108,25 @@ pub fn load_noticing_images(
 
 /// Writes the set's model `name` (one of its [`main_files`]) as a self-contained GLB, with `clips` added after its own. The
 /// clips are for `skeleton`, which was loaded from the same file. The contents of a glTF are preserved to the letter: its
-/// first buffer is the beginning of the new one, and its JSON only grows. An .obj takes joint names and rest pose from
+/// first buffer is the beginning of the new one, and its JSON only grows. Other formats take joint names and rest pose from
 /// `skeleton`.
 pub fn write_model(files: &FileSet, name: &str, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
-    if let Some(bytes) = files.get(name).filter(|bytes| is_obj(name, bytes)) {
-        return write_obj(files, name, bytes, skeleton, clips);
+    let bytes = named(files, name)?;
+    if !is_converted(name, bytes) {
+        return gltf::write_model(files, name, skeleton, clips);
     }
-    gltf::write_model(files, name, skeleton, clips)
+    let asset = read(files, name, bytes, &LoadOptions::default(), &mut |_| ())?;
+    check_skeleton(name, &asset, skeleton)?;
+    let all: Vec<&Clip> = asset.clips.iter().chain(clips.iter().copied()).collect();
+    gltf::write_asset(&asset, skeleton, &all)
 }
 
-fn write_obj(
-    files: &FileSet,
-    name: &str,
-    bytes: &[u8],
-    skeleton: &Skeleton,
-    clips: &[&Clip],
-) -> Result<Vec<u8>, WriteError> {
-    let asset = obj::load(files, name, bytes, &mut |_| ())?;
+/// Whether a model of this format is written from the asset: it has no JSON that could be kept.
+fn is_converted(name: &str, bytes: &[u8]) -> bool {
+    is_bvh(name, bytes) || is_obj(name, bytes)
+}
+
+fn check_skeleton(name: &str, asset: &Asset, skeleton: &Skeleton) -> Result<(), WriteError> {
     let (nodes, joints) = (asset.skeleton.len(), skeleton.len());
     if nodes != joints {
         return Err(WriteError::OtherSkeleton { file: name.to_owned(), nodes, joints });
@@ -133,7 +136,7 @@ fn write_obj(
         let joint = skeleton.label(joint);
         return Err(WriteError::OtherParent { file: name.to_owned(), joint });
     }
-    gltf::write_asset(&asset, skeleton, clips)
+    Ok(())
 }
 
 /// Writes a GLB with nothing but the skeleton of an asset and `clips` for it. `skeleton` has the asset's joints; names and rest
@@ -145,13 +148,15 @@ pub fn write_motion(asset: &Asset, skeleton: &Skeleton, clips: &[&Clip]) -> Resu
 /// Converts the only model or motion of a set to GLB: a glTF with everything in it, a .bvh as skeleton and clip, an .obj in its
 /// rest pose.
 pub fn convert(files: &FileSet, options: &LoadOptions) -> Result<Vec<u8>, WriteError> {
-    let (name, bytes) = find_model(files)?;
+    convert_named(files, find_model(files)?.0, options)
+}
+
+/// Like [`convert`], for one of the set's [`main_files`].
+pub fn convert_named(files: &FileSet, name: &str, options: &LoadOptions) -> Result<Vec<u8>, WriteError> {
+    let bytes = named(files, name)?;
     let asset = read(files, name, bytes, options, &mut |_| ())?;
-    if is_bvh(name, bytes) {
-        return gltf::write_motion(&asset, &asset.skeleton, &asset.clips.iter().collect::<Vec<_>>());
-    }
-    if is_obj(name, bytes) {
-        return gltf::write_asset(&asset, &asset.skeleton, &[]);
+    if is_converted(name, bytes) {
+        return gltf::write_asset(&asset, &asset.skeleton, &asset.clips.iter().collect::<Vec<_>>());
     }
     gltf::write_model(files, name, &asset.skeleton, &[])
 }
@@ -188,6 +193,10 @@ fn find_model(files: &FileSet) -> Result<(&str, &Arc<[u8]>), LoadError> {
                 if obj::is_companion(name) {
                     return Some(obj::without_obj(name));
                 }
+                if is_fbx(name, bytes) {
+                    let problem = "an FBX file is loaded after `prepare` has converted it".to_owned();
+                    return Some(LoadError::Conversion { file: name.to_owned(), problem });
+                }
                 let format = foreign_format(name, bytes)?;
                 Some(LoadError::UnsupportedFormat { file: name.to_owned(), format })
             })
@@ -223,15 +232,16 @@ fn is_gltf(name: &str, bytes: &[u8]) -> bool {
         && bytes.windows(7).take(4096).any(|window| window == b"\"asset\"")
 }
 
+/// Until it is converted.
+fn is_fbx(name: &str, bytes: &[u8]) -> bool {
+    bytes.starts_with(b"Kaydara FBX") || (extension(name) == "fbx" && !bytes.starts_with(b"glTF"))
+}
+
 fn foreign_format(name: &str, bytes: &[u8]) -> Option<&'static str> {
-    if bytes.starts_with(b"Kaydara FBX") {
-        return Some("FBX");
-    }
     if bytes.starts_with(b"xof ") {
         return Some("DirectX .x");
     }
     match extension(name).as_str() {
-        "fbx" => Some("FBX"),
         "x" => Some("DirectX .x"),
         "dae" => Some("COLLADA"),
         "blend" => Some("Blender's own"),

@@ -3,14 +3,17 @@
 
 use gaitway_part::Answer;
 
+use super::file_set::Conversion;
 use super::gltf::{draco, meshopt};
-use super::{FileSet, LoadError, is_bvh, is_gltf};
+use super::{FileSet, LoadError, is_bvh, is_fbx, is_gltf};
 
 /// A decoder that few files need. Natively it is linked like any crate; the page downloads it when a file needs it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
     /// `KHR_draco_mesh_compression`.
     Draco,
+    /// Models and motions of Autodesk's format.
+    Fbx,
     /// `EXT_meshopt_compression` and `KHR_meshopt_compression`.
     Meshopt,
 }
@@ -20,6 +23,7 @@ impl Part {
     pub fn name(self) -> &'static str {
         match self {
             Self::Draco => "draco",
+            Self::Fbx => "fbx",
             Self::Meshopt => "meshopt",
         }
     }
@@ -28,6 +32,7 @@ impl Part {
     pub fn title(self) -> &'static str {
         match self {
             Self::Draco => "Draco decoder",
+            Self::Fbx => "FBX reader",
             Self::Meshopt => "meshopt decoder",
         }
     }
@@ -37,6 +42,7 @@ impl Part {
     pub fn run(self, input: &[u8]) -> Answer {
         let convert = match self {
             Self::Draco => gaitway_draco::decode,
+            Self::Fbx => gaitway_fbx::convert,
             Self::Meshopt => gaitway_meshopt::decode,
         };
         let stopped = |_| Err(format!("the {} stopped unexpectedly; the file may be damaged", self.title()));
@@ -55,11 +61,15 @@ pub struct Preparation {
     step: Step,
 }
 
-/// What to do with the decoder's answer.
+/// What the part's output is.
 #[derive(Debug)]
 enum Step {
-    Draco(draco::Decoding),
-    Meshopt(meshopt::Decoding),
+    /// A GLB in the place of a file of this format.
+    Whole(&'static str),
+    /// Meshes of a glTF.
+    Meshes(draco::Decoding),
+    /// Buffer views of a glTF.
+    Views(meshopt::Decoding),
 }
 
 impl Preparation {
@@ -77,8 +87,14 @@ impl Preparation {
         let output = answer.map_err(failed)?;
         let Some(bytes) = files.get(&self.file).cloned() else { return Ok(()) };
         match self.step {
-            Step::Draco(decoding) => decoding.finish(files, &self.file, &bytes, &output.bytes),
-            Step::Meshopt(decoding) => decoding.finish(files, &self.file, &bytes, &output.bytes),
+            Step::Whole(format) => {
+                let conversion =
+                    Conversion { format: Some(format), warnings: output.warnings, ..Conversion::default() };
+                files.convert(&self.file, output.bytes, conversion);
+                Ok(())
+            }
+            Step::Meshes(decoding) => decoding.finish(files, &self.file, &bytes, &output.bytes),
+            Step::Views(decoding) => decoding.finish(files, &self.file, &bytes, &output.bytes),
         }
     }
 }
@@ -86,15 +102,21 @@ impl Preparation {
 /// Returns a conversion that can be done with the files that are in the set. `None` once there is none left.
 ///
 /// # Errors
-/// If a file says wrongly what is to be converted.
+/// If a file describes its compressed data wrongly.
 pub fn next_preparation(files: &FileSet) -> Result<Option<Preparation>, LoadError> {
-    for (name, bytes) in files.iter().filter(|(name, bytes)| is_gltf(name, bytes) && !is_bvh(name, bytes)) {
+    for (name, bytes) in files.iter() {
         let preparation = |part, input, step| Ok(Some(Preparation { part, input, file: name.to_owned(), step }));
+        if is_fbx(name, bytes) {
+            return preparation(Part::Fbx, bytes.to_vec(), Step::Whole("fbx"));
+        }
+        if !is_gltf(name, bytes) || is_bvh(name, bytes) {
+            continue;
+        }
         if let Some((decoding, input)) = meshopt::start(files, name, bytes)? {
-            return preparation(Part::Meshopt, input, Step::Meshopt(decoding));
+            return preparation(Part::Meshopt, input, Step::Views(decoding));
         }
         if let Some((decoding, input)) = draco::start(files, name, bytes)? {
-            return preparation(Part::Draco, input, Step::Draco(decoding));
+            return preparation(Part::Draco, input, Step::Meshes(decoding));
         }
     }
     Ok(None)

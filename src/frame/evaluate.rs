@@ -60,8 +60,7 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
     let Some(model) = library.active() else {
         frame.characters.clear();
         frame.clip = None;
-        frame.scratch.sampler.pose.locals.clear();
-        frame.scratch.sampler.pose.morph_weights.clear();
+        frame.scratch.sampler.pose = Pose::default();
         frame.bounds = Bounds::EMPTY;
         view::place_camera(library, state, aspect, Vec3::ZERO, frame);
         return;
@@ -95,7 +94,7 @@ fn write_characters(model: &Model, state: &ViewerState, source: Option<&SourceOn
         character.skinning = skinning;
         character.pane = state.inspect.split.then_some(pane as u32);
         character.morph_weights.clone_from(&pose.morph_weights);
-        model_from_joint(skeleton, &pose.locals, world_from_model(state.edits.up), &mut character.world_from_joint);
+        model_from_joint(skeleton, pose, world_from_model(state.edits.up), &mut character.world_from_joint);
         write_draws(model, chosen, &scratch.model_scene.visible, character);
     }
     if let (Some(source), Some(character)) = (source, characters.last_mut()) {
@@ -116,8 +115,8 @@ fn write_source(source: &SourceOnStage, time_secs: f32, scratch: &mut Scratch, c
     character.skinning = SkinningMode::Linear;
     character.pane = None;
     character.morph_weights.clone_from(&scratch.source_pose.morph_weights);
-    let locals = &scratch.source_pose.locals;
-    model_from_joint(skeleton, locals, source.world_from_source, &mut character.world_from_joint);
+    let pose = &scratch.source_pose;
+    model_from_joint(skeleton, pose, source.world_from_source, &mut character.world_from_joint);
     write_draws(source.model, None, &scratch.source_scene.visible, character);
 }
 
@@ -174,8 +173,8 @@ pub fn travelled(library: &Library, state: &ViewerState) -> Vec3 {
     let Some(model) = library.active() else { return Vec3::ZERO };
     let (mut scratch, mut world_from_joint) = (Scratch::default(), Vec::new());
     scratch.sampler.sample(model, state);
-    let locals = &scratch.sampler.pose.locals;
-    model_from_joint(&model.asset.skeleton, locals, world_from_model(state.edits.up), &mut world_from_joint);
+    let pose = &scratch.sampler.pose;
+    model_from_joint(&model.asset.skeleton, pose, world_from_model(state.edits.up), &mut world_from_joint);
     travel(model, active_clip(model, state), state, &mut scratch, &world_from_joint)
 }
 
@@ -193,7 +192,7 @@ fn travel(
         clip.sample(skeleton, 0.0, &mut scratch.first_cursor, &mut scratch.first_pose);
     }
     let world_from_model = world_from_model(state.edits.up);
-    model_from_joint(skeleton, &scratch.first_pose.locals, world_from_model, &mut scratch.world_from_first);
+    model_from_joint(skeleton, &scratch.first_pose, world_from_model, &mut scratch.world_from_first);
     let at = |world: &[Affine3A]| Vec3::from(world[root.get()].translation);
     let travel = (at(world_from_joint) - at(&scratch.world_from_first)) * Vec3::new(1.0, 0.0, 1.0);
     if travel.is_finite() { travel } else { Vec3::ZERO }

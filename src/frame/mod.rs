@@ -23,7 +23,7 @@ pub use evaluate::{evaluate, travelled};
 pub use formula::{FormulaTerm, JointMatrices, VertexFormula, joint_matrices, vertex_formula};
 pub use pick::{PickedJoint, pick_joint};
 pub use pick_vertex::pick_vertex;
-pub use pose_document::pose_document;
+pub use pose_document::{NodePose, PoseDocument, pose_document};
 
 /// Input of the renderer. Reused between frames, so that evaluation stops allocating once the buffers have grown.
 #[derive(Debug, Default)]

@@ -8,8 +8,8 @@ use crate::anim::{Clip, JointIndex};
 use crate::asset::Asset;
 use crate::formats::file_stem;
 use crate::retarget::{
-    Body, Figures, FootTrack, JointMap, LayerClip, MapError, Proposal, ResolvedMap, RetargetError, Retargeting,
-    StagePair, layer_clips, propose,
+    Body, Figures, FootTrack, FoundRest, JointMap, LayerClip, MapError, Proposal, ResolvedMap, RetargetError,
+    Retargeting, StagePair, layer_clips, propose,
 };
 
 /// A clip of a motion retargeted to a model; plays like one of the model's own.
@@ -31,6 +31,8 @@ pub struct BorrowedClip {
     pub frames_per_sec: f64,
     /// Places the source in this model's space.
     pub model_from_source: Affine3A,
+    /// Which pose the motion is measured from, and how sure that is.
+    pub motion_rest: FoundRest,
     /// Every pair of the joint map, to compare the model with the source beside it.
     pub pairs: Vec<StagePair>,
     map: Arc<ResolvedMap>,
@@ -113,6 +115,7 @@ pub(super) fn borrow(
                 .get(source_clip)
                 .map_or(Clip::DEFAULT_FRAMES_PER_SEC, Clip::frames_per_sec),
             model_from_source: pair.model_from_source(),
+            motion_rest: pair.motion_rest(),
             pairs: pair.stage_pairs(),
             map: shared.clone(),
             measured: OnceLock::new(),

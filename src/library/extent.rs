@@ -210,7 +210,7 @@ fn joint_bounds(asset: &Asset, rig: &Rig, world_from_joint: &[Affine3A], visible
 /// Bounds of every skinned vertex of the default scene at rest.
 fn exact_rest_bounds(asset: &Asset, rig: &Rig) -> Bounds {
     let mut world_from_joint = Vec::with_capacity(asset.skeleton.len());
-    model_from_joint(&asset.skeleton, &asset.skeleton.rest().locals, Affine3A::IDENTITY, &mut world_from_joint);
+    model_from_joint(&asset.skeleton, asset.skeleton.rest(), Affine3A::IDENTITY, &mut world_from_joint);
     let visible = asset.joints_in_scene(asset.default_scene);
     let mut bounds = Bounds::EMPTY;
     let mut palette = Vec::new();

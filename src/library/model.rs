@@ -231,7 +231,7 @@ impl Model {
             if key.scene == self.asset.default_scene {
                 return self.rest_bounds();
             }
-            model_from_joint(skeleton, &pose.locals, Affine3A::IDENTITY, &mut world_from_joint);
+            model_from_joint(skeleton, &pose, Affine3A::IDENTITY, &mut world_from_joint);
             return self.pose_bounds(&world_from_joint, &pose.morph_weights, &visible);
         };
         let root = key.clip.filter(|_| key.in_place).and_then(|clip| self.root_of_clip(clip));
@@ -242,7 +242,7 @@ impl Model {
             let time_secs = clip.duration_secs() * sample as f32 / Self::SWEEP_SAMPLES as f32;
             pose.copy_from(skeleton.rest());
             clip.sample(skeleton, time_secs, &mut cursor, &mut pose);
-            model_from_joint(skeleton, &pose.locals, Affine3A::IDENTITY, &mut world_from_joint);
+            model_from_joint(skeleton, &pose, Affine3A::IDENTITY, &mut world_from_joint);
             let mut at_time = self.pose_bounds(&world_from_joint, &pose.morph_weights, &visible);
             if let Some(root) = root {
                 let position = Vec3::from(world_from_joint[root.get()].translation);

@@ -68,6 +68,9 @@ pub async fn read_pixels(device: &wgpu::Device, queue: &wgpu::Queue, texture: &w
     for row in mapped.chunks_exact(padded_row_bytes as usize) {
         pixels.extend_from_slice(&row[..row_bytes as usize]);
     }
+    drop(mapped);
+    // A page would keep it until garbage is collected, which may be too late for the frames of a video.
+    buffer.destroy();
     for pixel in pixels.chunks_exact_mut(4) {
         let alpha = u32::from(pixel[3]);
         if alpha != 0 && alpha != 255 {

@@ -38,6 +38,7 @@ mod recognize;
 mod retargeting;
 mod transfer;
 
+pub use align::rest::{FoundRest, RestOrigin};
 pub use bake::{RetargetError, Retargeted};
 pub use map::{
     ClipRef, Feet, JointMap, JointMapFile, Keep, Layer, MapEntry, MapError, MutedChannel, MutedProperty, Pair,

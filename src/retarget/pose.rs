@@ -96,7 +96,7 @@ pub fn node_locals(skeleton: &Skeleton) -> Vec<Local> {
 }
 
 pub fn locals_of(pose: &Pose) -> Vec<Local> {
-    pose.locals.iter().map(Local::from).collect()
+    pose.locals().map(|local| Local::from(&local)).collect()
 }
 
 /// Reused between samples of one clip.

@@ -2,7 +2,7 @@
 
 use glam::Affine3A;
 
-use super::align::rest::{source_rest, target_rest};
+use super::align::rest::{FoundRest, RestInput, SourceRest, source_rest, target_rest};
 use super::align::{Alignment, Rest, align};
 use super::bake::{RetargetError, Retargeted, bake};
 use super::keys::tracks::SourceTracks;
@@ -31,6 +31,7 @@ pub struct Retargeting<'a> {
     tracks: SourceTracks<'a>,
     alignment: Alignment,
     hips: Option<Hips>,
+    rest: FoundRest,
 }
 
 impl<'a> Retargeting<'a> {
@@ -49,27 +50,35 @@ impl<'a> Retargeting<'a> {
             return Err(RetargetError::NoPairs);
         }
         let target_nodes = node_locals(&model.asset.skeleton);
-        let source_rest = Rest {
-            skeleton: &source.asset.skeleton,
-            slots: source.slots,
-            locals: source_rest(source.asset, source.slots, source_clip, map.rest.motion),
-        };
-        let target_rest = Rest {
-            skeleton: &model.asset.skeleton,
-            slots: model.slots,
-            locals: target_rest(model.asset, &target_nodes, map.rest.model),
-        };
-        let alignment = align(map, &source_rest, &target_rest, &target_nodes);
-        let tracks = SourceTracks::new(&source.asset.skeleton, source_clip, &map.muted);
+        let target_skeleton = &model.asset.skeleton;
+        let target_locals = target_rest(model.asset, &target_nodes, map.rest.model);
+        let SourceRest { locals, unmoved, target_from_source, is_in_place, found } = source_rest(RestInput {
+            source: source.asset,
+            source_slots: source.slots,
+            clip: source_clip,
+            target: target_skeleton,
+            target_rest: &target_locals,
+            map,
+        });
+        let source_rest = Rest { skeleton: &source.asset.skeleton, slots: source.slots, locals };
+        let target_rest = Rest { skeleton: target_skeleton, slots: model.slots, locals: target_locals };
+        let alignment = align(map, &source_rest, &target_rest, &target_nodes, target_from_source);
+        let tracks = SourceTracks::new(&source.asset.skeleton, source_clip, &map.muted, &unmoved);
         let hips = match_hips(HipsInput {
             map,
             alignment: &alignment,
             tracks: &tracks,
-            target_skeleton: &model.asset.skeleton,
+            target_skeleton,
             source_slots: source.slots,
             target_slots: model.slots,
         });
-        Ok(Self { model, source, map, tracks, alignment, hips })
+        let hips = hips.map(|hips| if is_in_place { hips } else { hips.resting_as_target() });
+        Ok(Self { model, source, map, tracks, alignment, hips, rest: found })
+    }
+
+    /// Which pose the motion is measured from, and how sure that is.
+    pub fn motion_rest(&self) -> FoundRest {
+        self.rest
     }
 
     fn transfer(&self) -> Transfer<'_> {

@@ -153,12 +153,7 @@ fn file_orbit(library: &Library, state: &ViewerState, index: usize) -> Option<Or
     let camera = model.asset.cameras.get(index)?;
     let (mut sampler, mut world_from_joint) = (PoseSampler::default(), Vec::new());
     sampler.sample(model, state);
-    model_from_joint(
-        &model.asset.skeleton,
-        &sampler.pose.locals,
-        world_from_model(state.edits.up),
-        &mut world_from_joint,
-    );
+    model_from_joint(&model.asset.skeleton, &sampler.pose, world_from_model(state.edits.up), &mut world_from_joint);
     let world_from_camera = world_from_file_camera(&world_from_joint[camera.joint.get()])?;
     let towards_eye = world_from_camera.matrix3.z_axis;
     let eye = world_from_camera.translation;

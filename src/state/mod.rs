@@ -6,6 +6,7 @@ mod command;
 mod framing;
 mod history;
 mod link;
+mod loop_frames;
 mod map_code;
 mod map_edit;
 mod maps;
@@ -27,6 +28,7 @@ pub use link::{
     LinkRole, LinkedFile, MEMBER_SEPARATOR, embedded_link, link_with_files, link_without_missing, linked_files,
     most_similar_link, public_link, shown_files,
 };
+pub use loop_frames::LoopFrames;
 pub use map_edit::{MapEdit, muted_properties};
 pub use maps::{MapProblem, MotionMap, NumberedMap, active_map, active_maps, reconciled_maps};
 pub use names::{title, written_skeleton};

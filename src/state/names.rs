@@ -25,7 +25,7 @@ pub fn written_skeleton(model: &Model, state: &ViewerState, pose: Option<&Pose>)
     let names = state.edits.names.iter().map(|(&number, name)| (number, name.as_str()));
     let named = model.asset.skeleton.with_names(names);
     match pose {
-        Some(pose) => named.with_rest(&pose.locals),
+        Some(pose) => named.with_rest(pose),
         None => named,
     }
 }

@@ -87,8 +87,8 @@ impl PoseSampler {
         }
         for (&joint, &degrees) in &state.edits.pose {
             if let Some(joint) = model.asset.skeleton.joint_of_source(joint) {
-                let rest = model.asset.skeleton.rest().locals[joint.get()].rotation;
-                self.pose.locals[joint.get()].rotation = manual_rotation(rest, degrees);
+                let rest = model.asset.skeleton.rest().local(joint).rotation;
+                self.pose.set_rotation(joint, manual_rotation(rest, degrees));
             }
         }
         for (&index, &weight) in &state.edits.morph {

@@ -142,7 +142,8 @@ pub const KEY_TABLE: &[KeyHelp] = &[
 
 /// Handles keys unless a control has the keyboard, and shortcuts with modifiers unless the user is typing into a field.
 pub(super) fn listen(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
-    if local.messages.path_prompt.is_some() || local.motion.is_picking() || typing::is_typing(context) {
+    let has_modal = local.messages.path_prompt.is_some() || local.host.recording.is_some() || local.motion.is_picking();
+    if has_modal || typing::is_typing(context) {
         return;
     }
     shortcuts(context, out);

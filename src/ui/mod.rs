@@ -21,7 +21,7 @@ use crate::library::{Library, Model};
 use crate::state::{ViewerState, active_clip, clip_secs};
 
 pub use keys::{KEY_TABLE, KeyHelp};
-pub use output::{Output, PathPurpose, Saved, UiAction};
+pub use output::{Output, PathPurpose, Saved, UiAction, VideoSettings};
 pub use tabs::Tab;
 pub use viewport::help::Help;
 pub use viewport::labels::labels;
@@ -117,8 +117,17 @@ pub struct HostState {
     pub can_undo: bool,
     /// There is an undone step to redo.
     pub can_redo: bool,
-    /// A video is being recorded: only the viewport is shown.
-    pub is_recording: bool,
+    /// The video that is being recorded; everything else waits.
+    pub recording: Option<RecordingProgress>,
+}
+
+/// How far the recording of a video has got.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RecordingProgress {
+    /// Frames drawn so far.
+    pub frames_done: u32,
+    /// Number of frames of the video.
+    pub frame_count: u32,
 }
 
 /// Which panels are open.
@@ -195,9 +204,6 @@ const NARROW_WIDTH: f32 = 700.0;
 /// Shows the panels and returns the rectangle that they leave for the viewport.
 pub fn panels(ui: &mut Ui, shown: Shown<'_>, local: &mut UiState, out: &mut Output) -> Rect {
     local.holds_time = false;
-    if local.host.is_recording {
-        return ui.available_rect_before_wrap();
-    }
     let narrow = is_narrow(ui);
     let bottom = egui::Frame::new().inner_margin(egui::Margin { left: 12, right: 12, top: 2, bottom: 6 });
     egui::Panel::bottom("transport")

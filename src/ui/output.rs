@@ -39,9 +39,9 @@ pub enum UiAction {
     /// Borrow from the motions that were refused, with an empty joint map.
     MapRefusedManually,
     /// Record one loop of the clip.
-    Record,
+    Record(VideoSettings),
     /// Discard the recording.
-    StopRecording,
+    CancelRecording,
     /// Share a link to this view.
     ShareLink,
     /// Undo the last step.
@@ -73,4 +73,15 @@ pub enum Saved {
         /// Leaves out the background of the view.
         transparent: bool,
     },
+}
+
+/// Settings of a video.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct VideoSettings {
+    /// Width and height in pixels. The app reduces both to even numbers that the device can draw.
+    pub size: [u32; 2],
+    /// Frame rate.
+    pub frames_per_sec: u32,
+    /// Leaves out the background of the view.
+    pub transparent: bool,
 }

@@ -59,7 +59,7 @@ pub const PATH: &str = "Path";
 pub const PROMPT_OPEN: &str = "Open";
 /// Path prompt: button that saves to the path.
 pub const PROMPT_SAVE: &str = "Save";
-/// Path prompt: button that closes it.
+/// Button that closes the path prompt, or ends a recording.
 pub const CANCEL: &str = "Cancel";
 
 /// Returns the label of the progress bar while a file loads.
@@ -304,8 +304,22 @@ pub const SQUARE: &str = "Square";
 pub const TRANSPARENT_BACKGROUND: &str = "Transparent background";
 /// Button that saves an image.
 pub const SAVE_IMAGE: &str = "Save image (PNG)";
+/// Names the choice of a video's frame rate.
+pub const FRAME_RATE: &str = "Frame rate";
 /// Button that records a video.
-pub const RECORD: &str = "Record one loop (WebM)";
+pub const RECORD: &str = "Record one loop";
+/// Title of the progress of a video that is being recorded.
+pub const RECORDING: &str = "Recording one loop";
+
+/// Returns a frame rate.
+pub fn frames_per_sec(rate: u32) -> String {
+    format!("{rate} fps")
+}
+
+/// Returns how many frames of a video have been drawn.
+pub fn frames_done(done: u32, count: u32) -> String {
+    format!("{done} of {count} frames")
+}
 
 // File tab
 /// Row of the file report: the format of the file.
@@ -329,6 +343,8 @@ pub const PICK_IN_VIEWPORT: &str = "Pick in viewport";
 pub const STOP_PICKING: &str = "Stop picking";
 /// Button on the viewport that ends picking.
 pub const DONE_PICKING: &str = "Done";
+/// A motion whose rest is not certain.
+pub const DOUBTFUL_REST: &str = "The motion's rest looks like a pose in motion. If feet, hands or hips are turned, choose another rest pose in Options.";
 /// Button that returns to the proposed map.
 pub const REMATCH: &str = "Re-match";
 /// Button that exchanges the sources of left and right joints.

@@ -61,7 +61,7 @@ pub fn bench_characters(bytes: &[u8], clip: &str, characters: u32, frames: u32) 
         for character in &mut crowd {
             let time_secs = (character.phase_secs + f64::from(frame) / 60.0) % duration_secs;
             clip.sample(skeleton, time_secs as f32, &mut character.cursor, &mut character.pose);
-            model_from_joint(skeleton, &character.pose.locals, Affine3A::IDENTITY, &mut world_from_joint);
+            model_from_joint(skeleton, &character.pose, Affine3A::IDENTITY, &mut world_from_joint);
             palette.clear();
             for skin in &asset.skins {
                 write_palette(skin, &world_from_joint, SkinningMode::Linear, &mut palette);

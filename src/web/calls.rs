@@ -11,7 +11,7 @@ use super::page::{Page, page, state_of_link};
 use crate::app::{App, Message, Opening, Reply, ScriptCall};
 use crate::editor::{Contents, short_name};
 use crate::files::{Item, OpenError, Role, open_items, open_view};
-use crate::frame::pose_document;
+use crate::frame::PoseDocument;
 use crate::library::Motion;
 use crate::samples;
 use crate::state::{Command, MotionMap, ViewerState, active_clip, from_object, to_object, with_current_member};
@@ -73,19 +73,6 @@ pub fn is_private() -> Result<bool, JsError> {
     with_app(&page, |app| app.editor().is_private()).map_err(error)
 }
 
-/// Returns a QR code as a line of `0` and `1` per row; `None` if the text is too long to scan off a screen.
-#[wasm_bindgen]
-pub fn qr(text: &str) -> Option<String> {
-    let max_version = qrcodegen::Version::new(30);
-    let segments = qrcodegen::QrSegment::make_segments(text);
-    let (min_correction, min_version) = (qrcodegen::QrCodeEcc::Low, qrcodegen::Version::MIN);
-    let code =
-        qrcodegen::QrCode::encode_segments_advanced(&segments, min_correction, min_version, max_version, None, true)
-            .ok()?;
-    let row = |y| (0..code.size()).map(|x| if code.get_module(x, y) { '1' } else { '0' }).collect();
-    Some((0..code.size()).map(row).collect::<Vec<String>>().join("\n"))
-}
-
 /// Returns the link's keys as JSON.
 #[wasm_bindgen]
 pub fn state() -> Result<String, JsError> {
@@ -97,7 +84,7 @@ pub fn state() -> Result<String, JsError> {
 #[wasm_bindgen]
 pub fn pose() -> Result<String, JsError> {
     let page = page().map_err(error)?;
-    with_app(&page, |app| pose_document(app.library(), app.state()).to_string()).map_err(error)
+    with_app(&page, |app| PoseDocument::new(app.library(), app.state()).to_string()).map_err(error)
 }
 
 #[wasm_bindgen]
@@ -113,6 +100,14 @@ pub async fn screenshot() -> Result<Uint8Array, JsError> {
     let (promise, reply) = promise::<Vec<u8>>(|png| Uint8Array::from(png.as_slice()).into());
     page.inbox.send(Message::Script(ScriptCall::Screenshot(reply)));
     settled(promise).await.map(JsValue::unchecked_into).map_err(error)
+}
+
+/// Returns the pixels of a frame of the video that is being recorded: RGBA rows from the top, with straight alpha.
+#[wasm_bindgen]
+pub async fn video_frame(index: u32) -> Result<Uint8Array, JsError> {
+    let page = page().map_err(error)?;
+    let pixels = with_app(&page, |app| app.video_frame(index)).flatten().map_err(error)?;
+    pixels.await.map(|pixels| Uint8Array::from(pixels.as_slice())).map_err(error)
 }
 
 /// Resolves when the first image has been drawn, and starts time.

@@ -8,7 +8,7 @@ use wasm_bindgen::prelude::*;
 
 use super::calls::with_app;
 use super::shell::{self, Shell};
-use crate::app::{App, Host, Inbox, Loads, set_fatal_hook, web_options};
+use crate::app::{App, Host, Inbox, Loads, Message, Video, set_fatal_hook, web_options};
 use crate::editor::{Contents, OpenedModel};
 use crate::files::{Item, OpenError, Role, open_items, open_view};
 use crate::samples;
@@ -192,6 +192,9 @@ pub fn destroy() {
 }
 
 pub(super) fn text_of(value: &JsValue) -> String {
+    if let Some(error) = value.dyn_ref::<js_sys::Error>() {
+        return error.message().into();
+    }
     value.as_string().unwrap_or_else(|| String::from(js_sys::Object::from(value.clone()).to_string()))
 }
 
@@ -218,13 +221,19 @@ impl Host for PageHost {
         true
     }
 
-    fn start_recording(&self) -> Result<(), String> {
-        let unsupported = "Couldn't record a video: this browser can't write WebM. Use Chrome, Edge or Firefox, or save images instead.";
-        if self.shell.start_recording() { Ok(()) } else { Err(unsupported.to_owned()) }
+    fn record(&self, video: Video, inbox: &Inbox) -> Result<(), String> {
+        let (shell, inbox) = (self.shell.clone(), inbox.clone());
+        wasm_bindgen_futures::spawn_local(async move {
+            let Video { name, size: [width, height], frames_per_sec, frame_count, transparent } = video;
+            let recorded = shell.record(&name, width, height, frames_per_sec, frame_count, transparent).await;
+            let recorded = recorded.map(|name| name.as_string()).map_err(|error| text_of(&error));
+            inbox.send(Message::Recorded(recorded));
+        });
+        Ok(())
     }
 
-    fn stop_recording(&self, name: Option<&str>) {
-        self.shell.stop_recording(name);
+    fn cancel_recording(&self) {
+        self.shell.cancel_recording();
     }
 
     /// Does nothing: the shell handles drops before the canvas does, since it keeps the files and reads folders.

@@ -22,13 +22,22 @@ extern "C" {
     #[wasm_bindgen(method)]
     pub fn save(this: &Shell, name: &str, bytes: &[u8]);
 
-    /// Starts recording the canvas; returns false if the browser cannot.
-    #[wasm_bindgen(method, js_name = startRecording)]
-    pub fn start_recording(this: &Shell) -> bool;
+    /// Records a video from the frames that [`super::calls::video_frame`] returns, and downloads it. Resolves to its file name, or
+    /// to nothing if it was cancelled.
+    #[wasm_bindgen(method, catch)]
+    pub async fn record(
+        this: &Shell,
+        name: &str,
+        width: u32,
+        height: u32,
+        frames_per_sec: u32,
+        frame_count: u32,
+        transparent: bool,
+    ) -> Result<JsValue, JsValue>;
 
-    /// Stops the recording and downloads the video under this name; without a name, discards it.
-    #[wasm_bindgen(method, js_name = stopRecording)]
-    pub fn stop_recording(this: &Shell, name: Option<&str>);
+    /// Ends the recording without saving it.
+    #[wasm_bindgen(method, js_name = cancelRecording)]
+    pub fn cancel_recording(this: &Shell);
 
     /// Reports the progress of a download before anything is on screen; a total of 0 is unknown.
     #[wasm_bindgen(method)]

@@ -8,7 +8,7 @@ use eframe::App as _;
 use eframe::egui_wgpu::{RenderState, RendererOptions};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use gaitway::app::{App, Host, Inbox, Message, native_options};
+use gaitway::app::{App, Host, Inbox, Message, Video, native_options};
 use gaitway::files::{Role, read_paths};
 use gaitway::library::Library;
 use gaitway::state::{Command, ViewerState};
@@ -20,6 +20,8 @@ pub struct Desk {
     /// The first frame creates the app from these contents.
     harness: Harness<'static, Option<App>>,
     inbox: Inbox,
+    /// The video whose recording was started last.
+    pub video: Rc<RefCell<Option<Video>>>,
 }
 
 /// Returns `None` if there is no adapter.
@@ -28,14 +30,17 @@ pub fn desk(first: &str) -> Option<Desk> {
     let mut contents = Some(read_paths(&[first.into()], Role::Model).expect("is there"));
     let inbox = Rc::new(RefCell::new(None));
     let ready = inbox.clone();
+    let video = Rc::new(RefCell::new(None));
+    let window_video = video.clone();
     let mut frame = eframe::Frame::_new_kittest();
     let show = move |ui: &mut egui::Ui, app: &mut Option<App>| {
         let app = app.get_or_insert_with(|| {
             let mut cc = eframe::CreationContext::_new_kittest(ui.ctx().clone());
             cc.wgpu_render_state = Some(gpu.clone());
             let (contents, ready) = (contents.take().expect("begins once"), ready.clone());
+            let window = Window { video: window_video.clone() };
             let ready = move |inbox| *ready.borrow_mut() = Some(inbox);
-            let mut app = App::new(&cc, Box::new(Window), ready).expect("starts");
+            let mut app = App::new(&cc, Box::new(window), ready).expect("starts");
             app.open(contents, None).expect("fits");
             app
         });
@@ -49,7 +54,7 @@ pub fn desk(first: &str) -> Option<Desk> {
     };
     let harness = Harness::builder().with_size([1280.0, 720.0]).build_ui_state(show, None);
     let inbox = inbox.take().expect("given at the start");
-    let mut desk = Desk { harness, inbox };
+    let mut desk = Desk { harness, inbox, video };
     desk.command(Command::TogglePlaying);
     assert!(!desk.state().playback.playing);
     Some(desk)
@@ -71,8 +76,26 @@ impl Desk {
     }
 
     pub fn command(&mut self, command: Command) {
-        self.inbox.send(Message::Commands(vec![command]));
+        self.send(Message::Commands(vec![command]));
+    }
+
+    pub fn send(&mut self, message: Message) {
+        self.inbox.send(message);
         self.run_frames();
+    }
+
+    /// Returns the pixels of a frame of the video that is being recorded.
+    pub fn video_frame(&mut self, index: u32) -> Result<Vec<u8>, String> {
+        let pixels = self.harness.state_mut().as_mut().expect("has begun").video_frame(index)?;
+        self.run_frames();
+        pollster::block_on(pixels)
+    }
+
+    /// Presses a control that may have to be scrolled to.
+    pub fn scroll_and_press(&mut self, label: &str) {
+        self.harness.get_by_label(label).scroll_to_me();
+        self.run_frames();
+        self.press(label);
     }
 
     /// Presses the control with this label.
@@ -138,7 +161,9 @@ fn gpu() -> Result<RenderState, impl std::fmt::Display> {
     pollster::block_on(RenderState::create(&options, &instance, None, RendererOptions::default()))
 }
 
-struct Window;
+struct Window {
+    video: Rc<RefCell<Option<Video>>>,
+}
 
 impl Host for Window {
     fn choose_files(&self, _role: Role, _inbox: &Inbox) -> bool {
@@ -147,6 +172,11 @@ impl Host for Window {
 
     fn save_file(&self, _name: &str, _bytes: &[u8]) -> bool {
         false
+    }
+
+    fn record(&self, video: Video, _inbox: &Inbox) -> Result<(), String> {
+        *self.video.borrow_mut() = Some(video);
+        Ok(())
     }
 
     fn open_dropped(&self, _files: Vec<egui::DroppedFileHandle>, _inbox: &Inbox) {}

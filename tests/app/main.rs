@@ -1,4 +1,4 @@
-//! The app without a window: opening, closing, retargeting and undoing, with their notices.
+//! The app without a window: opening, closing, retargeting, undoing and recording, with their notices.
 
 #[path = "../support/gpu.rs"]
 mod adapter;
@@ -6,4 +6,5 @@ mod adapter;
 mod data_folder;
 mod desk;
 mod open;
+mod record;
 mod view;

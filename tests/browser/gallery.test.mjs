@@ -5,7 +5,7 @@ import path from "node:path";
 import { after, before, describe, test } from "node:test";
 import sharp from "sharp";
 import { linkOf, readScenes } from "../../xtask/site/samples.mjs";
-import { BACK_ENDS, colorsOf, dist, drop, meanDifference, picture, startSite, state, until, untilStill, whenModel, whenPictureDiffers } from "./browser.mjs";
+import { BACK_ENDS, colorsOf, dist, drop, meanDifference, picture, startSite, state, until, untilStill, watched, whenModel, whenPictureDiffers, whenReady } from "./browser.mjs";
 
 /** Of 255. The image has four samples per pixel, the page only one in software, and WebP loses a little. */
 const MAX_DIFFERENCE = 4;
@@ -56,7 +56,15 @@ for (const renderer of BACK_ENDS)
     /** @type {(page: TestPage, name: string) => import("playwright-core").Locator} */
     const card = (page, name) => page.locator(`#gallery-scenes a >> nth=${scenes.findIndex((scene) => scene.name === name)}`);
 
-    onFirstScreen("fetches the program and the sample once, side by side", {}, async (page) => {
+    test("fetches the program and the sample once, side by side", async () => {
+      const context = await site.browser.newContext({ viewport: DESKTOP, serviceWorkers: "block" });
+      const page = watched(await context.newPage());
+      const session = await context.newCDPSession(page);
+      await session.send("Network.enable");
+      // From this machine, either is there before the other has been asked for.
+      await session.send("Network.emulateNetworkConditions", { offline: false, latency: 40, downloadThroughput: 2_000_000, uploadThroughput: -1 });
+      await page.goto(`${site.address}?renderer=${renderer}`);
+      await whenReady(page);
       for (const ending of [".wasm", ".glb"]) assert.equal(page.requests.filter((url) => url.endsWith(ending)).length, 1, ending);
       const [program, sample] = await page.evaluate(() =>
         [".wasm", ".glb"].map((ending) => performance.getEntriesByType("resource").filter(({ name }) => name.endsWith(ending)).map((entry) => /** @type {PerformanceResourceTiming} */ (entry))[0]),
@@ -64,6 +72,8 @@ for (const renderer of BACK_ENDS)
       assert.equal(program.initiatorType, "fetch", "the shell requests it");
       assert.equal(sample.initiatorType, "link", "the page itself requests it");
       assert.ok(sample.startTime < program.responseEnd && program.startTime < sample.responseEnd, "side by side");
+      assert.deepEqual(page.troubles, []);
+      await page.finish();
     });
 
     for (const scene of scenes)

@@ -147,7 +147,7 @@ for (const renderer of BACK_ENDS)
       await apply(page, { t: 1.25, play: 0, camera: "30,10,4,0,1,0", show: "skeleton", root: "in-place", feet: "plant", speed: 0.5, exposure: 0.5 });
       await share(page);
       assert.equal(await page.locator("#share-local").isVisible(), false);
-      assert.equal(await page.locator("#share-qr svg").count(), 1);
+      await page.locator("#share-qr svg").waitFor({ state: "attached" });
       const link = await linkOf(page);
       assert.ok(!link.includes("renderer"), link);
       const snippet = await page.locator("#share-frame").inputValue();
@@ -171,9 +171,9 @@ for (const renderer of BACK_ENDS)
       await share(page);
       assert.match(await page.locator("#share-local").innerText(), /dance\.bvh \(motion\)/);
       // The code is collapsed, but there.
-      assert.equal(await page.locator("#share-qr svg").isVisible(), false);
+      await page.locator("#share-qr svg").waitFor({ state: "hidden" });
       await page.locator("#share-code-toggle").click();
-      assert.equal(await page.locator("#share-qr svg").isVisible(), true);
+      await page.locator("#share-qr svg").waitFor({ state: "visible" });
       const link = await linkOf(page);
       assert.ok(link.includes("Xbot.glb") && link.includes("motion=file:dance.bvh"), link);
       await page.locator("#share-close").click();
@@ -184,6 +184,7 @@ for (const renderer of BACK_ENDS)
 
     onPage("says when a link is too long for a QR code", () => `model=sample:walker&whatever=${"x".repeat(3000)}`, async (page) => {
       await share(page);
+      await page.locator("#share-no-qr").waitFor({ state: "visible" });
       assert.match(await page.locator("#share-no-qr").innerText(), /\d{4} characters, too many for a QR code/);
       assert.equal(await page.locator("#share-qr svg").count(), 0);
     });

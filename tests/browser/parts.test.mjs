@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
 import binaryen from "binaryen";
 import { skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, meanDifference, open, picture, startSite, state, stats } from "./browser.mjs";
+import { BACK_ENDS, meanDifference, open, picture, pose, startSite, state, stats, whenBorrowed } from "./browser.mjs";
 
 /** Files that need a part, with the same model without compression and a view of it. */
 const COMPRESSED = [
@@ -21,6 +21,7 @@ const COMPRESSED = [
   },
 ];
 const FOX = "compressed/Fox-gltfpack-meshopt.glb";
+const SAMBA = "threejs/Samba_Dancing.fbx";
 
 /** @param {import("./browser.mjs").TestPage} page */
 const requested = (page) => page.requests.filter((url) => url.includes("/parts/"));
@@ -63,6 +64,23 @@ for (const renderer of BACK_ENDS)
         assert.deepEqual(page.troubles, []);
         await page.finish();
       });
+
+    test("an FBX file is a link like any other, as a model and as a motion", async () => {
+      const samba = site.data(SAMBA);
+      const page = await site.page({ renderer, link: `model=${samba}&play=0&t=1` });
+      assert.equal(requested(page).length, 1);
+      assert.match(requested(page)[0], /\/parts\/fbx-[0-9a-f]{16}\.wasm$/);
+      assert.deepEqual((await state(page)).model, [samba]);
+      const { clip, nodes } = await pose(page);
+      assert.equal(clip, "mixamo.com", "the first clip is the default");
+      const hips = nodes.find(({ name }) => name === "mixamorig:Hips")?.world ?? [];
+      assert.ok(hips[13] > 0.5 && hips[13] < 1.5, `in metres: the hips are at ${hips[13]}`);
+      await page.finish();
+      const borrowing = await site.page({ renderer, link: `model=${site.data("threejs/Xbot.glb")}&motion=${samba}` });
+      await whenBorrowed(borrowing, 1);
+      assert.deepEqual(borrowing.troubles, []);
+      await borrowing.finish();
+    });
 
     /** @type {[string, Buffer | null, RegExp][]} */
     const troubles = [

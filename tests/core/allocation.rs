@@ -29,7 +29,7 @@ fn sampling_and_skinning_do_not_allocate() {
     let mut frame = |time_secs: f32, mode: SkinningMode| {
         pose.copy_from(skeleton.rest());
         clip.sample(&skeleton, time_secs, &mut cursor, &mut pose);
-        model_from_joint(&skeleton, &pose.locals, Affine3A::IDENTITY, &mut world);
+        model_from_joint(&skeleton, &pose, Affine3A::IDENTITY, &mut world);
         palette.clear();
         write_palette(&skin, &world, mode, &mut palette);
         deform(&geometry, &[], &palette, mode, &mut vertices);

@@ -106,9 +106,12 @@ fn sampling_at_a_key_gives_exactly_that_key() {
         let clip = builder.build();
         for key in 0..count {
             let pose = sample(&clip, times[key]);
-            assert_eq!(pose.locals[0].translation, vectors[key], "{interpolation:?}, key {key}");
-            assert_eq!(pose.locals[0].scale, vectors[key], "{interpolation:?}, key {key}");
-            assert!(same_rotation(pose.locals[0].rotation, rotations[key], 1.2e-7), "{interpolation:?}, key {key}");
+            assert_eq!(pose.local(JointIndex(0)).translation, vectors[key], "{interpolation:?}, key {key}");
+            assert_eq!(pose.local(JointIndex(0)).scale, vectors[key], "{interpolation:?}, key {key}");
+            assert!(
+                same_rotation(pose.local(JointIndex(0)).rotation, rotations[key], 1.2e-7),
+                "{interpolation:?}, key {key}"
+            );
             assert_eq!(pose.morph_weights, weights[2 * key..2 * key + 2], "{interpolation:?}, key {key}");
         }
     }
@@ -127,7 +130,7 @@ fn the_nearest_key_holds_outside_the_keys() {
         for (time, expected) in
             [(-1e9, Vec3::X), (0.0, Vec3::X), (0.999, Vec3::X), (3.0, Vec3::Z), (3.001, Vec3::Z), (1e30, Vec3::Z)]
         {
-            assert_eq!(sample(&clip, time).locals[0].translation, expected, "{interpolation:?} at {time}");
+            assert_eq!(sample(&clip, time).local(JointIndex(0)).translation, expected, "{interpolation:?} at {time}");
         }
     }
 }
@@ -135,7 +138,7 @@ fn the_nearest_key_holds_outside_the_keys() {
 #[test]
 fn nan_gives_a_key() {
     let clip = one_channel(&one_joint(), Linear, &[0.0, 1.0], Keys::Translation(vec![Vec3::X, Vec3::Y]));
-    assert_eq!(sample(&clip, f32::NAN).locals[0].translation, Vec3::X);
+    assert_eq!(sample(&clip, f32::NAN).local(JointIndex(0)).translation, Vec3::X);
 }
 
 #[test]
@@ -150,7 +153,7 @@ fn a_single_key_holds_at_every_time() {
         let clip = one_channel(&skeleton, interpolation, &[0.5], Keys::Rotation(keys));
         for time in [-1.0, 0.0, 0.5, 2.0] {
             assert!(
-                same_rotation(sample(&clip, time).locals[0].rotation, rotation, 1.2e-7),
+                same_rotation(sample(&clip, time).local(JointIndex(0)).rotation, rotation, 1.2e-7),
                 "{interpolation:?} {time}"
             );
         }
@@ -162,7 +165,7 @@ fn step_keeps_a_value_until_the_next_key() {
     let keys = Keys::Translation(vec![Vec3::X, Vec3::Y, Vec3::Z]);
     let clip = one_channel(&one_joint(), Step, &[0.0, 1.0, 2.0], keys);
     for (time, expected) in [(0.0, Vec3::X), (0.999_99, Vec3::X), (1.0, Vec3::Y), (1.999_99, Vec3::Y), (2.0, Vec3::Z)] {
-        assert_eq!(sample(&clip, time).locals[0].translation, expected, "at {time}");
+        assert_eq!(sample(&clip, time).local(JointIndex(0)).translation, expected, "at {time}");
     }
 }
 
@@ -170,7 +173,7 @@ fn step_keeps_a_value_until_the_next_key() {
 fn linear_interpolates_linearly() {
     let keys = Keys::Scale(vec![Vec3::ZERO, Vec3::new(2.0, 4.0, -8.0), Vec3::ONE]);
     let clip = one_channel(&one_joint(), Linear, &[1.0, 3.0, 4.0], keys);
-    let halfway = sample(&clip, 1.5).locals[0].scale;
+    let halfway = sample(&clip, 1.5).local(JointIndex(0)).scale;
     assert!(halfway.abs_diff_eq(Vec3::new(0.5, 1.0, -2.0), 1e-6), "{halfway}");
 }
 
@@ -198,7 +201,7 @@ fn rotations_follow_the_shortest_arc_at_constant_speed() {
         let clip = one_channel(&one_joint(), Linear, &[0.0, 1.0], Keys::Rotation(vec![from, to]));
         for step in 0..=10 {
             let factor = step as f32 / 10.0;
-            let found = sample(&clip, factor).locals[0].rotation;
+            let found = sample(&clip, factor).local(JointIndex(0)).rotation;
             let expected = slerp(from, to, f64::from(factor)).as_quat();
             assert!(
                 same_rotation(found, expected, 1e-6),
@@ -237,7 +240,7 @@ fn rotations_that_share_a_timeline_are_independent() {
             clip.sample(&skeleton, time, &mut cursor, &mut pose);
             let segment = times.iter().rposition(|&start| start <= time).unwrap().min(2);
             let factor = f64::from(time - times[segment]) / f64::from(times[segment + 1] - times[segment]);
-            for (joint, (keys, local)) in keys.iter().zip(&pose.locals).enumerate() {
+            for (joint, (keys, local)) in keys.iter().zip(pose.locals()).enumerate() {
                 let expected = slerp(keys[segment], keys[segment + 1], factor).as_quat();
                 let found = local.rotation;
                 assert!(
@@ -255,13 +258,17 @@ fn rotation_keys_need_not_be_normalized() {
     let clip = one_channel(&one_joint(), Linear, &[0.0, 1.0], Keys::Rotation(keys));
     for (time, degrees) in [(0.0, 0.0), (0.5, 45.0), (1.0, 90.0)] {
         let expected = Quat::from_rotation_y(f32::to_radians(degrees));
-        assert!(same_rotation(sample(&clip, time).locals[0].rotation, expected, 1e-6), "at {time}");
+        assert!(same_rotation(sample(&clip, time).local(JointIndex(0)).rotation, expected, 1e-6), "at {time}");
     }
     let zero = vec![Quat::from_xyzw(0.0, 0.0, 0.0, 0.0), Quat::from_xyzw(f32::NAN, 0.0, 0.0, 1.0)];
     for interpolation in [Step, Linear] {
         let clip = one_channel(&one_joint(), interpolation, &[0.0, 1.0], Keys::Rotation(zero.clone()));
         for time in [0.0, 0.5, 1.0] {
-            assert_eq!(sample(&clip, time).locals[0].rotation, Quat::IDENTITY, "{interpolation:?} at {time}");
+            assert_eq!(
+                sample(&clip, time).local(JointIndex(0)).rotation,
+                Quat::IDENTITY,
+                "{interpolation:?} at {time}"
+            );
         }
     }
 }
@@ -308,12 +315,18 @@ fn cubic_splines_match_appendix_c() {
         let pose = sample(&clip, time);
         for axis in [0, 1, 2] {
             let expected = at(&|entry| vectors[entry][axis]);
-            assert!((f64::from(pose.locals[0].translation[axis]) - expected).abs() < 2e-6, "translation at {time}");
-            assert!((f64::from(pose.locals[0].scale[axis]) + 2.0 * expected).abs() < 4e-6, "scale at {time}");
+            assert!(
+                (f64::from(pose.local(JointIndex(0)).translation[axis]) - expected).abs() < 2e-6,
+                "translation at {time}"
+            );
+            assert!(
+                (f64::from(pose.local(JointIndex(0)).scale[axis]) + 2.0 * expected).abs() < 4e-6,
+                "scale at {time}"
+            );
         }
         let expected = DVec4::from_array([0, 1, 2, 3].map(|axis| at(&|entry| rotations[entry].to_array()[axis])));
         let expected = DQuat::from_vec4(expected.normalize()).as_quat();
-        assert!((pose.locals[0].rotation - expected).length() < 2e-6, "rotation at {time}");
+        assert!((pose.local(JointIndex(0)).rotation - expected).length() < 2e-6, "rotation at {time}");
         for target in 0..2 {
             let expected = at(&|entry| weights[2 * entry + target]);
             assert!((f64::from(pose.morph_weights[target]) - expected).abs() < 2e-6, "weight at {time}");
@@ -325,7 +338,7 @@ fn cubic_splines_match_appendix_c() {
 fn a_flat_spline_with_tangents_is_not_flat() {
     let keys = [-1.0, 0.0, 1.0, -1.0, 0.0, 1.0].map(|x| Vec3::X * x).to_vec();
     let clip = one_channel(&one_joint(), CubicSpline, &[0.0, 1.0], Keys::Translation(keys));
-    let found = sample(&clip, 0.5).locals[0].translation.x;
+    let found = sample(&clip, 0.5).local(JointIndex(0)).translation.x;
     assert!((found - 0.25).abs() < 1e-6, "{found}");
 }
 
@@ -344,8 +357,8 @@ fn properties_without_a_channel_are_left_alone() {
     let clip = one_channel(&skeleton, Linear, &[0.0, 1.0], Keys::Scale(vec![Vec3::ONE, Vec3::splat(3.0)]));
     let mut pose = skeleton.rest().clone();
     clip.sample(&skeleton, 0.5, &mut SampleCursor::default(), &mut pose);
-    assert_eq!(pose.locals[0].scale, Vec3::splat(2.0));
-    pose.locals[0].scale = Vec3::ONE;
+    assert_eq!(pose.local(JointIndex(0)).scale, Vec3::splat(2.0));
+    pose.set_scale(JointIndex(0), Vec3::ONE);
     assert_eq!(&pose, skeleton.rest());
 }
 
@@ -364,7 +377,7 @@ fn the_last_channel_of_a_property_wins() {
         let mut builder = ClipBuilder::new("", &skeleton);
         builder.channel(JointIndex(0), first.0, &[0.0, 1.0], first.1).unwrap();
         builder.channel(JointIndex(0), second.0, &[0.0, 1.0], second.1).unwrap();
-        assert_eq!(sample(&builder.build(), 0.5).locals[0].translation, expected);
+        assert_eq!(sample(&builder.build(), 0.5).local(JointIndex(0)).translation, expected);
     }
 }
 

@@ -57,8 +57,11 @@ fn model_space_is_the_product_down_the_chain() {
     let locals: Vec<Transform> = (0..40)
         .map(|_| Transform { translation: random.vec3(), rotation: random.quat(), scale: 1.0 + 0.2 * random.vec3() })
         .collect();
-    let mut model = Vec::new();
-    model_from_joint(&skeleton, &locals, Affine3A::IDENTITY, &mut model);
+    let (mut pose, mut model) = (skeleton.rest().clone(), Vec::new());
+    for (joint, &local) in skeleton.joints().zip(&locals) {
+        pose.set_local(joint, local);
+    }
+    model_from_joint(&skeleton, &pose, Affine3A::IDENTITY, &mut model);
     let mut expected = DAffine3::IDENTITY;
     for (joint, local) in locals.iter().enumerate() {
         expected *= DAffine3::from_scale_rotation_translation(
@@ -85,8 +88,8 @@ fn the_model_transform_applies_to_roots_only() {
     let skeleton = chain(3);
     let placed = Affine3A::from_rotation_translation(Quat::from_rotation_x(1.0), Vec3::new(1.0, 2.0, 3.0));
     let (mut model, mut world) = (vec![Affine3A::IDENTITY; 9], Vec::new());
-    model_from_joint(&skeleton, &skeleton.rest().locals, Affine3A::IDENTITY, &mut model);
-    model_from_joint(&skeleton, &skeleton.rest().locals, placed, &mut world);
+    model_from_joint(&skeleton, skeleton.rest(), Affine3A::IDENTITY, &mut model);
+    model_from_joint(&skeleton, skeleton.rest(), placed, &mut world);
     assert_eq!(model.len(), 3);
     for (model, world) in model.iter().zip(&world) {
         assert!(world.abs_diff_eq(placed * *model, 1e-6));

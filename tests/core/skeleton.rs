@@ -90,7 +90,7 @@ fn the_order_of_the_input_does_not_matter() {
         }
         let skeleton = Skeleton::new(list).unwrap();
         let mut model = Vec::new();
-        model_from_joint(&skeleton, &skeleton.rest().locals, Affine3A::IDENTITY, &mut model);
+        model_from_joint(&skeleton, skeleton.rest(), Affine3A::IDENTITY, &mut model);
         for at in 0..parents.len() {
             let mut expected = rests[at].to_affine();
             let mut above = parents[at];

@@ -28,7 +28,7 @@ fn rejects_invalid_skins() {
 fn a_skin_bound_at_its_rest_has_a_palette_of_identities() {
     let skeleton = chain(20);
     let mut world = Vec::new();
-    model_from_joint(&skeleton, &skeleton.rest().locals, Affine3A::IDENTITY, &mut world);
+    model_from_joint(&skeleton, skeleton.rest(), Affine3A::IDENTITY, &mut world);
     let inverse = world.iter().map(|matrix| matrix.inverse()).collect();
     let skin = Skin::new("skin".into(), skeleton.joints().collect(), inverse, skeleton.len()).unwrap();
     let mut palette = Vec::new();

@@ -150,7 +150,7 @@ fn nodes_with_a_matrix_or_with_trs() {
     ]);
     let asset = read(Build::new().with("/nodes", nodes));
     let skeleton = &asset.skeleton;
-    let rest = |source: usize| skeleton.rest().locals[skeleton.joint_of_source(source).unwrap().get()];
+    let rest = |source: usize| skeleton.rest().local(skeleton.joint_of_source(source).unwrap());
     assert!(Mat4::from(rest(0).to_affine()).abs_diff_eq(transform, 1e-5));
     assert_eq!((rest(1).rotation, rest(1).translation), (Quat::IDENTITY, Vec3::new(1.0, 2.0, 3.0)));
     assert_eq!(codes(&asset), [""; 0]);

@@ -48,7 +48,7 @@ fn world(asset: &Asset, time_secs: f32) -> Vec<Affine3A> {
         clip.sample(&asset.skeleton, time_secs, &mut SampleCursor::default(), &mut pose);
     }
     let mut world = vec![Affine3A::IDENTITY; asset.skeleton.len()];
-    model_from_joint(&asset.skeleton, &pose.locals, Affine3A::IDENTITY, &mut world);
+    model_from_joint(&asset.skeleton, &pose, Affine3A::IDENTITY, &mut world);
     (0..world.len()).map(|index| world[asset.skeleton.joint_of_source(index).expect("in range").get()]).collect()
 }
 
@@ -106,7 +106,7 @@ fn a_file_loads_as_in_other_programs() {
     assert_eq!((asset.format, skeleton.len(), asset.clips.len()), ("bvh", 2, 1));
     assert_eq!((skeleton.name(hip), skeleton.name(leg), skeleton.parent(leg)), ("hip", "leg", Some(hip)));
     assert_eq!((skeleton.source_index(hip), skeleton.source_index(leg)), (0, 1));
-    let rest = |joint: JointIndex| skeleton.rest().locals[joint.get()];
+    let rest = |joint: JointIndex| skeleton.rest().local(joint);
     assert_eq!((rest(hip).translation, rest(leg).translation), (Vec3::Y, Vec3::new(0.5, -1.0, 0.0)));
     assert_eq!((rest(hip).rotation, rest(leg).rotation), (Quat::IDENTITY, Quat::IDENTITY));
     let clip = &asset.clips[0];
@@ -270,11 +270,11 @@ fn the_unit_is_guessed_from_the_size_and_can_be_overridden() {
             let files = one("person.bvh", person(units_per_metre * height, false).into_bytes());
             let asset = load(&files).expect("readable");
             assert_eq!(codes(&asset), ["unit-guessed"]);
-            let found = f64::from(asset.skeleton.rest().locals[0].translation.y);
+            let found = f64::from(asset.skeleton.rest().local(JointIndex(0)).translation.y);
             assert!((found - height).abs() < 1e-6, "{units_per_metre} units a metre: {found}, not {height}");
             let chosen = LoadOptions { bvh_unit_metres: Some(0.5), ..LoadOptions::default() };
             let asset = load_with(&files, &chosen).expect("readable");
-            let found = f64::from(asset.skeleton.rest().locals[0].translation.y);
+            let found = f64::from(asset.skeleton.rest().local(JointIndex(0)).translation.y);
             assert!((found / (units_per_metre * height * 0.5) - 1.0).abs() < 1e-6);
             assert_eq!(codes(&asset), [""; 0]);
         }
@@ -289,7 +289,7 @@ fn a_skeleton_with_z_up_is_rotated_to_y_up() {
     let up = load(&one("person.bvh", person(100.0, false).into_bytes())).expect("readable");
     let turned = load(&one("person.bvh", person(100.0, true).into_bytes())).expect("readable");
     assert_eq!(codes(&turned), ["unit-guessed", "up-axis-guessed"]);
-    for (up, turned) in up.skeleton.rest().locals.iter().zip(&turned.skeleton.rest().locals) {
+    for (up, turned) in up.skeleton.rest().locals().zip(turned.skeleton.rest().locals()) {
         assert!(up.translation.abs_diff_eq(turned.translation, 1e-6), "{up:?} {turned:?}");
     }
     // A motion in Z-up is the same motion, rotated by −90° about X.
@@ -355,7 +355,7 @@ fn real_files_have_known_contents() {
         let told = LoadOptions { bvh_unit_metres: Some(unit_metres as f32), bvh_z_up: Some(z_up) };
         let bytes = std::fs::read(data.join(path)).expect("readable");
         let again = load_with(&one("again.bvh", bytes), &told).expect("readable");
-        for (guessed, told) in asset.skeleton.rest().locals.iter().zip(&again.skeleton.rest().locals) {
+        for (guessed, told) in asset.skeleton.rest().locals().zip(again.skeleton.rest().locals()) {
             assert!(guessed.translation.abs_diff_eq(told.translation, 1e-5), "{path}: another unit: {text}");
         }
     }

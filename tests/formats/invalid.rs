@@ -11,6 +11,17 @@ fn check(build: Build, parts: &[&str]) {
     check_bytes("model.glb", build.glb(), parts);
 }
 
+/// Loads a file whose only warning, besides those about placeholders for images and weights, is about `place`.
+#[track_caller]
+pub fn check_left_out(build: Build, place: &str, found: &str) {
+    let asset = build.load().unwrap_or_else(|problem| panic!("{place}: {problem}"));
+    assert_eq!(asset.meshes[0].primitives[0].positions.len(), 3, "{place}");
+    let of_placeholder = ["image-unreadable", "weights-normalized"];
+    let warnings: Vec<_> = asset.warnings.iter().filter(|warning| !of_placeholder.contains(&warning.code())).collect();
+    assert!(matches!(warnings[..], [warning] if warning.place() == place), "{place}: {warnings:?}");
+    assert!(warnings[0].to_string().contains(found), "{}", warnings[0]);
+}
+
 #[track_caller]
 fn check_bytes(name: &str, bytes: Vec<u8>, parts: &[&str]) {
     let problem = load(&one(name, bytes)).expect_err("must not load").to_string();
@@ -38,7 +49,7 @@ fn invalid_chunks() {
     let mut no_json = Build::triangle().glb();
     no_json[16..20].copy_from_slice(b"what");
     check_bytes("model.glb", no_json, &["a JSON chunk"]);
-    check_bytes("model.glb", glb(b"{\"asset\":", &[]), &["not valid JSON", "line 1"]);
+    check_bytes("model.glb", glb(b"{\"asset\":", &[]), &["not valid JSON, asset: it ends too soon"]);
 }
 
 #[test]
@@ -59,6 +70,21 @@ fn invalid_json_is_located_by_line_and_column() {
     let deep = format!("{{\"asset\":{{\"version\":\"2.0\"}},\"extras\":{}", "[".repeat(100_000));
     check_bytes("model.gltf", deep.into_bytes(), &["not valid JSON"]);
     check_bytes("model.gltf", Vec::new(), &["it is empty"]);
+}
+
+/// No editor shows the text in a GLB, so that its lines help nobody.
+#[test]
+fn places_in_a_glb_are_json_paths() {
+    for (nodes, problem) in [
+        ("{},{\"mesh\":-1}", "model.glb: nodes[1].mesh: expected an index (0, 1, …), found -1"),
+        ("{},{\"children\":3}", "model.glb: nodes[1].children: expected an array, found 3"),
+        ("{},{\"scale\":[1,2]}", "model.glb: nodes[1].scale: expected an array of length 3, found 2 elements"),
+        ("{},{]", "model.glb: not valid JSON, nodes[1]: expected the name of a member"),
+        ("{ \"name\" : tail }", "model.glb: not valid JSON, nodes[0].name: expected"),
+    ] {
+        let text = format!("{{\"asset\":{{\"version\":\"2.0\"}},\n\"nodes\":[{nodes}]}}");
+        check_bytes("model.glb", glb(text.as_bytes(), &[]), &[problem]);
+    }
 }
 
 #[test]
@@ -85,31 +111,37 @@ fn indices_out_of_range_name_their_place() {
     let places = [
         ("/nodes/0/mesh", "nodes[0].mesh"),
         ("/nodes/0/skin", "nodes[0].skin"),
-        ("/nodes/0/camera", "nodes[0].camera"),
         ("/nodes/0/children/0", "nodes[0].children[0]"),
         ("/skins/0/joints/0", "skins[0].joints[0]"),
         ("/skins/0/skeleton", "skins[0].skeleton"),
         ("/skins/0/inverseBindMatrices", "skins[0].inverseBindMatrices"),
-        ("/scenes/0/nodes/0", "scenes[0].nodes[0]"),
-        ("/scene", "scene"),
-        ("/meshes/0/primitives/0/material", "meshes[0].primitives[0].material"),
         ("/meshes/0/primitives/0/indices", "meshes[0].primitives[0].indices"),
         ("/meshes/0/primitives/0/attributes/POSITION", "meshes[0].primitives[0].attributes.POSITION"),
         ("/meshes/0/primitives/0/attributes/NORMAL", "meshes[0].primitives[0].attributes.NORMAL"),
         ("/meshes/0/primitives/0/attributes/JOINTS_0", "meshes[0].primitives[0].attributes.JOINTS_0"),
+        ("/accessors/0/bufferView", "accessors[0]"),
+        ("/bufferViews/0/buffer", "bufferViews[0].buffer"),
+    ];
+    for (pointer, place) in places {
+        check(base().with(pointer, json!(99)), &[&format!(": {place}: "), "99"]);
+    }
+    // What geometry and skeleton can do without is left out.
+    let places = [
+        ("/nodes/0/camera", "nodes[0].camera"),
+        ("/scenes/0/nodes/0", "scenes[0].nodes[0]"),
+        ("/scene", "scene"),
+        ("/meshes/0/primitives/0/material", "meshes[0].primitives[0].material"),
         ("/materials/0/normalTexture/index", "materials[0].normalTexture.index"),
         ("/textures/0/source", "textures[0].source"),
         ("/textures/0/sampler", "textures[0].sampler"),
         ("/images/0/bufferView", "images[0].bufferView"),
-        ("/accessors/0/bufferView", "accessors[0]"),
-        ("/bufferViews/0/buffer", "bufferViews[0].buffer"),
         ("/animations/0/channels/0/sampler", "animations[0].channels[0].sampler"),
         ("/animations/0/channels/0/target/node", "animations[0].channels[0].target.node"),
         ("/animations/0/samplers/0/input", "animations[0].samplers[0].input"),
         ("/animations/0/samplers/0/output", "animations[0].samplers[0].output"),
     ];
     for (pointer, place) in places {
-        check(base().with(pointer, json!(99)), &[&format!(": {place}: "), "99"]);
+        check_left_out(base().with(pointer, json!(99)), place, "found 99");
     }
 }
 
@@ -152,7 +184,7 @@ fn data_beyond_its_view_or_buffer() {
 fn counts_beyond_the_budget() {
     let zeros = |count: u64| json!({ "componentType": 5126, "type": "VEC3", "count": count });
     for count in [200_000_000, 1 << 40, u64::MAX] {
-        check(Build::triangle().with("/accessors/0", zeros(count)), &["accessors[0]", "MiB of data in all"]);
+        check(Build::triangle().with("/accessors/0", zeros(count)), &["accessors[0]", "1024 MiB of data in all"]);
     }
 }
 
@@ -244,15 +276,32 @@ fn invalid_clips() {
     let good = || clip(&[0.0, 1.0], 2, &moved);
     good().load().expect("a valid one loads");
     let cubic = "/animations/0/samplers/0/interpolation";
-    check(good().with(cubic, json!("BEZIER")), &["animations[0].samplers[0].interpolation", "“BEZIER”"]);
-    check(clip(&[1.0, 0.0], 2, &moved), &["animations[0].samplers[0]"]);
-    check(clip(&[0.0, f32::NAN], 2, &moved), &["animations[0].samplers[0].input", "finite"]);
-    check(clip(&[0.0, 1.0, 2.0], 2, &moved), &["animations[0].samplers[0]", "3", "2"]);
-    check(good().with(cubic, json!("CUBICSPLINE")), &["animations[0].samplers[0]", "6", "2"]);
-    check(
-        good().with("/animations/0/channels/0/target/path", json!("rotation")),
-        &["samplers[0].output", "VEC4", "VEC3"],
-    );
+    let ignored = |build: Build, place: &str, found: &str| {
+        check_left_out(build, place, found);
+    };
+    let sampler = "animations[0].samplers[0]";
+    ignored(clip(&[1.0, 0.0], 2, &moved), sampler, "usable keys");
+    ignored(clip(&[0.0, f32::NAN], 2, &moved), "animations[0].samplers[0].input, element 1", "finite");
+    ignored(clip(&[0.0, 1.0, 2.0], 2, &moved), sampler, "usable keys");
+    ignored(good().with(cubic, json!("CUBICSPLINE")), sampler, "usable keys");
+    let rotation = good().with("/animations/0/channels/0/target/path", json!("rotation"));
+    ignored(rotation, "animations[0].samplers[0].output (accessor 2)", "VEC4");
+    // Nothing is lost with an interpolation that nobody knows.
+    for unknown in [json!("BEZIER"), json!(0)] {
+        let build = good().with(cubic, unknown.clone());
+        let asset = build.load().expect("readable");
+        assert_eq!(asset.clips[0].channels()[0].interpolation, gaitway::anim::Interpolation::Linear);
+        let warnings: Vec<String> = asset.warnings.iter().map(ToString::to_string).collect();
+        let place = "animations[0].samplers[0].interpolation";
+        assert!(matches!(&warnings[..], [warning] if warning.starts_with(place)), "{warnings:?}");
+    }
+    // The other channels of a clip stay.
+    let mut two = good();
+    two.json["animations"][0]["channels"] = json!([
+        { "sampler": 9, "target": { "node": 0, "path": "scale" } },
+        { "sampler": 0, "target": { "node": 0, "path": "translation" } },
+    ]);
+    assert_eq!(two.load().expect("readable").clips[0].channels().len(), 1);
 }
 
 #[test]

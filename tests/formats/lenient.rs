@@ -87,17 +87,132 @@ fn indices_of_more_than_32_bits_are_not_truncated() {
             ("/scenes/0/nodes/1", "scenes[0].nodes[1]"),
             ("/meshes/0/primitives/0/attributes/POSITION", "meshes[0].primitives[0].attributes.POSITION"),
             ("/accessors/0/componentType", "accessors[0].componentType"),
-            ("/animations/0/channels/0/target/node", "animations[0].channels[0].target.node"),
-            ("/textures/0/source", "textures[0].source"),
         ] {
             let problem = complete().with(pointer, json!(wide)).load().expect_err(pointer).to_string();
             assert!(problem.contains(place), "no {place} in {problem}");
+        }
+        for (pointer, place) in [
+            ("/animations/0/channels/0/target/node", "animations[0].channels[0]"),
+            ("/textures/0/source", "textures[0]"),
+        ] {
+            crate::invalid::check_left_out(complete().with(pointer, json!(wide)), place, "left out");
         }
     }
     // Long numbers elsewhere are fine.
     check("/asset/extras", json!({ "time": 1_700_000_000_000_u64 }));
     check("/nodes/1/translation", json!([10_000_000_000_u64, 0, 0]));
     check("/nodes/1/name", json!("take 12345678901, 2"));
+}
+
+/// §2.7: "integer numbers may be written as 100, 100.0 or 1e2".
+#[test]
+fn whole_numbers_are_integers_however_they_are_written() {
+    let text = String::from_utf8(Build::triangle().gltf("data:,")).expect("text");
+    let text = text.replace("\"count\":3", "\"count\":COUNT").replace("\"mesh\":0", "\"mesh\":0.0");
+    let text =
+        text.replace("\"uri\":\"data:,\"", "\"uri\":\"m.bin\"").replace("\"byteLength\":36", "\"byteLength\":3.6e1");
+    let with_count = |count: &str| {
+        let mut files = one("m.gltf", text.replace("COUNT", count).into_bytes());
+        files.insert("m.bin", [0; 36]);
+        load(&files)
+    };
+    for count in ["3", "3.0", "0.3e1", "30e-1", "3E0"] {
+        let asset = with_count(count).unwrap_or_else(|problem| panic!("{count}: {problem}"));
+        assert_eq!(asset.meshes[0].primitives[0].positions.len(), 3, "{count}");
+    }
+    for count in ["2.5", "-3.0", "1e40"] {
+        let problem = with_count(count).expect_err(count).to_string();
+        assert!(problem.contains("accessors[0].count"), "{problem}");
+    }
+    let bone = json!({ "humanoid": { "humanBones": { "hips": { "node": 1.0 } } } });
+    let asset = check("/extensions", json!({ "VRMC_vrm": bone }));
+    assert!(asset.humanoid.is_some());
+}
+
+/// Serde would read the elements by position.
+#[test]
+fn an_array_is_not_an_object() {
+    for (pointer, place) in [
+        ("/asset", "asset"),
+        ("/nodes/1", "nodes[1]"),
+        ("/meshes/0", "meshes[0]"),
+        ("/meshes/0/primitives/0", "meshes[0].primitives[0]"),
+        ("/accessors/0", "accessors[0]"),
+        ("/bufferViews/0", "bufferViews[0]"),
+        ("/skins/0", "skins[0]"),
+        ("/scenes/0", "scenes[0]"),
+    ] {
+        // As many members as any of them has.
+        let problem = complete().with(pointer, json!(vec![0; 16])).load().expect_err(pointer).to_string();
+        assert!(problem.contains(place), "no {place} in {problem}");
+    }
+}
+
+/// What geometry and skeleton can do without is left out with one warning, and keeps its number.
+#[test]
+fn unreadable_parts_are_left_out() {
+    let cases = [
+        ("/cameras/0", "cameras[0]"),
+        ("/cameras/0/perspective", "cameras[0]"),
+        ("/cameras/0/perspective/yfov", "cameras[0]"),
+        ("/nodes/0/camera", "nodes[0].camera"),
+        ("/images/0", "images[0]"),
+        ("/images/0/uri", "images[0]"),
+        ("/textures/0", "textures[0]"),
+        ("/textures/0/sampler", "textures[0]"),
+        ("/samplers/0", "samplers[0]"),
+        ("/materials/0", "materials[0]"),
+        ("/materials/0/alphaCutoff", "materials[0]"),
+        ("/animations/0", "animations[0]"),
+        ("/animations/0/samplers/0", "animations[0].samplers[0]"),
+        ("/animations/0/samplers/0/input", "animations[0].samplers[0]"),
+        ("/animations/0/channels/0", "animations[0].channels[0]"),
+        ("/animations/0/channels/0/target", "animations[0].channels[0]"),
+        ("/extensions/KHR_lights_punctual/lights/0", "extensions.KHR_lights_punctual.lights[0]"),
+        ("/nodes/1/extensions/KHR_lights_punctual", "nodes[1].extensions.KHR_lights_punctual"),
+    ];
+    for (pointer, place) in cases {
+        let mut build = complete();
+        build.json["images"][0]["uri"] = json!("data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJ");
+        build.json["extensions"] = json!({ "KHR_lights_punctual": { "lights": [{ "type": "point" }] } });
+        build.json["nodes"][1]["extensions"] = json!({ "KHR_lights_punctual": { "light": 0 } });
+        assert!(build.json["textures"][0].is_object());
+        crate::invalid::check_left_out(build.with(pointer, json!([vec![0; 16]])), place, "left out");
+    }
+}
+
+/// A viewer that drops one of the two without a word shows something else than the next.
+#[test]
+fn contradictions_are_reported() {
+    let code = |build: Build| -> Vec<&str> { read(build).warnings.iter().map(|warning| warning.code()).collect() };
+    let quarter = [0.0, 0.0, -1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 5.0, 0.0, 0.0, 1.0];
+    let moved = Build::animated("translation", &[0.0, 1.0], "VEC3", 2, &[0.0; 6]);
+    let with_matrix = moved.with("/nodes/0/matrix", json!(quarter));
+    assert_eq!(code(with_matrix), ["animated-matrix"]);
+    let both = || Build::triangle().with("/nodes/0/matrix", json!(quarter)).with("/nodes/0/scale", json!([2, 2, 2]));
+    assert_eq!(code(both()), ["matrix-and-trs"]);
+    let rest = read(both()).skeleton.rest().locals().next().expect("one node");
+    assert_eq!((rest.translation.x, rest.scale), (5.0, glam::Vec3::ONE));
+}
+
+#[test]
+fn repeated_chunks_are_reported() {
+    let mut file = Build::triangle().glb();
+    let first = load(&one("m.glb", file.clone())).expect("readable");
+    assert!(first.warnings.is_empty());
+    let end = file.len();
+    for kind in [*b"BIN\0", *b"JSON", *b"ANY "] {
+        file.extend([4, 0, 0, 0]);
+        file.extend(kind);
+        file.extend(*b"{}  ");
+    }
+    let length = (file.len() as u32).to_le_bytes();
+    file[8..12].copy_from_slice(&length);
+    let again = load(&one("m.glb", file)).expect("readable");
+    let warnings: Vec<String> = again.warnings.iter().map(ToString::to_string).collect();
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    assert!(warnings[0].starts_with(&format!("GLB chunk at byte {end}")), "{warnings:?}");
+    assert_eq!(again.meshes[0].primitives[0].positions, first.meshes[0].primitives[0].positions);
 }
 
 #[test]
@@ -107,10 +222,9 @@ fn an_error_behind_harmless_deviations_has_its_own_place() {
     for part in ["model.gltf", "line 4, column 6", "skins[1].joints[1]", "arm"] {
         assert!(problem.contains(part), "“{part}” is not in: {problem}");
     }
-    let missing =
-        r#"{ "asset": { "version": "2.0" }, "animations": [{ "channels": [{ "target": { "path": "scale" } }] }] }"#;
+    let missing = r#"{ "asset": { "version": "2.0" }, "scenes": [{}], "accessors": [{ "type": "VEC3", "componentType": 5126 }] }"#;
     let problem = load(&one("model.gltf", missing.as_bytes().to_vec())).expect_err("must not load").to_string();
-    assert!(problem.contains("animations[0].channels[0]") && problem.contains("sampler"), "{problem}");
+    assert!(problem.contains("accessors[0]") && problem.contains("count"), "{problem}");
 }
 
 #[test]

@@ -121,5 +121,5 @@ fn damaged_views_are_errors() {
     let (mut json, data) = compressed(plain(), EXTENSION);
     json["buffers"][1]["byteLength"] = json!(1_u64 << 40);
     let problem = prepare(&mut set(&json, &data)).unwrap_err().to_string();
-    assert!(problem.contains("MiB of decoded data"), "{problem}");
+    assert!(problem.contains("MiB of data"), "{problem}");
 }

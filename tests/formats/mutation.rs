@@ -30,7 +30,7 @@ const NUMBERS: [&str; 14] = [
     "1e999",
 ];
 
-fn damage(file: &[u8], random: &mut Random) -> Vec<u8> {
+pub fn damage(file: &[u8], random: &mut Random) -> Vec<u8> {
     let mut file = file.to_vec();
     match random.below(7) {
         0 => file.truncate(random.below(file.len())),
@@ -119,7 +119,7 @@ fn check_asset(files: &FileSet, asset: &Asset) {
             geometry.validate(skinned(index)).expect("consistent geometry");
         }
     }
-    assert!(asset.skeleton.rest().locals.iter().all(|local| local.is_finite()));
+    assert!(asset.skeleton.rest().locals().all(|local| local.is_finite()));
     let clips: Vec<_> = asset.clips.iter().collect();
     for written in [write_motion(asset, &asset.skeleton, &clips), convert(files, &LoadOptions::default())] {
         match written {
@@ -129,7 +129,7 @@ fn check_asset(files: &FileSet, asset: &Asset) {
     }
 }
 
-fn generated() -> Vec<(&'static str, Vec<u8>)> {
+pub fn generated() -> Vec<(&'static str, Vec<u8>)> {
     let joints = [0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0];
     let weights = [0.5, 0.5, 0.0, 0.0, 0.5, 0.5, 0.0, 0.0, 0.5, 0.5, 0.0, 0.0];
     let moved = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 2.0, 0.0, 0.0];
@@ -143,7 +143,7 @@ fn generated() -> Vec<(&'static str, Vec<u8>)> {
 }
 
 /// Small files of different kinds.
-const REAL: [&str; 13] = [
+pub const REAL: [&str; 13] = [
     "khronos/SimpleSkin/glTF-Embedded/SimpleSkin.gltf",
     "khronos/SimpleMorph/glTF-Embedded/SimpleMorph.gltf",
     "khronos/RiggedSimple/glTF-Binary/RiggedSimple.glb",

@@ -419,10 +419,10 @@ fn deformed(asset: &Asset, locals: &[glam::Quat], mode: SkinningMode) -> Vec<Vec
     let skeleton = &asset.skeleton;
     let mut pose = skeleton.rest().clone();
     for (source, &rotation) in locals.iter().enumerate() {
-        pose.locals[skeleton.joint_of_source(source).unwrap().get()].rotation = rotation;
+        pose.set_rotation(skeleton.joint_of_source(source).unwrap(), rotation);
     }
     let (mut world, mut palette) = (Vec::new(), Vec::new());
-    model_from_joint(skeleton, &pose.locals, Affine3A::IDENTITY, &mut world);
+    model_from_joint(skeleton, &pose, Affine3A::IDENTITY, &mut world);
     write_palette(&asset.skins[0], &world, mode, &mut palette);
     let mut moved = DeformedVertices::default();
     deform(&asset.meshes[0].primitives[0], &[], &palette, mode, &mut moved);

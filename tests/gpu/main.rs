@@ -2,6 +2,7 @@
 
 #[path = "../support/gpu.rs"]
 mod adapter;
+mod cli;
 #[path = "../support/coursework.rs"]
 mod coursework;
 #[path = "../support/data_folder.rs"]

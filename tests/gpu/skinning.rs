@@ -341,12 +341,12 @@ fn the_exercise_models_match_the_formula() {
             ..Geometry::default()
         };
         let (exact, rounded) = pose(18, seed);
-        let mut locals = asset.skeleton.rest().locals.clone();
+        let mut posed = asset.skeleton.rest().clone();
         for (source, rotation) in rounded.into_iter().enumerate() {
-            locals[asset.skeleton.joint_of_source(source).unwrap().get()].rotation = rotation;
+            posed.set_rotation(asset.skeleton.joint_of_source(source).unwrap(), rotation);
         }
         let (mut world, mut palette) = (Vec::new(), Vec::new());
-        model_from_joint(&asset.skeleton, &locals, Affine3A::IDENTITY, &mut world);
+        model_from_joint(&asset.skeleton, &posed, Affine3A::IDENTITY, &mut world);
         write_palette(&asset.skins[0], &world, SkinningMode::Linear, &mut palette);
         let [positions, _] = on_gpu(&gpu, &geometry, &palette, &[], SkinningMode::Linear);
         let skinned = Exercise::read(&text("obj"), &text("skel"), &text("attach")).skinned(&exact);

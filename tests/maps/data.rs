@@ -2,10 +2,12 @@
 
 #[path = "../support/data_folder.rs"]
 mod data_folder;
+#[path = "../support/real.rs"]
+mod real;
 
 use gaitway::asset::Asset;
 
 /// None if there is no data folder.
 pub fn open(path: &str) -> Option<Asset> {
-    Some(data_folder::read(&data_folder::data_folder()?, path))
+    Some(real::read(&data_folder::data_folder()?, path))
 }

@@ -2,11 +2,12 @@
 
 use gaitway::anim::{ClipBuilder, Joint, Property, Skeleton};
 use gaitway::asset::{Asset, AssetParts};
+use gaitway::mesh::Skin;
 use gaitway::retarget::{
     ClipRef, JointMapFile, Layer, MapEntry, MapError, MutedChannel, MutedProperty, Pair, ResolvedMap, SourceRef,
     Unmapped,
 };
-use glam::Quat;
+use glam::{Affine3A, Quat};
 
 /// A chain of joints with these names, listed from tip to base, and clips.
 fn chain(names: &[&str], clips: &[&str]) -> Asset {
@@ -67,6 +68,19 @@ fn missing_and_ambiguous_joints_are_refused() {
     let mut muted = map(&[("tip", name("neck"))]);
     muted.muted_channels.push(MutedChannel { source: SourceRef::Name("nek".to_owned()), property: None });
     check_refused(&muted, "muted_channels[0].source: the motion has no joint “nek”; nearest: neck");
+}
+
+#[test]
+fn nodes_that_only_hold_a_mesh_are_not_suggested() {
+    let parts = chain(&["mixamorig:LeftLeg", "mixamorig:RightLeg", "Object_7"], &[]).into_parts();
+    let joints = ["mixamorig:LeftLeg", "mixamorig:RightLeg"].map(|name| parts.skeleton.find(name).expect("a joint"));
+    let skin = Skin::new(String::new(), joints.to_vec(), vec![Affine3A::IDENTITY; 2], 3).expect("a skin");
+    let model = Asset::new(AssetParts { skins: vec![skin], ..parts }).expect("indices in range");
+    let message =
+        |wanted: &str| map(&[(wanted, name("hip"))]).resolve(&model, &motion()).expect_err(wanted).to_string();
+    assert_eq!(message("Object_1"), "joints.Object_1: the model has no joint “Object_1”");
+    let nearest = message("left_leg");
+    assert!(nearest.contains("“left_leg”; nearest: mixamorig:LeftLeg"), "{nearest}");
 }
 
 #[test]

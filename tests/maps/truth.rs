@@ -601,7 +601,7 @@ fn with_nodes_reversed(asset: &Asset) -> Asset {
         let joint = old.joint_of_source(source).expect("every node is a joint");
         let parent = old.parent(joint).map(|parent| count - 1 - old.source_index(parent));
         let morph_weights = old.rest().morph_weights[old.morph_range(joint)].to_vec();
-        Joint { name: old.name(joint).to_owned(), parent, rest: old.rest().locals[joint.get()], morph_weights }
+        Joint { name: old.name(joint).to_owned(), parent, rest: old.rest().local(joint), morph_weights }
     });
     let skeleton = Skeleton::new(joints.collect()).expect("still a tree");
     let moved = |joint: &JointIndex| {

@@ -8,7 +8,8 @@ use gaitway::retarget::{
 };
 use glam::{Affine3A, Quat, Vec3};
 
-use crate::data_folder::{data_folder, read};
+use crate::data_folder::data_folder;
+use crate::real::read;
 
 fn retarget(model: &Asset, motion: &Asset, clip: usize, map: &ResolvedMap) -> Retargeted {
     let slots = [recognize(model).humanoid(), recognize(motion).humanoid()];
@@ -25,7 +26,7 @@ fn locals(skeleton: &Skeleton, clip: &Clip, time_secs: f32) -> Pose {
 
 fn world(skeleton: &Skeleton, clip: &Clip, time_secs: f32) -> Vec<Affine3A> {
     let mut world = Vec::new();
-    model_from_joint(skeleton, &locals(skeleton, clip, time_secs).locals, Affine3A::IDENTITY, &mut world);
+    model_from_joint(skeleton, &locals(skeleton, clip, time_secs), Affine3A::IDENTITY, &mut world);
     world
 }
 
@@ -79,12 +80,12 @@ fn the_dwarf_walks_like_the_avatar_while_its_arms_play_its_own_clip() {
     let arm = joint(&dwarf, "lelbo");
     let mut pose = skeleton.rest().clone();
     moving.sample(skeleton, 2.2 + 0.5, &mut SampleCursor::default(), &mut pose);
-    let wanted = locals(skeleton, own, 0.5).locals[arm.get()].rotation;
-    assert!(pose.locals[arm.get()].rotation.angle_between(wanted) < 1e-3);
+    let wanted = locals(skeleton, own, 0.5).local(arm).rotation;
+    assert!(pose.local(arm).rotation.angle_between(wanted) < 1e-3);
     let frozen = layers.iter().find(|layer| layer.frozen).unwrap();
     frozen.sample(skeleton, 1.1, &mut SampleCursor::default(), &mut pose);
-    let middle = joint(&dwarf, "middle").get();
-    assert_eq!(pose.locals[middle], locals(skeleton, own, 0.0).locals[middle]);
+    let middle = joint(&dwarf, "middle");
+    assert_eq!(pose.local(middle), locals(skeleton, own, 0.0).local(middle));
     assert_eq!(baking(&done.clip, &layers, None).loops, 5, "5 × 0.867 s is within a tenth of 2 × 2.2 s");
 }
 
@@ -149,7 +150,7 @@ fn real_files_retargeted_to_themselves_keep_their_clips() {
 
 fn size(asset: &Asset) -> f32 {
     let mut rest = Vec::new();
-    model_from_joint(&asset.skeleton, &asset.skeleton.rest().locals, Affine3A::IDENTITY, &mut rest);
+    model_from_joint(&asset.skeleton, asset.skeleton.rest(), Affine3A::IDENTITY, &mut rest);
     let heights = rest.iter().map(|world| world.translation);
     let (low, high) =
         heights.fold((glam::Vec3A::INFINITY, glam::Vec3A::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));

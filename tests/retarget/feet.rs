@@ -9,9 +9,10 @@ use gaitway::retarget::{
 };
 use glam::{Quat, Vec3};
 
-use crate::data_folder::{data_folder, read};
+use crate::data_folder::data_folder;
 use crate::figure::{Figure, Rig, build};
 use crate::laws::{body, map};
+use crate::real::read;
 
 /// Two steps of a second each: one foot stays in contact while the body passes over it and the other leg swings. `lift` is the
 /// height of the whole clip above the ground.
@@ -21,7 +22,7 @@ fn walker(lift: f32) -> Figure {
     let mut clip = ClipBuilder::new("walk", skeleton);
     let times: Vec<f32> = (0..=60).map(|frame| frame as f32 / 30.0).collect();
     let hips = figure.joint(Slot::Hips);
-    let (rest, length) = (skeleton.rest().locals[hips.get()].translation, 0.87f32);
+    let (rest, length) = (skeleton.rest().local(hips).translation, 0.87f32);
     // The supporting leg turns from +20° to −20°; the hips follow so that its ankle stays.
     let angle = |time: f32, phase: f32| {
         let at = (time + phase).rem_euclid(2.0);

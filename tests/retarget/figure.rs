@@ -228,7 +228,7 @@ impl Figure {
         let mut pose: Pose = skeleton.rest().clone();
         clip.sample(skeleton, time_secs, &mut SampleCursor::default(), &mut pose);
         let mut world: Vec<(DQuat, DVec3, f64)> = Vec::new();
-        for (local, parent) in pose.locals.iter().zip(skeleton.parents()) {
+        for (local, parent) in pose.locals().zip(skeleton.parents()) {
             let (turn, at, scale) = parent.map_or((DQuat::IDENTITY, DVec3::ZERO, 1.0), |parent| world[parent.get()]);
             let at = at + turn * (local.translation.as_dvec3() * scale);
             world.push(((turn * local.rotation.as_dquat()).normalize(), at, scale * f64::from(local.scale.x)));
@@ -253,10 +253,10 @@ impl Figure {
         for (&slot, &joint) in &self.slots.0 {
             let keys = 4 + (random.f64() * 5.0) as usize;
             let times: Vec<f32> = (0..keys).map(|key| key as f32 * 1.5 / (keys - 1) as f32).collect();
-            let rest = skeleton.rest().locals[joint.get()];
+            let rest = skeleton.rest().local(joint);
             let mut rotations: Vec<Quat> = Vec::new();
             let mut places: Vec<Vec3> = Vec::new();
-            let hips = skeleton.parent(joint).map_or(1.0, |top| 1.0 / skeleton.rest().locals[top.get()].scale.x);
+            let hips = skeleton.parent(joint).map_or(1.0, |top| 1.0 / skeleton.rest().local(top).scale.x);
             for _ in 0..keys {
                 let spline = interpolation == Interpolation::CubicSpline;
                 let value = (random.rotation(degrees) * rest.rotation.as_dquat()).normalize().as_quat();

@@ -29,7 +29,7 @@ fn retarget(model: &Figure, motion: &Figure, map: &ResolvedMap) -> Retargeted {
     Retargeting::new(body(model), body(motion), 0, map).unwrap().bake().unwrap()
 }
 
-fn degrees(a: DQuat, b: DQuat) -> f64 {
+pub fn degrees(a: DQuat, b: DQuat) -> f64 {
     let turn = a.conjugate() * b;
     (2.0 * turn.xyz().length().atan2(turn.w.abs())).to_degrees()
 }
@@ -262,7 +262,7 @@ fn the_first_frame_can_be_the_rest() {
     for channel in motion.asset.clips[0].channels() {
         if let Keys::Rotation(values) = &channel.keys {
             let mut values = values.clone();
-            values[0] = skeleton.rest().locals[channel.joint.get()].rotation;
+            values[0] = skeleton.rest().local(channel.joint).rotation;
             let times = &motion.asset.clips[0].timelines()[channel.timeline as usize];
             clip.channel(channel.joint, channel.interpolation, times, Keys::Rotation(values)).unwrap();
         }

@@ -38,9 +38,9 @@ fn a_stretched_spline_has_the_same_curve() {
     assert_eq!(baked.duration_secs(), 2.125);
     for eighth in 0..8 {
         let share = (eighth as f32 + 0.5) / 8.0;
-        let expected = pose_at(&layer.clip, &model.skeleton, share).locals[tail.get()];
+        let expected = pose_at(&layer.clip, &model.skeleton, share).local(tail);
         for round in [0.0, 1.0] {
-            let found = pose_at(&baked, &model.skeleton, (share + round) * 1.0625).locals[tail.get()];
+            let found = pose_at(&baked, &model.skeleton, (share + round) * 1.0625).local(tail);
             assert!(found.translation.abs_diff_eq(expected.translation, 1e-5), "{share}: {found:?} {expected:?}");
             assert!(found.scale.abs_diff_eq(expected.scale, 1e-5), "{share}: {found:?} {expected:?}");
             assert!(found.rotation.abs_diff_eq(expected.rotation, 1e-5), "{share}: {found:?} {expected:?}");

@@ -6,6 +6,8 @@ mod data_folder;
 mod pairs_of_people;
 #[path = "../support/random.rs"]
 mod random;
+#[path = "../support/real.rs"]
+mod real;
 #[path = "../support/skeletons.rs"]
 mod skeletons;
 
@@ -15,3 +17,4 @@ mod figure;
 mod laws;
 mod layers;
 mod pairs;
+mod rests;

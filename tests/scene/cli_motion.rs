@@ -15,7 +15,7 @@ MOTION\nFrames: 2\nFrame Time: 0.5\n\
 0 90 30 0 0 0  0 5 0  0 0 0  0 20 0 0 10 0 0 0 0  0 -20 0 0 0 0 0 0 0\n";
 
 /// Creates a folder for one test with the BVH file in it.
-fn folder(name: &str) -> (PathBuf, String) {
+pub fn folder(name: &str) -> (PathBuf, String) {
     let folder = std::env::temp_dir().join(format!("gaitway-{name}-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
     let motion = folder.join("walk.bvh");
@@ -102,6 +102,7 @@ fn retarget_reports_the_documented_keys() {
         "keys_out",
         "resampled",
         "figures",
+        "motion_rest",
         "warnings",
     ] {
         assert!(report.get(key).is_some(), "{key}");
@@ -111,6 +112,8 @@ fn retarget_reports_the_documented_keys() {
         "orientation_error_degrees_max",
         "limb_direction_error_degrees_mean",
         "limb_direction_error_degrees_max",
+        "facing_error_degrees_mean",
+        "facing_error_degrees_max",
         "foot_slide_metres_per_sec",
         "foot_slide_source_metres_per_sec",
         "ground_penetration_metres_max",
@@ -168,4 +171,78 @@ fn errors_say_what_to_do() {
     check_fails(&retarget, 1, "--clip-only");
     assert!(!std::path::Path::new(out).exists(), "a failed command writes nothing");
     check_fails(&["retarget", "--model", "sample:walker", "--out", out], 2, "--motion");
+    check_fails(&["pose", "sample:walker", "--motion", &motion, "--clip", "-1"], 1, "“-1”; its clips are Walk");
+    check_fails(&[&retarget[..], &["--clip", "-1"]].concat(), 1, "“-1”; its clips are walk");
+}
+
+#[test]
+fn errors_in_a_map_name_its_file() {
+    let (folder, motion) = folder("map-errors");
+    let map = folder.join("map.json");
+    let path = map.to_str().expect("a plain path");
+    let out = folder.join("out.glb");
+    let retarget = ["retarget", "--model", "sample:walker", "--motion", &motion, "--map", path, "--out"];
+    let retarget = [&retarget[..], &[out.to_str().expect("a plain path"), "--clip-only"]].concat();
+    let pose = ["pose", "sample:walker", "--motion", &motion, "--map", path];
+    for (joints, says) in [
+        (
+            json!({ "Heed": { "source": "Head" } }),
+            "map.json: joints.Heed: the model has no joint “Heed”; nearest: Head",
+        ),
+        (json!({ "Head": { "source": null } }), "map.json: no joint of the model follows the motion"),
+    ] {
+        std::fs::write(&map, json!({ "gaitway_map": 1, "joints": joints }).to_string()).expect("a file");
+        check_fails(&retarget, 1, says);
+        check_fails(&pose, 1, says);
+    }
+    std::fs::write(&map, json!({ "gaitway_map": 1, "joints": { "Head": { "source": "Head" } } }).to_string())
+        .expect("a map");
+    let of_option = [&retarget[..], &["--unmapped", "Fly"]].concat();
+    check_fails(&of_option, 1, "error: --unmapped: unmapped.clip: the model has no clip “Fly”");
+}
+
+/// Its rest pose and its clip are written as well, in the order in which they play.
+#[test]
+fn a_motion_alone_can_be_the_model() {
+    let (folder, motion) = folder("bvh-model");
+    let out = folder.join("out.glb");
+    let out = out.to_str().expect("a plain path");
+    let report = document(&["retarget", "--model", &motion, "--motion", "sample:walker", "--out", out, "--json"]);
+    assert_eq!(report["clip"], "Walk");
+    let inspect = |file: &str| document(&["inspect", file, "--json"]);
+    let (before, written) = (inspect(&motion), inspect(out));
+    let names: Vec<&Value> = written["clips"].as_array().expect("clips").iter().map(|clip| &clip["name"]).collect();
+    assert_eq!(names, ["walk", "Walk"]);
+    assert_eq!((&written["nodes"], &written["format"]), (&before["nodes"], &"glb".into()));
+    let pose = |file: &str| document(&["pose", file, "--clip", "walk", "--time", "0.3", "--json"])["nodes"].clone();
+    assert_eq!(pose(out), pose(&motion));
+}
+
+/// A model beside motions, in a folder or an archive.
+#[test]
+fn one_of_several_files_in_a_folder_is_named_with_it() {
+    let (folder, motion) = folder("members");
+    let path = |name: &str| folder.join(name).to_str().expect("a plain path").to_owned();
+    let set = folder.join("set");
+    std::fs::create_dir_all(&set).expect("a folder");
+    let walker = path("set/walker.glb");
+    let retarget = ["retarget", "--model", "sample:walker", "--motion", &motion, "--clip-only", "--out", &walker];
+    assert!(run(&retarget).status.success());
+    for name in ["a.bvh", "b.bvh"] {
+        std::fs::copy(&motion, set.join(name)).expect("a copy");
+    }
+    let (set, out) = (path("set"), path("out.glb"));
+    check_fails(
+        &["map", "--model", &walker, "--motion", &set],
+        1,
+        "expected one motion, found a.bvh, b.bvh, walker.glb",
+    );
+    let member = format!("{set}#!/b.bvh");
+    let report = document(&["retarget", "--model", &walker, "--motion", &member, "--out", &out, "--json"]);
+    assert_eq!(report["clip"], "b");
+    check_fails(
+        &["inspect", &format!("{set}#!/c.bvh")],
+        1,
+        "“c.bvh” is not among the files (a.bvh, b.bvh, walker.glb)",
+    );
 }

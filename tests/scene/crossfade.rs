@@ -34,7 +34,7 @@ fn changing_the_clip_fades_for_exactly_the_duration() {
     apply(&mut state, &library, Command::Advance(0.3));
     let before = pose(&library, &state);
     apply(&mut state, &library, Command::SetClip(ClipChoice::Named(own.to_string())));
-    for (now, before) in pose(&library, &state).locals.iter().zip(&before.locals) {
+    for (now, before) in pose(&library, &state).locals().zip(before.locals()) {
         assert!(now.rotation.angle_between(before.rotation) < 1e-3, "nothing jumps");
         assert!(now.translation.abs_diff_eq(before.translation, 1e-6), "nothing jumps");
     }
@@ -45,7 +45,7 @@ fn changing_the_clip_fades_for_exactly_the_duration() {
         pose(&library, &ViewerState { playhead: Playhead { fade: None, ..state.playhead.clone() }, ..state.clone() }),
     );
     assert_ne!(mixed, alone);
-    assert!(mixed.locals.iter().all(|local| local.rotation.is_normalized()));
+    assert!(mixed.locals().all(|local| local.rotation.is_normalized()));
     apply(&mut state, &library, Command::Advance(0.21));
     assert_eq!(state.playhead.fade, None);
 }

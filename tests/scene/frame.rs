@@ -64,7 +64,7 @@ fn the_frame_carries_the_pose_and_clip_it_was_made_from() {
     let mut frame = frame_of(&library, &state);
     let skeleton = library.active().expect("the walker").asset.skeleton.clone();
     let mut world_from_joint = Vec::new();
-    model_from_joint(&skeleton, &frame.pose().locals, Affine3A::IDENTITY, &mut world_from_joint);
+    model_from_joint(&skeleton, frame.pose(), Affine3A::IDENTITY, &mut world_from_joint);
     assert_eq!(world_from_joint, frame.characters[0].world_from_joint);
     assert_eq!(frame.pose().morph_weights, frame.characters[0].morph_weights);
     assert_eq!(frame.clip, Some(2));

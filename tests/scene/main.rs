@@ -7,6 +7,7 @@ mod allocations;
 
 mod cli;
 mod cli_motion;
+mod cli_output;
 #[path = "../support/coursework.rs"]
 mod coursework;
 mod coursework_scene;
@@ -24,6 +25,7 @@ mod history;
 mod link;
 mod link_files;
 mod link_properties;
+mod loop_frames;
 mod manual_pose;
 mod map_edits;
 mod motion;

@@ -19,12 +19,12 @@ fn local_rotation(library: &Library, state: &ViewerState, joint: usize) -> Quat 
     let model = library.active().expect("a model");
     let mut sampler = PoseSampler::default();
     sampler.sample(model, state);
-    sampler.pose.locals[model.asset.skeleton.joint_of_source(joint).expect("a joint").get()].rotation
+    sampler.pose.local(model.asset.skeleton.joint_of_source(joint).expect("a joint")).rotation
 }
 
 fn rest_rotation(library: &Library, joint: usize) -> Quat {
     let skeleton = &library.active().expect("a model").asset.skeleton;
-    skeleton.rest().locals[skeleton.joint_of_source(joint).expect("a joint").get()].rotation
+    skeleton.rest().local(skeleton.joint_of_source(joint).expect("a joint")).rotation
 }
 
 #[test]

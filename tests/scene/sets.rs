@@ -130,6 +130,59 @@ fn files_next_to_a_model_are_read_with_it() {
     std::fs::remove_dir_all(&folder).expect("it was created");
 }
 
+/// A model that names files of the disk it was not given could be converted and sent back with them inside.
+#[test]
+fn nothing_outside_the_models_folder_is_read_with_it() {
+    let folder = temporary_folder("outside");
+    let secret = write(&folder, "secret.bin", &[0; 36]);
+    let inner = folder.join("inner");
+    let refers_to = |uri: &str| write(&inner, "m.gltf", MESH.replace(EMBEDDED_BUFFER, uri).as_bytes());
+    write(&inner, "deep/mesh.bin", &[0; 36]);
+    let absolute = secret.to_str().expect("Unicode").to_owned();
+    let mut uris = vec!["../secret.bin", "%2e%2e/secret.bin", "deep/../../secret.bin", "..%2Fsecret.bin", &absolute];
+    let file_uri = format!("file://{absolute}");
+    uris.push(&file_uri);
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink(&secret, inner.join("link.bin")).expect("a link");
+        std::os::unix::fs::symlink(&folder, inner.join("up")).expect("a link");
+        uris.extend(["link.bin", "up/secret.bin"]);
+    }
+    for uri in uris {
+        let model = refers_to(uri);
+        let problem = open_paths(std::slice::from_ref(&model)).map(|opened| opened.files).expect_err(uri);
+        assert!(
+            matches!(&problem, OpenError::Files(SortError::Load(LoadError::MissingFile { .. }))),
+            "{uri}: {problem}"
+        );
+        if uri.starts_with("..") {
+            assert!(problem.to_string().contains("outside the model's folder"), "{problem}");
+        }
+        // As part of a folder, too.
+        open_paths(std::slice::from_ref(&inner)).map(|opened| opened.files).expect_err(uri);
+        // Given by the user, it may be anywhere.
+        if uri.ends_with("secret.bin") {
+            open_paths(&[model, secret.clone()]).unwrap_or_else(|problem| panic!("{uri}: {problem}"));
+        }
+    }
+    for uri in ["deep/mesh.bin", "deep/../deep/./mesh.bin", "../inner/deep/mesh.bin"] {
+        open_paths(&[refers_to(uri)]).unwrap_or_else(|problem| panic!("{uri}: {problem}"));
+    }
+    std::fs::remove_dir_all(&folder).expect("it was created");
+}
+
+#[test]
+fn a_missing_image_is_reported_once() {
+    let folder = temporary_folder("image");
+    let text = MESH.replace(r#""scene":0,"#, r#""scene":0,"images":[{"uri":"skin.png"}],"textures":[{"source":0}],"#);
+    let model = write(&folder, "m.gltf", text.as_bytes());
+    let opened = open_paths(std::slice::from_ref(&model)).expect("shown without it");
+    let codes: Vec<_> = opened.model.asset.warnings.iter().map(|warning| warning.code()).collect();
+    assert_eq!(codes, ["image-missing"]);
+    assert_eq!(opened.model.images.len(), 1);
+    std::fs::remove_dir_all(&folder).expect("it was created");
+}
+
 #[test]
 fn files_from_an_archive_have_its_name_as_origin() {
     let folder = temporary_folder("archive");

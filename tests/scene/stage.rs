@@ -40,7 +40,7 @@ fn walker_with_larger_source() -> (Library, ViewerState) {
 fn doubled(asset: &Asset) -> Asset {
     let skeleton = &asset.skeleton;
     let joints = skeleton.joints().map(|joint| {
-        let rest = skeleton.rest().locals[joint.get()];
+        let rest = skeleton.rest().local(joint);
         Joint {
             name: skeleton.name(joint).to_owned(),
             parent: skeleton.parent(joint).map(|parent| parent.get()),

@@ -1,17 +1,14 @@
-//! Real model files for tests. They are not part of the repository.
+//! Where tests find real files. They are not part of the repository.
 
 use std::path::{Path, PathBuf};
 
-use gaitway::asset::Asset;
-use gaitway::formats::{FileSet, load};
-
-/// Returns the folder named by `GAITWAY_DATA`, or else `../shared/data`. Without it this prints `skipped: …` and
-/// returns none, so that the test passes; with `GAITWAY_REQUIRE_DATA=1` it panics instead.
+/// Returns the folder named by `GAITWAY_DATA`, or else `../shared/data` beside the repository. Without it this prints
+/// `skipped: …` and returns none, so that the test passes; with `GAITWAY_REQUIRE_DATA=1` it panics instead.
 #[allow(dead_code)]
 pub fn data_folder() -> Option<PathBuf> {
     let folder = match std::env::var_os("GAITWAY_DATA") {
         Some(folder) => PathBuf::from(folder),
-        None => Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data"),
+        None => repository().join("../shared/data"),
     };
     if folder.is_dir() {
         return Some(folder);
@@ -22,11 +19,9 @@ pub fn data_folder() -> Option<PathBuf> {
     None
 }
 
-/// Loads one of the files.
+/// The package whose tests these are may lie in a folder of the repository.
 #[allow(dead_code)]
-pub fn read(folder: &Path, name: &str) -> Asset {
-    let mut files = FileSet::default();
-    let bytes = std::fs::read(folder.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
-    files.insert(name.rsplit('/').next().unwrap(), bytes);
-    load(&files).unwrap_or_else(|error| panic!("{name}: {error}"))
+fn repository() -> &'static Path {
+    let package = Path::new(env!("CARGO_MANIFEST_DIR"));
+    package.ancestors().find(|folder| folder.join("Cargo.lock").is_file()).unwrap_or(package)
 }

@@ -119,14 +119,16 @@ pub struct Outcome {
 
 /// The columns of `docs/retargeting-pairs.tsv` after model and motion, with their decimal places.
 #[allow(dead_code)]
-pub const COLUMNS: [(&str, usize); 11] = [
+pub const COLUMNS: [(&str, usize); 13] = [
     ("joints", 0),
     ("coverage", 2),
     ("hips_scale", 3),
-    ("orientation_error_mean_deg", 3),
-    ("orientation_error_max_deg", 2),
     ("limb_direction_error_mean_deg", 2),
     ("limb_direction_error_max_deg", 1),
+    ("facing_error_mean_deg", 2),
+    ("facing_error_max_deg", 1),
+    ("orientation_error_mean_deg", 3),
+    ("orientation_error_max_deg", 2),
     ("foot_slide_m_per_s", 3),
     ("foot_slide_source_m_per_s", 3),
     ("foot_slide_planted_m_per_s", 3),
@@ -142,10 +144,12 @@ impl Outcome {
             Some(self.mapped as f64),
             figures.coverage,
             self.hips_scale,
-            figures.orientation_error_degrees_mean,
-            figures.orientation_error_degrees_max,
             figures.limb_direction_error_degrees_mean,
             figures.limb_direction_error_degrees_max,
+            figures.facing_error_degrees_mean,
+            figures.facing_error_degrees_max,
+            figures.orientation_error_degrees_mean,
+            figures.orientation_error_degrees_max,
             figures.foot_slide_metres_per_sec,
             figures.foot_slide_source_metres_per_sec,
             self.planted.as_ref().and_then(|planted| planted.foot_slide_metres_per_sec),

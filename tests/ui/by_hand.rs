@@ -4,7 +4,7 @@ use egui::{PointerButton, Pos2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use gaitway::state::{ClipChoice, Command, Inspect, Show};
-use gaitway::ui::{Saved, Tab, UiAction, text};
+use gaitway::ui::{RecordingProgress, Saved, Tab, UiAction, VideoSettings, text};
 
 use crate::bench::{Bench, NARROW, WIDE, drag, motion_bench, press, press_key, sample_bench};
 
@@ -136,24 +136,29 @@ fn modes_are_compared_by_a_switch() {
 fn pictures_and_videos_are_asked_for() {
     let mut harness = sample_bench(WIDE);
     press(&mut harness, Tab::View.label());
-    for label in [text::SQUARE, text::TRANSPARENT_BACKGROUND, text::SAVE_IMAGE, text::RECORD] {
+    let rate = format!("{}: {}", text::FRAME_RATE, text::frames_per_sec(60));
+    for label in [text::SQUARE, text::TRANSPARENT_BACKGROUND, text::SAVE_IMAGE, &rate, text::RECORD] {
         harness.get_by_label(label).scroll_to_me();
         harness.run();
         press(&mut harness, label);
     }
     let picture = Saved::Picture { size: [1080, 1080], transparent: true };
-    assert_eq!(harness.state().actions, [UiAction::Save(picture), UiAction::Record]);
+    let video = VideoSettings { size: [1080, 1080], frames_per_sec: 60, transparent: true };
+    assert_eq!(harness.state().actions, [UiAction::Save(picture), UiAction::Record(video)]);
 }
 
 #[test]
-fn a_recording_shows_the_picture_alone_and_escape_ends_it() {
+fn a_recording_shows_its_progress_and_can_only_be_cancelled() {
     let mut harness = sample_bench(WIDE);
-    harness.state_mut().panels.host.is_recording = true;
+    harness.state_mut().panels.host.recording = Some(RecordingProgress { frames_done: 12, frame_count: 60 });
     harness.run();
-    assert_eq!(harness.state().viewport.size(), vec2(WIDE[0], WIDE[1]));
-    assert!(harness.query_by_label(text::OPEN).is_none());
+    assert!(harness.query_by_label(&text::frames_done(12, 60)).is_some());
+    assert_eq!(press_key(&mut harness, egui::Key::Space), [], "no shortcuts");
+    assert_eq!(press(&mut harness, text::PLAY), [], "the controls are covered");
+    assert_eq!(harness.state().actions, []);
     press_key(&mut harness, egui::Key::Escape);
-    assert_eq!(harness.state().actions, [UiAction::StopRecording]);
+    press(&mut harness, text::CANCEL);
+    assert_eq!(harness.state().actions, [UiAction::CancelRecording, UiAction::CancelRecording]);
 }
 
 #[test]
@@ -168,7 +173,7 @@ fn the_motion_tab_tells_the_fit_and_puts_the_source_on_the_stage() {
     }
     press(&mut harness, "Fit");
     press(&mut harness, "Walk (2)");
-    assert!(harness.query_all_by_label_contains("Mean: 0.0").count() == 2, "a copy fits");
+    assert_eq!(harness.query_all_by_label_contains("Mean: 0.0").count(), 3, "a copy fits: limbs, facing, rotations");
     assert!(harness.query_by_label("Mapped: 100 %").is_some());
     press(&mut harness, "Files");
     harness.get_by_label(text::SHOW_SOURCE).scroll_to_me();

@@ -2,11 +2,15 @@
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use gaitway::anim::{ClipBuilder, Interpolation, Keys, Transform};
+use gaitway::asset::{Asset, AssetParts};
 use gaitway::editor::Export;
 use gaitway::library::{Library, Model, Motion};
 use gaitway::retarget::{ClipRef, Feet, JointMap, Keep, MutedProperty, RestChoice, RootOptions, RootPart, Unmapped};
+use gaitway::samples;
 use gaitway::state::{ClipChoice, Command, MapEdit, active_map, muted_properties};
 use gaitway::ui::{PathPrompt, PathPurpose, Saved, Tab, UiAction, text};
+use glam::{Quat, Vec3};
 
 use crate::allocations::allocations_after;
 use crate::bench::{Bench, NARROW, WIDE, bench_of, drag, motion_bench, press, press_key, sample_bench};
@@ -688,4 +692,43 @@ fn everything_fits_on_a_narrow_screen() {
         harness.run();
         fits(&harness, screen, &["Nothing", "Cancel", "Name or number of a joint of the motion"]);
     }
+}
+
+/// A body in mid-stride that only nods.
+fn striding() -> Asset {
+    let at = |x, y, z| Transform::from_translation(Vec3::new(x, y, z));
+    let joints = [
+        ("Hips", None, at(0.0, 1.0, 0.0)),
+        ("Spine", Some(0), at(0.0, 0.2, 0.0)),
+        ("Neck", Some(1), at(0.0, 0.3, 0.0)),
+        ("Head", Some(2), at(0.0, 0.1, 0.0)),
+        ("LeftUpLeg", Some(0), at(0.1, 0.0, 0.0)),
+        ("LeftLeg", Some(4), at(0.0, -0.3, 0.3)),
+        ("LeftFoot", Some(5), at(0.0, -0.3, 0.3)),
+        ("RightUpLeg", Some(0), at(-0.1, 0.0, 0.0)),
+        ("RightLeg", Some(7), at(0.0, -0.3, -0.3)),
+        ("RightFoot", Some(8), at(0.0, -0.3, -0.3)),
+    ];
+    let joints = joints.map(|(name, parent, rest)| skeletons::joint(name, parent, rest));
+    let parts = skeletons::asset(joints.to_vec()).into_parts();
+    let mut clip = ClipBuilder::new("nod", &parts.skeleton);
+    let keys = Keys::Rotation(vec![Quat::IDENTITY, Quat::from_rotation_x(0.3)]);
+    let head = parts.skeleton.find("Head").expect("it is there");
+    clip.channel(head, Interpolation::Linear, &[0.0, 1.0], keys).expect("a valid channel");
+    let clips = vec![clip.build()];
+    Asset::new(AssetParts { clips, ..parts }).expect("a valid asset")
+}
+
+#[test]
+fn a_rest_in_motion_is_remarked_until_one_is_chosen() {
+    let mut library = Library::default();
+    library.add(samples::load("walker").expect("the sample is there"));
+    library.set_motions(vec![Motion::new("stride.glb".to_owned(), striding().into())]);
+    let mut harness = bench_of(WIDE, library);
+    press(&mut harness, Tab::Motion.label());
+    assert!(harness.query_by_label(text::DOUBTFUL_REST).is_some());
+    press(&mut harness, "Options");
+    reach(&mut harness, "Rest pose of the motion");
+    press(&mut harness, "As the file's nodes stand");
+    assert!(harness.query_by_label(text::DOUBTFUL_REST).is_none());
 }

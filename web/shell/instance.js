@@ -15,7 +15,7 @@ import { showOpenDialog } from "./open-dialog.js";
 import { panel, sayProblem, showCannotRun, showPanel, showProgress } from "./panels.js";
 import { arePrivate } from "./privacy.js";
 import { backendsToTry, loadProgram, programFiles } from "./program.js";
-import { download, startRecording, stopRecording } from "./recording.js";
+import { cancelRecording, download, record } from "./recording.js";
 import { session } from "./session.js";
 import { share } from "./share.js";
 
@@ -178,8 +178,8 @@ function callsFor(bindings) {
     choose: showOpenDialog,
     gallery: showGallery,
     save: download,
-    startRecording,
-    stopRecording,
+    record: (name, width, height, framesPerSec, frameCount, isTransparent) => record(name, { width, height, framesPerSec, frameCount, isTransparent, frame: bindings.video_frame }),
+    cancelRecording,
     share,
     progress: showProgress,
     changed: (link) => isCurrent() && viewChanged(link),
@@ -215,7 +215,7 @@ function stopped(message) {
 
 /** @param {Bindings | null} instance */
 function end(instance) {
-  stopRecording();
+  cancelRecording();
   if (session.app === instance) session.app = null;
   if (current === instance) current = null;
   try {

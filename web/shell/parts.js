@@ -1,5 +1,6 @@
-// Parts of Gaitway that few files need: WebAssembly modules that convert something into plain glTF (parts/ in the sources). The
-// program downloads one when a file needs it; here it runs, in a worker that ends with the conversion.
+// Parts of Gaitway that few visits need. Most are WebAssembly modules that convert something into plain glTF (parts/ in the
+// sources): the program downloads one when a file needs it; here it runs, in a worker that ends with the conversion. One is a
+// script that encodes videos (recording.js).
 import { keepOffline } from "./offline.js";
 
 const meta = /** @type {HTMLMetaElement | null} */ (document.querySelector('meta[name="gaitway-parts"]'));
@@ -10,6 +11,10 @@ const meta = /** @type {HTMLMetaElement | null} */ (document.querySelector('meta
 const files = JSON.parse(meta?.content ?? "{}");
 
 const MAX_SECS = 60;
+/** The first byte of an answer other than an error. */
+const CONVERTED = 1;
+/** That byte and the length of the warnings. */
+const HEADER_BYTES = 5;
 
 /**
  * The whole script of a worker, so it uses nothing from outside. See parts/part/src/lib.rs for the module's exports.
@@ -30,7 +35,21 @@ export const parts = {
   url: (name) => files[name],
 
   /**
-   * Returns the module's answer.
+   * Downloads a part, runs it and returns the data of its answer. Rejects with what the part says otherwise.
+   * @param {string} name
+   * @param {Uint8Array<ArrayBuffer>} input
+   */
+  async convert(name, input) {
+    const response = await fetch(new URL(files[name] ?? name, document.baseURI));
+    if (!response.ok) throw new Error(`${response.url}: the server answered ${response.status}`);
+    const answer = await parts.run(name, new Uint8Array(await response.arrayBuffer()), input);
+    if (answer[0] !== CONVERTED) throw new Error(new TextDecoder().decode(answer.subarray(1)));
+    const warnings = new DataView(answer.buffer, answer.byteOffset).getUint32(1, true);
+    return answer.subarray(HEADER_BYTES + warnings);
+  },
+
+  /**
+   * Returns the module's answer, encoded as in parts/part/src/lib.rs.
    * @param {string} name
    * @param {Uint8Array<ArrayBuffer>} module
    * @param {Uint8Array<ArrayBuffer>} input

@@ -1,44 +1,46 @@
-// Files for the user to keep: downloads, and videos of the canvas.
-import { canvas } from "./dom.js";
+// Files for the user to keep: downloads, and videos, for which a part is downloaded that encodes them.
+import { messageOf } from "./dom.js";
+import { keepOffline } from "./offline.js";
+import { parts } from "./parts.js";
 
-const TYPES = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm"];
-const BITS_PER_SECOND = 12_000_000;
 /** Time for the browser to start reading a download. */
 const DOWNLOAD_TIMEOUT_MS = 10_000;
 
-/** @type {MediaRecorder | null} */
-let recorder = null;
+/** Ends the recording that is under way. */
+let recording = new AbortController();
 
-/** Starts recording the canvas; returns false if the browser can't. */
-export function startRecording() {
-  const mimeType = typeof MediaRecorder === "undefined" ? undefined : TYPES.find((type) => MediaRecorder.isTypeSupported(type));
-  const stream = mimeType === undefined ? undefined : canvas()?.captureStream?.();
-  if (stream === undefined) return false;
-  try {
-    recorder = new MediaRecorder(stream, { mimeType, videoBitsPerSecond: BITS_PER_SECOND });
-    recorder.start();
-  } catch {
-    recorder = null;
-  }
-  return recorder !== null;
-}
+export const cancelRecording = () => recording.abort();
 
 /**
- * Ends the recording and saves it; without a name it is discarded.
- * @param {string} [name]
+ * Records a video and downloads it. Resolves to its file name; to nothing if cancelled.
+ * @param {string} name
+ * @param {Omit<import("../video.js").Video, "signal">} video
  */
-export function stopRecording(name) {
-  const ended = recorder;
-  recorder = null;
-  if (ended === null) return;
-  /** @type {Blob[]} */
-  const parts = [];
-  ended.ondataavailable = ({ data }) => parts.push(data);
-  ended.onstop = () => {
-    ended.stream.getTracks().forEach((track) => track.stop());
-    if (name !== undefined && name !== null) download(name, new Blob(parts));
-  };
-  ended.stop();
+export async function record(name, video) {
+  cancelRecording();
+  const { signal } = (recording = new AbortController());
+  /** @type {Promise<undefined>} */
+  const cancelled = new Promise((resolve) => signal.addEventListener("abort", () => resolve(undefined)));
+  // Whatever hangs can be cancelled.
+  const encoded = await Promise.race([encode({ ...video, signal }), cancelled]);
+  if (encoded === undefined || signal.aborted) return undefined;
+  const file = `${name}.${encoded.extension}`;
+  download(file, encoded.blob);
+  return file;
+}
+
+/** @param {import("../video.js").Video} video */
+async function encode(video) {
+  const file = parts.url("video") ?? "";
+  /** @type {typeof import("../video.js")} */
+  let part;
+  try {
+    part = await import(new URL(file, document.baseURI).href);
+  } catch (error) {
+    throw new Error(`the encoder can't be loaded. Check the connection and try again. (${messageOf(error)})`, { cause: error });
+  }
+  keepOffline([file]);
+  return part.encode(video);
 }
 
 /**

@@ -1,7 +1,8 @@
 // The share dialog: the link to copy, as a QR code, and as HTML that embeds it in another page.
-import { byId, button, dialog, field, showList } from "./dom.js";
+import { byId, button, dialog, field, messageOf, showList } from "./dom.js";
 import { companionsOf, localFiles, shareableLink } from "./held.js";
 import { embeddedLink } from "./links.js";
+import { parts } from "./parts.js";
 import { session } from "./session.js";
 
 /** Companions of a file that are listed by name. */
@@ -25,7 +26,7 @@ export function share(link) {
   field("share-frame").value = frameHtml(`${page.href}#${embeddedLink(shareableLink(link))}`);
   // A phone that scans the code hardly has the files, and there is no room for both.
   byId("share-code", HTMLDetailsElement).open = local.length === 0;
-  showCode(address, session.app.qr(address));
+  showCode(address);
   byId("share-said").textContent = "";
   if (!dialog("share").open) dialog("share").showModal();
   copy("share-link", "Link copied.", "");
@@ -46,13 +47,16 @@ function frameHtml(address) {
   return `<iframe src="${escaped}" title="Gaitway" width="640" height="480" style="border: 0"></iframe>`;
 }
 
-/**
- * @param {string} address
- * @param {string | undefined} code
- */
-function showCode(address, code) {
+/** @param {string} address */
+async function showCode(address) {
+  const { code, problem } = await parts.convert("qr", new TextEncoder().encode(address)).then(
+    (bytes) => ({ code: new TextDecoder().decode(bytes), problem: "" }),
+    (error) => ({ code: undefined, problem: messageOf(error) }),
+  );
+  // Another link may be shown by now.
+  if (field("share-link").value !== address) return;
   byId("share-no-qr").hidden = code !== undefined;
-  byId("share-no-qr").textContent = `This link has ${address.length} characters, too many for a QR code that a camera can read.`;
+  byId("share-no-qr").textContent = `This link has no QR code: ${problem}.`;
   byId("share-qr").replaceChildren(...(code === undefined ? [] : [codeImage(code)]));
   byId("share-qr").hidden = code === undefined;
 }

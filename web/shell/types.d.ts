@@ -33,8 +33,8 @@ export interface ShellCalls {
   choose(role: "any" | "motion"): void;
   gallery(): void;
   save(name: string, bytes: Uint8Array<ArrayBuffer>): void;
-  startRecording(): boolean;
-  stopRecording(name?: string): void;
+  record(name: string, width: number, height: number, framesPerSec: number, frameCount: number, isTransparent: boolean): Promise<string | undefined>;
+  cancelRecording(): void;
   share(link: string): void;
   progress(name: string, received: number, total: number): void;
   changed(link: string): void;
@@ -61,12 +61,12 @@ export interface Bindings {
   close_placeholder(): void;
   refuse(problem: string): void;
   is_private(): boolean;
-  qr(text: string): string | undefined;
   state(): string;
   pose(): string;
   stats(): string;
   summary(): string;
   screenshot(): Promise<Uint8Array<ArrayBuffer>>;
+  video_frame(index: number): Promise<Uint8Array<ArrayBuffer>>;
   linked_files(link: string): string;
   shown_files(link: string): string;
   public_link(link: string, local: string[]): string;
@@ -137,6 +137,7 @@ export interface Gaitway {
   /** For the program: see parts.js. */
   parts: {
     url(name: string): string | undefined;
+    convert(name: string, input: Uint8Array<ArrayBuffer>): Promise<Uint8Array>;
     run(name: string, module: Uint8Array<ArrayBuffer>, input: Uint8Array<ArrayBuffer>): Promise<Uint8Array>;
   };
   /** Resolves once the first image is on screen; a new promise after each restart. */

@@ -52,9 +52,12 @@ const text = (file) => fs.readFileSync(file, "utf8");
 /** @type {(file: string, options: import("esbuild").TransformOptions) => Promise<string>} */
 const minified = async (file, options) => (await transform(text(file), { minify: true, ...options })).code;
 
-/** Bundles the page's modules into one file, so that they take one request. */
-async function bundledShell() {
-  const { outputFiles } = await build({ entryPoints: ["web/shell.js"], bundle: true, format: "esm", minify: true, target: TARGET, write: false, logLevel: "warning" });
+/**
+ * Bundles modules into one file, so that they take one request.
+ * @param {string} entry
+ */
+async function bundled(entry) {
+  const { outputFiles } = await build({ entryPoints: [entry], bundle: true, format: "esm", minify: true, target: TARGET, write: false, logLevel: "warning" });
   return outputFiles[0].text;
 }
 
@@ -77,7 +80,7 @@ function putParts() {
 
 fs.rmSync(dist, { recursive: true, force: true });
 const [webgpu, webgl2] = await Promise.all(["webgpu", "webgl2"].map(putProgram));
-const parts = putParts();
+const parts = { ...putParts(), video: put("parts", "video", ".js", await bundled("web/video.js")) };
 const samples = readSamples();
 const scenes = readScenes(samples);
 const addresses = Object.fromEntries(
@@ -141,7 +144,7 @@ const index = path.join(dist, "index.html");
 let html = text("web/index.html");
 html = replaced(html, 'href="icon.svg"', `href="${put("", "icon", ".svg", icon)}"`);
 html = replaced(html, 'href="shell.css"', `href="${put("", "shell", ".css", await minified("web/shell.css", { loader: "css" }))}"`);
-html = replaced(html, 'src="shell.js"', `src="${put("", "shell", ".js", await bundledShell())}"`);
+html = replaced(html, 'src="shell.js"', `src="${put("", "shell", ".js", await bundled("web/shell.js"))}"`);
 html = replaced(html, 'src="still.js"', `src="${put("", "still", ".js", await minified("web/still.js", { target: TARGET }))}"`);
 html = replaced(html, "<!-- scenes -->", cards.join("\n        "));
 // Of several scenes with one model the first, which is the plainest.
@@ -153,7 +156,7 @@ html = replaced(html, "<title>", `${head.join("\n    ")}\n    <title>`);
 const files = fs
   .readdirSync(dist, { recursive: true, encoding: "utf8" })
   .map((file) => file.split(path.sep).join("/"))
-  .filter((file) => fs.statSync(path.join(dist, file)).isFile() && file !== previewFile && !file.endsWith(".wasm") && ![webgpu.script, webgl2.script].includes(file))
+  .filter((file) => fs.statSync(path.join(dist, file)).isFile() && file !== previewFile && !file.startsWith("parts/") && !file.endsWith(".wasm") && ![webgpu.script, webgl2.script].includes(file))
   .sort();
 const version = hashOf(html, files.join("\n"), fs.readFileSync(path.join(dist, "manifest.webmanifest")), fs.readFileSync("web/sw.js"));
 fs.writeFileSync(index, replaced(html, "<title>", `<meta name="gaitway-version" content="${version}">\n    <title>`));

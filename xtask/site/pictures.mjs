@@ -9,7 +9,7 @@ import { linkOf, samplesOf } from "./samples.mjs";
 /** @typedef {import("./samples.mjs").LinkParts} LinkParts */
 
 const TARGET = process.env.CARGO_TARGET_DIR ?? "target";
-const CODE = ["shaders", ...["anim", "mesh", "asset", "formats", "retarget", "library", "samples", "state", "frame", "render", "files", "editor", "cli"].map((module) => `src/${module}`)];
+const CODE = ["shaders", "crates/core/src", ...["asset", "formats", "retarget", "library", "samples", "state", "frame", "render", "files", "editor", "cli"].map((module) => `src/${module}`)];
 
 function codeHash() {
   const hash = crypto.createHash("sha256");
@@ -39,12 +39,8 @@ export function renderScenes(wanted, samples) {
   const missing = images.filter(({ file }) => !fs.existsSync(file));
   if (missing.length > 0) run("cargo", ["build", "--release"]);
   const program = path.join(TARGET, "release", process.platform === "win32" ? "gaitway.exe" : "gaitway");
-  for (const { scene, link, file } of missing) {
-    // An interrupted run must not leave something that looks like an image.
-    const unfinished = `${file}.part`;
-    run(program, ["render", scene.model, "--view", link, "--size", scene.size, "--out", unfinished]);
-    fs.renameSync(unfinished, file);
-  }
+  for (const { scene, link, file } of missing)
+    run(program, ["render", scene.model, "--view", link, "--size", scene.size, "--out", file]);
   return images.map(({ file }) => file);
 }
 

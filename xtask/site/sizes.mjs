@@ -38,6 +38,10 @@ for (const file of fs.readdirSync(folder, { recursive: true, encoding: "utf8" })
 }
 for (const [part, size] of Object.entries(parts)) line(`all: ${part}`, size);
 for (const [part, budget] of Object.entries(BUDGETS)) {
+  if (parts[part] === undefined) {
+    console.log(`${part}: not built`);
+    continue;
+  }
   const isProgram = !part.includes("/");
   const brotli = (isProgram ? parts.shell.brotli : 0) + parts[part].brotli;
   console.log(`${isProgram ? "the page with " : ""}${part}: ${brotli.toLocaleString("en")} bytes with brotli`);

@@ -7,11 +7,12 @@ use std::thread;
 use anyhow::{Context, anyhow};
 
 use crate::process::{repository, run, target_folder};
+use crate::setup;
 
 const BACK_ENDS: [&str; 2] = ["webgpu", "webgl2"];
 
 /// The packages in parts/ that are modules of their own.
-const PARTS: [&str; 2] = ["draco", "meshopt"];
+const PARTS: [&str; 4] = ["draco", "fbx", "meshopt", "qr"];
 
 /// Limit on a part's memory. A damaged file must not take all of a tab's.
 const MAX_PART_MEMORY: &str = "link-arg=--max-memory=2147483648";
@@ -84,12 +85,19 @@ fn wasm_opt(from: &Path, to: &Path) -> anyhow::Result<()> {
 }
 
 fn build_part(part: &str) -> anyhow::Result<()> {
+    let folder = programs().join("parts");
+    fs::create_dir_all(&folder)?;
+    let wasm = folder.join(format!("{part}.wasm"));
+    if part == "fbx" && !setup::has_clang() {
+        eprintln!("clang is missing, so this page will not open FBX files");
+        // One of an earlier build.
+        let _ = fs::remove_file(wasm);
+        return Ok(());
+    }
     let package = format!("gaitway-{part}");
     let cargo = [&["rustc", "--package", &package, "--bin", &package], &FOR_THE_PAGE[..]].concat();
     run("cargo", &[&cargo[..], &["--", "-C", MAX_PART_MEMORY]].concat())?;
-    let folder = programs().join("parts");
-    fs::create_dir_all(&folder)?;
-    wasm_opt(&compiled(&package), &folder.join(format!("{part}.wasm")))
+    wasm_opt(&compiled(&package), &wasm)
 }
 
 fn compiled(program: &str) -> PathBuf {

@@ -19,7 +19,12 @@ pub fn page() -> anyhow::Result<()> {
     npm_packages()
 }
 
-/// What the tests need on top of [`page`]: a browser and a software Vulkan driver. These are system packages, so they
+/// Whether there is a C compiler for wasm, which the page's FBX reader needs.
+pub fn has_clang() -> bool {
+    output("clang", &["--version"]).is_some()
+}
+
+/// What the tests need on top of [`page`]: a browser, a software Vulkan driver and clang. These are system packages, so they
 /// are installed only on a CI machine; anyone else is told the command.
 pub fn tests() -> anyhow::Result<()> {
     let missing = missing_packages();
@@ -45,6 +50,9 @@ fn missing_packages() -> Vec<&'static str> {
         missing.push("chromium");
     }
     if cfg!(target_os = "linux") {
+        if !has_clang() {
+            missing.push("clang");
+        }
         if !has_vulkan_driver() {
             missing.push("mesa-vulkan-drivers");
         }

@@ -31,6 +31,8 @@ fn cargo_checks() -> anyhow::Result<()> {
     let wasm = ["clippy", "--target", "wasm32-unknown-unknown", "--features", "bench,webgpu,webgl2"];
     process::run("cargo", &[&wasm[..], &["--", "-D", "warnings"]].concat())?;
     run_with("cargo", &["doc", "--no-deps"], &[("RUSTDOCFLAGS", "-D warnings")])?;
+    // Only `cargo fuzz` runs them; the tests below feed the same readers for a moment.
+    process::run("cargo", &["check", "--manifest-path", "fuzz/Cargo.toml"])?;
     process::run("cargo", &["test", "--no-default-features"])?;
     process::run("cargo", &["test", "--workspace"])?;
     process::run("cargo", &["build", "--release"])

@@ -1,11 +1,11 @@
 //! A *part* of Gaitway converts something that few files contain into plain glTF. Natively it is a crate like any other; on the
-//! page it is a WebAssembly module of its own, downloaded when a file needs it and run in a worker (`web/part-worker.js`), so
+//! page it is a WebAssembly module of its own, downloaded when a file needs it and run in a worker (`web/shell/parts.js`), so
 //! that it can be stopped, and so that a trap ends nothing but the conversion.
 //!
 //! A part is one function from bytes to an [`Answer`]. [`module!`] exports it: the caller writes the input to where `input(length)`
 //! points, calls `run()` and finds the encoded answer at `output()`, `output_length()` bytes of it.
 
-use std::sync::Mutex;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// What a part returns.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -26,13 +26,24 @@ const CONVERTED: u8 = 1;
 /// Encodes an answer as one of its kind, then a message; or then the length of the warnings (u32, little-endian), the warnings
 /// with a zero after each, and the data.
 pub fn encode(answer: Answer) -> Vec<u8> {
+    let mut encoded = Vec::new();
     match answer {
-        Err(message) => [&[FAILED], message.as_bytes()].concat(),
+        Err(message) => {
+            encoded.push(FAILED);
+            encoded.extend_from_slice(message.as_bytes());
+        }
         Ok(Output { bytes, warnings }) => {
-            let warnings: Vec<u8> = warnings.iter().flat_map(|warning| [warning.as_bytes(), &[0]].concat()).collect();
-            [&[CONVERTED][..], &(warnings.len() as u32).to_le_bytes(), &warnings, &bytes].concat()
+            encoded.push(CONVERTED);
+            let length: usize = warnings.iter().map(|warning| warning.len() + 1).sum();
+            encoded.extend_from_slice(&(length as u32).to_le_bytes());
+            for warning in &warnings {
+                encoded.extend_from_slice(warning.as_bytes());
+                encoded.push(0);
+            }
+            encoded.extend_from_slice(&bytes);
         }
     }
+    encoded
 }
 
 /// Decodes what [`encode`] wrote.
@@ -56,6 +67,10 @@ pub struct Exchange {
     output: Mutex<Vec<u8>>,
 }
 
+fn locked(bytes: &Mutex<Vec<u8>>) -> MutexGuard<'_, Vec<u8>> {
+    bytes.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 impl Exchange {
     /// Creates empty memory.
     pub const fn new() -> Self {
@@ -64,20 +79,19 @@ impl Exchange {
 
     /// Makes room for `length` bytes of input and returns where they belong.
     pub fn input(&self, length: usize) -> *mut u8 {
-        let mut input = self.input.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        let mut input = locked(&self.input);
         input.resize(length, 0);
         input.as_mut_ptr()
     }
 
     /// Converts the input.
     pub fn run(&self, convert: fn(&[u8]) -> Answer) {
-        let input = std::mem::take(&mut *self.input.lock().unwrap_or_else(|poisoned| poisoned.into_inner()));
-        *self.output.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = encode(convert(&input));
+        *locked(&self.output) = encode(convert(&locked(&self.input)));
     }
 
     /// Returns where the encoded answer is, and its length in bytes.
     pub fn output(&self) -> (*const u8, usize) {
-        let output = self.output.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        let output = locked(&self.output);
         (output.as_ptr(), output.len())
     }
 }

@@ -5,7 +5,7 @@ use wasm_bindgen::{JsCast, JsValue};
 use wasm_bindgen_futures::JsFuture;
 
 use crate::asset::{Asset, Image};
-use crate::files::images::{MAX_BYTES, MAX_EDGE, byte_count, fitted, push_decoded};
+use crate::files::images::{fitted, largest_edge, push_decoded};
 use crate::library::ImageData;
 
 /// An image being decoded, or why it cannot be. Dropping it is fine.
@@ -18,8 +18,8 @@ pub struct Started {
 }
 
 pub fn start(images: &[Image]) -> Vec<Decoding> {
-    let mut bytes_left = MAX_BYTES;
-    images.iter().map(|image| start_one(image, &mut bytes_left)).collect()
+    let largest_edge = largest_edge(images);
+    images.iter().map(|image| start_one(image, largest_edge)).collect()
 }
 
 /// Returns one entry per image; `None` for one that cannot be decoded, for which a warning is added.
@@ -35,20 +35,18 @@ pub async fn finish(decoding: Vec<Decoding>, asset: &mut Asset) -> Vec<Option<Im
     decoded
 }
 
-/// Checks the size in the header first, since the browser would use any amount of memory.
-fn start_one(image: &Image, bytes_left: &mut u64) -> Decoding {
-    let size = [image.width, image.height];
-    let bytes = byte_count(size);
-    if bytes == 0 || image.width.max(image.height) > MAX_EDGE || bytes > *bytes_left {
-        return Err(format!("{} × {} pixels", image.width, image.height));
+/// The loader has checked the size in the header: the browser would use any amount of memory.
+fn start_one(image: &Image, largest_edge: u32) -> Decoding {
+    if image.bytes.is_empty() {
+        return Err("it has no data".to_owned());
     }
-    *bytes_left -= bytes;
+    let size = [image.width, image.height];
     let parts = Array::of1(&Uint8Array::from(&image.bytes[..]));
     let blob = web_sys::Blob::new_with_u8_array_sequence(&parts).map_err(undecodable)?;
     let options = web_sys::ImageBitmapOptions::new();
     options.set_premultiply_alpha(web_sys::PremultiplyAlpha::None);
     options.set_color_space_conversion(web_sys::ColorSpaceConversion::None);
-    let fitted = fitted(image.width, image.height);
+    let fitted = fitted(image.width, image.height, largest_edge);
     if let Some([width, height]) = fitted {
         options.set_resize_width(width);
         options.set_resize_height(height);

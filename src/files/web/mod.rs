@@ -44,8 +44,6 @@ impl Source for Web {
     type Base = String;
     type Decoding = Vec<images::Decoding>;
 
-    const MAX_BYTES: u64 = 1 << 30;
-
     fn locate(&self, address: &OsStr) -> Result<Located<String, String>, OpenError> {
         let address = address.to_string_lossy().into_owned();
         let url = absolute(&address, None).ok_or_else(|| OpenError::InvalidUrl { url: address.clone() })?;

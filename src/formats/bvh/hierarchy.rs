@@ -5,6 +5,7 @@ use glam::DVec3;
 
 use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
+use crate::formats::limits::{Budget, Limit};
 use crate::formats::lines::{Lines, number, quoted, text};
 
 /// Generous: six are usual, and some programs also write scales.
@@ -51,15 +52,19 @@ enum Open {
 
 impl Hierarchy {
     /// Reads up to the word MOTION, which is left for the next reader, or to the end of the file.
-    pub fn read(lines: &mut Lines, warnings: &mut Warnings) -> Result<Self, Problem> {
+    pub fn read(lines: &mut Lines, budget: &Budget, warnings: &mut Warnings) -> Result<Self, Problem> {
         let first = lines.word();
         if !first.is_some_and(|word| is(word, "HIERARCHY")) {
             return Err(Problem::new(lines.place(), "HIERARCHY, the first word of a BVH file", quoted(first)));
         }
         let mut hierarchy = Self::default();
         let mut open: Vec<Open> = Vec::new();
+        let mut nodes = 0;
         while lines.peek().is_some_and(|word| !is(word, "MOTION")) {
             hierarchy.statement(lines, &mut open, warnings)?;
+            let found = hierarchy.joints.len() + hierarchy.ends.len();
+            budget.spend(Limit::Nodes, found - nodes, &format_args!("line {}", lines.line))?;
+            nodes = found;
         }
         if let Some(open) = open.last() {
             let joint = match *open {

@@ -23,6 +23,7 @@ use crate::anim::{Clip, Joint, Skeleton, Transform};
 use crate::asset::{Asset, AssetParts, Warnings};
 use crate::formats::error::Problem;
 use crate::formats::file_set::file_stem;
+use crate::formats::limits::Budget;
 use crate::formats::lines::{self, Lines};
 use frame_of_reference::FrameOfReference;
 use hierarchy::Hierarchy;
@@ -39,14 +40,15 @@ pub(super) fn load(file: &str, bytes: &[u8], options: &LoadOptions) -> Result<As
 
 fn read(file: &str, bytes: &[u8], options: &LoadOptions) -> Result<Asset, Problem> {
     let mut warnings = Warnings::default();
+    let budget = Budget::default();
     let mut lines = Lines::new(bytes);
-    let hierarchy = Hierarchy::read(&mut lines, &mut warnings)?;
-    let motion = motion::read(&mut lines, &hierarchy, &mut warnings)?;
+    let hierarchy = Hierarchy::read(&mut lines, &budget, &mut warnings)?;
+    let motion = motion::read(&mut lines, &hierarchy, &budget, &mut warnings)?;
     let frame = FrameOfReference::find(&hierarchy, motion.as_ref(), options, &mut warnings);
     let skeleton = skeleton(&hierarchy, &frame)?;
     let clips: Vec<Clip> = match motion {
         Some(motion) => {
-            motion.into_clip(stem(file), &hierarchy, &frame, &skeleton, &mut warnings)?.into_iter().collect()
+            motion.into_clip(stem(file), &hierarchy, &frame, &skeleton, &budget, &mut warnings)?.into_iter().collect()
         }
         None => Vec::new(),
     };

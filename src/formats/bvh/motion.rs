@@ -9,10 +9,8 @@ use super::hierarchy::{Axis, BvhJoint, Channel, Hierarchy};
 use crate::anim::{Clip, ClipBuilder, Interpolation, Keys, Skeleton};
 use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
+use crate::formats::limits::Budget;
 use crate::formats::lines::{Lines, number, quoted, text};
-
-/// Limit on the numbers of all frames: 256 MiB, or some forty minutes of a body at 120 frames per second.
-const MAX_NUMBERS: usize = 1 << 25;
 
 pub struct Motion {
     pub frame_count: usize,
@@ -24,7 +22,12 @@ pub struct Motion {
 }
 
 /// Returns None if the file ends after its skeleton, or has no frame.
-pub fn read(lines: &mut Lines, hierarchy: &Hierarchy, warnings: &mut Warnings) -> Result<Option<Motion>, Problem> {
+pub fn read(
+    lines: &mut Lines,
+    hierarchy: &Hierarchy,
+    budget: &Budget,
+    warnings: &mut Warnings,
+) -> Result<Option<Motion>, Problem> {
     let mut warn = |line: usize, problem: String| {
         warnings.push(Warning::Other { code: "bvh-motion", place: format!("line {line}"), problem });
     };
@@ -33,7 +36,7 @@ pub fn read(lines: &mut Lines, hierarchy: &Hierarchy, warnings: &mut Warnings) -
         return Ok(None);
     }
     let Header { frame_secs, line, announced } = header(lines, &mut warn)?;
-    let numbers = frames(lines, hierarchy.channel_count, &mut warn)?;
+    let numbers = frames(lines, hierarchy.channel_count, budget, &mut warn)?;
     let frame_count = numbers.len().checked_div(hierarchy.channel_count).unwrap_or(0);
     match announced {
         Some(announced) if announced != frame_count as u64 && hierarchy.channel_count > 0 => {
@@ -89,7 +92,12 @@ fn value_of<'a>(line: &'a [u8], key: &str) -> Option<&'a [u8]> {
 
 /// Reads all numbers of all frames. A frame starts on a new line and may span several, so that a missing or surplus number is
 /// noticed where it occurs. An incomplete last frame is dropped.
-fn frames(lines: &mut Lines, channels: usize, warn: &mut impl FnMut(usize, String)) -> Result<Vec<f64>, Problem> {
+fn frames(
+    lines: &mut Lines,
+    channels: usize,
+    budget: &Budget,
+    warn: &mut impl FnMut(usize, String),
+) -> Result<Vec<f64>, Problem> {
     let mut numbers = Vec::new();
     let mut in_frame = 0;
     let mut began = lines.line;
@@ -99,6 +107,7 @@ fn frames(lines: &mut Lines, channels: usize, warn: &mut impl FnMut(usize, Strin
         }
         if in_frame == 0 {
             began = line;
+            budget.allocate(channels, size_of::<f64>(), &format_args!("line {line}"))?;
         }
         for word in words.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()) {
             if in_frame == channels {
@@ -110,9 +119,6 @@ fn frames(lines: &mut Lines, channels: usize, warn: &mut impl FnMut(usize, Strin
                 let place = format!("line {line}, number {}", in_frame + 1);
                 Problem::new(place, "a finite number", quoted(Some(word)))
             })?;
-            if numbers.len() == MAX_NUMBERS {
-                return Err(Problem::new(format!("line {line}"), format!("at most {MAX_NUMBERS} numbers"), "more"));
-            }
             numbers.push(value);
             in_frame += 1;
         }
@@ -141,6 +147,7 @@ impl Motion {
         hierarchy: &Hierarchy,
         reference: &FrameOfReference,
         skeleton: &Skeleton,
+        budget: &Budget,
         warnings: &mut Warnings,
     ) -> Result<Option<Clip>, Problem> {
         let times_secs: Vec<f32> = (0..self.frame_count).map(|frame| (frame as f64 * self.frame_secs) as f32).collect();
@@ -156,10 +163,13 @@ impl Motion {
                     Problem::new(format!("line {}", self.line), "usable key times", problem.to_string())
                 })
             };
+            let place = format_args!("line {}", self.line);
             if has(|channel| matches!(channel, Channel::Rotation(_))) {
+                budget.allocate(self.frame_count, size_of::<Quat>(), &place)?;
                 add(Keys::Rotation(self.rotations(joint, &channels, reference)))?;
             }
             if has(|channel| matches!(channel, Channel::Position(_))) {
+                budget.allocate(self.frame_count, size_of::<Vec3>(), &place)?;
                 match self.translations(index, joint, &channels, reference)? {
                     Some(keys) => add(Keys::Translation(keys))?,
                     None => {

@@ -1,7 +1,6 @@
 //! Typed views of buffer bytes (glTF 2.0 §3.6). Every range is checked before it is read, and all decoded data counts towards
-//! a budget, so that a small file cannot make us allocate a lot of memory.
+//! a [budget](Budget), so that a small file cannot make us allocate a lot of memory.
 
-use std::cell::Cell;
 use std::fmt::Display;
 use std::sync::Arc;
 
@@ -11,16 +10,14 @@ use gltf::json::validation::Checked;
 
 use super::document::{Document, size};
 use crate::formats::error::Problem;
-
-/// Limit on the decoded data of one file. A page has 4 GiB for everything.
-pub const BUDGET_BYTES: usize = if cfg!(target_pointer_width = "32") { 512 << 20 } else { 1 << 30 };
+use crate::formats::limits::Budget;
 
 /// The buffers of one file and the views into them.
 pub struct Accessors<'a> {
     pub document: &'a Document<'a>,
     /// One per buffer; None for a buffer without data (valid as long as nothing reads it).
     buffers: Vec<Option<Bytes<'a>>>,
-    spent_bytes: Cell<usize>,
+    pub budget: Budget,
 }
 
 pub enum Bytes<'a> {
@@ -78,26 +75,7 @@ fn to_u32(component: ComponentType, bytes: &[u8]) -> u32 {
 
 impl<'a> Accessors<'a> {
     pub fn new(document: &'a Document<'a>, buffers: Vec<Option<Bytes<'a>>>) -> Self {
-        Self { document, buffers, spent_bytes: Cell::new(0) }
-    }
-
-    /// Counts `count` items of `size` bytes towards the budget, before they are allocated.
-    pub fn charge(&self, count: usize, size: usize, place: &dyn Display) -> Result<(), Problem> {
-        let spent = count
-            .checked_mul(size)
-            .and_then(|bytes| bytes.checked_add(self.spent_bytes.get()))
-            .filter(|&bytes| bytes <= BUDGET_BYTES)
-            .ok_or_else(|| {
-                let expected = format!("at most {} MiB of data in all", BUDGET_BYTES >> 20);
-                Problem::new(place.to_string(), expected, format!("{count} more items of {size} bytes"))
-            })?;
-        self.spent_bytes.set(spent);
-        Ok(())
-    }
-
-    /// The rest of the budget.
-    pub fn bytes_left(&self) -> usize {
-        BUDGET_BYTES.saturating_sub(self.spent_bytes.get())
+        Self { document, buffers, budget: Budget::default() }
     }
 
     /// Returns the bytes of a buffer view, and its stride.
@@ -155,7 +133,7 @@ impl<'a> Accessors<'a> {
         }
         let element_size = component.size() * components;
         let count = size(accessor.count);
-        self.charge(count, components * 4, &place_here)?;
+        self.budget.allocate(count, components * 4, &place_here)?;
         let layout =
             |bytes, stride| Layout { bytes, stride, count, components, component, normalized: accessor.normalized };
         let Some(view) = accessor.buffer_view else { return Ok(layout(None, element_size)) };

@@ -9,7 +9,7 @@ use gltf::json::animation::{Interpolation as JsonInterpolation, Property};
 use gltf::json::validation::Checked;
 
 use super::accessor::{Accessors, get};
-use super::document::target_node;
+use super::document::{Document, present};
 use crate::anim::{Clip, ClipBuilder, Interpolation, Keys, Skeleton};
 use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
@@ -48,54 +48,105 @@ fn read_clip(
     times: &mut Times,
     warnings: &mut Warnings,
 ) -> Result<Clip, Problem> {
-    let document = accessors.document;
     let name = animation.name.as_deref().unwrap_or_default();
-    let mut builder = ClipBuilder::new(name, skeleton);
-    for (at, channel) in animation.channels.iter().enumerate() {
+    let mut reader = ClipReader { accessors, skeleton, index, animation, builder: ClipBuilder::new(name, skeleton) };
+    for at in 0..animation.channels.len() {
+        let Err(ignored) = reader.channel(at, times, warnings) else { continue };
+        let (place, problem) = match ignored {
+            Ignored::Silently => continue,
+            Ignored::Because(problem) => (format!("animations[{index}].channels[{at}]"), problem),
+            Ignored::Broken(Problem::Invalid { place, expected, found }) => {
+                (place, format!("expected {expected}, found {found}"))
+            }
+            // A limit on the whole model, or a file that is missing.
+            Ignored::Broken(problem) => return Err(problem),
+        };
+        warnings.push(Warning::ChannelIgnored { clip: name.to_owned(), place, problem });
+    }
+    Ok(reader.builder.build())
+}
+
+/// Why a channel is left out.
+enum Ignored {
+    /// It was reported before.
+    Silently,
+    Because(String),
+    Broken(Problem),
+}
+
+impl From<Problem> for Ignored {
+    fn from(problem: Problem) -> Self {
+        Self::Broken(problem)
+    }
+}
+
+struct ClipReader<'a> {
+    accessors: &'a Accessors<'a>,
+    skeleton: &'a Skeleton,
+    index: usize,
+    animation: &'a json::Animation,
+    builder: ClipBuilder<'a>,
+}
+
+impl ClipReader<'_> {
+    fn channel(&mut self, at: usize, times: &mut Times, warnings: &mut Warnings) -> Result<(), Ignored> {
+        let Self { accessors, skeleton, index, animation, .. } = *self;
+        let document = accessors.document;
+        let channel = &animation.channels[at];
         // Formatted only for a message: a file may have thousands of channels.
         let place = format_args!("animations[{index}].channels[{at}]");
-        let mut ignore = |problem: String| {
-            warnings.push(Warning::ChannelIgnored { clip: name.to_owned(), place: place.to_string(), problem });
-        };
-        let sampler_index = channel.sampler.value();
+        let sampler_index = present(channel.sampler).ok_or(Ignored::Silently)?;
         let sampler = get(&animation.samplers, sampler_index, &format_args!("{place}.sampler"), "samplers")?;
         let path = || document.quoted_at(&format!("{place}.target.path"));
         // A channel without a node belongs to an extension; none of those is supported.
-        let Some(node) = target_node(channel.target.node) else {
-            ignore(format!("its target {} is not a node's property", path()));
-            continue;
+        let Some(node) = present(channel.target.node) else {
+            return Err(Ignored::Because(format!("its target {} is not a node's property", path())));
         };
-        get(&document.root.nodes, node, &format_args!("{place}.target.node"), "nodes")?;
-        let Some(joint) = skeleton.joint_of_source(node) else { continue };
+        let target = get(&document.root.nodes, node, &format_args!("{place}.target.node"), "nodes")?;
+        let joint = skeleton.joint_of_source(node).ok_or(Ignored::Silently)?;
         let here = format_args!("animations[{index}].samplers[{sampler_index}]");
-        let Checked::Valid(interpolation) = sampler.interpolation else {
-            let here = format!("{here}.interpolation");
-            let found = document.quoted_at(&here);
-            return Err(Problem::new(here, "LINEAR, STEP or CUBICSPLINE", found));
+        let (Some(input), Some(output)) = (present(sampler.input), present(sampler.output)) else {
+            return Err(Ignored::Silently);
         };
         let Checked::Valid(property) = channel.target.path else {
-            ignore(format!("its path {} is not known", path()));
-            continue;
+            return Err(Ignored::Because(format!("its path {} is not known", path())));
         };
         let targets = skeleton.morph_range(joint).len();
         if property == Property::MorphTargetWeights && targets == 0 {
-            ignore("the node has no morph targets".to_owned());
-            continue;
+            return Err(Ignored::Because("the node has no morph targets".to_owned()));
         }
-        let keys = keys(accessors, property, sampler.output.value(), &format_args!("{here}.output"), targets)?;
-        let key_times = times.get(sampler.input.value(), &format_args!("{here}.input"))?;
-        builder
-            .channel(joint, interpolation_mode(interpolation), key_times, keys)
+        let keys = keys(accessors, property, output, &format_args!("{here}.output"), targets)?;
+        let key_times = times.get(input, &format_args!("{here}.input"))?;
+        let interpolation = interpolation_mode(document, sampler, &here, warnings);
+        self.builder
+            .channel(joint, interpolation, key_times, keys)
             .map_err(|problem| Problem::new(here.to_string(), "usable keys", problem))?;
+        if target.matrix.is_some() && property != Property::MorphTargetWeights {
+            let problem = format!(
+                "nodes[{node}] has a matrix, which must not be animated; its translation, rotation and scale are taken from it"
+            );
+            warnings.push(Warning::Other { code: "animated-matrix", place: place.to_string(), problem });
+        }
+        Ok(())
     }
-    Ok(builder.build())
 }
 
-fn interpolation_mode(interpolation: JsonInterpolation) -> Interpolation {
-    match interpolation {
-        JsonInterpolation::Linear => Interpolation::Linear,
-        JsonInterpolation::Step => Interpolation::Step,
-        JsonInterpolation::CubicSpline => Interpolation::CubicSpline,
+fn interpolation_mode(
+    document: &Document,
+    sampler: &json::animation::Sampler,
+    here: &dyn Display,
+    warnings: &mut Warnings,
+) -> Interpolation {
+    match sampler.interpolation {
+        Checked::Valid(JsonInterpolation::Linear) => Interpolation::Linear,
+        Checked::Valid(JsonInterpolation::Step) => Interpolation::Step,
+        Checked::Valid(JsonInterpolation::CubicSpline) => Interpolation::CubicSpline,
+        Checked::Invalid => {
+            let place = format!("{here}.interpolation");
+            let problem = format!("{} is not known; LINEAR is used", document.quoted_at(&place));
+            warnings.push(Warning::Other { code: "interpolation", place, problem });
+            Interpolation::Linear
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! The GLB container: a header of 12 bytes ("glTF", version, length), then chunks of (length, type, data). The first is JSON,
 //! an optional second is the binary buffer (glTF 2.0 §4.4).
 
+use crate::asset::{Warning, Warnings};
 use crate::formats::LoadError;
 
 /// JSON text and binary chunk of a file, which is a GLB or plain JSON.
@@ -8,6 +9,19 @@ pub struct Container<'a> {
     pub json: &'a [u8],
     pub binary: Option<&'a [u8]>,
     pub is_glb: bool,
+    /// First byte of the first chunk of a kind that came before.
+    repeated_chunk: Option<usize>,
+}
+
+impl Container<'_> {
+    /// Reports chunks that are not read.
+    pub fn warn(&self, warnings: &mut Warnings) {
+        if let Some(at) = self.repeated_chunk {
+            let (place, problem) =
+                (format!("GLB chunk at byte {at}"), "a second one of its kind; only the first is read");
+            warnings.push(Warning::Other { code: "repeated-chunk", place, problem: problem.to_owned() });
+        }
+    }
 }
 
 const JSON_CHUNK: u32 = 0x4E4F_534A;
@@ -24,7 +38,7 @@ pub fn open<'a>(file: &str, bytes: &'a [u8]) -> Result<Container<'a>, LoadError>
         return Err(invalid("the whole file", "a glTF", "nothing: it is empty".to_owned()));
     }
     if !bytes.starts_with(b"glTF") {
-        return Ok(Container { json: without_bom(bytes), binary: None, is_glb: false });
+        return Ok(Container { json: without_bom(bytes), binary: None, is_glb: false, repeated_chunk: None });
     }
     let word = |at: usize| {
         let four = bytes.get(at..at.checked_add(4)?)?;
@@ -41,7 +55,7 @@ pub fn open<'a>(file: &str, bytes: &'a [u8]) -> Result<Container<'a>, LoadError>
     if length > bytes.len() {
         return Err(invalid("GLB header", &format!("{length} bytes in all"), format!("{} (cut short?)", bytes.len())));
     }
-    let (mut at, mut json, mut binary) = (12, None, None);
+    let (mut at, mut json, mut binary, mut repeated_chunk) = (12, None, None, None);
     while at + 8 <= length {
         let (size, kind) = (word(at).unwrap_or(0) as usize, word(at + 4).unwrap_or(0));
         let data = (at + 8).checked_add(size).and_then(|end| bytes[..length].get(at + 8..end)).ok_or_else(|| {
@@ -50,12 +64,13 @@ pub fn open<'a>(file: &str, bytes: &'a [u8]) -> Result<Container<'a>, LoadError>
         match kind {
             JSON_CHUNK if json.is_none() => json = Some(data),
             BINARY_CHUNK if binary.is_none() => binary = Some(data),
+            JSON_CHUNK | BINARY_CHUNK => repeated_chunk = repeated_chunk.or(Some(at)),
             _ => {}
         }
         at += 8 + size;
     }
     let json = json.ok_or_else(|| invalid("GLB", "a JSON chunk", "none".to_owned()))?;
-    Ok(Container { json: without_bom(json), binary, is_glb: true })
+    Ok(Container { json: without_bom(json), binary, is_glb: true, repeated_chunk })
 }
 
 fn without_bom(bytes: &[u8]) -> &[u8] {

@@ -1,7 +1,7 @@
 //! What the decoders of compressed glTF have in common: finding a file that needs one, and writing it without the extension.
 
 use super::container::{self, Container};
-use super::document::Document;
+use super::document::{Document, as_text};
 use super::object::Object;
 use super::{WriteError, write};
 use crate::formats::error::Problem;
@@ -17,11 +17,11 @@ pub fn start<T>(
     read: impl FnOnce(&Container, &Document) -> Result<Option<T>, Problem>,
 ) -> Result<Option<T>, LoadError> {
     let Ok(container) = container::open(file, bytes) else { return Ok(None) };
-    let mentions = |name: &&str| container.json.windows(name.len()).any(|window| window == name.as_bytes());
-    if !extensions.iter().any(mentions) {
+    let json = as_text(container.json);
+    if !extensions.iter().any(|name| json.contains(name)) {
         return Ok(None);
     }
-    let Ok(document) = Document::read(file, container.json) else { return Ok(None) };
+    let Ok(document) = Document::read(file, &container) else { return Ok(None) };
     match read(&container, &document) {
         Err(Problem::MissingFile { .. }) => Ok(None),
         read => read.map_err(|problem| problem.in_file(file)),

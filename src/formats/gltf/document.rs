@@ -2,72 +2,61 @@
 //!
 //! Those types are stricter than the specification in a few places (an animation channel need not target a node) and stricter
 //! than a viewer needs to be in many. So the text is deserialized directly first, which works for nearly every file. If that
-//! fails, it is parsed as a plain value, [`loosen`]ed, written as text and deserialized once more.
+//! fails, it is parsed as a plain value, [`loosen`]ed, written as text and deserialized once more; if that fails as well, what
+//! a model can do without is [left out](leave_out).
 
 use std::borrow::Cow;
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
 use gltf::json::validation::USize64;
-use gltf::json::{Index, Root, scene};
+use gltf::json::{Index, Root};
+use serde_json::Value;
 use serde_json::value::RawValue;
-use serde_json::{Map, Value};
 
+use super::container::Container;
+use super::loosen::{NONE, leave_out, loosen};
+use super::strict;
+use crate::asset::{Warning, Warnings};
 use crate::formats::LoadError;
-
-/// The `target.node` of an animation channel that has none: an extension defines what it animates.
-const NO_NODE: u32 = u32::MAX;
-
-/// Members that hold an index or a code. The crate silently truncates these to 32 bits.
-const NARROW_MEMBERS: [&str; 23] = [
-    "buffer",
-    "bufferView",
-    "camera",
-    "children",
-    "componentType",
-    "index",
-    "indices",
-    "input",
-    "inverseBindMatrices",
-    "joints",
-    "light",
-    "material",
-    "mesh",
-    "mode",
-    "node",
-    "nodes",
-    "output",
-    "sampler",
-    "scene",
-    "skeleton",
-    "skin",
-    "source",
-    "targets",
-];
-
-/// Extensions that the crate has types for. The contents of all others are left alone.
-const TYPED_EXTENSIONS: [&str; 4] =
-    ["KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_unlit", "KHR_texture_transform"];
+use crate::formats::limits::{MAX_JSON_OBJECTS, MAX_JSON_VALUES};
+use crate::json_text::{self, Step, offset_of, path_at, place};
 
 /// The parsed JSON of a file. No index in it has been checked.
 pub struct Document<'a> {
     pub root: Root,
+    /// Places of the elements that could not be read and were replaced by empty ones, each with the reason.
+    unreadable: BTreeMap<String, String>,
     text: Cow<'a, str>,
     /// The text as a plain value, parsed once a message has to quote it.
     value: OnceCell<Value>,
 }
 
 impl<'a> Document<'a> {
-    pub fn read(file: &str, text: &'a [u8]) -> Result<Self, LoadError> {
-        let text = as_text(text);
-        let root = match serde_json::from_str::<Root>(&text) {
+    pub fn read(file: &str, container: &Container<'a>) -> Result<Self, LoadError> {
+        let text = as_text(container.json);
+        let (root, unreadable) = match strict::from_str::<Root>(&text, MAX_JSON_OBJECTS) {
             Ok(root) if !has_long_integer(text.as_bytes()) => {
                 check_version(file, Some(&root.asset.version), root.asset.min_version.as_deref())?;
-                root
+                (root, BTreeMap::new())
             }
-            _ => read_loosened(file, &text)?,
+            Err(strict::Error::TooManyObjects) => return Err(too_many(file, MAX_JSON_OBJECTS, "objects")),
+            _ => read_loosened(file, &text, container.is_glb)?,
         };
-        Ok(Self { root, text, value: OnceCell::new() })
+        Ok(Self { root, unreadable, text, value: OnceCell::new() })
+    }
+
+    /// Reports the elements that were left out.
+    pub fn warn(&self, warnings: &mut Warnings) {
+        for (place, problem) in &self.unreadable {
+            let problem = format!("it cannot be read and is left out: {problem}");
+            warnings.push(Warning::Other { code: "left-out", place: place.clone(), problem });
+        }
+    }
+
+    /// Whether the element at `place`, such as `cameras[0]`, is an empty one instead of the file's, which was reported.
+    pub fn is_left_out(&self, place: &str) -> bool {
+        self.unreadable.contains_key(place)
     }
 
     /// Returns the value at `place`, such as `meshes[0].primitives[1].mode`, as text, for messages: the crate does not keep the
@@ -83,7 +72,8 @@ impl<'a> Document<'a> {
     }
 
     fn value_at(&self, place: &str) -> Option<&Value> {
-        let value = self.value.get_or_init(|| serde_json::from_str(&self.text).unwrap_or_default());
+        let parse = || serde_json::from_str(Some(&*self.text).filter(|text| fits_in_memory(text))?).ok();
+        let value = self.value.get_or_init(|| parse().unwrap_or_default());
         let pointer = place.replace("].", "/").replace(['.', '['], "/").replace(']', "");
         value.pointer(&format!("/{pointer}"))
     }
@@ -99,102 +89,69 @@ pub fn size(bytes: USize64) -> usize {
     usize::try_from(bytes.0).unwrap_or(usize::MAX)
 }
 
-/// Returns the node that an animation channel targets, if any.
-pub fn target_node(node: Index<scene::Node>) -> Option<usize> {
-    Some(node.value()).filter(|&node| node != NO_NODE as usize)
+/// Returns an index unless it stands for none.
+pub fn present<T>(index: Index<T>) -> Option<usize> {
+    Some(index.value()).filter(|&index| index != NONE as usize)
 }
 
-/// Wraps an error of the JSON parser.
-pub fn json_error(file: &str, problem: &serde_json::Error) -> LoadError {
-    let (line, column) = (problem.line(), problem.column());
-    let text = problem.to_string();
-    // The message ends with the position, which has fields of its own.
-    let problem = text.strip_suffix(&format!(" at line {line} column {column}")).unwrap_or(&text).to_owned();
-    LoadError::Json { file: file.to_owned(), line, column, problem }
+/// Wraps an error of the JSON parser about a text that is not JSON.
+pub fn json_error(file: &str, text: &str, is_glb: bool, problem: &serde_json::Error) -> LoadError {
+    let message = problem.to_string();
+    let (said, position) = json_text::split_position(&message);
+    // A GLB's text is usually one long line, and no editor shows it.
+    let path = is_glb.then(|| place(&path_at(text, offset_of(text, problem.line(), problem.column()))));
+    let place = path.filter(|path| !path.is_empty()).or(position).unwrap_or_default();
+    LoadError::Json { file: file.to_owned(), place, problem: json_text::plain(said) }
+}
+
+/// The parser's message in plain words, without the position at its end.
+pub fn message(problem: &serde_json::Error) -> String {
+    json_text::plain(json_text::split_position(&problem.to_string()).0)
+}
+
+fn too_many(file: &str, max: usize, what: &str) -> LoadError {
+    let (expected, found) = (format!("at most {max} {what} in all"), "more".to_owned());
+    LoadError::Invalid { file: file.to_owned(), place: "JSON".to_owned(), expected, found }
+}
+
+/// Whether a text can be held as a tree of values.
+pub fn fits_in_memory(text: &str) -> bool {
+    text.bytes().filter(|byte| matches!(byte, b',' | b'[' | b'{')).count() <= MAX_JSON_VALUES
 }
 
 /// Reads a text that the crate's types reject, or whose integers they may truncate.
-fn read_loosened(file: &str, text: &str) -> Result<Root, LoadError> {
-    let mut value: Value = serde_json::from_str(text).map_err(|problem| json_error(file, &problem))?;
+fn read_loosened(file: &str, text: &str, is_glb: bool) -> Result<(Root, BTreeMap<String, String>), LoadError> {
+    if !fits_in_memory(text) {
+        return Err(too_many(file, MAX_JSON_VALUES, "values"));
+    }
+    let mut value: Value = serde_json::from_str(text).map_err(|problem| json_error(file, text, is_glb, &problem))?;
     // Other versions have another structure, so the version comes first.
     let asset = |key: &str| value.pointer(&format!("/asset/{key}")).filter(|value| !value.is_null()).map(self::text);
     check_version(file, asset("version").as_deref(), asset("minVersion").as_deref())?;
     loosen(&mut value);
     // As text again: deserializing the value itself would put the crate's many types into the program a second time.
-    let loosened = value.to_string();
-    serde_json::from_str(&loosened).map_err(|problem| {
+    let mut loosened = value.to_string();
+    let mut unreadable = BTreeMap::new();
+    let mut root = strict::from_str(&loosened, MAX_JSON_OBJECTS);
+    if root.is_err() {
+        unreadable = leave_out(&mut value);
+        loosened = value.to_string();
+        root = strict::from_str(&loosened, MAX_JSON_OBJECTS);
+    }
+    root.map(|root| (root, unreadable)).map_err(|problem| {
+        let problem = match problem {
+            strict::Error::TooManyObjects => return too_many(file, MAX_JSON_OBJECTS, "objects"),
+            strict::Error::Json(problem) => problem,
+        };
         let path = path_at(&loosened, problem.column());
         let (line, column) = position(text, &path);
-        let problem = match json_error(file, &problem) {
-            LoadError::Json { problem, .. } => format!("{}: {problem}", place(&path)),
-            other => other.to_string(),
-        };
-        LoadError::Json { file: file.to_owned(), line, column, problem }
+        let position = if is_glb { String::new() } else { format!(" (line {line}, column {column})") };
+        let message = problem.to_string();
+        let said = json_text::split_position(&message).0;
+        let (expected, found) =
+            json_text::expected_and_found(said).unwrap_or_else(|| ("valid glTF".to_owned(), json_text::plain(said)));
+        LoadError::Invalid { file: file.to_owned(), place: place(&path) + &position, expected, found }
     })
-}
-
-/// A step from a JSON value to one inside it.
-#[derive(Debug, Clone, PartialEq, Eq)]
-enum Step {
-    Member(String),
-    Element(usize),
-}
-
-/// The path to the value that a parser was reading when it stopped after `end` bytes of compact JSON.
-fn path_at(text: &str, end: usize) -> Vec<Step> {
-    let mut path = Vec::new();
-    let mut at = 0;
-    while at < end.min(text.len()) {
-        let rest = &text[at..];
-        let mut length = 1;
-        match (rest.as_bytes()[0], path.last_mut()) {
-            // Stopped at its beginning: what it is was the problem, not what is in it.
-            (b'{' | b'[', _) if at + 1 >= end => {}
-            (b'{', _) => path.push(Step::Member(String::new())),
-            (b'[', _) => path.push(Step::Element(0)),
-            (b'}' | b']', _) => drop(path.pop()),
-            (b',', Some(Step::Member(key))) => key.clear(),
-            (b',', Some(Step::Element(index))) => *index += 1,
-            (b'"', last) => {
-                length = string_length(rest);
-                let string = &rest[..length];
-                if let (Some(Step::Member(key)), true) = (last, rest[length..].starts_with(':')) {
-                    *key = serde_json::from_str(string).unwrap_or_default();
-                }
-            }
-            _ => {}
-        }
-        at += length.max(rest.chars().next().map_or(1, char::len_utf8));
-    }
-    path
-}
-
-/// Bytes of the string that the text begins with, with its quotation marks.
-fn string_length(text: &str) -> usize {
-    let mut escaped = false;
-    for (at, letter) in text.char_indices().skip(1) {
-        match letter {
-            _ if escaped => escaped = false,
-            '\\' => escaped = true,
-            '"' => return at + 1,
-            _ => {}
-        }
-    }
-    text.len()
-}
-
-/// A path as messages have it: `meshes[0].primitives[1].mode`.
-fn place(path: &[Step]) -> String {
-    let mut place = String::new();
-    for step in path {
-        match step {
-            Step::Member(key) if key.is_empty() => {}
-            Step::Member(key) if place.is_empty() => place.push_str(key),
-            Step::Member(key) => place.extend([".", key]),
-            Step::Element(index) => place.push_str(&format!("[{index}]")),
-        }
-    }
-    place
 }
 
 fn check_version(file: &str, version: Option<&str>, min_version: Option<&str>) -> Result<(), LoadError> {
@@ -211,7 +168,7 @@ fn check_version(file: &str, version: Option<&str>, min_version: Option<&str>) -
     }
 }
 
-fn text(value: &Value) -> String {
+pub fn text(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
 
@@ -261,131 +218,4 @@ fn position(text: &str, path: &[Step]) -> (usize, usize) {
     let before = &text[..value.get().as_ptr() as usize - text.as_ptr() as usize];
     let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
     (1 + before.matches('\n').count(), 1 + before.len() - line_start)
-}
-
-/// Removes or completes members that the crate's types reject and the reader can do without.
-fn loosen(root: &mut Value) {
-    clean(root, None);
-    let asset = root.get_mut("asset").and_then(Value::as_object_mut);
-    if let Some(asset) = asset {
-        for key in ["version", "minVersion"] {
-            if let Some(version) = asset.get_mut(key) {
-                *version = Value::from(text(version));
-            }
-        }
-        remove_unless(asset, "copyright", Value::is_string);
-    }
-    objects(root, "bufferViews").for_each(|view| remove_unless(view, "target", Value::is_u64));
-    objects(root, "images").for_each(|image| remove_unless(image, "mimeType", Value::is_string));
-    objects(root, "scenes").for_each(|scene| set_default(scene, "nodes", empty_list()));
-    objects(root, "skins").for_each(|skin| set_default(skin, "joints", empty_list()));
-    for camera in objects(root, "cameras") {
-        // The reader goes by the members of a camera.
-        remove_unless(camera, "type", Value::is_string);
-        set_default(camera, "type", Value::from("perspective"));
-    }
-    for mesh in objects(root, "meshes") {
-        set_default(mesh, "primitives", empty_list());
-        objects_of(mesh, "primitives").for_each(loosen_attributes);
-    }
-    for animation in objects(root, "animations") {
-        set_default(animation, "channels", empty_list());
-        set_default(animation, "samplers", empty_list());
-        let channels = objects_of(animation, "channels");
-        for target in channels.filter_map(|channel| channel.get_mut("target")?.as_object_mut()) {
-            set_default(target, "node", Value::from(NO_NODE));
-        }
-    }
-    if let Some(lights) = root.pointer_mut("/extensions/KHR_lights_punctual").and_then(Value::as_object_mut) {
-        set_default(lights, "lights", empty_list());
-    }
-}
-
-/// Applies the rules for all objects: removes null members, names that are not strings and extensions that are not objects.
-/// Turns integers that the crate would truncate into floats, which it rejects. `key`: the member that holds the value.
-fn clean(value: &mut Value, key: Option<&str>) {
-    match value {
-        Value::Array(list) => list.iter_mut().for_each(|value| clean(value, key)),
-        Value::Number(number) => {
-            if key.is_some_and(|key| NARROW_MEMBERS.contains(&key))
-                && let Some(wide) = number.as_u64().filter(|&number| number >= u64::from(u32::MAX))
-            {
-                *value = Value::from(wide as f64);
-            }
-        }
-        Value::Object(members) => {
-            members.retain(|_, value| !value.is_null());
-            remove_unless(members, "name", Value::is_string);
-            remove_unless(members, "extensions", Value::is_object);
-            let indices_inside = key.filter(|&key| matches!(key, "attributes" | "targets")).map(|_| "index");
-            for (key, value) in members {
-                match key.as_str() {
-                    "extras" => {}
-                    "extensions" => clean_extensions(value),
-                    key => clean(value, indices_inside.or(Some(key))),
-                }
-            }
-        }
-        _ => {}
-    }
-}
-
-fn clean_extensions(extensions: &mut Value) {
-    let Some(extensions) = extensions.as_object_mut() else { return };
-    for name in TYPED_EXTENSIONS {
-        if let Some(extension) = extensions.get_mut(name) {
-            clean(extension, None);
-        }
-    }
-    // Its presence is all that matters.
-    if let Some(unlit) = extensions.get_mut("KHR_materials_unlit").filter(|unlit| !unlit.is_object()) {
-        *unlit = Value::Object(Map::new());
-    }
-}
-
-/// Returns a copy without null members.
-pub fn without_nulls(value: &Value) -> Value {
-    let mut value = value.clone();
-    clean(&mut value, None);
-    value
-}
-
-/// Removes attributes that are never read and are not indices.
-fn loosen_attributes(primitive: &mut Map<String, Value>) {
-    set_default(primitive, "attributes", Value::Object(Map::new()));
-    let is_read = |semantic: &str| {
-        matches!(semantic, "POSITION" | "NORMAL" | "TANGENT" | "TEXCOORD_0" | "TEXCOORD_1" | "COLOR_0")
-            || semantic.starts_with("JOINTS_")
-            || semantic.starts_with("WEIGHTS_")
-    };
-    if let Some(attributes) = primitive.get_mut("attributes").and_then(Value::as_object_mut) {
-        attributes.retain(|semantic, index| index.is_u64() || is_read(semantic));
-    }
-}
-
-fn empty_list() -> Value {
-    Value::Array(Vec::new())
-}
-
-/// The objects in the list `key`.
-fn objects<'v>(value: &'v mut Value, key: &str) -> impl Iterator<Item = &'v mut Map<String, Value>> + use<'v> {
-    value.get_mut(key).and_then(Value::as_array_mut).into_iter().flatten().filter_map(Value::as_object_mut)
-}
-
-fn objects_of<'v>(
-    members: &'v mut Map<String, Value>,
-    key: &str,
-) -> impl Iterator<Item = &'v mut Map<String, Value>> + use<'v> {
-    members.get_mut(key).and_then(Value::as_array_mut).into_iter().flatten().filter_map(Value::as_object_mut)
-}
-
-fn set_default(members: &mut Map<String, Value>, key: &str, value: Value) {
-    members.entry(key).or_insert(value);
-}
-
-fn remove_unless(members: &mut Map<String, Value>, key: &str, is_kept: fn(&Value) -> bool) {
-    if members.get(key).is_some_and(|value| !is_kept(value)) {
-        // Keeps the order of the others.
-        members.shift_remove(key);
-    }
 }

@@ -9,7 +9,7 @@ use gltf::json::validation::Checked;
 use gltf::json::{Index, Root};
 use serde_json::{Value, json};
 
-use super::accessor::{Accessors, BUDGET_BYTES};
+use super::accessor::Accessors;
 use super::container::{self, Container};
 use super::decoded::{self, without_extensions};
 use super::document::{Document, as_text};
@@ -18,6 +18,7 @@ use super::resolve_buffers;
 use crate::asset::Warnings;
 use crate::formats::error::Problem;
 use crate::formats::file_set::beside;
+use crate::formats::limits::Limit;
 use crate::formats::{FileSet, LoadError};
 
 pub const NAME: &str = "KHR_draco_mesh_compression";
@@ -93,7 +94,7 @@ fn read(
             decoding.primitives.push(Target { mesh, primitive: at, decoded, semantics });
         }
     }
-    Ok(Some((decoding, gaitway_draco::write(BUDGET_BYTES as u32, &meshes))))
+    Ok(Some((decoding, gaitway_draco::write(Limit::DataBytes.max() as u32, &meshes))))
 }
 
 /// The decoder may return fewer vertices than the accessors declare, or more (it divides them along seams), but not more than

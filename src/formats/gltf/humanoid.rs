@@ -4,6 +4,7 @@
 use gltf::json::Root;
 use serde_json::Value;
 
+use super::loosen::whole;
 use crate::anim::Skeleton;
 use crate::asset::{Humanoid, Slot, Warning, Warnings};
 
@@ -11,7 +12,7 @@ use crate::asset::{Humanoid, Slot, Warning, Warnings};
 pub fn humanoid(root: &Root, skeleton: &Skeleton, warnings: &mut Warnings) -> Option<Humanoid> {
     let mut humanoid = Humanoid::default();
     let mut add = |place: String, slot: Option<Slot>, bone: &str, node: Option<&Value>| {
-        let joint = node.and_then(Value::as_u64).and_then(|node| skeleton.joint_of_source(usize::try_from(node).ok()?));
+        let joint = node.and_then(whole).and_then(|node| skeleton.joint_of_source(usize::try_from(node).ok()?));
         let problem = match (slot, joint) {
             (Some(slot), Some(joint)) => match humanoid.0.entry(slot) {
                 std::collections::btree_map::Entry::Vacant(entry) => {

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use gltf::json;
 use imagesize::ImageType;
 
 use super::accessor::Accessors;
@@ -10,10 +11,7 @@ use super::data;
 use crate::asset::{Image, Warning, Warnings};
 use crate::formats::FileSet;
 use crate::formats::error::Problem;
-
-const MAX_SIDE_PIXELS: usize = 16_384;
-/// Limit for all images of a file together.
-pub const MAX_IMAGE_PIXELS: usize = 256 << 20;
+use crate::formats::limits::{Budget, Limit, MAX_IMAGE_SIDE};
 
 pub fn images(
     files: &FileSet,
@@ -21,30 +19,11 @@ pub fn images(
     accessors: &Accessors,
     warnings: &mut Warnings,
 ) -> Result<Vec<Image>, Problem> {
-    let mut budget = MAX_IMAGE_PIXELS;
     let mut images = Vec::with_capacity(accessors.document.root.images.len());
     for (index, image) in accessors.document.root.images.iter().enumerate() {
         let place = format!("images[{index}]");
-        let bytes: Option<Arc<[u8]>> = match (&image.uri, image.buffer_view) {
-            (Some(uri), _) if data::is_data_uri(uri) => Some(data::data_uri(&place, uri)?.into()),
-            (Some(uri), _) => {
-                let found = data::file(files, file, uri, warnings);
-                if found.is_none() {
-                    warnings.push(Warning::ImageMissing { uri: data::decode_uri(uri).into_owned() });
-                }
-                found
-            }
-            (None, Some(view)) => {
-                let (bytes, _) = accessors.view(view.value(), &format!("{place}.bufferView"))?;
-                accessors.charge(1, bytes.len(), &place)?;
-                Some(bytes.into())
-            }
-            (None, None) => {
-                let problem = "it has neither a URI nor a buffer view".to_owned();
-                warnings.push(Warning::ImageUnreadable { image: place.clone(), problem });
-                None
-            }
-        };
+        let bytes = image_bytes(files, file, accessors, image, &place, warnings)
+            .or_else(|problem| problem.leave_out("image", "the image is left out", warnings).map(|()| None))?;
         let name = match (image.name.as_deref().unwrap_or_default(), &image.uri) {
             ("", Some(uri)) if !data::is_data_uri(uri) => data::decode_uri(uri).into_owned(),
             (name, _) => name.to_owned(),
@@ -53,7 +32,7 @@ pub fn images(
         let missing = Image { name: name.clone(), mime: "", bytes: Arc::from([]), width: 0, height: 0 };
         images.push(match bytes {
             None => missing,
-            Some(bytes) => match image_header(&bytes, &mut budget) {
+            Some(bytes) => match image_header(&bytes, &accessors.budget) {
                 Ok((mime, width, height)) => Image { name, mime, bytes, width, height },
                 Err(problem) => {
                     warnings.push(Warning::ImageUnreadable { image: place, problem });
@@ -65,8 +44,40 @@ pub fn images(
     Ok(images)
 }
 
+/// Returns an image's encoded bytes; none if it has none, which was reported.
+fn image_bytes(
+    files: &FileSet,
+    file: &str,
+    accessors: &Accessors,
+    image: &json::Image,
+    place: &str,
+    warnings: &mut Warnings,
+) -> Result<Option<Arc<[u8]>>, Problem> {
+    Ok(match (&image.uri, image.buffer_view) {
+        (Some(uri), _) if data::is_data_uri(uri) => Some(data::data_uri(place, uri)?.into()),
+        (Some(uri), _) => {
+            let found = data::file(files, file, uri, warnings);
+            if found.is_none() {
+                warnings.push(Warning::ImageMissing { uri: data::decode_uri(uri).into_owned() });
+            }
+            found
+        }
+        (None, Some(view)) => {
+            let (bytes, _) = accessors.view(view.value(), &format!("{place}.bufferView"))?;
+            accessors.budget.allocate(1, bytes.len(), &place)?;
+            Some(bytes.into())
+        }
+        (None, None) if accessors.document.is_left_out(place) => None,
+        (None, None) => {
+            let problem = "it has neither a URI nor a buffer view".to_owned();
+            warnings.push(Warning::ImageUnreadable { image: place.to_owned(), problem });
+            None
+        }
+    })
+}
+
 /// Returns the MIME type by content (what the file declares is often wrong), width and height.
-pub fn image_header(bytes: &[u8], budget: &mut usize) -> Result<(&'static str, u32, u32), String> {
+pub fn image_header(bytes: &[u8], budget: &Budget) -> Result<(&'static str, u32, u32), String> {
     let mime = match imagesize::image_type(bytes) {
         Ok(ImageType::Png) => "image/png",
         Ok(ImageType::Jpeg) => "image/jpeg",
@@ -75,10 +86,15 @@ pub fn image_header(bytes: &[u8], budget: &mut usize) -> Result<(&'static str, u
         _ => return Err("it is not PNG, JPEG or WebP".to_owned()),
     };
     let size = imagesize::blob_size(bytes).map_err(|problem| problem.to_string())?;
-    let pixels = size.width.saturating_mul(size.height);
-    if pixels == 0 || size.width.max(size.height) > MAX_SIDE_PIXELS || pixels > *budget {
-        return Err(format!("{} × {} pixels is not a size that is read", size.width, size.height));
+    let (width, height) = (size.width, size.height);
+    let pixels = width.saturating_mul(height);
+    let max = MAX_IMAGE_SIDE as usize;
+    if pixels == 0 || width.max(height) > max {
+        return Err(format!("it has {width} × {height} pixels; expected 1 to {max} each way"));
     }
-    *budget -= pixels;
+    budget.spend(Limit::ImagePixels, pixels, &"").map_err(|_| {
+        let (max, name) = (Limit::ImagePixels.max(), Limit::ImagePixels.name());
+        format!("with its {width} × {height} pixels, the model would have more than {max} {name} in all")
+    })?;
     Ok((mime, size.width as u32, size.height as u32))
 }

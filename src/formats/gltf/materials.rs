@@ -1,5 +1,7 @@
 //! Materials, textures and samplers (§3.9, §3.8.4), with the extensions that change them.
 
+use std::fmt::Display;
+
 use glam::{Vec2, Vec3, Vec4};
 use gltf::json::extensions::texture::TextureTransform;
 use gltf::json::material::AlphaMode as JsonAlphaMode;
@@ -10,7 +12,8 @@ use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
 use super::accessor::get;
-use super::document::{Document, without_nulls};
+use super::document::{Document, present};
+use super::loosen::cleaned;
 use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
 use crate::mesh::{AlphaMode, Filter, Material, MipFilter, Sampler, Texture, TextureRef, UvTransform, Wrap};
@@ -22,9 +25,14 @@ fn extension<T: DeserializeOwned>(
     place: &str,
 ) -> Result<Option<T>, Problem> {
     let Some(value) = extensions.get(name) else { return Ok(None) };
-    T::deserialize(without_nulls(value)).map(Some).map_err(|problem| {
-        Problem::new(format!("{place}.extensions.{name}"), "what the extension's specification says", problem)
-    })
+    let wrong = |found: &dyn Display| {
+        Problem::new(format!("{place}.extensions.{name}"), "what the extension's specification says", found)
+    };
+    // An array would be read by position.
+    if !value.is_object() {
+        return Err(wrong(value));
+    }
+    T::deserialize(cleaned(value)).map(Some).map_err(|problem| wrong(&problem))
 }
 
 pub fn materials(document: &Document, warnings: &mut Warnings) -> Result<Vec<Material>, Problem> {
@@ -107,18 +115,22 @@ impl TextureReader<'_> {
     fn color(&mut self, info: &Option<json::texture::Info>, name: &str) -> Result<Option<TextureRef>, Problem> {
         let Some(info) = info else { return Ok(None) };
         let transform = info.extensions.as_ref().and_then(|extensions| extensions.texture_transform.clone());
-        let place = format!("{}.{name}", self.material);
-        self.texture(info.index.value(), info.tex_coord, transform, place).map(Some)
+        self.texture(info.index.value(), info.tex_coord, transform, format!("{}.{name}", self.material))
     }
 
     fn data(&mut self, info: Option<DataTexture>, name: &str) -> Result<Option<TextureRef>, Problem> {
         let Some((index, uv_set, extensions)) = info else { return Ok(None) };
         let place = format!("{}.{name}", self.material);
-        let transform = match extensions {
-            Some(extensions) => extension(extensions, "KHR_texture_transform", &place)?,
-            None => None,
+        let transform =
+            extensions.map_or(Ok(None), |extensions| extension(extensions, "KHR_texture_transform", &place));
+        let transform = match transform {
+            Ok(transform) => transform,
+            Err(problem) => {
+                problem.leave_out("texture", "it is ignored", self.warnings)?;
+                None
+            }
         };
-        self.texture(index, uv_set, transform, place).map(Some)
+        self.texture(index, uv_set, transform, place)
     }
 
     fn texture(
@@ -127,8 +139,11 @@ impl TextureReader<'_> {
         uv_set: u32,
         transform: Option<TextureTransform>,
         place: String,
-    ) -> Result<TextureRef, Problem> {
-        get(&self.root.textures, index, &format_args!("{place}.index"), "textures")?;
+    ) -> Result<Option<TextureRef>, Problem> {
+        if let Err(problem) = get(&self.root.textures, index, &format_args!("{place}.index"), "textures") {
+            problem.leave_out("texture", "the texture is left out", self.warnings)?;
+            return Ok(None);
+        }
         let transform = transform.unwrap_or_default();
         let mut uv_set = transform.tex_coord.unwrap_or(uv_set) as usize;
         if uv_set > 1 {
@@ -141,37 +156,51 @@ impl TextureReader<'_> {
             rotation_radians: transform.rotation.0,
             scale: Vec2::from(transform.scale.0),
         };
-        Ok(TextureRef { texture: index, uv_set, uv_transform })
+        Ok(Some(TextureRef { texture: index, uv_set, uv_transform }))
     }
 }
 
-pub fn textures(root: &Root) -> Result<Vec<Texture>, Problem> {
-    #[derive(serde::Deserialize)]
-    struct Webp {
-        source: Option<usize>,
-    }
+/// A texture whose image is not there is empty; one whose sampler is not there has the default.
+pub fn textures(document: &Document, warnings: &mut Warnings) -> Result<Vec<Texture>, Problem> {
+    let root = &document.root;
     let mut textures = Vec::with_capacity(root.textures.len());
     for (index, texture) in root.textures.iter().enumerate() {
         let here = format!("textures[{index}]");
-        let webp: Option<Webp> = match &texture.extensions {
-            Some(extensions) => extension(&extensions.others, "EXT_texture_webp", &here)?,
-            None => None,
+        let image = match image_of(root, texture, &here) {
+            Ok(image) => image,
+            Err(problem) => {
+                problem.leave_out("texture", "the texture is left out", warnings)?;
+                None
+            }
         };
-        // The crate's value for a missing source.
-        let source = Some(texture.source.value()).filter(|&source| source != u32::MAX as usize);
-        let image = webp.and_then(|webp| webp.source).or(source);
-        if let Some(image) = image {
-            get(&root.images, image, &format!("{here}.source"), "images")?;
-        }
-        let sampler = match texture.sampler {
-            None => Sampler::default(),
-            Some(sampler) => {
-                read_sampler(get(&root.samplers, sampler.value(), &format!("{here}.sampler"), "samplers")?)
+        let sampler = texture.sampler.map(|sampler| {
+            get(&root.samplers, sampler.value(), &format_args!("{here}.sampler"), "samplers").map(read_sampler)
+        });
+        let sampler = match sampler.transpose() {
+            Ok(sampler) => sampler.unwrap_or_default(),
+            Err(problem) => {
+                problem.leave_out("texture", "the usual sampler is used", warnings)?;
+                Sampler::default()
             }
         };
         textures.push(Texture { image, sampler });
     }
     Ok(textures)
+}
+
+fn image_of(root: &Root, texture: &json::Texture, here: &str) -> Result<Option<usize>, Problem> {
+    #[derive(serde::Deserialize)]
+    struct Webp {
+        source: Option<usize>,
+    }
+    let webp: Option<Webp> = match &texture.extensions {
+        Some(extensions) => extension(&extensions.others, "EXT_texture_webp", here)?,
+        None => None,
+    };
+    let image = webp.and_then(|webp| webp.source).or(present(texture.source));
+    image.map_or(Ok(None), |image| {
+        get(&root.images, image, &format_args!("{here}.source"), "images").map(|_| Some(image))
+    })
 }
 
 /// Unknown codes become the default.

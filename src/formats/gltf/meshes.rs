@@ -2,17 +2,21 @@
 
 use glam::{Vec2, Vec3, Vec4};
 use gltf::json::accessor::Type;
-use gltf::json::mesh::{MorphTarget as JsonMorphTarget, Primitive, Semantic};
+use gltf::json::mesh::{Mode, MorphTarget as JsonMorphTarget, Primitive, Semantic};
 use gltf::json::validation::Checked;
 use gltf::json::{self, Accessor, Index};
 use serde_json::Value;
 
 use super::accessor::{Accessors, get};
+use super::document::fits_in_memory;
 use super::influences::{self, InfluenceSet};
 use super::{draco, indices};
 use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
-use crate::mesh::{Geometry, Influences, Material, Mesh, MorphTarget, Topology, add_tangents, first_not_below};
+use crate::formats::limits::Limit;
+use crate::mesh::{
+    Geometry, Influences, MAX_INFLUENCES, Material, Mesh, MorphTarget, Topology, add_tangents, first_not_below,
+};
 
 pub fn meshes(accessors: &Accessors, materials: &[Material], warnings: &mut Warnings) -> Result<Vec<Mesh>, Problem> {
     let meshes = accessors.document.root.meshes.iter().enumerate();
@@ -52,7 +56,7 @@ fn targets(primitive: &Primitive) -> &[JsonMorphTarget] {
 
 /// Names of morph targets are not in the specification, but most exporters write them to the mesh's extras.
 fn target_names(mesh: &json::Mesh, targets: usize) -> Vec<String> {
-    let extras = mesh.extras.as_ref().filter(|_| targets > 0);
+    let extras = mesh.extras.as_ref().filter(|extras| targets > 0 && fits_in_memory(extras.get()));
     let extras: Value = extras.and_then(|extras| serde_json::from_str(extras.get()).ok()).unwrap_or_default();
     let name = |target: usize| extras.get("targetNames")?.as_array()?.get(target)?.as_str();
     (0..targets).map(|target| name(target).unwrap_or_default().to_owned()).collect()
@@ -117,6 +121,9 @@ impl Attributes<'_> {
                 (None, Some(_)) => return Err(only(Semantic::Joints(set), Semantic::Weights(set))),
             }
         }
+        let influence = size_of::<u16>() + size_of::<f32>();
+        let count = self.vertices.saturating_mul((4 * sets.len()).min(MAX_INFLUENCES));
+        self.accessors.budget.allocate(count, influence, &self.place)?;
         Ok(influences::merge(mesh, self.vertices, &sets, warnings))
     }
 }
@@ -153,9 +160,12 @@ fn read_primitive(
     let influences = attributes.influences(place, warnings)?;
     let (topology, indices) = read_indices(accessors, place, primitive, vertices)?;
     let morph_targets = read_targets(accessors, place, primitive, vertices, !normals.is_empty())?;
-    let material = primitive.material.map(|material| material.value());
-    if let Some(material) = material {
-        get(materials, material, &format!("{place}.material"), "materials")?;
+    let mut material = primitive.material.map(|material| material.value());
+    if let Some(index) = material
+        && let Err(problem) = get(materials, index, &format_args!("{place}.material"), "materials")
+    {
+        problem.leave_out("material", "the default material is used", warnings)?;
+        material = None;
     }
     let mut geometry = Geometry {
         topology,
@@ -176,8 +186,8 @@ fn read_primitive(
         && topology == Topology::Triangles
         && geometry.tangents.is_empty()
     {
-        let copied_bytes = add_tangents(&mut geometry, texture.uv_set, accessors.bytes_left());
-        accessors.charge(1, copied_bytes, &place)?;
+        let copied_bytes = add_tangents(&mut geometry, texture.uv_set, accessors.budget.left(Limit::DataBytes));
+        accessors.budget.allocate(1, copied_bytes, &place)?;
     }
     Ok(geometry)
 }
@@ -213,7 +223,10 @@ fn read_indices(
     vertices: usize,
 ) -> Result<(Topology, Vec<u32>), Problem> {
     let list = match primitive.indices {
-        None => (0..u32::try_from(vertices).unwrap_or(u32::MAX)).collect(),
+        None => {
+            accessors.budget.allocate(vertices, size_of::<u32>(), &place)?;
+            (0..u32::try_from(vertices).unwrap_or(u32::MAX)).collect()
+        }
         Some(index) => {
             let place = format!("{place}.indices");
             let read = accessors.integers::<1>(index.value(), &place, "SCALAR")?.into_flattened();
@@ -228,5 +241,8 @@ fn read_indices(
         let found = accessors.document.quoted_at(&place);
         return Err(Problem::new(place, "0 to 6", found));
     };
+    // Lists that become longer: a strip or a fan has up to three indices for each of its own.
+    let is_list = matches!(mode, Mode::Points | Mode::Lines | Mode::Triangles);
+    accessors.budget.allocate(if is_list { 0 } else { 3 * list.len() }, size_of::<u32>(), &place)?;
     Ok(indices::to_list(mode, list))
 }

@@ -1,16 +1,13 @@
 //! `EXT_meshopt_compression` and `KHR_meshopt_compression`: decodes compressed buffer views before the file is loaded. A view
 //! already says where its decoded bytes belong, in a buffer without data ("fallback"): that buffer becomes a file of the set.
 
-use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
 use std::ops::Range;
 
 use gaitway_meshopt::{Filter, Mode, View};
 use gltf::json::Buffer;
-use serde::Deserialize;
 use serde_json::{Map, Value};
 
-use super::accessor::{BUDGET_BYTES, Bytes};
+use super::accessor::Bytes;
 use super::container::{self, Container};
 use super::decoded::{self, without_extensions};
 use super::document::{Document, as_text, size};
@@ -19,38 +16,27 @@ use super::resolve_buffer;
 use crate::asset::Warnings;
 use crate::formats::error::Problem;
 use crate::formats::file_set::beside;
+use crate::formats::limits::Budget;
 use crate::formats::{FileSet, LoadError};
 
 const NAMES: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 
-/// The extension's object in a buffer view.
-#[derive(Deserialize)]
-#[serde(rename_all = "camelCase")]
-struct Compressed {
-    buffer: usize,
-    #[serde(default)]
-    byte_offset: usize,
-    byte_length: usize,
-    byte_stride: u16,
-    count: u32,
-    mode: String,
-    filter: Option<String>,
-}
-
-/// Where decoded views belong.
+/// Where decoded views belong, in the order of the input.
 #[derive(Debug, Default)]
-pub struct Decoding {
-    /// Each view's number, and its buffer and range there, in the order of the input.
-    views: Vec<(usize, usize, Range<usize>)>,
-    /// Length of each of these buffers.
-    buffers: BTreeMap<usize, usize>,
+pub struct Decoding(Vec<Place>);
+
+#[derive(Debug)]
+struct Place {
+    view: usize,
+    buffer: usize,
+    range: Range<usize>,
 }
 
 /// Returns the decoder's input for a file with compressed views.
 pub fn start(files: &FileSet, file: &str, bytes: &[u8]) -> Result<Option<(Decoding, Vec<u8>)>, LoadError> {
     decoded::start(file, bytes, &NAMES, |container, document| {
         let (decoding, input) = read_views(files, file, container, document)?;
-        Ok((!decoding.views.is_empty()).then_some((decoding, input)))
+        Ok((!decoding.0.is_empty()).then_some((decoding, input)))
     })
 }
 
@@ -61,25 +47,23 @@ fn read_views(
     document: &Document,
 ) -> Result<(Decoding, Vec<u8>), Problem> {
     let (mut decoding, mut input) = (Decoding::default(), Vec::new());
-    let mut sources: BTreeMap<usize, Option<Bytes>> = BTreeMap::new();
     let root = &document.root;
+    // The buffer read last; nearly every file has all compressed views in one.
+    let mut source: (usize, Option<Bytes>) = (usize::MAX, None);
     for (index, view) in root.buffer_views.iter().enumerate() {
-        let Some((name, value)) = view.extensions.as_ref().and_then(|extensions| find(&extensions.others)) else {
-            continue;
-        };
+        let Some((name, extension)) = view.extensions.as_ref().and_then(|all| find(&all.others)) else { continue };
         let place = format!("bufferViews[{index}].extensions.{name}");
-        let compressed = Compressed::deserialize(value)
-            .map_err(|problem| Problem::new(&place, "buffer, byteLength, byteStride, count and mode", problem))?;
-        let number = compressed.buffer;
-        if number >= root.buffers.len() {
-            return Err(Problem::new(&place, "a buffer of the file", number));
+        let compressed = Compressed { place: &place, extension };
+        let buffer = compressed.number("buffer", None)?;
+        if buffer >= root.buffers.len() {
+            return Err(Problem::new(&place, "a buffer of the file", buffer));
         }
-        if let Entry::Vacant(new) = sources.entry(number) {
-            new.insert(resolve_buffer(files, file, container, root, number, &mut Warnings::default())?);
+        if source.0 != buffer {
+            source = (buffer, resolve_buffer(files, file, container, root, buffer, &mut Warnings::default())?);
         }
-        let source = sources.get(&number).and_then(Option::as_ref).map_or(&[][..], Bytes::as_slice);
-        compressed.view(&place, source)?.write(&mut input);
-        decoding.add(document, index, usize::from(compressed.byte_stride) * compressed.count as usize)?;
+        let view = compressed.view(source.1.as_ref().map_or(&[], Bytes::as_slice))?;
+        view.write(&mut input);
+        decoding.add(document, index, usize::from(view.stride) * view.count as usize)?;
     }
     Ok((decoding, input))
 }
@@ -95,72 +79,90 @@ pub fn is_fallback(buffer: &Buffer) -> bool {
     extension.is_some_and(|(_, value)| value["fallback"] == true)
 }
 
-impl Compressed {
-    fn view<'a>(&self, place: &str, source: &'a [u8]) -> Result<View<'a>, Problem> {
-        let end = self.byte_offset.saturating_add(self.byte_length);
-        let found = format!("bytes {}..{end} of {}", self.byte_offset, source.len());
-        let source = source.get(self.byte_offset..end);
-        let source = source.ok_or_else(|| Problem::new(place, "a range inside its buffer", found))?;
-        let mode = Mode::from_name(&self.mode)
-            .ok_or_else(|| Problem::new(place, "the mode ATTRIBUTES, TRIANGLES or INDICES", &self.mode))?;
-        let filter = self.filter.as_deref().unwrap_or("NONE");
-        let filter = Filter::from_name(filter).ok_or_else(|| {
-            Problem::new(place, "the filter NONE, OCTAHEDRAL, QUATERNION, EXPONENTIAL or COLOR", filter)
+/// The extension's object in a buffer view.
+struct Compressed<'a> {
+    place: &'a str,
+    extension: &'a Value,
+}
+
+impl Compressed<'_> {
+    fn number(&self, key: &str, default: Option<usize>) -> Result<usize, Problem> {
+        let value = &self.extension[key];
+        let number = value.as_u64().and_then(|number| usize::try_from(number).ok());
+        let number = if value.is_null() { default } else { number };
+        number.ok_or_else(|| Problem::new(format!("{}.{key}", self.place), "a whole number", value))
+    }
+
+    fn view<'a>(&self, source: &'a [u8]) -> Result<View<'a>, Problem> {
+        let expected = |expected: &str, found: &str| Problem::new(self.place, expected, found);
+        let start = self.number("byteOffset", Some(0))?;
+        let end = start.saturating_add(self.number("byteLength", None)?);
+        let range = source.get(start..end);
+        let source = range.ok_or_else(|| {
+            expected("a range inside its buffer", &format!("bytes {start}..{end} of {}", source.len()))
         })?;
-        Ok(View { mode, filter, count: self.count, stride: self.byte_stride, source })
+        let mode = self.extension["mode"].as_str().unwrap_or_default();
+        let filter = self.extension["filter"].as_str().unwrap_or("NONE");
+        let [count, stride] = [self.number("count", None)?, self.number("byteStride", None)?];
+        Ok(View {
+            mode: Mode::from_name(mode).ok_or_else(|| expected("a known mode, such as ATTRIBUTES", mode))?,
+            filter: Filter::from_name(filter).ok_or_else(|| expected("a known filter, such as OCTAHEDRAL", filter))?,
+            count: u32::try_from(count).unwrap_or(u32::MAX),
+            stride: u16::try_from(stride).unwrap_or(u16::MAX),
+            source,
+        })
     }
 }
 
 impl Decoding {
     /// Notes where `length` decoded bytes of a view belong.
     fn add(&mut self, document: &Document, index: usize, length: usize) -> Result<(), Problem> {
+        let Document { root, .. } = document;
         let place = || format!("bufferViews[{index}]");
-        let view = document.root.buffer_views.get(index);
-        let view = view.ok_or_else(|| Problem::new(place(), "a buffer view", "none"))?;
+        let view = &root.buffer_views[index];
         let buffer = view.buffer.value();
-        let bytes = document.root.buffers.get(buffer).map(|buffer| size(buffer.byte_length));
+        let bytes = root.buffers.get(buffer).map(|buffer| size(buffer.byte_length));
         let bytes = bytes.ok_or_else(|| Problem::new(place(), "a buffer of the file", buffer))?;
         let (start, expected) = (view.byte_offset.map_or(0, size), size(view.byte_length));
         if length > expected || start.saturating_add(length) > bytes {
             let expected = format!("at most {expected} decoded bytes, inside a buffer of {bytes}");
             return Err(Problem::new(place(), expected, format!("{length} at {start}")));
         }
-        self.views.push((index, buffer, start..start + length));
-        self.buffers.insert(buffer, bytes);
-        if self.buffers.values().fold(0_usize, |sum, &bytes| sum.saturating_add(bytes)) > BUDGET_BYTES {
-            let expected = format!("at most {} MiB of decoded data in all", BUDGET_BYTES >> 20);
-            return Err(Problem::new(format!("buffers[{buffer}].byteLength"), expected, bytes));
-        }
+        let all = root.buffers.iter().fold(0_usize, |sum, buffer| sum.saturating_add(size(buffer.byte_length)));
+        Budget::default().allocate(all, 1, &"buffers")?;
+        self.0.push(Place { view: index, buffer, range: start..start + length });
         Ok(())
     }
 
     /// Replaces the file by one without compression. `decoded` has the views one after the other.
-    pub fn finish(self, files: &mut FileSet, file: &str, bytes: &[u8], decoded: &[u8]) -> Result<(), LoadError> {
+    pub fn finish(self, files: &mut FileSet, file: &str, bytes: &[u8], mut decoded: &[u8]) -> Result<(), LoadError> {
         let container = container::open(file, bytes)?;
-        let document = Document::read(file, container.json)?;
+        let root = Document::read(file, &container)?.root;
         let mut json: Object = serde_json::from_str(&as_text(container.json)).unwrap_or_default();
         let mut buffers: Vec<Object> = json.read("buffers").unwrap_or_default();
-        let mut contents: BTreeMap<usize, Vec<u8>> = BTreeMap::new();
-        for (&buffer, &length) in &self.buffers {
-            // Views without compression may share the buffer.
-            let data = resolve_buffer(files, file, &container, &document.root, buffer, &mut Warnings::default());
-            let mut data = data.ok().flatten().map_or_else(Vec::new, |bytes| bytes.as_slice().to_vec());
-            data.resize(length, 0);
-            contents.insert(buffer, data);
-        }
         let mut views: Vec<Object> = json.read("bufferViews").unwrap_or_default();
-        let mut rest = decoded;
-        for (index, buffer, range) in self.views {
-            let piece = rest.split_off(..range.len());
-            if let (Some(piece), Some(data), Some(view)) = (piece, contents.get_mut(&buffer), views.get_mut(index)) {
+        let mut contents: Vec<Vec<u8>> = vec![Vec::new(); root.buffers.len()];
+        for Place { view, buffer, range } in self.0 {
+            let data = &mut contents[buffer];
+            if data.is_empty() {
+                // Views without compression may share the buffer.
+                let own = resolve_buffer(files, file, &container, &root, buffer, &mut Warnings::default());
+                data.extend(own.ok().flatten().as_ref().map_or(&[][..], Bytes::as_slice));
+                data.resize(size(root.buffers[buffer].byte_length), 0);
+            }
+            if let Some(piece) = decoded.split_off(..range.len()) {
                 data[range].copy_from_slice(piece);
+            }
+            if let Some(view) = views.get_mut(view) {
                 without_extensions(view, &NAMES);
             }
         }
         buffers.iter_mut().for_each(|buffer| without_extensions(buffer, &NAMES));
-        for (buffer, data) in contents {
-            let (name, uri) = beside(file, &format!("buffer{buffer}"));
-            buffers[buffer].set("uri", &uri);
+        for (index, data) in contents.into_iter().enumerate().filter(|(_, data)| !data.is_empty()) {
+            let (name, uri) = beside(file, &format!("buffer{index}"));
+            if let Some(buffer) = buffers.get_mut(index) {
+                buffer.set("uri", &uri);
+            }
             files.insert(name, data);
         }
         json.set("bufferViews", &views);

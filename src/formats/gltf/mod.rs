@@ -14,12 +14,14 @@ mod humanoid;
 mod images;
 mod indices;
 mod influences;
+mod loosen;
 mod materials;
 mod meshes;
 pub(super) mod meshopt;
 mod nodes;
 mod object;
 mod skins;
+mod strict;
 mod write;
 
 use crate::asset::{Asset, AssetParts, Image, Warning, Warnings};
@@ -30,13 +32,13 @@ use container::Container;
 use document::{Document, size};
 use gltf::json::Root;
 
-pub(super) use images::{MAX_IMAGE_PIXELS, image_header};
+pub(super) use images::image_header;
 pub use write::WriteError;
 pub(super) use write::{asset as write_asset, model as write_model, motion as write_motion};
 
 /// Returns the decoded URIs of the files that a model refers to and that are not in the set. Empty if it cannot be read.
 pub(super) fn missing_files(files: &FileSet, file: &str, bytes: &[u8]) -> Vec<String> {
-    let Ok(document) = container::open(file, bytes).and_then(|container| Document::read(file, container.json)) else {
+    let Ok(document) = container::open(file, bytes).and_then(|container| Document::read(file, &container)) else {
         return Vec::new();
     };
     let root = &document.root;
@@ -64,8 +66,10 @@ pub(super) fn load(
     on_images: &mut dyn FnMut(&[Image]),
 ) -> Result<Asset, LoadError> {
     let container = container::open(file, bytes)?;
-    let document = Document::read(file, container.json)?;
+    let document = Document::read(file, &container)?;
     let mut warnings = Warnings::default();
+    container.warn(&mut warnings);
+    document.warn(&mut warnings);
     extensions::check(file, &document.root, &mut warnings)?;
     let conversion = files.conversion(file);
     for problem in conversion.into_iter().flat_map(|conversion| &conversion.warnings) {
@@ -86,16 +90,16 @@ fn build(
     let buffers = resolve_buffers(files, file, container, root, &mut warnings)?;
     let accessors = Accessors::new(document, buffers);
     let materials = materials::materials(document, &mut warnings)?;
-    let textures = materials::textures(root)?;
+    let textures = materials::textures(document, &mut warnings)?;
     let images = images::images(files, file, &accessors, &mut warnings)?;
     on_images(&images);
     let meshes = meshes::meshes(&accessors, &materials, &mut warnings)?;
-    let skeleton = nodes::skeleton(root, &meshes, &mut warnings)?;
+    let skeleton = nodes::skeleton(root, &meshes, &accessors.budget, &mut warnings)?;
     let skins = skins::skins(&accessors, &skeleton, &mut warnings)?;
-    let instances = nodes::instances(root, &skeleton, &skins)?;
+    let instances = nodes::instances(root, &skeleton, &meshes, &skins, &accessors.budget)?;
     let clips = animations::clips(&accessors, &skeleton, &mut warnings)?;
-    let (scenes, default_scene) = nodes::scenes(root, &skeleton)?;
-    let cameras = nodes::cameras(root, &skeleton)?;
+    let (scenes, default_scene) = nodes::scenes(root, &skeleton, &mut warnings)?;
+    let cameras = nodes::cameras(document, &skeleton, &mut warnings)?;
     let lights = nodes::lights(document, &skeleton, &mut warnings)?;
     let humanoid = humanoid::humanoid(root, &skeleton, &mut warnings);
     let conversion = files.conversion(file);

@@ -9,32 +9,26 @@ use gltf::json::{Index, Node, Root};
 
 use super::accessor::get;
 use super::document::Document;
-use crate::anim::{Joint, Skeleton, SkeletonError, Transform};
+use crate::anim::{Joint, JointIndex, Skeleton, SkeletonError, Transform};
 use crate::asset::{Camera, CameraProjection, Light, LightKind, MeshInstance, Scene, Warning, Warnings};
 use crate::formats::error::Problem;
+use crate::formats::limits::{Budget, Limit};
 use crate::mesh::{Mesh, Skin};
-
-/// Each node of a mesh has a weight for each of its targets: a short file could ask for billions.
-const MAX_MORPH_WEIGHTS: usize = 1 << 22;
 
 /// Length in characters to which names are cut that many nodes can share.
 const MAX_SHARED_NAME: usize = 256;
 
 /// Builds one skeleton from all nodes. Its source indices are the file's node indices.
-pub fn skeleton(root: &Root, meshes: &[Mesh], warnings: &mut Warnings) -> Result<Skeleton, Problem> {
+pub fn skeleton(root: &Root, meshes: &[Mesh], budget: &Budget, warnings: &mut Warnings) -> Result<Skeleton, Problem> {
+    budget.spend(Limit::Nodes, root.nodes.len(), &"nodes")?;
     let mut joints: Vec<Joint> = Vec::with_capacity(root.nodes.len());
-    let mut weight_count = 0;
     for (index, node) in root.nodes.iter().enumerate() {
         let place = format!("nodes[{index}]");
         let morph_weights = match node.mesh {
             None => Vec::new(),
             Some(mesh) => rest_weights(root, meshes, node, mesh.value(), &place)?,
         };
-        weight_count += morph_weights.len();
-        if weight_count > MAX_MORPH_WEIGHTS {
-            let expected = format!("at most {MAX_MORPH_WEIGHTS} morph weights in all");
-            return Err(Problem::new(place, expected, weight_count));
-        }
+        budget.spend(Limit::MorphWeights, morph_weights.len(), &place)?;
         joints.push(Joint {
             name: node.name.clone().unwrap_or_default(),
             parent: None,
@@ -77,6 +71,11 @@ fn rest_weights(root: &Root, meshes: &[Mesh], node: &Node, mesh: usize, place: &
 fn rest(node: &Node, place: &str, warnings: &mut Warnings) -> Result<Transform, Problem> {
     let transform = match node.matrix {
         Some(columns) => {
+            if node.translation.is_some() || node.rotation.is_some() || node.scale.is_some() {
+                let problem =
+                    "it has a matrix together with translation, rotation or scale; the matrix is used".to_owned();
+                warnings.push(Warning::Other { code: "matrix-and-trs", place: place.to_owned(), problem });
+            }
             let matrix = Mat4::from_cols_array(&columns);
             let transform = Transform::from_matrix(&matrix);
             let recomposed = Mat4::from(transform.to_affine());
@@ -106,13 +105,24 @@ fn rest(node: &Node, place: &str, warnings: &mut Warnings) -> Result<Transform, 
 }
 
 /// Returns which joint draws which mesh. Without a skin, the influences of a mesh are not used.
-pub fn instances(root: &Root, skeleton: &Skeleton, skins: &[Skin]) -> Result<Vec<MeshInstance>, Problem> {
+pub fn instances(
+    root: &Root,
+    skeleton: &Skeleton,
+    meshes: &[Mesh],
+    skins: &[Skin],
+    budget: &Budget,
+) -> Result<Vec<MeshInstance>, Problem> {
+    let vertices_of = |mesh: &Mesh| mesh.primitives.iter().map(|geometry| geometry.positions.len()).sum();
+    let vertices: Vec<usize> = meshes.iter().map(vertices_of).collect();
     let mut instances = Vec::new();
     for (index, node) in root.nodes.iter().enumerate() {
         let (Some(mesh), Some(joint)) = (node.mesh, skeleton.joint_of_source(index)) else { continue };
+        let place = format_args!("nodes[{index}]");
+        budget.spend(Limit::DrawnVertices, *get(&vertices, mesh.value(), &place, "meshes")?, &place)?;
         let skin = node.skin.map(|skin| skin.value());
         if let Some(skin) = skin {
-            get(skins, skin, &format_args!("nodes[{index}].skin"), "skins")?;
+            let joints = get(skins, skin, &format_args!("{place}.skin"), "skins")?.joints().len();
+            budget.spend(Limit::SkinMatrices, joints, &place)?;
         }
         instances.push(MeshInstance { joint, mesh: mesh.value(), skin });
     }
@@ -123,47 +133,66 @@ fn shared_name(name: &str) -> String {
     name.chars().take(MAX_SHARED_NAME).collect()
 }
 
-pub fn scenes(root: &Root, skeleton: &Skeleton) -> Result<(Vec<Scene>, Option<usize>), Problem> {
+/// A node or scene that is not there is left out.
+pub fn scenes(
+    root: &Root,
+    skeleton: &Skeleton,
+    warnings: &mut Warnings,
+) -> Result<(Vec<Scene>, Option<usize>), Problem> {
     let mut scenes = Vec::with_capacity(root.scenes.len());
     for (index, scene) in root.scenes.iter().enumerate() {
         let mut roots = Vec::with_capacity(scene.nodes.len());
         for (at, node) in scene.nodes.iter().map(Index::value).enumerate() {
-            get(&root.nodes, node, &format!("scenes[{index}].nodes[{at}]"), "nodes")?;
+            if let Err(problem) = get(&root.nodes, node, &format_args!("scenes[{index}].nodes[{at}]"), "nodes") {
+                problem.leave_out("scene", "the node is left out", warnings)?;
+            }
             roots.extend(skeleton.joint_of_source(node));
         }
         scenes.push(Scene { name: scene.name.clone().unwrap_or_default(), roots });
     }
-    let default_scene = root.scene.map(|scene| scene.value());
-    if let Some(scene) = default_scene {
-        get(&root.scenes, scene, &"scene", "scenes")?;
+    let mut default_scene = root.scene.map(|scene| scene.value());
+    if let Some(scene) = default_scene
+        && let Err(problem) = get(&root.scenes, scene, &"scene", "scenes")
+    {
+        problem.leave_out("scene", "the first scene is shown", warnings)?;
+        default_scene = None;
     }
     let first = if scenes.is_empty() { None } else { Some(0) };
     Ok((scenes, default_scene.or(first)))
 }
 
-pub fn cameras(root: &Root, skeleton: &Skeleton) -> Result<Vec<Camera>, Problem> {
+/// A camera that is not there or has no lens is left out.
+pub fn cameras(document: &Document, skeleton: &Skeleton, warnings: &mut Warnings) -> Result<Vec<Camera>, Problem> {
+    let root = &document.root;
     let mut cameras = Vec::new();
     for (index, node) in root.nodes.iter().enumerate() {
         let (Some(camera), Some(joint)) = (node.camera, skeleton.joint_of_source(index)) else { continue };
-        let place = format!("nodes[{index}].camera");
-        let camera = get(&root.cameras, camera.value(), &place, "cameras")?;
-        let projection = match (&camera.perspective, &camera.orthographic) {
-            (Some(lens), _) => {
-                CameraProjection::Perspective { y_fov_radians: lens.yfov, near: lens.znear, far: lens.zfar }
-            }
-            (None, Some(lens)) => CameraProjection::Orthographic { y_mag: lens.ymag, near: lens.znear, far: lens.zfar },
-            (None, None) => return Err(Problem::new(place, "a perspective or orthographic camera", "neither")),
-        };
-        let name = match camera.name.as_deref().unwrap_or_default() {
-            "" => node.name.clone().unwrap_or_default(),
-            name => shared_name(name),
-        };
-        cameras.push(Camera { name, joint, projection });
+        if document.is_left_out(&format!("cameras[{}]", camera.value())) {
+            continue;
+        }
+        match read_camera(root, node, camera.value(), joint, &format!("nodes[{index}].camera")) {
+            Ok(camera) => cameras.push(camera),
+            Err(problem) => problem.leave_out("camera", "the camera is left out", warnings)?,
+        }
     }
     Ok(cameras)
 }
 
-/// KHR_lights_punctual.
+fn read_camera(root: &Root, node: &Node, camera: usize, joint: JointIndex, place: &str) -> Result<Camera, Problem> {
+    let camera = get(&root.cameras, camera, &place, "cameras")?;
+    let projection = match (&camera.perspective, &camera.orthographic) {
+        (Some(lens), _) => CameraProjection::Perspective { y_fov_radians: lens.yfov, near: lens.znear, far: lens.zfar },
+        (None, Some(lens)) => CameraProjection::Orthographic { y_mag: lens.ymag, near: lens.znear, far: lens.zfar },
+        (None, None) => return Err(Problem::new(place, "a perspective or orthographic camera", "neither")),
+    };
+    let name = match camera.name.as_deref().unwrap_or_default() {
+        "" => node.name.clone().unwrap_or_default(),
+        name => shared_name(name),
+    };
+    Ok(Camera { name, joint, projection })
+}
+
+/// KHR_lights_punctual. A light that is not there or of an unknown type is left out.
 pub fn lights(document: &Document, skeleton: &Skeleton, warnings: &mut Warnings) -> Result<Vec<Light>, Problem> {
     let root = &document.root;
     let list: &[khr_lights_punctual::Light] = root.as_ref();
@@ -172,10 +201,20 @@ pub fn lights(document: &Document, skeleton: &Skeleton, warnings: &mut Warnings)
         let extension = node.extensions.as_ref().and_then(|extensions| extensions.khr_lights_punctual.as_ref());
         let Some(light_index) = extension.map(|extension| extension.light.value()) else { continue };
         let place = format!("nodes[{index}]");
-        let light = get(list, light_index, &format!("{place}.extensions.KHR_lights_punctual.light"), "lights")?;
+        let light = match get(list, light_index, &format!("{place}.extensions.KHR_lights_punctual.light"), "lights") {
+            Ok(light) => light,
+            Err(problem) => {
+                problem.leave_out("light", "the light is left out", warnings)?;
+                continue;
+            }
+        };
         let Some(joint) = skeleton.joint_of_source(index) else { continue };
         let Some(kind) = light_kind(light) else {
-            let found = document.quoted_at(&format!("extensions.KHR_lights_punctual.lights[{light_index}].type"));
+            let here = format!("extensions.KHR_lights_punctual.lights[{light_index}]");
+            if document.is_left_out(&here) {
+                continue;
+            }
+            let found = document.quoted_at(&format!("{here}.type"));
             let problem = format!("light type {found} is not known; the light is left out");
             warnings.push(Warning::Other { code: "light-type", place, problem });
             continue;

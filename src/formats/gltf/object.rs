@@ -26,6 +26,20 @@ impl Object {
         self.0.iter().filter_map(|(_, value)| serde_json::from_str(value.get()).ok())
     }
 
+    /// Changes all members that are objects.
+    pub fn change_objects(&mut self, change: fn(&mut Self)) {
+        for (_, value) in &mut self.0 {
+            if let Ok(mut object) = serde_json::from_str::<Self>(value.get()) {
+                change(&mut object);
+                *value = raw(&object);
+            }
+        }
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
     /// Replaces a member in place, or appends it.
     pub fn set(&mut self, key: &str, value: &impl Serialize) {
         let Ok(value) = to_raw_value(value) else { return };
@@ -33,10 +47,6 @@ impl Object {
             Some((_, old)) => *old = value,
             None => self.0.push((key.to_owned(), value)),
         }
-    }
-
-    pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
     }
 
     pub fn remove(&mut self, key: &str) {

@@ -4,16 +4,20 @@ use glam::{Affine3A, Mat4};
 use gltf::json::Index;
 
 use super::accessor::{Accessors, get};
-use crate::anim::Skeleton;
+use crate::anim::{JointIndex, Skeleton};
 use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
 use crate::mesh::Skin;
+
+/// A joint's index and its bind matrix, which a skin holds in two forms.
+const JOINT_BYTES: usize = size_of::<JointIndex>() + 2 * size_of::<Affine3A>();
 
 pub fn skins(accessors: &Accessors, skeleton: &Skeleton, warnings: &mut Warnings) -> Result<Vec<Skin>, Problem> {
     let root = &accessors.document.root;
     let mut skins = Vec::with_capacity(root.skins.len());
     for (index, skin) in root.skins.iter().enumerate() {
         let here = format!("skins[{index}]");
+        accessors.budget.allocate(skin.joints.len(), JOINT_BYTES, &here)?;
         let mut joints = Vec::with_capacity(skin.joints.len());
         for (at, joint) in skin.joints.iter().map(Index::value).enumerate() {
             get(&root.nodes, joint, &format!("{here}.joints[{at}]"), "nodes")?;

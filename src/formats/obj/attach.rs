@@ -3,11 +3,15 @@
 
 use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
+use crate::formats::limits::Budget;
 use crate::formats::lines::{Lines, number, quoted};
 use crate::mesh::{Influences, MAX_INFLUENCES};
 
 /// A sum of weights that is farther from 1 is reported; a smaller error is rounding.
 const SUM_TOLERANCE: f64 = 1e-3;
+
+/// Bytes of one influence of one vertex.
+pub const INFLUENCE_BYTES: usize = size_of::<u16>() + size_of::<f32>();
 
 /// Reads the influences of all vertices, normalized. A row of zeros follows the first joint. Of more than [`MAX_INFLUENCES`]
 /// weights the largest are kept. `file` is the name for warnings.
@@ -16,6 +20,7 @@ pub fn read(
     bytes: &[u8],
     vertices: usize,
     joints: usize,
+    budget: &Budget,
     warnings: &mut Warnings,
 ) -> Result<Influences, Problem> {
     let mut rows = Rows { max_count: 1, ..Rows::default() };
@@ -30,6 +35,7 @@ pub fn read(
             return Err(Problem::new(format!("line {line}"), expected, "more"));
         }
         let total = read_row(line, content, joints, &mut row)?;
+        budget.allocate(row.len().clamp(1, MAX_INFLUENCES), size_of::<(u16, f32)>(), &format_args!("line {line}"))?;
         rows.add(&mut row, total);
     }
     // With a single joint, rows have no columns, so there is nothing to count.
@@ -42,6 +48,7 @@ pub fn read(
         rows.ends.push(rows.pairs.len());
     }
     rows.warn(file, warnings);
+    budget.allocate(rows.stride() * rows.ends.len(), INFLUENCE_BYTES, &"the whole file")?;
     Ok(rows.influences())
 }
 
@@ -93,8 +100,12 @@ impl Rows {
         }
     }
 
+    fn stride(&self) -> usize {
+        self.max_count.min(MAX_INFLUENCES).next_multiple_of(4)
+    }
+
     fn influences(&self) -> Influences {
-        let stride = self.max_count.min(MAX_INFLUENCES).next_multiple_of(4);
+        let stride = self.stride();
         let count = stride * self.ends.len();
         let mut influences = Influences { stride, joints: vec![0; count], weights: vec![0.0; count] };
         let mut start = 0;

@@ -7,6 +7,8 @@ use glam::{Vec2, Vec3, Vec4};
 
 use super::polygon::Cutter;
 use super::text::{Corner, NONE, ObjText};
+use crate::formats::error::Problem;
+use crate::formats::limits::Budget;
 use crate::mesh::{Geometry, Influences, Mesh};
 
 /// A mesh, and the group of faces that each of its primitives was built from.
@@ -14,6 +16,10 @@ pub struct Built {
     pub mesh: Mesh,
     pub groups: Vec<usize>,
 }
+
+/// What a vertex takes at most: corner, position, normal, texture coordinates, colour and its number in the file.
+const VERTEX_BYTES: usize =
+    size_of::<Corner>() + 2 * size_of::<Vec3>() + size_of::<Vec2>() + size_of::<Vec4>() + size_of::<u32>();
 
 /// One group of faces on its way to a primitive.
 #[derive(Default)]
@@ -39,7 +45,10 @@ impl PrimitiveBuilder {
 
 /// A single group begins with the file's vertices in the file's order. With several groups, vertices that no face uses go to
 /// the first. [`Geometry::file_vertex`] leads back.
-pub fn build(obj: &ObjText, name: &str) -> Built {
+pub fn build(obj: &ObjText, name: &str, budget: &Budget) -> Result<Built, Problem> {
+    // Indices, and the table of the copies.
+    let corner_bytes = size_of::<u32>() + 2 * size_of::<(u32, Corner, u32)>();
+    budget.allocate(obj.corners.len(), corner_bytes, &"faces")?;
     let mut builders = count_corners(obj);
     let single = builders.len() == 1;
     if single {
@@ -47,6 +56,8 @@ pub fn build(obj: &ObjText, name: &str) -> Built {
         builders[0].corners = (0..obj.positions.len() as u32).map(|vertex| [vertex, NONE, NONE]).collect();
     }
     add_faces(obj, &mut builders);
+    let vertices = builders.iter().map(|builder| builder.corners.len()).sum();
+    budget.allocate(vertices, VERTEX_BYTES, &"vertices")?;
     let groups: Vec<usize> = (0..builders.len()).filter(|&group| !builders[group].indices.is_empty()).collect();
     let part_names = match &groups[..] {
         [group] if obj.groups[*group].name().is_empty() => Vec::new(),
@@ -55,7 +66,7 @@ pub fn build(obj: &ObjText, name: &str) -> Built {
     let primitives = groups.iter().map(|&group| geometry(obj, &builders[group], single)).collect();
     let file_vertices = if single { 0 } else { obj.positions.len() };
     let mesh = Mesh { name: name.to_owned(), primitives, part_names, file_vertices, ..Mesh::default() };
-    Built { mesh, groups }
+    Ok(Built { mesh, groups })
 }
 
 fn count_corners(obj: &ObjText) -> Vec<PrimitiveBuilder> {

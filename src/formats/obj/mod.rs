@@ -22,6 +22,7 @@ use super::{FileSet, LoadError, extension};
 use crate::anim::{Joint, Skeleton, Transform, model_from_joint};
 use crate::asset::{Asset, AssetParts, Image, MeshInstance, Warning, Warnings};
 use crate::formats::error::Problem;
+use crate::formats::limits::Budget;
 use crate::mesh::{Geometry, Influences, Mesh, Sampler, Skin, Texture, TextureRef, UvTransform};
 use mtl::MtlMaterial;
 use text::ObjText;
@@ -105,25 +106,29 @@ pub(super) fn load(
     on_images: &mut dyn FnMut(&[Image]),
 ) -> Result<Asset, LoadError> {
     let mut warnings = Warnings::default();
-    let obj = text::read(bytes, &mut warnings).map_err(|problem| problem.in_file(file))?;
+    let budget = &Budget::default();
+    let obj = text::read(bytes, budget, &mut warnings).map_err(|problem| problem.in_file(file))?;
     if obj.faces.is_empty() {
         return Err(Problem::new("the whole file", "a face (a line that begins with “f”)", "none").in_file(file));
     }
     let stem = sibling_name(file, "").unwrap_or_default();
     let stem = stem.trim_end_matches('.');
-    let rig = rig(files, file, stem, obj.positions.len(), &mut warnings)?;
+    let rig = rig(files, file, stem, obj.positions.len(), budget, &mut warnings)?;
     let (skeleton, skin, influences) = match rig {
         None => (lone_joint(stem), None, Influences::default()),
         Some(Rig { skeleton, skin, influences }) => (skeleton, Some(skin), influences),
     };
-    let mut built = mesh::build(&obj, stem);
+    let mut built = mesh::build(&obj, stem, budget).map_err(|problem| problem.in_file(file))?;
     if skin.is_some() {
         for geometry in &mut built.mesh.primitives {
+            let count = influences.stride * geometry.file_vertex.len();
+            budget.allocate(count, attach::INFLUENCE_BYTES, &"weights").map_err(|problem| problem.in_file(file))?;
             geometry.influences = mesh::copied(&influences, &geometry.file_vertex);
         }
     }
     let mut parts = AssetParts { format: "obj", skeleton, ..AssetParts::default() };
-    add_materials(files, file, &obj, &built.groups, &mut built.mesh.primitives, &mut parts, &mut warnings);
+    let mut surfaces = Surfaces { files, file, budget, parts: &mut parts, warnings: &mut warnings };
+    surfaces.add_materials(&obj, &built.groups, &mut built.mesh.primitives);
     on_images(&parts.images);
     place_mesh(&mut parts, built.mesh, skin);
     let mut asset = Asset::new(parts).map_err(|problem| Problem::from(problem).in_file(file))?;
@@ -144,6 +149,7 @@ fn rig(
     file: &str,
     stem: &str,
     vertices: usize,
+    budget: &Budget,
     warnings: &mut Warnings,
 ) -> Result<Option<Rig>, LoadError> {
     let missing = |place: &str, kind: &str| LoadError::MissingFile {
@@ -158,9 +164,9 @@ fn rig(
             (Some(_), None) => return Err(missing("the file with its weights", "attach")),
             (None, Some(_)) => return Err(missing("the file with its skeleton", "skel")),
         };
-    let skeleton = skel::read(skel).map_err(|problem| problem.in_file(skel_file))?;
+    let skeleton = skel::read(skel, budget).map_err(|problem| problem.in_file(skel_file))?;
     let skin = skin(stem, &skeleton).map_err(|problem| problem.in_file(skel_file))?;
-    let influences = attach::read(attach_file, attach, vertices, skeleton.len(), warnings)
+    let influences = attach::read(attach_file, attach, vertices, skeleton.len(), budget, warnings)
         .map_err(|problem| problem.in_file(attach_file))?;
     Ok(Some(Rig { skeleton, skin, influences }))
 }
@@ -183,7 +189,7 @@ fn lone_joint(name: &str) -> Skeleton {
 /// All joints, in the file's order, bound in the rest pose.
 fn skin(name: &str, skeleton: &Skeleton) -> Result<Skin, Problem> {
     let mut world = Vec::new();
-    model_from_joint(skeleton, &skeleton.rest().locals, Affine3A::IDENTITY, &mut world);
+    model_from_joint(skeleton, skeleton.rest(), Affine3A::IDENTITY, &mut world);
     let joints: Vec<_> = (0..skeleton.len()).filter_map(|source| skeleton.joint_of_source(source)).collect();
     // Nothing is rotated at rest, so the inverse is a translation.
     let joint_from_bind =
@@ -192,41 +198,50 @@ fn skin(name: &str, skeleton: &Skeleton) -> Result<Skin, Problem> {
         .map_err(|problem| Problem::new("joints", "positions that fit into 32 bits", problem))
 }
 
-/// Adds one material for each that a group of faces names; a plain one if the libraries do not have it.
-fn add_materials(
-    files: &FileSet,
-    file: &str,
-    obj: &ObjText,
-    groups: &[usize],
-    primitives: &mut [Geometry],
-    parts: &mut AssetParts,
-    warnings: &mut Warnings,
-) {
-    let Libraries { materials, complete } = read_libraries(files, file, obj, warnings);
-    let mut material_of_name: BTreeMap<&str, usize> = BTreeMap::new();
-    let mut texture_of_image: BTreeMap<String, Option<usize>> = BTreeMap::new();
-    let mut budget = super::gltf::MAX_IMAGE_PIXELS;
-    for (&group, geometry) in groups.iter().zip(primitives) {
-        let name = obj.groups[group].material.as_str();
-        let index = *material_of_name.entry(name).or_insert_with(|| {
-            let found = materials.get(name);
-            if found.is_none() && !name.is_empty() && complete {
-                let problem = "no material library has it, so it is grey".to_owned();
-                let place = format!("material “{name}”");
-                warnings.push(Warning::Other { code: "material-missing", place, problem });
-            }
-            let mut material = found.map_or_else(|| mtl::plain(name), |found| found.material.clone());
-            if let Some(uri) = found.and_then(|found| found.image.as_ref()) {
-                let texture = texture_of_image
-                    .entry(uri.clone())
-                    .or_insert_with(|| Some(add_texture(parts, image(files, file, uri, &mut budget, warnings)?)));
-                material.base_color_texture =
-                    texture.map(|texture| TextureRef { texture, uv_set: 0, uv_transform: UvTransform::IDENTITY });
-            }
-            parts.materials.push(material);
-            parts.materials.len() - 1
-        });
-        geometry.material = Some(index);
+/// Adds materials and textures to the parts of a model.
+struct Surfaces<'a> {
+    files: &'a FileSet,
+    file: &'a str,
+    budget: &'a Budget,
+    parts: &'a mut AssetParts,
+    warnings: &'a mut Warnings,
+}
+
+impl Surfaces<'_> {
+    /// Adds one material for each that a group of faces names; a plain one if the libraries do not have it.
+    fn add_materials(&mut self, obj: &ObjText, groups: &[usize], primitives: &mut [Geometry]) {
+        let Libraries { materials, complete } = read_libraries(self.files, self.file, obj, self.warnings);
+        let mut material_of_name: BTreeMap<&str, usize> = BTreeMap::new();
+        let mut texture_of_image: BTreeMap<&str, Option<usize>> = BTreeMap::new();
+        for (&group, geometry) in groups.iter().zip(primitives) {
+            let name = obj.groups[group].material.as_str();
+            let index = *material_of_name.entry(name).or_insert_with(|| {
+                let found = materials.get(name);
+                if found.is_none() && !name.is_empty() && complete {
+                    let problem = "no material library has it, so it is grey".to_owned();
+                    let place = format!("material “{name}”");
+                    self.warnings.push(Warning::Other { code: "material-missing", place, problem });
+                }
+                let mut material = found.map_or_else(|| mtl::plain(name), |found| found.material.clone());
+                if let Some(uri) = found.and_then(|found| found.image.as_ref()) {
+                    let texture = *texture_of_image.entry(uri).or_insert_with(|| self.add_texture(uri));
+                    material.base_color_texture =
+                        texture.map(|texture| TextureRef { texture, uv_set: 0, uv_transform: UvTransform::IDENTITY });
+                }
+                self.parts.materials.push(material);
+                self.parts.materials.len() - 1
+            });
+            geometry.material = Some(index);
+        }
+    }
+
+    /// Returns the index of the new texture.
+    fn add_texture(&mut self, uri: &str) -> Option<usize> {
+        let image = image(self.files, self.file, uri, self.budget, self.warnings)?;
+        self.parts.images.push(image);
+        let image = Some(self.parts.images.len() - 1);
+        self.parts.textures.push(Texture { image, sampler: Sampler::default() });
+        Some(self.parts.textures.len() - 1)
     }
 }
 
@@ -254,14 +269,7 @@ fn read_libraries(files: &FileSet, file: &str, obj: &ObjText, warnings: &mut War
     libraries
 }
 
-/// Returns the index of the new texture.
-fn add_texture(parts: &mut AssetParts, image: Image) -> usize {
-    parts.images.push(image);
-    parts.textures.push(Texture { image: Some(parts.images.len() - 1), sampler: Sampler::default() });
-    parts.textures.len() - 1
-}
-
-fn image(files: &FileSet, file: &str, uri: &str, budget: &mut usize, warnings: &mut Warnings) -> Option<Image> {
+fn image(files: &FileSet, file: &str, uri: &str, budget: &Budget, warnings: &mut Warnings) -> Option<Image> {
     let Some(found) = files.resolve(file, uri) else {
         warnings.push(Warning::ImageMissing { uri: uri.to_owned() });
         return None;

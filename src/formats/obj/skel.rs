@@ -5,12 +5,13 @@ use glam::Vec3;
 
 use crate::anim::{Joint, Skeleton, Transform};
 use crate::formats::error::Problem;
+use crate::formats::limits::{Budget, Limit};
 use crate::formats::lines::{Lines, number, quoted, text};
 
 /// The most that influences can refer to.
 const MAX_JOINTS: usize = u16::MAX as usize;
 
-pub fn read(bytes: &[u8]) -> Result<Skeleton, Problem> {
+pub fn read(bytes: &[u8], budget: &Budget) -> Result<Skeleton, Problem> {
     let mut joints: Vec<Joint> = Vec::new();
     let mut lines = Lines::new(bytes);
     while let Some((line, content)) = lines.next_full_line() {
@@ -21,6 +22,7 @@ pub fn read(bytes: &[u8]) -> Result<Skeleton, Problem> {
         if joints.len() == MAX_JOINTS {
             return Err(Problem::new(place, format!("at most {MAX_JOINTS} joints"), "more"));
         }
+        budget.spend(Limit::Nodes, 1, &place)?;
         let words: Vec<&[u8]> =
             content.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).take(5).collect();
         let [x, y, z, parent] = words[..] else {

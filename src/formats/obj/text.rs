@@ -18,6 +18,7 @@ use glam::{DVec3, Vec2, Vec3};
 
 use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
+use crate::formats::limits::Budget;
 use crate::formats::lines::{Lines, number, quoted, text};
 
 /// Each group is a draw of its own.
@@ -71,15 +72,17 @@ struct Reader<'a> {
     group: Group,
     group_index: Option<u32>,
     known_groups: BTreeMap<Group, u32>,
+    budget: &'a Budget,
     warnings: &'a mut Warnings,
 }
 
-pub fn read(bytes: &[u8], warnings: &mut Warnings) -> Result<ObjText, Problem> {
+pub fn read(bytes: &[u8], budget: &Budget, warnings: &mut Warnings) -> Result<ObjText, Problem> {
     let mut reader = Reader {
         obj: ObjText::default(),
         group: Group::default(),
         group_index: None,
         known_groups: BTreeMap::new(),
+        budget,
         warnings,
     };
     let mut lines = Lines::new(bytes);
@@ -151,6 +154,11 @@ fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
 }
 
 impl Reader<'_> {
+    /// Counts one more element towards the budget.
+    fn allocate<T>(&self, line: usize) -> Result<(), Problem> {
+        self.budget.allocate(1, size_of::<T>(), &format_args!("line {line}"))
+    }
+
     fn statement(&mut self, line: usize, statement: &[u8]) -> Result<(), Problem> {
         let mut rest = words(statement);
         let Some(keyword) = rest.next() else { return Ok(()) };
@@ -161,6 +169,7 @@ impl Reader<'_> {
                 if found == 0 {
                     return Err(Problem::new(place(line), "1 to 3 numbers after “vt”", "none"));
                 }
+                self.allocate::<Vec2>(line)?;
                 // Texture rows count from the top, as in glTF.
                 self.obj.uvs.push(Vec2::new(uv[0], 1.0 - uv[1]));
                 Ok(())
@@ -170,6 +179,7 @@ impl Reader<'_> {
                 if found != 3 {
                     return Err(Problem::new(place(line), "3 numbers after “vn”", found));
                 }
+                self.allocate::<Vec3>(line)?;
                 self.obj.normals.push(Vec3::from(normal).normalize_or(Vec3::Y));
                 Ok(())
             }
@@ -218,6 +228,7 @@ impl Reader<'_> {
                 return Err(Problem::new(place(line), expected, found));
             }
         };
+        self.allocate::<[Vec3; 2]>(line)?;
         let obj = &mut self.obj;
         if let Some(color) = color.filter(|_| obj.colors.len() == obj.positions.len()) {
             obj.colors.push(color);
@@ -247,8 +258,10 @@ impl Reader<'_> {
                 let expected = "corners such as 1, 1/1, 1//1 or 1/1/1";
                 return Err(Problem::new(place(line), expected, quoted(Some(word))));
             }
+            self.allocate::<Corner>(line)?;
             self.obj.corners.push(corner);
         }
+        self.allocate::<Face>(line)?;
         let (count, end) = (self.obj.corners.len() - first, self.obj.corners.len());
         if count < 3 {
             return Err(Problem::new(place(line), "a face of at least 3 corners", count));

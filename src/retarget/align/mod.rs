@@ -3,6 +3,8 @@
 
 mod common_frame;
 pub mod rest;
+mod same_rig;
+mod stance;
 pub mod swing;
 
 use std::collections::BTreeMap;
@@ -48,23 +50,38 @@ impl Rest<'_> {
     }
 }
 
-/// `target_nodes` is the target's rest as the player has it.
-pub fn align(map: &ResolvedMap, source: &Rest, target: &Rest, target_nodes: &[Local]) -> Alignment {
+/// `target_nodes` is the target's rest as the player has it. `target_from_source` turns one model space into the other if both
+/// rest alike, and nothing else needs aligning then.
+pub fn align(
+    map: &ResolvedMap,
+    source: &Rest,
+    target: &Rest,
+    target_nodes: &[Local],
+    target_from_source: Option<DQuat>,
+) -> Alignment {
     let pair_of_slot = pairs_of_slots(map, source.slots, target.slots);
-    let turns =
-        [source, target].map(|rest| common_frame::common_from_model(&rest.world_pose(DQuat::IDENTITY), rest.slots));
-    let [common_from_source, common_from_target] = match turns {
-        [Some(source), Some(target)] => [source, target],
-        _ => [DQuat::IDENTITY; 2],
+    let common_from = |rest: &Rest| common_frame::common_from_model(&rest.world_pose(DQuat::IDENTITY), rest.slots);
+    let [common_from_source, common_from_target] = match target_from_source {
+        Some(target_from_source) => {
+            let common_from_target = common_from(target).unwrap_or(DQuat::IDENTITY);
+            [unit(common_from_target * target_from_source), common_from_target]
+        }
+        None => match [common_from(source), common_from(target)] {
+            [Some(source), Some(target)] => [source, target],
+            _ => [DQuat::IDENTITY; 2],
+        },
     };
     let (source_pose, target_pose) = (source.world_pose(common_from_source), target.world_pose(common_from_target));
-    let swings = swing::swings(SwingInput {
-        map,
-        pair_of_slot: &pair_of_slot,
-        target_skeleton: target.skeleton,
-        source: &source_pose,
-        target: &target_pose,
-    });
+    let swings = match target_from_source {
+        Some(_) => vec![DQuat::IDENTITY; map.pairs.len()],
+        None => swing::swings(SwingInput {
+            map,
+            pair_of_slot: &pair_of_slot,
+            target_skeleton: target.skeleton,
+            source: &source_pose,
+            target: &target_pose,
+        }),
+    };
     let locals = aligned_locals(map, &swings, target.skeleton, &target_pose, target_nodes);
     let aligned = WorldPose::new(target.skeleton, locals, common_from_target);
     Alignment { source: source_pose, target: aligned, unaligned_target: target_pose, pair_of_slot }

@@ -1,23 +1,111 @@
-//! The rest pose that motion is measured from: a skeleton's nodes, a skin's bind pose, or a frame of a clip. Rotations come
-//! from orthonormalized matrices, so scaled or rotated ancestors do no harm.
+//! The rest pose that motion is measured from: a skeleton's nodes, a skin's bind pose, a pose of a clip, or the model's own.
+//! Rotations come from orthonormalized matrices, so scaled or rotated ancestors do no harm.
 
-use glam::{Affine3A, DAffine3, DQuat, DVec3};
+use glam::{Affine3A, DAffine3, DQuat};
 
+use super::same_rig::{OwnRest, Resting, SharedRest, shared_rest};
+use super::stance::{Stance, Standing, best_standing};
 use crate::anim::{Clip, JointIndex, Skeleton, nearest_rotation};
-use crate::asset::{Asset, Humanoid, Slot};
+use crate::asset::{Asset, Humanoid};
 use crate::mesh::Skin;
-use crate::retarget::map::RestChoice;
+use crate::retarget::map::{ResolvedMap, RestChoice};
 use crate::retarget::pose::{Local, Scratch, WorldPose, ancestry, clip_locals, node_locals};
 
-/// Returns the source's rest. `Auto` takes a pose from the clip if the body does not stand upright at rest.
-pub fn source_rest(source: &Asset, slots: &Humanoid, clip: &Clip, choice: RestChoice) -> Vec<Local> {
-    let locals = chosen_locals(source, Some(clip), choice);
-    if choice != RestChoice::Auto {
-        return locals;
+/// Where the rest that a motion is measured from comes from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum RestOrigin {
+    /// The joint map chooses it.
+    Map,
+    /// The motion's skin, or its nodes where no skin covers a joint.
+    Motion,
+    /// The model, which has the same rig: names, hierarchy and local frames.
+    Model,
+    /// The moment of the clip, in seconds, that looks most like a rest.
+    Moment(f32),
+    /// The mean of the clip.
+    Mean,
+}
+
+/// The rest that a motion is measured from, and how sure that is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FoundRest {
+    /// Where it comes from.
+    pub origin: RestOrigin,
+    /// 0 (a pose in motion) to 1 (the map says so, the rig is the same, or the body stands upright with both sides alike).
+    pub confidence: f64,
+}
+
+impl FoundRest {
+    /// Whether the motion's own rest looks like a pose in motion and nothing better is certain.
+    pub fn is_doubtful(&self) -> bool {
+        self.confidence < MIN_CONFIDENCE
     }
-    match upright_moment(&source.skeleton, slots, &locals, clip) {
-        Some(time_secs) => clip_locals(&source.skeleton, clip, time_secs, &mut Scratch::default()),
-        None => locals,
+}
+
+/// A rest below this is not taken as it is, and whatever replaces it is called doubtful below it.
+const MIN_CONFIDENCE: f64 = 0.5;
+
+/// The source's rest.
+#[derive(Debug)]
+pub struct SourceRest {
+    pub locals: Vec<Local>,
+    /// What joints do that the clip does not move.
+    pub unmoved: Vec<Local>,
+    /// Turns the source's model space into the target's, if both are the same rig.
+    pub target_from_source: Option<DQuat>,
+    /// The hips are where they rest. Otherwise they rest where the target's do.
+    pub is_in_place: bool,
+    pub found: FoundRest,
+}
+
+/// What the source's rest is found from.
+#[derive(Clone, Copy)]
+pub struct RestInput<'a> {
+    pub source: &'a Asset,
+    pub source_slots: &'a Humanoid,
+    pub clip: &'a Clip,
+    pub target: &'a Skeleton,
+    /// See [`target_rest`].
+    pub target_rest: &'a [Local],
+    pub map: &'a ResolvedMap,
+}
+
+/// Returns the source's rest. `Auto` takes the model's for the same rig, and a pose from the clip if the body does not stand
+/// at rest.
+pub fn source_rest(input: RestInput) -> SourceRest {
+    let RestInput { source, source_slots: slots, clip, map, .. } = input;
+    let skeleton = &source.skeleton;
+    let choice = map.rest.motion;
+    let locals = chosen_locals(source, Some(clip), choice);
+    let rest = |locals, origin, confidence| SourceRest {
+        locals,
+        unmoved: node_locals(skeleton),
+        target_from_source: None,
+        is_in_place: true,
+        found: FoundRest { origin, confidence },
+    };
+    if choice != RestChoice::Auto {
+        return rest(locals, RestOrigin::Map, 1.0);
+    }
+    let stance = Stance::of(&WorldPose::new(skeleton, locals.clone(), DQuat::IDENTITY), slots);
+    let is_standing = stance.is_some_and(|stance| stance.confidence() >= MIN_CONFIDENCE);
+    let target = Resting { skeleton: input.target, locals: input.target_rest };
+    let own = OwnRest { resting: Resting { skeleton, locals: &locals }, is_standing };
+    if let Some(SharedRest { locals, unmoved, target_from_source }) = shared_rest(target, own, clip, map) {
+        return SourceRest {
+            unmoved,
+            target_from_source: Some(target_from_source),
+            is_in_place: is_standing,
+            ..rest(locals, RestOrigin::Model, 1.0)
+        };
+    }
+    let confidence = stance.map_or(1.0, Stance::confidence);
+    let better = stance.filter(|_| !is_standing);
+    match better.and_then(|stance| best_standing(skeleton, slots, clip, stance)) {
+        Some(Standing { locals, stance, time_secs }) => {
+            rest(locals, time_secs.map_or(RestOrigin::Mean, RestOrigin::Moment), stance.confidence())
+        }
+        None => rest(locals, RestOrigin::Motion, confidence),
     }
 }
 
@@ -44,52 +132,9 @@ fn chosen_locals(asset: &Asset, clip: Option<&Clip>, choice: RestChoice) -> Vec<
 }
 
 /// Time of the first key of any channel; 0 without channels.
-fn first_key_secs(clip: &Clip) -> f32 {
+pub(super) fn first_key_secs(clip: &Clip) -> f32 {
     let first = clip.timelines().iter().map(|times| times[0]).fold(f32::INFINITY, f32::min);
     if first.is_finite() { first } else { 0.0 }
-}
-
-/// A rest below this [`uprightness`] is not a standing pose.
-const MIN_UPRIGHTNESS: f64 = 0.75;
-
-/// Moments of the clip to compare.
-const REST_SAMPLES: usize = 64;
-
-/// Returns the time at which the body stands most upright, or None if its rest is good enough or no frame is better. Some
-/// motion capture rests with all bones along one axis, which says nothing about how two bodies correspond.
-fn upright_moment(skeleton: &Skeleton, slots: &Humanoid, rest: &[Local], clip: &Clip) -> Option<f32> {
-    let uprightness_of = |locals| uprightness(&WorldPose::new(skeleton, locals, DQuat::IDENTITY), slots);
-    let at_rest = uprightness_of(rest.to_vec())?;
-    if at_rest > MIN_UPRIGHTNESS {
-        return None;
-    }
-    let (first_secs, last_secs) = (first_key_secs(clip), clip.duration_secs());
-    let mut scratch = Scratch::default();
-    let mut best = (at_rest, None);
-    for sample in 0..=REST_SAMPLES {
-        let time_secs = first_secs + (last_secs - first_secs) * sample as f32 / REST_SAMPLES as f32;
-        let found = uprightness_of(clip_locals(skeleton, clip, time_secs, &mut scratch)).unwrap_or(-1.0);
-        // Of similar poses, the first wins.
-        if found > best.0 + 0.01 {
-            best = (found, Some(time_secs));
-        }
-    }
-    best.1
-}
-
-/// Mean cosine between the torso and the four leg segments, from −1 to 1: 1 for straight legs in line with the torso. None
-/// without hips, head and legs.
-fn uprightness(pose: &WorldPose, slots: &Humanoid) -> Option<f64> {
-    let at = |slot| slots.joint(slot).map(|joint| pose.position(joint));
-    let (hips, head) = (at(Slot::Hips)?, at(Slot::Head)?);
-    let up = (head - hips).try_normalize()?;
-    let leg = |upper, lower, foot| {
-        let (upper, lower, foot): (DVec3, DVec3, DVec3) = (at(upper)?, at(lower)?, at(foot)?);
-        Some([(upper - lower).try_normalize()?.dot(up), (lower - foot).try_normalize()?.dot(up)])
-    };
-    let left = leg(Slot::LeftUpperLeg, Slot::LeftLowerLeg, Slot::LeftFoot)?;
-    let right = leg(Slot::RightUpperLeg, Slot::RightLowerLeg, Slot::RightFoot)?;
-    Some((left[0] + left[1] + right[0] + right[1]) / 4.0)
 }
 
 /// The nodes' rest with the rotations of the bind pose. A bind rotation is taken relative to the nearest ancestor in the

@@ -5,7 +5,7 @@ use glam::{DQuat, DVec3, DVec4, Quat, Vec3};
 
 use crate::anim::{Channel, Clip, Interpolation, JointIndex, Keys, Property, Skeleton};
 use crate::retarget::math::{slerp, unit};
-use crate::retarget::pose::{Local, WorldPose, ancestry, node_locals, parent_frame};
+use crate::retarget::pose::{Local, WorldPose, ancestry, parent_frame};
 
 /// One property of one joint over time.
 #[derive(Debug, Clone, Copy)]
@@ -52,15 +52,15 @@ pub struct SourceTracks<'a> {
 }
 
 impl<'a> SourceTracks<'a> {
-    pub fn new(skeleton: &'a Skeleton, clip: &'a Clip, muted: &[(JointIndex, Property)]) -> Self {
-        let locals = node_locals(skeleton);
+    /// `unmoved` is what joints do that the clip does not move.
+    pub fn new(skeleton: &'a Skeleton, clip: &'a Clip, muted: &[(JointIndex, Property)], unmoved: &[Local]) -> Self {
         let mut tracks = Self {
             skeleton,
             clip,
-            translations: locals.iter().map(|local| Track::Constant(local.translation)).collect(),
-            rotations: locals.iter().map(|local| Track::Constant(local.rotation)).collect(),
-            scales: locals.iter().map(|local| Track::Constant(local.scale)).collect(),
-            has_channel: vec![false; locals.len()],
+            translations: unmoved.iter().map(|local| Track::Constant(local.translation)).collect(),
+            rotations: unmoved.iter().map(|local| Track::Constant(local.rotation)).collect(),
+            scales: unmoved.iter().map(|local| Track::Constant(local.scale)).collect(),
+            has_channel: vec![false; unmoved.len()],
         };
         for channel in clip.channels() {
             if !muted.contains(&(channel.joint, channel.keys.property())) {

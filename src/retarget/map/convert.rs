@@ -47,7 +47,7 @@ impl JointMapFile {
         if !self.joints.is_empty() {
             check_crossfade(self.crossfade_secs)?;
         }
-        let (targets, sources) = (Names::new(&model.skeleton), Names::new(&motion.skeleton));
+        let (targets, sources) = (Names::new(model), Names::new(motion));
         let mut name_of_target: BTreeMap<usize, &str> = BTreeMap::new();
         let mut joints = BTreeMap::new();
         for (name, entry) in &self.joints {

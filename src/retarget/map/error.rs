@@ -1,5 +1,7 @@
 //! What can be wrong with a joint map.
 
+use crate::json_text;
+
 /// Why a joint map cannot be read or does not fit a model and a motion.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MapError {
@@ -19,7 +21,7 @@ pub enum MapError {
         found: String,
     },
     /// A member has the wrong type or value, is unknown, or appears twice.
-    #[error("{path}: {}", plain(.message))]
+    #[error("{}{}", prefix(.path), plain(.message))]
     Json {
         /// JSON path, such as `joints.head.source`.
         path: String,
@@ -133,34 +135,47 @@ pub enum MapError {
     NothingInCommon,
 }
 
-/// Rewrites `serde_json`'s message without its technical terms: “unknown field `sorce`, expected one of …”.
-fn plain(message: &str) -> String {
-    let (said, place) = match message.rsplit_once(" at line ") {
-        Some((said, place)) => (said, format!(" (line {})", place.replace(" column", ", column"))),
-        None => (message, String::new()),
-    };
-    // What follows the words, up to the comma, and what was expected.
-    let parts = |words: &str| said.strip_prefix(words)?.split_once(", expected ");
-    let text = if said.starts_with("EOF while parsing") {
-        "it ends too soon (cut short?)".to_owned()
-    } else if let Some((name, known)) = parts("unknown field ") {
-        format!("there is no member {name} here; expected {known}")
-    } else if let Some((value, known)) = parts("unknown variant ") {
-        format!("expected {known}, found {value}")
-    } else if let Some((found, expected)) = parts("invalid type: ").or_else(|| parts("invalid value: ")) {
-        format!("expected {expected}, found {found}")
-    } else if let Some(name) = said.strip_prefix("missing field ") {
-        format!("the member {name} is missing")
-    } else {
-        said.to_owned()
-    };
-    format!("{}{place}", quoted(&text))
+impl MapError {
+    /// The JSON path of what is wrong; `None` if that is the whole map.
+    pub fn path(&self) -> Option<&str> {
+        match self {
+            Self::Json { path, .. } => Some(path.as_str()).filter(|path| *path != "."),
+            Self::NoTarget { path, .. }
+            | Self::NoSource { path, .. }
+            | Self::TargetOutOfRange { path, .. }
+            | Self::SourceOutOfRange { path, .. }
+            | Self::AmbiguousTarget { path, .. }
+            | Self::AmbiguousSource { path, .. }
+            | Self::SameTarget { path, .. }
+            | Self::NoClip { path, .. }
+            | Self::Correction { path, .. } => Some(path),
+            Self::Version { .. } => Some("gaitway_map"),
+            Self::Crossfade { .. } => Some("crossfade_secs"),
+            Self::NotJson { .. } | Self::NotAMap | Self::NothingMapped | Self::NothingInCommon => None,
+        }
+    }
+
+    /// What a member should have been and what it is, if it has the wrong type or value.
+    pub fn expected_and_found(&self) -> Option<(String, String)> {
+        match self {
+            Self::Json { message, .. } => json_text::expected_and_found(json_text::split_position(message).0),
+            Self::Version { found } => Some(("1".to_owned(), found.clone())),
+            Self::Crossfade { found } => Some(("0 or more".to_owned(), found.to_string())),
+            _ => None,
+        }
+    }
 }
 
-/// Replaces backticks by quotation marks.
-fn quoted(text: &str) -> String {
-    let parts = text.split('`').enumerate();
-    parts.map(|(at, part)| if at % 2 == 1 { format!("“{part}”") } else { part.to_owned() }).collect()
+/// `serde_json`'s message in plain words.
+fn plain(message: &str) -> String {
+    let (said, place) = json_text::split_position(message);
+    let place = place.map_or_else(String::new, |place| format!(" ({place})"));
+    json_text::plain(said) + &place
+}
+
+/// The path and a colon; nothing for the map itself.
+fn prefix(path: &str) -> String {
+    if path == "." { String::new() } else { format!("{path}: ") }
 }
 
 fn nearest_text(nearest: &[String]) -> String {

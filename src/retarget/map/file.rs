@@ -11,6 +11,7 @@ use super::error::MapError;
 use super::joint_map::{MapEntry, MutedChannel};
 use super::options::{Feet, Keep, RestChoices, RootOptions};
 use super::unmapped::Unmapped;
+use crate::json_text::{offset_of, path_at, place};
 
 /// A joint map as written in a file. Joints that it does not name have no source.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -76,6 +77,10 @@ fn unique_entries<'de, D: Deserializer<'de>>(
                 if entries.contains_key(&name) {
                     return Err(A::Error::custom(format!("“{name}” appears twice; keep one of the two")));
                 }
+                // Beyond 32 bits it would be infinite, which no map can be written with.
+                if !entry.correction.is_finite() {
+                    return Err(A::Error::custom(format!("a number in the correction of “{name}” is too large")));
+                }
                 entries.insert(name, entry);
             }
             Ok(entries)
@@ -102,9 +107,16 @@ impl JointMapFile {
         }
         let blanked = without_explanations(text);
         let text = blanked.as_deref().unwrap_or(text);
-        serde_path_to_error::deserialize(&mut serde_json::Deserializer::from_str(text)).map_err(|error| {
-            let path = error.path().to_string();
-            MapError::Json { path, message: error.into_inner().to_string() }
+        serde_json::from_str(text).map_err(|error| {
+            let message = error.to_string();
+            let end = offset_of(text, error.line(), error.column()).min(text.len());
+            // The parser has read one byte more than a number, but all of a list or an object that is too short.
+            let is_whole = ["missing field", "invalid length"].iter().any(|start| message.starts_with(start));
+            let is_past = !is_whole && matches!(text.as_bytes()[..end].last(), Some(b'}' | b']'));
+            let path = place(&path_at(text, end - usize::from(is_past)));
+            // The text is JSON, so the parser misses the name of an option.
+            let option = "expected a name in quotation marks (see docs/joint-maps.md) at line ";
+            MapError::Json { path, message: message.replacen("expected value at line ", option, 1) }
         })
     }
 

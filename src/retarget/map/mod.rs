@@ -21,4 +21,5 @@ pub use opposite::opposite_joints;
 pub use options::{Feet, Keep, RestChoice, RestChoices, RootOptions, RootPart};
 pub use propose::{Proposal, ProposedPair, propose};
 pub use resolved::{Layer, Pair, ResolvedMap};
+pub(super) use shared_names::shared_names;
 pub use unmapped::{ClipRef, Unmapped};

@@ -1,11 +1,14 @@
 //! Looks up the joint names of a map file in a skeleton.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::error::MapError;
 use super::file::SourceRef;
 use super::resolve::source_joint;
-use crate::anim::{JointIndex, Skeleton};
+use crate::anim::{Clip, JointIndex, Skeleton};
+use crate::asset::Asset;
+use crate::mesh::Skin;
+use crate::retarget::recognize::{Name, Side};
 
 /// Maximum number of similar names to suggest for one that is not found.
 const MAX_SUGGESTIONS: usize = 3;
@@ -13,19 +16,21 @@ const MAX_SUGGESTIONS: usize = 3;
 /// Minimum similarity of a suggested name, from 0 to 1.
 const MIN_SIMILARITY: f64 = 0.6;
 
-/// The joints of a skeleton by name.
+/// The joints of a file by name.
 pub(super) struct Names<'a> {
+    asset: &'a Asset,
     skeleton: &'a Skeleton,
     joints: BTreeMap<&'a str, Vec<JointIndex>>,
 }
 
 impl<'a> Names<'a> {
-    pub fn new(skeleton: &'a Skeleton) -> Self {
+    pub fn new(asset: &'a Asset) -> Self {
+        let skeleton = &asset.skeleton;
         let mut joints: BTreeMap<&str, Vec<JointIndex>> = BTreeMap::new();
         for joint in skeleton.joints() {
             joints.entry(skeleton.name(joint)).or_default().push(joint);
         }
-        Self { skeleton, joints }
+        Self { asset, skeleton, joints }
     }
 
     fn named(&self, name: &str) -> &[JointIndex] {
@@ -68,14 +73,21 @@ impl<'a> Names<'a> {
         }
     }
 
-    /// The most similar names, best first; empty if none is similar enough.
+    /// The most similar names, best first; empty if none is similar enough. Nodes that only hold a mesh, a camera or a light are
+    /// not suggested.
     fn nearest(&self, name: &str) -> Vec<String> {
-        let wanted = name.to_lowercase();
+        let wanted = [name.to_lowercase(), spelled_alike(name)];
+        let moving = moving_joints(self.asset);
+        let is_moving = |joints: &[JointIndex]| moving.is_empty() || joints.iter().any(|joint| moving.contains(joint));
         let mut scored: Vec<(f64, &str)> = self
             .joints
-            .keys()
-            .filter(|other| !other.is_empty())
-            .map(|&other| (strsim::jaro_winkler(&wanted, &other.to_lowercase()), other))
+            .iter()
+            .filter(|(other, joints)| !other.is_empty() && is_moving(joints))
+            .map(|(&other, _)| {
+                let others = [other.to_lowercase(), spelled_alike(other)];
+                let scores = wanted.iter().zip(&others).map(|(wanted, other)| strsim::jaro_winkler(wanted, other));
+                (scores.fold(0.0, f64::max), other)
+            })
             .filter(|(score, _)| *score >= MIN_SIMILARITY)
             .collect();
         scored.sort_by(|a, b| b.0.total_cmp(&a.0).then_with(|| a.1.cmp(b.1)));
@@ -88,4 +100,22 @@ impl<'a> Names<'a> {
         numbers.sort_unstable();
         numbers
     }
+}
+
+/// The name without the rig's prefix and separators, and with one word for each side.
+fn spelled_alike(name: &str) -> String {
+    let name = Name::read(name);
+    let side = match name.side {
+        Some(Side::Left) => "left",
+        Some(Side::Right) => "right",
+        None => "",
+    };
+    side.to_owned() + &name.key()
+}
+
+/// The joints that are in a skin or move in a clip.
+fn moving_joints(asset: &Asset) -> BTreeSet<JointIndex> {
+    let skinned = asset.skins.iter().flat_map(Skin::joints).copied();
+    let animated = asset.clips.iter().flat_map(Clip::channels).map(|channel| channel.joint);
+    skinned.chain(animated).collect()
 }

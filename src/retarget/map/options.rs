@@ -16,8 +16,8 @@ pub struct RestChoices {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RestChoice {
-    /// The bind pose where a skin covers a joint, the node's transform elsewhere. For a motion whose body does not
-    /// stand upright in that pose, the most upright frame of its clip.
+    /// The bind pose where a skin covers a joint, the node's transform elsewhere. For a motion of the model's own rig, the
+    /// model's rest; for one whose body does not stand upright and symmetric in its own, the pose of its clip that does most.
     #[default]
     Auto,
     /// The nodes' own transforms.

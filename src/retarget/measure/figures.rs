@@ -17,15 +17,21 @@ use crate::retarget::transfer::{RemovedTravel, Transfer, lowest_leg_joint, remov
 /// Quality figures; `None` for what cannot be measured.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Figures {
-    /// How far the rotation of a mapped joint away from its aligned rest differs from its source's. Measured without
-    /// planted feet.
-    pub orientation_error_degrees_mean: Option<f64>,
-    /// The largest of these angles, over all mapped joints and measured times.
-    pub orientation_error_degrees_max: Option<f64>,
-    /// Angle between the direction of a limb (or the torso) and its source's: the visible error, regardless of rests.
+    /// Angle between the direction of a limb (or the torso) and its source's: the visible error. Measured from positions
+    /// alone, so a wrong rest shows in it, unless it turns a limb about itself.
     pub limb_direction_error_degrees_mean: Option<f64>,
     /// The largest of these angles, over all segments and measured times.
     pub limb_direction_error_degrees_max: Option<f64>,
+    /// The same for what the limbs do not show: the lines through both hips and both shoulders, and the directions of feet
+    /// and hands. Differences in build, such as the height of the heels, are included.
+    pub facing_error_degrees_mean: Option<f64>,
+    /// The largest of these angles.
+    pub facing_error_degrees_max: Option<f64>,
+    /// How far the rotation of a mapped joint away from its aligned rest differs from its source's: whether the law was
+    /// kept. It takes the rests for granted. Measured without planted feet.
+    pub orientation_error_degrees_mean: Option<f64>,
+    /// The largest of these angles, over all mapped joints and measured times.
+    pub orientation_error_degrees_max: Option<f64>,
     /// Mean horizontal speed of the toes (or ankles) while the source's are in contact, with removed travel added back.
     pub foot_slide_metres_per_sec: Option<f64>,
     /// The source's own speed during the same contacts, scaled to the target.
@@ -35,6 +41,16 @@ pub struct Figures {
     /// Share of the slots that both sides have whose joints are mapped.
     pub coverage: Option<f64>,
 }
+
+/// Lines whose directions tell how hips, chest, feet and hands are turned.
+const FACING: [(Slot, Slot); 6] = [
+    (Slot::RightUpperLeg, Slot::LeftUpperLeg),
+    (Slot::RightUpperArm, Slot::LeftUpperArm),
+    (Slot::LeftFoot, Slot::LeftToes),
+    (Slot::RightFoot, Slot::RightToes),
+    (Slot::LeftHand, Slot::LeftMiddleProximal),
+    (Slot::RightHand, Slot::RightMiddleProximal),
+];
 
 /// A clip of the target to measure.
 #[derive(Debug, Clone, Copy)]
@@ -80,13 +96,15 @@ pub fn measure(
     let removed = removed_travel(transfer, &laws, &times);
     let segments: Vec<(&Pair, &Pair)> =
         compared_segments().filter_map(|(from, to)| Some((transfer.pair(from)?, transfer.pair(to)?))).collect();
+    let facing_segments: Vec<(&Pair, &Pair)> =
+        FACING.into_iter().filter_map(|(from, to)| Some((transfer.pair(from)?, transfer.pair(to)?))).collect();
     let ground_joints: Vec<JointIndex> = [Slot::LeftFoot, Slot::LeftToes, Slot::RightFoot, Slot::RightToes]
         .into_iter()
         .filter_map(|slot| target_slots.joint(slot))
         .collect();
     let ground = lowest_leg_joint(target_slots, &transfer.alignment.target.positions);
 
-    let (mut orientation, mut direction) = (Spread::default(), Spread::default());
+    let [mut orientation, mut direction, mut facing] = [(); 3].map(|()| Spread::default());
     let mut penetration: Option<f64> = None;
     let mut feet = mapped_feet(transfer);
     let mut scratches = [Scratch::default(), Scratch::default()];
@@ -99,6 +117,7 @@ pub fn measure(
         let turn_back = DQuat::from_rotation_y(-removed.yaw.as_ref().map_or(0.0, |yaw| yaw.at(time)));
         add_orientation_errors(&mut orientation, transfer, &source, unplanted.as_ref().unwrap_or(&target), turn_back);
         add_direction_errors(&mut direction, &segments, &source, &target, turn_back);
+        add_direction_errors(&mut facing, &facing_segments, &source, &target, turn_back);
         if let Some(ground) = ground {
             let depths = ground_joints.iter().map(|&joint| ground - target.position(joint).y);
             penetration = depths.fold(penetration, |max, depth| Some(max.unwrap_or(0.0).max(depth)));
@@ -111,10 +130,12 @@ pub fn measure(
     }
     let (slide, tracks) = foot_tracks(transfer, &times, &feet);
     let figures = Figures {
-        orientation_error_degrees_mean: orientation.mean(),
-        orientation_error_degrees_max: orientation.max(),
         limb_direction_error_degrees_mean: direction.mean(),
         limb_direction_error_degrees_max: direction.max(),
+        facing_error_degrees_mean: facing.mean(),
+        facing_error_degrees_max: facing.max(),
+        orientation_error_degrees_mean: orientation.mean(),
+        orientation_error_degrees_max: orientation.max(),
         foot_slide_metres_per_sec: slide.target,
         foot_slide_source_metres_per_sec: slide.source,
         ground_penetration_metres_max: penetration,

@@ -127,6 +127,6 @@ fn usable(asset: &Asset) -> Vec<bool> {
 
 fn positions(skeleton: &Skeleton, pose: &Pose) -> Vec<Vec3> {
     let mut model_from = Vec::new();
-    model_from_joint(skeleton, &pose.locals, Affine3A::IDENTITY, &mut model_from);
+    model_from_joint(skeleton, pose, Affine3A::IDENTITY, &mut model_from);
     model_from.into_iter().map(|transform| transform.translation.into()).collect()
 }

@@ -42,6 +42,11 @@ pub struct Hips {
 }
 
 impl Hips {
+    /// The same for a source whose own rest says nothing: it stands where the target does, in its own size.
+    pub fn resting_as_target(self) -> Self {
+        Self { source_rest: self.target_rest / self.scale, ..self }
+    }
+
     /// Maps a position of the source's hips to the target's, before any travel is removed.
     pub fn target_position(&self, source: DVec3) -> DVec3 {
         self.target_rest + self.scale * (source - self.source_rest)

@@ -14,10 +14,12 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>) {
         return;
     };
     let Figures {
-        orientation_error_degrees_mean,
-        orientation_error_degrees_max,
         limb_direction_error_degrees_mean,
         limb_direction_error_degrees_max,
+        facing_error_degrees_mean,
+        facing_error_degrees_max,
+        orientation_error_degrees_mean,
+        orientation_error_degrees_max,
         foot_slide_metres_per_sec,
         foot_slide_source_metres_per_sec,
         ground_penetration_metres_max,
@@ -26,12 +28,23 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>) {
     let degrees = |value: Option<f64>| value.map(|value| format!("{value:.2}°"));
     let speed = |value: Option<f64>| value.map(|value| format!("{:.1} cm/s", 100.0 * value));
     controls::hint(ui, "Over the whole clip as it plays, with unmapped joints at rest.");
-    group(ui, &text::ROTATION_ERROR.to_uppercase(), "Difference from the source's rotations.");
-    row(ui, "Mean", degrees(orientation_error_degrees_mean));
-    row(ui, "Largest", degrees(orientation_error_degrees_max));
     group(ui, "LIMB DIRECTION ERROR", "Angle between a limb and its source: the visible error.");
     row(ui, "Mean", degrees(limb_direction_error_degrees_mean));
     row(ui, "Largest", degrees(limb_direction_error_degrees_max));
+    group(
+        ui,
+        "FACING ERROR",
+        "Angle between hips, shoulders, feet or hands and the source's, as far as their build allows.",
+    );
+    row(ui, "Mean", degrees(facing_error_degrees_mean));
+    row(ui, "Largest", degrees(facing_error_degrees_max));
+    group(
+        ui,
+        &text::ROTATION_ERROR.to_uppercase(),
+        "Difference from the source's rotations, each from its own rest pose.",
+    );
+    row(ui, "Mean", degrees(orientation_error_degrees_mean));
+    row(ui, "Largest", degrees(orientation_error_degrees_max));
     group(ui, "FEET", "Measured while the source's foot is on the ground, next to the source's own slide.");
     row(ui, "Slide", speed(foot_slide_metres_per_sec));
     row(ui, "Slide of the source", speed(foot_slide_source_metres_per_sec));

@@ -347,6 +347,10 @@ fn first_clip_of(model: &Model, motion: usize) -> Option<Command> {
 fn remarks(pairing: &Pairing<'_>) -> Vec<String> {
     const MAX_REMARKS: usize = 3;
     let mut remarks = Vec::new();
+    let mut borrowed = pairing.model.borrowed_clips().filter(|(_, borrowed)| borrowed.motion == pairing.index);
+    if borrowed.any(|(_, borrowed)| borrowed.motion_rest.is_doubtful()) {
+        remarks.push(text::DOUBTFUL_REST.to_owned());
+    }
     let Some(proposal) = pairing.proposal else { return remarks };
     for (who, recognized) in [("model", &proposal.model), ("motion", &proposal.motion)] {
         let sides: Vec<&str> = recognized

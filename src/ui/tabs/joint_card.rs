@@ -26,7 +26,7 @@ pub struct JointCard {
 pub fn show(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, card: &mut JointCard, out: &mut Output) {
     let asset = &model.asset;
     header(ui, shown, asset, joint, card, out);
-    let local = shown.frame.pose().locals.get(joint.get()).copied().unwrap_or_default();
+    let local = shown.frame.pose().get(joint).unwrap_or_default();
     ui.add_space(2.0);
     if controls::switch(ui, text::POSE_MANUALLY, card.is_posing) {
         card.is_posing = !card.is_posing;
@@ -128,7 +128,7 @@ fn name(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, card: 
 /// Three angles relative to the rest pose; they follow the clip until they are touched.
 fn pose_sliders(ui: &mut Ui, shown: &Shown<'_>, asset: &Asset, joint: JointIndex, rotation: Quat, out: &mut Output) {
     let number = asset.skeleton.source_index(joint);
-    let rest = asset.skeleton.rest().locals.get(joint.get()).map_or(Quat::IDENTITY, |local| local.rotation);
+    let rest = asset.skeleton.rest().get(joint).map_or(Quat::IDENTITY, |local| local.rotation);
     let now = shown.state.edits.pose.get(&number).copied().unwrap_or_else(|| manual_degrees(rest, rotation));
     // Turns -0 into 0.
     let now = now.map(|angle| angle + 0.0);

@@ -6,19 +6,21 @@ use crate::state::{
     Background, CameraChoice, Command, OrbitCamera, UpAxis, ViewerState, frame_all, front_yaw_radians, resolve_camera,
 };
 use crate::ui::controls::{self, SliderSettings};
-use crate::ui::{Output, Saved, Shown, UiAction, UiState, style, text};
+use crate::ui::{Output, Saved, Shown, UiAction, UiState, VideoSettings, style, text};
 
-/// Settings of saved images.
+/// Settings of saved images and videos.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PictureSettings {
     /// Width and height in pixels.
     size: [u32; 2],
     transparent: bool,
+    /// Of videos.
+    frames_per_sec: u32,
 }
 
 impl Default for PictureSettings {
     fn default() -> Self {
-        Self { size: [1920, 1080], transparent: false }
+        Self { size: [1920, 1080], transparent: false, frames_per_sec: 30 }
     }
 }
 
@@ -68,14 +70,20 @@ fn picture(ui: &mut Ui, shown: &Shown<'_>, settings: &mut PictureSettings, out: 
         let button = egui::Button::new(text).min_size(egui::vec2(ui.available_width(), 32.0));
         ui.add_enabled(enabled, button)
     };
+    let PictureSettings { size, transparent, .. } = *settings;
     if wide(ui, true, text::SAVE_IMAGE).clicked() {
-        let PictureSettings { size, transparent } = *settings;
         out.actions.push(UiAction::Save(Saved::Picture { size, transparent }));
     }
+    ui.add_space(4.0);
+    let rates = [24, 30, 60].map(|rate| (rate, text::frames_per_sec(rate)));
+    let choices = rates.each_ref().map(|(rate, label)| (*rate, label.as_str()));
+    if let Some(rate) = controls::segmented_about(ui, text::FRAME_RATE, Some(settings.frames_per_sec), &choices) {
+        settings.frames_per_sec = rate;
+    }
     let record = wide(ui, shown.is_animated(), text::RECORD);
-    if record.on_hover_text("Plays the clip once at the size of the window, without the panels. Esc cancels.").clicked()
-    {
-        out.actions.push(UiAction::Record);
+    if record.on_hover_text("Renders the played range once, frame by frame, as MP4 or WebM.").clicked() {
+        let frames_per_sec = settings.frames_per_sec;
+        out.actions.push(UiAction::Record(VideoSettings { size, frames_per_sec, transparent }));
     }
 }
 

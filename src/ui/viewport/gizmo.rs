@@ -87,8 +87,8 @@ fn gizmo(response: &Response, shown: &Shown<'_>) -> Option<Gizmo> {
     let matrix = character.world_from_joint.get(index.get())?;
     // The rings of a mirrored joint would rotate it the wrong way: it has only the sliders.
     let world = Some(Transform::from_matrix(&(*matrix).into())).filter(Transform::is_upright)?.rotation;
-    let rest = model.asset.skeleton.rest().locals.get(index.get())?.rotation;
-    let local = shown.frame.pose().locals.get(index.get())?.rotation;
+    let rest = model.asset.skeleton.rest().get(index)?.rotation;
+    let local = shown.frame.pose().get(index)?.rotation;
     let pane = pane_at(shown, response.rect, response.hover_pos());
     let position = Vec3::from(matrix.translation);
     let view = &shown.frame.view;

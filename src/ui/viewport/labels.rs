@@ -12,7 +12,7 @@ use crate::ui::{Shown, UiState, style};
 /// Labels the selected and the hovered joint, and the panes of the comparison. Call once the frame has been evaluated, or
 /// the labels lag behind the scene.
 pub fn labels(ui: &Ui, rect: Rect, shown: Shown<'_>, local: &mut UiState) {
-    if !rect.is_positive() || local.host.is_recording {
+    if !rect.is_positive() {
         return;
     }
     let painter = ui.painter_at(rect);

@@ -11,13 +11,14 @@ pub mod notices;
 pub mod overlays;
 pub mod panes;
 pub mod path_prompt;
+mod recording;
 pub mod sheet;
 
 use egui::layers::ShapeIdx;
 use egui::{PaintCallback, Painter, Rect, Sense, Shape, Ui, vec2};
 
 use super::tabs::formula;
-use super::{Output, Shown, UiAction, UiState, keys, style, text};
+use super::{Output, Shown, UiState, keys, style, text};
 use crate::frame::PickedJoint;
 use crate::state::{Background, DEFAULT_ASPECT};
 
@@ -74,12 +75,6 @@ fn input(ui: &mut Ui, painter: &Painter, rect: Rect, shown: &Shown<'_>, local: &
     local.viewport.aspect = rect.width() / rect.height().max(1.0);
     let response = ui.interact(rect, ui.scope_id().with("viewport"), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Image, true, text::VIEWPORT));
-    if local.host.is_recording {
-        if ui.input(|input| input.key_pressed(egui::Key::Escape)) || response.clicked() {
-            out.actions.push(UiAction::StopRecording);
-        }
-        return;
-    }
     if !gizmo::show(ui, painter, &response, shown, local, out) {
         camera::show(ui, &response, shown, out);
     }

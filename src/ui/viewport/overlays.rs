@@ -2,14 +2,11 @@
 
 use egui::{Align2, Context, Id, Order, Rect, Stroke, Ui, vec2};
 
-use super::{path_prompt, sheet};
+use super::{path_prompt, recording, sheet};
 use crate::ui::{Output, Shown, UiState, is_narrow, motion, style};
 
 /// Call last; `viewport` is the viewport's rectangle.
 pub fn overlays(ui: &mut Ui, viewport: Rect, shown: Shown<'_>, local: &mut UiState, out: &mut Output) {
-    if local.host.is_recording {
-        return;
-    }
     if is_narrow(ui) && !shown.state.page.embed {
         sheet::show(ui, &shown, local, out);
     } else {
@@ -18,6 +15,7 @@ pub fn overlays(ui: &mut Ui, viewport: Rect, shown: Shown<'_>, local: &mut UiSta
     local.messages.show(ui, viewport, &shown, out);
     local.help.show(ui.ctx());
     path_prompt::show(ui.ctx(), local, out);
+    recording::show(ui.ctx(), local, out);
     motion::banner(ui.ctx(), viewport, &shown, local);
     motion::picker(ui.ctx(), &shown, local, out);
     if ui.input(|input| !input.raw.hovered_files.is_empty()) {

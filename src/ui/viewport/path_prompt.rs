@@ -55,7 +55,7 @@ fn title_and_hint(purpose: PathPurpose) -> (&'static str, &'static str) {
     const GLB: &str = "Path of the .glb to write";
     match purpose {
         PathPurpose::Open => ("Open a file", "Path of a .glb, .gltf, .bvh, .obj, .zip or folder"),
-        PathPurpose::OpenMotion => ("Borrow motion", "Path of a .bvh, .glb, .vrma or joint map .json"),
+        PathPurpose::OpenMotion => ("Borrow motion", "Path of a .bvh, .fbx, .glb, .vrma or joint map .json"),
         PathPurpose::Save(Saved::File(Export::Map { .. })) => ("Save joint map", "Path of the .json to write"),
         PathPurpose::Save(Saved::File(Export::Model { .. } | Export::Whole { .. })) => ("Save model", GLB),
         PathPurpose::Save(Saved::File(Export::Clip { .. })) => ("Save clip", GLB),

@@ -74,7 +74,10 @@ pub fn install(context: &egui::Context) {
     }
 }
 
-/// See assets/font/README.md.
+/// See assets/font/README.md. On the page the browser draws the letters that it lacks, with the system's fonts.
+#[cfg(target_arch = "wasm32")]
+const UBUNTU_LIGHT: &[u8] = include_bytes!("../../../assets/font/Ubuntu-Light-derivative-Gaitway-Latin.ttf");
+#[cfg(not(target_arch = "wasm32"))]
 const UBUNTU_LIGHT: &[u8] = include_bytes!("../../../assets/font/Ubuntu-Light-derivative-Gaitway.ttf");
 
 /// One font for all text, with tabular digits for columns of numbers, and egui's icons.

@@ -40,12 +40,6 @@ pub enum WriteError {
         /// The first such joint: its name in the given skeleton; `#NODE` without one.
         joint: String,
     },
-    /// The glTF's first buffer has neither a URI nor a binary chunk.
-    #[error("{file}: its first buffer has no data, so that there is nothing to append to")]
-    NoBuffer {
-        /// Name of the model's file in the set.
-        file: String,
-    },
     /// The file would exceed the 32-bit length in the GLB header.
     #[error("the file would have {bytes} bytes; a GLB holds at most 4 GiB")]
     TooLarge {

@@ -16,7 +16,11 @@ use crate::formats::gltf::accessor::Bytes;
 use crate::formats::gltf::document::{Document, as_text, json_error, size};
 use crate::formats::gltf::object::{Array, Object, raw};
 use crate::formats::gltf::{container, data, resolve_buffers};
-use crate::formats::{FileSet, named};
+use crate::formats::{FileSet, extension, named};
+
+/// The extension without which no texture may use KTX2.
+const BASISU: &str = "KHR_texture_basisu";
+const KTX2: &str = "image/ktx2";
 
 /// Writes the file `file` of the set as a self-contained GLB, with `clips` (of `skeleton`, which was loaded from the same file)
 /// after its own. Its first buffer is the beginning of the new one; indices, numbers and everything unknown are preserved. Only
@@ -25,9 +29,10 @@ use crate::formats::{FileSet, named};
 pub fn model(files: &FileSet, file: &str, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
     let bytes = named(files, file)?;
     let container = container::open(file, bytes)?;
-    let root = Document::read(file, container.json)?.root;
+    let root = Document::read(file, &container)?.root;
+    let text = as_text(container.json);
     let mut json: Object =
-        serde_json::from_str(&as_text(container.json)).map_err(|problem| json_error(file, &problem))?;
+        serde_json::from_str(&text).map_err(|problem| json_error(file, &text, container.is_glb, &problem))?;
     if root.nodes.len() != skeleton.len() {
         let (nodes, joints) = (root.nodes.len(), skeleton.len());
         return Err(WriteError::OtherSkeleton { file: file.to_owned(), nodes, joints });
@@ -38,12 +43,11 @@ pub fn model(files: &FileSet, file: &str, skeleton: &Skeleton, clips: &[&Clip]) 
     }
     let mut warnings = Warnings::default();
     let buffers = resolve_buffers(files, file, &container, &root, &mut warnings).map_err(|p| p.in_file(file))?;
-    let mut binary = match buffers.first() {
-        Some(Some(first)) => first.as_slice().to_vec(),
-        None => Vec::new(),
-        Some(None) => return Err(WriteError::NoBuffer { file: file.to_owned() }),
-    };
-    let chunk = binary.len();
+    let mut binary = buffers.first().map_or(Vec::new(), |first| {
+        // Without data, it makes room below if anything is added.
+        first.as_ref().map_or(Vec::new(), |first| first.as_slice().to_vec())
+    });
+    let (chunk, json_views) = (binary.len(), json.count("bufferViews"));
     join_buffers(&mut json, &root, &buffers, &outside, &mut binary);
     embed_images(files, file, &mut json, &root, &outside, &mut binary);
     let counts = Counts { accessors: json.count("accessors"), buffer_views: json.count("bufferViews") };
@@ -53,6 +57,12 @@ pub fn model(files: &FileSet, file: &str, skeleton: &Skeleton, clips: &[&Clip]) 
     json.extend("animations", added.animations);
     for clip in clips {
         split_matrices(&mut json, clip, skeleton);
+    }
+    if matches!(buffers.first(), Some(None)) {
+        if !binary.is_empty() {
+            insert_first_buffer(&mut json, binary.len(), json_views);
+        }
+        return glb::glb(serde_json::to_vec(&json).unwrap_or_default(), binary);
     }
     // A GLB's chunk is up to three bytes longer than its buffer. Other files may be longer than their buffer says, and
     // views may reach beyond it.
@@ -90,7 +100,7 @@ fn join_buffers(json: &mut Object, root: &Root, buffers: &[Option<Bytes>], outsi
     let mut views: Vec<Object> = json.read("bufferViews").unwrap_or_default();
     let named_elsewhere = views.iter().any(|view| {
         let extensions: Object = view.read("extensions").unwrap_or_default();
-        extensions.values().any(|extension: Object| extension.read::<u64>("buffer").is_some())
+        extensions.values().any(|extension: Object| extension.read::<f64>("buffer").is_some())
     });
     let Some(all) = buffers.iter().map(Option::as_ref).collect::<Option<Vec<&Bytes>>>().filter(|_| !named_elsewhere)
     else {
@@ -106,7 +116,7 @@ fn join_buffers(json: &mut Object, root: &Root, buffers: &[Option<Bytes>], outsi
     for (view, read) in views.iter_mut().zip(&root.buffer_views) {
         if let Some(&start) = starts.get(read.buffer.value()).filter(|_| read.buffer.value() > 0) {
             view.set("buffer", &0);
-            view.set("byteOffset", &(start + read.byte_offset.map_or(0, size)));
+            view.set("byteOffset", &start.saturating_add(read.byte_offset.map_or(0, size)));
         }
     }
     let first: Array = json.read::<Array>("buffers").unwrap_or_default().into_iter().take(1).collect();
@@ -137,6 +147,7 @@ fn embed_images(files: &FileSet, file: &str, json: &mut Object, root: &Root, out
     }
     let mut images: Array = json.read("images").unwrap_or_default();
     let mut views: Array = Vec::new();
+    let mut ktx2: Vec<usize> = Vec::new();
     let first_view = json.count("bufferViews");
     for &index in &outside.images {
         let Some(uri) = root.images[index].uri.as_deref() else { continue };
@@ -146,33 +157,97 @@ fn embed_images(files: &FileSet, file: &str, json: &mut Object, root: &Root, out
         };
         let (Some(bytes), Some(text)) = (bytes, images.get_mut(index)) else { continue };
         let Ok(mut image) = serde_json::from_str::<Object>(text.get()) else { continue };
-        let Some(mime) = mime(&bytes, uri, image.read("mimeType")) else { continue };
+        let mime = mime(&bytes, uri, image.read("mimeType"));
         glb::pad(binary, 0);
         views.push(raw(&json!({ "buffer": 0, "byteOffset": binary.len(), "byteLength": bytes.len() })));
         binary.extend_from_slice(&bytes);
         image.remove("uri");
+        if mime == KTX2 {
+            ktx2.push(index);
+        }
         image.set("mimeType", &mime);
         image.set("bufferView", &(first_view + views.len() - 1));
         *text = raw(&image);
     }
     json.extend("bufferViews", views);
     json.set("images", &images);
+    declare_ktx2(json, &ktx2);
 }
 
-/// Returns the MIME type of an image by its content, else as the file declares it.
-fn mime(bytes: &[u8], uri: &str, said: Option<String>) -> Option<String> {
+/// Moves textures that use these images as if every reader knew KTX2 to the extension for it. An image in a file may be of any
+/// kind, one inside a GLB may not.
+fn declare_ktx2(json: &mut Object, images: &[usize]) {
+    let mut textures: Vec<Object> = json.read("textures").unwrap_or_default();
+    let mut changed = false;
+    for texture in &mut textures {
+        let Some(source) = texture.read::<usize>("source").filter(|source| images.contains(source)) else { continue };
+        let mut extensions: Object = texture.read("extensions").unwrap_or_default();
+        if extensions.read::<Object>(BASISU).is_none() {
+            extensions.set(BASISU, &json!({ "source": source }));
+        }
+        texture.remove("source");
+        texture.set("extensions", &extensions);
+        changed = true;
+    }
+    if changed {
+        json.set("textures", &textures);
+        let mut used: Vec<String> = json.read("extensionsUsed").unwrap_or_default();
+        if !used.iter().any(|name| name == BASISU) {
+            used.push(BASISU.to_owned());
+            json.set("extensionsUsed", &used);
+        }
+    }
+}
+
+/// Returns the MIME type of an image by its content, else as the file declares it, else by its extension. An image of an unknown
+/// kind is embedded as well: the file that it was in is not at hand wherever the GLB goes.
+fn mime(bytes: &[u8], uri: &str, said: Option<String>) -> String {
     let by_content = match imagesize::image_type(bytes) {
         Ok(ImageType::Png) => Some("image/png"),
         Ok(ImageType::Jpeg) => Some("image/jpeg"),
         Ok(ImageType::Webp) => Some("image/webp"),
-        _ if bytes.starts_with(b"\xABKTX 20") => Some("image/ktx2"),
+        _ if bytes.starts_with(b"\xABKTX 20") => Some(KTX2),
         _ => None,
     };
     let in_uri = || {
         let (kind, _) = uri.get(5..).filter(|_| data::is_data_uri(uri))?.split_once([';', ','])?;
         kind.starts_with("image/").then(|| kind.to_owned())
     };
-    by_content.map(str::to_owned).or(said).or_else(in_uri)
+    let by_extension = || match extension(uri).as_str() {
+        "bmp" => "image/bmp",
+        "dds" => "image/vnd-ms.dds",
+        "gif" => "image/gif",
+        "tga" => "image/x-tga",
+        "tif" | "tiff" => "image/tiff",
+        _ => "application/octet-stream",
+    };
+    by_content.map(str::to_owned).or(said).or_else(in_uri).unwrap_or_else(|| by_extension().to_owned())
+}
+
+/// Puts the GLB's binary chunk before the first buffer, which has no data and must keep it that way: only the file's own
+/// `own_views` views refer to the buffers that were there.
+fn insert_first_buffer(json: &mut Object, byte_length: usize, own_views: usize) {
+    let mut views: Vec<Object> = json.read("bufferViews").unwrap_or_default();
+    for view in views.iter_mut().take(own_views) {
+        shift_buffer(view);
+        let mut extensions: Object = view.read("extensions").unwrap_or_default();
+        extensions.change_objects(shift_buffer);
+        if !extensions.is_empty() {
+            view.set("extensions", &extensions);
+        }
+    }
+    if !views.is_empty() {
+        json.set("bufferViews", &views);
+    }
+    let mut buffers: Array = json.read("buffers").unwrap_or_default();
+    buffers.insert(0, raw(&json!({ "byteLength": byte_length })));
+    json.set("buffers", &buffers);
+}
+
+fn shift_buffer(object: &mut Object) {
+    if let Some(buffer) = object.read::<f64>("buffer") {
+        object.set("buffer", &(buffer as u64 + 1));
+    }
 }
 
 /// Makes the GLB's binary chunk the first buffer.
@@ -214,7 +289,7 @@ fn split_matrices(json: &mut Object, clip: &Clip, skeleton: &Skeleton) {
 }
 
 fn parts(skeleton: &Skeleton, joint: JointIndex) -> Vec<(&'static str, Box<RawValue>)> {
-    let rest = skeleton.rest().locals[joint.get()];
+    let rest = skeleton.rest().local(joint);
     // As f64: the shortest decimal form of an f32 may be parsed as its neighbour by readers that go through f64.
     vec![
         ("translation", raw(&rest.translation.as_dvec3().to_array())),

@@ -24,10 +24,14 @@ pub fn motion(asset: &Asset, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec
 /// Returns the beginning of a file's JSON: the joints of `skeleton` (those of the asset, perhaps with other names and another
 /// rest pose) in the asset's scenes.
 pub(super) fn nodes_and_scenes(asset: &Asset, skeleton: &Skeleton) -> Value {
-    let nodes: Vec<Value> = (0..skeleton.len())
-        .filter_map(|source| skeleton.joint_of_source(source))
-        .map(|joint| node(skeleton, joint))
-        .collect();
+    let mut children: Vec<Vec<usize>> = vec![Vec::new(); skeleton.len()];
+    let joints = || (0..skeleton.len()).filter_map(|source| skeleton.joint_of_source(source));
+    for joint in joints() {
+        if let Some(parent) = skeleton.parent(joint) {
+            children[parent.get()].push(skeleton.source_index(joint));
+        }
+    }
+    let nodes: Vec<Value> = joints().map(|joint| node(skeleton, joint, &children[joint.get()])).collect();
     let mut root =
         json!({ "asset": { "version": "2.0", "generator": concat!("Gaitway ", env!("CARGO_PKG_VERSION")) } });
     let source = |joints: &mut dyn Iterator<Item = JointIndex>| -> Vec<usize> {
@@ -58,12 +62,13 @@ pub(super) fn nodes_and_scenes(asset: &Asset, skeleton: &Skeleton) -> Value {
     root
 }
 
-fn node(skeleton: &Skeleton, joint: JointIndex) -> Value {
+/// `children`: their numbers in the source file, in ascending order.
+fn node(skeleton: &Skeleton, joint: JointIndex, children: &[usize]) -> Value {
     let mut node = json!({});
     if !skeleton.name(joint).is_empty() {
         node["name"] = json!(skeleton.name(joint));
     }
-    let rest = skeleton.rest().locals[joint.get()];
+    let rest = skeleton.rest().local(joint);
     let mut set_unless = |key: &str, numbers: &[f32], default: f32, last: f32| {
         let (end, others) = numbers.split_last().unwrap_or((&last, &[]));
         if *end != last || others.iter().any(|number| *number != default) {
@@ -73,9 +78,7 @@ fn node(skeleton: &Skeleton, joint: JointIndex) -> Value {
     set_unless("translation", &rest.translation.to_array(), 0.0, 0.0);
     set_unless("rotation", &rest.rotation.to_array(), 0.0, 1.0);
     set_unless("scale", &rest.scale.to_array(), 1.0, 1.0);
-    let mut children: Vec<usize> = skeleton.children(joint).map(|child| skeleton.source_index(child)).collect();
     if !children.is_empty() {
-        children.sort_unstable();
         node["children"] = json!(children);
     }
     node

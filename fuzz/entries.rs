@@ -1,0 +1,92 @@
+//! What is fuzzed: one function per reader. Whatever it returns must be consistent, and it must not panic, hang or use unbounded
+//! memory. The fuzz targets call these with libFuzzer's bytes, and `tests/formats/fuzz.rs` with damaged files for a moment in
+//! every test run.
+
+// Each target uses one of them.
+#![allow(dead_code)]
+
+use gaitway::asset::Asset;
+use gaitway::formats::{FileSet, LoadOptions, convert, load, missing_files};
+use gaitway::retarget::JointMapFile;
+use gaitway::state::{from_link, to_link};
+
+/// A reader's name, and what feeds it.
+pub type Entry = (&'static str, fn(&[u8]));
+
+/// All of them; each has a target of its name in `fuzz_targets`.
+pub const ENTRIES: [Entry; 6] =
+    [("gltf", gltf), ("bvh", bvh), ("exercise", exercise), ("archive", archive), ("map", map), ("link", link)];
+
+/// A .glb, or a .gltf whose data is inside.
+pub fn gltf(bytes: &[u8]) {
+    check_model(&one("model.gltf", bytes));
+}
+
+/// A .bvh.
+pub fn bvh(bytes: &[u8]) {
+    check_model(&one("motion.bvh", bytes));
+}
+
+/// Four texts separated by 0xFF: the .obj, .skel, .attach and .mtl of one model.
+pub fn exercise(bytes: &[u8]) {
+    let mut files = FileSet::default();
+    for (name, text) in ["m.obj", "m.skel", "m.attach", "m.mtl"].into_iter().zip(bytes.split(|byte| *byte == 0xFF)) {
+        files.insert(name, text.to_vec());
+    }
+    check_model(&files);
+}
+
+/// A zip archive, or any file without a name: its format is found from its content.
+pub fn archive(bytes: &[u8]) {
+    let mut files = FileSet::default();
+    if files.add("dropped", bytes.to_vec()).is_ok() {
+        check_model(&files);
+    }
+}
+
+/// A joint map.
+pub fn map(bytes: &[u8]) {
+    let Ok(mut map) = JointMapFile::from_json(&String::from_utf8_lossy(bytes)) else { return };
+    let written = map.to_json().expect("a map that was read can be written");
+    let read = JointMapFile::from_json(&written).expect("a written map can be read");
+    // serde_json may read the last digit of a huge number differently.
+    if (read.crossfade_secs - map.crossfade_secs).abs() <= f64::EPSILON * map.crossfade_secs {
+        map.crossfade_secs = read.crossfade_secs;
+    }
+    assert_eq!(read, map);
+}
+
+/// The part of a link after its `#`.
+pub fn link(bytes: &[u8]) {
+    let (state, _) = from_link(&String::from_utf8_lossy(bytes));
+    let written = to_link(&state);
+    assert_eq!(to_link(&from_link(&written).0), written, "a link that was written is read as it is");
+}
+
+fn one(name: &str, bytes: &[u8]) -> FileSet {
+    let mut files = FileSet::default();
+    files.insert(name, bytes.to_vec());
+    files
+}
+
+fn check_model(files: &FileSet) {
+    let _ = missing_files(files);
+    let Ok(asset) = load(files) else { return };
+    check_asset(&asset);
+    // A file may be impossible to write, but what is written must be readable.
+    if let Ok(written) = convert(files, &LoadOptions::default()) {
+        load(&one("written.glb", &written)).expect("a written model can be loaded");
+    }
+}
+
+fn check_asset(asset: &Asset) {
+    for (index, mesh) in asset.meshes.iter().enumerate() {
+        let uses = asset.instances.iter().filter(|instance| instance.mesh == index);
+        let smallest_skin = uses.filter_map(|instance| Some(asset.skins[instance.skin?].joints().len())).min();
+        for geometry in &mesh.primitives {
+            geometry.validate(smallest_skin).expect("a loaded model is consistent");
+            assert!(geometry.file_vertex.iter().all(|&vertex| (vertex as usize) < mesh.file_vertex_count()));
+        }
+    }
+    assert!(asset.skeleton.rest().locals().all(|local| local.is_finite()));
+}

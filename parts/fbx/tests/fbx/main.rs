@@ -1,0 +1,8 @@
+//! Tests of the converter, on text made here and on real files.
+
+mod data;
+#[path = "../../../../tests/support/data_folder.rs"]
+mod data_folder;
+mod glb;
+mod mutation;
+mod text;

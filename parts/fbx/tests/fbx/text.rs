@@ -1,0 +1,498 @@
+//! ASCII FBX made here, so that the converter is tested without real files.
+
+use std::fmt::Write;
+
+use crate::glb::Glb;
+
+/// Ticks of FBX per second.
+const SECOND: i64 = 46_186_158_000;
+
+/// Builds an FBX 7.4 text from objects and connections.
+struct Fbx {
+    settings: String,
+    objects: String,
+    connections: String,
+    next: i64,
+}
+
+impl Fbx {
+    /// Starts a scene of Y up and a unit in centimetres.
+    fn new(unit: f64) -> Fbx {
+        Fbx::with_axes(unit, [(1, 1), (2, 1), (0, 1)])
+    }
+
+    /// Starts a scene with other axes: up, front and right, each as axis and sign.
+    fn with_axes(unit: f64, axes: [(i32, i32); 3]) -> Fbx {
+        let mut settings = String::new();
+        for ((axis, sign), name) in axes.into_iter().zip(["UpAxis", "FrontAxis", "CoordAxis"]) {
+            writeln!(settings, "P: \"{name}\", \"int\", \"Integer\", \"\",{axis}").unwrap();
+            writeln!(settings, "P: \"{name}Sign\", \"int\", \"Integer\", \"\",{sign}").unwrap();
+        }
+        writeln!(settings, "P: \"UnitScaleFactor\", \"double\", \"Number\", \"\",{unit}").unwrap();
+        Fbx { settings, objects: String::new(), connections: String::new(), next: 1 }
+    }
+
+    /// Adds an object: its class as in the file ("Model", "Geometry", …), name, kind and contents.
+    fn object(&mut self, class: &str, name: &str, kind: &str, contents: &str) -> i64 {
+        let id = self.next;
+        self.next += 1;
+        let prefix = match class {
+            "AnimationStack" => "AnimStack",
+            "AnimationLayer" => "AnimLayer",
+            "AnimationCurveNode" => "AnimCurveNode",
+            "AnimationCurve" => "AnimCurve",
+            "Deformer" if kind == "Cluster" || kind == "BlendShapeChannel" => "SubDeformer",
+            other => other,
+        };
+        writeln!(self.objects, "{class}: {id}, \"{prefix}::{name}\", \"{kind}\" {{\n{contents}\n}}").unwrap();
+        id
+    }
+
+    /// Adds a node with properties such as `("Lcl Translation", [1.0, 2.0, 3.0])` below a parent; 0 is the root.
+    fn node(&mut self, name: &str, kind: &str, parent: i64, properties: &[(&str, [f64; 3])]) -> i64 {
+        let mut contents = "Properties70: {\n".to_owned();
+        for (name, [x, y, z]) in properties {
+            writeln!(contents, "P: \"{name}\", \"{name}\", \"\", \"A\",{x},{y},{z}").unwrap();
+        }
+        contents.push('}');
+        let id = self.object("Model", name, kind, &contents);
+        self.connect(id, parent);
+        id
+    }
+
+    fn connect(&mut self, child: i64, parent: i64) {
+        writeln!(self.connections, "C: \"OO\",{child},{parent}").unwrap();
+    }
+
+    /// Binds vertices to a joint, with weights, where the joint is at this height.
+    fn cluster(&mut self, skin: i64, joint: i64, weights: &[(u32, f64)], height: f64) {
+        let (count, list) = (weights.len(), |texts: Vec<String>| texts.join(","));
+        let vertices = list(weights.iter().map(|(vertex, _)| vertex.to_string()).collect());
+        let weights = list(weights.iter().map(|(_, weight)| weight.to_string()).collect());
+        let contents = format!(
+            "Indexes: *{count} {{\na: {vertices}\n}}\nWeights: *{count} {{\na: {weights}\n}}\n\
+             Transform: *16 {{\na: 1,0,0,0,0,1,0,0,0,0,1,0,0,{},0,1\n}}\n\
+             TransformLink: *16 {{\na: 1,0,0,0,0,1,0,0,0,0,1,0,0,{height},0,1\n}}",
+            -height
+        );
+        let cluster = self.object("Deformer", "", "Cluster", &contents);
+        self.connect(cluster, skin);
+        self.connect(joint, cluster);
+    }
+
+    fn connect_property(&mut self, child: i64, parent: i64, property: &str) {
+        writeln!(self.connections, "C: \"OP\",{child},{parent}, \"{property}\"").unwrap();
+    }
+
+    /// Adds a quad of two units, facing +Z, to a node.
+    fn quad(&mut self, node: i64) -> i64 {
+        let contents = "Vertices: *12 {\na: -1,-1,0,1,-1,0,1,1,0,-1,1,0\n}\nPolygonVertexIndex: *4 {\na: 0,1,2,-4\n}\n\
+            LayerElementUV: 0 {\nName: \"map1\"\nMappingInformationType: \"ByPolygonVertex\"\n\
+            ReferenceInformationType: \"Direct\"\nUV: *8 {\na: 0,0,1,0,1,1,0,1\n}\n}\n\
+            Layer: 0 {\nLayerElement: {\nType: \"LayerElementUV\"\nTypedIndex: 0\n}\n}";
+        let id = self.object("Geometry", "quad", "Mesh", contents);
+        self.connect(id, node);
+        id
+    }
+
+    /// Adds a take with one layer and returns the layer.
+    fn take(&mut self, name: &str, end_secs: f64) -> i64 {
+        let stop = (end_secs * SECOND as f64) as i64;
+        let contents = format!(
+            "Properties70: {{\nP: \"LocalStart\", \"KTime\", \"Time\", \"\",0\nP: \"LocalStop\", \"KTime\", \"Time\", \"\",{stop}\n}}"
+        );
+        let stack = self.object("AnimationStack", name, "", &contents);
+        let layer = self.object("AnimationLayer", "Base", "", "");
+        self.connect(layer, stack);
+        layer
+    }
+
+    /// Animates one component of a property with keys of (seconds, value). `flags`: 2 constant, 4 linear.
+    fn curve(&mut self, layer: i64, (object, property, component): (i64, &str, &str), flags: i32, keys: &[(f64, f64)]) {
+        let value = self.object("AnimationCurveNode", property, "", "");
+        self.connect(value, layer);
+        self.connect_property(value, object, property);
+        let list = |values: Vec<String>| format!("*{} {{\na: {}\n}}", values.len(), values.join(","));
+        let times = keys.iter().map(|(time, _)| ((time * SECOND as f64) as i64).to_string()).collect();
+        let values = keys.iter().map(|(_, value)| value.to_string()).collect();
+        let contents = format!(
+            "KeyVer: 4008\nKeyTime: {}\nKeyValueFloat: {}\nKeyAttrFlags: *1 {{\na: {flags}\n}}\n\
+             KeyAttrDataFloat: *4 {{\na: 0,0,0,0\n}}\nKeyAttrRefCount: *1 {{\na: {}\n}}",
+            list(times),
+            list(values),
+            keys.len()
+        );
+        let curve = self.object("AnimationCurve", "", "", &contents);
+        self.connect_property(curve, value, component);
+    }
+
+    fn text(&self) -> String {
+        format!(
+            "; FBX 7.4.0 project file\nFBXHeaderExtension: {{\nFBXHeaderVersion: 1003\nFBXVersion: 7400\n}}\n\
+             GlobalSettings: {{\nVersion: 1000\nProperties70: {{\n{}}}\n}}\n\
+             Objects: {{\n{}}}\nConnections: {{\n{}}}\n",
+            self.settings, self.objects, self.connections
+        )
+    }
+
+    fn glb(&self) -> (Glb, Vec<String>) {
+        let converted = gaitway_fbx::convert(self.text().as_bytes()).unwrap();
+        (Glb::new(&converted.bytes), converted.warnings)
+    }
+}
+
+/// Returns a quad that turns about its own pivot.
+pub fn cube() -> String {
+    let mut fbx = Fbx::new(1.0);
+    let node = fbx.node("Cube", "Mesh", 0, &[("RotationPivot", [1.0, 0.0, 0.0])]);
+    fbx.quad(node);
+    let layer = fbx.take("Take 001", 1.0);
+    fbx.curve(layer, (node, "Lcl Rotation", "d|Z"), 4, &[(0.0, 0.0), (1.0, 180.0)]);
+    fbx.text()
+}
+
+/// Returns a character of two joints with a skin, a blend shape and a clip.
+pub fn character() -> String {
+    two_joints().text()
+}
+
+/// The skin's object in `two_joints`: the fifth.
+const SKIN: i64 = 5;
+
+/// `Hips` at the origin and `Spine` 100 units above; the quad's lower half follows the one, its upper half the other.
+fn two_joints() -> Fbx {
+    let mut fbx = Fbx::new(1.0);
+    let hips = fbx.node("mixamorig:Hips", "LimbNode", 0, &[]);
+    let spine = fbx.node("mixamorig:Spine", "LimbNode", hips, &[("Lcl Translation", [0.0, 100.0, 0.0])]);
+    let body = fbx.node("Body", "Mesh", 0, &[]);
+    let mesh = fbx.quad(body);
+    let skin = fbx.object("Deformer", "", "Skin", "");
+    fbx.connect(skin, mesh);
+    for (joint, vertices, height) in [(hips, 0, 0.0), (spine, 2, 100.0)] {
+        fbx.cluster(skin, joint, &[(vertices, 1.0), (vertices + 1, 1.0)], height);
+    }
+    let blend = fbx.object("Deformer", "", "BlendShape", "");
+    fbx.connect(blend, mesh);
+    let channel =
+        fbx.object("Deformer", "smile", "BlendShapeChannel", "DeformPercent: 0\nFullWeights: *1 {\na: 100\n}");
+    fbx.connect(channel, blend);
+    let shape = "Indexes: *1 {\na: 2\n}\nVertices: *3 {\na: 0,0,5\n}\nNormals: *3 {\na: 0,0,0\n}";
+    let shape = fbx.object("Geometry", "smile", "Shape", shape);
+    fbx.connect(shape, channel);
+    let layer = fbx.take("mixamo.com", 2.0);
+    fbx.curve(layer, (spine, "Lcl Rotation", "d|X"), 4, &[(0.0, 0.0), (2.0, 90.0)]);
+    fbx.curve(layer, (channel, "DeformPercent", "d|DeformPercent"), 4, &[(0.0, 0.0), (2.0, 100.0)]);
+    fbx
+}
+
+fn assert_near(found: [f64; 3], expected: [f64; 3]) {
+    let near = found.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-5);
+    assert!(near, "expected {expected:?}, found {found:?}");
+}
+
+/// Returns a node's world position.
+fn position(glb: &Glb, clip: Option<(usize, f64)>, name: &str) -> [f64; 3] {
+    let [x, y, z, _] = glb.pose(clip).worlds[glb.node(name)][3];
+    [x, y, z]
+}
+
+#[test]
+fn centimetres_become_metres_without_scaling_joints() {
+    let (glb, warnings) = two_joints().glb();
+    assert_near(position(&glb, None, "mixamorig:Spine"), [0.0, 1.0, 0.0]);
+    assert!(glb.list("nodes").iter().all(|node| node["scale"].is_null()));
+    assert_eq!(warnings, [] as [String; 0]);
+}
+
+#[test]
+fn the_file_s_unit_counts() {
+    let mut fbx = Fbx::new(2.54);
+    fbx.node("a", "Null", 0, &[("Lcl Translation", [0.0, 100.0, 0.0])]);
+    assert_near(position(&fbx.glb().0, None, "a"), [0.0, 2.54, 0.0]);
+}
+
+#[test]
+fn z_up_and_left_handed_files_are_turned_and_mirrored() {
+    for (axes, expected) in
+        [([(2, 1), (1, -1), (0, 1)], [1.0, 3.0, -2.0]), ([(1, 1), (2, -1), (0, 1)], [1.0, 2.0, -3.0])]
+    {
+        let mut fbx = Fbx::with_axes(100.0, axes);
+        let parent = fbx.node("a", "Null", 0, &[("Lcl Translation", [1.0, 2.0, 0.0])]);
+        fbx.node("b", "Null", parent, &[("Lcl Translation", [0.0, 0.0, 3.0])]);
+        assert_near(position(&fbx.glb().0, None, "b"), expected);
+    }
+}
+
+#[test]
+fn names_and_parents_are_those_of_the_file() {
+    let (glb, _) = two_joints().glb();
+    let names: Vec<_> = glb.list("nodes").iter().map(|node| node["name"].as_str().unwrap()).collect();
+    assert_eq!(names.len(), 3);
+    let hips = &glb.list("nodes")[glb.node("mixamorig:Hips")];
+    assert_eq!(hips["children"].as_array().unwrap().len(), 1);
+    assert_eq!(hips["children"][0], glb.node("mixamorig:Spine"));
+}
+
+#[test]
+fn a_skin_bends_and_a_shape_blends() {
+    let (glb, _) = two_joints().glb();
+    let rest = glb.vertices(&glb.pose(None));
+    assert!(rest.iter().any(|p| (p[0] - 0.01).abs() + (p[1] - 0.01).abs() + p[2].abs() < 1e-6), "{rest:?}");
+    // The vertex (1, 1, 0) cm, with the shape (1, 1, 5), turned by 90° about X at (0, 100, 0): y - 100 becomes z.
+    let bent = glb.vertices(&glb.pose(Some((0, 2.0))));
+    let expected = [0.01, 1.0 - 0.05, -0.99];
+    let distance = |p: &&[f64; 3]| (0..3).map(|i| (p[i] - expected[i]).abs()).sum::<f64>() < 1e-5;
+    assert!(bent.iter().find(distance).is_some(), "{bent:?}");
+    assert_eq!(glb.list("meshes")[0]["extras"]["targetNames"][0], "smile");
+}
+
+#[test]
+fn takes_keep_their_names_and_lengths() {
+    let mut fbx = two_joints();
+    let layer = fbx.take("Armature|Run", 0.5);
+    fbx.curve(layer, (1, "Lcl Translation", "d|Y"), 4, &[(0.0, 0.0), (0.5, 50.0)]);
+    let (glb, _) = fbx.glb();
+    let names: Vec<_> = glb.list("animations").iter().map(|clip| clip["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["mixamo.com", "Armature|Run"]);
+    assert_eq!((glb.duration(0), glb.duration(1)), (2.0, 0.5));
+    assert_near(position(&glb, Some((1, 0.25)), "mixamorig:Hips"), [0.0, 0.25, 0.0]);
+}
+
+#[test]
+fn a_pivot_moves_what_turns_about_it() {
+    let converted = gaitway_fbx::convert(cube().as_bytes()).unwrap();
+    let glb = Glb::new(&converted.bytes);
+    for (time, expected) in [(0.0, [0.0, 0.0, 0.0]), (0.5, [0.01, -0.01, 0.0]), (1.0, [0.02, 0.0, 0.0])] {
+        assert_near(position(&glb, Some((0, time)), "Cube"), expected);
+    }
+}
+
+#[test]
+fn constant_keys_become_steps() {
+    let mut fbx = Fbx::new(100.0);
+    let node = fbx.node("a", "Null", 0, &[]);
+    let layer = fbx.take("jump", 3.0);
+    fbx.curve(layer, (node, "Lcl Translation", "d|X"), 2, &[(0.0, 1.0), (1.0, 2.0), (3.0, 5.0)]);
+    let (glb, _) = fbx.glb();
+    assert_eq!(glb.list("animations")[0]["samplers"][0]["interpolation"], "STEP");
+    for (time, x) in [(0.5, 1.0), (1.0, 2.0), (2.9, 2.0), (3.0, 5.0)] {
+        assert_near(position(&glb, Some((0, time)), "a"), [x, 0.0, 0.0]);
+    }
+}
+
+#[test]
+fn several_turns_between_two_keys_are_all_made() {
+    let mut fbx = Fbx::new(100.0);
+    let node = fbx.node("a", "Null", 0, &[]);
+    fbx.node("b", "Null", node, &[("Lcl Translation", [1.0, 0.0, 0.0])]);
+    let layer = fbx.take("spin", 1.0);
+    fbx.curve(layer, (node, "Lcl Rotation", "d|Z"), 4, &[(0.0, 0.0), (1.0, 1440.0)]);
+    let (glb, _) = fbx.glb();
+    for eighth in 0..=32 {
+        let angle = f64::from(eighth) * std::f64::consts::FRAC_PI_4;
+        assert_near(position(&glb, Some((0, f64::from(eighth) / 32.0)), "b"), [angle.cos(), angle.sin(), 0.0]);
+    }
+}
+
+#[test]
+fn geometric_transforms_move_the_mesh_but_not_the_children() {
+    let mut fbx = Fbx::new(100.0);
+    let node =
+        fbx.node("a", "Mesh", 0, &[("GeometricTranslation", [5.0, 0.0, 0.0]), ("GeometricScaling", [1.0, -1.0, 1.0])]);
+    fbx.node("b", "Null", node, &[]);
+    fbx.quad(node);
+    let (glb, _) = fbx.glb();
+    assert_near(position(&glb, None, "b"), [0.0; 3]);
+    let vertices = glb.vertices(&glb.pose(None));
+    assert!(vertices.iter().all(|p| (p[0] - 5.0).abs() < 1.01), "{vertices:?}");
+    assert_eq!(glb.list("nodes").len(), 2);
+    // Mirrored twice, by the scale and by the order of the corners, the quad still faces +Z.
+    let corners = glb.accessor(&glb.list("meshes")[0]["primitives"][0]["indices"]);
+    let [a, b, c] = [0, 1, 2].map(|corner| vertices[corners[corner] as usize]);
+    assert!((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) > 0.0);
+}
+
+#[test]
+fn materials_and_textures_are_carried_over() {
+    let mut fbx = Fbx::new(1.0);
+    let node = fbx.node("a", "Mesh", 0, &[]);
+    fbx.quad(node);
+    let material = "ShadingModel: \"phong\"\nProperties70: {\n\
+        P: \"DiffuseColor\", \"Color\", \"\", \"A\",0.8,0.8,0.8\n\
+        P: \"EmissiveColor\", \"Color\", \"\", \"A\",2,0,0\n\
+        P: \"SpecularColor\", \"Color\", \"\", \"A\",1,1,1\n\
+        P: \"ShininessExponent\", \"double\", \"Number\", \"\",30\n}";
+    let material = fbx.object("Material", "skin", "", material);
+    fbx.connect(material, node);
+    let texture = "RelativeFilename: \"..\\\\maps\\\\a skin.png\"\nFileName: \"C:\\\\maps\\\\a skin.png\"";
+    let texture = fbx.object("Texture", "t", "", texture);
+    fbx.connect_property(texture, material, "DiffuseColor");
+    let (glb, _) = fbx.glb();
+    assert_eq!(glb.list("images")[0]["uri"], "a%20skin.png");
+    let material = &glb.list("materials")[0];
+    assert_eq!(material["name"], "skin");
+    let surface = &material["pbrMetallicRoughness"];
+    assert_eq!(
+        surface["baseColorFactor"],
+        serde_json::json!([1, 1, 1, 1]),
+        "the texture takes the place of the colour"
+    );
+    assert_eq!(surface["metallicFactor"], 0);
+    assert_eq!(surface["roughnessFactor"], 0.25);
+    assert_eq!(material["emissiveFactor"], serde_json::json!([1, 0, 0]));
+    assert_eq!(material["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"], 2);
+    assert_eq!(glb.list("meshes")[0]["primitives"][0]["material"], 0);
+    let uvs = glb.accessor(&glb.list("meshes")[0]["primitives"][0]["attributes"]["TEXCOORD_0"]);
+    assert_eq!(uvs[..2], [0.0, 1.0], "V points down in glTF");
+}
+
+#[test]
+fn a_separate_roughness_map_stays_and_a_metalness_map_goes() {
+    let mut fbx = Fbx::new(1.0);
+    let node = fbx.node("a", "Mesh", 0, &[]);
+    fbx.quad(node);
+    // The identity of 3ds Max's metal and roughness material.
+    let material = "ShadingModel: \"unknown\"\nProperties70: {\n\
+        P: \"3dsMax|ClassIDa\", \"int\", \"Integer\", \"\",-804315648\n\
+        P: \"3dsMax|ClassIDb\", \"int\", \"Integer\", \"\",-1099438848\n\
+        P: \"3dsMax|main|metalness\", \"Float\", \"\", \"A\",0.7\n\
+        P: \"3dsMax|main|roughness\", \"Float\", \"\", \"A\",0.3\n\
+        P: \"3dsMax|main|useGlossiness\", \"Integer\", \"\", \"A\",2\n}";
+    let material = fbx.object("Material", "steel", "", material);
+    fbx.connect(material, node);
+    for map in ["metalness", "roughness"] {
+        let texture =
+            fbx.object("Texture", map, "", &format!("RelativeFilename: \"{map}.png\"\nFileName: \"{map}.png\""));
+        fbx.connect_property(texture, material, &format!("3dsMax|main|{map}_map"));
+    }
+    let (glb, warnings) = fbx.glb();
+    let surface = &glb.list("materials")[0]["pbrMetallicRoughness"];
+    assert_eq!(surface["metallicFactor"], 0, "{surface}");
+    assert_eq!(surface["roughnessFactor"], 1);
+    assert_eq!(glb.list("images").len(), 1);
+    assert_eq!(glb.list("images")[0]["uri"], "roughness.png");
+    assert!(warnings.len() == 1 && warnings[0].contains("metalness map"), "{warnings:?}");
+}
+
+#[test]
+fn joints_of_separate_trees_get_a_common_root() {
+    let mut fbx = two_joints();
+    let arm = fbx.node("Arm", "LimbNode", 0, &[]);
+    fbx.cluster(SKIN, arm, &[(0, 1.0)], 0.0);
+    let (glb, _) = fbx.glb();
+    assert_eq!(glb.list("scenes")[0]["nodes"].as_array().unwrap().len(), 1);
+    assert_near(position(&glb, None, "Arm"), [0.0; 3]);
+}
+
+#[test]
+fn vertices_that_no_joint_moves_stay_with_their_mesh() {
+    let mut fbx = Fbx::new(100.0);
+    let joint = fbx.node("joint", "LimbNode", 0, &[("Lcl Translation", [0.0, 7.0, 0.0])]);
+    let body = fbx.node("Body", "Mesh", 0, &[("Lcl Translation", [3.0, 0.0, 0.0])]);
+    let mesh = fbx.quad(body);
+    let skin = fbx.object("Deformer", "", "Skin", "");
+    fbx.connect(skin, mesh);
+    fbx.cluster(skin, joint, &[(0, 0.5)], 0.0);
+    let (glb, _) = fbx.glb();
+    let vertices = glb.vertices(&glb.pose(None));
+    for expected in [[-1.0, 6.0, 0.0], [4.0, -1.0, 0.0], [4.0, 1.0, 0.0], [2.0, 1.0, 0.0]] {
+        assert!(vertices.contains(&expected), "{expected:?} in {vertices:?}");
+    }
+}
+
+#[test]
+fn more_influences_than_four_take_further_sets() {
+    for (count, sets) in [(5, 2), (16, 4), (20, 4)] {
+        let mut fbx = Fbx::new(100.0);
+        let body = fbx.node("Body", "Mesh", 0, &[]);
+        let mesh = fbx.quad(body);
+        let skin = fbx.object("Deformer", "", "Skin", "");
+        fbx.connect(skin, mesh);
+        for joint in 0..count {
+            let node = fbx.node(&format!("joint{joint}"), "LimbNode", 0, &[]);
+            let weight = f64::from(joint + 1);
+            fbx.cluster(skin, node, &[0, 1, 2, 3].map(|vertex| (vertex, weight)), 0.0);
+        }
+        let (glb, warnings) = fbx.glb();
+        let attributes = &glb.list("meshes")[0]["primitives"][0]["attributes"];
+        let written = (0..5).filter(|set| !attributes[format!("JOINTS_{set}")].is_null()).count();
+        assert_eq!(written, sets, "{count} influences");
+        assert_eq!(warnings.len(), usize::from(count > 16), "{warnings:?}");
+        assert!(
+            glb.accessor(&attributes["WEIGHTS_0"])[0] > glb.accessor(&attributes["WEIGHTS_1"])[0],
+            "strongest first"
+        );
+    }
+}
+
+#[test]
+fn hidden_meshes_hide_nothing_else() {
+    let mut fbx = Fbx::new(1.0);
+    let hidden = "Properties70: {\nP: \"Visibility\", \"Visibility\", \"\", \"A\",0\n}";
+    let mut nodes = [("lone", 0), ("parent", 0), ("child", 0)];
+    for (name, node) in &mut nodes {
+        *node = fbx.object("Model", name, "Mesh", if *name == "child" { "" } else { hidden });
+        fbx.quad(*node);
+    }
+    let [(_, lone), (_, parent), (_, child)] = nodes;
+    fbx.connect(lone, 0);
+    fbx.connect(parent, 0);
+    fbx.connect(child, parent);
+    let (glb, _) = fbx.glb();
+    let hides = |name| !glb.list("nodes")[glb.node(name)]["extensions"]["KHR_node_visibility"].is_null();
+    assert_eq!(["lone", "parent", "child"].map(hides), [true, false, false]);
+}
+
+#[test]
+fn cameras_and_lights_look_along_their_fbx_axes() {
+    let mut fbx = Fbx::new(100.0);
+    for (name, kind) in [("eye", "Camera"), ("lamp", "Light")] {
+        let node = fbx.node(name, kind, 0, &[]);
+        let attribute = fbx.object("NodeAttribute", name, kind, "");
+        fbx.connect(attribute, node);
+    }
+    let (glb, _) = fbx.glb();
+    let pose = glb.pose(None);
+    let forward = |member: fn(&serde_json::Value) -> &serde_json::Value| {
+        let index = glb.list("nodes").iter().position(|node| !member(node).is_null()).unwrap();
+        let [x, y, z, _] = pose.worlds[index][2];
+        [-x, -y, -z]
+    };
+    assert_near(forward(|node| &node["camera"]), [1.0, 0.0, 0.0]);
+    assert_near(forward(|node| &node["extensions"]["KHR_lights_punctual"]), [0.0, -1.0, 0.0]);
+}
+
+#[test]
+fn repeating_curves_repeat_but_not_for_ever() {
+    let repeat = |secs: f64, period: f64| {
+        let mut fbx = Fbx::new(100.0);
+        let node = fbx.node("a", "Null", 0, &[]);
+        let layer = fbx.take("loop", secs);
+        fbx.curve(layer, (node, "Lcl Translation", "d|X"), 4, &[(0.0, 0.0), (period, 1.0)]);
+        let text =
+            fbx.text().replace("KeyVer: 4008", "KeyVer: 4008\nPost-Extrapolation: {\nType: R\nRepetition: -1\n}");
+        Glb::new(&gaitway_fbx::convert(text.as_bytes()).unwrap().bytes)
+    };
+    let glb = repeat(10.0, 2.0);
+    for time in [0.5, 2.5, 7.25, 9.75] {
+        assert_near(position(&glb, Some((0, time)), "a"), [time % 2.0 / 2.0, 0.0, 0.0]);
+    }
+    let start = std::time::Instant::now();
+    assert_eq!(repeat(80_000.0, 1e-4).duration(0), 80_000.0);
+    assert!(start.elapsed().as_secs() < 30, "{:?}", start.elapsed());
+}
+
+#[test]
+fn what_is_not_fbx_says_so() {
+    for (bytes, expected) in [
+        (&b""[..], "the FBX file is empty"),
+        (&b"glTF\x02\0\0\0"[..], "this is not an FBX file"),
+        (&b"v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n"[..], "this is not an FBX file"),
+        (&b"Kaydara FBX Binary   \x1a "[..], "its zero bytes were changed"),
+        (&b"Kaydara FBX Binary  \0\x1a\0\xe8\x1c\0\0"[..], "the FBX file"),
+        (&b"; FBX 7.4.0 project file\nObjects: {"[..], "the FBX file"),
+    ] {
+        let error = gaitway_fbx::convert(bytes).unwrap_err();
+        assert!(error.contains(expected), "{error}");
+    }
+}

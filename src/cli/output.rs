@@ -1,0 +1,57 @@
+//! What commands write: the file of `--out` and standard output. Everything that is written passes through here.
+
+use std::ffi::OsStr;
+use std::io::{ErrorKind, Write, stderr, stdout};
+use std::path::Path;
+
+use super::failure::{Failure, Outcome};
+use crate::files::{Disk, STANDARD_STREAM, is_stream, save_file};
+
+/// Writes the file of `--out`, or to standard output for `-`. `extensions` are those that fit the content, in lower case.
+pub(super) fn write_output(out: &Path, bytes: &[u8], extensions: &[&str], disk: &Disk) -> Outcome {
+    if is_standard_output(out) {
+        return print_bytes(bytes);
+    }
+    check_extension(out, extensions)?;
+    Ok(save_file(out, bytes, &disk.files_read())?)
+}
+
+pub(super) fn is_standard_output(out: &Path) -> bool {
+    out == STANDARD_STREAM
+}
+
+/// A name without an extension fits everything, and so do devices and pipes.
+fn check_extension(out: &Path, extensions: &[&str]) -> Outcome {
+    let Some(extension) = out.extension().and_then(OsStr::to_str).map(str::to_lowercase) else { return Ok(()) };
+    if extensions.contains(&extension.as_str()) || is_stream(out) {
+        return Ok(());
+    }
+    let expected: Vec<String> = extensions.iter().map(|extension| format!(".{extension}")).collect();
+    let failure = Failure::expected(expected.join(" or "), format!(".{extension}"));
+    Err(failure.at("file extension").in_file(out.display()))
+}
+
+/// Prints a document to standard output.
+pub(super) fn print_json(document: &serde_json::Value) -> Outcome {
+    print_bytes(format!("{document}\n").as_bytes())
+}
+
+/// Prints to standard output. A closed pipe is not an error.
+pub(super) fn print_bytes(bytes: &[u8]) -> Outcome {
+    let mut stdout = stdout().lock();
+    match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Failure::new(crate::files::describe(&error)).in_file("standard output"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Prints a line to standard error. If that fails, there is nowhere left to report it.
+pub(super) fn print_error(line: &str) {
+    let _ = writeln!(stderr(), "{line}");
+}
+
+pub(super) fn warn(message: &str) {
+    print_error(&format!("warning: {message}"));
+}

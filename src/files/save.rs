@@ -1,0 +1,141 @@
+//! Writes files so that nothing is lost: the old file stays until the new one is complete on the disk.
+
+use std::fs::{File, OpenOptions, Permissions, metadata, read_link, remove_file, rename};
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use super::error::describe;
+
+/// Why a file was not written. What was at its place is unchanged, unless that is a device or a pipe.
+#[derive(Debug, thiserror::Error)]
+pub enum SaveError {
+    /// The output is a file that was read, perhaps by another name.
+    #[error("{}: this is one of the files that were read, and it would be lost; choose another output", path.display())]
+    IsInput {
+        /// Path of the output as given.
+        path: PathBuf,
+    },
+    /// The folder of the output does not exist.
+    #[error("{}: there is no folder “{}”; create it first", path.display(), folder.display())]
+    NoFolder {
+        /// Path of the output as given.
+        path: PathBuf,
+        /// Its folder.
+        folder: PathBuf,
+    },
+    /// The operating system refused, or the disk is full.
+    #[error("{}: {}", path.display(), describe(problem))]
+    Write {
+        /// Path of the output as given.
+        path: PathBuf,
+        /// The operating system's error.
+        problem: io::Error,
+    },
+}
+
+/// Most symbolic links that lead from one to the next, as on Linux.
+const MAX_LINKS: usize = 40;
+/// Most temporary files that earlier runs may have left in a folder.
+const MAX_LEFTOVERS: usize = 100;
+
+/// Creates or replaces a file. A symbolic link stays, and the file it leads to is replaced. Devices, pipes and open descriptors
+/// (`/dev/stdout`) are written to directly.
+///
+/// # Errors
+/// If the output is one of the files at `inputs`, by whatever name, or cannot be written completely.
+pub fn save_file(path: &Path, bytes: &[u8], inputs: &[PathBuf]) -> Result<(), SaveError> {
+    if inputs.iter().any(|input| is_same_file(input, path)) {
+        return Err(SaveError::IsInput { path: path.to_owned() });
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    if let Some(folder) = folder.filter(|folder| !folder.exists()) {
+        return Err(SaveError::NoFolder { path: path.to_owned(), folder: folder.to_owned() });
+    }
+    write(path, bytes).map_err(|problem| SaveError::Write { path: path.to_owned(), problem })
+}
+
+/// Whether an output at this path is a device, a pipe or an open descriptor.
+pub fn is_stream(path: &Path) -> bool {
+    is_descriptor(path) || metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir())
+}
+
+fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    if is_stream(path) {
+        // Appending, since the shell may have opened the descriptor for that.
+        return OpenOptions::new().append(true).open(path)?.write_all(bytes);
+    }
+    match metadata(path) {
+        Ok(found) => {
+            // A folder or a write-protected file stays as it is, although it could be renamed over.
+            OpenOptions::new().write(true).open(path)?;
+            replace(&followed(path), bytes, Some(found.permissions()))
+        }
+        Err(error) if error.kind() == ErrorKind::NotFound => replace(&followed(path), bytes, None),
+        Err(error) => Err(error),
+    }
+}
+
+/// Names for what is open already, which no other file can take the place of.
+fn is_descriptor(path: &Path) -> bool {
+    let folders = ["/dev/fd", "/proc/self/fd"];
+    [Path::new("/dev/stdout"), Path::new("/dev/stderr")].contains(&path)
+        || path.parent().is_some_and(|folder| folders.iter().any(|other| folder == Path::new(other)))
+}
+
+/// Returns the path at the end of a chain of symbolic links, where there may be no file yet.
+fn followed(path: &Path) -> PathBuf {
+    let mut path = path.to_owned();
+    for _ in 0..MAX_LINKS {
+        let Ok(next) = read_link(&path) else { break };
+        path = path.parent().unwrap_or(Path::new("")).join(next);
+    }
+    path
+}
+
+fn replace(path: &Path, bytes: &[u8], permissions: Option<Permissions>) -> io::Result<()> {
+    let (temporary, file) = create_beside(path)?;
+    let replaced = fill(file, bytes, permissions).and_then(|()| rename(&temporary, path));
+    if replaced.is_err() {
+        // The error that matters is the first one.
+        let _ = remove_file(&temporary);
+    }
+    replaced
+}
+
+fn create_beside(path: &Path) -> io::Result<(PathBuf, File)> {
+    let mut attempt = 0;
+    loop {
+        let temporary = path.with_file_name(format!(".gaitway-{}-{attempt}.tmp", std::process::id()));
+        match OpenOptions::new().write(true).create_new(true).open(&temporary) {
+            Ok(file) => return Ok((temporary, file)),
+            Err(error) if error.kind() == ErrorKind::AlreadyExists && attempt < MAX_LEFTOVERS => attempt += 1,
+            Err(error) => return Err(error),
+        }
+    }
+}
+
+fn fill(mut file: File, bytes: &[u8], permissions: Option<Permissions>) -> io::Result<()> {
+    file.write_all(bytes)?;
+    if let Some(permissions) = permissions {
+        file.set_permissions(permissions)?;
+    }
+    // Some file systems run out of space only now.
+    file.sync_all()
+}
+
+/// Whether two paths lead to one file: by other spelling, symbolic or hard links.
+fn is_same_file(one: &Path, other: &Path) -> bool {
+    let (Ok(found), Ok(other_found)) = (metadata(one), metadata(other)) else { return false };
+    if !found.is_file() || !other_found.is_file() {
+        return false;
+    }
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        (found.dev(), found.ino()) == (other_found.dev(), other_found.ino())
+    }
+    #[cfg(not(unix))]
+    {
+        matches!((one.canonicalize(), other.canonicalize()), (Ok(one), Ok(other)) if one == other)
+    }
+}

@@ -1,0 +1,325 @@
+//! Two files of one rig: the same joint names, hierarchy and local frames. What the motion's nodes rest in then says nothing:
+//! its clip means on the model what it means on its own skeleton, so the model's rest is the motion's.
+//!
+//! Where both rest alike anyway, this leaves them to the usual alignment, which also makes up for differences in build.
+//!
+//! Nothing in a file states its local frames, but each joint's offset lies in its parent's. A rest rotation leaves that
+//! offset as it is, whereas other axes turn it. A roll about the offset itself shows only in rests that hold the same pose.
+
+use std::collections::BTreeMap;
+
+use glam::{DMat3, DQuat, DVec3};
+
+use crate::anim::{Clip, JointIndex, Keys, Skeleton};
+use crate::retarget::map::{ResolvedMap, shared_names};
+use crate::retarget::math::{angle_between, degrees_between, unit};
+use crate::retarget::pose::{Local, WorldPose, ancestry, node_locals};
+
+/// Minimum share of the mapped joints that must share their names, and of these that must agree.
+const MIN_SHARE: f64 = 0.9;
+
+/// Fewer offsets do not tell a rig.
+const MIN_OFFSETS: usize = 3;
+
+/// Offsets of characters on one rig differ by build (20° at a shoulder), those in other axes mostly by 90° or more.
+const MAX_OFFSET_DEGREES: f64 = 25.0;
+
+/// A joint whose rests differ by more than this while the pose around it is the same has other axes.
+const MIN_ROLL_DEGREES: f64 = 45.0;
+
+/// The pose around a joint is the same if the angles to all other offsets differ by less than this on average.
+const MAX_POSE_DEGREES: f64 = 10.0;
+
+/// Offsets that each one is compared with, at most.
+const MAX_COMPARED: usize = 100;
+
+/// Rolled joints that tell other axes. A single one may be posed.
+const MIN_ROLLED: usize = 2;
+
+/// World rotations closer than this are the same rest.
+const MAX_SAME_REST_DEGREES: f64 = 0.05;
+
+/// A skeleton in its rest.
+#[derive(Clone, Copy)]
+pub struct Resting<'a> {
+    pub skeleton: &'a Skeleton,
+    pub locals: &'a [Local],
+}
+
+/// The source in the model's rest.
+#[derive(Debug)]
+pub struct SharedRest {
+    pub locals: Vec<Local>,
+    /// What joints do that the clip does not move: they stand as the model's nodes do, as if the clip were on the model.
+    pub unmoved: Vec<Local>,
+    /// Turns the source's model space into the target's.
+    pub target_from_source: DQuat,
+}
+
+/// A skeleton in its own rest, whether or not that is worth anything.
+#[derive(Clone, Copy)]
+pub struct OwnRest<'a> {
+    pub resting: Resting<'a>,
+    /// The body stands, so that its hips are in their place.
+    pub is_standing: bool,
+}
+
+/// Returns the source in the model's rest if both are the same rig and rest differently, or None.
+pub fn shared_rest(target: Resting, own: OwnRest, clip: &Clip, map: &ResolvedMap) -> Option<SharedRest> {
+    let source = own.resting;
+    let target_of = counterparts(target.skeleton, source.skeleton);
+    let rigs = Rigs {
+        target,
+        source,
+        target_pose: WorldPose::new(target.skeleton, target.locals.to_vec(), DQuat::IDENTITY),
+        source_pose: WorldPose::new(source.skeleton, source.locals.to_vec(), DQuat::IDENTITY),
+        target_of: &target_of,
+    };
+    if !rigs.agree(map) {
+        return None;
+    }
+    let is_shared = moved_with_their_children(source.skeleton, clip, &target_of);
+    rigs.repose(is_shared, own.is_standing)
+}
+
+/// The target joint of the same name, by source joint.
+fn counterparts(target: &Skeleton, source: &Skeleton) -> Vec<Option<JointIndex>> {
+    let mut target_of = vec![None; source.len()];
+    for (target, source) in shared_names(target, source) {
+        target_of[source.get()] = Some(target);
+    }
+    target_of
+}
+
+fn moved_with_their_children(source: &Skeleton, clip: &Clip, target_of: &[Option<JointIndex>]) -> Vec<bool> {
+    let mut is_moved = vec![false; source.len()];
+    for channel in clip.channels() {
+        is_moved[channel.joint.get()] |= !matches!(channel.keys, Keys::MorphWeights { .. });
+    }
+    for joint in source.joints() {
+        is_moved[joint.get()] |= source.parent(joint).is_some_and(|parent| is_moved[parent.get()]);
+    }
+    is_moved.iter().zip(target_of).map(|(&moved, target)| moved && target.is_some()).collect()
+}
+
+/// A joint that both have, and its offset from a parent that both have.
+struct Offset {
+    target: JointIndex,
+    source: JointIndex,
+    source_parent: JointIndex,
+}
+
+struct Rigs<'a> {
+    target: Resting<'a>,
+    source: Resting<'a>,
+    /// Both rests in their own model spaces.
+    target_pose: WorldPose,
+    source_pose: WorldPose,
+    target_of: &'a [Option<JointIndex>],
+}
+
+impl Rigs<'_> {
+    /// Whether names, hierarchy and local frames of the mapped joints agree.
+    fn agree(&self, map: &ResolvedMap) -> bool {
+        let mut sources: Vec<JointIndex> = map.pairs.iter().map(|pair| pair.source).collect();
+        sources.sort_unstable();
+        sources.dedup();
+        let named = sources.iter().filter(|source| self.target_of[source.get()].is_some()).count();
+        let (mut same_place, mut offsets) = (0, Vec::new());
+        for &source in &sources {
+            let Some(target) = self.target_of[source.get()] else { continue };
+            same_place += usize::from(self.hangs_alike(target, source));
+            offsets.extend(self.offset(target, source));
+        }
+        let agreeing = offsets.iter().filter(|offset| self.offsets_agree(offset)).count();
+        let most = |count: usize, of: usize| count as f64 >= MIN_SHARE * of as f64;
+        agreeing >= MIN_OFFSETS
+            && most(named, sources.len())
+            && most(same_place, named)
+            && most(agreeing, offsets.len())
+            && !self.is_rolled(&offsets)
+    }
+
+    /// Whether the nearest ancestors that both have are each other's. Either side may have joints in between.
+    fn hangs_alike(&self, target: JointIndex, source: JointIndex) -> bool {
+        let above = ancestry(self.source.skeleton, source).skip(1).find_map(|joint| self.target_of[joint.get()]);
+        above.is_none_or(|above| ancestry(self.target.skeleton, target).skip(1).any(|joint| joint == above))
+    }
+
+    fn offset(&self, target: JointIndex, source: JointIndex) -> Option<Offset> {
+        let source_parent = self.source.skeleton.parent(source)?;
+        let target_parent = self.target.skeleton.parent(target)?;
+        let are_same = self.target_of[source_parent.get()] == Some(target_parent);
+        let has_length = |locals: &[Local], joint: JointIndex| locals[joint.get()].translation.length() > 1e-6;
+        (are_same && has_length(self.target.locals, target) && has_length(self.source.locals, source))
+            .then_some(Offset { target, source, source_parent })
+    }
+
+    fn offsets_agree(&self, offset: &Offset) -> bool {
+        let target = self.target.locals[offset.target.get()].translation;
+        let source = self.source.locals[offset.source.get()].translation;
+        degrees_between(target, source) < MAX_OFFSET_DEGREES
+    }
+
+    /// Whether joints are rolled about their children's offsets between rests that hold the same pose around them.
+    fn is_rolled(&self, offsets: &[Offset]) -> bool {
+        let mut worst_of_parent: BTreeMap<JointIndex, f64> = BTreeMap::new();
+        for (offset, difference) in offsets.iter().zip(self.pose_differences(offsets)) {
+            let worst = worst_of_parent.entry(offset.source_parent).or_default();
+            *worst = worst.max(difference);
+        }
+        let is_rolled = |offset: &&Offset| {
+            let turn = angle_between(
+                self.target.locals[offset.target.get()].rotation,
+                self.source.locals[offset.source.get()].rotation,
+            );
+            turn.to_degrees() > MIN_ROLL_DEGREES
+                && worst_of_parent.get(&offset.source).is_some_and(|&worst| worst < MAX_POSE_DEGREES)
+        };
+        offsets.iter().filter(is_rolled).count() >= MIN_ROLLED
+    }
+
+    /// For each offset, by how much its angles to the others differ between the two rests, in degrees on average. Angles
+    /// between offsets depend on no frame.
+    fn pose_differences(&self, offsets: &[Offset]) -> Vec<f64> {
+        let direction = |pose: &WorldPose, skeleton: &Skeleton, joint: JointIndex| {
+            let parent = skeleton.parent(joint).map_or(DVec3::ZERO, |parent| pose.position(parent));
+            (pose.position(joint) - parent).normalize_or_zero()
+        };
+        let directions: Vec<[DVec3; 2]> = offsets
+            .iter()
+            .map(|offset| {
+                [
+                    direction(&self.target_pose, self.target.skeleton, offset.target),
+                    direction(&self.source_pose, self.source.skeleton, offset.source),
+                ]
+            })
+            .collect();
+        let difference =
+            |a: &[DVec3; 2], b: &[DVec3; 2]| (degrees_between(a[0], b[0]) - degrees_between(a[1], b[1])).abs();
+        let others = directions.iter().step_by(directions.len().div_ceil(MAX_COMPARED).max(1));
+        let mean =
+            |at: &[DVec3; 2]| others.clone().map(|other| difference(at, other)).sum::<f64>() / others.len() as f64;
+        directions.iter().map(mean).collect()
+    }
+
+    /// Puts the shared joints of the source into the model's rest, also in place unless it is in its own.
+    fn repose(&self, is_shared: Vec<bool>, is_in_place: bool) -> Option<SharedRest> {
+        let source = self.source.skeleton;
+        let tops = tops(source, &is_shared);
+        let (&main, _) = tops.iter().rev().max_by_key(|(_, below)| **below)?;
+        let source_from_target = self.source_from_target(main)?;
+        let size = self.size_ratio(&is_shared);
+        let mut locals = self.source.locals.to_vec();
+        let rotations = self.turn(&mut locals, &is_shared, &self.target_pose, source_from_target);
+        let nodes = WorldPose::new(self.target.skeleton, node_locals(self.target.skeleton), DQuat::IDENTITY);
+        let mut unmoved = node_locals(source);
+        self.turn(&mut unmoved, &is_shared, &nodes, source_from_target);
+        let differs = |joint: JointIndex| {
+            let angle = angle_between(rotations[joint.get()], self.source_pose.rotation(joint));
+            is_shared[joint.get()] && angle.to_degrees() > MAX_SAME_REST_DEGREES
+        };
+        if !source.joints().any(differs) {
+            return None;
+        }
+        // The place of a moving root is as little a rest as its rotation.
+        for &top in tops.keys().filter(|_| !is_in_place) {
+            let Some(target) = self.target_of[top.get()] else { continue };
+            let position = source_from_target * self.target_pose.position(target) * size;
+            let parent_from_model = self.source_pose.parent_frame(source, top).inverse();
+            locals[top.get()].translation = parent_from_model.transform_point3(position);
+            unmoved[top.get()].translation = locals[top.get()].translation;
+        }
+        Some(SharedRest { locals, unmoved, target_from_source: source_from_target.conjugate() })
+    }
+
+    /// Turns the shared joints as the target's are in `pose`. Returns the rotations of all joints in the source's model
+    /// space.
+    fn turn(
+        &self,
+        locals: &mut [Local],
+        is_shared: &[bool],
+        pose: &WorldPose,
+        source_from_target: DQuat,
+    ) -> Vec<DQuat> {
+        let source = self.source.skeleton;
+        let mut rotations: Vec<DQuat> = Vec::with_capacity(locals.len());
+        for joint in source.joints() {
+            let parent = source.parent(joint).map_or(DQuat::IDENTITY, |parent| rotations[parent.get()]);
+            let rotation = match self.target_of[joint.get()].filter(|_| is_shared[joint.get()]) {
+                Some(target) => unit(source_from_target * pose.rotation(target)),
+                None => unit(parent * locals[joint.get()].rotation),
+            };
+            locals[joint.get()].rotation = unit(parent.conjugate() * rotation);
+            rotations.push(rotation);
+        }
+        rotations
+    }
+
+    /// The turn from the target's model space to the source's: what lies above the moving joints differs, unless that is
+    /// how two exporters write the same thing, which the source's own rest tells to a quarter turn.
+    fn source_from_target(&self, top: JointIndex) -> Option<DQuat> {
+        let target = self.target_of[top.get()]?;
+        // Nothing moves what lies above, so it is where the nodes are, whatever a skin says.
+        let parent_rotation = |skeleton: &Skeleton, joint: JointIndex| {
+            let above = ancestry(skeleton, joint).skip(1);
+            above.fold(DQuat::IDENTITY, |below, joint| skeleton.rest().local(joint).rotation.as_dquat() * below)
+        };
+        let above =
+            parent_rotation(self.source.skeleton, top) * parent_rotation(self.target.skeleton, target).conjugate();
+        let rests = self.source_pose.rotation(top) * self.target_pose.rotation(target).conjugate();
+        let is_turned = angle_between(above, DQuat::IDENTITY).to_degrees() > 1.0;
+        let contradicts = angle_between(above, rests).to_degrees() > 45.0;
+        Some(if is_turned && contradicts { nearest_quarter_turn(rests) } else { unit(above) })
+    }
+
+    /// Length of the source's bones per length of the target's.
+    fn size_ratio(&self, is_shared: &[bool]) -> f64 {
+        let (mut source, mut target) = (0.0, 0.0);
+        for joint in self.source.skeleton.joints().filter(|joint| is_shared[joint.get()]) {
+            let offset = self.target_of[joint.get()].and_then(|target| self.offset(target, joint));
+            let Some(Offset { source_parent, target: target_joint, .. }) = offset else { continue };
+            let Some(target_parent) = self.target.skeleton.parent(target_joint) else { continue };
+            if is_shared[source_parent.get()] {
+                source += self.source_pose.position(joint).distance(self.source_pose.position(source_parent));
+                target += self.target_pose.position(target_joint).distance(self.target_pose.position(target_parent));
+            }
+        }
+        if source > 0.0 && target > 0.0 { source / target } else { 1.0 }
+    }
+}
+
+/// The shared joints that no other one is above, with the number of joints from there down.
+fn tops(skeleton: &Skeleton, is_shared: &[bool]) -> BTreeMap<JointIndex, usize> {
+    let mut tops = BTreeMap::new();
+    let mut top_of: Vec<Option<JointIndex>> = Vec::with_capacity(is_shared.len());
+    for joint in skeleton.joints() {
+        let above = skeleton.parent(joint).and_then(|parent| top_of[parent.get()]);
+        let top = above.or_else(|| is_shared[joint.get()].then_some(joint));
+        top_of.push(top);
+        if let Some(top) = top {
+            *tops.entry(top).or_default() += 1;
+        }
+    }
+    tops
+}
+
+/// The rotation nearest to this one that turns axes onto axes.
+fn nearest_quarter_turn(rotation: DQuat) -> DQuat {
+    let matrix = DMat3::from_quat(rotation);
+    let x = nearest_axis(matrix.x_axis);
+    let y = nearest_axis(matrix.y_axis - x * x.dot(matrix.y_axis));
+    unit(DQuat::from_mat3(&DMat3::from_cols(x, y, x.cross(y))))
+}
+
+fn nearest_axis(direction: DVec3) -> DVec3 {
+    let size = direction.abs();
+    let axis = if size.x >= size.y.max(size.z) {
+        DVec3::X
+    } else if size.y >= size.z {
+        DVec3::Y
+    } else {
+        DVec3::Z
+    };
+    axis * axis.dot(direction).signum()
+}

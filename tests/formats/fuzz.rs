@@ -1,0 +1,113 @@
+//! The fuzz targets' entry points, fed with some damaged files: `cargo fuzz` needs a nightly toolchain, and looks for hours.
+//! `GAITWAY_FUZZ_SECS` looks for longer here, for that time for each reader.
+
+use std::io::{Cursor, Write};
+use std::panic::catch_unwind;
+use std::time::Instant;
+
+use zip::write::SimpleFileOptions;
+
+use crate::build_gltf::Build;
+use crate::data_folder::data_folder;
+use crate::mutation::{REAL, damage, generated};
+use crate::random::Random;
+
+#[path = "../../fuzz/entries.rs"]
+mod entries;
+
+/// Damaged files for each reader by default.
+const CASES: usize = 1000;
+
+/// No input is so large that reading it takes this long, even without optimization.
+const MAX_SECS: f64 = 10.0;
+
+const EXERCISE: &[u8] = b"mtllib m.mtl\nv 0 0 0\nv 1 0 0 1 0 0\nv 1 1 0\nv 0.3 0.3 0\nvt 0 0\nvn 0 0 1\ng a\nusemtl red\n\
+    f 1/1/1 2/1/1 3/1/1 4/1/1\no b\nf -4 -3 -1\n\xFF0 0 0 -1\n0.5 0 0 0\n0 1 0 1\n\xFF0 0\n0.25 0.75\n1 0\n0.5 0.4\n\xFF\
+    newmtl red\nKd 1 0.5 0\nd 0.5\nNs 10\nmap_Kd -s 1 1 1 skin.png\n";
+const MAP: &[u8] = br##"{"gaitway_map":1,"joints":{"spine":{"source":"neck"},"#3":{"source":5,"correction":[0,0,0,1]},
+    "middle":{"source":null,"unmapped":{"clip":0,"hold":"first-key"}}},"unmapped":"rest","rest":{"model":"auto","motion":"bind"},
+    "root":{"horizontal":"keep","vertical":"in-place","yaw":"freeze","extract":true},"translations":"auto","scales":"drop",
+    "muted_channels":[{"source":"hips","property":"translation"}],"feet":"plant","crossfade_secs":0.5}"##;
+const LINK: &[u8] = b"v=1&model=sample:pilot&motion=https://example.org/walk.bvh&clip=Run&t=0.5&play=0&speed=2&loop=once&\
+    range=0.1,0.9&skinning=rigid&morph=0:1&pose=3:10,20,30&show=skeleton,grid&camera=90,10,4,0,1,0&fov=35&map=1.ffffffff.0-5,1-&\
+    zoo=1%262&up=z&exposure=1.5&background=ff8800";
+
+fn zipped() -> Vec<u8> {
+    let mut writer = zip::ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, bytes) in [("in/m.gltf", Build::triangle().gltf("mesh.bin")), ("in/mesh.bin", vec![0; 36])] {
+        writer.start_file(name, SimpleFileOptions::default()).expect("in memory");
+        writer.write_all(&bytes).expect("in memory");
+    }
+    writer.finish().expect("in memory").into_inner()
+}
+
+fn seeds(entry: &str) -> Vec<Vec<u8>> {
+    let mut models: Vec<(String, Vec<u8>)> =
+        generated().into_iter().map(|(name, bytes)| (name.to_owned(), bytes)).collect();
+    if let Some(data) = data_folder() {
+        models.extend(REAL.map(|path| (path.to_owned(), std::fs::read(data.join(path)).expect(path))));
+    }
+    let of_kind = |is_bvh: bool| models.into_iter().filter(move |(name, _)| name.ends_with(".bvh") == is_bvh);
+    match entry {
+        "gltf" => of_kind(false).map(|(_, bytes)| bytes).collect(),
+        "bvh" => of_kind(true).map(|(_, bytes)| bytes).collect(),
+        "exercise" => vec![EXERCISE.to_vec()],
+        "archive" => vec![zipped()],
+        "map" => vec![MAP.to_vec()],
+        "link" => vec![LINK.to_vec()],
+        other => panic!("no seeds for {other}"),
+    }
+}
+
+/// Damages the seeds again and again. Returns how often.
+fn run(entry: entries::Entry, is_over: impl Fn(usize) -> bool) -> usize {
+    let (name, read) = entry;
+    let seeds = seeds(name);
+    seeds.iter().for_each(|seed| read(seed));
+    let mut random = Random(0x5DEE_CE66_D123_4567);
+    let mut cases = 0;
+    while !is_over(cases) {
+        let mut input = seeds[random.below(seeds.len())].clone();
+        for _ in 0..=random.below(3) {
+            input = if input.is_empty() { input } else { damage(&input, &mut random) };
+        }
+        let begun = Instant::now();
+        let outcome = catch_unwind(|| read(&input));
+        let secs = begun.elapsed().as_secs_f64();
+        if outcome.is_err() || secs > MAX_SECS {
+            let path = std::env::temp_dir().join(format!("gaitway-fuzz-{name}-{cases}"));
+            std::fs::write(&path, &input).expect("a file in the temporary folder");
+            panic!("{name}, case {cases}: a panic, or {secs:.1} s; the input is {}", path.display());
+        }
+        cases += 1;
+    }
+    cases
+}
+
+#[test]
+fn every_reader_survives_damaged_files() {
+    let secs: Option<f64> = std::env::var("GAITWAY_FUZZ_SECS").ok().and_then(|secs| secs.parse().ok());
+    for entry in entries::ENTRIES {
+        let start = Instant::now();
+        // By default the same files on every machine.
+        let cases = run(entry, |cases| match secs {
+            Some(secs) => start.elapsed().as_secs_f64() >= secs,
+            None => cases == CASES,
+        });
+        println!("{}: {cases} damaged files", entry.0);
+        assert!(cases > 0);
+    }
+}
+
+#[test]
+fn what_fuzzing_found_stays_fixed() {
+    entries::map(br#"{"gaitway_map":1,"joints":{"a":{"source":0,"correction":[0,0,0,1e39]}}}"#);
+}
+
+#[test]
+fn every_entry_point_has_a_fuzz_target() {
+    let manifest = include_str!("../../fuzz/Cargo.toml");
+    for (name, _) in entries::ENTRIES {
+        assert!(manifest.contains(&format!("path = \"fuzz_targets/{name}.rs\"")), "{name}");
+    }
+}

@@ -1,0 +1,152 @@
+// Encodes a video frame by frame, however long each takes to draw. A part of the page that is downloaded when the first video
+// is recorded. Uses WebCodecs, and MediaRecorder where that is missing.
+//! Contains Mediabunny (MPL-2.0), unmodified; its source code: https://github.com/Vanilagy/mediabunny
+import { BufferTarget, Mp4OutputFormat, Output, Quality, VideoSample, VideoSampleSource, WebMOutputFormat, getFirstEncodableVideoCodec } from "mediabunny";
+
+/**
+ * @typedef {object} Video
+ * @property {number} width Even.
+ * @property {number} height Even.
+ * @property {number} framesPerSec
+ * @property {number} frameCount
+ * @property {boolean} isTransparent
+ * @property {(index: number) => Promise<Uint8Array<ArrayBuffer>>} frame Returns RGBA rows from the top, with straight alpha.
+ * @property {AbortSignal} signal
+ */
+
+/** @typedef {{ blob: Blob, extension: "mp4" | "webm" }} EncodedVideo */
+
+/** @typedef {import("mediabunny").VideoCodec} Codec */
+
+/**
+ * Nearly everything plays the first.
+ * @type {Codec[]}
+ */
+const CODECS = ["avc", "vp9", "av1", "vp8"];
+/**
+ * Those that can be transparent in WebM.
+ * @type {Codec[]}
+ */
+const ALPHA_CODECS = ["vp9", "vp8"];
+const RECORDER_TYPES = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"];
+const RECORDER_BITS_PER_SEC = 12_000_000;
+
+/**
+ * Rejects if the browser can't encode the whole video, and when it is cancelled.
+ * @param {Video} video
+ * @returns {Promise<EncodedVideo>}
+ */
+export async function encode(video) {
+  const quality = new Quality("high");
+  const { width, height, isTransparent } = video;
+  const canEncode = typeof VideoEncoder !== "undefined";
+  const codec = canEncode ? await getFirstEncodableVideoCodec(isTransparent ? ALPHA_CODECS : CODECS, { width, height, quality }) : null;
+  if (codec !== null) return encodeFrames(video, codec, quality);
+  if (isTransparent) throw new Error("this browser can't encode transparent ones. Use Chrome or Edge, or choose a background.");
+  return recordFrames(video);
+}
+
+/**
+ * @param {Video} video
+ * @param {Codec} codec
+ * @param {Quality} quality
+ * @returns {Promise<EncodedVideo>}
+ */
+async function encodeFrames(video, codec, quality) {
+  const { width, height, framesPerSec, frameCount, isTransparent } = video;
+  const isMp4 = codec === "avc";
+  const target = new BufferTarget();
+  const output = new Output({ format: isMp4 ? new Mp4OutputFormat() : new WebMOutputFormat(), target });
+  let encodedCount = 0;
+  const source = new VideoSampleSource({ codec, quality, alpha: isTransparent ? "keep" : "discard", onEncodedPacket: () => (encodedCount += 1) });
+  output.addVideoTrack(source, { frameRate: framesPerSec });
+  try {
+    await output.start();
+    for (let index = 0; index < frameCount; index++) {
+      const data = await nextFrame(video, index);
+      const sample = new VideoSample(data, { format: isTransparent ? "RGBA" : "RGBX", codedWidth: width, codedHeight: height, timestamp: index / framesPerSec, duration: 1 / framesPerSec });
+      // Resolves when the encoder can take another, so that few frames are in memory.
+      await source.add(sample);
+      sample.close();
+    }
+    await output.finalize();
+  } catch (error) {
+    await output.cancel();
+    throw error;
+  }
+  if (encodedCount !== frameCount || target.buffer === null) throw new Error(`the browser encoded ${encodedCount} of ${frameCount} frames`);
+  return { blob: new Blob([target.buffer]), extension: isMp4 ? "mp4" : "webm" };
+}
+
+/**
+ * @param {Video} video
+ * @param {number} index
+ */
+async function nextFrame({ frame, signal }, index) {
+  signal.throwIfAborted();
+  const data = await frame(index);
+  signal.throwIfAborted();
+  return data;
+}
+
+/**
+ * Records in real time with MediaRecorder, which pauses while a frame is drawn.
+ * @param {Video} video
+ * @returns {Promise<EncodedVideo>}
+ */
+async function recordFrames(video) {
+  const { width, height, framesPerSec, frameCount } = video;
+  const canvas = Object.assign(document.createElement("canvas"), { width, height });
+  // In memory: from the graphics device, frames would arrive while the recorder is paused.
+  const context = canvas.getContext("2d", { willReadFrequently: true });
+  const mimeType = typeof MediaRecorder === "undefined" ? undefined : RECORDER_TYPES.find((type) => MediaRecorder.isTypeSupported(type));
+  const stream = mimeType === undefined ? undefined : canvas.captureStream?.(0);
+  if (context === null || mimeType === undefined || stream === undefined) throw new Error("this browser can't encode any. Use a current version of Chrome, Edge, Firefox or Safari, or save images instead.");
+  const track = /** @type {CanvasCaptureMediaStreamTrack} */ (stream.getVideoTracks()[0]);
+  const recorder = new MediaRecorder(stream, { mimeType, videoBitsPerSecond: RECORDER_BITS_PER_SEC });
+  /** @type {Blob[]} */
+  const chunks = [];
+  recorder.ondataavailable = ({ data }) => chunks.push(data);
+  const stopped = new Promise((resolve, reject) => {
+    recorder.onstop = resolve;
+    recorder.onerror = () => reject(new Error("the browser stopped encoding"));
+  });
+  stopped.catch(() => {});
+  try {
+    recorder.start();
+    recorder.pause();
+    for (let index = 0; index < frameCount; index++) {
+      const data = await nextFrame(video, index);
+      recorder.resume();
+      // Captures what is drawn next.
+      track.requestFrame();
+      context.putImageData(new ImageData(new Uint8ClampedArray(data.buffer), width, height), 0, 0);
+      await Promise.race([new Promise((done) => setTimeout(done, 1000 / framesPerSec)), stopped]);
+      recorder.pause();
+    }
+  } finally {
+    if (recorder.state !== "inactive") recorder.stop();
+    track.stop();
+  }
+  await stopped;
+  const blob = new Blob(chunks, { type: mimeType });
+  await assertPlayable(blob);
+  return { blob, extension: mimeType.startsWith("video/mp4") ? "mp4" : "webm" };
+}
+
+/**
+ * A recorder that was given nothing in time writes a file without any frame.
+ * @param {Blob} blob
+ */
+async function assertPlayable(blob) {
+  const player = document.createElement("video");
+  player.src = URL.createObjectURL(blob);
+  try {
+    await new Promise((resolve, reject) => {
+      player.onloadeddata = resolve;
+      player.onerror = () => reject(new Error("the browser encoded no frames"));
+    });
+  } finally {
+    URL.revokeObjectURL(player.src);
+  }
+}
