@@ -14,6 +14,8 @@ pub enum Part {
     Draco,
     /// Models and motions of Autodesk's format.
     Fbx,
+    /// `KHR_texture_basisu`. Its images stay what they are until all images are decoded.
+    Ktx2,
     /// `EXT_meshopt_compression` and `KHR_meshopt_compression`.
     Meshopt,
 }
@@ -24,6 +26,7 @@ impl Part {
         match self {
             Self::Draco => "draco",
             Self::Fbx => "fbx",
+            Self::Ktx2 => "ktx2",
             Self::Meshopt => "meshopt",
         }
     }
@@ -33,6 +36,7 @@ impl Part {
         match self {
             Self::Draco => "Draco decoder",
             Self::Fbx => "FBX reader",
+            Self::Ktx2 => "KTX2 decoder",
             Self::Meshopt => "meshopt decoder",
         }
     }
@@ -43,6 +47,7 @@ impl Part {
         let convert = match self {
             Self::Draco => gaitway_draco::decode,
             Self::Fbx => gaitway_fbx::convert,
+            Self::Ktx2 => gaitway_ktx2::decode,
             Self::Meshopt => gaitway_meshopt::decode,
         };
         let stopped = |_| Err(format!("the {} stopped unexpectedly; the file may be damaged", self.title()));

@@ -1,5 +1,7 @@
 //! Decoded images: RGBA with straight alpha and no colour conversion.
 
+use gaitway_ktx2::Texture;
+
 /// Pixels from the platform's decoder.
 #[derive(Debug, Clone)]
 pub enum ImageData {
@@ -12,6 +14,8 @@ pub enum ImageData {
         /// Red, green, blue and alpha bytes of each pixel.
         pixels: Vec<u8>,
     },
+    /// A KTX2 image with its mip levels, in a format that the device has.
+    Ktx2(Texture),
     /// The browser's bitmap, created with `premultiplyAlpha: "none"` and `colorSpaceConversion: "none"`.
     #[cfg(target_arch = "wasm32")]
     Bitmap(web_sys::ImageBitmap),
@@ -22,6 +26,7 @@ impl ImageData {
     pub fn size(&self) -> (u32, u32) {
         match self {
             Self::Rgba8 { width, height, .. } => (*width, *height),
+            Self::Ktx2(texture) => (texture.width, texture.height),
             #[cfg(target_arch = "wasm32")]
             Self::Bitmap(bitmap) => (bitmap.width(), bitmap.height()),
         }

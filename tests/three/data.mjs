@@ -36,6 +36,7 @@ const SUPPORTED = [
   "KHR_materials_emissive_strength",
   "KHR_materials_unlit",
   "KHR_mesh_quantization",
+  "KHR_texture_basisu",
   "KHR_texture_transform",
 ];
 

@@ -29,8 +29,8 @@ use container::{Codec, Container};
 pub fn decode(input: &[u8]) -> Answer {
     let (formats, largest_edge, file) = texture::read_request(input).ok_or("the converter's input is damaged")?;
     let container = Container::read(file)?;
-    let format = choose(&container, formats);
     let level = smallest_fitting(&container, largest_edge);
+    let format = choose(&container, formats, level);
     let mut texture = match container.codec {
         Codec::Etc1s => etc1s::transcode(&container, format, level)?,
         Codec::Uastc => uastc::transcode(&container, format, level)?,
@@ -42,9 +42,10 @@ pub fn decode(input: &[u8]) -> Answer {
     Ok(Output { bytes: texture.write(), warnings: Vec::new() })
 }
 
-fn choose(container: &Container, formats: Formats) -> Format {
-    let [width, height] = container.size;
-    let has_all_levels = container.levels.len() as u32 == width.max(height).ilog2() + 1;
+/// Returns the format for an image whose first level is `level`.
+fn choose(container: &Container, formats: Formats, level: usize) -> Format {
+    let [width, height] = container.level_size(level);
+    let has_all_levels = container.levels.len() - level == width.max(height).ilog2() as usize + 1;
     if !has_all_levels || width % 4 != 0 || height % 4 != 0 {
         return Format::Rgba8;
     }

@@ -12,6 +12,7 @@ const SUPPORTED: &[&str] = &[
     "KHR_materials_emissive_strength",
     "KHR_lights_punctual",
     "EXT_texture_webp",
+    "KHR_texture_basisu",
     // Decoded before the file is loaded. It still has them only if it could not be prepared or has the original data as well.
     "EXT_meshopt_compression",
     "KHR_draco_mesh_compression",
@@ -26,17 +27,14 @@ const SUPPORTED: &[&str] = &[
 pub fn check(file: &str, root: &Root, warnings: &mut Warnings) -> Result<(), LoadError> {
     let unsupported = |name: &&String| !SUPPORTED.contains(&name.as_str());
     if let Some(name) = root.extensions_required.iter().find(unsupported) {
-        return Err(LoadError::RequiredExtension { file: file.to_owned(), name: name.clone(), advice: advice(name) });
+        return Err(LoadError::RequiredExtension {
+            file: file.to_owned(),
+            name: name.clone(),
+            advice: "export the model without it",
+        });
     }
     for name in root.extensions_used.iter().filter(unsupported) {
         warnings.push(Warning::UnsupportedExtension { name: name.clone() });
     }
     Ok(())
-}
-
-fn advice(name: &str) -> &'static str {
-    match name {
-        "KHR_texture_basisu" => "convert its KTX2 textures to PNG, JPEG or WebP",
-        _ => "export the model without it",
-    }
 }

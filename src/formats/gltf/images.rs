@@ -13,6 +13,8 @@ use crate::formats::FileSet;
 use crate::formats::error::Problem;
 use crate::formats::limits::{Budget, Limit, MAX_IMAGE_SIDE};
 
+pub const KTX2: &str = "image/ktx2";
+
 pub fn images(
     files: &FileSet,
     file: &str,
@@ -78,15 +80,13 @@ fn image_bytes(
 
 /// Returns the MIME type by content (what the file declares is often wrong), width and height.
 pub fn image_header(bytes: &[u8], budget: &Budget) -> Result<(&'static str, u32, u32), String> {
-    let mime = match imagesize::image_type(bytes) {
-        Ok(ImageType::Png) => "image/png",
-        Ok(ImageType::Jpeg) => "image/jpeg",
-        Ok(ImageType::Webp) => "image/webp",
-        _ if bytes.starts_with(b"\xABKTX 20") => return Err("KTX2 textures are not supported".to_owned()),
-        _ => return Err("it is not PNG, JPEG or WebP".to_owned()),
+    let (mime, [width, height]) = match imagesize::image_type(bytes) {
+        Ok(ImageType::Png) => ("image/png", encoded_size(bytes)?),
+        Ok(ImageType::Jpeg) => ("image/jpeg", encoded_size(bytes)?),
+        Ok(ImageType::Webp) => ("image/webp", encoded_size(bytes)?),
+        _ if bytes.starts_with(&gaitway_ktx2::MAGIC) => (KTX2, gaitway_ktx2::size(bytes)?.map(|edge| edge as usize)),
+        _ => return Err("it is not PNG, JPEG, WebP or KTX2".to_owned()),
     };
-    let size = imagesize::blob_size(bytes).map_err(|problem| problem.to_string())?;
-    let (width, height) = (size.width, size.height);
     let pixels = width.saturating_mul(height);
     let max = MAX_IMAGE_SIDE as usize;
     if pixels == 0 || width.max(height) > max {
@@ -96,5 +96,9 @@ pub fn image_header(bytes: &[u8], budget: &Budget) -> Result<(&'static str, u32,
         let (max, name) = (Limit::ImagePixels.max(), Limit::ImagePixels.name());
         format!("with its {width} × {height} pixels, the model would have more than {max} {name} in all")
     })?;
-    Ok((mime, size.width as u32, size.height as u32))
+    Ok((mime, width as u32, height as u32))
+}
+
+fn encoded_size(bytes: &[u8]) -> Result<[usize; 2], String> {
+    imagesize::blob_size(bytes).map(|size| [size.width, size.height]).map_err(|problem| problem.to_string())
 }

@@ -190,14 +190,16 @@ pub fn textures(document: &Document, warnings: &mut Warnings) -> Result<Vec<Text
 
 fn image_of(root: &Root, texture: &json::Texture, here: &str) -> Result<Option<usize>, Problem> {
     #[derive(serde::Deserialize)]
-    struct Webp {
+    struct Other {
         source: Option<usize>,
     }
-    let webp: Option<Webp> = match &texture.extensions {
-        Some(extensions) => extension(&extensions.others, "EXT_texture_webp", here)?,
-        None => None,
-    };
-    let image = webp.and_then(|webp| webp.source).or(present(texture.source));
+    let mut image = None;
+    for name in ["KHR_texture_basisu", "EXT_texture_webp"] {
+        let extensions = texture.extensions.as_ref().filter(|_| image.is_none());
+        let other: Option<Other> = extensions.map_or(Ok(None), |all| extension(&all.others, name, here))?;
+        image = image.or(other.and_then(|other| other.source));
+    }
+    let image = image.or(present(texture.source));
     image.map_or(Ok(None), |image| {
         get(&root.images, image, &format_args!("{here}.source"), "images").map(|_| Some(image))
     })
