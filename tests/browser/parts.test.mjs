@@ -2,7 +2,8 @@
 import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
 import binaryen from "binaryen";
-import { skipWithoutData } from "../three/data.mjs";
+import { dataFile, skipWithoutData } from "../three/data.mjs";
+import { withPngTextures } from "../three/ktx2.mjs";
 import { BACK_ENDS, meanDifference, open, picture, pose, startSite, state, stats, whenBorrowed } from "./browser.mjs";
 
 /** Files that need a part, with the same model without compression and a view of it. */
@@ -21,6 +22,7 @@ const COMPRESSED = [
   },
 ];
 const FOX = "compressed/Fox-gltfpack-meshopt.glb";
+const KTX2 = "compressed/agi-ktx2.glb";
 const SAMBA = "threejs/Samba_Dancing.fbx";
 
 /** @param {import("./browser.mjs").TestPage} page */
@@ -64,6 +66,29 @@ for (const renderer of BACK_ENDS)
         assert.deepEqual(page.troubles, []);
         await page.finish();
       });
+
+    test("KTX2 textures look like the same as PNG, and cost only themselves if the decoder fails", async () => {
+      const original = await site.page({ renderer });
+      const headers = { "access-control-allow-origin": "*" };
+      const body = await withPngTextures(dataFile(KTX2));
+      await original.route("**/agi-png.gltf", (route) => route.fulfill({ body, headers }));
+      await open(original, site.data("agi-png.gltf"));
+      const expected = await picture(original);
+      assert.deepEqual(requested(original), []);
+      await original.finish();
+      const page = await site.page({ renderer });
+      await open(page, site.data(KTX2));
+      assert.equal(requested(page).length, 1);
+      assert.match(requested(page)[0], /\/parts\/ktx2-[0-9a-f]{16}\.wasm$/);
+      const difference = meanDifference(await picture(page), expected);
+      assert.ok(difference < 1, `the pictures differ by ${difference} of 255`);
+      assert.deepEqual(page.troubles, []);
+      await page.finish();
+      const failing = await site.page({ renderer });
+      await failing.route("**/parts/*", (route) => route.fulfill({ body: module("(unreachable)"), contentType: "application/wasm" }));
+      assert.match(JSON.stringify(await open(failing, site.data(KTX2))), /KTX2 decoder stopped/);
+      await failing.finish();
+    });
 
     test("an FBX file is a link like any other, as a model and as a motion", async () => {
       const samba = site.data(SAMBA);

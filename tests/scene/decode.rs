@@ -5,6 +5,7 @@ use std::sync::Arc;
 use gaitway::asset::{Asset, AssetParts, Image};
 use gaitway::files::{decode_images, encode_png};
 use gaitway::library::ImageData;
+use gaitway_ktx2::Format;
 
 fn png(width: u32, height: u32, pixels: &[u8]) -> Vec<u8> {
     encode_png(width, height, pixels).expect("the pixels match the size")
@@ -17,6 +18,18 @@ fn decode(bytes: Vec<u8>) -> (Option<ImageData>, Asset) {
     let mut images = decode_images(&mut asset);
     assert_eq!(images.len(), 1);
     (images.remove(0), asset)
+}
+
+/// One of `tests/support/ktx2`, and the pixel that was encoded there.
+fn ktx2(name: &str) -> (Vec<u8>, impl Fn([u32; 2], [u32; 2]) -> [u8; 4]) {
+    let path = format!("{}/tests/support/ktx2/{name}.ktx2", env!("CARGO_MANIFEST_DIR"));
+    let has_alpha = name != "etc1s";
+    let pixel = move |[width, height]: [u32; 2], [x, y]: [u32; 2]| {
+        let blue = if (x >> 4) + (y >> 4) & 1 == 1 { 200 } else { 40 };
+        let alpha = if has_alpha { 255 - 128 * x / (width - 1) } else { 255 };
+        [255 * x / (width - 1), 255 * y / (height - 1), blue, alpha].map(|channel| channel as u8)
+    };
+    (std::fs::read(path).expect("a file of the repository"), pixel)
 }
 
 fn check_unreadable(bytes: Vec<u8>) {
@@ -52,4 +65,33 @@ fn pixels_are_decoded_exactly() {
     assert!(asset.warnings.is_empty());
     let Some(ImageData::Rgba8 { width: 2, height: 1, pixels: found }) = image else { panic!("{image:?}") };
     assert_eq!(found, pixels);
+}
+
+/// Without a device, into RGBA. The images are gradients, which the two encodings keep to different degrees.
+#[test]
+fn ktx2_images_look_like_what_was_encoded() {
+    for (name, size, max_difference) in [
+        ("etc1s", [64, 32], 7.0),
+        ("etc1s-alpha", [64, 32], 7.0),
+        ("uastc", [64, 32], 1.5),
+        ("uastc-single", [30, 22], 1.5),
+    ] {
+        let (bytes, pixel) = ktx2(name);
+        let (image, _) = decode(bytes);
+        let Some(ImageData::Ktx2(texture)) = image else { panic!("{image:?}") };
+        assert_eq!((texture.format, [texture.width, texture.height]), (Format::Rgba8, size), "{name}");
+        let expected = (0..size[0] * size[1]).flat_map(|at| pixel(size, [at % size[0], at / size[0]]));
+        let difference: u32 = texture.data.iter().zip(expected).map(|(&found, is)| u32::from(found.abs_diff(is))).sum();
+        let mean = f64::from(difference) / f64::from(4 * size[0] * size[1]);
+        assert!(mean < max_difference, "{name}: {mean} of 255");
+    }
+}
+
+#[test]
+fn damaged_ktx2_images_give_a_warning() {
+    for name in ["etc1s", "uastc"] {
+        let (mut bytes, _) = ktx2(name);
+        bytes.truncate(bytes.len() - 20);
+        check_unreadable(bytes);
+    }
 }
