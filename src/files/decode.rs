@@ -30,6 +30,10 @@ fn decode(image: &Image, largest_edge: u32) -> Result<(ImageData, [u32; 2]), Str
         let request = gaitway_ktx2::request(texture_formats(), largest_edge, &image.bytes);
         return transcoded(image, Part::Ktx2.run(&request));
     }
+    if image.mime == "image/avif" {
+        let found = "it is AVIF, which is decoded only in a browser; open the model in the page, or convert the image";
+        return Err(format!("{found} to PNG, JPEG or WebP"));
+    }
     let mut reader = ImageReader::new(Cursor::new(&image.bytes)).with_guessed_format().map_err(|e| e.to_string())?;
     // The decoder reads the header in its own way.
     let mut limits = Limits::default();

@@ -1,6 +1,6 @@
 //! Decoded images: RGBA with straight alpha and no colour conversion.
 
-use gaitway_ktx2::Texture;
+use gaitway_ktx2::{Format, Texture};
 
 /// Pixels from the platform's decoder.
 #[derive(Debug, Clone)]
@@ -22,6 +22,17 @@ pub enum ImageData {
 }
 
 impl ImageData {
+    /// Returns the bytes that it takes on the device, with all its mip levels, which take a third of the first.
+    pub fn device_bytes(&self) -> u64 {
+        match self {
+            Self::Ktx2(texture) if texture.format != Format::Rgba8 => texture.data.len() as u64,
+            _ => {
+                let (width, height) = self.size();
+                u64::from(width) * u64::from(height) * 4 * 4 / 3
+            }
+        }
+    }
+
     /// Returns width and height in pixels.
     pub fn size(&self) -> (u32, u32) {
         match self {

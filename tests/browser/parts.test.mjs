@@ -1,9 +1,10 @@
 // Parts of Gaitway that few files need: downloaded when a file needs one, and whatever goes wrong in one ends nothing else.
 import assert from "node:assert/strict";
+import fs from "node:fs";
 import { after, before, describe, test } from "node:test";
 import binaryen from "binaryen";
 import { dataFile, skipWithoutData } from "../three/data.mjs";
-import { withPngTextures } from "../three/ktx2.mjs";
+import { dataUri, png, withPngTextures, withTextures } from "../three/ktx2.mjs";
 import { BACK_ENDS, meanDifference, open, picture, pose, startSite, state, stats, whenBorrowed } from "./browser.mjs";
 
 /** Files that need a part, with the same model without compression and a view of it. */
@@ -23,6 +24,7 @@ const COMPRESSED = [
 ];
 const FOX = "compressed/Fox-gltfpack-meshopt.glb";
 const KTX2 = "compressed/agi-ktx2.glb";
+const AVIF = new URL("../support/gradients.avif", import.meta.url);
 const SAMBA = "threejs/Samba_Dancing.fbx";
 
 /** @param {import("./browser.mjs").TestPage} page */
@@ -67,15 +69,22 @@ for (const renderer of BACK_ENDS)
         await page.finish();
       });
 
+    /**
+     * Opens a file that doesn't exist and returns the picture.
+     * @param {Buffer} body
+     */
+    async function pictureOf(body) {
+      const page = await site.page({ renderer });
+      await page.route("**/made.gltf", (route) => route.fulfill({ body, headers: { "access-control-allow-origin": "*" } }));
+      await open(page, site.data("made.gltf"));
+      const found = await picture(page);
+      assert.deepEqual([requested(page), page.troubles], [[], []]);
+      await page.finish();
+      return found;
+    }
+
     test("KTX2 textures look like the same as PNG, and cost only themselves if the decoder fails", async () => {
-      const original = await site.page({ renderer });
-      const headers = { "access-control-allow-origin": "*" };
-      const body = await withPngTextures(dataFile(KTX2));
-      await original.route("**/agi-png.gltf", (route) => route.fulfill({ body, headers }));
-      await open(original, site.data("agi-png.gltf"));
-      const expected = await picture(original);
-      assert.deepEqual(requested(original), []);
-      await original.finish();
+      const expected = await pictureOf(await withPngTextures(dataFile(KTX2)));
       const page = await site.page({ renderer });
       await open(page, site.data(KTX2));
       assert.equal(requested(page).length, 1);
@@ -88,6 +97,19 @@ for (const renderer of BACK_ENDS)
       await failing.route("**/parts/*", (route) => route.fulfill({ body: module("(unreachable)"), contentType: "application/wasm" }));
       assert.match(JSON.stringify(await open(failing, site.data(KTX2))), /KTX2 decoder stopped/);
       await failing.finish();
+    });
+
+    test("AVIF textures look like the same as PNG", async () => {
+      // The same gradients, see ktx2() in tests/scene/decode.rs.
+      const pixels = Array.from({ length: 64 * 32 }, (_, at) => {
+        const [x, y] = [at % 64, at >> 6];
+        return [(255 * x) / 63, (255 * y) / 31, ((x >> 4) + (y >> 4)) & 1 ? 200 : 40, 255];
+      });
+      const [avif, plain] = [fs.readFileSync(AVIF), png(64, 32, Uint8Array.from(pixels.flat()))];
+      const expected = await pictureOf(withTextures(dataFile(KTX2), [dataUri("image/png", plain)]));
+      const found = await pictureOf(withTextures(dataFile(KTX2), [dataUri("image/avif", avif)], "EXT_texture_avif"));
+      const difference = meanDifference(found, expected);
+      assert.ok(difference < 2, `the pictures differ by ${difference} of 255`);
     });
 
     test("an FBX file is a link like any other, as a model and as a motion", async () => {

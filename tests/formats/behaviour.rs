@@ -279,6 +279,24 @@ fn webp_is_preferred_if_present_and_ktx2_to_both() {
     assert_eq!(image_used(both), Some(2));
 }
 
+/// Natively, where nothing decodes it, whatever else there is comes first.
+#[test]
+fn avif_is_known_by_its_content() {
+    let with = |texture: serde_json::Value| {
+        let mut build = textured_square();
+        let view = build.view(include_bytes!("../support/gradients.avif"));
+        let other = build.json["images"][0].clone();
+        build.json["images"] = json!([other, { "bufferView": view }]);
+        build.json["textures"] = json!([texture]);
+        read(build.with("/extensionsUsed", json!(["EXT_texture_avif"])))
+    };
+    let avif = json!({ "EXT_texture_avif": { "source": 1 } });
+    let asset = with(json!({ "extensions": avif }));
+    assert_eq!((asset.images[1].mime, asset.images[1].width, asset.images[1].height), ("image/avif", 64, 32));
+    assert_eq!((asset.textures[0].image, codes(&asset)), (Some(1), Vec::new()));
+    assert_eq!(with(json!({ "source": 0, "extensions": avif })).textures[0].image, Some(0));
+}
+
 #[test]
 fn the_header_of_a_ktx2_image_is_read_and_not_trusted() {
     let file = include_bytes!("../support/ktx2/etc1s.ktx2");

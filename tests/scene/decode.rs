@@ -12,7 +12,11 @@ fn png(width: u32, height: u32, pixels: &[u8]) -> Vec<u8> {
 }
 
 fn decode(bytes: Vec<u8>) -> (Option<ImageData>, Asset) {
-    let image = Image { name: "skin".to_owned(), mime: "image/png", bytes: Arc::from(bytes), width: 2, height: 1 };
+    decode_as("image/png", bytes)
+}
+
+fn decode_as(mime: &'static str, bytes: Vec<u8>) -> (Option<ImageData>, Asset) {
+    let image = Image { name: "skin".to_owned(), mime, bytes: Arc::from(bytes), width: 2, height: 1 };
     let parts = AssetParts { images: vec![image], ..AssetParts::default() };
     let mut asset = Asset::new(parts).expect("indices in range");
     let mut images = decode_images(&mut asset);
@@ -94,4 +98,12 @@ fn damaged_ktx2_images_give_a_warning() {
         bytes.truncate(bytes.len() - 20);
         check_unreadable(bytes);
     }
+}
+
+#[test]
+fn avif_is_left_to_browsers() {
+    let (image, asset) = decode_as("image/avif", include_bytes!("../support/gradients.avif").to_vec());
+    assert!(image.is_none());
+    let warnings: Vec<_> = asset.warnings.iter().map(ToString::to_string).collect();
+    assert!(warnings[0].contains("open the model in the page") && warnings.len() == 1, "{warnings:?}");
 }

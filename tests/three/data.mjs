@@ -30,6 +30,7 @@ export function dataFile(name) {
 /** Extensions that are supported; a file that requires any other is rejected. */
 const SUPPORTED = [
   "EXT_meshopt_compression",
+  "EXT_texture_avif",
   "EXT_texture_webp",
   "KHR_draco_mesh_compression",
   "KHR_lights_punctual",

@@ -1,4 +1,4 @@
-// A glTF with its KTX2 textures replaced by PNG, by the reference transcoder that comes with three.js.
+// Replaces textures of a glTF: by others, or KTX2 by PNG with the reference transcoder that comes with three.js.
 import fs from "node:fs";
 import { createRequire } from "node:module";
 import path from "node:path";
@@ -25,7 +25,7 @@ async function startTranscoder() {
  * @param {number} height
  * @param {Uint8Array} rgba
  */
-function png(width, height, rgba) {
+export function png(width, height, rgba) {
   /** @type {(name: string, content: Buffer) => Buffer} */
   const chunk = (name, content) => {
     const checked = Buffer.concat([Buffer.from(name), content]);
@@ -43,30 +43,41 @@ function png(width, height, rgba) {
   return Buffer.concat([Buffer.from("\x89PNG\r\n\x1A\n", "latin1"), chunk("IHDR", header), chunk("IDAT", data), chunk("IEND", Buffer.alloc(0))]);
 }
 
+/** @type {(type: string, bytes: Buffer) => string} */
+export const dataUri = (type, bytes) => `data:${type};base64,${bytes.toString("base64")}`;
+
 /**
- * Returns a .glb as .gltf with PNG textures.
+ * Returns a .glb as .gltf with other images, all of which need `extension` or none.
+ * @param {string} file
+ * @param {string[]} uris
+ * @param {string} [extension]
+ */
+export function withTextures(file, uris, extension) {
+  const { json, binary } = /** @type {{ json: any, binary: Buffer }} */ (readGltf(file));
+  json.buffers[0].uri = dataUri("application/octet-stream", binary);
+  json.images = uris.map((uri) => ({ uri }));
+  json.textures = json.textures.map((/** @type {any} */ { sampler, source, extensions }) => {
+    const image = { source: extensions?.KHR_texture_basisu.source ?? source };
+    return extension === undefined ? { sampler, ...image } : { sampler, extensions: { [extension]: image } };
+  });
+  json.extensionsRequired = extension === undefined ? undefined : [extension];
+  return Buffer.from(JSON.stringify(json));
+}
+
+/**
+ * Returns a .glb with KTX2 textures as .gltf with PNG textures.
  * @param {string} file
  */
 export async function withPngTextures(file) {
   const transcoder = await startTranscoder();
   const { json, binary } = /** @type {{ json: any, binary: Buffer }} */ (readGltf(file));
-  /** @type {(type: string, bytes: Buffer) => string} */
-  const dataUri = (type, bytes) => `data:${type};base64,${bytes.toString("base64")}`;
-  json.buffers[0].uri = dataUri("application/octet-stream", binary);
-  for (const image of json.images) {
+  const uris = json.images.map((/** @type {any} */ image) => {
     const { byteOffset = 0, byteLength } = json.bufferViews[image.bufferView];
     const ktx2 = new transcoder.KTX2File(new Uint8Array(binary.subarray(byteOffset, byteOffset + byteLength)));
     ktx2.startTranscoding();
     const pixels = new Uint8Array(ktx2.getImageTranscodedSizeInBytes(0, 0, 0, RGBA32));
     ktx2.transcodeImage(pixels, 0, 0, 0, RGBA32, 0, -1, -1);
-    image.uri = dataUri("image/png", png(ktx2.getWidth(), ktx2.getHeight(), pixels));
-    delete image.bufferView;
-    delete image.mimeType;
-  }
-  for (const texture of json.textures) {
-    texture.source = texture.extensions.KHR_texture_basisu.source;
-    delete texture.extensions;
-  }
-  delete json.extensionsRequired;
-  return Buffer.from(JSON.stringify(json));
+    return dataUri("image/png", png(ktx2.getWidth(), ktx2.getHeight(), pixels));
+  });
+  return withTextures(file, uris);
 }

@@ -11,6 +11,7 @@ const SUPPORTED: &[&str] = &[
     "KHR_materials_unlit",
     "KHR_materials_emissive_strength",
     "KHR_lights_punctual",
+    "EXT_texture_avif",
     "EXT_texture_webp",
     "KHR_texture_basisu",
     // Decoded before the file is loaded. It still has them only if it could not be prepared or has the original data as well.

@@ -14,6 +14,7 @@ use crate::formats::error::Problem;
 use crate::formats::limits::{Budget, Limit, MAX_IMAGE_SIDE};
 
 pub const KTX2: &str = "image/ktx2";
+pub const AVIF: &str = "image/avif";
 
 pub fn images(
     files: &FileSet,
@@ -85,7 +86,8 @@ pub fn image_header(bytes: &[u8], budget: &Budget) -> Result<(&'static str, u32,
         Ok(ImageType::Jpeg) => ("image/jpeg", encoded_size(bytes)?),
         Ok(ImageType::Webp) => ("image/webp", encoded_size(bytes)?),
         _ if bytes.starts_with(&gaitway_ktx2::MAGIC) => (KTX2, gaitway_ktx2::size(bytes)?.map(|edge| edge as usize)),
-        _ => return Err("it is not PNG, JPEG, WebP or KTX2".to_owned()),
+        _ if is_avif(bytes) => (AVIF, avif_size(bytes).ok_or("its size cannot be found")?),
+        _ => return Err("it is not PNG, JPEG, WebP, AVIF or KTX2".to_owned()),
     };
     let pixels = width.saturating_mul(height);
     let max = MAX_IMAGE_SIDE as usize;
@@ -97,6 +99,22 @@ pub fn image_header(bytes: &[u8], budget: &Budget) -> Result<(&'static str, u32,
         format!("with its {width} × {height} pixels, the model would have more than {max} {name} in all")
     })?;
     Ok((mime, width as u32, height as u32))
+}
+
+/// Whether the first box lists AVIF among the brands.
+pub fn is_avif(bytes: &[u8]) -> bool {
+    let length = bytes.first_chunk().map_or(0, |length| u32::from_be_bytes(*length) as usize);
+    let brands = bytes.get(8..length.min(bytes.len())).filter(|_| bytes[4..].starts_with(b"ftyp"));
+    brands.is_some_and(|brands| brands.as_chunks::<4>().0.iter().any(|brand| brand == b"avif" || brand == b"avis"))
+}
+
+/// The largest of the sizes before the pixels, which may be of a thumbnail, tiles or the alpha channel as well.
+fn avif_size(bytes: &[u8]) -> Option<[usize; 2]> {
+    let end = bytes.windows(4).position(|tag| tag == b"mdat").unwrap_or(bytes.len());
+    let boxes = bytes[..end].windows(16).filter(|found| found.starts_with(b"ispe"));
+    let edge = |bytes: &[u8]| bytes.iter().fold(0, |edge, &byte| edge << 8 | usize::from(byte));
+    // After the tag, 4 bytes of version and flags.
+    boxes.map(|found| [edge(&found[8..12]), edge(&found[12..])]).max_by_key(|size| size[0].saturating_mul(size[1]))
 }
 
 fn encoded_size(bytes: &[u8]) -> Result<[usize; 2], String> {

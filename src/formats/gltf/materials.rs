@@ -193,13 +193,15 @@ fn image_of(root: &Root, texture: &json::Texture, here: &str) -> Result<Option<u
     struct Other {
         source: Option<usize>,
     }
-    let mut image = None;
-    for name in ["KHR_texture_basisu", "EXT_texture_webp"] {
-        let extensions = texture.extensions.as_ref().filter(|_| image.is_none());
+    let source = |name: &str| -> Result<Option<usize>, Problem> {
+        let extensions = texture.extensions.as_ref();
         let other: Option<Other> = extensions.map_or(Ok(None), |all| extension(&all.others, name, here))?;
-        image = image.or(other.and_then(|other| other.source));
-    }
-    let image = image.or(present(texture.source));
+        Ok(other.and_then(|other| other.source))
+    };
+    let [ktx2, avif, webp] = [source("KHR_texture_basisu")?, source("EXT_texture_avif")?, source("EXT_texture_webp")?];
+    // Only a browser decodes AVIF, so elsewhere it comes last.
+    let in_browser = avif.filter(|_| cfg!(target_arch = "wasm32"));
+    let image = ktx2.or(in_browser).or(webp).or(present(texture.source)).or(avif);
     image.map_or(Ok(None), |image| {
         get(&root.images, image, &format_args!("{here}.source"), "images").map(|_| Some(image))
     })

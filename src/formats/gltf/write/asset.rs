@@ -10,14 +10,15 @@ use super::motion::nodes_and_scenes;
 use super::{WriteError, clip, glb};
 use crate::anim::{Clip, Skeleton};
 use crate::asset::Asset;
-use crate::formats::gltf::images::KTX2;
+use crate::formats::gltf::images::{AVIF, KTX2};
 use crate::mesh::{AlphaMode, Geometry, Material, Mesh, Skin, Texture, TextureRef, Topology};
 
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
 /// The extensions for images; PNG and JPEG need none.
-const IMAGE_EXTENSIONS: [(&str, &str); 2] = [("image/webp", "EXT_texture_webp"), (KTX2, "KHR_texture_basisu")];
+const IMAGE_EXTENSIONS: [(&str, &str); 3] =
+    [("image/webp", "EXT_texture_webp"), (AVIF, "EXT_texture_avif"), (KTX2, "KHR_texture_basisu")];
 
 const UNSIGNED_SHORT: u32 = 5123;
 const UNSIGNED_INT: u32 = 5125;

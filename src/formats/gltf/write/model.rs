@@ -14,7 +14,7 @@ use crate::anim::{Clip, JointIndex, Skeleton};
 use crate::asset::Warnings;
 use crate::formats::gltf::accessor::Bytes;
 use crate::formats::gltf::document::{Document, as_text, json_error, size};
-use crate::formats::gltf::images::KTX2;
+use crate::formats::gltf::images::{AVIF, KTX2, is_avif};
 use crate::formats::gltf::object::{Array, Object, raw};
 use crate::formats::gltf::{container, data, resolve_buffers};
 use crate::formats::{FileSet, extension, named};
@@ -207,6 +207,7 @@ fn mime(bytes: &[u8], uri: &str, said: Option<String>) -> String {
         Ok(ImageType::Jpeg) => Some("image/jpeg"),
         Ok(ImageType::Webp) => Some("image/webp"),
         _ if bytes.starts_with(&gaitway_ktx2::MAGIC) => Some(KTX2),
+        _ if is_avif(bytes) => Some(AVIF),
         _ => None,
     };
     let in_uri = || {
