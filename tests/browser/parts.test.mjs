@@ -100,7 +100,7 @@ for (const renderer of BACK_ENDS)
     });
 
     test("AVIF textures look like the same as PNG", async () => {
-      // The same gradients, see ktx2() in tests/scene/decode.rs.
+      // The same gradients, see gradients() in tests/scene/decode.rs.
       const pixels = Array.from({ length: 64 * 32 }, (_, at) => {
         const [x, y] = [at % 64, at >> 6];
         return [(255 * x) / 63, (255 * y) / 31, ((x >> 4) + (y >> 4)) & 1 ? 200 : 40, 255];
