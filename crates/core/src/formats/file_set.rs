@@ -167,7 +167,7 @@ pub(super) fn beside(base: &str, part: &str) -> (String, String) {
 }
 
 /// A file's own name without folders, query and extension.
-pub(crate) fn file_stem(name: &str) -> &str {
+pub fn file_stem(name: &str) -> &str {
     let bare = bare_name(without_query(name));
     bare.rsplit_once('.').map_or(bare, |(stem, _)| stem)
 }

@@ -52,7 +52,7 @@ pub struct Layer {
 
 impl ResolvedMap {
     /// Index of the pair with this target.
-    pub(crate) fn pair_index(&self, target: JointIndex) -> Option<usize> {
+    pub fn pair_index(&self, target: JointIndex) -> Option<usize> {
         self.pairs.iter().position(|pair| pair.target == target)
     }
 

@@ -2,9 +2,9 @@
 //! else a file refers to, add it to the [`FileSet`], then call [`load`].
 //!
 //! ```
-//! use gaitway::formats::{FileSet, load, missing_files};
+//! use gaitway_core::formats::{FileSet, load, missing_files};
 //!
-//! # fn main() -> Result<(), gaitway::formats::LoadError> {
+//! # fn main() -> Result<(), gaitway_core::formats::LoadError> {
 //! let json = r#"{
 //!     "asset": { "version": "2.0" },
 //!     "nodes": [{ "name": "hips" }],
@@ -43,7 +43,7 @@ pub use prepare::{Part, Preparation, next_preparation};
 
 use crate::anim::{Clip, Skeleton};
 use crate::asset::{Asset, Image};
-pub(crate) use file_set::file_stem;
+pub use file_set::file_stem;
 use file_set::{bare_name, without_query};
 
 /// Limit on .obj, .skel and .attach files together. Beyond it, which no real scene reaches, companions are not looked up:

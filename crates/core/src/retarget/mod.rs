@@ -6,8 +6,8 @@
 //! with its source. `pose`, `keys` and `math` are shared by all.
 //!
 //! ```
-//! use gaitway::formats::{FileSet, load};
-//! use gaitway::retarget::propose;
+//! use gaitway_core::formats::{FileSet, load};
+//! use gaitway_core::retarget::propose;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let open = |name: &str| -> Result<_, Box<dyn std::error::Error>> {
