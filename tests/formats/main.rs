@@ -14,6 +14,7 @@ mod meshopt;
 mod mutation;
 mod obj;
 mod playback;
+mod rehearsal;
 mod sweep;
 mod tangents;
 mod write;
