@@ -5,6 +5,8 @@ use std::sync::{Arc, Mutex};
 
 use eframe::egui_wgpu;
 
+use crate::render::COMPRESSED_FORMATS;
+
 /// Called with the message of a fatal graphics error; see [`set_fatal_hook`].
 pub type FatalHook = fn(&str);
 
@@ -74,6 +76,7 @@ fn configuration(backends: Option<wgpu::Backends>) -> egui_wgpu::WgpuConfigurati
     }
     setup.device_descriptor = Arc::new(|adapter| wgpu::DeviceDescriptor {
         label: Some("gaitway"),
+        required_features: adapter.features() & COMPRESSED_FORMATS,
         required_limits: wgpu::Limits::downlevel_webgl2_defaults().using_resolution(adapter.limits()),
         ..Default::default()
     });

@@ -8,8 +8,9 @@ use super::timing::Timing;
 use super::viewport::Viewport;
 use super::{Host, Inbox, Message, Opening, Reply, ScriptCall, device};
 use crate::editor::{Contents, Editor};
-use crate::files::{Role, set_largest_image};
+use crate::files::{Role, set_largest_image, set_texture_formats};
 use crate::library::{Library, ModelId, Motion, inspect};
+use crate::render::texture_formats;
 use crate::state::{Command, ViewerState, to_link};
 use crate::ui::{self, Output, PathPrompt, PathPurpose, Progress, Shown, UiAction, UiState};
 
@@ -53,6 +54,7 @@ impl App {
         let closing = Arc::new(AtomicBool::new(false));
         device::watch(&gpu.device, &closing);
         set_largest_image(gpu.device.limits().max_texture_dimension_2d);
+        set_texture_formats(texture_formats(gpu.device.features()));
         let info = gpu.adapter.get_info();
         ui::install(&cc.egui_ctx);
         let inbox = Inbox::new(cc.egui_ctx.clone());

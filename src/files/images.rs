@@ -2,6 +2,11 @@
 //! up to the platform.
 
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::task::Waker;
+
+use gaitway_ktx2::{Formats, Texture};
+use gaitway_part::Answer;
 
 use crate::asset::{Asset, Image, Warning};
 use crate::formats::limits::{MAX_IMAGE_BYTES, MAX_IMAGE_SIDE};
@@ -14,6 +19,47 @@ static DEVICE_EDGE: AtomicU32 = AtomicU32::new(if cfg!(target_arch = "wasm32") {
 /// Limits the edges of images decoded from now on to what the device can hold.
 pub fn set_largest_image(pixels: u32) {
     DEVICE_EDGE.store(pixels.max(1), Ordering::Relaxed);
+}
+
+/// What the device can sample, and who waits for it on the page.
+static DEVICE_FORMATS: Mutex<(Option<Formats>, Vec<Waker>)> = Mutex::new((None, Vec::new()));
+
+/// Sets the compressed formats that the device can sample, for images decoded from now on.
+pub fn set_texture_formats(formats: Formats) {
+    let waiting = {
+        let mut known = DEVICE_FORMATS.lock().unwrap_or_else(PoisonError::into_inner);
+        known.0 = Some(formats);
+        std::mem::take(&mut known.1)
+    };
+    waiting.into_iter().for_each(Waker::wake);
+}
+
+/// Returns the compressed formats that the device can sample: none if there is no device.
+#[cfg(not(target_arch = "wasm32"))]
+pub(super) fn texture_formats() -> Formats {
+    DEVICE_FORMATS.lock().unwrap_or_else(PoisonError::into_inner).0.unwrap_or_default()
+}
+
+/// Returns the compressed formats that the device can sample. The page makes the device while the first files arrive.
+#[cfg(target_arch = "wasm32")]
+pub(super) async fn texture_formats() -> Formats {
+    use std::task::Poll;
+
+    std::future::poll_fn(|context| {
+        let mut known = DEVICE_FORMATS.lock().unwrap_or_else(PoisonError::into_inner);
+        let Some(formats) = known.0 else {
+            known.1.push(context.waker().clone());
+            return Poll::Pending;
+        };
+        Poll::Ready(formats)
+    })
+    .await
+}
+
+/// Reads the transcoder's answer about a KTX2 image. Returns it with its full size.
+pub(super) fn transcoded(image: &Image, answer: Answer) -> Result<(ImageData, [u32; 2]), String> {
+    let texture = Texture::read(&answer?.bytes).ok_or("its converter gave an answer that cannot be read")?;
+    Ok((ImageData::Ktx2(texture), [image.width, image.height]))
 }
 
 /// Returns the longest edge in pixels to which a model's images are scaled down: what the device can hold, halved until all of

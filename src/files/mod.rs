@@ -28,7 +28,7 @@ pub use disk::{Disk, Opened, STANDARD_STREAM, member_of, open_paths, open_view, 
 pub use error::OpenError;
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) use error::describe;
-pub use images::set_largest_image;
+pub use images::{set_largest_image, set_texture_formats};
 pub use png::encode_png;
 pub use read::Item;
 #[cfg(not(target_arch = "wasm32"))]

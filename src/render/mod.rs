@@ -29,6 +29,7 @@ pub use headless::finished;
 pub use headless::headless_device;
 pub use headless::{HeadlessError, read_pixels};
 pub use renderer::{RenderStats, Renderer, RendererOptions, UploadError};
+pub use texture::{COMPRESSED_FORMATS, texture_formats};
 
 /// Submits the work recorded so far. A browser's graphics process serves other clients only between submissions, so each
 /// expensive step gets a submission of its own.

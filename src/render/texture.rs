@@ -1,6 +1,8 @@
-//! Image textures with mip levels generated on the GPU.
+//! Image textures, with mip levels generated on the GPU unless the image has its own.
 
 use std::collections::HashMap;
+
+use gaitway_ktx2::{Format, Formats, Texture as Ktx2};
 
 use super::flush;
 use super::full_screen::{FullScreenPipeline, sampled_texture_group, sampled_texture_layout};
@@ -8,6 +10,22 @@ use super::pipelines::pipeline_layout;
 use super::shaders;
 use crate::library::ImageData;
 use crate::mesh::{Filter, MipFilter, Sampler, Wrap};
+
+/// The compressed formats that are used where a device has them.
+pub const COMPRESSED_FORMATS: wgpu::Features = wgpu::Features::TEXTURE_COMPRESSION_BC
+    .union(wgpu::Features::TEXTURE_COMPRESSION_ETC2)
+    .union(wgpu::Features::TEXTURE_COMPRESSION_ASTC);
+
+/// Returns the compressed formats that a device with these features can sample.
+pub fn texture_formats(features: wgpu::Features) -> Formats {
+    let pairs = [
+        (wgpu::Features::TEXTURE_COMPRESSION_BC, Formats::BC7),
+        (wgpu::Features::TEXTURE_COMPRESSION_ETC2, Formats::ETC2),
+        (wgpu::Features::TEXTURE_COMPRESSION_ASTC, Formats::ASTC),
+    ];
+    let has = |(feature, format): (wgpu::Features, Formats)| if features.contains(feature) { format.0 } else { 0 };
+    Formats(pairs.into_iter().map(has).sum())
+}
 
 /// Generates mip levels.
 pub(super) struct MipMaker {
@@ -29,8 +47,11 @@ impl MipMaker {
         Self { module: shaders::MIPS.module(device), layout, sampler, pipelines: HashMap::new() }
     }
 
-    /// Fills every level below the first.
-    fn fill(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, texture: &wgpu::Texture) {
+    /// Fills every level below the first `given`.
+    fn fill(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, texture: &wgpu::Texture, given: u32) {
+        if given == texture.mip_level_count() {
+            return;
+        }
         let format = texture.format();
         let pipeline = self.pipelines.entry(format).or_insert_with(|| {
             FullScreenPipeline {
@@ -52,7 +73,7 @@ impl MipMaker {
             })
         };
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("mips") });
-        for level in 1..texture.mip_level_count() {
+        for level in given..texture.mip_level_count() {
             let bind_group = sampled_texture_group(device, "mips", &self.layout, &level_view(level - 1), &self.sampler);
             let target = level_view(level);
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -75,8 +96,8 @@ impl MipMaker {
         queue.submit([encoder.finish()]);
     }
 
-    /// Uploads an image and its mip levels; none if it has no pixels, or if it is a browser's bitmap larger than the
-    /// device supports. Other oversized images are halved until they fit. Each image is a submission of its own,
+    /// Uploads an image and its mip levels; none if it has no pixels, or if it is a browser's bitmap or a KTX2 image larger than
+    /// the device supports. Other oversized images are halved until they fit. Each image is a submission of its own,
     /// because a browser's graphics process serves other clients only between submissions.
     pub fn upload(
         &mut self,
@@ -85,31 +106,70 @@ impl MipMaker {
         image: &ImageData,
         srgb: bool,
     ) -> Option<wgpu::TextureView> {
-        let texture = match image {
+        let (texture, given) = match image {
             ImageData::Rgba8 { width, height, pixels } => {
-                upload_pixels(device, queue, [*width, *height], pixels, srgb)?
+                (upload_pixels(device, queue, [*width, *height], pixels, srgb)?, 1)
             }
+            ImageData::Ktx2(image) => (upload_levels(device, queue, image, srgb)?, image.levels),
             #[cfg(target_arch = "wasm32")]
-            ImageData::Bitmap(bitmap) => upload_bitmap(device, queue, bitmap, srgb)?,
+            ImageData::Bitmap(bitmap) => (upload_bitmap(device, queue, bitmap, srgb)?, 1),
         };
         flush(queue);
-        self.fill(device, queue, &texture);
+        self.fill(device, queue, &texture, given);
         Some(texture.create_view(&Default::default()))
     }
 }
 
-fn image_texture(device: &wgpu::Device, [width, height]: [u32; 2], srgb: bool) -> wgpu::Texture {
+/// A texture with a full set of mip levels.
+fn image_texture(device: &wgpu::Device, [width, height]: [u32; 2], format: Format, srgb: bool) -> wgpu::Texture {
     use wgpu::TextureUsages as Usages;
+    let format = wgpu_format(format, srgb);
+    let generated = if format.is_compressed() { Usages::empty() } else { Usages::RENDER_ATTACHMENT };
     device.create_texture(&wgpu::TextureDescriptor {
         label: Some("image"),
         size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
         mip_level_count: width.max(height).ilog2() + 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
-        format: if srgb { wgpu::TextureFormat::Rgba8UnormSrgb } else { wgpu::TextureFormat::Rgba8Unorm },
-        usage: Usages::TEXTURE_BINDING | Usages::COPY_DST | Usages::RENDER_ATTACHMENT,
+        format,
+        usage: Usages::TEXTURE_BINDING | Usages::COPY_DST | generated,
         view_formats: &[],
     })
+}
+
+fn wgpu_format(format: Format, srgb: bool) -> wgpu::TextureFormat {
+    let format = match format {
+        Format::Rgba8 => wgpu::TextureFormat::Rgba8Unorm,
+        Format::Bc7 => wgpu::TextureFormat::Bc7RgbaUnorm,
+        Format::Etc2Rgb => wgpu::TextureFormat::Etc2Rgb8Unorm,
+        Format::Etc2Rgba => wgpu::TextureFormat::Etc2Rgba8Unorm,
+        Format::Astc4x4 => {
+            wgpu::TextureFormat::Astc { block: wgpu::AstcBlock::B4x4, channel: wgpu::AstcChannel::Unorm }
+        }
+    };
+    if srgb { format.add_srgb_suffix() } else { format }
+}
+
+/// Uploads the levels that a KTX2 image has: all of them if it is compressed.
+fn upload_levels(device: &wgpu::Device, queue: &wgpu::Queue, image: &Ktx2, srgb: bool) -> Option<wgpu::Texture> {
+    let size = [image.width, image.height];
+    let max_size = device.limits().max_texture_dimension_2d;
+    let format = wgpu_format(image.format, srgb);
+    if size.into_iter().any(|edge| edge > max_size) || !device.features().contains(format.required_features()) {
+        return None;
+    }
+    let texture = image_texture(device, size, image.format, srgb);
+    for (mip_level, ([width, height], bytes)) in (0..).zip(image.levels()) {
+        let (bytes_per_row, _) = image.format.layout([width, height]);
+        queue.write_texture(
+            wgpu::TexelCopyTextureInfo { mip_level, ..texture.as_image_copy() },
+            bytes,
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(bytes_per_row), rows_per_image: None },
+            // Levels smaller than a block are copied as a whole one.
+            wgpu::Extent3d { width, height, depth_or_array_layers: 1 }.physical_size(format),
+        );
+    }
+    Some(texture)
 }
 
 /// Uploads the first level, halving the image until the device supports its size.
@@ -129,7 +189,7 @@ fn upload_pixels(
         smaller = Some(halved(smaller.as_deref().unwrap_or(pixels), width, height));
         (width, height) = ((width / 2).max(1), (height / 2).max(1));
     }
-    let texture = image_texture(device, [width, height], srgb);
+    let texture = image_texture(device, [width, height], Format::Rgba8, srgb);
     queue.write_texture(
         texture.as_image_copy(),
         smaller.as_deref().unwrap_or(pixels),
@@ -152,7 +212,7 @@ fn upload_bitmap(
     if size.contains(&0) || size.into_iter().any(|edge| edge > max_size) {
         return None;
     }
-    let texture = image_texture(device, size, srgb);
+    let texture = image_texture(device, size, Format::Rgba8, srgb);
     queue.copy_external_image_to_texture(
         &wgpu::CopyExternalImageSourceInfo {
             source: wgpu::ExternalImageSource::ImageBitmap(bitmap.clone()),

@@ -1,16 +1,31 @@
 // Parts of Gaitway that few files need: downloaded when a file needs one, and whatever goes wrong in one ends nothing else.
 import assert from "node:assert/strict";
+import fs from "node:fs";
 import { after, before, describe, test } from "node:test";
 import binaryen from "binaryen";
-import { skipWithoutData } from "../three/data.mjs";
+import { dataFile, skipWithoutData } from "../three/data.mjs";
+import { dataUri, png, withPngTextures, withTextures } from "../three/ktx2.mjs";
 import { BACK_ENDS, meanDifference, open, picture, pose, startSite, state, stats, whenBorrowed } from "./browser.mjs";
 
-const ROBOT = "compressed/RobotExpressive-gltfpack-meshopt.glb";
-/** The same file without compression. */
-const PLAIN_ROBOT = "compressed/RobotExpressive-gltfpack-quantized.glb";
+/** Files that need a part, with the same model without compression and a view of it. */
+const COMPRESSED = [
+  {
+    part: "meshopt",
+    compressed: "compressed/RobotExpressive-gltfpack-meshopt.glb",
+    plain: "compressed/RobotExpressive-gltfpack-quantized.glb",
+    view: "clip=&camera=30,10,20,0,2,0",
+  },
+  {
+    part: "draco",
+    compressed: "khronos/CesiumMan/glTF-Draco/CesiumMan.gltf",
+    plain: "khronos/CesiumMan/glTF/CesiumMan.gltf",
+    view: "clip=&camera=30,10,4,0,0.8,0",
+  },
+];
 const FOX = "compressed/Fox-gltfpack-meshopt.glb";
+const KTX2 = "compressed/agi-ktx2.glb";
+const AVIF = new URL("../support/gradients.avif", import.meta.url);
 const SAMBA = "threejs/Samba_Dancing.fbx";
-const VIEW = "clip=&camera=30,10,20,0,2,0";
 
 /** @param {import("./browser.mjs").TestPage} page */
 const requested = (page) => page.requests.filter((url) => url.includes("/parts/"));
@@ -38,19 +53,63 @@ for (const renderer of BACK_ENDS)
     });
     after(() => site?.close());
 
-    test("a compressed model is a link like any other and looks like the original", async () => {
-      const plain = await site.page({ renderer, link: `model=${site.data(PLAIN_ROBOT)}&${VIEW}` });
-      assert.deepEqual(requested(plain), [], "nothing that the file doesn't need");
-      const expected = await picture(plain);
-      await plain.finish();
-      const page = await site.page({ renderer, link: `model=${site.data(ROBOT)}&${VIEW}` });
+    for (const { part, compressed, plain, view } of COMPRESSED)
+      test(`a model compressed with ${part} is a link like any other and looks like the original`, async () => {
+        const original = await site.page({ renderer, link: `model=${site.data(plain)}&${view}` });
+        assert.deepEqual(requested(original), [], "nothing that the file doesn't need");
+        const expected = await picture(original);
+        await original.finish();
+        const page = await site.page({ renderer, link: `model=${site.data(compressed)}&${view}` });
+        assert.equal(requested(page).length, 1);
+        assert.match(requested(page)[0], new RegExp(`/parts/${part}-[0-9a-f]{16}\\.wasm$`));
+        assert.equal((await stats(page)).backend, renderer);
+        const difference = meanDifference(await picture(page), expected);
+        assert.ok(difference < 0.5, `the pictures differ by ${difference} of 255`);
+        assert.deepEqual(page.troubles, []);
+        await page.finish();
+      });
+
+    /**
+     * Opens a file that doesn't exist and returns the picture.
+     * @param {Buffer} body
+     */
+    async function pictureOf(body) {
+      const page = await site.page({ renderer });
+      await page.route("**/made.gltf", (route) => route.fulfill({ body, headers: { "access-control-allow-origin": "*" } }));
+      await open(page, site.data("made.gltf"));
+      const found = await picture(page);
+      assert.deepEqual([requested(page), page.troubles], [[], []]);
+      await page.finish();
+      return found;
+    }
+
+    test("KTX2 textures look like the same as PNG, and cost only themselves if the decoder fails", async () => {
+      const expected = await pictureOf(await withPngTextures(dataFile(KTX2)));
+      const page = await site.page({ renderer });
+      await open(page, site.data(KTX2));
       assert.equal(requested(page).length, 1);
-      assert.match(requested(page)[0], /\/parts\/meshopt-[0-9a-f]{16}\.wasm$/);
-      assert.equal((await stats(page)).backend, renderer);
+      assert.match(requested(page)[0], /\/parts\/ktx2-[0-9a-f]{16}\.wasm$/);
       const difference = meanDifference(await picture(page), expected);
-      assert.ok(difference < 0.5, `the pictures differ by ${difference} of 255`);
+      assert.ok(difference < 1, `the pictures differ by ${difference} of 255`);
       assert.deepEqual(page.troubles, []);
       await page.finish();
+      const failing = await site.page({ renderer });
+      await failing.route("**/parts/*", (route) => route.fulfill({ body: module("(unreachable)"), contentType: "application/wasm" }));
+      assert.match(JSON.stringify(await open(failing, site.data(KTX2))), /KTX2 decoder stopped/);
+      await failing.finish();
+    });
+
+    test("AVIF textures look like the same as PNG", async () => {
+      // The same gradients, see gradients() in tests/scene/decode.rs.
+      const pixels = Array.from({ length: 64 * 32 }, (_, at) => {
+        const [x, y] = [at % 64, at >> 6];
+        return [(255 * x) / 63, (255 * y) / 31, ((x >> 4) + (y >> 4)) & 1 ? 200 : 40, 255];
+      });
+      const [avif, plain] = [fs.readFileSync(AVIF), png(64, 32, Uint8Array.from(pixels.flat()))];
+      const expected = await pictureOf(withTextures(dataFile(KTX2), [dataUri("image/png", plain)]));
+      const found = await pictureOf(withTextures(dataFile(KTX2), [dataUri("image/avif", avif)], "EXT_texture_avif"));
+      const difference = meanDifference(found, expected);
+      assert.ok(difference < 2, `the pictures differ by ${difference} of 255`);
     });
 
     test("an FBX file is a link like any other, as a model and as a motion", async () => {

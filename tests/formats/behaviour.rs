@@ -266,12 +266,58 @@ fn texture_transforms_and_uv_sets() {
 }
 
 #[test]
-fn webp_is_preferred_if_present() {
-    let mut build = textured_square();
-    let image = build.json["images"][0].clone();
-    build.json["images"] = json!([image.clone(), image]);
-    build.json["textures"] = json!([{ "source": 0, "extensions": { "EXT_texture_webp": { "source": 1 } } }]);
-    assert_eq!(read(build).textures[0].image, Some(1));
+fn webp_is_preferred_if_present_and_ktx2_to_both() {
+    let image_used = |extensions: serde_json::Value| {
+        let mut build = textured_square();
+        let image = build.json["images"][0].clone();
+        build.json["images"] = json!([image.clone(), image.clone(), image]);
+        build.json["textures"] = json!([{ "source": 0, "extensions": extensions }]);
+        read(build).textures[0].image
+    };
+    assert_eq!(image_used(json!({ "EXT_texture_webp": { "source": 1 } })), Some(1));
+    let both = json!({ "EXT_texture_webp": { "source": 1 }, "KHR_texture_basisu": { "source": 2 } });
+    assert_eq!(image_used(both), Some(2));
+}
+
+/// Natively, where nothing decodes it, whatever else there is comes first.
+#[test]
+fn avif_is_known_by_its_content() {
+    let with = |texture: serde_json::Value| {
+        let mut build = textured_square();
+        let view = build.view(include_bytes!("../support/gradients.avif"));
+        let other = build.json["images"][0].clone();
+        build.json["images"] = json!([other, { "bufferView": view }]);
+        build.json["textures"] = json!([texture]);
+        read(build.with("/extensionsUsed", json!(["EXT_texture_avif"])))
+    };
+    let avif = json!({ "EXT_texture_avif": { "source": 1 } });
+    let asset = with(json!({ "extensions": avif }));
+    assert_eq!((asset.images[1].mime, asset.images[1].width, asset.images[1].height), ("image/avif", 64, 32));
+    assert_eq!((asset.textures[0].image, codes(&asset)), (Some(1), Vec::new()));
+    assert_eq!(with(json!({ "source": 0, "extensions": avif })).textures[0].image, Some(0));
+}
+
+#[test]
+fn the_header_of_a_ktx2_image_is_read_and_not_trusted() {
+    let file = include_bytes!("../support/ktx2/etc1s.ktx2");
+    let image = |change: &dyn Fn(&mut [u8])| {
+        let (mut build, mut bytes) = (textured_square(), file.to_vec());
+        change(&mut bytes);
+        let view = build.view(&bytes);
+        build.json["images"] = json!([{ "bufferView": view, "mimeType": "image/ktx2" }]);
+        build.json["textures"] = json!([{ "extensions": { "KHR_texture_basisu": { "source": 0 } } }]);
+        let required = json!(["KHR_texture_basisu"]);
+        read(build.with("/extensionsRequired", required.clone()).with("/extensionsUsed", required))
+    };
+    let asset = image(&|_| ());
+    let found = &asset.images[0];
+    assert_eq!((found.mime, found.width, found.height), ("image/ktx2", 64, 32));
+    assert!(codes(&asset).is_empty());
+    for (at, value) in [(12, 37), (20, 65_535), (24, 0), (36, 6)] {
+        let asset = image(&|bytes| bytes[at..at + 4].copy_from_slice(&u32::to_le_bytes(value)));
+        assert_eq!(codes(&asset), ["image-unreadable"], "byte {at}");
+        assert!(asset.images[0].bytes.is_empty());
+    }
 }
 
 #[test]

@@ -3,6 +3,7 @@
 mod behaviour;
 mod build_gltf;
 mod bvh;
+mod draco;
 mod file_sets;
 mod fuzz;
 mod humanoid;

@@ -88,15 +88,7 @@ fn consistent(asset: &Asset) -> Result<(), String> {
 /// The unsupported extension that a file of the collection requires.
 fn unreadable(name: &str) -> Option<&'static str> {
     let has = |part: &str| name.contains(part);
-    if has("raco") {
-        Some("KHR_draco_mesh_compression")
-    } else if has("ktx2") {
-        Some("KHR_texture_basisu")
-    } else if has("Compatibility_05") {
-        Some("FAKE_materials_quantumRendering")
-    } else {
-        None
-    }
+    if has("Compatibility_05") { Some("FAKE_materials_quantumRendering") } else { None }
 }
 
 #[test]

@@ -283,7 +283,7 @@ fn a_first_buffer_without_data_stays_without() {
 /// Also if nothing here can decode it: the file that it was in is not at hand wherever the GLB goes.
 #[test]
 fn images_of_all_kinds_are_embedded() {
-    let ktx2 = b"\xABKTX 20\xBB rest";
+    let ktx2 = b"\xABKTX 20\xBB\r\n\x1A\n rest";
     let text = br#"{"asset":{"version":"2.0"},"images":[{"uri":"a.tga"},{"uri":"b"},{"uri":"c.ktx2"}],
         "textures":[{"source":0},{"source":2}]}"#;
     let mut files = one("model.gltf", text.to_vec());

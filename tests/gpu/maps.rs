@@ -2,7 +2,8 @@
 
 use gaitway::library::ImageData;
 use gaitway::mesh::{Filter, Geometry, Material, MipFilter, Sampler, Texture, TextureRef, UvTransform};
-use gaitway::render::RendererOptions;
+use gaitway::render::{RendererOptions, texture_formats};
+use gaitway_ktx2::{Format, Formats, Texture as Ktx2, decode, request};
 use glam::{Affine2, Vec2, Vec3, Vec4};
 
 use crate::device::{Gpu, gpu};
@@ -109,6 +110,65 @@ fn an_image_over_the_device_limit_is_downscaled() {
     let image = ImageData::Rgba8 { width, height: 1, pixels: [10, 200, 30, 255].repeat(width as usize) };
     let material = Material { base_color_texture: MAP, ..unlit(Vec4::ONE) };
     near(middle(&gpu, square(0), material, image), [10, 200, 30, 255], 1);
+}
+
+#[test]
+fn the_mip_levels_of_a_ktx2_image_are_used_and_missing_ones_made() {
+    let Some(gpu) = gpu() else { return };
+    let edge = 8 * SIZE;
+    let level = |edge: u32, pixel: [u8; 4]| pixel.repeat((edge * edge) as usize);
+    let data = [level(edge, [255, 0, 0, 255]), level(edge / 2, [10, 200, 30, 255])].concat();
+    let material = Material { base_color_texture: MAP, ..unlit(Vec4::ONE) };
+    for (levels, expected) in [(1, [255, 0, 0, 255]), (2, [10, 200, 30, 255])] {
+        let image = Ktx2 { format: Format::Rgba8, width: edge, height: edge, levels, data: data.clone() };
+        let texture = Texture { image: Some(0), sampler: Sampler { mip: MipFilter::Linear, ..Sampler::default() } };
+        let images = vec![Some(ImageData::Ktx2(image))];
+        let shown = Scene::textured(vec![square(0)], vec![material.clone()], vec![texture], images).draw(&gpu);
+        near(shown.at(0.1, 0.1), expected, 1);
+    }
+}
+
+/// As a colour map, which is sRGB, and as data; close and, on the smaller mip levels, far.
+#[test]
+fn ktx2_textures_look_the_same_in_every_format_of_the_device() {
+    let Some(gpu) = gpu() else { return };
+    let files = [
+        &include_bytes!("../support/ktx2/etc1s.ktx2")[..],
+        include_bytes!("../support/ktx2/etc1s-alpha.ktx2"),
+        include_bytes!("../support/ktx2/uastc.ktx2"),
+    ];
+    let supported = texture_formats(gpu.device.features());
+    let mut compared = Vec::new();
+    for file in files {
+        let shown = |formats: Formats, scale: f32, is_color: bool| {
+            let output = decode(&request(formats, 4096, file)).expect("a sound file");
+            let image = Ktx2::read(&output.bytes).expect("an answer of the transcoder");
+            let format = image.format;
+            let uv_transform = UvTransform { scale: Vec2::splat(scale), ..UvTransform::IDENTITY };
+            let map = Some(TextureRef { uv_transform, ..MAP.expect("a map") });
+            let material = match is_color {
+                true => Material { base_color_texture: map, ..unlit(Vec4::ONE) },
+                false => Material { metallic_roughness_texture: map, ..gray() },
+            };
+            let texture = Texture { image: Some(0), sampler: Sampler { mip: MipFilter::Linear, ..Sampler::default() } };
+            let images = vec![Some(ImageData::Ktx2(image))];
+            (format, Scene::textured(vec![square(0)], vec![material], vec![texture], images).draw(&gpu).0)
+        };
+        for formats in [Formats::BC7, Formats::ETC2, Formats::ASTC].into_iter().filter(|one| supported.contains(*one)) {
+            for (scale, is_color) in [(1.0, true), (8.0, true), (1.0, false)] {
+                let (_, plain) = shown(Formats::default(), scale, is_color);
+                let (format, found) = shown(formats, scale, is_color);
+                let difference: u32 = found.iter().zip(&plain).map(|(a, b)| u32::from(a.abs_diff(*b))).sum();
+                let mean = f64::from(difference) / plain.len() as f64;
+                assert!(
+                    mean < 1.5,
+                    "{format:?}, scale {scale}, colour {is_color}: the pictures differ by {mean} of 255"
+                );
+                compared.push(format);
+            }
+        }
+    }
+    println!("{supported:?}: {compared:?}");
 }
 
 #[test]

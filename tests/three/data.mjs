@@ -30,11 +30,14 @@ export function dataFile(name) {
 /** Extensions that are supported; a file that requires any other is rejected. */
 const SUPPORTED = [
   "EXT_meshopt_compression",
+  "EXT_texture_avif",
   "EXT_texture_webp",
+  "KHR_draco_mesh_compression",
   "KHR_lights_punctual",
   "KHR_materials_emissive_strength",
   "KHR_materials_unlit",
   "KHR_mesh_quantization",
+  "KHR_texture_basisu",
   "KHR_texture_transform",
 ];
 

@@ -6,6 +6,7 @@ import * as THREE from "three";
 import { MeshoptDecoder } from "three/examples/jsm/libs/meshopt_decoder.module.js";
 import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
 import { readGltf } from "./data.mjs";
+import { dracoLoader } from "./draco.mjs";
 
 /** @typedef {import("three/examples/jsm/loaders/GLTFLoader.js").GLTF} GLTF */
 
@@ -42,7 +43,9 @@ function documentOf(file) {
 export async function loadScene(file, repair = () => {}) {
   // GLTFLoader takes a parsed document too, which its types don't say.
   const document = /** @type {string} */ (/** @type {unknown} */ (documentOf(file)));
-  const gltf = await new GLTFLoader().setMeshoptDecoder(MeshoptDecoder).parseAsync(document, "");
+  const loader = new GLTFLoader().setMeshoptDecoder(MeshoptDecoder);
+  loader.setDRACOLoader(/** @type {any} */ (dracoLoader));
+  const gltf = await loader.parseAsync(document, "");
   repair(gltf);
   const mixer = new THREE.AnimationMixer(gltf.scene);
   const associations = gltf.parser.associations;

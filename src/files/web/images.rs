@@ -1,20 +1,35 @@
-//! Images decoded by the browser, in parallel with loading.
+//! Images decoded by the browser, in parallel with loading; KTX2 by a part.
+
+use std::collections::VecDeque;
 
 use js_sys::{Array, Uint8Array};
 use wasm_bindgen::{JsCast, JsValue};
 use wasm_bindgen_futures::JsFuture;
 
+use super::parts;
 use crate::asset::{Asset, Image};
-use crate::files::images::{fitted, largest_edge, push_decoded};
+use crate::files::images::{fitted, largest_edge, push_decoded, texture_formats, transcoded};
+use crate::files::source::Reading;
+use crate::formats::Part;
 use crate::library::ImageData;
+
+/// KTX2 images transcoded at once: each worker needs memory of its own.
+const AT_ONCE: usize = 4;
+
+/// An image and its full size.
+type Decoded = Result<(ImageData, [u32; 2]), String>;
 
 /// An image being decoded, or why it cannot be. Dropping it is fine.
 pub type Decoding = Result<Started, String>;
 
-pub struct Started {
-    bitmap: JsFuture,
-    /// The size before scaling, if the image is scaled down.
-    full_size: Option<[u32; 2]>,
+pub enum Started {
+    Bitmap {
+        bitmap: JsFuture,
+        /// The size before scaling, if the image is scaled down.
+        full_size: Option<[u32; 2]>,
+    },
+    /// Waits for the device, which decides the format.
+    Ktx2,
 }
 
 pub fn start(images: &[Image]) -> Vec<Decoding> {
@@ -24,10 +39,12 @@ pub fn start(images: &[Image]) -> Vec<Decoding> {
 
 /// Returns one entry per image; `None` for one that cannot be decoded, for which a warning is added.
 pub async fn finish(decoding: Vec<Decoding>, asset: &mut Asset) -> Vec<Option<ImageData>> {
+    let mut transcoded = transcode(&asset.images).await;
     let mut decoded = Vec::with_capacity(decoding.len());
     for started in decoding {
         let outcome = match started {
-            Ok(started) => finish_one(started).await,
+            Ok(Started::Bitmap { bitmap, full_size }) => finish_bitmap(bitmap, full_size).await,
+            Ok(Started::Ktx2) => transcoded.pop_front().unwrap_or_else(|| Err("it was not decoded".to_owned())),
             Err(problem) => Err(problem),
         };
         push_decoded(asset, &mut decoded, outcome);
@@ -39,6 +56,9 @@ pub async fn finish(decoding: Vec<Decoding>, asset: &mut Asset) -> Vec<Option<Im
 fn start_one(image: &Image, largest_edge: u32) -> Decoding {
     if image.bytes.is_empty() {
         return Err("it has no data".to_owned());
+    }
+    if is_ktx2(image) {
+        return Ok(Started::Ktx2);
     }
     let size = [image.width, image.height];
     let parts = Array::of1(&Uint8Array::from(&image.bytes[..]));
@@ -53,15 +73,48 @@ fn start_one(image: &Image, largest_edge: u32) -> Decoding {
     }
     let window = web_sys::window().ok_or_else(|| "there is no window".to_owned())?;
     let bitmap = window.create_image_bitmap_with_blob_and_image_bitmap_options(&blob, &options).map_err(undecodable)?;
-    Ok(Started { bitmap: JsFuture::from(bitmap), full_size: fitted.map(|_| size) })
+    Ok(Started::Bitmap { bitmap: JsFuture::from(bitmap), full_size: fitted.map(|_| size) })
 }
 
-async fn finish_one(started: Started) -> Result<(ImageData, [u32; 2]), String> {
-    let bitmap = started.bitmap.await.and_then(|bitmap| bitmap.dyn_into()).map_err(undecodable)?;
+async fn finish_bitmap(bitmap: JsFuture, full_size: Option<[u32; 2]>) -> Decoded {
+    let bitmap = bitmap.await.and_then(|bitmap| bitmap.dyn_into()).map_err(undecodable)?;
     let data = ImageData::Bitmap(bitmap);
     // The browser applies EXIF rotation, so the header's size says nothing about whether the image was scaled.
-    let full_size = started.full_size.unwrap_or_else(|| data.size().into());
+    let full_size = full_size.unwrap_or_else(|| data.size().into());
     Ok((data, full_size))
+}
+
+fn is_ktx2(image: &Image) -> bool {
+    image.bytes.starts_with(&gaitway_ktx2::MAGIC)
+}
+
+/// Transcodes the KTX2 images among `images`, in their order.
+async fn transcode(images: &[Image]) -> VecDeque<Decoded> {
+    let largest_edge = largest_edge(images);
+    let images: Vec<&Image> = images.iter().filter(|image| is_ktx2(image)).collect();
+    if images.is_empty() {
+        return VecDeque::new();
+    }
+    let module = match parts::download(Part::Ktx2, &mut Reading::new(&|_, _, _| ())).await {
+        Ok(module) => module,
+        Err(problem) => {
+            let problem = format!("it needs Gaitway's {}, which cannot be loaded: {problem}", Part::Ktx2.title());
+            return images.iter().map(|_| Err(problem.clone())).collect();
+        }
+    };
+    let formats = texture_formats().await;
+    let start = |image: &&Image| {
+        let request = gaitway_ktx2::request(formats, largest_edge, &image.bytes);
+        parts::start(Part::Ktx2, &module, &request)
+    };
+    let mut decoded = VecDeque::with_capacity(images.len());
+    for images in images.chunks(AT_ONCE) {
+        let running: Vec<_> = images.iter().map(start).collect();
+        for (image, running) in images.iter().zip(running) {
+            decoded.push_back(transcoded(image, parts::finish(Part::Ktx2, running).await));
+        }
+    }
+    decoded
 }
 
 fn undecodable(_: JsValue) -> String {

@@ -1,13 +1,14 @@
 //! Parts of Gaitway that are modules of their own, downloaded when a file needs them.
 
 use gaitway_part::{Answer, decode};
-use js_sys::{JsString, Uint8Array};
+use js_sys::{JsString, Promise, Uint8Array};
 use wasm_bindgen::prelude::*;
+use wasm_bindgen_futures::JsFuture;
 
 use super::{absolute, fetch};
 use crate::files::OpenError;
 use crate::files::source::Reading;
-use crate::formats::Preparation;
+use crate::formats::{Part, Preparation};
 
 #[wasm_bindgen]
 extern "C" {
@@ -16,27 +17,40 @@ extern "C" {
     fn part_url(name: &str) -> Option<String>;
 
     /// Runs a part in a worker. Rejects if it traps or takes too long.
-    #[wasm_bindgen(js_namespace = ["gaitway", "parts"], js_name = run, catch)]
-    async fn run_part(name: &str, module: Uint8Array, input: Uint8Array) -> Result<JsValue, JsValue>;
+    #[wasm_bindgen(js_namespace = ["gaitway", "parts"], js_name = run)]
+    fn run_part(name: &str, module: Uint8Array, input: Uint8Array) -> Promise;
 }
 
 /// Downloads the part and runs it.
 pub async fn convert(preparation: &Preparation, reading: &mut Reading<'_>) -> Result<Answer, OpenError> {
     let part = preparation.part;
-    let missing = |problem: String| {
+    let module = download(part, reading).await.map_err(|problem| {
         let file = preparation.file().to_owned();
         OpenError::PartMissing { file, part: part.title(), problem }
-    };
+    })?;
+    Ok(finish(part, start(part, &module, &preparation.input)).await)
+}
+
+/// Returns the part's module, or why it cannot be had.
+pub async fn download(part: Part, reading: &mut Reading<'_>) -> Result<Vec<u8>, String> {
     let url = part_url(part.name()).and_then(|url| absolute(&url, None));
-    let url = url.ok_or_else(|| missing("this page was built without it".to_owned()))?;
-    let module = fetch::fetch(&url, part.title(), reading).await.map_err(|problem| missing(problem.to_string()))?;
-    let (module, input) = (Uint8Array::from(&module[..]), Uint8Array::from(&preparation.input[..]));
-    Ok(match run_part(part.name(), module, input).await {
+    let url = url.ok_or("this page was built without it")?;
+    fetch::fetch(&url, part.title(), reading).await.map_err(|problem| problem.to_string())
+}
+
+/// Starts a part in a worker of its own; [`finish`] waits for it.
+pub fn start(part: Part, module: &[u8], input: &[u8]) -> JsFuture {
+    run_part(part.name(), module.into(), input.into()).into()
+}
+
+/// Returns the answer of a part that was started.
+pub async fn finish(part: Part, running: JsFuture) -> Answer {
+    match running.await {
         Ok(encoded) => decode(&Uint8Array::from(encoded).to_vec()),
         Err(problem) => {
             let problem =
                 problem.dyn_into::<js_sys::Error>().map_or_else(|_| JsString::from(""), |error| error.message());
             Err(format!("the {} stopped ({problem}); the file may be damaged", part.title()))
         }
-    })
+    }
 }

@@ -6,7 +6,7 @@ use egui::{RichText, Ui};
 
 use crate::asset::{Asset, Warning};
 use crate::editor::Export;
-use crate::library::Model;
+use crate::library::{ImageData, Model};
 use crate::mesh::{Geometry, Mesh};
 use crate::ui::{Output, Saved, Shown, UiAction, controls, style, text};
 
@@ -27,6 +27,11 @@ fn contents(ui: &mut Ui, model: &Model) {
     let asset: &Asset = &model.asset;
     let primitives = || asset.meshes.iter().flat_map(|mesh| &mesh.primitives);
     let size = model.rest_bounds().size();
+    let texture_bytes: u64 = model.images.iter().flatten().map(ImageData::device_bytes).sum();
+    let images = match texture_bytes {
+        0 => grouped(asset.images.len()),
+        bytes => format!("{} ({:.1} MB as textures)", grouped(asset.images.len()), bytes as f64 / 1e6),
+    };
     let rows = [
         (text::FORMAT, format_name(asset.format)),
         (text::NODES, grouped(asset.skeleton.len())),
@@ -37,7 +42,7 @@ fn contents(ui: &mut Ui, model: &Model) {
         ("Vertices", grouped(asset.meshes.iter().map(Mesh::file_vertex_count).sum())),
         ("Triangles", grouped(primitives().map(Geometry::triangles).sum())),
         ("Materials", grouped(asset.materials.len())),
-        ("Images", grouped(asset.images.len())),
+        ("Images", images),
         (text::CLIPS, grouped(asset.clips.len())),
         ("Cameras", grouped(asset.cameras.len())),
         ("Lights", grouped(asset.lights.len())),

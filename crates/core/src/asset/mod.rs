@@ -89,7 +89,7 @@ pub struct MeshInstance {
 pub struct Image {
     /// The file's name for it, else its URI; may be empty.
     pub name: String,
-    /// By content: `image/png`, `image/jpeg` or `image/webp`. Empty if the image is unavailable.
+    /// By content: `image/png`, `image/jpeg`, `image/webp`, `image/avif` or `image/ktx2`. Empty if the image is unavailable.
     pub mime: &'static str,
     /// As encoded. Empty if the image is unavailable.
     pub bytes: Arc<[u8]>,

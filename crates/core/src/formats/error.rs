@@ -54,7 +54,7 @@ pub enum LoadError {
     RequiredExtension {
         /// Name of the file in the set.
         file: String,
-        /// Name of the extension, such as "KHR_draco_mesh_compression".
+        /// Name of the extension, such as "KHR_gaussian_splatting".
         name: String,
         /// How to export or convert the file without the extension.
         advice: &'static str,

@@ -4,14 +4,18 @@
 use gaitway_part::Answer;
 
 use super::file_set::Conversion;
-use super::gltf::meshopt;
+use super::gltf::{draco, meshopt};
 use super::{FileSet, LoadError, is_bvh, is_fbx, is_gltf};
 
 /// A decoder that few files need. Natively it is linked like any crate; the page downloads it when a file needs it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
+    /// `KHR_draco_mesh_compression`.
+    Draco,
     /// Models and motions of Autodesk's format.
     Fbx,
+    /// `KHR_texture_basisu`. Its images stay what they are until all images are decoded.
+    Ktx2,
     /// `EXT_meshopt_compression` and `KHR_meshopt_compression`.
     Meshopt,
 }
@@ -20,7 +24,9 @@ impl Part {
     /// Name of the package and of the page's module.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Draco => "draco",
             Self::Fbx => "fbx",
+            Self::Ktx2 => "ktx2",
             Self::Meshopt => "meshopt",
         }
     }
@@ -28,7 +34,9 @@ impl Part {
     /// What messages call it.
     pub fn title(self) -> &'static str {
         match self {
+            Self::Draco => "Draco decoder",
             Self::Fbx => "FBX reader",
+            Self::Ktx2 => "KTX2 decoder",
             Self::Meshopt => "meshopt decoder",
         }
     }
@@ -37,7 +45,9 @@ impl Part {
     #[cfg(not(target_arch = "wasm32"))]
     pub fn run(self, input: &[u8]) -> Answer {
         let convert = match self {
+            Self::Draco => gaitway_draco::decode,
             Self::Fbx => gaitway_fbx::convert,
+            Self::Ktx2 => gaitway_ktx2::decode,
             Self::Meshopt => gaitway_meshopt::decode,
         };
         let stopped = |_| Err(format!("the {} stopped unexpectedly; the file may be damaged", self.title()));
@@ -61,6 +71,8 @@ pub struct Preparation {
 enum Step {
     /// A GLB in the place of a file of this format.
     Whole(&'static str),
+    /// Meshes of a glTF.
+    Meshes(draco::Decoding),
     /// Buffer views of a glTF.
     Views(meshopt::Decoding),
 }
@@ -78,18 +90,17 @@ impl Preparation {
     pub fn finish(self, files: &mut FileSet, answer: Answer) -> Result<(), LoadError> {
         let failed = |problem| LoadError::Conversion { file: self.file.clone(), problem };
         let output = answer.map_err(failed)?;
+        let Some(bytes) = files.get(&self.file).cloned() else { return Ok(()) };
         match self.step {
             Step::Whole(format) => {
                 let conversion =
                     Conversion { format: Some(format), warnings: output.warnings, ..Conversion::default() };
                 files.convert(&self.file, output.bytes, conversion);
+                Ok(())
             }
-            Step::Views(decoding) => {
-                let Some(bytes) = files.get(&self.file).cloned() else { return Ok(()) };
-                decoding.finish(files, &self.file, &bytes, &output.bytes)?;
-            }
+            Step::Meshes(decoding) => decoding.finish(files, &self.file, &bytes, &output.bytes),
+            Step::Views(decoding) => decoding.finish(files, &self.file, &bytes, &output.bytes),
         }
-        Ok(())
     }
 }
 
@@ -99,17 +110,18 @@ impl Preparation {
 /// If a file describes its compressed data wrongly.
 pub fn next_preparation(files: &FileSet) -> Result<Option<Preparation>, LoadError> {
     for (name, bytes) in files.iter() {
-        let file = || name.to_owned();
+        let preparation = |part, input, step| Ok(Some(Preparation { part, input, file: name.to_owned(), step }));
         if is_fbx(name, bytes) {
-            let (part, step) = (Part::Fbx, Step::Whole("fbx"));
-            return Ok(Some(Preparation { part, input: bytes.to_vec(), file: file(), step }));
+            return preparation(Part::Fbx, bytes.to_vec(), Step::Whole("fbx"));
         }
         if !is_gltf(name, bytes) || is_bvh(name, bytes) {
             continue;
         }
         if let Some((decoding, input)) = meshopt::start(files, name, bytes)? {
-            let (part, step) = (Part::Meshopt, Step::Views(decoding));
-            return Ok(Some(Preparation { part, input, file: file(), step }));
+            return preparation(Part::Meshopt, input, Step::Views(decoding));
+        }
+        if let Some((decoding, input)) = draco::start(files, name, bytes)? {
+            return preparation(Part::Draco, input, Step::Meshes(decoding));
         }
     }
     Ok(None)

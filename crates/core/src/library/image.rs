@@ -1,5 +1,7 @@
 //! Decoded images: RGBA with straight alpha and no colour conversion.
 
+use gaitway_ktx2::{Format, Texture};
+
 /// Pixels from the platform's decoder.
 #[derive(Debug, Clone)]
 pub enum ImageData {
@@ -12,16 +14,30 @@ pub enum ImageData {
         /// Red, green, blue and alpha bytes of each pixel.
         pixels: Vec<u8>,
     },
+    /// A KTX2 image with its mip levels, in a format that the device has.
+    Ktx2(Texture),
     /// The browser's bitmap, created with `premultiplyAlpha: "none"` and `colorSpaceConversion: "none"`.
     #[cfg(target_arch = "wasm32")]
     Bitmap(web_sys::ImageBitmap),
 }
 
 impl ImageData {
+    /// Returns the bytes that it takes on the device, with all its mip levels, which take a third of the first.
+    pub fn device_bytes(&self) -> u64 {
+        match self {
+            Self::Ktx2(texture) if texture.format != Format::Rgba8 => texture.data.len() as u64,
+            _ => {
+                let (width, height) = self.size();
+                u64::from(width) * u64::from(height) * 4 * 4 / 3
+            }
+        }
+    }
+
     /// Returns width and height in pixels.
     pub fn size(&self) -> (u32, u32) {
         match self {
             Self::Rgba8 { width, height, .. } => (*width, *height),
+            Self::Ktx2(texture) => (texture.width, texture.height),
             #[cfg(target_arch = "wasm32")]
             Self::Bitmap(bitmap) => (bitmap.width(), bitmap.height()),
         }

@@ -108,7 +108,7 @@ impl<'a> Accessors<'a> {
     }
 
     /// Returns the number of components of an element, and their type.
-    fn kind(&self, index: usize, place: &dyn Display) -> Result<(usize, ComponentType), Problem> {
+    pub fn kind(&self, index: usize, place: &dyn Display) -> Result<(usize, ComponentType), Problem> {
         let accessor = self.accessor(index, place)?;
         let unknown = |expected: &str, key: &str| {
             let here = format!("accessors[{index}]");

@@ -11,9 +11,12 @@ const SUPPORTED: &[&str] = &[
     "KHR_materials_unlit",
     "KHR_materials_emissive_strength",
     "KHR_lights_punctual",
+    "EXT_texture_avif",
     "EXT_texture_webp",
-    // Decoded before the file is loaded; only a file that could not be prepared still has them.
+    "KHR_texture_basisu",
+    // Decoded before the file is loaded. It still has them only if it could not be prepared or has the original data as well.
     "EXT_meshopt_compression",
+    "KHR_draco_mesh_compression",
     "KHR_meshopt_compression",
     // Only their map of humanoid bones is used.
     "VRM",
@@ -25,21 +28,14 @@ const SUPPORTED: &[&str] = &[
 pub fn check(file: &str, root: &Root, warnings: &mut Warnings) -> Result<(), LoadError> {
     let unsupported = |name: &&String| !SUPPORTED.contains(&name.as_str());
     if let Some(name) = root.extensions_required.iter().find(unsupported) {
-        return Err(LoadError::RequiredExtension { file: file.to_owned(), name: name.clone(), advice: advice(name) });
+        return Err(LoadError::RequiredExtension {
+            file: file.to_owned(),
+            name: name.clone(),
+            advice: "export the model without it",
+        });
     }
     for name in root.extensions_used.iter().filter(unsupported) {
         warnings.push(Warning::UnsupportedExtension { name: name.clone() });
     }
     Ok(())
-}
-
-fn advice(name: &str) -> &'static str {
-    match name {
-        "KHR_draco_mesh_compression" => {
-            "save the model without mesh compression (in Blender's glTF export, switch Compression off; \
-             or run `gltf-transform copy` on it)"
-        }
-        "KHR_texture_basisu" => "convert its KTX2 textures to PNG, JPEG or WebP",
-        _ => "export the model without it",
-    }
 }

@@ -13,6 +13,9 @@ use crate::formats::FileSet;
 use crate::formats::error::Problem;
 use crate::formats::limits::{Budget, Limit, MAX_IMAGE_SIDE};
 
+pub const KTX2: &str = "image/ktx2";
+pub const AVIF: &str = "image/avif";
+
 pub fn images(
     files: &FileSet,
     file: &str,
@@ -78,15 +81,14 @@ fn image_bytes(
 
 /// Returns the MIME type by content (what the file declares is often wrong), width and height.
 pub fn image_header(bytes: &[u8], budget: &Budget) -> Result<(&'static str, u32, u32), String> {
-    let mime = match imagesize::image_type(bytes) {
-        Ok(ImageType::Png) => "image/png",
-        Ok(ImageType::Jpeg) => "image/jpeg",
-        Ok(ImageType::Webp) => "image/webp",
-        _ if bytes.starts_with(b"\xABKTX 20") => return Err("KTX2 textures are not supported".to_owned()),
-        _ => return Err("it is not PNG, JPEG or WebP".to_owned()),
+    let (mime, [width, height]) = match imagesize::image_type(bytes) {
+        Ok(ImageType::Png) => ("image/png", encoded_size(bytes)?),
+        Ok(ImageType::Jpeg) => ("image/jpeg", encoded_size(bytes)?),
+        Ok(ImageType::Webp) => ("image/webp", encoded_size(bytes)?),
+        _ if bytes.starts_with(&gaitway_ktx2::MAGIC) => (KTX2, gaitway_ktx2::size(bytes)?.map(|edge| edge as usize)),
+        _ if is_avif(bytes) => (AVIF, avif_size(bytes).ok_or("its size cannot be found")?),
+        _ => return Err("it is not PNG, JPEG, WebP, AVIF or KTX2".to_owned()),
     };
-    let size = imagesize::blob_size(bytes).map_err(|problem| problem.to_string())?;
-    let (width, height) = (size.width, size.height);
     let pixels = width.saturating_mul(height);
     let max = MAX_IMAGE_SIDE as usize;
     if pixels == 0 || width.max(height) > max {
@@ -96,5 +98,25 @@ pub fn image_header(bytes: &[u8], budget: &Budget) -> Result<(&'static str, u32,
         let (max, name) = (Limit::ImagePixels.max(), Limit::ImagePixels.name());
         format!("with its {width} × {height} pixels, the model would have more than {max} {name} in all")
     })?;
-    Ok((mime, size.width as u32, size.height as u32))
+    Ok((mime, width as u32, height as u32))
+}
+
+/// Whether the first box lists AVIF among the brands.
+pub fn is_avif(bytes: &[u8]) -> bool {
+    let length = bytes.first_chunk().map_or(0, |length| u32::from_be_bytes(*length) as usize);
+    let brands = bytes.get(8..length.min(bytes.len())).filter(|_| bytes[4..].starts_with(b"ftyp"));
+    brands.is_some_and(|brands| brands.as_chunks::<4>().0.iter().any(|brand| brand == b"avif" || brand == b"avis"))
+}
+
+/// The largest of the sizes before the pixels, which may be of a thumbnail, tiles or the alpha channel as well.
+fn avif_size(bytes: &[u8]) -> Option<[usize; 2]> {
+    let end = bytes.windows(4).position(|tag| tag == b"mdat").unwrap_or(bytes.len());
+    let boxes = bytes[..end].windows(16).filter(|found| found.starts_with(b"ispe"));
+    let edge = |bytes: &[u8]| bytes.iter().fold(0, |edge, &byte| edge << 8 | usize::from(byte));
+    // After the tag, 4 bytes of version and flags.
+    boxes.map(|found| [edge(&found[8..12]), edge(&found[12..])]).max_by_key(|size| size[0].saturating_mul(size[1]))
+}
+
+fn encoded_size(bytes: &[u8]) -> Result<[usize; 2], String> {
+    imagesize::blob_size(bytes).map(|size| [size.width, size.height]).map_err(|problem| problem.to_string())
 }

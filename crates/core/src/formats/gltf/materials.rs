@@ -190,14 +190,18 @@ pub fn textures(document: &Document, warnings: &mut Warnings) -> Result<Vec<Text
 
 fn image_of(root: &Root, texture: &json::Texture, here: &str) -> Result<Option<usize>, Problem> {
     #[derive(serde::Deserialize)]
-    struct Webp {
+    struct Other {
         source: Option<usize>,
     }
-    let webp: Option<Webp> = match &texture.extensions {
-        Some(extensions) => extension(&extensions.others, "EXT_texture_webp", here)?,
-        None => None,
+    let source = |name: &str| -> Result<Option<usize>, Problem> {
+        let extensions = texture.extensions.as_ref();
+        let other: Option<Other> = extensions.map_or(Ok(None), |all| extension(&all.others, name, here))?;
+        Ok(other.and_then(|other| other.source))
     };
-    let image = webp.and_then(|webp| webp.source).or(present(texture.source));
+    let [ktx2, avif, webp] = [source("KHR_texture_basisu")?, source("EXT_texture_avif")?, source("EXT_texture_webp")?];
+    // Only a browser decodes AVIF, so elsewhere it comes last.
+    let in_browser = avif.filter(|_| cfg!(target_arch = "wasm32"));
+    let image = ktx2.or(in_browser).or(webp).or(present(texture.source)).or(avif);
     image.map_or(Ok(None), |image| {
         get(&root.images, image, &format_args!("{here}.source"), "images").map(|_| Some(image))
     })

@@ -9,8 +9,8 @@ use serde_json::Value;
 
 use super::accessor::{Accessors, get};
 use super::document::fits_in_memory;
-use super::indices;
 use super::influences::{self, InfluenceSet};
+use super::{draco, indices};
 use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
 use crate::formats::limits::Limit;
@@ -135,6 +135,9 @@ fn read_primitive(
     primitive: &Primitive,
     warnings: &mut Warnings,
 ) -> Result<Geometry, Problem> {
+    if draco::is_needed(&accessors.document.root, primitive) {
+        return Err(Problem::new(place, "decoded data (call `prepare` before `load`)", draco::NAME));
+    }
     let find = |semantic: &Semantic| primitive.attributes.get(&Checked::Valid(semantic.clone())).copied();
     let Some(position) = find(&Semantic::Positions) else {
         let problem = "it has no POSITION and cannot be drawn".to_owned();

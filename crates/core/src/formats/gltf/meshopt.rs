@@ -9,12 +9,13 @@ use serde_json::{Map, Value};
 
 use super::accessor::Bytes;
 use super::container::{self, Container};
+use super::decoded::{self, without_extensions};
 use super::document::{Document, as_text, size};
 use super::object::Object;
-use super::{WriteError, resolve_buffer, write};
+use super::resolve_buffer;
 use crate::asset::Warnings;
 use crate::formats::error::Problem;
-use crate::formats::file_set::{Conversion, beside};
+use crate::formats::file_set::beside;
 use crate::formats::limits::Budget;
 use crate::formats::{FileSet, LoadError};
 
@@ -31,20 +32,12 @@ struct Place {
     range: Range<usize>,
 }
 
-/// Returns the decoder's input for a file with compressed views. `None` if it has none, or if loading it will say what is wrong
-/// with the file around them.
+/// Returns the decoder's input for a file with compressed views.
 pub fn start(files: &FileSet, file: &str, bytes: &[u8]) -> Result<Option<(Decoding, Vec<u8>)>, LoadError> {
-    let Ok(container) = container::open(file, bytes) else { return Ok(None) };
-    let json = as_text(container.json);
-    if !NAMES.into_iter().any(|name| json.contains(name)) {
-        return Ok(None);
-    }
-    let Ok(document) = Document::read(file, &container) else { return Ok(None) };
-    match read_views(files, file, &container, &document) {
-        Ok((decoding, input)) => Ok((!decoding.0.is_empty()).then_some((decoding, input))),
-        Err(Problem::MissingFile { .. }) => Ok(None),
-        Err(problem) => Err(problem.in_file(file)),
-    }
+    decoded::start(file, bytes, &NAMES, |container, document| {
+        let (decoding, input) = read_views(files, file, container, document)?;
+        Ok((!decoding.0.is_empty()).then_some((decoding, input)))
+    })
 }
 
 fn read_views(
@@ -160,9 +153,11 @@ impl Decoding {
             if let Some(piece) = decoded.split_off(..range.len()) {
                 data[range].copy_from_slice(piece);
             }
-            views.get_mut(view).map(without_extension);
+            if let Some(view) = views.get_mut(view) {
+                without_extensions(view, &NAMES);
+            }
         }
-        buffers.iter_mut().for_each(without_extension);
+        buffers.iter_mut().for_each(|buffer| without_extensions(buffer, &NAMES));
         for (index, data) in contents.into_iter().enumerate().filter(|(_, data)| !data.is_empty()) {
             let (name, uri) = beside(file, &format!("buffer{index}"));
             if let Some(buffer) = buffers.get_mut(index) {
@@ -172,26 +167,6 @@ impl Decoding {
         }
         json.set("bufferViews", &views);
         json.set("buffers", &buffers);
-        json.remove_strings("extensionsRequired", &NAMES);
-        let extensions = json.remove_strings("extensionsUsed", &NAMES);
-        let json = serde_json::to_vec(&json).unwrap_or_default();
-        let plain = match container.binary {
-            Some(binary) => write::glb(json, binary.to_vec()).map_err(|problem: WriteError| LoadError::Conversion {
-                file: file.to_owned(),
-                problem: problem.to_string(),
-            })?,
-            None => json,
-        };
-        files.convert(file, plain, Conversion { extensions, ..Conversion::default() });
-        Ok(())
-    }
-}
-
-fn without_extension(object: &mut Object) {
-    let Some(mut extensions) = object.read::<Object>("extensions") else { return };
-    NAMES.into_iter().for_each(|name| extensions.remove(name));
-    match extensions.is_empty() {
-        true => object.remove("extensions"),
-        false => object.set("extensions", &extensions),
+        decoded::replace(files, file, container.binary, json, &NAMES)
     }
 }

@@ -1,6 +1,8 @@
 //! Writes a model that came from another format as GLB: nodes, meshes, skins, materials, images and clips. What only glTF files
 //! have (morph targets, cameras, lights) is not written.
 
+use std::collections::BTreeSet;
+
 use glam::{Mat4, Vec3};
 use serde_json::{Value, json};
 
@@ -8,13 +10,15 @@ use super::motion::nodes_and_scenes;
 use super::{WriteError, clip, glb};
 use crate::anim::{Clip, Skeleton};
 use crate::asset::Asset;
+use crate::formats::gltf::images::{AVIF, KTX2};
 use crate::mesh::{AlphaMode, Geometry, Material, Mesh, Skin, Texture, TextureRef, Topology};
 
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
-/// PNG and JPEG need no extension.
-const WEBP: &str = "image/webp";
+/// The extensions for images; PNG and JPEG need none.
+const IMAGE_EXTENSIONS: [(&str, &str); 3] =
+    [("image/webp", "EXT_texture_webp"), (AVIF, "EXT_texture_avif"), (KTX2, "KHR_texture_basisu")];
 
 const UNSIGNED_SHORT: u32 = 5123;
 const UNSIGNED_INT: u32 = 5125;
@@ -30,14 +34,18 @@ pub fn asset(asset: &Asset, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<
     let skins: Vec<Value> = asset.skins.iter().map(|written| skin(written, skeleton, &mut data)).collect();
     place_meshes(asset, skeleton, &mut root);
     let images: Vec<Value> = asset.images.iter().map(|image| data.image(image)).collect();
-    let is_webp = |texture: &Texture| texture.image.is_some_and(|image| asset.images[image].mime == WEBP);
-    let texture = |texture: &Texture| match is_webp(texture) {
-        true => json!({ "extensions": { "EXT_texture_webp": { "source": texture.image } } }),
-        false => json!({ "source": texture.image }),
+    let image_extension = |texture: &Texture| {
+        let mime = asset.images[texture.image?].mime;
+        IMAGE_EXTENSIONS.into_iter().find_map(|(of, name)| (of == mime).then_some(name))
     };
-    if asset.textures.iter().any(is_webp) {
-        root["extensionsUsed"] = json!(["EXT_texture_webp"]);
-        root["extensionsRequired"] = json!(["EXT_texture_webp"]);
+    let texture = |texture: &Texture| match image_extension(texture) {
+        Some(name) => json!({ "extensions": { name: { "source": texture.image } } }),
+        None => json!({ "source": texture.image }),
+    };
+    let needed: BTreeSet<&str> = asset.textures.iter().filter_map(image_extension).collect();
+    if !needed.is_empty() {
+        root["extensionsUsed"] = json!(needed);
+        root["extensionsRequired"] = json!(needed);
     }
     let textures: Vec<Value> = asset.textures.iter().map(texture).collect();
     let materials: Vec<Value> = asset.materials.iter().map(material).collect();

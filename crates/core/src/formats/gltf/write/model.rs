@@ -14,13 +14,13 @@ use crate::anim::{Clip, JointIndex, Skeleton};
 use crate::asset::Warnings;
 use crate::formats::gltf::accessor::Bytes;
 use crate::formats::gltf::document::{Document, as_text, json_error, size};
+use crate::formats::gltf::images::{AVIF, KTX2, is_avif};
 use crate::formats::gltf::object::{Array, Object, raw};
 use crate::formats::gltf::{container, data, resolve_buffers};
 use crate::formats::{FileSet, extension, named};
 
 /// The extension without which no texture may use KTX2.
 const BASISU: &str = "KHR_texture_basisu";
-const KTX2: &str = "image/ktx2";
 
 /// Writes the file `file` of the set as a self-contained GLB, with `clips` (of `skeleton`, which was loaded from the same file)
 /// after its own. Its first buffer is the beginning of the new one; indices, numbers and everything unknown are preserved. Only
@@ -206,7 +206,8 @@ fn mime(bytes: &[u8], uri: &str, said: Option<String>) -> String {
         Ok(ImageType::Png) => Some("image/png"),
         Ok(ImageType::Jpeg) => Some("image/jpeg"),
         Ok(ImageType::Webp) => Some("image/webp"),
-        _ if bytes.starts_with(b"\xABKTX 20") => Some(KTX2),
+        _ if bytes.starts_with(&gaitway_ktx2::MAGIC) => Some(KTX2),
+        _ if is_avif(bytes) => Some(AVIF),
         _ => None,
     };
     let in_uri = || {
