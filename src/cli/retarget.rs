@@ -221,6 +221,7 @@ fn text(map: &ResolvedMap, retargeted: &Retargeted, figures: &Figures) -> String
          facing            mean error {}, max. {}\n\
          rotations         mean error {}, max. {}\n\
          foot slide        {} (source: {})\n\
+         hover             {}\n\
          below ground      {}\n",
         map.pairs.len(),
         figures.coverage.map_or("–".to_owned(), |coverage| format!("{:.0} %", 100.0 * coverage)),
@@ -235,6 +236,7 @@ fn text(map: &ResolvedMap, retargeted: &Retargeted, figures: &Figures) -> String
         number(figures.orientation_error_degrees_max, "°"),
         number(figures.foot_slide_metres_per_sec, " m/s"),
         number(figures.foot_slide_source_metres_per_sec, " m/s"),
+        number(figures.foot_hover_metres_mean, " m"),
         number(figures.ground_penetration_metres_max, " m"),
     )
 }

@@ -1,88 +1,110 @@
-//! Planted feet: while the source's foot is in contact, the target's toes stay in one place on the ground. The whole body is
+//! Planted feet: while the source's foot is in contact, the target's stays in one place on the ground. The whole body is
 //! lowered (or raised) to where its feet are lowest in contact; from there the legs reach, and the hips come down further
-//! when a leg would have to be longer than it is.
+//! when a leg would have to be longer than it is. A leg that still doesn't reach, or would have to turn too fast, lets go.
 
 use std::ops::Range;
 
 use glam::{DQuat, DVec3};
 
-use super::contacts::{contacts, source_height};
-use super::leg::{Leg, drop_to_reach, solve_leg};
+use super::contacts::{SourceContacts, source_contacts, source_height};
+use super::leg::{Leg, LegTurns, drop_to_reach, solve_leg, turned_locals};
+use super::limit::limit_rate;
+use super::plan::{EASE_SECS, LegContacts, Plan, Stage, plan};
+use super::sole::Soles;
 use crate::anim::{Clip, JointIndex, Keys, Property};
 use crate::asset::Slot;
 use crate::retarget::keys::channel::NewChannel;
 use crate::retarget::keys::resample::union;
 use crate::retarget::pose::{Scratch, WorldPose, is_within};
-use crate::retarget::transfer::{Hips, RemovedTravel, Transfer, removed_travel, rotation_laws};
-
-/// Transition into and out of a contact.
-const EASE_SECS: f64 = 0.12;
+use crate::retarget::transfer::{Transfer, removed_travel, rotation_laws};
 
 /// A body that hovers by more than this share of the hips' height does so on purpose.
 const MAX_HOVER: f64 = 0.25;
 
-/// A foot in contact that is further off the ground than this share of the hips' height stands on something else.
-const MAX_GROUND_OFFSET: f64 = 0.08;
+/// The hips come down by at most this share of their height for a leg to reach.
+const MAX_DROP: f64 = 0.1;
 
 /// Maximum distance between keys of a planted clip.
 const MAX_STEP_SECS: f32 = 1.0 / 30.0;
 
-/// A leg with the contacts of the source's foot, as ranges of the sampled times.
-struct LegContacts {
-    leg: Leg,
-    contacts: Vec<Range<usize>>,
+/// How fast planting may turn a thigh or shin: at 60 frames per second, 4° per frame.
+const MAX_TURN_DEGREES_PER_SEC: f64 = 240.0;
+
+/// What planting did.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Planting {
+    /// Number of contacts in which a foot is held.
+    pub contacts: usize,
+    /// Speed of the ground under a figure that walks or runs in place; `None` if the ground stands still.
+    pub ground_metres_per_sec: Option<f64>,
+    /// By how much the body is lowered over the whole clip; negative if it is raised.
+    pub lowered_metres: f64,
 }
 
-/// How far a leg's foot is moved at each time.
-struct Plan {
-    leg: Leg,
-    moves: Vec<DVec3>,
-}
-
-/// Returns all channels of the clip with planted feet, or None if no mapped foot is ever in contact. `resampled` lists the
-/// joints whose keys in `clip` are not the source's own.
-pub fn planted_channels(transfer: &Transfer, clip: &Clip, resampled: &[JointIndex]) -> Option<Vec<NewChannel>> {
+/// Returns all channels of the clip with planted feet, or None if no leg is mapped. `resampled` lists the joints whose keys in
+/// `clip` are not the source's own.
+pub fn planted_channels(
+    transfer: &Transfer,
+    clip: &Clip,
+    resampled: &[JointIndex],
+) -> Option<(Vec<NewChannel>, Planting)> {
     let times = dense_times(transfer.tracks.clip);
     let mut scratch = Scratch::default();
     let mut poses: Vec<WorldPose> = times.iter().map(|&time| transfer.target_pose(clip, time, &mut scratch)).collect();
-    let legs = legs_in_contact(transfer, &times);
-    let hover = hover(transfer, &legs, &poses)?;
-    lower(transfer, &mut poses, hover);
-    let (laws, _) = rotation_laws(transfer);
-    let removed = removed_travel(transfer, &laws, &times);
-    let plans: Vec<Plan> = legs.into_iter().map(|leg| plan(transfer, leg, &times, &poses, &removed)).collect();
-    let drops = drops(&times, &poses, &plans);
+    let soles = Soles::new(transfer);
+    let (legs, ground_velocity) = legs_in_contact(transfer, &soles, &times);
+    let lowered_metres = hover(transfer, &legs, &poses, soles.ground)?;
+    lower(transfer, &mut poses, lowered_metres);
+    let contacts = legs.iter().map(|leg| leg.contacts.len()).sum();
+    let travel = ground_travel(transfer, &times, ground_velocity);
+    let height = transfer.hips.map_or(0.0, |hips| hips.height);
+    let stage = Stage { times: &times, poses: &poses, ground: soles.ground, travel: &travel, height };
+    let plans: Vec<Plan> = legs.into_iter().map(|leg| plan(stage, leg)).collect();
+    let drops = drops(stage, &plans);
+    let rotations = leg_rotations(transfer, stage, &plans, &drops);
+    let hips = transfer.hips_pair().map(|pair| pair.target);
+    let hips = hips.filter(|_| lowered_metres != 0.0 || drops.iter().any(|&drop| drop > 0.0));
+    let translation = hips.map(|hips| lowered_hips(transfer, stage, hips, &drops));
+    let mut channels = kept_channels(clip, resampled, hips, &rotations);
+    channels.extend(translation);
+    for (joint, keys) in rotations {
+        let keys = keys.into_iter().map(DQuat::as_quat).collect();
+        channels.push(NewChannel::resampled(joint, times.clone(), Keys::Rotation(keys)));
+    }
+    let speed = transfer.hips.map_or(1.0, |hips| hips.scale) * ground_velocity.length();
+    Some((channels, Planting { contacts, ground_metres_per_sec: (speed > 0.0).then_some(speed), lowered_metres }))
+}
 
-    let rotations = leg_rotations(transfer, &poses, &plans, &drops);
-    let is_lowered = hover != 0.0 || drops.iter().any(|&drop| drop > 0.0);
-    let hips = transfer.hips_pair().map(|pair| pair.target).filter(|_| is_lowered);
+/// The channels of the clip that planting leaves alone.
+fn kept_channels(
+    clip: &Clip,
+    resampled: &[JointIndex],
+    hips: Option<JointIndex>,
+    rotations: &[(JointIndex, Vec<DQuat>)],
+) -> Vec<NewChannel> {
     let is_replaced = |joint: JointIndex, property: Property| match property {
         Property::Rotation => rotations.iter().any(|(other, _)| *other == joint),
         Property::Translation => hips == Some(joint),
         Property::Scale | Property::MorphWeights => false,
     };
     let kept = clip.channels().iter().filter(|channel| !is_replaced(channel.joint, channel.keys.property()));
-    let mut channels: Vec<NewChannel> = kept
-        .map(|channel| NewChannel {
-            joint: channel.joint,
-            interpolation: channel.interpolation,
-            times: clip.timelines()[channel.timeline as usize].clone(),
-            keys: channel.keys.clone(),
-            resampled: resampled.contains(&channel.joint),
-        })
-        .collect();
-    if let Some(hips) = hips {
-        let translations = poses.iter().zip(&drops).map(|(pose, &drop)| {
-            let position = pose.position(hips) - DVec3::Y * drop;
-            pose.parent_frame(transfer.target_skeleton, hips).inverse().transform_point3(position).as_vec3()
-        });
-        channels.push(NewChannel::resampled(hips, times.clone(), Keys::Translation(translations.collect())));
-    }
-    for (joint, keys) in rotations {
-        let keys = keys.into_iter().map(DQuat::as_quat).collect();
-        channels.push(NewChannel::resampled(joint, times.clone(), Keys::Rotation(keys)));
-    }
-    Some(channels)
+    let kept = kept.map(|channel| NewChannel {
+        joint: channel.joint,
+        interpolation: channel.interpolation,
+        times: clip.timelines()[channel.timeline as usize].clone(),
+        keys: channel.keys.clone(),
+        resampled: resampled.contains(&channel.joint),
+    });
+    kept.collect()
+}
+
+/// The hips' translation, lowered with the poses and then for the legs to reach.
+fn lowered_hips(transfer: &Transfer, stage: Stage, hips: JointIndex, drops: &[f64]) -> NewChannel {
+    let translations = stage.poses.iter().zip(drops).map(|(pose, &drop)| {
+        let position = pose.position(hips) - DVec3::Y * drop;
+        pose.parent_frame(transfer.target_skeleton, hips).inverse().transform_point3(position).as_vec3()
+    });
+    NewChannel::resampled(hips, stage.times.to_vec(), Keys::Translation(translations.collect()))
 }
 
 /// The clip's key times, and more where these are far apart.
@@ -100,48 +122,55 @@ fn dense_times(clip: &Clip) -> Vec<f32> {
     times
 }
 
-/// Legs of which hip, knee and ankle are mapped.
-fn legs_in_contact(transfer: &Transfer, times: &[f32]) -> Vec<LegContacts> {
+/// Legs of which hip, knee and ankle are mapped, and the velocity of the ground below the source.
+fn legs_in_contact(transfer: &Transfer, soles: &Soles, times: &[f32]) -> (Vec<LegContacts>, DVec3) {
     let sides = [
         [Slot::LeftUpperLeg, Slot::LeftLowerLeg, Slot::LeftFoot, Slot::LeftToes],
         [Slot::RightUpperLeg, Slot::RightLowerLeg, Slot::RightFoot, Slot::RightToes],
     ];
-    let leg = |[hip, knee, ankle, toes]: [Slot; 4]| {
-        let (hip, knee, ankle) = (transfer.pair(hip)?, transfer.pair(knee)?, transfer.pair(ankle)?);
-        let toes = transfer.pair(toes).unwrap_or(ankle);
-        let leg = Leg { hip: hip.target, knee: knee.target, ankle: ankle.target, toes: toes.target };
-        Some(LegContacts { leg, contacts: contact_ranges(transfer, toes.source, times) })
-    };
-    sides.into_iter().filter_map(leg).collect()
+    let mut legs = Vec::new();
+    let mut positions: Vec<Vec<DVec3>> = Vec::new();
+    for (slots, sole) in sides.into_iter().zip(&soles.feet) {
+        let [hip, knee, ankle, toes] = slots.map(|slot| transfer.pair(slot));
+        if let (Some(hip), Some(knee), Some(ankle), Some(sole)) = (hip, knee, ankle, sole) {
+            let toes = toes.unwrap_or(ankle);
+            let joints = [hip.target, knee.target, ankle.target, toes.target];
+            legs.push((Leg::new(joints, &transfer.alignment.target), sole.clone()));
+            positions.push(times.iter().map(|&time| transfer.source_position(toes.source, time)).collect());
+        }
+    }
+    let hips: Vec<DVec3> = times.iter().filter_map(|&time| transfer.source_hips(time)).collect();
+    let height = source_height(transfer.map, transfer.alignment);
+    let SourceContacts { touching, ground_velocity } = source_contacts(times, &positions, &hips, height);
+    let legs = legs.into_iter().zip(touching);
+    let legs = legs.map(|((leg, sole), touching)| LegContacts { leg, sole, contacts: ranges(&touching) });
+    (legs.collect(), ground_velocity)
 }
 
-/// When a foot of the source is in contact.
-fn contact_ranges(transfer: &Transfer, toes: JointIndex, times: &[f32]) -> Vec<Range<usize>> {
-    let positions: Vec<DVec3> = times.iter().map(|&time| transfer.source_pose(time).position(toes)).collect();
-    let in_contact = contacts(times, &positions, source_height(transfer.map, transfer.alignment));
-    let starts = (0..times.len()).filter(|&at| in_contact[at] && (at == 0 || !in_contact[at - 1]));
-    let end = |from: usize| (from..times.len()).find(|&at| !in_contact[at]).unwrap_or(times.len());
+/// Ranges in which all are true.
+fn ranges(touching: &[bool]) -> Vec<Range<usize>> {
+    let starts = (0..touching.len()).filter(|&at| touching[at] && (at == 0 || !touching[at - 1]));
+    let end = |from: usize| (from..touching.len()).find(|&at| !touching[at]).unwrap_or(touching.len());
     starts.map(|from| from..end(from)).collect()
 }
 
-/// Height of the toes above where they rest.
-fn height_above_rest(transfer: &Transfer, leg: &Leg, pose: &WorldPose) -> f64 {
-    pose.position(leg.toes).y - transfer.alignment.target.position(leg.toes).y
-}
-
-/// By how much the body is too high: the first quartile of its feet's heights in contact, because the minimum is often a
-/// slip of the capture. None without contacts.
-fn hover(transfer: &Transfer, legs: &[LegContacts], poses: &[WorldPose]) -> Option<f64> {
-    let mut heights = Vec::new();
-    for LegContacts { leg, contacts } in legs {
-        let in_contact = contacts.iter().flat_map(|contact| &poses[contact.clone()]);
-        heights.extend(in_contact.map(|pose| height_above_rest(transfer, leg, pose)));
-    }
-    if heights.is_empty() {
+/// By how much the body is too high: the first quartile of its soles' heights in contact, because the minimum is often a
+/// slip of the capture. Without contacts, the height below which either sole is for a twentieth of the time. None without
+/// legs.
+fn hover(transfer: &Transfer, legs: &[LegContacts], poses: &[WorldPose], ground: f64) -> Option<f64> {
+    let heights = |leg: &LegContacts| leg.poses(poses).map(|pose| leg.sole.lowest(pose)).collect::<Vec<f64>>();
+    let mut contacts: Vec<f64> = legs.iter().flat_map(heights).collect();
+    let lowest = |pose: &WorldPose| legs.iter().map(|leg| leg.sole.lowest(pose)).fold(f64::INFINITY, f64::min);
+    let at = if contacts.is_empty() {
+        contacts = poses.iter().filter(|_| !legs.is_empty()).map(lowest).collect();
+        contacts.len() / 20
+    } else {
+        contacts.len() / 4
+    };
+    if contacts.is_empty() {
         return None;
     }
-    let at = heights.len() / 4;
-    let hover = *heights.select_nth_unstable_by(at, f64::total_cmp).1;
+    let hover = *contacts.select_nth_unstable_by(at, f64::total_cmp).1 - ground;
     let is_near = transfer.hips.is_some_and(|hips| hover.abs() < MAX_HOVER * hips.height);
     Some(if is_near { hover } else { 0.0 })
 }
@@ -156,52 +185,22 @@ fn lower(transfer: &Transfer, poses: &mut [WorldPose], by: f64) {
     }
 }
 
-/// Moves a foot so that its toes stay, during each contact, at their mean position, and on the ground if that is near.
-fn plan(transfer: &Transfer, leg: LegContacts, times: &[f32], poses: &[WorldPose], removed: &RemovedTravel) -> Plan {
-    let LegContacts { leg, contacts } = leg;
-    // Under a figure that walks in place the ground moves and the feet with it, so removed travel is added back.
-    let toes = |index: usize| poses[index].position(leg.toes) + removed.horizontal(index);
-    let mut moves = vec![DVec3::ZERO; times.len()];
-    for contact in &contacts {
-        let mut place = contact.clone().map(toes).sum::<DVec3>() / contact.len() as f64;
-        let heights = poses[contact.clone()].iter().map(|pose| height_above_rest(transfer, &leg, pose));
-        let height = heights.sum::<f64>() / contact.len() as f64;
-        if transfer.hips.is_some_and(|hips| height.abs() < MAX_GROUND_OFFSET * hips.height) {
-            place.y -= height;
-        }
-        let (from, to) = (contact.start, contact.end - 1);
-        let (first, last) = (place - toes(from), place - toes(to));
-        for (at, by) in moves.iter_mut().enumerate() {
-            let secs = |other: usize| (f64::from(times[at]) - f64::from(times[other])).abs();
-            *by += match at {
-                at if at < from => first * ease(secs(from)),
-                at if at > to => last * ease(secs(to)),
-                at => place - toes(at),
-            };
-        }
-    }
-    if let Some(hips) = transfer.hips {
-        keep_above_ground(hips, &leg, poses, &mut moves);
-    }
-    Plan { leg, moves }
-}
-
-fn keep_above_ground(hips: &Hips, leg: &Leg, poses: &[WorldPose], moves: &mut [DVec3]) {
-    for (by, pose) in moves.iter_mut().zip(poses) {
-        let lowest = pose.position(leg.toes).y.min(pose.position(leg.ankle).y);
-        by.y = by.y.max(hips.target_ground - lowest);
-    }
+/// How far the ground has moved below the target at each time: it does below a source in place, and where travel was removed.
+fn ground_travel(transfer: &Transfer, times: &[f32], source_velocity: DVec3) -> Vec<DVec3> {
+    let (laws, _) = rotation_laws(transfer);
+    let removed = removed_travel(transfer, &laws, times);
+    let velocity = transfer.hips.map_or(1.0, |hips| hips.scale) * source_velocity;
+    times.iter().enumerate().map(|(at, &time)| velocity * f64::from(time) - removed.horizontal(at)).collect()
 }
 
 /// How far the hips come down at each time for all legs to reach, smooth over time.
-fn drops(times: &[f32], poses: &[WorldPose], plans: &[Plan]) -> Vec<f64> {
-    let needed: Vec<f64> = poses
-        .iter()
-        .enumerate()
-        .map(|(index, pose)| {
-            plans.iter().map(|plan| drop_to_reach(&plan.leg, pose, plan.moves[index])).fold(0.0, f64::max)
-        })
-        .collect();
+fn drops(stage: Stage, plans: &[Plan]) -> Vec<f64> {
+    let Stage { times, poses, height, .. } = stage;
+    let needed = |(index, pose): (usize, &WorldPose)| {
+        let drops = plans.iter().map(|plan| drop_to_reach(&plan.leg, pose, plan.moves[index]));
+        drops.fold(0.0, f64::max).min(MAX_DROP * height)
+    };
+    let needed: Vec<f64> = poses.iter().enumerate().map(needed).collect();
     // The mean of the neighbourhood's maxima is never less than what is needed.
     let near = |index: usize| {
         let from = times.partition_point(|&time| f64::from(times[index] - time) > EASE_SECS);
@@ -215,24 +214,24 @@ fn drops(times: &[f32], poses: &[WorldPose], plans: &[Plan]) -> Vec<f64> {
 /// Local rotations of the legs' joints at each time.
 fn leg_rotations(
     transfer: &Transfer,
-    poses: &[WorldPose],
+    stage: Stage,
     plans: &[Plan],
     drops: &[f64],
 ) -> Vec<(JointIndex, Vec<DQuat>)> {
+    let max_turn = MAX_TURN_DEGREES_PER_SEC.to_radians();
     let mut rotations: Vec<(JointIndex, Vec<DQuat>)> = Vec::new();
     for Plan { leg, moves } in plans {
+        let steps = stage.poses.iter().zip(moves).zip(drops);
+        let solved = steps.map(|((pose, &by), &drop)| solve_leg(leg, pose, by, drop));
+        let (mut thighs, mut shins): (Vec<DQuat>, Vec<DQuat>) = solved.map(|turns| (turns.thigh, turns.shin)).unzip();
+        limit_rate(stage.times, &mut thighs, max_turn);
+        limit_rate(stage.times, &mut shins, max_turn);
         let mut keys: [Vec<DQuat>; 3] = Default::default();
-        for ((pose, &by), &drop) in poses.iter().zip(moves).zip(drops) {
-            let solved = solve_leg(leg, transfer.target_skeleton, pose, by, drop);
-            keys.iter_mut().zip(solved).for_each(|(keys, rotation)| keys.push(rotation));
+        for ((pose, thigh), shin) in stage.poses.iter().zip(thighs).zip(shins) {
+            let locals = turned_locals(leg, transfer.target_skeleton, pose, LegTurns { thigh, shin });
+            keys.iter_mut().zip(locals).for_each(|(keys, rotation)| keys.push(rotation));
         }
         rotations.extend([leg.hip, leg.knee, leg.ankle].into_iter().zip(keys));
     }
     rotations
-}
-
-/// 1 at the end of a contact, 0 beyond the transition.
-fn ease(secs: f64) -> f64 {
-    let left = (1.0 - secs / EASE_SECS).clamp(0.0, 1.0);
-    left * left * (3.0 - 2.0 * left)
 }
