@@ -2,8 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use gaitway::asset::Slot;
+use glam::{Mat4, Vec4};
+
 use crate::data_folder::data_folder;
-use crate::pairs_of_people::{COLUMNS, Outcome, borrow, each_pair, load_people};
+use crate::pairs_of_people::{
+    COLUMNS, Loaded, Outcome, borrow, each_pair, largest_excess_turn, load_people, measured, planted, proposed,
+};
 
 #[test]
 fn every_real_pair_keeps_orientations_and_directions() {
@@ -39,6 +44,55 @@ fn every_real_pair_keeps_orientations_and_directions() {
     assert_eq!(problems, Vec::<String>::new());
     assert!(pairs > 500, "{pairs}");
     assert_eq!(recorded.len(), pairs, "docs/retargeting-pairs.tsv has other pairs");
+}
+
+/// How far soles may be off the ground while they are planted, as shares of the distance from hips to foot: in any pair, and
+/// on average. One motion (rokoko_jesse_dance) keeps a foot so high that it stands on something.
+const MAX_HOVER: f64 = 0.14;
+const MAX_MEAN_HOVER: f64 = 0.006;
+
+/// Planting holds feet, but never at the price of a leg that snaps.
+#[test]
+fn every_planted_leg_turns_like_its_source_and_stands_on_the_ground() {
+    let Some(folder) = data_folder() else { return };
+    let people = load_people(&folder);
+    let mut problems = Vec::new();
+    let (mut hover_sum, mut hovers) = (0.0, 0);
+    for (model, motion) in each_pair(&people) {
+        let name = (model.name, motion.name);
+        let map = planted(proposed(model, motion).unwrap());
+        let (figures, made) = measured(model, motion, &map).unwrap();
+        let clips = [&made.clip, &motion.asset.clips[motion.clip.unwrap()]];
+        let excess = largest_excess_turn([&model.asset, &motion.asset], clips, &map, &model.slots);
+        if excess > 5.0 {
+            problems.push(format!("{name:?}: a leg turns {excess}° a frame further than its source"));
+        }
+        if let Some(hover) = figures.foot_hover_metres_mean.map(|hover| hover / hips_height(model)) {
+            hover_sum += hover.abs();
+            hovers += 1;
+            if hover.abs() > MAX_HOVER {
+                problems.push(format!("{name:?}: soles are {hover} of the hips' height off the ground"));
+            }
+        }
+    }
+    assert_eq!(problems, Vec::<String>::new());
+    assert!(hovers > 500, "{hovers}");
+    let mean = hover_sum / f64::from(hovers);
+    assert!(mean < MAX_MEAN_HOVER, "{mean} of the hips' height on average");
+}
+
+/// Distance from the hips to a foot at rest. Models come in metres and in centimetres.
+fn hips_height(model: &Loaded) -> f64 {
+    let skeleton = &model.asset.skeleton;
+    let mut model_from_joint: Vec<Mat4> = Vec::new();
+    for (local, parent) in skeleton.rest().locals().zip(skeleton.parents()) {
+        let parent = parent.map_or(Mat4::IDENTITY, |parent| model_from_joint[parent.get()]);
+        let local = Mat4::from_scale_rotation_translation(local.scale, local.rotation, local.translation);
+        model_from_joint.push(parent * local);
+    }
+    let [hips, foot] = [Slot::Hips, Slot::LeftFoot]
+        .map(|slot| model.slots.joint(slot).map_or(Vec4::ZERO, |joint| model_from_joint[joint.get()].w_axis));
+    f64::from((hips - foot).length())
 }
 
 /// The cells of each pair in the published table.

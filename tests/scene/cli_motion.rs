@@ -103,6 +103,7 @@ fn retarget_reports_the_documented_keys() {
         "resampled",
         "figures",
         "motion_rest",
+        "planting",
         "warnings",
     ] {
         assert!(report.get(key).is_some(), "{key}");

@@ -10,31 +10,27 @@ use crate::retarget::math::HORIZONTAL;
 use crate::retarget::pose::WorldPose;
 
 /// Transition into and out of a contact.
-pub const EASE_SECS: f64 = 0.12;
+pub const EASE_SECS: f64 = 0.15;
 
 /// Shares of the hips' height: a foot in contact that is less off the ground than the first is put on it, and one that is more
 /// than the second stands on something else.
-const GROUND_OFFSET: [f64; 2] = [0.06, 0.1];
+const GROUND_OFFSET: [f64; 2] = [0.12, 0.2];
 
-/// A foot slides when its source does: it is held within this share of the hips' height of where it would be.
-const MAX_HOLD: f64 = 0.08;
+/// A foot that goes further than this share of the hips' height while it is in contact slides after all.
+const MAX_HOLD: f64 = 0.3;
+
+/// The same for a figure in place, whose feet move as evenly as its author saw fit, not as a treadmill does.
+const MAX_HOLD_IN_PLACE: f64 = 0.1;
 
 /// A foot that would be deeper in the ground than this share of the hips' height is not lifted all the way.
 const MAX_LIFT: f64 = 0.2;
 
-/// A leg with the contacts of the source's foot, as ranges of the sampled times.
+/// A leg, and whether the source's foot is in contact at each time.
 #[derive(Debug)]
 pub struct LegContacts {
     pub leg: Leg,
     pub sole: Sole,
-    pub contacts: Vec<Range<usize>>,
-}
-
-impl LegContacts {
-    /// The poses in which the foot is in contact.
-    pub fn poses<'p>(&'p self, poses: &'p [WorldPose]) -> impl Iterator<Item = &'p WorldPose> {
-        self.contacts.iter().flat_map(|contact| &poses[contact.clone()])
-    }
+    pub touching: Vec<bool>,
 }
 
 /// What feet are planted on, and how the clip moves over it.
@@ -47,6 +43,8 @@ pub struct Stage<'a> {
     pub ground: f64,
     /// How far the ground has moved at each time.
     pub travel: &'a [DVec3],
+    /// Whether it moves below a figure in place.
+    pub is_moving: bool,
     /// Of the hips at rest.
     pub height: f64,
 }
@@ -59,14 +57,12 @@ pub struct Plan {
 }
 
 /// Moves a foot so that, during each contact, its toes stay in one place on the ground.
-pub fn plan(stage: Stage, leg: LegContacts) -> Plan {
-    let offsets: Vec<Vec<DVec3>> =
-        leg.contacts.iter().map(|contact| contact_offsets(stage, &leg, contact.clone())).collect();
+pub fn plan(stage: Stage, leg: &LegContacts, contacts: &[Range<usize>]) -> Plan {
     let mut moves = vec![DVec3::ZERO; stage.times.len()];
-    for (index, contact) in leg.contacts.iter().enumerate() {
-        moves[contact.clone()].copy_from_slice(&offsets[index]);
-        let after = leg.contacts.get(index + 1).map_or(moves.len(), |next| next.start);
-        let before = index.checked_sub(1).map_or(0, |before| leg.contacts[before].end);
+    for (index, contact) in contacts.iter().enumerate() {
+        moves[contact.clone()].copy_from_slice(&contact_offsets(stage, leg, contact.clone()));
+        let after = contacts.get(index + 1).map_or(moves.len(), |next| next.start);
+        let before = index.checked_sub(1).map_or(0, |before| contacts[before].end);
         ease(stage.times, &mut moves, contact.start, before..contact.start);
         ease(stage.times, &mut moves, contact.end - 1, contact.end..after);
     }
@@ -91,15 +87,14 @@ fn ease(times: &[f32], moves: &mut [DVec3], end: usize, gap: Range<usize>) {
 
 /// How far the foot is moved at each time of a contact.
 fn contact_offsets(stage: Stage, leg: &LegContacts, contact: Range<usize>) -> Vec<DVec3> {
-    let toes: Vec<DVec3> = contact
-        .clone()
-        .map(|at| (stage.poses[at].position(leg.leg.toes) - stage.travel[at]) * HORIZONTAL)
-        .collect();
+    let toes: Vec<DVec3> =
+        contact.clone().map(|at| (stage.poses[at].position(leg.leg.toes) - stage.travel[at]) * HORIZONTAL).collect();
     let heights: Vec<f64> = stage.poses[contact].iter().map(|pose| leg.sole.lowest(pose) - stage.ground).collect();
     let height = heights.iter().sum::<f64>() / heights.len() as f64;
     let [near, far] = GROUND_OFFSET.map(|share| share * stage.height);
     let support = height * smooth((height.abs() - near) / (far - near));
-    let places = places(&toes, MAX_HOLD * stage.height);
+    let max_hold = if stage.is_moving { MAX_HOLD_IN_PLACE } else { MAX_HOLD };
+    let places = places(&toes, max_hold * stage.height);
     let offset = |((place, toes), low): ((DVec3, &DVec3), &f64)| place - *toes + DVec3::Y * (support - low);
     places.into_iter().zip(&toes).zip(&heights).map(offset).collect()
 }

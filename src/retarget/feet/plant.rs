@@ -2,13 +2,15 @@
 //! lowered (or raised) to where its feet are lowest in contact; from there the legs reach, and the hips come down further
 //! when a leg would have to be longer than it is. A leg that still doesn't reach, or would have to turn too fast, lets go.
 
+use std::fmt;
 use std::ops::Range;
 
 use glam::{DQuat, DVec3};
+use serde::Serialize;
 
 use super::contacts::{SourceContacts, source_contacts, source_height};
 use super::leg::{Leg, LegTurns, drop_to_reach, solve_leg, turned_locals};
-use super::limit::limit_rate;
+use super::limit::limit_turns;
 use super::plan::{EASE_SECS, LegContacts, Plan, Stage, plan};
 use super::sole::Soles;
 use crate::anim::{Clip, JointIndex, Keys, Property};
@@ -27,11 +29,18 @@ const MAX_DROP: f64 = 0.1;
 /// Maximum distance between keys of a planted clip.
 const MAX_STEP_SECS: f32 = 1.0 / 30.0;
 
-/// How fast planting may turn a thigh or shin: at 60 frames per second, 4° per frame.
-const MAX_TURN_DEGREES_PER_SEC: f64 = 240.0;
+/// How far planting may turn a thigh or shin, and how fast: at 60 frames per second, by about 4° per frame.
+const MAX_TURN_DEGREES: f64 = 60.0;
+const MAX_TURN_DEGREES_PER_SEC: f64 = 250.0;
+
+/// How far a foot may end from where it begins, as a share of the hips' height, in a clip that repeats in place.
+const MAX_GAP: f64 = 0.02;
+
+/// How much of a repeated clip's other end is taken into account at each end.
+const REPEATED_SECS: f32 = 1.0;
 
 /// What planting did.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Planting {
     /// Number of contacts in which a foot is held.
     pub contacts: usize,
@@ -39,6 +48,23 @@ pub struct Planting {
     pub ground_metres_per_sec: Option<f64>,
     /// By how much the body is lowered over the whole clip; negative if it is raised.
     pub lowered_metres: f64,
+}
+
+impl fmt::Display for Planting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.contacts, self.ground_metres_per_sec) {
+            (0, _) => write!(f, "no foot is ever in contact, none is held")?,
+            (contacts, None) => write!(f, "held in {contacts} contacts")?,
+            (contacts, Some(speed)) => {
+                write!(f, "held in {contacts} contacts, in place on ground that moves at {speed:.2} m/s")?;
+            }
+        }
+        match self.lowered_metres {
+            metres if metres >= 0.0005 => write!(f, "; body lowered by {metres:.3} m"),
+            metres if metres <= -0.0005 => write!(f, "; body raised by {:.3} m", -metres),
+            _ => Ok(()),
+        }
+    }
 }
 
 /// Returns all channels of the clip with planted feet, or None if no leg is mapped. `resampled` lists the joints whose keys in
@@ -52,24 +78,29 @@ pub fn planted_channels(
     let mut scratch = Scratch::default();
     let mut poses: Vec<WorldPose> = times.iter().map(|&time| transfer.target_pose(clip, time, &mut scratch)).collect();
     let soles = Soles::new(transfer);
-    let (legs, ground_velocity) = legs_in_contact(transfer, &soles, &times);
+    let (mut legs, ground_velocity) = legs_in_contact(transfer, &soles, &times);
     let lowered_metres = hover(transfer, &legs, &poses, soles.ground)?;
-    lower(transfer, &mut poses, lowered_metres);
-    let contacts = legs.iter().map(|leg| leg.contacts.len()).sum();
+    lower(transfer, &legs, &mut poses, lowered_metres);
+    let contacts = legs.iter().map(|leg| ranges(&leg.touching).len()).sum();
     let travel = ground_travel(transfer, &times, ground_velocity);
     let height = transfer.hips.map_or(0.0, |hips| hips.height);
-    let stage = Stage { times: &times, poses: &poses, ground: soles.ground, travel: &travel, height };
-    let plans: Vec<Plan> = legs.into_iter().map(|leg| plan(stage, leg)).collect();
+    let mut samples = Samples { times, poses, travel };
+    let own = 0..samples.times.len();
+    let own = if is_cycle(&legs, &samples, height) { samples.repeat(&mut legs) } else { own };
+    let Samples { times, poses, travel } = &samples;
+    let is_moving = ground_velocity != DVec3::ZERO;
+    let stage = Stage { times, poses, ground: soles.ground, travel, is_moving, height };
+    let plans: Vec<Plan> = legs.iter().map(|leg| plan(stage, leg, &ranges(&leg.touching))).collect();
     let drops = drops(stage, &plans);
-    let rotations = leg_rotations(transfer, stage, &plans, &drops);
+    let rotations = leg_rotations(transfer, stage, &plans, &drops, own.clone());
     let hips = transfer.hips_pair().map(|pair| pair.target);
     let hips = hips.filter(|_| lowered_metres != 0.0 || drops.iter().any(|&drop| drop > 0.0));
-    let translation = hips.map(|hips| lowered_hips(transfer, stage, hips, &drops));
+    let translation = hips.map(|hips| lowered_hips(transfer, stage, hips, &drops, own.clone()));
     let mut channels = kept_channels(clip, resampled, hips, &rotations);
     channels.extend(translation);
     for (joint, keys) in rotations {
         let keys = keys.into_iter().map(DQuat::as_quat).collect();
-        channels.push(NewChannel::resampled(joint, times.clone(), Keys::Rotation(keys)));
+        channels.push(NewChannel::resampled(joint, times[own.clone()].to_vec(), Keys::Rotation(keys)));
     }
     let speed = transfer.hips.map_or(1.0, |hips| hips.scale) * ground_velocity.length();
     Some((channels, Planting { contacts, ground_metres_per_sec: (speed > 0.0).then_some(speed), lowered_metres }))
@@ -99,12 +130,62 @@ fn kept_channels(
 }
 
 /// The hips' translation, lowered with the poses and then for the legs to reach.
-fn lowered_hips(transfer: &Transfer, stage: Stage, hips: JointIndex, drops: &[f64]) -> NewChannel {
-    let translations = stage.poses.iter().zip(drops).map(|(pose, &drop)| {
-        let position = pose.position(hips) - DVec3::Y * drop;
+fn lowered_hips(transfer: &Transfer, stage: Stage, hips: JointIndex, drops: &[f64], own: Range<usize>) -> NewChannel {
+    let translation = |at: usize| {
+        let pose = &stage.poses[at];
+        let position = pose.position(hips) - DVec3::Y * drops[at];
         pose.parent_frame(transfer.target_skeleton, hips).inverse().transform_point3(position).as_vec3()
-    });
-    NewChannel::resampled(hips, stage.times.to_vec(), Keys::Translation(translations.collect()))
+    };
+    let translations = own.clone().map(translation).collect();
+    NewChannel::resampled(hips, stage.times[own].to_vec(), Keys::Translation(translations))
+}
+
+/// The clip at the sampled times.
+struct Samples {
+    times: Vec<f32>,
+    poses: Vec<WorldPose>,
+    travel: Vec<DVec3>,
+}
+
+impl Samples {
+    /// Puts the clip's end before it and its beginning after it, so that both ends are planted alike. Returns where the clip
+    /// itself is then.
+    fn repeat(&mut self, legs: &mut [LegContacts]) -> Range<usize> {
+        let Self { times, poses, travel } = self;
+        let last = times.len() - 1;
+        let secs = times[last] - times[0];
+        let step = travel[last] - travel[0];
+        let pad = times[1..last].partition_point(|&time| time - times[0] <= REPEATED_SECS);
+        let (before, after) = (last - pad..last, 1..pad + 1);
+        *times = repeated(times, &before, &after, |time, rounds| time + f32::from(rounds) * secs);
+        *travel = repeated(travel, &before, &after, |travel, rounds| *travel + f64::from(rounds) * step);
+        *poses = repeated(poses, &before, &after, |pose, _| pose.clone());
+        for leg in legs {
+            // The same moment, whose speed was seen from one side each.
+            leg.touching[0] |= leg.touching[last];
+            leg.touching[last] = leg.touching[0];
+            leg.touching = repeated(&leg.touching, &before, &after, |touching, _| *touching);
+        }
+        pad..pad + last + 1
+    }
+}
+
+/// The values with a part of them before and a part after; `round` is −1, 0 or 1 for the three.
+fn repeated<T>(values: &[T], before: &Range<usize>, after: &Range<usize>, of_round: impl Fn(&T, i8) -> T) -> Vec<T> {
+    let rounds = [(&values[before.clone()], -1), (values, 0), (&values[after.clone()], 1)];
+    rounds
+        .into_iter()
+        .flat_map(|(values, round)| values.iter().map(move |value| (value, round)))
+        .map(|(value, round)| of_round(value, round))
+        .collect()
+}
+
+/// Whether the clip ends as it begins, in the same place.
+fn is_cycle(legs: &[LegContacts], samples: &Samples, height: f64) -> bool {
+    let [first, .., last] = &samples.poses[..] else { return false };
+    let is_closed = |joint: JointIndex| first.position(joint).distance(last.position(joint)) < MAX_GAP * height;
+    samples.poses.len() > 2
+        && legs.iter().all(|LegContacts { leg, .. }| [leg.hip, leg.ankle, leg.toes].into_iter().all(is_closed))
 }
 
 /// The clip's key times, and more where these are far apart.
@@ -143,7 +224,7 @@ fn legs_in_contact(transfer: &Transfer, soles: &Soles, times: &[f32]) -> (Vec<Le
     let height = source_height(transfer.map, transfer.alignment);
     let SourceContacts { touching, ground_velocity } = source_contacts(times, &positions, &hips, height);
     let legs = legs.into_iter().zip(touching);
-    let legs = legs.map(|((leg, sole), touching)| LegContacts { leg, sole, contacts: ranges(&touching) });
+    let legs = legs.map(|((leg, sole), touching)| LegContacts { leg, sole, touching });
     (legs.collect(), ground_velocity)
 }
 
@@ -158,7 +239,10 @@ fn ranges(touching: &[bool]) -> Vec<Range<usize>> {
 /// slip of the capture. Without contacts, the height below which either sole is for a twentieth of the time. None without
 /// legs.
 fn hover(transfer: &Transfer, legs: &[LegContacts], poses: &[WorldPose], ground: f64) -> Option<f64> {
-    let heights = |leg: &LegContacts| leg.poses(poses).map(|pose| leg.sole.lowest(pose)).collect::<Vec<f64>>();
+    let heights = |leg: &LegContacts| {
+        let touching = poses.iter().zip(&leg.touching).filter(|(_, touching)| **touching);
+        touching.map(|(pose, _)| leg.sole.lowest(pose)).collect::<Vec<f64>>()
+    };
     let mut contacts: Vec<f64> = legs.iter().flat_map(heights).collect();
     let lowest = |pose: &WorldPose| legs.iter().map(|leg| leg.sole.lowest(pose)).fold(f64::INFINITY, f64::min);
     let at = if contacts.is_empty() {
@@ -175,11 +259,14 @@ fn hover(transfer: &Transfer, legs: &[LegContacts], poses: &[WorldPose], ground:
     Some(if is_near { hover } else { 0.0 })
 }
 
-/// Lowers the hips and their descendants.
-fn lower(transfer: &Transfer, poses: &mut [WorldPose], by: f64) {
+/// Lowers the hips and their descendants, and shins and feet that are parented elsewhere.
+fn lower(transfer: &Transfer, legs: &[LegContacts], poses: &mut [WorldPose], by: f64) {
     let Some(hips) = transfer.hips_pair().map(|pair| pair.target) else { return };
     let skeleton = transfer.target_skeleton;
-    let lowered: Vec<JointIndex> = skeleton.joints().filter(|&joint| is_within(skeleton, joint, hips)).collect();
+    let tops = legs.iter().flat_map(|LegContacts { leg, .. }| [leg.knee, leg.ankle]);
+    let tops: Vec<JointIndex> = tops.chain([hips]).collect();
+    let is_lowered = |joint: &JointIndex| tops.iter().any(|&top| is_within(skeleton, *joint, top));
+    let lowered: Vec<JointIndex> = skeleton.joints().filter(is_lowered).collect();
     for pose in poses {
         lowered.iter().for_each(|joint| pose.positions[joint.get()].y -= by);
     }
@@ -217,18 +304,20 @@ fn leg_rotations(
     stage: Stage,
     plans: &[Plan],
     drops: &[f64],
+    own: Range<usize>,
 ) -> Vec<(JointIndex, Vec<DQuat>)> {
-    let max_turn = MAX_TURN_DEGREES_PER_SEC.to_radians();
+    let [max_turn, max_rate] = [MAX_TURN_DEGREES, MAX_TURN_DEGREES_PER_SEC].map(f64::to_radians);
     let mut rotations: Vec<(JointIndex, Vec<DQuat>)> = Vec::new();
     for Plan { leg, moves } in plans {
         let steps = stage.poses.iter().zip(moves).zip(drops);
         let solved = steps.map(|((pose, &by), &drop)| solve_leg(leg, pose, by, drop));
         let (mut thighs, mut shins): (Vec<DQuat>, Vec<DQuat>) = solved.map(|turns| (turns.thigh, turns.shin)).unzip();
-        limit_rate(stage.times, &mut thighs, max_turn);
-        limit_rate(stage.times, &mut shins, max_turn);
+        limit_turns(stage.times, &mut thighs, max_turn, max_rate);
+        limit_turns(stage.times, &mut shins, max_turn, max_rate);
         let mut keys: [Vec<DQuat>; 3] = Default::default();
-        for ((pose, thigh), shin) in stage.poses.iter().zip(thighs).zip(shins) {
-            let locals = turned_locals(leg, transfer.target_skeleton, pose, LegTurns { thigh, shin });
+        for at in own.clone() {
+            let turns = LegTurns { thigh: thighs[at], shin: shins[at] };
+            let locals = turned_locals(leg, transfer.target_skeleton, &stage.poses[at], turns);
             keys.iter_mut().zip(locals).for_each(|(keys, rotation)| keys.push(rotation));
         }
         rotations.extend([leg.hip, leg.knee, leg.ankle].into_iter().zip(keys));

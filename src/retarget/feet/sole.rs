@@ -27,7 +27,8 @@ pub struct Sole {
 impl Sole {
     /// Height of the lowest point.
     pub fn lowest(&self, pose: &WorldPose) -> f64 {
-        let height = |&(joint, offset): &(JointIndex, DVec3)| pose.position(joint).y + (pose.rotation(joint) * offset).y;
+        let height =
+            |&(joint, offset): &(JointIndex, DVec3)| pose.position(joint).y + (pose.rotation(joint) * offset).y;
         self.points.iter().map(height).fold(f64::INFINITY, f64::min)
     }
 }
