@@ -10,7 +10,7 @@ use crate::retarget::math::HORIZONTAL;
 use crate::retarget::pose::WorldPose;
 
 /// Transition into and out of a contact.
-pub const EASE_SECS: f64 = 0.15;
+pub const EASE_SECS: f64 = 0.12;
 
 /// Shares of the hips' height: a foot in contact that is less off the ground than the first is put on it, and one that is more
 /// than the second stands on something else.
