@@ -294,12 +294,39 @@ fn a_motion_without_contacts_is_brought_to_the_ground() {
     assert!((lowest + 0.07).abs() < 0.001, "{lowest}");
 }
 
+/// The same clip, jumping from key to key.
+fn stepped(mut figure: Figure) -> Figure {
+    let clip = &figure.asset.clips[0];
+    let mut builder = ClipBuilder::new("stepped", &figure.asset.skeleton);
+    for channel in clip.channels() {
+        let times = &clip.timelines()[channel.timeline as usize];
+        builder.channel(channel.joint, Interpolation::Step, times, channel.keys.clone()).unwrap();
+    }
+    let clip = builder.build();
+    figure.set_clip(clip);
+    figure
+}
+
+#[test]
+fn feet_are_planted_without_hips() {
+    let motion = walker(0.0);
+    let model = build(&Rig { leg_length: 0.8, ..Rig::default() });
+    let mut planted = ResolvedMap { feet: Feet::Plant, ..map(&model, &motion) };
+    planted.pairs.retain(|pair| pair.target != model.joint(Slot::Hips));
+    let (done, _) = retarget(&model, &motion, &planted);
+    let positions = (0..=60).flat_map(|at| model.world(&done.clip, at as f32 / 30.0));
+    assert!(positions.into_iter().all(|(turn, position)| turn.is_finite() && position.is_finite()));
+}
+
 /// Legs that are too short for their steps, and knees that bend a little the wrong way: neither may snap.
 #[test]
 fn planting_turns_no_leg_faster_than_its_source_by_5_degrees_a_frame() {
     for knee in [0.02, -0.05, 0.0] {
-        let motion = walking(&Walk { lift: 0.0, travels: true, knee });
-        for leg_length in [0.5, 0.7, 1.3] {
+        let mut motion = walking(&Walk { lift: 0.0, travels: true, knee });
+        for leg_length in [0.5, 0.7, 1.3, 0.6] {
+            if leg_length == 0.6 {
+                motion = stepped(motion);
+            }
             let model = build(&Rig { axes: 3, leg_length, ..Rig::default() });
             let planted = ResolvedMap { feet: Feet::Plant, ..map(&model, &motion) };
             let (done, _) = retarget(&model, &motion, &planted);

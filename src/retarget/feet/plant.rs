@@ -13,7 +13,7 @@ use super::leg::{Leg, LegTurns, drop_to_reach, solve_leg, turned_locals};
 use super::limit::limit_turns;
 use super::plan::{EASE_SECS, LegContacts, Plan, Stage, plan};
 use super::sole::Soles;
-use crate::anim::{Clip, JointIndex, Keys, Property};
+use crate::anim::{Clip, Interpolation, JointIndex, Keys, Property};
 use crate::asset::Slot;
 use crate::retarget::keys::channel::NewChannel;
 use crate::retarget::keys::resample::union;
@@ -83,7 +83,7 @@ pub fn planted_channels(
     lower(transfer, &legs, &mut poses, lowered_metres);
     let contacts = legs.iter().map(|leg| ranges(&leg.touching).len()).sum();
     let travel = ground_travel(transfer, &times, ground_velocity);
-    let height = transfer.hips.map_or(0.0, |hips| hips.height);
+    let height = transfer.hips.map_or_else(|| leg_length(transfer, &legs), |hips| hips.height);
     let mut samples = Samples { times, poses, travel };
     let own = 0..samples.times.len();
     let own = if is_cycle(&legs, &samples, height) { samples.repeat(&mut legs) } else { own };
@@ -188,15 +188,26 @@ fn is_cycle(legs: &[LegContacts], samples: &Samples, height: f64) -> bool {
         && legs.iter().all(|LegContacts { leg, .. }| [leg.hip, leg.ankle, leg.toes].into_iter().all(is_closed))
 }
 
-/// The clip's key times, and more where these are far apart.
+/// Length of the first leg at rest, in place of the hips' height.
+fn leg_length(transfer: &Transfer, legs: &[LegContacts]) -> f64 {
+    let rest = &transfer.alignment.target;
+    let length = |LegContacts { leg, .. }: &LegContacts| rest.position(leg.hip).distance(rest.position(leg.ankle));
+    legs.first().map_or(0.0, length).max(1e-9)
+}
+
+/// The clip's key times, and more where these are far apart and just before a jump.
 fn dense_times(clip: &Clip) -> Vec<f32> {
     let keys = union(clip.timelines().iter().map(Vec::as_slice));
+    let stepped = clip.channels().iter().filter(|channel| channel.interpolation == Interpolation::Step);
+    let jumps = union(stepped.map(|channel| clip.timelines()[channel.timeline as usize].as_slice()));
     let mut times: Vec<f32> = Vec::with_capacity(keys.len());
     for &key in &keys {
         if let Some(&before) = times.last() {
             let parts = ((key - before) / MAX_STEP_SECS).ceil().clamp(1.0, 1000.0) as usize;
             let step = (key - before) / parts as f32;
             times.extend((1..parts).map(|part| before + step * part as f32));
+            let is_jump = jumps.binary_search_by(|jump| jump.total_cmp(&key)).is_ok();
+            times.extend(Some(key.next_down()).filter(|&time| is_jump && time > before));
         }
         times.push(key);
     }
