@@ -8,7 +8,7 @@ use crate::anim::{Clip, JointIndex};
 use crate::asset::Asset;
 use crate::formats::file_stem;
 use crate::retarget::{
-    Body, Figures, FootTrack, FoundRest, JointMap, LayerClip, MapError, Proposal, ResolvedMap, RetargetError,
+    Body, Figures, FootTrack, FoundRest, JointMap, LayerClip, MapError, Planting, Proposal, ResolvedMap, RetargetError,
     Retargeting, StagePair, layer_clips, propose,
 };
 
@@ -33,6 +33,8 @@ pub struct BorrowedClip {
     pub model_from_source: Affine3A,
     /// Which pose the motion is measured from, and how sure that is.
     pub motion_rest: FoundRest,
+    /// What planting its feet did; `None` if the map doesn't plant them.
+    pub planting: Option<Planting>,
     /// Every pair of the joint map, to compare the model with the source beside it.
     pub pairs: Vec<StagePair>,
     map: Arc<ResolvedMap>,
@@ -116,6 +118,7 @@ pub(super) fn borrow(
                 .map_or(Clip::DEFAULT_FRAMES_PER_SEC, Clip::frames_per_sec),
             model_from_source: pair.model_from_source(),
             motion_rest: pair.motion_rest(),
+            planting: baked.planting,
             pairs: pair.stage_pairs(),
             map: shared.clone(),
             measured: OnceLock::new(),

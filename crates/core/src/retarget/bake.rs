@@ -1,6 +1,6 @@
 //! Puts the transferred channels together into a clip of the target.
 
-use super::feet;
+use super::feet::{self, Planting};
 use super::keys::channel::NewChannel;
 use super::map::{Feet, Pair};
 use super::pose::{ancestry, is_within, node_locals};
@@ -56,6 +56,8 @@ pub struct Retargeted {
     pub nowhere_to_extract: bool,
     /// The clip before its feet were planted, if they were.
     pub unplanted: Option<Clip>,
+    /// What planting did; `None` if feet aren't planted, or the map has no whole leg.
+    pub planting: Option<Planting>,
 }
 
 /// Retargets the clip and plants its feet if the map asks for it.
@@ -65,10 +67,21 @@ pub fn bake(transfer: &Transfer) -> Result<Retargeted, RetargetError> {
         Feet::Off => None,
         Feet::Plant => feet::planted_channels(transfer, &unplanted.clip, &unplanted.resampled),
     };
-    match planted {
-        Some(channels) => Ok(Retargeted { unplanted: Some(unplanted.clip), ..build(transfer, channels)? }),
-        None => Ok(unplanted),
+    let Some((channels, planting)) = planted else { return Ok(unplanted) };
+    let built = build(transfer, reattached(transfer, channels)?)?;
+    Ok(Retargeted { unplanted: Some(unplanted.clip), planting: Some(planting), ..built })
+}
+
+/// Moves detached ends of limbs to where planting put their limbs.
+fn reattached(transfer: &Transfer, mut channels: Vec<NewChannel>) -> Result<Vec<NewChannel>, RetargetError> {
+    let ends = detached_ends(transfer);
+    if !ends.is_empty() {
+        let is_end = |joint: JointIndex| ends.iter().any(|(end, _)| *end == joint);
+        channels.retain(|channel| !(is_end(channel.joint) && channel.keys.property() == Property::Translation));
+        let so_far = build(transfer, channels.clone())?;
+        channels.extend(detached_channels(transfer, &ends, &so_far.clip));
     }
+    Ok(channels)
 }
 
 fn bake_unplanted(transfer: &Transfer) -> Result<Retargeted, RetargetError> {
@@ -133,6 +146,7 @@ fn build(transfer: &Transfer, mut channels: Vec<NewChannel>) -> Result<Retargete
         resampled,
         nowhere_to_extract: transfer.map.root.extract && has_no_extraction_joint(),
         unplanted: None,
+        planting: None,
     })
 }
 

@@ -40,6 +40,7 @@ mod transfer;
 
 pub use align::rest::{FoundRest, RestOrigin};
 pub use bake::{RetargetError, Retargeted};
+pub use feet::Planting;
 pub use map::{
     ClipRef, Feet, JointMap, JointMapFile, Keep, Layer, MapEntry, MapError, MutedChannel, MutedProperty, Pair,
     Proposal, ProposedPair, ResolvedMap, RestChoice, RestChoices, RootOptions, RootPart, SourceRef, Unmapped,

@@ -86,6 +86,7 @@ impl<'a> Retargeting<'a> {
             map: self.map,
             tracks: &self.tracks,
             target_skeleton: &self.model.asset.skeleton,
+            target: self.model.asset,
             alignment: &self.alignment,
             hips: self.hips.as_ref(),
         }

@@ -2,7 +2,11 @@
 
 mod contacts;
 mod leg;
+mod limit;
+mod plan;
 mod plant;
+mod sole;
 
-pub use contacts::{contacts, source_height};
-pub use plant::planted_channels;
+pub use contacts::{SourceContacts, source_contacts, source_height};
+pub use plant::{Planting, planted_channels};
+pub use sole::{Sole, Soles};

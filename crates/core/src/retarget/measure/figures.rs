@@ -4,10 +4,11 @@
 use glam::{DQuat, DVec3};
 use serde::Serialize;
 
-use super::foot_track::{FootPositions, FootTrack, foot_tracks, mapped_feet};
+use super::foot_track::{FootTrack, foot_tracks, mapped_feet};
 use crate::anim::{Clip, JointIndex};
 use crate::asset::{Humanoid, Slot};
 use crate::retarget::align::swing::compared_segments;
+use crate::retarget::feet::Soles;
 use crate::retarget::keys::resample::union;
 use crate::retarget::map::{Pair, ResolvedMap};
 use crate::retarget::math::{angle_between, degrees_between};
@@ -38,6 +39,9 @@ pub struct Figures {
     pub foot_slide_source_metres_per_sec: Option<f64>,
     /// How far a toe or ankle goes at most below the lowest leg joint of the aligned rest.
     pub ground_penetration_metres_max: Option<f64>,
+    /// Mean height of the sole's lowest point above the ground while the source's foot is in contact; negative below it. The
+    /// ground is where the lowest point of either sole rests: of the mesh of the feet or, without one, of their joints.
+    pub foot_hover_metres_mean: Option<f64>,
     /// Share of the slots that both sides have whose joints are mapped.
     pub coverage: Option<f64>,
 }
@@ -106,7 +110,8 @@ pub fn measure(
 
     let [mut orientation, mut direction, mut facing] = [(); 3].map(|()| Spread::default());
     let mut penetration: Option<f64> = None;
-    let mut feet = mapped_feet(transfer);
+    let soles = Soles::new(transfer);
+    let mut feet = mapped_feet(transfer, soles.feet);
     let mut scratches = [Scratch::default(), Scratch::default()];
     for (index, &time) in times.iter().enumerate() {
         let source = transfer.source_pose(time);
@@ -123,12 +128,12 @@ pub fn measure(
             penetration = depths.fold(penetration, |max, depth| Some(max.unwrap_or(0.0).max(depth)));
         }
         for foot in &mut feet {
-            let FootPositions { source_joint, target_joint, .. } = *foot;
-            foot.source.push(source.position(source_joint));
-            foot.target.push(with_travel(transfer, &target, target_joint, &removed, index, turn_back));
+            foot.source.push(source.position(foot.source_joint));
+            foot.target.push(with_travel(transfer, &target, foot.target_joint, &removed, index, turn_back));
+            foot.heights.push(foot.sole.lowest(&target) - soles.ground);
         }
     }
-    let (slide, tracks) = foot_tracks(transfer, &times, &feet);
+    let (contacts, tracks) = foot_tracks(transfer, &times, feet);
     let figures = Figures {
         limb_direction_error_degrees_mean: direction.mean(),
         limb_direction_error_degrees_max: direction.max(),
@@ -136,9 +141,10 @@ pub fn measure(
         facing_error_degrees_max: facing.max(),
         orientation_error_degrees_mean: orientation.mean(),
         orientation_error_degrees_max: orientation.max(),
-        foot_slide_metres_per_sec: slide.target,
-        foot_slide_source_metres_per_sec: slide.source,
+        foot_slide_metres_per_sec: contacts.slide,
+        foot_slide_source_metres_per_sec: contacts.source_slide,
         ground_penetration_metres_max: penetration,
+        foot_hover_metres_mean: contacts.hover,
         coverage: coverage(transfer.map, source_slots, target_slots),
     };
     (figures, tracks)

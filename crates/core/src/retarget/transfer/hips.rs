@@ -37,8 +37,6 @@ pub struct Hips {
     pub target_rest: DVec3,
     /// Height of the target's hips above the ground at the aligned rest, in target units.
     pub height: f64,
-    /// Height of the target's ground, in target units.
-    pub target_ground: f64,
 }
 
 impl Hips {
@@ -99,7 +97,6 @@ pub fn match_hips(input: HipsInput) -> Option<Hips> {
         source_rest,
         target_rest,
         height: height.max(1e-9),
-        target_ground,
     })
 }
 

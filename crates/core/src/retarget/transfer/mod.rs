@@ -17,12 +17,14 @@ pub use path::hips_channels;
 pub use root_motion::{RemovedTravel, RootPolicy, extraction_joint, keeps_everything, removed_travel};
 pub use rotation::{RotationLaw, rotation_laws};
 
+use glam::DVec3;
+
 use super::align::Alignment;
 use super::keys::tracks::SourceTracks;
 use super::map::{Pair, ResolvedMap};
 use super::pose::{Scratch, WorldPose, clip_locals};
-use crate::anim::{Clip, Skeleton};
-use crate::asset::Slot;
+use crate::anim::{Clip, JointIndex, Skeleton};
+use crate::asset::{Asset, Slot};
 
 /// Two skeletons aligned for one clip: what every step from here on reads.
 #[derive(Debug, Clone, Copy)]
@@ -31,6 +33,8 @@ pub struct Transfer<'a> {
     /// The source's skeleton and clip.
     pub tracks: &'a SourceTracks<'a>,
     pub target_skeleton: &'a Skeleton,
+    /// The file that `target_skeleton` is from, for the mesh of its feet.
+    pub target: &'a Asset,
     pub alignment: &'a Alignment,
     pub hips: Option<&'a Hips>,
 }
@@ -43,6 +47,16 @@ impl<'a> Transfer<'a> {
 
     pub fn hips_pair(&self) -> Option<&'a Pair> {
         self.hips.map(|hips| &self.map.pairs[hips.pair])
+    }
+
+    /// Where a joint of the source is in the common frame.
+    pub fn source_position(&self, joint: JointIndex, time_secs: f32) -> DVec3 {
+        self.tracks.position(joint, time_secs, self.alignment.source.world_from_model)
+    }
+
+    /// Where the source's hips are in the common frame.
+    pub fn source_hips(&self, time_secs: f32) -> Option<DVec3> {
+        self.hips_pair().map(|pair| self.source_position(pair.source, time_secs))
     }
 
     /// The source in the common frame, without muted channels.
