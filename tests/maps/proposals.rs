@@ -31,16 +31,31 @@ fn the_dwarf_gets_the_map_of_the_coursework() {
             ("head", 5),
             ("spine1", 4),
             ("spine2", 2),
-            ("lhip", 15),
-            ("rhip", 18),
-            ("lknee", 16),
-            ("rknee", 19),
-            ("lankle", 17),
-            ("rankle", 20),
+            ("lhip", 18),
+            ("rhip", 15),
+            ("lknee", 19),
+            ("rknee", 16),
+            ("lankle", 20),
+            ("rankle", 17),
         ],
     );
-    assert!(!proposal.model.contradictions.is_empty(), "lhip is on the right");
+    assert!(proposal.model.by_position && !proposal.model.contradictions.is_empty(), "lhip is on the right");
     assert!(proposal.motion.contradictions.is_empty());
+}
+
+/// A motion that shows no side of its own follows the names of a mirrored model that it was made for.
+#[test]
+fn names_decide_between_a_mirrored_model_and_a_motion_without_feet() {
+    let Some(dwarf) = open("cosc422/dwarf.glb") else { return };
+    let mut rest = dwarf.skeleton.rest().clone();
+    for joint in dwarf.skeleton.joints() {
+        rest.set_local(joint, Transform::IDENTITY);
+    }
+    let motion = Asset::from(dwarf.skeleton.with_rest(&rest));
+    let proposal = propose(&dwarf, &motion);
+    assert!(proposal.model.by_position && !proposal.motion.by_position);
+    assert!(proposal.pairs.iter().all(|pair| pair.target == pair.source));
+    assert_eq!(proposal.pairs.len(), dwarf.skeleton.len());
 }
 
 #[test]

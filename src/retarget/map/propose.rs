@@ -119,10 +119,16 @@ fn names_decide(
 ) -> bool {
     let named: BTreeSet<JointIndex> = shared.values().copied().collect();
     let count = moved.iter().filter(|joint| named.contains(joint)).count();
+    // Where one file shows that its names are wrong about the sides and the other shows nothing, both may be wrong alike.
+    let shows_nothing = |recognized: &Recognized| !recognized.by_position && recognized.facing.forward.is_none();
+    let is_side_unknown =
+        targets.by_position && shows_nothing(sources) || sources.by_position && shows_nothing(targets);
     let means_same = |(&target, &source): (&JointIndex, &JointIndex)| match (targets.slot(target), sources.slot(source))
     {
         // A trunk of two joints spreads over other slots than one of three; its ends are compared below.
-        (Some(a), Some(b)) => a == b || TRUNK.contains(&a) && TRUNK.contains(&b),
+        (Some(a), Some(b)) => {
+            a == b || TRUNK.contains(&a) && TRUNK.contains(&b) || is_side_unknown && a == b.mirrored()
+        }
         _ => true,
     };
     let tops_agree = match (trunk(targets).last(), trunk(sources).last()) {
