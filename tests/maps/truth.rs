@@ -668,6 +668,22 @@ fn the_order_of_nodes_does_not_change_what_is_recognised() {
     });
 }
 
+/// The same skeleton in another file of a series: what it wears and holds, and who it is, change nothing.
+#[test]
+fn what_hangs_on_a_rig_does_not_change_what_its_joints_are() {
+    let Some(knight) = open("kaykit/Knight.glb") else { return };
+    let skinned: Vec<JointIndex> = knight.skins.iter().flat_map(|skin| skin.joints().iter().copied()).collect();
+    let carriers: Vec<JointIndex> = knight.instances.iter().map(|instance| instance.joint).collect();
+    let worn = carriers.into_iter().filter(|joint| !skinned.contains(joint));
+    let things = ["Barbarian_BearTail", "Barbarian_Wings", "head", "Barbarian_ArmLeft", "LeftHand", "hips"];
+    let numbers: Vec<usize> = worn.map(|joint| knight.skeleton.source_index(joint)).collect();
+    assert!(numbers.len() > things.len());
+    let skeleton = knight.skeleton.with_names(numbers.into_iter().zip(things.into_iter().cycle()));
+    let found = recognize(&knight);
+    let other = Asset::new(AssetParts { skeleton, ..knight.into_parts() }).expect("still valid");
+    assert_eq!(recognize(&other), found);
+}
+
 /// Every rig with every other one: no left joint follows a right one, and few parts are lost.
 #[test]
 fn no_proposal_crosses_sides() {

@@ -2,10 +2,12 @@
 //! words and hierarchy, else by shape. Records how each joint was found.
 
 mod assemble;
+mod creature;
 mod evidence;
 mod facing;
 mod fingers;
 mod known;
+mod languages;
 mod limbs;
 mod names;
 mod shape;
@@ -23,6 +25,7 @@ use crate::asset::{Asset, Humanoid, Slot};
 use evidence::Evidence;
 use tree::Tree;
 
+pub(in crate::retarget) use creature::chains;
 pub use names::{Name, Side};
 
 /// The result of [`recognize`]; empty for anything but a human body.

@@ -74,18 +74,18 @@ pub(super) fn find(tree: &Tree, evidence: &Evidence) -> Found {
     let Some(parts) = shapes.into_iter().find_map(|shape| slots(&shape, &halves(&shape)?)) else { return found };
     for (slot, joint, confidence) in parts {
         let part = RecognizedJoint { joint, reason: Reason::Geometry, confidence };
-        let is_free = found.parts.values().all(|other| other.joint != joint);
-        if confidence >= MIN_CONFIDENCE && is_free {
-            found.parts.insert(slot, part);
-        } else {
-            found.left_out.insert(slot, part);
+        // The surest part of a joint comes first.
+        if found.parts.contains_key(&slot) || found.parts.values().any(|other| other.joint == joint) {
+            continue;
         }
+        let parts = if confidence >= MIN_CONFIDENCE { &mut found.parts } else { &mut found.left_out };
+        parts.insert(slot, part);
     }
     found
 }
 
 impl<'a> Shape<'a> {
-    fn new(tree: &'a Tree, evidence: &'a Evidence, positions: &'a [Vec3]) -> Self {
+    pub fn new(tree: &'a Tree, evidence: &'a Evidence, positions: &'a [Vec3]) -> Self {
         let mut shape = Self { tree, evidence, positions, reach: vec![0.0; positions.len()] };
         for joint in tree.skeleton.joints().rev().filter(|joint| tree.usable[joint.get()]) {
             if let Some(parent) = tree.skeleton.parent(joint) {
@@ -158,15 +158,37 @@ impl<'a> Shape<'a> {
         (count >= 2 && length > 0.0 && self.apart(&twins).is_some()).then_some(twins)
     }
 
+    /// All pairs of limbs, the longest first.
+    pub fn limbs(&self) -> Vec<Twins> {
+        let mut pairs: Vec<Twins> = self.tree.skeleton.joints().flat_map(|joint| self.twins(joint)).collect();
+        pairs.sort_by(|a, b| b.length.total_cmp(&a.length).then(a.base.cmp(&b.base)));
+        pairs.truncate(MAX_PAIRS);
+        pairs
+    }
+
+    /// The joint that legs and trunk meet in: the legs' own or one above it.
+    pub fn trunk_root(&self, legs: &Twins, arms: &Twins) -> Option<JointIndex> {
+        self.tree.upwards(legs.base).take(MAX_HIPS_ABOVE).find(|&hips| self.tree.is_under(arms.base, hips))
+    }
+
+    /// The joint and what follows it, up to the joint where the chain forks.
+    pub fn unforked(&self, first: JointIndex) -> Vec<JointIndex> {
+        let next = |at: &JointIndex| match self.tree.children(*at) {
+            [only] => Some(*only),
+            _ => None,
+        };
+        std::iter::successors(Some(first), next).take(MAX_COUNT).collect()
+    }
+
     /// Direction from the second chain to the first, where they first separate.
-    fn apart(&self, twins: &Twins) -> Option<Vec3> {
+    pub fn apart(&self, twins: &Twins) -> Option<Vec3> {
         let [a, b] = &twins.chains;
         let line = a.iter().zip(b).map(|(&a, &b)| self.position(a) - self.position(b));
         line.into_iter().find(|line| line.length() > 0.02 * twins.length)?.try_normalize()
     }
 
     /// Midpoint of the two joints at the same place in the chains of a pair.
-    fn middle(&self, twins: &Twins, at: usize) -> Vec3 {
+    pub fn middle(&self, twins: &Twins, at: usize) -> Vec3 {
         let [a, b] = twins.chains.each_ref().map(|chain| self.position(chain[at]));
         a.midpoint(b)
     }
@@ -174,9 +196,7 @@ impl<'a> Shape<'a> {
 
 /// The longest legs and arms that make an upright body.
 fn halves(shape: &Shape) -> Option<Halves> {
-    let mut pairs: Vec<Twins> = shape.tree.skeleton.joints().flat_map(|joint| shape.twins(joint)).collect();
-    pairs.sort_by(|a, b| b.length.total_cmp(&a.length).then(a.base.cmp(&b.base)));
-    pairs.truncate(MAX_PAIRS);
+    let pairs = shape.limbs();
     let mut best: Option<Halves> = None;
     for legs in pairs.iter().filter(|legs| legs.chains[0].len() >= 3) {
         for arms in &pairs {
@@ -196,7 +216,7 @@ fn body(shape: &Shape, legs: &Twins, arms: &Twins) -> Option<Halves> {
     if arms.base == legs.base || on_leg(arms.base) || !(0.3..3.0).contains(&(arms.length / legs.length)) {
         return None;
     }
-    let hips = tree.upwards(legs.base).take(MAX_HIPS_ABOVE).find(|&hips| tree.is_under(arms.base, hips))?;
+    let hips = shape.trunk_root(legs, arms)?;
     let trunk = tree.path(hips, arms.base);
     let (hip, shoulder) = (shape.position(legs.base), shape.middle(arms, 0));
     let feet = shape.middle(legs, legs.chains[0].len() - 1);
@@ -229,11 +249,7 @@ fn head(shape: &Shape, arms: &Twins, up: Vec3) -> Option<Vec<JointIndex>> {
     if top(first) < shape.position(arms.base).dot(up) + 0.02 * arms.length {
         return None;
     }
-    let next = |at: &JointIndex| match shape.tree.children(*at) {
-        [only] => Some(*only),
-        _ => None,
-    };
-    Some(std::iter::successors(Some(first), next).take(MAX_COUNT).collect())
+    Some(shape.unforked(first))
 }
 
 /// Slots with joint and confidence; the surest first where several are for one joint.
