@@ -121,10 +121,9 @@ fn names_decide(
 ) -> bool {
     let named: BTreeSet<JointIndex> = shared.values().copied().collect();
     let count = moved.iter().filter(|joint| named.contains(joint)).count();
-    // Where one file shows that its names are wrong about the sides and the other shows nothing, both may be wrong alike.
-    let shows_nothing = |recognized: &Recognized| !recognized.by_position && recognized.facing.forward.is_none();
-    let is_side_unknown =
-        targets.by_position && shows_nothing(sources) || sources.by_position && shows_nothing(targets);
+    // Of two files with the same names, only one may show that they are wrong about the sides: the other one's rest may be a
+    // pose in motion.
+    let is_side_unknown = targets.by_position != sources.by_position;
     let means_same = |(&target, &source): (&JointIndex, &JointIndex)| match (targets.slot(target), sources.slot(source))
     {
         // A trunk of two joints spreads over other slots than one of three; its ends are compared below.

@@ -203,10 +203,13 @@ fn head_by_skin(shape: &Shape, chain: &[JointIndex]) -> Option<(usize, f32)> {
     }
     let is_leaf = shape.tree.children(chain[largest]).is_empty();
     let is_held = is_leaf && largest > 1 && sizes[largest - 1] == 0.0;
-    let confidence = match sizes[largest] > 1.3 * next {
-        true if is_held => 0.5,
-        true => 0.8,
-        false => UNSURE,
+    let is_clear = sizes[largest] > 1.3 * next;
+    let confidence = match (is_clear, chain) {
+        (true, _) if is_held => 0.5,
+        (true, _) => 0.8,
+        // Two joints are neck and head.
+        (false, [_, _]) => return Some((1, 0.5)),
+        (false, _) => UNSURE,
     };
     Some((largest - usize::from(is_held), confidence))
 }
