@@ -7,7 +7,7 @@ use super::joint_map::{JointMap, MapEntry};
 use super::shared_names::shared_names;
 use crate::anim::{JointIndex, Keys, Skeleton};
 use crate::asset::{Asset, Slot};
-use crate::retarget::recognize::{Reason, Recognized, recognize};
+use crate::retarget::recognize::{Reason, Recognized, chains, recognize};
 
 /// Which joints could follow which, and why.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -60,6 +60,8 @@ pub fn propose(model: &Asset, motion: &Asset) -> Proposal {
         for (&target, &source) in &shared {
             pairs.add(target, source, targets.slot(target), Reason::SameName, 1.0);
         }
+    } else if targets.parts.is_empty() && sources.parts.is_empty() {
+        pair_creatures(&mut pairs, &shared, model, motion);
     } else {
         pair_by_slots(&mut pairs, &targets, &sources);
     }
@@ -119,10 +121,15 @@ fn names_decide(
 ) -> bool {
     let named: BTreeSet<JointIndex> = shared.values().copied().collect();
     let count = moved.iter().filter(|joint| named.contains(joint)).count();
+    // Of two files with the same names, only one may show that they are wrong about the sides: the other one's rest may be a
+    // pose in motion.
+    let is_side_unknown = targets.by_position != sources.by_position;
     let means_same = |(&target, &source): (&JointIndex, &JointIndex)| match (targets.slot(target), sources.slot(source))
     {
         // A trunk of two joints spreads over other slots than one of three; its ends are compared below.
-        (Some(a), Some(b)) => a == b || TRUNK.contains(&a) && TRUNK.contains(&b),
+        (Some(a), Some(b)) => {
+            a == b || TRUNK.contains(&a) && TRUNK.contains(&b) || is_side_unknown && a == b.mirrored()
+        }
         _ => true,
     };
     let tops_agree = match (trunk(targets).last(), trunk(sources).last()) {
@@ -154,6 +161,41 @@ fn pair_by_slots(pairs: &mut Pairs, targets: &Recognized, sources: &Recognized) 
     }
     for &slot in targets.parts.keys().filter(|slot| !TRUNK.contains(slot)) {
         pair(slot, slot);
+    }
+}
+
+/// Confidence in a name that two creatures share, if it hangs under the same shared names in both.
+const CREATURE_NAME_CONFIDENCE: f32 = 0.7;
+
+/// Confidence in the counterpart of a creature's joint by its place in a chain.
+const CREATURE_CHAIN_CONFIDENCE: f32 = 0.4;
+
+/// Fewer shared names may be chance.
+const MIN_CREATURE_NAMES: usize = 4;
+
+/// Pairs the joints of two creatures: by the names they share, then along trunk, tail, legs and wings.
+fn pair_creatures(pairs: &mut Pairs, shared: &BTreeMap<JointIndex, JointIndex>, model: &Asset, motion: &Asset) {
+    let sources: BTreeSet<JointIndex> = shared.values().copied().collect();
+    let above_target = nearest_above(&model.skeleton, |joint| shared.get(&joint).copied());
+    let above_source = nearest_above(&motion.skeleton, |joint| sources.contains(&joint).then_some(joint));
+    let hangs_alike = |(target, source): &(&JointIndex, &JointIndex)| {
+        !model.skeleton.name(**target).is_empty() && above_target[target.get()] == above_source[source.get()]
+    };
+    let alike: Vec<_> = shared.iter().filter(hangs_alike).collect();
+    if alike.len() >= MIN_CREATURE_NAMES {
+        for (&target, &source) in alike {
+            pairs.add(target, source, None, Reason::SameName, CREATURE_NAME_CONFIDENCE);
+        }
+    }
+    let (targets, sources) = (chains(model), chains(motion));
+    for (limb, targets) in &targets {
+        let Some(sources) = sources.get(limb) else { continue };
+        let is_named = targets.iter().any(|target| pairs.by_target.contains_key(target))
+            || sources.iter().any(|source| pairs.sources.contains(source));
+        let matched = if is_named { Vec::new() } else { match_chains(targets.len(), sources.len()) };
+        for (target, source) in matched {
+            pairs.add(targets[target], sources[source], None, Reason::Geometry, CREATURE_CHAIN_CONFIDENCE);
+        }
     }
 }
 

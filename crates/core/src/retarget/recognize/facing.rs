@@ -4,10 +4,13 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 
+use super::evidence;
 use super::known::side_of;
 use super::names::Side;
 use super::tree::Tree;
 use super::{Contradiction, Facing, Reason, RecognizedJoint};
+use crate::anim::JointIndex;
+use crate::asset::Asset;
 use crate::asset::Slot::{self, *};
 
 /// Joints whose two sides are far enough apart to compare.
@@ -31,10 +34,13 @@ fn feet(tree: &Tree, parts: &BTreeMap<Slot, RecognizedJoint>) -> Option<Vec3> {
     })
 }
 
-pub(super) fn find(tree: &Tree, parts: &BTreeMap<Slot, RecognizedJoint>) -> Facing {
+pub(super) fn find(asset: &Asset, tree: &Tree, parts: &BTreeMap<Slot, RecognizedJoint>) -> Facing {
     let Some(up) = up(tree, parts) else { return Facing::default() };
     let left = left(tree, parts, up);
-    let mut forward = toes(tree, parts, up).or_else(|| eyes(tree, parts, up)).or_else(|| knees(tree, parts, up));
+    let mut forward = feet_point(asset, tree, parts, up)
+        .or_else(|| toes(tree, parts, up))
+        .or_else(|| eyes(tree, parts, up))
+        .or_else(|| knees(tree, parts, up));
     // Feet point outwards and rests are crooked: the line through both sides gives the axis more exactly, but not its
     // direction.
     if let (Some(across), Some(seen)) = (left.map(|left| left.cross(up)), forward) {
@@ -64,6 +70,26 @@ fn left(tree: &Tree, parts: &BTreeMap<Slot, RecognizedJoint>, up: Vec3) -> Optio
         Some(perpendicular(tree.position(left.joint) - tree.position(right.joint), up))
     };
     [LeftUpperLeg, LeftUpperArm, LeftFoot, LeftHand].into_iter().filter_map(apart).sum::<Vec3>().try_normalize()
+}
+
+/// Where feet point for certain: from the ankles to the toes or, without toes, to the middle of the skin on the feet.
+pub(super) fn feet_point(
+    asset: &Asset,
+    tree: &Tree,
+    parts: &BTreeMap<Slot, RecognizedJoint>,
+    up: Vec3,
+) -> Option<Vec3> {
+    let (left, right) = (parts.get(&LeftFoot)?.joint, parts.get(&RightFoot)?.joint);
+    if parts.contains_key(&LeftToes) && parts.contains_key(&RightToes) {
+        return toes(tree, parts, up);
+    }
+    let regions = evidence::regions_at_rest(asset);
+    let of_foot = |foot: JointIndex| {
+        let region = regions[foot.get()]?;
+        let middle = perpendicular(region.min.midpoint(region.max) - tree.position(foot), up);
+        (middle.length() > 0.1 * region.size()).then(|| middle.normalize_or_zero())
+    };
+    significant(of_foot(left)? + of_foot(right)?, 2.0)
 }
 
 /// From the ankles to the toes, or to their first children.
@@ -130,6 +156,26 @@ pub(super) fn contradictions(
     }
     found
 }
+
+/// Whether the position of the joints decides about the sides, against their names: the feet show clearly where the body
+/// faces, and both legs and arms lie on the other side.
+pub(super) fn position_decides(
+    asset: &Asset,
+    tree: &Tree,
+    parts: &BTreeMap<Slot, RecognizedJoint>,
+    contradictions: &[Contradiction],
+) -> bool {
+    let is_pair = |slot: &&Slot| parts.contains_key(slot) && parts.contains_key(&slot.mirrored());
+    let pairs = LIMBS.iter().filter(is_pair).count();
+    let feet = up(tree, parts).and_then(|up| feet_point(asset, tree, parts, up));
+    feet.is_some() && pairs >= MIN_PAIRS && contradictions.len() as f32 >= MIN_SHARE * 2.0 * pairs as f32
+}
+
+/// Fewer pairs of joints do not decide about the sides.
+const MIN_PAIRS: usize = 4;
+
+/// Share of the joints that must contradict their names for all to be wrong.
+const MIN_SHARE: f32 = 0.8;
 
 #[cfg(test)]
 mod tests {

@@ -2,8 +2,13 @@
 //! words and hierarchy, else by shape. Records how each joint was found.
 
 mod assemble;
+mod creature;
+mod evidence;
 mod facing;
+mod fingers;
 mod known;
+mod languages;
+mod limbs;
 mod names;
 mod shape;
 mod tree;
@@ -17,8 +22,10 @@ use glam::Vec3;
 
 use crate::anim::{JointIndex, Pose, SampleCursor};
 use crate::asset::{Asset, Humanoid, Slot};
+use evidence::Evidence;
 use tree::Tree;
 
+pub(in crate::retarget) use creature::chains;
 pub use names::{Name, Side};
 
 /// The result of [`recognize`]; empty for anything but a human body.
@@ -26,10 +33,14 @@ pub use names::{Name, Side};
 pub struct Recognized {
     /// The joint that fills each slot.
     pub parts: BTreeMap<Slot, RecognizedJoint>,
+    /// The joints that most likely fill other slots, but not certainly enough: they were left out of `parts`.
+    pub left_out: BTreeMap<Slot, RecognizedJoint>,
     /// Which way the body faces at rest.
     pub facing: Facing,
     /// Evidence against what was decided in `parts`.
     pub contradictions: Vec<Contradiction>,
+    /// The position of the joints decided about left and right against their names, for all joints together.
+    pub by_position: bool,
 }
 
 /// The joint of a slot.
@@ -80,7 +91,7 @@ impl fmt::Display for Reason {
 pub struct Facing {
     /// From the feet to the head; +Y unless the character rests lying down.
     pub up: Option<Vec3>,
-    /// From the right side to the left as they were decided (names win over geometry); perpendicular to `up`.
+    /// From the right side to the left as they were decided; perpendicular to `up`.
     pub left: Option<Vec3>,
     /// Where toes, eyes and knees point, regardless of left and right; perpendicular to `up`.
     pub forward: Option<Vec3>,
@@ -100,7 +111,7 @@ impl Facing {
 /// Evidence that contradicts a decision.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Contradiction {
-    /// Named for one side but on the other, as the toes point.
+    /// Named for one side but on the other, as the feet point. [`Recognized::by_position`] says which was followed.
     Side {
         /// The slot that the joint fills.
         slot: Slot,
@@ -131,6 +142,9 @@ impl Recognized {
 /// Factor on the confidence in names that leave much of a body unmatched: they may mean something else.
 const PARTIAL_BODY_FACTOR: f32 = 0.7;
 
+/// Confidence in a joint whose name is wrong about the side.
+const SWAPPED_CONFIDENCE: f32 = 0.8;
+
 /// A file's own humanoid map with fewer slots than this is ignored.
 const MIN_FILE_SLOTS: usize = 6;
 
@@ -142,9 +156,14 @@ pub fn recognize(asset: &Asset) -> Recognized {
     let mut tree = Tree::new(asset);
     let from_file = asset.humanoid.as_ref().map(from_file).filter(|parts| parts.len() >= MIN_FILE_SLOTS);
     let is_declared = from_file.is_some();
-    let parts = match from_file {
+    let mut left_out = BTreeMap::new();
+    let mut parts = match from_file {
         Some(parts) => with_fingers(&tree, parts),
-        None => by_names(&tree).unwrap_or_else(|| shape::find(&tree)),
+        None => by_names(&tree).unwrap_or_else(|| {
+            let found = shape::find(&tree, &Evidence::new(asset));
+            left_out = found.left_out;
+            found.parts
+        }),
     };
     if parts.is_empty() {
         return Recognized::default();
@@ -156,9 +175,26 @@ pub fn recognize(asset: &Asset) -> Recognized {
     if !is_declared && is_level && names_a_creature(&tree) {
         return Recognized::default();
     }
-    let facing = facing::find(&tree, &parts);
-    let contradictions = facing::contradictions(&tree, &parts, &facing);
-    Recognized { parts, facing, contradictions }
+    let mut facing = facing::find(asset, &tree, &parts);
+    let mut contradictions = facing::contradictions(&tree, &parts, &facing);
+    let by_position = !is_declared && facing::position_decides(asset, &tree, &parts, &contradictions);
+    if by_position {
+        parts = with_sides_swapped(parts);
+        facing = facing::find(asset, &tree, &parts);
+        for Contradiction::Side { slot, .. } in &mut contradictions {
+            *slot = slot.mirrored();
+        }
+    }
+    Recognized { parts, left_out, facing, contradictions, by_position }
+}
+
+/// Gives each joint the slot of the other side, with at most the confidence of a name that is wrong about the side.
+fn with_sides_swapped(parts: BTreeMap<Slot, RecognizedJoint>) -> BTreeMap<Slot, RecognizedJoint> {
+    let swapped = parts.into_iter().map(|(slot, part)| match slot.mirrored() {
+        same if same == slot => (slot, part),
+        other => (other, RecognizedJoint { confidence: part.confidence.min(SWAPPED_CONFIDENCE), ..part }),
+    });
+    swapped.collect()
 }
 
 fn from_file(humanoid: &Humanoid) -> BTreeMap<Slot, RecognizedJoint> {

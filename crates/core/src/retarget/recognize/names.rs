@@ -20,7 +20,7 @@ const LEFT: [&str; 4] = ["left", "l", "lft", "lt"];
 const RIGHT: [&str; 4] = ["right", "r", "rgt", "rt"];
 
 /// Prefixes of rigs, as words. A number that follows belongs to the prefix.
-const PREFIXES: [&[&str]; 16] = [
+const PREFIXES: [&[&str]; 21] = [
     &["mixamorig"],
     &["cc", "base"],
     &["j", "bip"],
@@ -37,6 +37,11 @@ const PREFIXES: [&[&str]; 16] = [
     &["bn"],
     &["bone"],
     &["jnt"],
+    &["jt"],
+    &["joint"],
+    &["sk"],
+    &["skel"],
+    &["rig"],
 ];
 
 /// Words that a one-letter side may be attached to: `lhip`, `rshldr`.
@@ -69,6 +74,13 @@ impl Name {
         self.words.iter().any(|other| other == word)
     }
 
+    /// Removes a last word that the joints of a rig share, such as the kind of node.
+    pub fn drop_last(&mut self, word: &str) {
+        if self.words.len() > 1 && self.words.last().is_some_and(|last| last == word) {
+            self.words.pop();
+        }
+    }
+
     /// Removes a first word that the joints of a rig share, such as the character's name.
     pub fn drop_first(&mut self, word: &str) {
         if self.words.len() > 1 && self.words[0] == word {
@@ -76,7 +88,8 @@ impl Name {
         }
     }
 
-    fn take_side(&mut self) {
+    /// Removes the word for the side and keeps what it says.
+    pub fn take_side(&mut self) {
         // `LUArm`, `RFArm`: the side and one letter for upper or fore.
         if let [letters, arm, ..] = self.words.as_mut_slice()
             && matches!(letters.as_str(), "lu" | "lf" | "ru" | "rf")
@@ -141,10 +154,17 @@ fn without_exporter_marks(raw: &str) -> String {
     }
 }
 
+/// The ASCII form of a full-width letter or digit, as Japanese programs write them.
+fn narrow(char: char) -> char {
+    let is_wide = ('\u{ff01}'..='\u{ff5e}').contains(&char);
+    let narrow = u32::from(char).checked_sub(0xfee0).filter(|_| is_wide).and_then(char::from_u32);
+    narrow.unwrap_or(char)
+}
+
 /// Splits at anything but letters and digits, between letters and digits, before a capital that follows a small letter, and
 /// before the last capital of a run that a small letter follows (`LLeg` is `L`, `Leg`).
 fn words(text: &str) -> Vec<String> {
-    let chars: Vec<char> = text.chars().collect();
+    let chars: Vec<char> = text.chars().map(narrow).collect();
     let mut words = Vec::new();
     let mut word = String::new();
     for (at, &here) in chars.iter().enumerate() {

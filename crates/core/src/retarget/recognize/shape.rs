@@ -1,216 +1,297 @@
-//! Finds a body by its shape alone, for skeletons without names: two legs that reach the ground from one joint, a chain
-//! upwards from there, and two arms and a head at its end. Only for skeletons with +Y up.
+//! Finds a body by its shape alone, for skeletons whose names say nothing: two legs that hang on one joint, a trunk that
+//! goes the other way from there, two arms and a head at its end. Pairs of limbs are found by equal lengths, which no pose
+//! changes. Which joint of a limb is which part is decided in `limbs`; every part has a confidence of its own.
 
-use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
 use glam::Vec3;
 
 use super::assemble::spread;
+use super::evidence::Evidence;
 use super::tree::Tree;
-use super::{Reason, RecognizedJoint};
+use super::{Reason, RecognizedJoint, fingers, limbs};
 use crate::anim::JointIndex;
 use crate::asset::Slot::{self, *};
 
-const CONFIDENCE: f32 = 0.5;
+/// Parts that are less certain than this are left out.
+pub(super) const MIN_CONFIDENCE: f32 = 0.45;
 
 /// Maximum number of limbs on a joint and of joints in a limb. Keeps the search short in large scenes.
 const MAX_COUNT: usize = 16;
 
-/// Two chains that mirror each other.
-struct Twins {
-    chains: [Vec<JointIndex>; 2],
+/// Maximum number of pairs of limbs that are considered, longest first.
+const MAX_PAIRS: usize = 32;
+
+/// Maximum distance of the hips above the joint that the legs hang on.
+const MAX_HIPS_ABOVE: usize = 3;
+
+/// Two limbs that mirror each other, and the joint they hang on.
+#[derive(Debug, Clone)]
+pub(super) struct Twins {
+    pub base: JointIndex,
+    /// Of equal length.
+    pub chains: [Vec<JointIndex>; 2],
+    /// Mean length of the chains.
+    pub length: f32,
 }
 
-/// The skeleton with totals of each joint's descendants.
-struct Shape<'a> {
-    tree: &'a Tree<'a>,
-    /// Number of joints on the longest way down.
-    lengths: Vec<u32>,
-    lowest: Vec<f32>,
-    highest: Vec<f32>,
+/// A skeleton in one pose.
+pub(super) struct Shape<'a> {
+    pub tree: &'a Tree<'a>,
+    pub evidence: &'a Evidence,
+    pub positions: &'a [Vec3],
+    /// Length of the longest way down from each joint.
+    reach: Vec<f32>,
 }
 
 /// Lower and upper half of a body.
-struct Halves {
-    hips: JointIndex,
-    legs: Twins,
+pub(super) struct Halves {
+    pub hips: JointIndex,
+    pub legs: Twins,
     /// From the joint above the hips up to the one that the arms hang on.
-    trunk: Vec<JointIndex>,
-    arms: Twins,
-    head: JointIndex,
+    pub trunk: Vec<JointIndex>,
+    pub arms: Twins,
+    /// From the joint above the arms to the end of the head.
+    pub head: Vec<JointIndex>,
+    /// From the feet to the shoulders.
+    pub up: Vec3,
+    /// From the second leg to the first, perpendicular to `up`.
+    pub across: Vec3,
 }
 
-/// Returns the joints of a body; empty if nothing looks like one.
-pub(super) fn find(tree: &Tree) -> BTreeMap<Slot, RecognizedJoint> {
-    let heights: Vec<f32> = tree.positions.iter().map(|position| position.y).collect();
-    let mut shape = Shape { tree, lengths: vec![0; heights.len()], lowest: heights.clone(), highest: heights };
-    for joint in tree.skeleton.joints().rev() {
-        if let Some(parent) = tree.skeleton.parent(joint) {
-            let (joint, parent) = (joint.get(), parent.get());
-            shape.lengths[parent] = shape.lengths[parent].max(shape.lengths[joint] + 1);
-            shape.lowest[parent] = shape.lowest[parent].min(shape.lowest[joint]);
-            shape.highest[parent] = shape.highest[parent].max(shape.highest[joint]);
+/// What was found, and what was not certain enough to keep.
+#[derive(Debug, Default)]
+pub(super) struct Found {
+    pub parts: BTreeMap<Slot, RecognizedJoint>,
+    pub left_out: BTreeMap<Slot, RecognizedJoint>,
+}
+
+/// Returns the joints of a body; empty if nothing looks like one. Tries the rest, then moments of the first clip: motion
+/// capture often rests with all bones along one axis.
+pub(super) fn find(tree: &Tree, evidence: &Evidence) -> Found {
+    let shapes = evidence.poses.iter().take(2).map(|positions| Shape::new(tree, evidence, positions));
+    let mut found = Found::default();
+    let Some(parts) = shapes.into_iter().find_map(|shape| slots(&shape, &halves(&shape)?)) else { return found };
+    for (slot, joint, confidence) in parts {
+        let part = RecognizedJoint { joint, reason: Reason::Geometry, confidence };
+        // The surest part of a joint comes first.
+        if found.parts.contains_key(&slot) || found.parts.values().any(|other| other.joint == joint) {
+            continue;
         }
+        let parts = if confidence >= MIN_CONFIDENCE { &mut found.parts } else { &mut found.left_out };
+        parts.insert(slot, part);
     }
-    let mut candidates = tree.skeleton.joints();
-    candidates.find_map(|hips| slots(&shape, &halves(&shape, hips)?)).unwrap_or_default()
-}
-
-/// None if `hips` does not look like the hips of a body.
-fn halves(shape: &Shape, hips: JointIndex) -> Option<Halves> {
-    let tree = shape.tree;
-    let (lowest, highest) = (shape.lowest[hips.get()], shape.highest[hips.get()]);
-    let height = highest - lowest;
-    let ends =
-        |twins: &Twins| twins.chains.each_ref().map(|chain| chain.last().map_or(f32::MAX, |&end| tree.position(end).y));
-    let reach_ground = |twins: &Twins| ends(twins).into_iter().all(|y| y < lowest + 0.15 * height);
-    let legs = twins(shape, hips, 3)
-        .into_iter()
-        .find(|legs| reach_ground(legs) && tree.position(hips).y > lowest + 0.25 * height)?;
-    let sideways = sideways(tree, &legs, 0)?;
-    let mut trunk = Vec::new();
-    let mut at = highest_child(shape, hips, &legs, f32::NEG_INFINITY)?;
-    let arms = loop {
-        trunk.push(at);
-        let arms = twins(shape, at, 2).into_iter().find(|arms| {
-            self::sideways(tree, arms, 0).is_some_and(|line| line.dot(sideways).abs() > 0.9)
-                && ends(arms).into_iter().all(|y| y > lowest + 0.2 * height)
-        });
-        match arms {
-            Some(arms) => break arms,
-            None => match tree.children(at) {
-                [child] if trunk.len() < MAX_COUNT => at = *child,
-                _ => return None,
-            },
-        }
-    };
-    let head = highest_child(shape, at, &arms, tree.position(at).y)?;
-    Some(Halves { hips, legs, trunk, arms, head })
-}
-
-/// The child outside `limbs` that reaches highest, if that is above `min_height`; of equal ones the first.
-fn highest_child(shape: &Shape, joint: JointIndex, limbs: &Twins, min_height: f32) -> Option<JointIndex> {
-    let children = shape.tree.children(joint).iter().copied();
-    children
-        .filter(|child| !limbs.chains.iter().any(|chain| chain.first() == Some(child)))
-        .filter(|&child| shape.top(child) > min_height)
-        .max_by(|&a, &b| shape.top(a).total_cmp(&shape.top(b)).then(b.cmp(&a)))
-}
-
-fn slots(shape: &Shape, body: &Halves) -> Option<BTreeMap<Slot, RecognizedJoint>> {
-    let tree = shape.tree;
-    let mut found = BTreeMap::new();
-    let mut put = |slot, joint| {
-        found.insert(slot, RecognizedJoint { joint, reason: Reason::Geometry, confidence: CONFIDENCE });
-    };
-    put(Hips, body.hips);
-    for (slot, joint) in spread(&body.trunk) {
-        put(slot, joint);
-    }
-    match chain(shape, body.head).as_slice() {
-        [head] => put(Head, *head),
-        [neck, head, ..] => {
-            put(Neck, *neck);
-            put(Head, *head);
-        }
-        [] => return None,
-    }
-    let sideways = sideways(tree, &body.legs, 0)?;
-    let is_left_first = is_left_first(tree, &body.legs, sideways);
-    for (twins, is_leg) in [(&body.legs, true), (&body.arms, false)] {
-        // Arms may be listed in another order than legs.
-        let is_same_order = self::sideways(tree, twins, 0).is_some_and(|line| line.dot(sideways) > 0.0);
-        let count = twins.chains.iter().map(Vec::len).min()?;
-        for (chain, is_first) in twins.chains.iter().zip([true, false]) {
-            let chain = chain.get(..count)?;
-            let is_left = is_first == (is_left_first == is_same_order);
-            for (&slot, &joint) in limb_slots(tree, chain, is_leg).iter().zip(chain) {
-                put(if is_left { slot } else { slot.mirrored() }, joint);
-            }
-        }
-    }
-    Some(found)
-}
-
-fn limb_slots(tree: &Tree, chain: &[JointIndex], is_leg: bool) -> &'static [Slot] {
-    if is_leg {
-        &[LeftUpperLeg, LeftLowerLeg, LeftFoot, LeftToes]
-    } else if has_collar_bone(tree, chain) {
-        &[LeftShoulder, LeftUpperArm, LeftLowerArm, LeftHand]
-    } else {
-        &[LeftUpperArm, LeftLowerArm, LeftHand]
-    }
-}
-
-/// A collar bone is shorter than the upper arm that follows.
-fn has_collar_bone(tree: &Tree, arm: &[JointIndex]) -> bool {
-    match arm {
-        [a, b, c, _, ..] => {
-            tree.position(*a).distance(tree.position(*b)) < 0.6 * tree.position(*b).distance(tree.position(*c))
-        }
-        _ => false,
-    }
-}
-
-impl Shape<'_> {
-    fn top(&self, joint: JointIndex) -> f32 {
-        self.highest[joint.get()]
-    }
-}
-
-/// The joint and what follows it, along the longest way where it forks.
-fn chain(shape: &Shape, first: JointIndex) -> Vec<JointIndex> {
-    let length = |joint: &JointIndex| shape.lengths[joint.get()];
-    let longest = |at: &JointIndex| {
-        shape.tree.children(*at).iter().copied().max_by(|a, b| length(a).cmp(&length(b)).then(b.cmp(a)))
-    };
-    std::iter::successors(Some(first), longest).take(MAX_COUNT).collect()
-}
-
-/// All pairs of chains from a joint's children that lie side by side all the way, of at least `min_length` joints. The longest
-/// pair comes first, whatever the order of the children: a short neck can lie beside an arm as well.
-fn twins(shape: &Shape, joint: JointIndex, min_length: usize) -> Vec<Twins> {
-    let (tree, children) = (shape.tree, shape.tree.children(joint));
-    // Two limbs, and what continues between them.
-    if !(3..=MAX_COUNT).contains(&children.len()) {
-        return Vec::new();
-    }
-    let chains: Vec<Vec<JointIndex>> = children.iter().map(|&child| chain(shape, child)).collect();
-    let mut found = Vec::new();
-    for (at, a) in chains.iter().enumerate() {
-        for b in &chains[at + 1..] {
-            let twins = Twins { chains: [a.clone(), b.clone()] };
-            let count = a.len().min(b.len());
-            let line = sideways(tree, &twins, 0);
-            let is_parallel = (0..count).all(|level| match (line, sideways(tree, &twins, level)) {
-                (Some(line), Some(other)) => line.dot(other) > 0.9,
-                _ => false,
-            });
-            if count >= min_length && is_parallel {
-                found.push(twins);
-            }
-        }
-    }
-    found.sort_by_key(|twins| Reverse(twins.chains.each_ref().map(Vec::len).into_iter().min()));
     found
 }
 
-/// Horizontal direction from the second chain to the first; None if they are not side by side.
-fn sideways(tree: &Tree, twins: &Twins, level: usize) -> Option<Vec3> {
-    let [a, b] = twins.chains.each_ref().map(|chain| chain.get(level).map(|&joint| tree.position(joint)));
-    let line = a? - b?;
-    let flat = Vec3::new(line.x, 0.0, line.z);
-    if flat.length() > 0.8 * line.length() { flat.try_normalize() } else { None }
+impl<'a> Shape<'a> {
+    pub fn new(tree: &'a Tree, evidence: &'a Evidence, positions: &'a [Vec3]) -> Self {
+        let mut shape = Self { tree, evidence, positions, reach: vec![0.0; positions.len()] };
+        for joint in tree.skeleton.joints().rev().filter(|joint| tree.usable[joint.get()]) {
+            if let Some(parent) = tree.skeleton.parent(joint) {
+                let reach = shape.reach[joint.get()] + shape.distance(parent, joint);
+                shape.reach[parent.get()] = shape.reach[parent.get()].max(reach);
+            }
+        }
+        shape
+    }
+
+    pub fn position(&self, joint: JointIndex) -> Vec3 {
+        self.positions[joint.get()]
+    }
+
+    pub fn distance(&self, a: JointIndex, b: JointIndex) -> f32 {
+        self.position(a).distance(self.position(b))
+    }
+
+    /// Length of the way along a chain.
+    pub fn length(&self, chain: &[JointIndex]) -> f32 {
+        chain.windows(2).map(|pair| self.distance(pair[0], pair[1])).sum()
+    }
+
+    /// The joint and what follows it, along the longest way where it forks. A tip that no skin knows is left out.
+    pub fn chain(&self, first: JointIndex) -> Vec<JointIndex> {
+        let way = |from: JointIndex, to: JointIndex| self.distance(from, to) + self.reach[to.get()];
+        let longest = |at: &JointIndex| {
+            let children = self.tree.children(*at).iter().copied();
+            children.max_by(|&a, &b| way(*at, a).total_cmp(&way(*at, b)).then(b.cmp(&a)))
+        };
+        let mut chain: Vec<JointIndex> = std::iter::successors(Some(first), longest).take(MAX_COUNT).collect();
+        let end = chain[chain.len() - 1];
+        if chain.len() > 1 && self.tree.children(end).is_empty() && self.evidence.is_skinned(end) == Some(false) {
+            chain.pop();
+        }
+        chain
+    }
+
+    /// The pairs of chains on a joint whose segments have equal lengths, as far as they do.
+    fn twins(&self, base: JointIndex) -> Vec<Twins> {
+        let children = self.tree.children(base);
+        if !(2..=MAX_COUNT).contains(&children.len()) {
+            return Vec::new();
+        }
+        let chains: Vec<Vec<JointIndex>> = children.iter().map(|&child| self.chain(child)).collect();
+        let mut found = Vec::new();
+        for (at, a) in chains.iter().enumerate() {
+            for b in &chains[at + 1..] {
+                found.extend(self.pair_up(base, a, b));
+            }
+        }
+        found
+    }
+
+    fn pair_up(&self, base: JointIndex, a: &[JointIndex], b: &[JointIndex]) -> Option<Twins> {
+        let whole = self.reach[base.get()];
+        let mut length = 0.0;
+        let mut above = [base, base];
+        let mut count = 0;
+        for (&a, &b) in a.iter().zip(b) {
+            let segments = [self.distance(above[0], a), self.distance(above[1], b)];
+            if (segments[0] - segments[1]).abs() > 0.12 * segments[0].max(segments[1]) + 0.02 * whole {
+                break;
+            }
+            length += 0.5 * (segments[0] + segments[1]);
+            above = [a, b];
+            count += 1;
+        }
+        let twins = Twins { base, chains: [a[..count].to_vec(), b[..count].to_vec()], length };
+        (count >= 2 && length > 0.0 && self.apart(&twins).is_some()).then_some(twins)
+    }
+
+    /// All pairs of limbs, the longest first.
+    pub fn limbs(&self) -> Vec<Twins> {
+        let mut pairs: Vec<Twins> = self.tree.skeleton.joints().flat_map(|joint| self.twins(joint)).collect();
+        pairs.sort_by(|a, b| b.length.total_cmp(&a.length).then(a.base.cmp(&b.base)));
+        pairs.truncate(MAX_PAIRS);
+        pairs
+    }
+
+    /// The joint that legs and trunk meet in: the legs' own or one above it.
+    pub fn trunk_root(&self, legs: &Twins, arms: &Twins) -> Option<JointIndex> {
+        self.tree.upwards(legs.base).take(MAX_HIPS_ABOVE).find(|&hips| self.tree.is_under(arms.base, hips))
+    }
+
+    /// The joint and what follows it, up to the joint where the chain forks.
+    pub fn unforked(&self, first: JointIndex) -> Vec<JointIndex> {
+        let next = |at: &JointIndex| match self.tree.children(*at) {
+            [only] => Some(*only),
+            _ => None,
+        };
+        std::iter::successors(Some(first), next).take(MAX_COUNT).collect()
+    }
+
+    /// Direction from the second chain to the first, where they first separate.
+    pub fn apart(&self, twins: &Twins) -> Option<Vec3> {
+        let [a, b] = &twins.chains;
+        let line = a.iter().zip(b).map(|(&a, &b)| self.position(a) - self.position(b));
+        line.into_iter().find(|line| line.length() > 0.02 * twins.length)?.try_normalize()
+    }
+
+    /// Midpoint of the two joints at the same place in the chains of a pair.
+    pub fn middle(&self, twins: &Twins, at: usize) -> Vec3 {
+        let [a, b] = twins.chains.each_ref().map(|chain| self.position(chain[at]));
+        a.midpoint(b)
+    }
 }
 
-/// Whether the first leg is the left one, as the feet point; a body without feet faces +Z.
-fn is_left_first(tree: &Tree, legs: &Twins, sideways: Vec3) -> bool {
-    let foot = |chain: &Vec<JointIndex>| match chain.as_slice() {
-        [_, _, foot, toes, ..] => tree.position(*toes) - tree.position(*foot),
-        _ => Vec3::ZERO,
+/// The longest legs and arms that make an upright body.
+fn halves(shape: &Shape) -> Option<Halves> {
+    let pairs = shape.limbs();
+    let mut best: Option<Halves> = None;
+    for legs in pairs.iter().filter(|legs| legs.chains[0].len() >= 3) {
+        for arms in &pairs {
+            let length = |halves: &Halves| halves.legs.length + halves.arms.length;
+            if best.as_ref().is_none_or(|best| legs.length + arms.length > length(best)) {
+                best = body(shape, legs, arms).or(best);
+            }
+        }
+    }
+    best
+}
+
+/// None if these legs and arms don't make an upright body with a head.
+fn body(shape: &Shape, legs: &Twins, arms: &Twins) -> Option<Halves> {
+    let tree = shape.tree;
+    let on_leg = |joint| legs.chains.iter().any(|chain| tree.is_under(joint, chain[0]));
+    if arms.base == legs.base || on_leg(arms.base) || !(0.3..3.0).contains(&(arms.length / legs.length)) {
+        return None;
+    }
+    let hips = shape.trunk_root(legs, arms)?;
+    let trunk = tree.path(hips, arms.base);
+    let (hip, shoulder) = (shape.position(legs.base), shape.middle(arms, 0));
+    let feet = shape.middle(legs, legs.chains[0].len() - 1);
+    let down = (feet - hip).try_normalize()?;
+    let up = (shoulder - feet).try_normalize()?;
+    let is_upright = (shoulder - hip).try_normalize()?.dot(down) < -0.6;
+    let line = shape.apart(legs)?;
+    let across = (line - up * line.dot(up)).try_normalize()?;
+    let is_parallel = shape.apart(arms)?.dot(across).abs() > 0.7;
+    if trunk.is_empty() || !is_upright || !is_parallel || shoulder.distance(hip) < 0.15 * legs.length {
+        return None;
+    }
+    let head = head(shape, arms, up)?;
+    Some(Halves { hips, legs: legs.clone(), trunk, arms: arms.clone(), head, up, across })
+}
+
+/// The chain above the arms, up to the joint where it forks.
+fn head(shape: &Shape, arms: &Twins, up: Vec3) -> Option<Vec<JointIndex>> {
+    let top = |joint: JointIndex| {
+        let below =
+            shape.tree.skeleton.joints().skip(joint.get()).take_while(|&other| shape.tree.is_under(other, joint));
+        let heights = below.filter(|joint| shape.tree.usable[joint.get()]).map(|joint| shape.position(joint).dot(up));
+        heights.fold(f32::NEG_INFINITY, f32::max)
     };
-    let toes: Vec3 = legs.chains.iter().map(foot).sum();
-    let forward = Vec3::new(toes.x, 0.0, toes.z).try_normalize().unwrap_or(Vec3::Z);
-    Vec3::Y.cross(forward).dot(sideways) > 0.0
+    let highest = |joints: &[JointIndex]| {
+        let free = joints.iter().copied().filter(|child| !arms.chains.iter().any(|chain| chain[0] == *child));
+        free.max_by(|&a, &b| top(a).total_cmp(&top(b)).then(b.cmp(&a)))
+    };
+    let first = highest(shape.tree.children(arms.base))?;
+    if top(first) < shape.position(arms.base).dot(up) + 0.02 * arms.length {
+        return None;
+    }
+    Some(shape.unforked(first))
+}
+
+/// Slots with joint and confidence; the surest first where several are for one joint.
+fn slots(shape: &Shape, body: &Halves) -> Option<Vec<(Slot, JointIndex, f32)>> {
+    let legs = limbs::leg(shape, body)?;
+    let arms = limbs::arm(shape, body, &legs).unwrap_or_default();
+    let mut found = vec![(Hips, body.hips, if body.hips == body.legs.base { 0.9 } else { 0.7 })];
+    found.extend(limbs::head(shape, body));
+    let has_neck = found.iter().any(|(slot, ..)| *slot == Neck);
+    found.extend(trunk(shape, body, has_neck));
+    let (is_first_left, certainty) = limbs::is_first_left(shape, body, &legs);
+    // Arms may be listed in another order than legs.
+    let is_same_order = shape.apart(&body.arms)?.dot(body.across) > 0.0;
+    for (limb, twins, is_left) in
+        [(&legs, &body.legs, is_first_left), (&arms, &body.arms, is_first_left == is_same_order)]
+    {
+        for (chain, is_left) in twins.chains.iter().zip([is_left, !is_left]) {
+            let side = |slot: Slot| if is_left { slot } else { slot.mirrored() };
+            found.extend(limb.iter().map(|part| (side(part.slot), chain[part.at], part.confidence.min(certainty))));
+            let hand = limb.iter().find(|part| part.slot == LeftHand && part.confidence >= MIN_CONFIDENCE);
+            if let Some(hand) = hand {
+                let fingers = fingers::find(shape, chain[hand.at]);
+                found.extend(
+                    fingers.into_iter().map(|(slot, joint, confidence)| (side(slot), joint, confidence.min(certainty))),
+                );
+            }
+        }
+    }
+    found.sort_by(|a, b| b.2.total_cmp(&a.2).then(a.0.cmp(&b.0)));
+    Some(found)
+}
+
+/// The joints between hips and neck. A lowest one that no skin knows and that never turns only connects the spine. Without
+/// a joint for the neck, the highest ones may be it.
+fn trunk(shape: &Shape, body: &Halves, has_neck: bool) -> Vec<(Slot, JointIndex, f32)> {
+    let is_still = |joint: JointIndex| {
+        shape.evidence.turns(joint) == Some(false) && shape.evidence.is_skinned(joint) != Some(true)
+    };
+    let links = usize::from(matches!(body.trunk[..], [first, second, ..] if is_still(first) && !is_still(second)));
+    let torso = &body.trunk[links..];
+    let confidence = if torso.len() <= 3 { 0.75 } else { 0.6 };
+    let is_sure = |slot| has_neck || slot == Spine || torso.len() <= 2;
+    let parts = spread(torso).into_iter();
+    parts.map(|(slot, joint)| (slot, joint, if is_sure(slot) { confidence } else { limbs::UNSURE })).collect()
 }

@@ -4,13 +4,15 @@ use std::collections::BTreeMap;
 
 use glam::{Affine3A, Vec3};
 
-use super::names::Name;
+use super::languages;
+use super::names::{Name, is_number};
 use super::words::{self, Word};
 use crate::anim::{JointIndex, Pose, Skeleton, model_from_joint};
 use crate::asset::Asset;
 
 pub(super) struct Tree<'a> {
     pub skeleton: &'a Skeleton,
+    /// In English; empty for joints that are not usable.
     pub names: Vec<Name>,
     /// The word in each name; None for joints that cannot belong to a body.
     pub words: Vec<Option<Word>>,
@@ -26,9 +28,13 @@ pub(super) struct Tree<'a> {
 impl<'a> Tree<'a> {
     pub fn new(asset: &'a Asset) -> Self {
         let skeleton = &asset.skeleton;
-        let mut names: Vec<Name> = skeleton.joints().map(|joint| Name::read(skeleton.name(joint))).collect();
-        drop_shared_word(&mut names);
         let usable = usable(asset);
+        // What hangs on a rig must not change what its joints are.
+        let read =
+            |joint: JointIndex| if usable[joint.get()] { Name::read(skeleton.name(joint)) } else { Name::default() };
+        let mut names: Vec<Name> = skeleton.joints().map(read).collect();
+        languages::translate(&mut names);
+        drop_shared_words(&mut names);
         let words =
             names.iter().zip(&usable).map(|(name, &usable)| if usable { words::read(name) } else { None }).collect();
         let mut children = vec![Vec::new(); skeleton.len()];
@@ -90,24 +96,29 @@ impl<'a> Tree<'a> {
     }
 }
 
-/// A first word that at least this share of all names has in common says nothing about the joints.
+/// A first or last word that at least this share of all names has in common says nothing about the joints.
 const MIN_SHARED: f32 = 0.6;
 
-/// Drops the first word that most names share (`hero_left_thigh`, `hero_head`): it names the rig, unless it is a word for
-/// a part of the body.
-fn drop_shared_word(names: &mut [Name]) {
+/// Drops the first and the last word that most names share (`hero_left_thigh_env`, `hero_head_env`): they name the rig and
+/// the kind of node, unless they are words for a part of the body.
+fn drop_shared_words(names: &mut [Name]) {
+    if let Some(word) = shared_word(names, |words| words.first()) {
+        names.iter_mut().for_each(|name| name.drop_first(&word));
+    }
+    if let Some(word) = shared_word(names, |words| words.last()) {
+        names.iter_mut().for_each(|name| name.drop_last(&word));
+    }
+}
+
+fn shared_word(names: &[Name], of: fn(&[String]) -> Option<&String>) -> Option<String> {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
-    for name in names.iter().filter(|name| name.words.len() > 1) {
-        *counts.entry(&name.words[0]).or_default() += 1;
+    for word in names.iter().filter(|name| name.words.len() > 1).filter_map(|name| of(&name.words)) {
+        *counts.entry(word).or_default() += 1;
     }
-    let most = counts.into_iter().max_by_key(|&(_, count)| count);
-    let Some((word, _)) = most.filter(|&(_, count)| count as f32 >= MIN_SHARED * names.len() as f32) else { return };
-    let word = word.to_owned();
-    if words::read(&Name { side: None, words: vec![word.clone()] }).is_none() {
-        for name in names {
-            name.drop_first(&word);
-        }
-    }
+    let named = names.iter().filter(|name| !name.words.is_empty()).count();
+    let (word, count) = counts.into_iter().max_by_key(|&(_, count)| count)?;
+    let says_nothing = words::read(&Name { side: None, words: vec![word.to_owned()] }).is_none() && !is_number(word);
+    (count as f32 >= MIN_SHARED * named as f32 && says_nothing).then(|| word.to_owned())
 }
 
 /// A node that carries a mesh is usable only if a skin names it, or if there is no skin at all.

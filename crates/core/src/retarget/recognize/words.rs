@@ -90,7 +90,10 @@ const WORDS: &[(Word, &[&str])] = &[
 ];
 
 /// Words that may go with any part.
-const NOISE: [&str; 8] = ["bind", "jnt", "joint", "bone", "c", "center", "ctr", "def"];
+const NOISE: [&str; 16] = [
+    "bind", "jnt", "joint", "bone", "c", "center", "ctr", "def", "jt", "bn", "bnd", "skn", "skin", "env", "shj",
+    "deform",
+];
 
 const ASIDE: [&str; 47] = [
     "twist",
