@@ -52,15 +52,10 @@
 // Files are untrusted: whatever is wrong with them must be reported, never panic.
 #![warn(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
-pub use gaitway_core::{anim, mesh};
+pub use gaitway_core::{anim, asset, formats, library, mesh, retarget};
 
-pub mod asset;
 pub mod editor;
-pub mod formats;
 pub mod frame;
-mod json_text;
-pub mod library;
-pub mod retarget;
 pub mod samples;
 pub mod state;
 

@@ -1,9 +1,10 @@
 // Measures three.js and Gaitway on the same work in the same headless Chromium, in alternating rounds, and prints medians.
 // Run `node benches/web/run.mjs` after `cargo xtask build --bench` (or with GAITWAY_DIST), with `characters`, `retargeting`,
-// `loads`, `frames` or `first` to measure only these. Nothing is asserted: times vary between machines, ratios less so.
+// `loads`, `frames`, `first` or `lighthouse` to measure only these. Nothing is asserted: times vary between machines, ratios less so.
 import path from "node:path";
 import { chromium } from "playwright-core";
 import { FLAGS, dist, until, whenReady } from "../../tests/browser/browser.mjs";
+import { measureFirstVisit } from "../../tests/browser/lighthouse.mjs";
 import { serve } from "../../tests/browser/server.mjs";
 import { dataFile, hasData, repository } from "../../tests/three/data.mjs";
 import { measureFirstFrames } from "./first.mjs";
@@ -60,6 +61,7 @@ try {
   if (wanted("loads")) await measureLoads();
   if (wanted("frames")) await measureFrames();
   if (wanted("first")) await measureFirst();
+  if (wanted("lighthouse")) await measureLighthouse();
 } finally {
   await browser.close();
   await site.close();
@@ -261,4 +263,11 @@ async function measureFirst() {
   const times = await measureFirstFrames(browser);
   const theirs = median(times["three.js"]);
   for (const [name, values] of Object.entries(times)) row(name, median(values).toFixed(0), values.map((value) => value.toFixed(0)).join(", "), `${(median(values) / theirs).toFixed(2)}×`);
+}
+
+async function measureLighthouse() {
+  console.log("\nLighthouse's performance score of a first visit\n");
+  const scores = [];
+  for (let round = 0; round < 5; round++) scores.push((await measureFirstVisit(`${site.origin}/`)).scores.performance);
+  console.log(`median ${median(scores)} of ${scores.join(", ")}`);
 }

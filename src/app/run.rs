@@ -175,10 +175,14 @@ impl App {
         }
     }
 
-    /// Creates pipelines that the first model will probably need, while it is on its way.
+    /// Draws a character that nobody sees; see `web::rehearsal`.
     #[cfg(target_arch = "wasm32")]
-    pub fn warm_up(&mut self) {
-        self.viewport.scene.warm_up();
+    pub fn rehearse(&mut self, character: crate::library::Model) {
+        use crate::frame::{Frame, evaluate};
+        let (mut library, mut frame) = (Library::default(), Frame::default());
+        library.add(character);
+        evaluate(&library, &ViewerState::default(), 1.0, &mut frame);
+        self.viewport.scene.rehearse(&library, &frame);
     }
 
     /// Starts time: the first image is on screen.

@@ -22,12 +22,6 @@ impl SceneTexture {
         Self { gpu, renderer, displayed: None }
     }
 
-    /// See [`Renderer::warm_up`].
-    #[cfg(target_arch = "wasm32")]
-    pub fn warm_up(&mut self) {
-        self.renderer.warm_up(&self.gpu.device);
-    }
-
     /// Uploads a model, and optionally the source beside it; evicts all others.
     pub fn upload(&mut self, model: &Model, beside: Option<&Model>) -> Result<(), UploadError> {
         self.renderer.upload(&self.gpu.device, &self.gpu.queue, model)?;
@@ -57,6 +51,16 @@ impl SceneTexture {
         self.renderer.draw(&self.gpu.device, &self.gpu.queue, frame, size);
         self.displayed = None;
         self.last_image()
+    }
+
+    /// Draws the active model off screen and forgets it.
+    #[cfg(target_arch = "wasm32")]
+    pub fn rehearse(&mut self, library: &crate::library::Library, frame: &Frame) {
+        const SIZE: [u32; 2] = [64, 64];
+        if library.active().is_some_and(|model| self.upload(model, None).is_ok()) {
+            self.draw_off_screen(frame, SIZE);
+        }
+        self.renderer.retain(&[]);
     }
 
     /// Never draws to the texture of the last image again.

@@ -10,7 +10,7 @@ use super::output::{is_standard_output, print_bytes, print_json, warn, write_out
 use super::{MapArguments, open};
 use crate::anim::Skeleton;
 use crate::files::Disk;
-use crate::retarget::{Body, Contradiction, Proposal, ResolvedMap, Retargeting, propose};
+use crate::retarget::{Body, Contradiction, Proposal, Recognized, ResolvedMap, Retargeting, propose};
 
 pub(super) fn run(arguments: &MapArguments, disk: &Disk) -> Outcome {
     let opened_model = open(std::slice::from_ref(&arguments.model), disk)?.model;
@@ -19,7 +19,7 @@ pub(super) fn run(arguments: &MapArguments, disk: &Disk) -> Outcome {
     let proposal = propose(model, motion);
     let map = proposal.to_map(model, motion).to_file(model, motion);
     for (file, found) in [(&arguments.model, &proposal.model), (&arguments.motion, &proposal.motion)] {
-        if let Some(text) = contradictions_text(&found.contradictions) {
+        for text in contradictions_text(found).into_iter().chain(left_out_text(found)) {
             warn(&format!("{}: {text}", file.display()));
         }
     }
@@ -48,10 +48,17 @@ pub(super) fn run(arguments: &MapArguments, disk: &Disk) -> Outcome {
         };
         document["unmapped_targets"] = json!(names(&model.skeleton, &proposal.unmapped_targets));
         document["unused_sources"] = json!(names(&motion.skeleton, &proposal.unused_sources));
-        let warnings = [&proposal.model, &proposal.motion].into_iter().filter_map(|found| {
-            let text = contradictions_text(&found.contradictions)?;
-            let place: Vec<&str> = found.contradictions.iter().map(place).collect();
-            Some(json!({ "code": "sides-contradict", "message": text, "where": place.join(", ") }))
+        let files = [(&proposal.model, &model.skeleton), (&proposal.motion, &motion.skeleton)];
+        let warnings = files.into_iter().flat_map(|(found, skeleton)| {
+            let sides = contradictions_text(found).map(|text| {
+                let place: Vec<&str> = found.contradictions.iter().map(place).collect();
+                json!({ "code": "sides-contradict", "message": text, "where": place.join(", ") })
+            });
+            let unclear = left_out_text(found).map(|text| {
+                let place: Vec<String> = found.left_out.values().map(|part| skeleton.label(part.joint)).collect();
+                json!({ "code": "unclear-joints", "message": text, "where": place.join(", ") })
+            });
+            sides.into_iter().chain(unclear)
         });
         let doubtful = doubtful.iter();
         let doubtful =
@@ -98,12 +105,25 @@ fn place(contradiction: &Contradiction) -> &str {
 }
 
 /// Describes all contradictions of one file in one sentence; `None` if there are none.
-fn contradictions_text(contradictions: &[Contradiction]) -> Option<String> {
-    let names: Vec<&str> = contradictions.iter().map(place).collect();
+fn contradictions_text(found: &Recognized) -> Option<String> {
+    let names: Vec<&str> = found.contradictions.iter().map(place).collect();
     let (first, last) = (names.first()?, names.last()?);
+    let matched = if found.by_position {
+        "they were matched by position. To match them by name, exchange left and right in the map"
+    } else {
+        "they were matched by name"
+    };
     Some(format!(
-        "{} joints from “{first}” to “{last}” have left/right names on the opposite side, judging by the direction of the toes: \
-         the model is mirrored, or its names are swapped",
+        "{} joints from “{first}” to “{last}” have left/right names on the opposite side, judging by the direction of the feet: \
+         the model is mirrored, or its names are swapped; {matched}",
         names.len()
     ))
+}
+
+/// Describes the joints of one file that were left out; `None` if there are none.
+fn left_out_text(found: &Recognized) -> Option<String> {
+    let slots: Vec<&str> = found.left_out.keys().map(|slot| slot.name()).collect();
+    let count = slots.len();
+    (count > 0)
+        .then(|| format!("{count} body parts were left out because several joints could be them: {}", slots.join(", ")))
 }

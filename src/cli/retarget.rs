@@ -38,6 +38,7 @@ pub(super) fn run(arguments: &RetargetArguments, disk: &Disk) -> Outcome {
     if arguments.json {
         let mut document = document(&model.asset, &motion, &resolved, &retargeted, &clip, &figures, &warnings);
         document["motion_rest"] = rest_document(pair.motion_rest());
+        document["planting"] = json!(retargeted.planting);
         return print_json(&document);
     }
     let text = text(&resolved, &retargeted, &figures);
@@ -221,7 +222,9 @@ fn text(map: &ResolvedMap, retargeted: &Retargeted, figures: &Figures) -> String
          facing            mean error {}, max. {}\n\
          rotations         mean error {}, max. {}\n\
          foot slide        {} (source: {})\n\
-         below ground      {}\n",
+         hover             {}\n\
+         below ground      {}\n\
+         planted feet      {}\n",
         map.pairs.len(),
         figures.coverage.map_or("–".to_owned(), |coverage| format!("{:.0} %", 100.0 * coverage)),
         retargeted.keys_in,
@@ -235,6 +238,8 @@ fn text(map: &ResolvedMap, retargeted: &Retargeted, figures: &Figures) -> String
         number(figures.orientation_error_degrees_max, "°"),
         number(figures.foot_slide_metres_per_sec, " m/s"),
         number(figures.foot_slide_source_metres_per_sec, " m/s"),
+        number(figures.foot_hover_metres_mean, " m"),
         number(figures.ground_penetration_metres_max, " m"),
+        retargeted.planting.map_or("–".to_owned(), |planting| planting.to_string()),
     )
 }

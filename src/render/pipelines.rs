@@ -298,21 +298,6 @@ impl Pipelines {
         }
     }
 
-    /// Creates the pipelines of the commonest characters, with a base colour map alone and with a normal map beside it.
-    pub fn warm_up(&mut self, device: &wgpu::Device) {
-        let plain = Features::BASE_COLOR_MAP.with(Features::SHADOW, true);
-        let bumpy = plain.with(Features::NORMAL_MAP, true).with(Features::TANGENTS, true);
-        for (shading, features, cull) in [
-            (Shading::Shadow, Features::default(), None),
-            (Shading::Lit, plain, Some(wgpu::Face::Back)),
-            (Shading::Lit, bumpy, Some(wgpu::Face::Back)),
-        ] {
-            let (influences, skinning) = (InfluenceSource::Four, SkinningMode::default());
-            let topology = Topology::Triangles;
-            self.mesh(device, MeshKey { shading, influences, skinning, topology, features, cull, mirrored: false });
-        }
-    }
-
     pub fn mesh(&mut self, device: &wgpu::Device, key: MeshKey) -> MeshPipeline {
         if let Some(&pipeline) = self.by_key.get(&key) {
             return pipeline;

@@ -182,11 +182,6 @@ impl Renderer {
         }
     }
 
-    /// Creates pipelines that the next model will probably need, while there is nothing else to do.
-    pub fn warm_up(&mut self, device: &wgpu::Device) {
-        self.pipelines.warm_up(device);
-    }
-
     /// Uploads a model's geometry and textures, unless it is already uploaded.
     pub fn upload(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, model: &Model) -> Result<(), UploadError> {
         if !self.models.iter().any(|known| known.id == model.id) {

@@ -349,6 +349,10 @@ pub const DOUBTFUL_REST: &str = "The motion's rest looks like a pose in motion. 
 pub const REMATCH: &str = "Re-match";
 /// Button that exchanges the sources of left and right joints.
 pub const SWAP_SIDES: &str = "Swap sides";
+/// Button that follows the names for left and right where positions contradict them.
+pub const MATCH_SIDES_BY_NAME: &str = "Match sides by name";
+/// The same button once names are followed.
+pub const MATCH_SIDES_BY_POSITION: &str = "Match sides by position";
 /// Button that leaves all joints unmapped.
 pub const CLEAR_MAP: &str = "Clear all";
 /// Choice of what happens to the root's horizontal travel.
@@ -392,6 +396,24 @@ pub fn rotation_offset_about(axis: &str) -> String {
 /// Returns the accessible name of the switch that ignores a source's channels of one property.
 pub fn ignore_channels(property: &str) -> String {
     format!("Ignore {property}")
+}
+
+/// Joints whose names say left or right but that lie on the other side, in the model or the motion; `first` is the first of
+/// them.
+pub fn sides_contradict(who: &str, first: &str, count: usize, by_position: bool) -> String {
+    let matched = if by_position { "position" } else { "name" };
+    match count {
+        1 => format!("{first} of the {who} has a left/right name on the opposite side; matched by {matched}."),
+        _ => format!("{count} joints of the {who} have left/right names on the opposite side; matched by {matched}."),
+    }
+}
+
+/// Joints that were left out because their shape fits several parts of the body.
+pub fn joints_left_out(who: &str, count: usize) -> String {
+    match count {
+        1 => format!("1 joint of the {who} could be one of several body parts and was left unmapped."),
+        _ => format!("{count} joints of the {who} could be one of several body parts and were left unmapped."),
+    }
 }
 
 /// Returns the summary of the map; `sources` counts all nodes of the motion.

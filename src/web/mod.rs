@@ -6,6 +6,7 @@ mod bench;
 mod calls;
 mod links;
 mod page;
+mod rehearsal;
 mod shell;
 
 pub use page::start;

@@ -7,6 +7,7 @@ use js_sys::Array;
 use wasm_bindgen::prelude::*;
 
 use super::calls::with_app;
+use super::rehearsal::rehearse;
 use super::shell::{self, Shell};
 use crate::app::{App, Host, Inbox, Loads, Message, Video, set_fatal_hook, web_options};
 use crate::editor::{Contents, OpenedModel};
@@ -60,10 +61,10 @@ pub async fn run(
         has_arrived.set(true);
         contents
     };
-    // While the files arrive, the device and pipelines are made. The files are requested first: they are far away.
+    // While the files arrive, the device is made and all is rehearsed. The files are requested first: they are far away.
     let app = async {
         start_app(canvas, &shell).await?;
-        if has_arrived.get() { Ok(()) } else { with_app(&*page()?, App::warm_up) }
+        if has_arrived.get() { Ok(()) } else { rehearse(&*page()?).await }
     };
     let started = async {
         let ((contents, state, problems), ()) = try_join(first, app).await?;

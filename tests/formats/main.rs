@@ -15,6 +15,7 @@ mod meshopt;
 mod mutation;
 mod obj;
 mod playback;
+mod rehearsal;
 mod sweep;
 mod tangents;
 mod write;

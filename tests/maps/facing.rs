@@ -50,21 +50,39 @@ fn a_figure_with_correct_names() {
     assert_eq!(found.contradictions, []);
 }
 
+/// A converter mirrored the body and kept the names.
 #[test]
-fn names_win_over_shape_and_the_contradiction_is_reported() {
+fn where_feet_are_clear_position_wins_over_names_and_the_contradiction_is_reported() {
     let asset = figure(-1.0, true);
     let found = recognize(&asset);
     let called = |slot: Slot| found.joint(slot).map(|joint| asset.skeleton.name(joint));
-    assert_eq!(called(Slot::LeftUpperLeg), Some("LeftUpLeg"));
-    assert!(found.facing.is_mirrored());
+    assert_eq!(called(Slot::LeftUpperLeg), Some("RightUpLeg"));
+    assert_eq!(called(Slot::RightHand), Some("LeftHand"));
+    assert!(found.by_position && !found.facing.is_mirrored());
     assert_eq!(found.facing.forward, Some(Vec3::Z));
     // Both sides of four joints of the legs and three of the arms.
     assert_eq!(found.contradictions.len(), 14);
-    let is_leg = |contradiction: &Contradiction| {
-        let Contradiction::Side { slot, joint, name } = contradiction;
-        *slot == Slot::LeftUpperLeg && name == "LeftUpLeg" && found.joint(*slot) == Some(*joint)
-    };
-    assert!(found.contradictions.iter().any(is_leg));
+    for Contradiction::Side { slot, joint, .. } in &found.contradictions {
+        assert_eq!(found.joint(*slot), Some(*joint));
+        assert!(found.parts[slot].confidence < 0.95, "{slot:?}");
+    }
+}
+
+/// One crossed leg is no mirrored body.
+#[test]
+fn a_few_joints_on_the_other_side_do_not_swap_the_sides() {
+    let mut asset = figure(1.0, true);
+    let mut rest = asset.skeleton.rest().clone();
+    for name in ["LeftUpLeg", "RightUpLeg"] {
+        let joint = asset.skeleton.find(name).expect(name);
+        let local = rest.local(joint);
+        rest.set_translation(joint, local.translation * Vec3::new(-1.0, 1.0, 1.0));
+    }
+    asset = Asset::from(asset.skeleton.with_rest(&rest));
+    let found = recognize(&asset);
+    assert!(!found.by_position);
+    assert_eq!(found.joint(Slot::LeftHand), asset.skeleton.find("LeftHand"));
+    assert!(!found.contradictions.is_empty());
 }
 
 #[test]
@@ -89,11 +107,13 @@ fn real_bodies_face_the_right_way() {
         // A converter mirrored these and kept the names.
         ("cosc422/dwarf.glb", Vec3::Z, true),
         ("cosc422/ArmyPilot.glb", Vec3::NEG_Z, true),
+        ("misc/godot_robot_player.glb", Vec3::Z, true),
     ] {
         let Some(asset) = open(path) else { return };
         let found = recognize(&asset);
         assert!(found.facing.forward.is_some_and(|found| found.dot(forward) > 0.99), "{path}: {:?}", found.facing);
-        assert_eq!(found.facing.is_mirrored(), mirrored, "{path}");
+        assert_eq!(found.by_position, mirrored, "{path}");
+        assert!(!found.facing.is_mirrored(), "{path}");
         assert_eq!(!found.contradictions.is_empty(), mirrored, "{path}");
     }
 }

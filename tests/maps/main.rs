@@ -9,3 +9,4 @@ mod rigs;
 #[path = "../support/skeletons.rs"]
 mod skeletons;
 mod truth;
+mod unnamed;

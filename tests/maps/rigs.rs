@@ -309,6 +309,127 @@ fn words_outside_any_vocabulary() {
     );
 }
 
+/// Builds a body from its words: hips, spine, neck, head, then per side clavicle, upper arm, forearm, hand, thigh, shin, foot,
+/// toes, with `~` for the side.
+fn check_language(sides: [&str; 2], trunk: [&str; 4], limbs: [&str; 8]) {
+    let [hips, spine, neck, head] = trunk;
+    let asset = rig(&format!(
+        "{hips}({spine}({neck}>{head}, {}), {})",
+        both(&limbs[..4].join(">"), sides),
+        both(&limbs[4..].join(">"), sides)
+    ));
+    let slots = ["Shoulder", "UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg", "Foot", "Toes"];
+    let of_side = |prefix: &str, side: &str| {
+        let named = |(slot, limb): (&str, &str)| (format!("{prefix}{slot}"), limb.replace('~', side));
+        slots.into_iter().zip(limbs).map(named).collect::<Vec<_>>()
+    };
+    let trunk = ["hips", "spine", "neck", "head"].into_iter().zip(trunk);
+    let mut expected: Vec<(String, String)> = trunk.map(|(slot, name)| (slot.to_owned(), name.to_owned())).collect();
+    expected.extend(of_side("left", sides[0]).into_iter().chain(of_side("right", sides[1])));
+    let expected: Vec<(&str, &str)> = expected.iter().map(|(slot, name)| (slot.as_str(), name.as_str())).collect();
+    check(&asset, &expected);
+}
+
+#[test]
+fn other_languages() {
+    check_language(
+        ["links", "rechts"],
+        ["Becken", "Wirbelsäule", "Hals", "Kopf"],
+        [
+            "Schlüsselbein_~",
+            "Oberarm_~",
+            "Unterarm_~",
+            "Hand_~",
+            "Oberschenkel_~",
+            "Unterschenkel_~",
+            "Fuß_~",
+            "Zehen_~",
+        ],
+    );
+    check_language(
+        ["izq", "der"],
+        ["cadera", "columna", "cuello", "cabeza"],
+        ["clavicula_~", "brazo_~", "antebrazo_~", "mano_~", "muslo_~", "pierna_~", "pie_~", "dedos_~"],
+    );
+    check_language(
+        ["Gauche", "Droite"],
+        ["Bassin", "Colonne", "Cou", "Tete"],
+        ["Clavicule~", "Bras~", "AvantBras~", "Main~", "Cuisse~", "Jambe~", "Pied~", "Orteils~"],
+    );
+    check_language(
+        ["左", "右"],
+        ["骨盆", "脊柱", "脖子", "头"],
+        ["~锁骨", "~上臂", "~前臂", "~手", "~大腿", "~小腿", "~脚", "~脚趾"],
+    );
+    check_language(
+        ["왼쪽", "오른쪽"],
+        ["골반", "척추", "목", "머리"],
+        ["~쇄골", "~위팔", "~아래팔", "~손", "~허벅지", "~종아리", "~발", "~발가락"],
+    );
+}
+
+#[test]
+fn mikumikudance() {
+    let arm = "~肩>~腕>~腕捩>~ひじ>~手捩>~手首(~親指０>~親指１>~親指２, ~人指１>~人指２>~人指３)";
+    let leg = "~足>~ひざ>~足首>~つま先";
+    let asset = rig(&format!(
+        "全ての親>センター>グルーブ(上半身>上半身2(首>頭(左目, 右目), {}), 下半身({})), 左足ＩＫ, 右足ＩＫ",
+        both(arm, ["左", "右"]),
+        both(leg, ["左", "右"])
+    ));
+    check(
+        &asset,
+        &[
+            ("hips", "グルーブ"),
+            ("spine", "上半身"),
+            ("chest", "上半身2"),
+            ("neck", "首"),
+            ("head", "頭"),
+            ("leftEye", "左目"),
+            ("leftShoulder", "左肩"),
+            ("leftUpperArm", "左腕"),
+            ("rightLowerArm", "右ひじ"),
+            ("rightHand", "右手首"),
+            ("leftThumbMetacarpal", "左親指０"),
+            ("leftIndexDistal", "左人指３"),
+            ("leftUpperLeg", "左足"),
+            ("rightLowerLeg", "右ひざ"),
+            ("leftFoot", "左足首"),
+            ("rightToes", "右つま先"),
+        ],
+    );
+}
+
+#[test]
+fn studio_prefixes_and_suffixes() {
+    for (before, after) in [("SK_", ""), ("rig:", "_jnt"), ("", "_env"), ("jt_", "_bnd"), ("acme_", "_zzz")] {
+        let named = |name: &str| format!("{before}{name}{after}");
+        let limbs = |names: [&str; 4]| names.map(named).join(">");
+        let arm = limbs(["clavicle_~", "upperarm_~", "forearm_~", "hand_~"]);
+        let leg = limbs(["thigh_~", "shin_~", "foot_~", "toe_~"]);
+        let asset = rig(&format!(
+            "{}({}({}>{}, {}), {})",
+            named("pelvis"),
+            named("spine"),
+            named("neck"),
+            named("head"),
+            both(&arm, ["l", "r"]),
+            both(&leg, ["l", "r"])
+        ));
+        check(
+            &asset,
+            &[
+                ("hips", &named("pelvis")),
+                ("head", &named("head")),
+                ("leftShoulder", &named("clavicle_l")),
+                ("rightUpperArm", &named("upperarm_r")),
+                ("leftLowerLeg", &named("shin_l")),
+                ("rightToes", &named("toe_r")),
+            ],
+        );
+    }
+}
+
 #[test]
 fn sanitised_mixamo() {
     let limbs = "mixamorig9~Shoulder>mixamorig9~Arm>mixamorig9~ForeArm>mixamorig9~Hand>mixamorig9~HandIndex1";

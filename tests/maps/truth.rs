@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use gaitway::anim::{ClipBuilder, Joint, JointIndex, Skeleton};
 use gaitway::asset::{Asset, AssetParts, MeshInstance, Slot, Slot::*};
-use gaitway::mesh::{Mesh, Skin};
+use gaitway::mesh::Skin;
 use gaitway::retarget::{ProposedPair, Reason, Recognized, propose, recognize};
 
 use crate::data::open;
@@ -454,6 +454,9 @@ const RIGS: &[Rig] = &[
     },
 ];
 
+/// A converter mirrored these and kept the names, so that what lies left is named right; where feet point shows it.
+const MIRRORED: [&str; 3] = ["cosc422/dwarf.glb", "cosc422/ArmyPilot.glb", "misc/godot_robot_player.glb"];
+
 /// Skeletons that aren't human bodies, and an arm that isn't enough of one.
 const NOT_BODIES: [&str; 9] = [
     "khronos/Fox/glTF-Binary/Fox.glb",
@@ -468,8 +471,16 @@ const NOT_BODIES: [&str; 9] = [
 ];
 
 impl Rig {
-    /// The joint of each part, by name or `#NODE`.
+    /// The joint of each part, by name or `#NODE`, on the side where it lies.
     fn truth(&self) -> BTreeMap<Slot, String> {
+        let truth = self.named();
+        match MIRRORED.contains(&self.files[0]) {
+            true => truth.into_iter().map(|(slot, name)| (slot.mirrored(), name)).collect(),
+            false => truth,
+        }
+    }
+
+    fn named(&self) -> BTreeMap<Slot, String> {
         let mut truth = BTreeMap::new();
         let mut put = |slot: Slot, name: &str| {
             if !name.is_empty() {
@@ -505,7 +516,7 @@ impl Rig {
     }
 }
 
-fn is_called(asset: &Asset, joint: JointIndex, name: &str) -> bool {
+pub fn is_called(asset: &Asset, joint: JointIndex, name: &str) -> bool {
     asset.skeleton.name(joint) == name || format!("#{}", asset.skeleton.source_index(joint)) == name
 }
 
@@ -514,7 +525,7 @@ fn without_humanoid(asset: Asset) -> Asset {
 }
 
 /// Visits every file without its own humanoid map, so that names and shape alone decide.
-fn each_file(mut visit: impl FnMut(&str, &Asset, &BTreeMap<Slot, String>)) {
+pub fn each_file(mut visit: impl FnMut(&str, &Asset, &BTreeMap<Slot, String>)) {
     for rig in RIGS {
         for path in rig.files {
             let Some(asset) = open(path).map(without_humanoid) else { return };
@@ -624,9 +635,17 @@ fn with_nodes_reversed(asset: &Asset) -> Asset {
     });
     let instances = asset.instances.iter().map(|instance| MeshInstance { joint: moved(&instance.joint), ..*instance });
     let (skins, clips, instances) = (skins.collect(), clips.into_iter().collect(), instances.collect());
-    // What the meshes look like does not matter.
-    let meshes = asset.meshes.iter().map(|_| Mesh::default()).collect();
-    let parts = AssetParts { skeleton, skins, clips, meshes, instances, ..AssetParts::default() };
+    let parts = AssetParts {
+        skeleton,
+        skins,
+        clips,
+        instances,
+        meshes: asset.meshes.clone(),
+        materials: asset.materials.clone(),
+        textures: asset.textures.clone(),
+        images: asset.images.clone(),
+        ..AssetParts::default()
+    };
     Asset::new(parts).expect("still valid")
 }
 
@@ -647,6 +666,22 @@ fn the_order_of_nodes_does_not_change_what_is_recognised() {
             .collect();
         assert_eq!(found, found_reversed, "{path}");
     });
+}
+
+/// The same skeleton in another file of a series: what it wears and holds, and who it is, change nothing.
+#[test]
+fn what_hangs_on_a_rig_does_not_change_what_its_joints_are() {
+    let Some(knight) = open("kaykit/Knight.glb") else { return };
+    let skinned: Vec<JointIndex> = knight.skins.iter().flat_map(|skin| skin.joints().iter().copied()).collect();
+    let carriers: Vec<JointIndex> = knight.instances.iter().map(|instance| instance.joint).collect();
+    let worn = carriers.into_iter().filter(|joint| !skinned.contains(joint));
+    let things = ["Barbarian_BearTail", "Barbarian_Wings", "head", "Barbarian_ArmLeft", "LeftHand", "hips"];
+    let numbers: Vec<usize> = worn.map(|joint| knight.skeleton.source_index(joint)).collect();
+    assert!(numbers.len() > things.len());
+    let skeleton = knight.skeleton.with_names(numbers.into_iter().zip(things.into_iter().cycle()));
+    let found = recognize(&knight);
+    let other = Asset::new(AssetParts { skeleton, ..knight.into_parts() }).expect("still valid");
+    assert_eq!(recognize(&other), found);
 }
 
 /// Every rig with every other one: no left joint follows a right one, and few parts are lost.

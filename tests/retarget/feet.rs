@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use gaitway::anim::{Clip, ClipBuilder, Interpolation, Keys};
-use gaitway::asset::Slot;
+use gaitway::asset::{Asset, AssetParts, MeshInstance, Slot};
+use gaitway::mesh::{Geometry, Mesh};
 use gaitway::retarget::{
     Feet, Figures, ResolvedMap, RestChoice, Retargeted, Retargeting, RootPart, propose, recognize,
 };
@@ -12,11 +13,25 @@ use glam::{Quat, Vec3};
 use crate::data_folder::data_folder;
 use crate::figure::{Figure, Rig, build};
 use crate::laws::{body, map};
+use crate::pairs_of_people::largest_excess_turn;
 use crate::real::read;
 
-/// Two steps of a second each: one foot stays in contact while the body passes over it and the other leg swings. `lift` is the
-/// height of the whole clip above the ground.
+/// How a figure walks.
+struct Walk {
+    /// Height of the whole clip above the ground.
+    lift: f32,
+    /// Or it walks on the spot.
+    travels: bool,
+    /// How far the knee of the supporting leg is bent, in radians; below 0, the other way.
+    knee: f32,
+}
+
 fn walker(lift: f32) -> Figure {
+    walking(&Walk { lift, travels: true, knee: 0.02 })
+}
+
+/// Two steps of a second each: one foot stays in contact while the body passes over it and the other leg swings.
+fn walking(walk: &Walk) -> Figure {
     let mut figure = build(&Rig::default());
     let skeleton = &figure.asset.skeleton;
     let mut clip = ClipBuilder::new("walk", skeleton);
@@ -38,7 +53,8 @@ fn walker(lift: f32) -> Figure {
             forward += length * (before - angle(time, supporting).sin());
         }
         let down = length * (1.0 - angle(time, supporting).cos());
-        places.push(rest + Vec3::new(0.0, lift - down, forward));
+        let travelled = if walk.travels { forward } else { 0.0 };
+        places.push(rest + Vec3::new(0.0, walk.lift - down, travelled));
     }
     clip.channel(hips, Interpolation::Linear, &times, Keys::Translation(places)).unwrap();
     for (upper, foot, phase) in [(Slot::LeftUpperLeg, Slot::LeftFoot, 0.0), (Slot::RightUpperLeg, Slot::RightFoot, 1.0)]
@@ -50,7 +66,7 @@ fn walker(lift: f32) -> Figure {
         // A bent knee lifts the swinging foot, which stays level.
         let bend = |time: f32| {
             let at = (time + phase).rem_euclid(2.0);
-            if at < 1.0 { 0.02 } else { 0.02 + 0.9 * ((at - 1.0) * std::f32::consts::PI).sin() }
+            if at < 1.0 { walk.knee } else { walk.knee + 0.9 * ((at - 1.0) * std::f32::consts::PI).sin() }
         };
         let mut add = |slot, radians: &dyn Fn(f32) -> f32| {
             let keys = times.iter().map(|&time| Quat::from_rotation_x(radians(time))).collect();
@@ -95,7 +111,7 @@ fn planting_stops_the_sliding_of_legs_of_another_length() {
 }
 
 #[test]
-fn feet_of_a_walk_in_place_are_planted_on_the_moving_ground() {
+fn feet_of_a_walk_stopped_by_the_map_are_planted_on_the_moving_ground() {
     let motion = walker(0.0);
     let model = build(&Rig { axes: 3, leg_length: 0.6, ..Rig::default() });
     let mut plain = map(&model, &motion);
@@ -170,4 +186,153 @@ fn a_planted_leg_is_hardly_straighter_than_before() {
         }
     }
     assert!(straightest > 0.98, "it never walks: {straightest}");
+}
+
+/// The underside of a shoe below the joint of a foot, in metres from it: toe, ball, heel.
+const SHOE: [Vec3; 3] = [Vec3::new(0.0, -0.15, 0.2), Vec3::new(0.03, -0.15, 0.1), Vec3::new(0.0, -0.15, -0.08)];
+
+/// Puts rigid shoes on the feet of a figure whose joints are not turned at rest.
+fn with_shoes(mut figure: Figure) -> Figure {
+    let feet = [Slot::LeftFoot, Slot::RightFoot].map(|slot| figure.joint(slot));
+    let shoe = Geometry { positions: SHOE.to_vec(), indices: vec![0, 1, 2], ..Geometry::default() };
+    let mesh = Mesh { primitives: vec![shoe], ..Mesh::default() };
+    let instances = feet.map(|joint| MeshInstance { joint, mesh: 0, skin: None }).to_vec();
+    let parts = std::mem::take(&mut figure.asset).into_parts();
+    figure.asset = Asset::new(AssetParts { meshes: vec![mesh], instances, ..parts }).unwrap();
+    figure
+}
+
+/// Height of the lowest point of the left shoe.
+fn shoe_height(figure: &Figure, clip: &Clip, time: f32) -> f64 {
+    let (turn, position) = figure.world(clip, time)[figure.joint(Slot::LeftFoot).get()];
+    SHOE.iter().map(|point| (position + turn * point.as_dvec3()).y).fold(f64::INFINITY, f64::min)
+}
+
+/// A body that stands still and rocks its feet on heel and toes.
+fn rocking() -> Figure {
+    let mut figure = build(&Rig::default());
+    let mut clip = ClipBuilder::new("rock", &figure.asset.skeleton);
+    let times: Vec<f32> = (0..=120).map(|frame| frame as f32 / 30.0).collect();
+    let angle = |time: &f32| Quat::from_rotation_x(0.2 * (0.5 * std::f32::consts::PI * time).sin());
+    for slot in [Slot::LeftFoot, Slot::RightFoot] {
+        let keys = times.iter().map(angle).collect();
+        clip.channel(figure.joint(slot), Interpolation::Linear, &times, Keys::Rotation(keys)).unwrap();
+    }
+    let clip = clip.build();
+    figure.set_clip(clip);
+    figure
+}
+
+#[test]
+fn the_mesh_of_a_foot_stands_on_the_ground_however_the_foot_is_turned() {
+    let motion = rocking();
+    let model = with_shoes(build(&Rig::default()));
+    let planted = ResolvedMap { feet: Feet::Plant, ..map(&model, &motion) };
+    let (done, figures) = retarget(&model, &motion, &planted);
+    // The shoe's sole at rest, 7 cm below the ankle's height of 8 cm.
+    let ground = 0.08 - 0.15;
+    let mut highest: f64 = 0.0;
+    for time in (0..=240).map(|frame| frame as f32 / 60.0) {
+        let height = shoe_height(&model, &done.clip, time) - ground;
+        assert!(height.abs() < 0.002, "{height} m at {time} s");
+        highest = highest.max((shoe_height(&model, done.unplanted.as_ref().unwrap(), time) - ground).abs());
+    }
+    assert!(highest > 0.02, "nothing to plant: {highest}");
+    let hover = figures.foot_hover_metres_mean.unwrap();
+    assert!(hover.abs() < 0.001, "{hover}");
+}
+
+#[test]
+fn hovering_is_the_height_of_the_mesh_or_without_one_of_the_joints() {
+    let motion = walker(0.05);
+    for model in [build(&Rig::default()), with_shoes(build(&Rig::default()))] {
+        let (_, figures) = retarget(&model, &motion, &map(&model, &motion));
+        let hover = figures.foot_hover_metres_mean.unwrap();
+        assert!((hover - 0.05).abs() < 0.01, "{hover}");
+    }
+}
+
+#[test]
+fn a_walk_in_place_is_planted_on_a_treadmill() {
+    let motion = walking(&Walk { lift: -0.1, travels: false, knee: 0.02 });
+    let model = build(&Rig { size: 1.4, leg_length: 0.8, ..Rig::default() });
+    let planted = ResolvedMap { feet: Feet::Plant, ..map(&model, &motion) };
+    let (done, figures) = retarget(&model, &motion, &planted);
+    let planting = done.planting.unwrap();
+    // The foot goes from 20° before the hips to 20° behind them in a second.
+    let speed = done.hips_scale.unwrap() * 2.0 * 0.87 * 20f64.to_radians().sin();
+    let found = planting.ground_metres_per_sec.unwrap();
+    assert!((found - speed).abs() < 0.06 * speed, "{found} m/s instead of {speed}");
+    assert!(planting.contacts >= 2, "{planting:?}");
+    assert!(figures.foot_slide_metres_per_sec.unwrap() < 0.05, "{figures:?}");
+    assert!(figures.foot_hover_metres_mean.unwrap().abs() < 0.005, "{figures:?}");
+    // The clip repeats without a jump.
+    let ends = [0.0, 2.0].map(|time| model.world(&done.clip, time));
+    let gap = ends[0].iter().zip(&ends[1]).map(|(first, last)| first.1.distance(last.1)).fold(0.0, f64::max);
+    assert!(gap < 0.002, "{gap} m");
+}
+
+#[test]
+fn a_motion_without_contacts_is_brought_to_the_ground() {
+    let mut motion = build(&Rig::default());
+    let hips = motion.joint(Slot::Hips);
+    let rest = motion.asset.skeleton.rest().local(hips).translation;
+    let times: Vec<f32> = (0..=30).map(|frame| frame as f32 / 30.0).collect();
+    // It glides forward, 5 cm in the ground.
+    let place = |time: &f32| rest + Vec3::new(0.0, -0.05, 2.0 * time);
+    let mut clip = ClipBuilder::new("glide", &motion.asset.skeleton);
+    clip.channel(hips, Interpolation::Linear, &times, Keys::Translation(times.iter().map(place).collect())).unwrap();
+    let clip = clip.build();
+    motion.set_clip(clip);
+    let model = with_shoes(build(&Rig::default()));
+    let planted = ResolvedMap { feet: Feet::Plant, ..map(&model, &motion) };
+    let (done, _) = retarget(&model, &motion, &planted);
+    let planting = done.planting.unwrap();
+    assert_eq!((planting.contacts, planting.ground_metres_per_sec), (0, None));
+    assert!((planting.lowered_metres + 0.05).abs() < 0.001, "{planting:?}");
+    let lowest = (0..=60).map(|at| shoe_height(&model, &done.clip, at as f32 / 60.0)).fold(f64::INFINITY, f64::min);
+    assert!((lowest + 0.07).abs() < 0.001, "{lowest}");
+}
+
+/// The same clip, jumping from key to key.
+fn stepped(mut figure: Figure) -> Figure {
+    let clip = &figure.asset.clips[0];
+    let mut builder = ClipBuilder::new("stepped", &figure.asset.skeleton);
+    for channel in clip.channels() {
+        let times = &clip.timelines()[channel.timeline as usize];
+        builder.channel(channel.joint, Interpolation::Step, times, channel.keys.clone()).unwrap();
+    }
+    let clip = builder.build();
+    figure.set_clip(clip);
+    figure
+}
+
+#[test]
+fn feet_are_planted_without_hips() {
+    let motion = walker(0.0);
+    let model = build(&Rig { leg_length: 0.8, ..Rig::default() });
+    let mut planted = ResolvedMap { feet: Feet::Plant, ..map(&model, &motion) };
+    planted.pairs.retain(|pair| pair.target != model.joint(Slot::Hips));
+    let (done, _) = retarget(&model, &motion, &planted);
+    let positions = (0..=60).flat_map(|at| model.world(&done.clip, at as f32 / 30.0));
+    assert!(positions.into_iter().all(|(turn, position)| turn.is_finite() && position.is_finite()));
+}
+
+/// Legs that are too short for their steps, and knees that bend a little the wrong way: neither may snap.
+#[test]
+fn planting_turns_no_leg_faster_than_its_source_by_5_degrees_a_frame() {
+    for knee in [0.02, -0.05, 0.0] {
+        let mut motion = walking(&Walk { lift: 0.0, travels: true, knee });
+        for leg_length in [0.5, 0.7, 1.3, 0.6] {
+            if leg_length == 0.6 {
+                motion = stepped(motion);
+            }
+            let model = build(&Rig { axes: 3, leg_length, ..Rig::default() });
+            let planted = ResolvedMap { feet: Feet::Plant, ..map(&model, &motion) };
+            let (done, _) = retarget(&model, &motion, &planted);
+            let clips = [&done.clip, &motion.asset.clips[0]];
+            let excess = largest_excess_turn([&model.asset, &motion.asset], clips, &planted, &model.slots);
+            assert!(excess < 5.0, "{excess}° with legs of {leg_length}, knees at {knee}");
+        }
+    }
 }

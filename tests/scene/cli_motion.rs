@@ -103,6 +103,7 @@ fn retarget_reports_the_documented_keys() {
         "resampled",
         "figures",
         "motion_rest",
+        "planting",
         "warnings",
     ] {
         assert!(report.get(key).is_some(), "{key}");
@@ -117,6 +118,7 @@ fn retarget_reports_the_documented_keys() {
         "foot_slide_metres_per_sec",
         "foot_slide_source_metres_per_sec",
         "ground_penetration_metres_max",
+        "foot_hover_metres_mean",
         "coverage",
     ] {
         assert!(report["figures"].get(key).is_some(), "{key}");

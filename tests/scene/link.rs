@@ -74,6 +74,7 @@ fn some_maps() -> Vec<MotionMap> {
 }
 
 /// States that differ from the default in one field each, with the field's name.
+#[expect(clippy::too_many_lines, reason = "a table")]
 fn one_field_each() -> Vec<(&'static str, ViewerState)> {
     let orbit =
         OrbitCamera { yaw_radians: 0.7, pitch_radians: -0.3, distance: 2.5, target: Vec3::new(0.1, -2.0, 3e-5) };

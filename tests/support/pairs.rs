@@ -2,9 +2,11 @@
 
 use std::path::Path;
 
-use gaitway::asset::{Asset, Humanoid};
+use gaitway::anim::{Clip, Pose, SampleCursor, Skeleton};
+use gaitway::asset::{Asset, Humanoid, Slot};
 use gaitway::formats::{FileSet, load};
-use gaitway::retarget::{Body, Feet, Figures, ResolvedMap, Retargeting, propose, recognize};
+use gaitway::retarget::{Body, Feet, Figures, ResolvedMap, Retargeted, Retargeting, propose, recognize};
+use glam::DQuat;
 
 /// A file with a person: its path under the data folder, and the clip to retarget; none for targets only.
 pub struct Person {
@@ -119,7 +121,7 @@ pub struct Outcome {
 
 /// The columns of `docs/retargeting-pairs.tsv` after model and motion, with their decimal places.
 #[allow(dead_code)]
-pub const COLUMNS: [(&str, usize); 13] = [
+pub const COLUMNS: [(&str, usize); 15] = [
     ("joints", 0),
     ("coverage", 2),
     ("hips_scale", 3),
@@ -132,6 +134,8 @@ pub const COLUMNS: [(&str, usize); 13] = [
     ("foot_slide_m_per_s", 3),
     ("foot_slide_source_m_per_s", 3),
     ("foot_slide_planted_m_per_s", 3),
+    ("foot_hover_m", 3),
+    ("foot_hover_planted_m", 3),
     ("ground_penetration_max_m", 3),
 ];
 
@@ -153,6 +157,8 @@ impl Outcome {
             figures.foot_slide_metres_per_sec,
             figures.foot_slide_source_metres_per_sec,
             self.planted.as_ref().and_then(|planted| planted.foot_slide_metres_per_sec),
+            figures.foot_hover_metres_mean,
+            self.planted.as_ref().and_then(|planted| planted.foot_hover_metres_mean),
             figures.ground_penetration_metres_max,
         ]
     }
@@ -169,17 +175,73 @@ impl Outcome {
 
 /// The motion's clip on the model, by the map that is proposed.
 pub fn borrow(model: &Loaded, motion: &Loaded, plant: bool) -> Result<Outcome, String> {
-    let proposal = propose(&model.asset, &motion.asset);
-    let map = proposal.to_map(&model.asset, &motion.asset);
-    let mut map = map.resolve(&model.asset, &motion.asset).map_err(|error| error.to_string())?;
+    let map = proposed(model, motion)?;
+    let (figures, made) = measured(model, motion, &map)?;
+    let planted = if plant { Some(measured(model, motion, &planted(map.clone()))?.0) } else { None };
+    Ok(Outcome { mapped: map.pairs.len(), figures, planted, hips_scale: made.hips_scale })
+}
+
+pub fn proposed(model: &Loaded, motion: &Loaded) -> Result<ResolvedMap, String> {
+    let map = propose(&model.asset, &motion.asset).to_map(&model.asset, &motion.asset);
+    map.resolve(&model.asset, &motion.asset).map_err(|error| error.to_string())
+}
+
+pub fn planted(map: ResolvedMap) -> ResolvedMap {
+    ResolvedMap { feet: Feet::Plant, ..map }
+}
+
+pub fn measured(model: &Loaded, motion: &Loaded, map: &ResolvedMap) -> Result<(Figures, Retargeted), String> {
     let clip = motion.clip.ok_or("no clip")?;
-    let made = |map: &ResolvedMap| {
-        let pair = Retargeting::new(model.body(), motion.body(), clip, map).map_err(|error| error.to_string())?;
-        let made = pair.bake().map_err(|error| error.to_string())?;
-        Ok::<_, String>((pair.figures(&made), made.hips_scale))
-    };
-    let (figures, hips_scale) = made(&map)?;
-    map.feet = Feet::Plant;
-    let planted = if plant { Some(made(&map)?.0) } else { None };
-    Ok(Outcome { mapped: map.pairs.len(), figures, planted, hips_scale })
+    let pair = Retargeting::new(model.body(), motion.body(), clip, map).map_err(|error| error.to_string())?;
+    let made = pair.bake().map_err(|error| error.to_string())?;
+    Ok((pair.figures(&made), made))
+}
+
+/// By how many degrees a joint of a leg at most turns further than its source from one sixtieth of a second to the next. Both
+/// arrays are of the model and its motion.
+#[allow(dead_code)]
+pub fn largest_excess_turn(assets: [&Asset; 2], clips: [&Clip; 2], map: &ResolvedMap, slots: &Humanoid) -> f64 {
+    const LEGS: [Slot; 6] = [
+        Slot::LeftUpperLeg,
+        Slot::LeftLowerLeg,
+        Slot::LeftFoot,
+        Slot::RightUpperLeg,
+        Slot::RightLowerLeg,
+        Slot::RightFoot,
+    ];
+    let targets: Vec<_> = LEGS.iter().filter_map(|&slot| slots.joint(slot)).collect();
+    let is_leg = |target| targets.contains(target);
+    let legs: Vec<[usize; 2]> = map
+        .pairs
+        .iter()
+        .filter(|pair| is_leg(&pair.target))
+        .map(|pair| [pair.target.get(), pair.source.get()])
+        .collect();
+    let at = |frame: usize| [0, 1].map(|side| rotations(&assets[side].skeleton, clips[side], frame as f32 / 60.0));
+    let mut largest: f64 = 0.0;
+    let mut before = at(0);
+    for frame in 1..=(clips[1].duration_secs() * 60.0) as usize {
+        let now = at(frame);
+        for leg in &legs {
+            let [target, source] = [0, 1].map(|side| {
+                let turn = before[side][leg[side]].conjugate() * now[side][leg[side]];
+                (2.0 * turn.xyz().length().atan2(turn.w.abs())).to_degrees()
+            });
+            largest = largest.max(target - source);
+        }
+        before = now;
+    }
+    largest
+}
+
+/// Model-space rotations of all joints.
+fn rotations(skeleton: &Skeleton, clip: &Clip, time_secs: f32) -> Vec<DQuat> {
+    let mut pose: Pose = skeleton.rest().clone();
+    clip.sample(skeleton, time_secs, &mut SampleCursor::default(), &mut pose);
+    let mut rotations: Vec<DQuat> = Vec::new();
+    for (local, parent) in pose.locals().zip(skeleton.parents()) {
+        let parent = parent.map_or(DQuat::IDENTITY, |parent| rotations[parent.get()]);
+        rotations.push((parent * local.rotation.as_dquat()).normalize());
+    }
+    rotations
 }

@@ -329,6 +329,52 @@ fn whole_maps_are_swapped_cleared_and_taken_back() {
     assert_eq!(harness.state().state(), &before);
 }
 
+/// The walker in other words, with left and right exchanged, as converters that mirror a model leave it.
+#[test]
+fn sides_matched_by_position_are_matched_by_name_with_one_click() {
+    let walker = samples::load("walker").expect("the sample is there");
+    let skeleton = &walker.asset.skeleton;
+    const WORDS: [(&str, &str); 12] = [
+        ("UpperArm", "Humerus"),
+        ("LowerArm", "Forearm"),
+        ("Shoulder", "Clavicle"),
+        ("Hand", "Wrist"),
+        ("UpperLeg", "Thigh"),
+        ("LowerLeg", "Shin"),
+        ("Foot", "Ankle"),
+        ("Toes", "Ball"),
+        ("Hips", "Pelvis"),
+        ("Spine", "Belly"),
+        ("Chest", "Thorax"),
+        ("Head", "Skull"),
+    ];
+    let reworded =
+        |rest: &str| WORDS.iter().find(|(word, _)| *word == rest).map_or(rest, |(_, other)| other).to_owned();
+    let exchanged = |name: &str| match (name.strip_prefix("Left"), name.strip_prefix("Right")) {
+        (Some(rest), _) => format!("Right{}", reworded(rest)),
+        (_, Some(rest)) => format!("Left{}", reworded(rest)),
+        _ => reworded(name),
+    };
+    let names: Vec<(usize, String)> =
+        skeleton.joints().map(|joint| (skeleton.source_index(joint), exchanged(skeleton.name(joint)))).collect();
+    let renamed = skeleton.with_names(names.iter().map(|(number, name)| (*number, name.as_str())));
+    let mut library = Library::default();
+    library.add(Model::new("mirrored.glb".to_owned(), Asset::from(renamed), Vec::new()));
+    library.set_motions(vec![Motion::new("dance.bvh".to_owned(), walker.asset.clone())]);
+    let mut harness = bench_of(WIDE, library);
+    press(&mut harness, Tab::Motion.label());
+    let at = |name: &str| skeleton.source_index(skeleton.find(name).expect(name));
+    let by_position = format!("LeftWrist follows {}  RightHand (sure", at("RightHand"));
+    let by_name = format!("LeftWrist follows {}  LeftHand (sure", at("LeftHand"));
+    assert!(harness.query_by_label_contains(&by_position).is_some());
+    assert!(harness.query_by_label_contains("on the opposite side; matched by position.").is_some());
+    assert_eq!(press(&mut harness, text::MATCH_SIDES_BY_NAME), [edit(MapEdit::SwapSides)]);
+    assert!(harness.query_by_label_contains(&by_name).is_some());
+    assert!(harness.query_by_label_contains("on the opposite side; matched by name.").is_some());
+    press(&mut harness, text::MATCH_SIDES_BY_POSITION);
+    assert!(harness.query_by_label_contains(&by_position).is_some());
+}
+
 /// A button that was reached with the tab key keeps the keyboard; edits made with it can be undone all the same.
 #[test]
 fn undo_works_while_a_button_has_the_keyboard() {

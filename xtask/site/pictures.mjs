@@ -9,7 +9,7 @@ import { linkOf, samplesOf } from "./samples.mjs";
 /** @typedef {import("./samples.mjs").LinkParts} LinkParts */
 
 const TARGET = process.env.CARGO_TARGET_DIR ?? "target";
-const CODE = ["shaders", "crates/core/src", ...["asset", "formats", "retarget", "library", "samples", "state", "frame", "render", "files", "editor", "cli"].map((module) => `src/${module}`)];
+const CODE = ["shaders", "crates/core/src", ...["samples", "state", "frame", "render", "files", "editor", "cli"].map((module) => `src/${module}`)];
 
 function codeHash() {
   const hash = crypto.createHash("sha256");

@@ -1,4 +1,5 @@
-//! Decodes the meshes of `KHR_draco_mesh_compression`. The glTF around them is the caller's: see `src/formats/gltf/draco.rs`.
+//! Decodes the meshes of `KHR_draco_mesh_compression`. The glTF around them is the caller's: see
+//! `crates/core/src/formats/gltf/draco.rs`.
 
 mod number;
 mod wire;

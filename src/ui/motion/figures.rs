@@ -9,7 +9,7 @@ use crate::ui::{Shown, controls, style, text};
 
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>) {
     let clip = active_clip(pairing.model, shown.state);
-    let Some(figures) = clip.and_then(|clip| shown.library.figures(clip)) else {
+    let Some((clip, figures)) = clip.and_then(|clip| Some((clip, shown.library.figures(clip)?))) else {
         controls::hint(ui, "Choose a borrowed clip to see how well it fits.");
         return;
     };
@@ -23,6 +23,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>) {
         foot_slide_metres_per_sec,
         foot_slide_source_metres_per_sec,
         ground_penetration_metres_max,
+        foot_hover_metres_mean,
         coverage,
     } = *figures;
     let degrees = |value: Option<f64>| value.map(|value| format!("{value:.2}°"));
@@ -48,7 +49,12 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>) {
     group(ui, "FEET", "Measured while the source's foot is on the ground, next to the source's own slide.");
     row(ui, "Slide", speed(foot_slide_metres_per_sec));
     row(ui, "Slide of the source", speed(foot_slide_source_metres_per_sec));
-    row(ui, "Max. ground penetration", ground_penetration_metres_max.map(|depth| format!("{:.1} cm", 100.0 * depth)));
+    let centimetres = |value: Option<f64>| value.map(|metres| format!("{:.1} cm", 100.0 * metres));
+    row(ui, "Mean height of the soles", centimetres(foot_hover_metres_mean));
+    row(ui, "Max. ground penetration", centimetres(ground_penetration_metres_max));
+    if let Some(planting) = pairing.model.borrowed(clip).and_then(|borrowed| borrowed.planting) {
+        controls::hint(ui, format!("Feet on the ground: {planting}."));
+    }
     group(ui, "COVERAGE", "Mapped body parts, of those that both files have.");
     row(ui, "Mapped", coverage.map(|share| format!("{:.0} %", 100.0 * share)));
 }

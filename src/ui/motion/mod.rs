@@ -21,7 +21,7 @@ use super::{Output, Shown, UiAction, UiState, clips, controls, style};
 use crate::anim::{JointIndex, find_clip};
 use crate::asset::Asset;
 use crate::library::{Model, ModelId, Motion};
-use crate::retarget::{ClipRef, Contradiction, JointMap, Proposal, Unmapped};
+use crate::retarget::{ClipRef, Contradiction, JointMap, Proposal, Reason, Unmapped};
 use crate::state::{Command, MapEdit, ViewerState, active_clip, choice_of_clip, title};
 use crate::ui::text;
 
@@ -68,6 +68,8 @@ struct Contents {
     motions: Vec<String>,
     mapped: String,
     remarks: Vec<String>,
+    /// See [`sides_choice`].
+    sides_choice: Option<&'static str>,
 }
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
@@ -147,6 +149,7 @@ impl Contents {
             motions: if several { clips::names_of(motions.iter().map(|motion| &*motion.source)) } else { Vec::new() },
             mapped: text::joints_mapped(mapped, pairing.motion.asset.skeleton.len()),
             remarks: remarks(pairing),
+            sides_choice: sides_choice(pairing),
         }
     }
 }
@@ -267,13 +270,17 @@ fn body(
     }
 }
 
+/// Height of the buttons that edit the whole map.
+const HEIGHT: f32 = 30.0;
+
+/// Returns whether the button was clicked.
+fn button(ui: &mut Ui, width: f32, enabled: bool, text: &str, hover: &str) -> bool {
+    let button = egui::Button::new(text).min_size(egui::vec2(width, HEIGHT)).truncate();
+    ui.add_enabled_ui(enabled, |ui| ui.add_sized([width, HEIGHT], button)).inner.on_hover_text(hover).clicked()
+}
+
 /// Buttons that edit the whole map.
 fn edits(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, local: &mut UiState, out: &mut Output) {
-    const HEIGHT: f32 = 30.0;
-    let button = |ui: &mut Ui, width: f32, enabled: bool, text: &str, hover: &str| {
-        let button = egui::Button::new(text).min_size(egui::vec2(width, HEIGHT)).truncate();
-        ui.add_enabled_ui(enabled, |ui| ui.add_sized([width, HEIGHT], button)).inner.on_hover_text(hover).clicked()
-    };
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         let width = ui.available_width() - 2.0 * (HEIGHT + 6.0);
@@ -336,6 +343,12 @@ fn header(ui: &mut Ui, pairing: &Pairing<'_>, contents: &Contents, out: &mut Out
     for text in &contents.remarks {
         ui.add(egui::Label::new(RichText::new(text).small().color(palette.warning)).wrap());
     }
+    let width = ui.available_width();
+    if let Some(label) = contents.sides_choice
+        && button(ui, width, true, label, "Map left joints to right ones and vice versa")
+    {
+        out.commands.push(Command::EditMap { motion: pairing.index, edit: MapEdit::SwapSides });
+    }
 }
 
 fn first_clip_of(model: &Model, motion: usize) -> Option<Command> {
@@ -343,32 +356,49 @@ fn first_clip_of(model: &Model, motion: usize) -> Option<Command> {
     Some(Command::SetClip(choice_of_clip(model, clip)))
 }
 
+/// Whether most joints with a side follow the other side than proposed.
+fn follows_names(pairing: &Pairing<'_>, proposal: &Proposal) -> bool {
+    let number = |joint| pairing.motion.asset.skeleton.source_index(joint);
+    let mut crossing = 0_i32;
+    for pair in &proposal.pairs {
+        let is_sided = pair.slot.is_some_and(|slot| slot.mirrored() != slot);
+        let target = pairing.model.asset.skeleton.source_index(pair.target);
+        let source = pairing.map.joints.get(&target).and_then(|entry| entry.source);
+        if let Some(source) = source.filter(|_| is_sided) {
+            crossing += if source == number(pair.source) { -1 } else { 1 };
+        }
+    }
+    crossing > 0
+}
+
+/// Label of the button that exchanges position and names as what decides about the sides; None if they agree, or were not
+/// used.
+fn sides_choice(pairing: &Pairing<'_>) -> Option<&'static str> {
+    let proposal = pairing.proposal?;
+    let is_by_position = proposal.model.by_position != proposal.motion.by_position
+        && proposal.pairs.iter().any(|pair| pair.slot.is_some() && pair.reason != Reason::SameName);
+    let label =
+        if follows_names(pairing, proposal) { text::MATCH_SIDES_BY_POSITION } else { text::MATCH_SIDES_BY_NAME };
+    is_by_position.then_some(label)
+}
+
 /// Warnings about the two skeletons.
 fn remarks(pairing: &Pairing<'_>) -> Vec<String> {
-    const MAX_REMARKS: usize = 3;
+    const MAX_REMARKS: usize = 4;
     let mut remarks = Vec::new();
     let mut borrowed = pairing.model.borrowed_clips().filter(|(_, borrowed)| borrowed.motion == pairing.index);
     if borrowed.any(|(_, borrowed)| borrowed.motion_rest.is_doubtful()) {
         remarks.push(text::DOUBTFUL_REST.to_owned());
     }
     let Some(proposal) = pairing.proposal else { return remarks };
+    let is_swapped = follows_names(pairing, proposal);
     for (who, recognized) in [("model", &proposal.model), ("motion", &proposal.motion)] {
-        let sides: Vec<&str> = recognized
-            .contradictions
-            .iter()
-            .map(|contradiction| {
-                let Contradiction::Side { name, .. } = contradiction;
-                name.as_str()
-            })
-            .collect();
-        if let Some((first, rest)) = sides.split_first() {
-            remarks.push(match rest.len() {
-                0 => format!("{first} of the {who} has a left/right name on the opposite side; matched by name."),
-                others => {
-                    let count = others + 1;
-                    format!("{count} joints of the {who} have left/right names on the opposite side; matched by name.")
-                }
-            });
+        if let Some(Contradiction::Side { name, .. }) = recognized.contradictions.first() {
+            let by_position = recognized.by_position && !is_swapped;
+            remarks.push(text::sides_contradict(who, name, recognized.contradictions.len(), by_position));
+        }
+        if !recognized.left_out.is_empty() {
+            remarks.push(text::joints_left_out(who, recognized.left_out.len()));
         }
     }
     remarks.truncate(MAX_REMARKS);

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use super::{Pairing, joint_text};
 use crate::anim::JointIndex;
 use crate::asset::{Asset, Slot};
-use crate::retarget::{Contradiction, JointMap, Unmapped};
+use crate::retarget::{Contradiction, JointMap, Recognized, Unmapped};
 use crate::state::muted_properties;
 
 /// Below this confidence a proposal counts as a guess.
@@ -219,12 +219,13 @@ struct Whole {
 
 impl Whole {
     fn new(pairing: &Pairing<'_>, given: &[Option<Option<JointIndex>>]) -> Self {
-        let misplaced = |contradictions: &[Contradiction]| -> Vec<JointIndex> {
+        // Where position decided, the slots are on the sides where the joints lie.
+        let misplaced = |recognized: &Recognized| -> Vec<JointIndex> {
             let joint = |contradiction: &Contradiction| {
                 let Contradiction::Side { joint, .. } = contradiction;
                 *joint
             };
-            contradictions.iter().map(joint).collect()
+            recognized.contradictions.iter().filter(|_| !recognized.by_position).map(joint).collect()
         };
         let mut whole = Self {
             target_slots: BTreeMap::new(),
@@ -240,8 +241,8 @@ impl Whole {
             };
             whole.target_slots = slots(&proposal.model.parts);
             whole.source_slots = slots(&proposal.motion.parts);
-            whole.misplaced_targets = misplaced(&proposal.model.contradictions);
-            whole.misplaced_sources = misplaced(&proposal.motion.contradictions);
+            whole.misplaced_targets = misplaced(&proposal.model);
+            whole.misplaced_sources = misplaced(&proposal.motion);
         }
         let mut crossing = 0_i32;
         for (target, source) in pairing.model.asset.skeleton.joints().zip(given) {
@@ -327,17 +328,22 @@ impl Whole {
         let slot = slot.or_else(|| proposed.and_then(|pair| pair.slot));
         let what = slot.map(slot_text).unwrap_or_default();
         let mut why: Vec<String> = slot.map(|_| what.clone()).into_iter().collect();
+        let left_out = pairing.proposal.and_then(|proposal| left_out(&proposal.model, joint));
         why.push(match (source, given, as_proposed) {
             (_, _, Some(pair)) => format!("{} · {:.0} %", pair.reason, 100.0 * pair.confidence),
             (Some(_), _, None) => "chosen by hand".to_owned(),
             (None, Some(None), None) => "deliberately none".to_owned(),
+            (None, None, None) if left_out.is_some() => {
+                let what = left_out.map(slot_text).unwrap_or_default();
+                format!("may be the {what}; left out because it could be another part")
+            }
             _ => "follows nothing".to_owned(),
         });
         let (state, look) = match source {
             None => {
                 let own = map.joints.get(&number).and_then(|entry| entry.unmapped.as_ref());
                 why.extend(unmapped_text(pairing, own.unwrap_or(&map.unmapped)));
-                (State::None, given.is_none() && self.has_free_source(slot))
+                (State::None, given.is_none() && self.has_free_source(slot.or(left_out)))
             }
             Some(source) => {
                 let is_unsure = as_proposed.is_some_and(|pair| pair.confidence < UNSURE);
@@ -362,6 +368,11 @@ impl Whole {
             depth: 0,
         }
     }
+}
+
+/// The slot that a joint was left out of because it isn't certain.
+fn left_out(recognized: &Recognized, joint: JointIndex) -> Option<Slot> {
+    recognized.left_out.iter().find(|(_, part)| part.joint == joint).map(|(&slot, _)| slot)
 }
 
 /// What a joint without a source plays instead of resting.

@@ -1,0 +1,211 @@
+//! A set of named files in memory: dropped, picked, unpacked from an archive, read from disk or fetched.
+
+use std::io::{Cursor, Read};
+use std::sync::Arc;
+
+use super::LoadError;
+use super::limits::{MAX_ARCHIVE_FILES, MAX_READ_BYTES};
+
+/// Deflate makes nothing smaller than this.
+const MAX_COMPRESSION: u64 = 1032;
+
+/// Files by path, with `/` between folders, in the order they were added.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct FileSet {
+    files: Vec<(String, Arc<[u8]>)>,
+    conversions: Vec<(String, Conversion)>,
+}
+
+/// What a file was before it was converted into plain glTF.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Conversion {
+    /// `None`: still the format of the glTF.
+    pub format: Option<&'static str>,
+    /// glTF extensions that the file no longer has.
+    pub extensions: Vec<String>,
+    /// What could not be carried over.
+    pub warnings: Vec<String>,
+}
+
+/// The file that a reference resolves to, and whether only its bare name matched.
+pub(super) struct Found<'a> {
+    pub name: &'a str,
+    pub bytes: &'a Arc<[u8]>,
+    pub by_bare_name: bool,
+}
+
+impl FileSet {
+    /// Adds a file, or the files inside it if it is a zip archive. Returns its normalized name.
+    ///
+    /// # Errors
+    /// If the archive cannot be read, or unpacks to more than is kept in memory. Some of its files may have been added then.
+    pub fn add(&mut self, name: impl Into<String>, bytes: impl Into<Arc<[u8]>>) -> Result<String, LoadError> {
+        let (name, bytes) = (join("", &name.into()), bytes.into());
+        if bytes.starts_with(b"PK\x03\x04") {
+            self.unpack(&name, &bytes)?;
+        } else {
+            self.insert(name.clone(), bytes);
+        }
+        Ok(name)
+    }
+
+    /// Adds a file as it is, replacing any file of the same name. Archives are left packed, and their content is not found.
+    pub fn insert(&mut self, name: impl Into<String>, bytes: impl Into<Arc<[u8]>>) {
+        let (name, bytes) = (join("", &name.into()), bytes.into());
+        match self.files.iter_mut().find(|(other, _)| *other == name) {
+            Some(file) => file.1 = bytes,
+            None => self.files.push((name, bytes)),
+        }
+    }
+
+    /// Replaces a file by what it was converted into.
+    pub(super) fn convert(&mut self, name: &str, bytes: impl Into<Arc<[u8]>>, conversion: Conversion) {
+        self.insert(name, bytes);
+        let known = self.conversions.iter_mut().find(|(of, _)| of == name);
+        match known {
+            Some((_, earlier)) => {
+                earlier.extensions.extend(conversion.extensions);
+                earlier.warnings.extend(conversion.warnings);
+            }
+            None => self.conversions.push((name.to_owned(), conversion)),
+        }
+    }
+
+    /// Returns what a file was before it was converted.
+    pub(super) fn conversion(&self, name: &str) -> Option<&Conversion> {
+        self.conversions.iter().find(|(of, _)| of == name).map(|(_, conversion)| conversion)
+    }
+
+    /// Returns the contents of the file with exactly this normalized name.
+    pub fn get(&self, name: &str) -> Option<&Arc<[u8]>> {
+        self.files.iter().find(|(other, _)| other == name).map(|(_, bytes)| bytes)
+    }
+
+    /// Returns the normalized names, in the order the files were added.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.files.iter().map(|(name, _)| name.as_str())
+    }
+
+    /// Returns whether the set has no files.
+    pub fn is_empty(&self) -> bool {
+        self.files.is_empty()
+    }
+
+    /// Returns the size of all files together.
+    pub fn byte_count(&self) -> u64 {
+        self.files.iter().map(|(_, bytes)| bytes.len() as u64).sum()
+    }
+
+    /// Returns the normalized names and contents, in the order the files were added.
+    pub fn iter(&self) -> impl Iterator<Item = (&str, &Arc<[u8]>)> {
+        self.files.iter().map(|(name, bytes)| (name.as_str(), bytes))
+    }
+
+    /// Finds the file that `base` refers to as `uri` (already percent-decoded). Falls back to a file of the same bare name in
+    /// any folder, since exporters often write paths of the machine they ran on.
+    pub(super) fn resolve(&self, base: &str, uri: &str) -> Option<Found<'_>> {
+        let path = join(base, uri);
+        if let Some((name, bytes)) = self.files.iter().find(|(name, _)| *name == path) {
+            return Some(Found { name, bytes, by_bare_name: false });
+        }
+        fn folded(name: &str) -> impl Iterator<Item = char> {
+            name.chars().flat_map(char::to_lowercase)
+        }
+        let bare = bare_name(uri);
+        self.files
+            .iter()
+            .find(|(name, _)| !bare.is_empty() && folded(bare_name(name)).eq(folded(bare)))
+            .map(|(name, bytes)| Found { name, bytes, by_bare_name: true })
+    }
+
+    fn unpack(&mut self, archive_name: &str, bytes: &[u8]) -> Result<(), LoadError> {
+        let error = |problem: String| LoadError::Archive { file: archive_name.to_owned(), problem };
+        let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).map_err(|_| {
+            error("not a readable zip: its list of files is missing or damaged (cut short?)".to_owned())
+        })?;
+        let entries = archive.len();
+        if entries > MAX_ARCHIVE_FILES {
+            return Err(error(format!("{entries} files in the archive; at most {MAX_ARCHIVE_FILES} are read")));
+        }
+        // The archive is in memory together with what is unpacked from it.
+        let mut bytes_left = MAX_READ_BYTES.saturating_sub(self.byte_count() + bytes.len() as u64);
+        for index in 0..entries {
+            let entry = archive.by_index(index).map_err(|problem| error(format!("entry {index}: {problem}")))?;
+            let name = entry.name().map_err(|problem| error(format!("entry {index}: {problem}")))?.into_owned();
+            if entry.is_dir() || name.starts_with("__MACOSX/") || bare_name(&name).starts_with("._") {
+                continue;
+            }
+            let too_large = || {
+                let max = MAX_READ_BYTES >> 20;
+                error(format!("packed and unpacked, more than {max} MiB in all, the most that is read at once"))
+            };
+            // Trusting an oversized header saves work; one that understates the size is caught while unpacking.
+            if entry.size() > bytes_left {
+                return Err(too_large());
+            }
+            let likely = entry.size().min(entry.compressed_size().saturating_mul(MAX_COMPRESSION));
+            let mut content = Vec::with_capacity(usize::try_from(likely).unwrap_or(0));
+            entry
+                .take(bytes_left + 1)
+                .read_to_end(&mut content)
+                .map_err(|problem| error(format!("“{name}” cannot be unpacked: {problem}")))?;
+            bytes_left = bytes_left.checked_sub(content.len() as u64).ok_or_else(too_large)?;
+            self.insert(name, content);
+        }
+        Ok(())
+    }
+}
+
+pub(super) fn bare_name(path: &str) -> &str {
+    path.rsplit(['/', '\\']).next().unwrap_or(path)
+}
+
+/// Returns the name in the set of a file `part` that was made of `base`, and the URI by which `base` refers to it.
+pub(super) fn beside(base: &str, part: &str) -> (String, String) {
+    let uri = format!("{}.{part}", bare_name(base));
+    (join(base, &uri), uri)
+}
+
+/// A file's own name without folders, query and extension.
+pub fn file_stem(name: &str) -> &str {
+    let bare = bare_name(without_query(name));
+    bare.rsplit_once('.').map_or(bare, |(stem, _)| stem)
+}
+
+/// Cuts the query and the fragment off a URL, which may contain slashes of their own. In a path, folders may be named with `?`
+/// or `#`.
+pub(super) fn without_query(name: &str) -> &str {
+    let start = if name.contains("://") { 0 } else { name.len() - bare_name(name).len() };
+    let end = name[start..].find(['?', '#']).map_or(name.len(), |length| start + length);
+    &name[..end]
+}
+
+/// Resolves `uri` against the folder of `base`, including `.` and `..`. A URL with a scheme is returned unchanged.
+fn join(base: &str, uri: &str) -> String {
+    if uri.contains("://") {
+        return uri.to_owned();
+    }
+    let (origin, base_path) = match base.split_once("://") {
+        Some((scheme, rest)) => {
+            let (host, path) = rest.split_once('/').unwrap_or((rest, ""));
+            (format!("{scheme}://{host}/"), path)
+        }
+        None => (String::new(), base),
+    };
+    let uri = uri.replace('\\', "/");
+    let mut parts: Vec<&str> = base_path.split('/').collect();
+    parts.pop();
+    if uri.starts_with('/') {
+        parts.clear();
+    }
+    for part in uri.split('/') {
+        match part {
+            "" | "." => {}
+            ".." => {
+                parts.pop();
+            }
+            part => parts.push(part),
+        }
+    }
+    origin + &parts.join("/")
+}

@@ -1,0 +1,256 @@
+//! Loads files in memory as an [`Asset`], and writes GLB. Knows neither disk nor network: callers ask [`missing_files`] what
+//! else a file refers to, add it to the [`FileSet`], then call [`load`].
+//!
+//! ```
+//! use gaitway_core::formats::{FileSet, load, missing_files};
+//!
+//! # fn main() -> Result<(), gaitway_core::formats::LoadError> {
+//! let json = r#"{
+//!     "asset": { "version": "2.0" },
+//!     "nodes": [{ "name": "hips" }],
+//!     "buffers": [{ "uri": "fox.bin", "byteLength": 4 }]
+//! }"#;
+//! let mut files = FileSet::default();
+//! files.insert("fox.gltf", json.as_bytes());
+//! // The caller finds these files, wherever they are.
+//! assert_eq!(missing_files(&files), ["fox.bin"]);
+//! files.insert("fox.bin", [0; 4]);
+//!
+//! let asset = load(&files)?;
+//! assert!(asset.skeleton.find("hips").is_some());
+//! # Ok(())
+//! # }
+//! ```
+
+mod bvh;
+mod error;
+mod file_set;
+mod gltf;
+pub mod limits;
+mod lines;
+mod obj;
+mod prepare;
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+pub use error::LoadError;
+pub use file_set::FileSet;
+pub use gltf::WriteError;
+#[cfg(not(target_arch = "wasm32"))]
+pub use prepare::prepare;
+pub use prepare::{Part, Preparation, next_preparation};
+
+use crate::anim::{Clip, Skeleton};
+use crate::asset::{Asset, Image};
+pub use file_set::file_stem;
+use file_set::{bare_name, without_query};
+
+/// Limit on .obj, .skel and .attach files together. Beyond it, which no real scene reaches, companions are not looked up:
+/// each lookup walks the set.
+const MAX_OBJ_FILES: usize = 256;
+
+/// Returns the relative URIs (percent-decoded) that the models and motions in this set refer to and that are not in the set,
+/// not even by their bare names; for an .obj also the .skel and .attach of the same stem, which need not exist.
+pub fn missing_files(files: &FileSet) -> Vec<String> {
+    let (mut missing, mut known) = (Vec::new(), BTreeSet::new());
+    let mut add = |uris: Vec<String>| missing.extend(uris.into_iter().filter(|uri| known.insert(uri.clone())));
+    for (name, bytes) in files.iter().filter(|(name, bytes)| is_gltf(name, bytes) && !is_bvh(name, bytes)) {
+        add(gltf::missing_files(files, name, bytes));
+    }
+    let of_obj = || files.iter().filter(|(name, bytes)| is_obj(name, bytes) || obj::is_companion(name));
+    if of_obj().count() <= MAX_OBJ_FILES {
+        of_obj().for_each(|(name, bytes)| add(obj::missing_files(files, name, bytes)));
+    }
+    missing
+}
+
+/// What a file does not state and the user may know.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct LoadOptions {
+    /// Metres per unit of a .bvh. None: guessed from the skeleton's size.
+    pub bvh_unit_metres: Option<f32>,
+    /// Whether Z is up in a .bvh (else Y). None: guessed from the rest pose and the motion.
+    pub bvh_z_up: Option<bool>,
+}
+
+/// Loads the only model in a set of files. A set with none, or with several, is an error that lists what was found.
+pub fn load(files: &FileSet) -> Result<Asset, LoadError> {
+    load_with(files, &LoadOptions::default())
+}
+
+/// Like [`load`], with options for what a file does not state.
+pub fn load_with(files: &FileSet, options: &LoadOptions) -> Result<Asset, LoadError> {
+    let (name, bytes) = find_model(files)?;
+    read(files, name, bytes, options, &mut |_| ())
+}
+
+/// Returns the names of the files in the set that are models or motions. [`load`] expects exactly one.
+pub fn main_files(files: &FileSet) -> Vec<String> {
+    files.iter().filter(|(name, bytes)| is_model(name, bytes)).map(|(name, _)| name.to_owned()).collect()
+}
+
+/// Loads one of the set's [`main_files`]. The others may contain its buffers and images.
+pub fn load_named(files: &FileSet, name: &str, options: &LoadOptions) -> Result<Asset, LoadError> {
+    load_noticing_images(files, name, options, &mut |_| ())
+}
+
+/// Like [`load_named`]. Calls `on_images` with the asset's images as soon as they are known, before the rest is read, so
+/// that a platform can decode them meanwhile.
+pub fn load_noticing_images(
+    files: &FileSet,
+    name: &str,
+    options: &LoadOptions,
+    on_images: &mut dyn FnMut(&[Image]),
+) -> Result<Asset, LoadError> {
+    read(files, name, named(files, name)?, options, on_images)
+}
+
+/// Writes the set's model `name` (one of its [`main_files`]) as a self-contained GLB, with `clips` added after its own. The
+/// clips are for `skeleton`, which was loaded from the same file. The contents of a glTF are preserved to the letter: its
+/// first buffer is the beginning of the new one, and its JSON only grows. Other formats take joint names and rest pose from
+/// `skeleton`.
+pub fn write_model(files: &FileSet, name: &str, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
+    let bytes = named(files, name)?;
+    if !is_converted(name, bytes) {
+        return gltf::write_model(files, name, skeleton, clips);
+    }
+    let asset = read(files, name, bytes, &LoadOptions::default(), &mut |_| ())?;
+    check_skeleton(name, &asset, skeleton)?;
+    let all: Vec<&Clip> = asset.clips.iter().chain(clips.iter().copied()).collect();
+    gltf::write_asset(&asset, skeleton, &all)
+}
+
+/// Whether a model of this format is written from the asset: it has no JSON that could be kept.
+fn is_converted(name: &str, bytes: &[u8]) -> bool {
+    is_bvh(name, bytes) || is_obj(name, bytes)
+}
+
+fn check_skeleton(name: &str, asset: &Asset, skeleton: &Skeleton) -> Result<(), WriteError> {
+    let (nodes, joints) = (asset.skeleton.len(), skeleton.len());
+    if nodes != joints {
+        return Err(WriteError::OtherSkeleton { file: name.to_owned(), nodes, joints });
+    }
+    let mut joints = skeleton.joints();
+    if let Some(joint) = joints.find(|&joint| skeleton.parent(joint) != asset.skeleton.parent(joint)) {
+        let joint = skeleton.label(joint);
+        return Err(WriteError::OtherParent { file: name.to_owned(), joint });
+    }
+    Ok(())
+}
+
+/// Writes a GLB with nothing but the skeleton of an asset and `clips` for it. `skeleton` has the asset's joints; names and rest
+/// pose may differ.
+pub fn write_motion(asset: &Asset, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
+    gltf::write_motion(asset, skeleton, clips)
+}
+
+/// Converts the only model or motion of a set to GLB: a glTF with everything in it, a .bvh as skeleton and clip, an .obj in its
+/// rest pose.
+pub fn convert(files: &FileSet, options: &LoadOptions) -> Result<Vec<u8>, WriteError> {
+    convert_named(files, find_model(files)?.0, options)
+}
+
+/// Like [`convert`], for one of the set's [`main_files`].
+pub fn convert_named(files: &FileSet, name: &str, options: &LoadOptions) -> Result<Vec<u8>, WriteError> {
+    let bytes = named(files, name)?;
+    let asset = read(files, name, bytes, options, &mut |_| ())?;
+    if is_converted(name, bytes) {
+        return gltf::write_asset(&asset, &asset.skeleton, &asset.clips.iter().collect::<Vec<_>>());
+    }
+    gltf::write_model(files, name, &asset.skeleton, &[])
+}
+
+fn read(
+    files: &FileSet,
+    name: &str,
+    bytes: &[u8],
+    options: &LoadOptions,
+    on_images: &mut dyn FnMut(&[Image]),
+) -> Result<Asset, LoadError> {
+    if is_bvh(name, bytes) {
+        bvh::load(name, bytes, options)
+    } else if is_obj(name, bytes) {
+        obj::load(files, name, bytes, on_images)
+    } else {
+        gltf::load(files, name, bytes, on_images)
+    }
+}
+
+fn named<'a>(files: &'a FileSet, name: &str) -> Result<&'a Arc<[u8]>, LoadError> {
+    let error = || LoadError::NoSuchFile { name: name.to_owned(), found: files.names().map(str::to_owned).collect() };
+    files.get(name).ok_or_else(error)
+}
+
+fn find_model(files: &FileSet) -> Result<(&str, &Arc<[u8]>), LoadError> {
+    let mut models = files.iter().filter(|(name, bytes)| is_model(name, bytes));
+    match (models.next(), models.next()) {
+        (Some(model), None) => Ok(model),
+        (Some(_), Some(_)) => Err(LoadError::SeveralModels { found: main_files(files) }),
+        (None, _) => Err(files
+            .iter()
+            .find_map(|(name, bytes)| {
+                if obj::is_companion(name) {
+                    return Some(obj::without_obj(name));
+                }
+                if is_fbx(name, bytes) {
+                    let problem = "an FBX file is loaded after `prepare` has converted it".to_owned();
+                    return Some(LoadError::Conversion { file: name.to_owned(), problem });
+                }
+                let format = foreign_format(name, bytes)?;
+                Some(LoadError::UnsupportedFormat { file: name.to_owned(), format })
+            })
+            .unwrap_or_else(|| LoadError::NoModel { found: files.names().map(str::to_owned).collect() })),
+    }
+}
+
+fn is_model(name: &str, bytes: &[u8]) -> bool {
+    is_bvh(name, bytes) || is_gltf(name, bytes) || is_obj(name, bytes)
+}
+
+/// Decided by the name alone: nothing in the text is distinctive.
+fn is_obj(name: &str, bytes: &[u8]) -> bool {
+    obj::is_obj(name) && !is_bvh(name, bytes) && !is_gltf(name, bytes)
+}
+
+fn is_bvh(name: &str, bytes: &[u8]) -> bool {
+    bvh::is_bvh(bytes) || (extension(name) == "bvh" && !bytes.starts_with(b"glTF"))
+}
+
+/// Decided by the content if possible (URLs often have no file extension), else by the extension.
+fn is_gltf(name: &str, bytes: &[u8]) -> bool {
+    if bytes.starts_with(b"glTF") {
+        return true;
+    }
+    let extension = extension(name);
+    if matches!(extension.as_str(), "glb" | "gltf" | "vrm" | "vrma") {
+        return true;
+    }
+    // A URL without a telling name: JSON that mentions an asset.
+    extension != "json"
+        && bytes.iter().find(|byte| !byte.is_ascii_whitespace()) == Some(&b'{')
+        && bytes.windows(7).take(4096).any(|window| window == b"\"asset\"")
+}
+
+/// Until it is converted.
+fn is_fbx(name: &str, bytes: &[u8]) -> bool {
+    bytes.starts_with(b"Kaydara FBX") || (extension(name) == "fbx" && !bytes.starts_with(b"glTF"))
+}
+
+fn foreign_format(name: &str, bytes: &[u8]) -> Option<&'static str> {
+    if bytes.starts_with(b"xof ") {
+        return Some("DirectX .x");
+    }
+    match extension(name).as_str() {
+        "x" => Some("DirectX .x"),
+        "dae" => Some("COLLADA"),
+        "blend" => Some("Blender's own"),
+        _ => None,
+    }
+}
+
+/// The file extension in lower case, also of a URL with a query.
+fn extension(name: &str) -> String {
+    let bare = bare_name(without_query(name));
+    bare.rsplit_once('.').map_or_else(String::new, |(_, extension)| extension.to_lowercase())
+}

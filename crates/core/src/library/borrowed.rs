@@ -1,0 +1,134 @@
+//! Clips of other files, retargeted to a model.
+
+use std::sync::{Arc, OnceLock};
+
+use glam::Affine3A;
+
+use crate::anim::{Clip, JointIndex};
+use crate::asset::Asset;
+use crate::formats::file_stem;
+use crate::retarget::{
+    Body, Figures, FootTrack, FoundRest, JointMap, LayerClip, MapError, Planting, Proposal, ResolvedMap, RetargetError,
+    Retargeting, StagePair, layer_clips, propose,
+};
+
+/// A clip of a motion retargeted to a model; plays like one of the model's own.
+#[derive(Debug)]
+pub struct BorrowedClip {
+    /// For the model's skeleton.
+    pub clip: Clip,
+    /// Layers that animate the joints without a source.
+    pub layers: Vec<LayerClip>,
+    /// Index into [`Library::motions`](super::Library::motions).
+    pub motion: usize,
+    /// Index into the motion's clips.
+    pub source_clip: usize,
+    /// What it is called if its file gives it no name: the file, and its number there if the file has several.
+    pub(super) file_title: String,
+    /// The joint whose travel is the character's. `None` if nothing is translated.
+    pub root: Option<JointIndex>,
+    /// Frame rate the source was authored at; retargeting may add keys between its frames.
+    pub frames_per_sec: f64,
+    /// Places the source in this model's space.
+    pub model_from_source: Affine3A,
+    /// Which pose the motion is measured from, and how sure that is.
+    pub motion_rest: FoundRest,
+    /// What planting its feet did; `None` if the map doesn't plant them.
+    pub planting: Option<Planting>,
+    /// Every pair of the joint map, to compare the model with the source beside it.
+    pub pairs: Vec<StagePair>,
+    map: Arc<ResolvedMap>,
+    measured: OnceLock<Option<(Figures, Vec<FootTrack>)>>,
+    /// Crossfade to and from this clip.
+    pub crossfade_secs: f64,
+}
+
+impl BorrowedClip {
+    /// Measures how well the clip matches its source, on first use.
+    pub(super) fn measured(&self, model: Body<'_>, motion: Body<'_>) -> Option<&(Figures, Vec<FootTrack>)> {
+        let measure = || {
+            let pair = Retargeting::new(model, motion, self.source_clip, &self.map).ok()?;
+            let made = pair.bake().ok()?;
+            Some(pair.measure(&made.clip, made.unplanted.as_ref()))
+        };
+        self.measured.get_or_init(measure).as_ref()
+    }
+}
+
+/// Why a motion cannot be borrowed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum BorrowError {
+    /// The joint map does not fit, or none could be proposed.
+    #[error("{motion}: {problem}")]
+    Map {
+        /// [`Motion::source`](super::Motion::source) of the motion.
+        motion: String,
+        /// What is wrong with the map.
+        problem: MapError,
+    },
+    /// The map fits, but the motion has no clip, or one cannot be retargeted.
+    #[error("{motion}: {problem}")]
+    Retarget {
+        /// [`Motion::source`](super::Motion::source) of the motion.
+        motion: String,
+        /// Why retargeting failed.
+        problem: RetargetError,
+    },
+}
+
+/// Returns the active map between two files: the given one, or else the proposal.
+pub fn map_for(model: &Asset, motion: &Asset, map: Option<&JointMap>) -> (JointMap, Option<Proposal>) {
+    match map {
+        Some(map) => (map.clone(), None),
+        None => {
+            let proposal = propose(model, motion);
+            (proposal.to_map(model, motion), Some(proposal))
+        }
+    }
+}
+
+/// Retargets all clips of a motion to a model.
+pub(super) fn borrow(
+    model: Body<'_>,
+    motion: Body<'_>,
+    source: &str,
+    index: usize,
+    map: &ResolvedMap,
+    root_of: impl Fn(&Clip) -> Option<JointIndex>,
+) -> Result<Vec<BorrowedClip>, BorrowError> {
+    let layers = layer_clips(model.asset, map);
+    let shared = Arc::new(map.clone());
+    let clips = 0..motion.asset.clips.len().max(1);
+    let borrow = |source_clip| {
+        let error = |problem| BorrowError::Retarget { motion: source.to_owned(), problem };
+        let pair = Retargeting::new(model, motion, source_clip, map).map_err(error)?;
+        let baked = pair.bake().map_err(error)?;
+        let root = root_of(&baked.clip);
+        Ok(BorrowedClip {
+            clip: baked.clip,
+            layers: layers.clone(),
+            motion: index,
+            source_clip,
+            file_title: file_title(source, source_clip, motion.asset.clips.len()),
+            root,
+            frames_per_sec: motion
+                .asset
+                .clips
+                .get(source_clip)
+                .map_or(Clip::DEFAULT_FRAMES_PER_SEC, Clip::frames_per_sec),
+            model_from_source: pair.model_from_source(),
+            motion_rest: pair.motion_rest(),
+            planting: baked.planting,
+            pairs: pair.stage_pairs(),
+            map: shared.clone(),
+            measured: OnceLock::new(),
+            crossfade_secs: map.crossfade_secs,
+        })
+    };
+    clips.map(borrow).collect()
+}
+
+fn file_title(source: &str, clip: usize, count: usize) -> String {
+    let stem = file_stem(source.strip_prefix("sample:").unwrap_or(source));
+    if count > 1 { format!("{stem} {clip}") } else { stem.to_owned() }
+}

@@ -1,0 +1,136 @@
+//! Two-bone inverse kinematics for a leg, by the law of cosines: the knee bends about its hinge and the foot keeps its direction.
+
+use glam::{DQuat, DVec3};
+
+use crate::anim::{JointIndex, Skeleton};
+use crate::retarget::math::unit;
+use crate::retarget::pose::{WorldPose, is_within};
+
+/// A leg is never stretched beyond this share of its length: a straight knee has no plane.
+const MAX_REACH: f64 = 0.999;
+
+/// Beyond this share, a leg is stretched only as far as it is without planting: in a nearly straight leg, millimetres of the
+/// foot's position turn the knee by degrees.
+const COMFORTABLE_REACH: f64 = 0.99;
+
+/// The sine of the angle up to which a bent knee does not tell its hinge.
+const MIN_BEND: f64 = 0.17;
+
+/// A leg that bends the other way than its knee does so unless its foot moves by more than this share of its length.
+const SMALL_MOVE: f64 = 0.02;
+
+/// The target joints of one leg.
+#[derive(Debug, Clone, Copy)]
+pub struct Leg {
+    pub hip: JointIndex,
+    pub knee: JointIndex,
+    pub ankle: JointIndex,
+    /// What stays in place: the toes, or the ankle itself.
+    pub toes: JointIndex,
+    /// Axis about which the knee bends at rest, in the frame of `hip`.
+    hinge: DVec3,
+}
+
+/// How thigh and shin are turned in the common frame to bring a foot to its place.
+#[derive(Debug, Clone, Copy)]
+pub struct LegTurns {
+    pub thigh: DQuat,
+    pub shin: DQuat,
+}
+
+impl Leg {
+    /// `joints` are hip, knee, ankle and toes; `rest` faces +Z.
+    pub fn new(joints: [JointIndex; 4], rest: &WorldPose) -> Self {
+        let [hip, knee, ankle, toes] = joints;
+        let thigh = (rest.position(knee) - rest.position(hip)).normalize_or_zero();
+        let shin = (rest.position(ankle) - rest.position(knee)).normalize_or_zero();
+        let bend = thigh.cross(shin);
+        let axis = if bend.length() > MIN_BEND { bend } else { bend + MIN_BEND * DVec3::X };
+        let hinge = rest.rotation(hip).conjugate() * axis.reject_from(thigh).normalize_or(DVec3::X);
+        Self { hip, knee, ankle, toes, hinge }
+    }
+
+    /// Axis about which the knee bends: across the plane of the leg, unless it is nearly straight or bent the wrong way.
+    fn hinge(&self, pose: &WorldPose, thigh: DVec3, shin: DVec3) -> DVec3 {
+        let at_rest = pose.rotation(self.hip) * self.hinge;
+        let bend = thigh.normalize_or_zero().cross(shin.normalize_or_zero());
+        let across = bend - bend.dot(at_rest).min(0.0) * at_rest;
+        (across + MIN_BEND * at_rest).normalize_or(at_rest)
+    }
+}
+
+/// How far the hips must come down for the leg to reach its ankle's position moved by `by`.
+pub fn drop_to_reach(leg: &Leg, pose: &WorldPose, by: DVec3) -> f64 {
+    let [hip, knee, ankle] = [leg.hip, leg.knee, leg.ankle].map(|joint| pose.position(joint));
+    let length = (knee - hip).length() + (ankle - knee).length();
+    let reach = (ankle - hip).length().clamp(COMFORTABLE_REACH * length, MAX_REACH * length);
+    let goal = ankle + by - hip;
+    if by.length() <= 1e-9 || goal.length() <= reach {
+        return 0.0;
+    }
+    // The nearer solution of |goal + drop · Y| = reach; if the goal is out of reach at any height, the hips come down to it.
+    let horizontal = goal.x * goal.x + goal.z * goal.z;
+    let rise = (reach * reach - horizontal).max(0.0).sqrt();
+    (-goal.y - rise).max(0.0)
+}
+
+/// Turns that move the ankle by `by` while the hips come down by `drop`, or as near as the leg reaches.
+pub fn solve_leg(leg: &Leg, pose: &WorldPose, by: DVec3, drop: f64) -> LegTurns {
+    let unmoved = LegTurns { thigh: DQuat::IDENTITY, shin: DQuat::IDENTITY };
+    let [hip, knee, ankle] = [leg.hip, leg.knee, leg.ankle].map(|joint| pose.position(joint));
+    let (thigh, shin) = (knee - hip, ankle - knee);
+    let length = thigh.length() + shin.length();
+    let by = by + DVec3::Y * drop;
+    let goal = ankle + by - hip;
+    if by.length() <= 1e-6 * length {
+        return unmoved;
+    }
+    let hinge = leg.hinge(pose, thigh, shin);
+    let reach = (thigh + shin).length().clamp(COMFORTABLE_REACH * length, MAX_REACH * length);
+    let certainty = smooth(by.length() / (SMALL_MOVE * length));
+    let bend = knee_bend(thigh, shin, hinge, goal.length().min(reach), certainty);
+    let knee_turn = DQuat::from_axis_angle(hinge, bend);
+    let (Some(line), Some(aim)) = ((thigh + knee_turn * shin).try_normalize(), goal.try_normalize()) else {
+        return unmoved;
+    };
+    let swing = DQuat::from_rotation_arc(line, aim);
+    LegTurns { thigh: swing, shin: unit(swing * knee_turn) }
+}
+
+/// By how much the knee bends further about its hinge for the ankle to be at a distance from the hip. A knee that bends the
+/// other way is brought over to its own as far as `certainty` is 1.
+fn knee_bend(thigh: DVec3, shin: DVec3, hinge: DVec3, distance: f64, certainty: f64) -> f64 {
+    let along = (thigh + shin).dot(hinge);
+    let (upper, lower) = (thigh.reject_from_normalized(hinge), shin.reject_from_normalized(hinge));
+    let product = upper.length() * lower.length();
+    if product <= 0.0 {
+        return 0.0;
+    }
+    let squares = upper.length_squared() + lower.length_squared();
+    let wanted = ((distance * distance - along * along - squares) / (2.0 * product)).clamp(-1.0, 1.0).acos();
+    let bent = hinge.dot(upper.cross(lower)).atan2(upper.dot(lower));
+    wanted - bent + 2.0 * (1.0 - certainty) * bent.min(0.0)
+}
+
+/// Local rotations of hip, knee and ankle that turn the leg while the foot keeps its direction.
+pub fn turned_locals(leg: &Leg, skeleton: &Skeleton, pose: &WorldPose, turns: LegTurns) -> [DQuat; 3] {
+    let local = |joint: JointIndex, parent_turn: DQuat, own_turn: DQuat| {
+        let parent = pose.parent_rotation(skeleton, joint);
+        unit((parent_turn * parent).conjugate() * own_turn * pose.rotation(joint))
+    };
+    // A foot that is not parented to its shin does not turn with it, nor does such a shin with its thigh.
+    let carried = |joint: JointIndex, limb: JointIndex, turn: DQuat| {
+        if is_within(skeleton, joint, limb) { turn } else { DQuat::IDENTITY }
+    };
+    [
+        local(leg.hip, DQuat::IDENTITY, turns.thigh),
+        local(leg.knee, carried(leg.knee, leg.hip, turns.thigh), turns.shin),
+        local(leg.ankle, carried(leg.ankle, leg.knee, turns.shin), DQuat::IDENTITY),
+    ]
+}
+
+/// From 0 to 1, flat at both ends.
+pub fn smooth(share: f64) -> f64 {
+    let share = share.clamp(0.0, 1.0);
+    share * share * (3.0 - 2.0 * share)
+}

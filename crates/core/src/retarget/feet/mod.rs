@@ -1,0 +1,12 @@
+//! Foot contacts, and feet planted where they touch the ground.
+
+mod contacts;
+mod leg;
+mod limit;
+mod plan;
+mod plant;
+mod sole;
+
+pub use contacts::{SourceContacts, source_contacts, source_height};
+pub use plant::{Planting, planted_channels};
+pub use sole::{Sole, Soles};

@@ -1,0 +1,337 @@
+//! Planted feet: while the source's foot is in contact, the target's stays in one place on the ground. The whole body is
+//! lowered (or raised) to where its feet are lowest in contact; from there the legs reach, and the hips come down further
+//! when a leg would have to be longer than it is. A leg that still doesn't reach, or would have to turn too fast, lets go.
+
+use std::fmt;
+use std::ops::Range;
+
+use glam::{DQuat, DVec3};
+use serde::Serialize;
+
+use super::contacts::{SourceContacts, source_contacts, source_height};
+use super::leg::{Leg, LegTurns, drop_to_reach, solve_leg, turned_locals};
+use super::limit::limit_turns;
+use super::plan::{EASE_SECS, LegContacts, Plan, Stage, plan};
+use super::sole::Soles;
+use crate::anim::{Clip, Interpolation, JointIndex, Keys, Property};
+use crate::asset::Slot;
+use crate::retarget::keys::channel::NewChannel;
+use crate::retarget::keys::resample::union;
+use crate::retarget::pose::{Scratch, WorldPose, is_within};
+use crate::retarget::transfer::{Transfer, removed_travel, rotation_laws};
+
+/// A body that hovers by more than this share of the hips' height does so on purpose.
+const MAX_HOVER: f64 = 0.25;
+
+/// The hips come down by at most this share of their height for a leg to reach.
+const MAX_DROP: f64 = 0.1;
+
+/// Maximum distance between keys of a planted clip.
+const MAX_STEP_SECS: f32 = 1.0 / 30.0;
+
+/// How far planting may turn a thigh or shin, and how fast: at 60 frames per second, by about 4° per frame.
+const MAX_TURN_DEGREES: f64 = 60.0;
+const MAX_TURN_DEGREES_PER_SEC: f64 = 250.0;
+
+/// How far a foot may end from where it begins, as a share of the hips' height, in a clip that repeats in place.
+const MAX_GAP: f64 = 0.02;
+
+/// How much of a repeated clip's other end is taken into account at each end.
+const REPEATED_SECS: f32 = 1.0;
+
+/// What planting did.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct Planting {
+    /// Number of contacts in which a foot is held.
+    pub contacts: usize,
+    /// Speed of the ground under a figure that walks or runs in place; `None` if the ground stands still.
+    pub ground_metres_per_sec: Option<f64>,
+    /// By how much the body is lowered over the whole clip; negative if it is raised.
+    pub lowered_metres: f64,
+}
+
+impl fmt::Display for Planting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.contacts, self.ground_metres_per_sec) {
+            (0, _) => write!(f, "no foot is ever in contact, none is held")?,
+            (contacts, None) => write!(f, "held in {contacts} contacts")?,
+            (contacts, Some(speed)) => {
+                write!(f, "held in {contacts} contacts, in place on ground that moves at {speed:.2} m/s")?;
+            }
+        }
+        match self.lowered_metres {
+            metres if metres >= 0.0005 => write!(f, "; body lowered by {metres:.3} m"),
+            metres if metres <= -0.0005 => write!(f, "; body raised by {:.3} m", -metres),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Returns all channels of the clip with planted feet, or None if no leg is mapped. `resampled` lists the joints whose keys in
+/// `clip` are not the source's own.
+pub fn planted_channels(
+    transfer: &Transfer,
+    clip: &Clip,
+    resampled: &[JointIndex],
+) -> Option<(Vec<NewChannel>, Planting)> {
+    let times = dense_times(transfer.tracks.clip);
+    let mut scratch = Scratch::default();
+    let mut poses: Vec<WorldPose> = times.iter().map(|&time| transfer.target_pose(clip, time, &mut scratch)).collect();
+    let soles = Soles::new(transfer);
+    let (mut legs, ground_velocity) = legs_in_contact(transfer, &soles, &times);
+    let lowered_metres = hover(transfer, &legs, &poses, soles.ground)?;
+    lower(transfer, &legs, &mut poses, lowered_metres);
+    let contacts = legs.iter().map(|leg| ranges(&leg.touching).len()).sum();
+    let travel = ground_travel(transfer, &times, ground_velocity);
+    let height = transfer.hips.map_or_else(|| leg_length(transfer, &legs), |hips| hips.height);
+    let mut samples = Samples { times, poses, travel };
+    let own = 0..samples.times.len();
+    let own = if is_cycle(&legs, &samples, height) { samples.repeat(&mut legs) } else { own };
+    let Samples { times, poses, travel } = &samples;
+    let is_moving = ground_velocity != DVec3::ZERO;
+    let stage = Stage { times, poses, ground: soles.ground, travel, is_moving, height };
+    let plans: Vec<Plan> = legs.iter().map(|leg| plan(stage, leg, &ranges(&leg.touching))).collect();
+    let drops = drops(stage, &plans);
+    let rotations = leg_rotations(transfer, stage, &plans, &drops, own.clone());
+    let hips = transfer.hips_pair().map(|pair| pair.target);
+    let hips = hips.filter(|_| lowered_metres != 0.0 || drops.iter().any(|&drop| drop > 0.0));
+    let translation = hips.map(|hips| lowered_hips(transfer, stage, hips, &drops, own.clone()));
+    let mut channels = kept_channels(clip, resampled, hips, &rotations);
+    channels.extend(translation);
+    for (joint, keys) in rotations {
+        let keys = keys.into_iter().map(DQuat::as_quat).collect();
+        channels.push(NewChannel::resampled(joint, times[own.clone()].to_vec(), Keys::Rotation(keys)));
+    }
+    let speed = transfer.hips.map_or(1.0, |hips| hips.scale) * ground_velocity.length();
+    Some((channels, Planting { contacts, ground_metres_per_sec: (speed > 0.0).then_some(speed), lowered_metres }))
+}
+
+/// The channels of the clip that planting leaves alone.
+fn kept_channels(
+    clip: &Clip,
+    resampled: &[JointIndex],
+    hips: Option<JointIndex>,
+    rotations: &[(JointIndex, Vec<DQuat>)],
+) -> Vec<NewChannel> {
+    let is_replaced = |joint: JointIndex, property: Property| match property {
+        Property::Rotation => rotations.iter().any(|(other, _)| *other == joint),
+        Property::Translation => hips == Some(joint),
+        Property::Scale | Property::MorphWeights => false,
+    };
+    let kept = clip.channels().iter().filter(|channel| !is_replaced(channel.joint, channel.keys.property()));
+    let kept = kept.map(|channel| NewChannel {
+        joint: channel.joint,
+        interpolation: channel.interpolation,
+        times: clip.timelines()[channel.timeline as usize].clone(),
+        keys: channel.keys.clone(),
+        resampled: resampled.contains(&channel.joint),
+    });
+    kept.collect()
+}
+
+/// The hips' translation, lowered with the poses and then for the legs to reach.
+fn lowered_hips(transfer: &Transfer, stage: Stage, hips: JointIndex, drops: &[f64], own: Range<usize>) -> NewChannel {
+    let translation = |at: usize| {
+        let pose = &stage.poses[at];
+        let position = pose.position(hips) - DVec3::Y * drops[at];
+        pose.parent_frame(transfer.target_skeleton, hips).inverse().transform_point3(position).as_vec3()
+    };
+    let translations = own.clone().map(translation).collect();
+    NewChannel::resampled(hips, stage.times[own].to_vec(), Keys::Translation(translations))
+}
+
+/// The clip at the sampled times.
+struct Samples {
+    times: Vec<f32>,
+    poses: Vec<WorldPose>,
+    travel: Vec<DVec3>,
+}
+
+impl Samples {
+    /// Puts the clip's end before it and its beginning after it, so that both ends are planted alike. Returns where the clip
+    /// itself is then.
+    fn repeat(&mut self, legs: &mut [LegContacts]) -> Range<usize> {
+        let Self { times, poses, travel } = self;
+        let last = times.len() - 1;
+        let secs = times[last] - times[0];
+        let step = travel[last] - travel[0];
+        let pad = times[1..last].partition_point(|&time| time - times[0] <= REPEATED_SECS);
+        let (before, after) = (last - pad..last, 1..pad + 1);
+        *times = repeated(times, &before, &after, |time, rounds| time + f32::from(rounds) * secs);
+        *travel = repeated(travel, &before, &after, |travel, rounds| *travel + f64::from(rounds) * step);
+        *poses = repeated(poses, &before, &after, |pose, _| pose.clone());
+        for leg in legs {
+            // The same moment, whose speed was seen from one side each.
+            leg.touching[0] |= leg.touching[last];
+            leg.touching[last] = leg.touching[0];
+            leg.touching = repeated(&leg.touching, &before, &after, |touching, _| *touching);
+        }
+        pad..pad + last + 1
+    }
+}
+
+/// The values with a part of them before and a part after; `round` is −1, 0 or 1 for the three.
+fn repeated<T>(values: &[T], before: &Range<usize>, after: &Range<usize>, of_round: impl Fn(&T, i8) -> T) -> Vec<T> {
+    let rounds = [(&values[before.clone()], -1), (values, 0), (&values[after.clone()], 1)];
+    rounds
+        .into_iter()
+        .flat_map(|(values, round)| values.iter().map(move |value| (value, round)))
+        .map(|(value, round)| of_round(value, round))
+        .collect()
+}
+
+/// Whether the clip ends as it begins, in the same place.
+fn is_cycle(legs: &[LegContacts], samples: &Samples, height: f64) -> bool {
+    let [first, .., last] = &samples.poses[..] else { return false };
+    let is_closed = |joint: JointIndex| first.position(joint).distance(last.position(joint)) < MAX_GAP * height;
+    samples.poses.len() > 2
+        && legs.iter().all(|LegContacts { leg, .. }| [leg.hip, leg.ankle, leg.toes].into_iter().all(is_closed))
+}
+
+/// Length of the first leg at rest, in place of the hips' height.
+fn leg_length(transfer: &Transfer, legs: &[LegContacts]) -> f64 {
+    let rest = &transfer.alignment.target;
+    let length = |LegContacts { leg, .. }: &LegContacts| rest.position(leg.hip).distance(rest.position(leg.ankle));
+    legs.first().map_or(0.0, length).max(1e-9)
+}
+
+/// The clip's key times, and more where these are far apart and just before a jump.
+fn dense_times(clip: &Clip) -> Vec<f32> {
+    let keys = union(clip.timelines().iter().map(Vec::as_slice));
+    let stepped = clip.channels().iter().filter(|channel| channel.interpolation == Interpolation::Step);
+    let jumps = union(stepped.map(|channel| clip.timelines()[channel.timeline as usize].as_slice()));
+    let mut times: Vec<f32> = Vec::with_capacity(keys.len());
+    for &key in &keys {
+        if let Some(&before) = times.last() {
+            let parts = ((key - before) / MAX_STEP_SECS).ceil().clamp(1.0, 1000.0) as usize;
+            let step = (key - before) / parts as f32;
+            times.extend((1..parts).map(|part| before + step * part as f32));
+            let is_jump = jumps.binary_search_by(|jump| jump.total_cmp(&key)).is_ok();
+            times.extend(Some(key.next_down()).filter(|&time| is_jump && time > before));
+        }
+        times.push(key);
+    }
+    times
+}
+
+/// Legs of which hip, knee and ankle are mapped, and the velocity of the ground below the source.
+fn legs_in_contact(transfer: &Transfer, soles: &Soles, times: &[f32]) -> (Vec<LegContacts>, DVec3) {
+    let sides = [
+        [Slot::LeftUpperLeg, Slot::LeftLowerLeg, Slot::LeftFoot, Slot::LeftToes],
+        [Slot::RightUpperLeg, Slot::RightLowerLeg, Slot::RightFoot, Slot::RightToes],
+    ];
+    let mut legs = Vec::new();
+    let mut positions: Vec<Vec<DVec3>> = Vec::new();
+    for (slots, sole) in sides.into_iter().zip(&soles.feet) {
+        let [hip, knee, ankle, toes] = slots.map(|slot| transfer.pair(slot));
+        if let (Some(hip), Some(knee), Some(ankle), Some(sole)) = (hip, knee, ankle, sole) {
+            let toes = toes.unwrap_or(ankle);
+            let joints = [hip.target, knee.target, ankle.target, toes.target];
+            legs.push((Leg::new(joints, &transfer.alignment.target), sole.clone()));
+            positions.push(times.iter().map(|&time| transfer.source_position(toes.source, time)).collect());
+        }
+    }
+    let hips: Vec<DVec3> = times.iter().filter_map(|&time| transfer.source_hips(time)).collect();
+    let height = source_height(transfer.map, transfer.alignment);
+    let SourceContacts { touching, ground_velocity } = source_contacts(times, &positions, &hips, height);
+    let legs = legs.into_iter().zip(touching);
+    let legs = legs.map(|((leg, sole), touching)| LegContacts { leg, sole, touching });
+    (legs.collect(), ground_velocity)
+}
+
+/// Ranges in which all are true.
+fn ranges(touching: &[bool]) -> Vec<Range<usize>> {
+    let starts = (0..touching.len()).filter(|&at| touching[at] && (at == 0 || !touching[at - 1]));
+    let end = |from: usize| (from..touching.len()).find(|&at| !touching[at]).unwrap_or(touching.len());
+    starts.map(|from| from..end(from)).collect()
+}
+
+/// By how much the body is too high: the first quartile of its soles' heights in contact, because the minimum is often a
+/// slip of the capture. Without contacts, the height below which either sole is for a twentieth of the time. None without
+/// legs.
+fn hover(transfer: &Transfer, legs: &[LegContacts], poses: &[WorldPose], ground: f64) -> Option<f64> {
+    let heights = |leg: &LegContacts| {
+        let touching = poses.iter().zip(&leg.touching).filter(|(_, touching)| **touching);
+        touching.map(|(pose, _)| leg.sole.lowest(pose)).collect::<Vec<f64>>()
+    };
+    let mut contacts: Vec<f64> = legs.iter().flat_map(heights).collect();
+    let lowest = |pose: &WorldPose| legs.iter().map(|leg| leg.sole.lowest(pose)).fold(f64::INFINITY, f64::min);
+    let at = if contacts.is_empty() {
+        contacts = poses.iter().filter(|_| !legs.is_empty()).map(lowest).collect();
+        contacts.len() / 20
+    } else {
+        contacts.len() / 4
+    };
+    if contacts.is_empty() {
+        return None;
+    }
+    let hover = *contacts.select_nth_unstable_by(at, f64::total_cmp).1 - ground;
+    let is_near = transfer.hips.is_some_and(|hips| hover.abs() < MAX_HOVER * hips.height);
+    Some(if is_near { hover } else { 0.0 })
+}
+
+/// Lowers the hips and their descendants, and shins and feet that are parented elsewhere.
+fn lower(transfer: &Transfer, legs: &[LegContacts], poses: &mut [WorldPose], by: f64) {
+    let Some(hips) = transfer.hips_pair().map(|pair| pair.target) else { return };
+    let skeleton = transfer.target_skeleton;
+    let tops = legs.iter().flat_map(|LegContacts { leg, .. }| [leg.knee, leg.ankle]);
+    let tops: Vec<JointIndex> = tops.chain([hips]).collect();
+    let is_lowered = |joint: &JointIndex| tops.iter().any(|&top| is_within(skeleton, *joint, top));
+    let lowered: Vec<JointIndex> = skeleton.joints().filter(is_lowered).collect();
+    for pose in poses {
+        lowered.iter().for_each(|joint| pose.positions[joint.get()].y -= by);
+    }
+}
+
+/// How far the ground has moved below the target at each time: it does below a source in place, and where travel was removed.
+fn ground_travel(transfer: &Transfer, times: &[f32], source_velocity: DVec3) -> Vec<DVec3> {
+    let (laws, _) = rotation_laws(transfer);
+    let removed = removed_travel(transfer, &laws, times);
+    let velocity = transfer.hips.map_or(1.0, |hips| hips.scale) * source_velocity;
+    times.iter().enumerate().map(|(at, &time)| velocity * f64::from(time) - removed.horizontal(at)).collect()
+}
+
+/// How far the hips come down at each time for all legs to reach, smooth over time.
+fn drops(stage: Stage, plans: &[Plan]) -> Vec<f64> {
+    let Stage { times, poses, height, .. } = stage;
+    let needed = |(index, pose): (usize, &WorldPose)| {
+        let drops = plans.iter().map(|plan| drop_to_reach(&plan.leg, pose, plan.moves[index]));
+        drops.fold(0.0, f64::max).min(MAX_DROP * height)
+    };
+    let needed: Vec<f64> = poses.iter().enumerate().map(needed).collect();
+    // The mean of the neighbourhood's maxima is never less than what is needed.
+    let near = |index: usize| {
+        let from = times.partition_point(|&time| f64::from(times[index] - time) > EASE_SECS);
+        let to = times.partition_point(|&time| f64::from(time - times[index]) <= EASE_SECS);
+        from..to
+    };
+    let max: Vec<f64> = (0..times.len()).map(|at| needed[near(at)].iter().copied().fold(0.0, f64::max)).collect();
+    (0..times.len()).map(|at| max[near(at)].iter().sum::<f64>() / near(at).len() as f64).collect()
+}
+
+/// Local rotations of the legs' joints at each time.
+fn leg_rotations(
+    transfer: &Transfer,
+    stage: Stage,
+    plans: &[Plan],
+    drops: &[f64],
+    own: Range<usize>,
+) -> Vec<(JointIndex, Vec<DQuat>)> {
+    let [max_turn, max_rate] = [MAX_TURN_DEGREES, MAX_TURN_DEGREES_PER_SEC].map(f64::to_radians);
+    let mut rotations: Vec<(JointIndex, Vec<DQuat>)> = Vec::new();
+    for Plan { leg, moves } in plans {
+        let steps = stage.poses.iter().zip(moves).zip(drops);
+        let solved = steps.map(|((pose, &by), &drop)| solve_leg(leg, pose, by, drop));
+        let (mut thighs, mut shins): (Vec<DQuat>, Vec<DQuat>) = solved.map(|turns| (turns.thigh, turns.shin)).unzip();
+        limit_turns(stage.times, &mut thighs, max_turn, max_rate);
+        limit_turns(stage.times, &mut shins, max_turn, max_rate);
+        let mut keys: [Vec<DQuat>; 3] = Default::default();
+        for at in own.clone() {
+            let turns = LegTurns { thigh: thighs[at], shin: shins[at] };
+            let locals = turned_locals(leg, transfer.target_skeleton, &stage.poses[at], turns);
+            keys.iter_mut().zip(locals).for_each(|(keys, rotation)| keys.push(rotation));
+        }
+        rotations.extend([leg.hip, leg.knee, leg.ankle].into_iter().zip(keys));
+    }
+    rotations
+}

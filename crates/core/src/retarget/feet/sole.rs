@@ -1,0 +1,168 @@
+//! The underside of the feet: where the mesh is lowest, however a foot is turned. Toe and heel joints lie anywhere in the shoe.
+
+use glam::{DAffine3, DQuat, DVec3, Vec3};
+
+use crate::anim::JointIndex;
+use crate::asset::{Asset, MeshInstance, Slot};
+use crate::mesh::{Influences, Skin};
+use crate::retarget::pose::{WorldPose, is_within};
+use crate::retarget::transfer::Transfer;
+
+/// A vertex belongs to a foot if the foot's joints have at least this share of its weights.
+const MIN_WEIGHT: f32 = 0.5;
+
+/// Tilts from straight down of the directions in which the outermost points of a foot are kept.
+const TILTS_DEGREES: [f64; 3] = [25.0, 50.0, 75.0];
+
+/// Directions to each tilt.
+const AZIMUTHS: u32 = 8;
+
+/// The underside of one foot: points that are fixed to its joints.
+#[derive(Debug, Clone)]
+pub struct Sole {
+    /// Each with its offset from the joint, as the joint is turned.
+    points: Vec<(JointIndex, DVec3)>,
+}
+
+impl Sole {
+    /// Height of the lowest point.
+    pub fn lowest(&self, pose: &WorldPose) -> f64 {
+        let height =
+            |&(joint, offset): &(JointIndex, DVec3)| pose.position(joint).y + (pose.rotation(joint) * offset).y;
+        self.points.iter().map(height).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// The soles of both feet, and what they stand on.
+#[derive(Debug)]
+pub struct Soles {
+    /// Left, right; `None` for a foot that is not mapped.
+    pub feet: [Option<Sole>; 2],
+    /// Height of the lowest point of either at rest.
+    pub ground: f64,
+}
+
+impl Soles {
+    pub fn new(transfer: &Transfer) -> Self {
+        let rest = &transfer.alignment.unaligned_target;
+        let feet = [[Slot::LeftFoot, Slot::LeftToes], [Slot::RightFoot, Slot::RightToes]].map(|slots| {
+            let [ankle, toes] = slots.map(|slot| transfer.pair(slot).map(|pair| pair.target));
+            let foot = ankle.or(toes)?;
+            let of_mesh = mesh_sole(transfer.target, rest, foot);
+            Some(if of_mesh.points.is_empty() { joint_sole(rest, foot, toes) } else { of_mesh })
+        });
+        let ground = feet.iter().flatten().map(|sole| sole.lowest(rest)).fold(f64::INFINITY, f64::min);
+        Self { feet, ground }
+    }
+}
+
+/// Toes and heel of a foot without a mesh: it stands on its toes' joint, and its heel is below the ankle.
+fn joint_sole(rest: &WorldPose, ankle: JointIndex, toes: Option<JointIndex>) -> Sole {
+    let Some(toes) = toes.filter(|&toes| toes != ankle) else { return Sole { points: vec![(ankle, DVec3::ZERO)] } };
+    let down = (rest.position(ankle).y - rest.position(toes).y).max(0.0);
+    let heel = rest.rotation(ankle).conjugate() * (-down * DVec3::Y);
+    Sole { points: vec![(toes, DVec3::ZERO), (ankle, heel)] }
+}
+
+/// The outermost points of everything that is drawn below the foot's joint.
+fn mesh_sole(asset: &Asset, rest: &WorldPose, foot: JointIndex) -> Sole {
+    let mut hull = Hull::new(asset, rest, foot);
+    for &MeshInstance { joint, mesh, skin } in &asset.instances {
+        let skin = skin.map(|skin| &asset.skins[skin]);
+        if skin.is_none() && !hull.is_in_foot(joint) {
+            continue;
+        }
+        for geometry in &asset.meshes[mesh].primitives {
+            for (vertex, &position) in geometry.positions.iter().enumerate() {
+                let bound = match skin {
+                    None => Some((joint, position)),
+                    Some(skin) => bound_to_foot(&hull, skin, &geometry.influences, vertex, position),
+                };
+                if let Some((joint, position)) = bound {
+                    hull.add(joint, position);
+                }
+            }
+        }
+    }
+    hull.into_sole(asset)
+}
+
+/// The joint of the foot that a vertex follows most, and where the vertex is in its frame. None for vertices elsewhere.
+fn bound_to_foot(
+    hull: &Hull,
+    skin: &Skin,
+    influences: &Influences,
+    vertex: usize,
+    position: Vec3,
+) -> Option<(JointIndex, Vec3)> {
+    if influences.is_empty() {
+        return None;
+    }
+    let in_foot = |(joint, _): &(u16, f32)| hull.is_in_foot(skin.joints()[usize::from(*joint)]);
+    let own = influences.of_vertex(vertex).filter(in_foot);
+    let (sum, strongest) = own.fold((0.0, (0, 0.0)), |(sum, strongest), next| {
+        (sum + next.1, if next.1 > strongest.1 { next } else { strongest })
+    });
+    let index = usize::from(strongest.0);
+    (sum >= MIN_WEIGHT).then(|| (skin.joints()[index], skin.joint_from_bind()[index].transform_point3(position)))
+}
+
+/// Collects, for each joint of a foot, the outermost point in each direction.
+struct Hull<'a> {
+    rest: &'a WorldPose,
+    directions: Vec<DVec3>,
+    /// By joint; `None` for joints outside the foot.
+    world_from_joint: Vec<Option<DAffine3>>,
+    /// By joint and direction: the point in the common frame at rest, and how far out it is.
+    outermost: Vec<Vec<(f64, DVec3)>>,
+}
+
+impl<'a> Hull<'a> {
+    fn new(asset: &Asset, rest: &'a WorldPose, foot: JointIndex) -> Self {
+        let skeleton = &asset.skeleton;
+        let frame = |joint: JointIndex| rest.parent_frame(skeleton, joint) * rest.locals[joint.get()].to_affine();
+        let in_foot = |joint: JointIndex| is_within(skeleton, joint, foot).then(|| frame(joint));
+        let tilted = TILTS_DEGREES.into_iter().flat_map(|tilt| {
+            let tilt = DQuat::from_rotation_x(tilt.to_radians());
+            let step = std::f64::consts::TAU / f64::from(AZIMUTHS);
+            (0..AZIMUTHS).map(move |at| DQuat::from_rotation_y(f64::from(at) * step) * tilt * -DVec3::Y)
+        });
+        Self {
+            rest,
+            directions: std::iter::once(-DVec3::Y).chain(tilted).collect(),
+            world_from_joint: skeleton.joints().map(in_foot).collect(),
+            outermost: vec![Vec::new(); skeleton.len()],
+        }
+    }
+
+    fn is_in_foot(&self, joint: JointIndex) -> bool {
+        self.world_from_joint[joint.get()].is_some()
+    }
+
+    /// Adds a point in the frame of a joint.
+    fn add(&mut self, joint: JointIndex, position: Vec3) {
+        let Some(world_from_joint) = self.world_from_joint[joint.get()] else { return };
+        let point = world_from_joint.transform_point3(position.as_dvec3());
+        let outermost = &mut self.outermost[joint.get()];
+        outermost.resize(self.directions.len(), (f64::NEG_INFINITY, DVec3::ZERO));
+        for (direction, outermost) in self.directions.iter().zip(outermost) {
+            let distance = direction.dot(point);
+            if distance > outermost.0 {
+                *outermost = (distance, point);
+            }
+        }
+    }
+
+    fn into_sole(self, asset: &Asset) -> Sole {
+        let mut points: Vec<(JointIndex, DVec3)> = Vec::new();
+        for (joint, outermost) in asset.skeleton.joints().zip(&self.outermost) {
+            for (_, point) in outermost.iter().filter(|(distance, _)| distance.is_finite()) {
+                let offset = self.rest.rotation(joint).conjugate() * (*point - self.rest.position(joint));
+                if !points.contains(&(joint, offset)) {
+                    points.push((joint, offset));
+                }
+            }
+        }
+        Sole { points }
+    }
+}

@@ -1,0 +1,221 @@
+//! The quality of a retargeted clip in numbers: measured on the finished clip as the player plays it, at the source's keys
+//! and halfway between them, in the common frame.
+
+use glam::{DQuat, DVec3};
+use serde::Serialize;
+
+use super::foot_track::{FootTrack, foot_tracks, mapped_feet};
+use crate::anim::{Clip, JointIndex};
+use crate::asset::{Humanoid, Slot};
+use crate::retarget::align::swing::compared_segments;
+use crate::retarget::feet::Soles;
+use crate::retarget::keys::resample::union;
+use crate::retarget::map::{Pair, ResolvedMap};
+use crate::retarget::math::{angle_between, degrees_between};
+use crate::retarget::pose::{Scratch, WorldPose};
+use crate::retarget::transfer::{RemovedTravel, Transfer, lowest_leg_joint, removed_travel, rotation_laws};
+
+/// Quality figures; `None` for what cannot be measured.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Figures {
+    /// Angle between the direction of a limb (or the torso) and its source's: the visible error. Measured from positions
+    /// alone, so a wrong rest shows in it, unless it turns a limb about itself.
+    pub limb_direction_error_degrees_mean: Option<f64>,
+    /// The largest of these angles, over all segments and measured times.
+    pub limb_direction_error_degrees_max: Option<f64>,
+    /// The same for what the limbs do not show: the lines through both hips and both shoulders, and the directions of feet
+    /// and hands. Differences in build, such as the height of the heels, are included.
+    pub facing_error_degrees_mean: Option<f64>,
+    /// The largest of these angles.
+    pub facing_error_degrees_max: Option<f64>,
+    /// How far the rotation of a mapped joint away from its aligned rest differs from its source's: whether the law was
+    /// kept. It takes the rests for granted. Measured without planted feet.
+    pub orientation_error_degrees_mean: Option<f64>,
+    /// The largest of these angles, over all mapped joints and measured times.
+    pub orientation_error_degrees_max: Option<f64>,
+    /// Mean horizontal speed of the toes (or ankles) while the source's are in contact, with removed travel added back.
+    pub foot_slide_metres_per_sec: Option<f64>,
+    /// The source's own speed during the same contacts, scaled to the target.
+    pub foot_slide_source_metres_per_sec: Option<f64>,
+    /// How far a toe or ankle goes at most below the lowest leg joint of the aligned rest.
+    pub ground_penetration_metres_max: Option<f64>,
+    /// Mean height of the sole's lowest point above the ground while the source's foot is in contact; negative below it. The
+    /// ground is where the lowest point of either sole rests: of the mesh of the feet or, without one, of their joints.
+    pub foot_hover_metres_mean: Option<f64>,
+    /// Share of the slots that both sides have whose joints are mapped.
+    pub coverage: Option<f64>,
+}
+
+/// Lines whose directions tell how hips, chest, feet and hands are turned.
+const FACING: [(Slot, Slot); 6] = [
+    (Slot::RightUpperLeg, Slot::LeftUpperLeg),
+    (Slot::RightUpperArm, Slot::LeftUpperArm),
+    (Slot::LeftFoot, Slot::LeftToes),
+    (Slot::RightFoot, Slot::RightToes),
+    (Slot::LeftHand, Slot::LeftMiddleProximal),
+    (Slot::RightHand, Slot::RightMiddleProximal),
+];
+
+/// A clip of the target to measure.
+#[derive(Debug, Clone, Copy)]
+pub struct MeasuredClip<'a> {
+    pub clip: &'a Clip,
+    /// The same without planted feet, if they are planted.
+    pub unplanted: Option<&'a Clip>,
+}
+
+/// Mean and maximum of the values added so far.
+#[derive(Debug, Default)]
+struct Spread {
+    sum: f64,
+    count: usize,
+    max: f64,
+}
+
+impl Spread {
+    fn add(&mut self, value: f64) {
+        self.sum += value;
+        self.count += 1;
+        self.max = self.max.max(value);
+    }
+
+    fn mean(&self) -> Option<f64> {
+        (self.count > 0).then(|| self.sum / self.count as f64)
+    }
+
+    fn max(&self) -> Option<f64> {
+        (self.count > 0).then_some(self.max)
+    }
+}
+
+/// Measures a clip, with what its feet do over time.
+pub fn measure(
+    transfer: &Transfer,
+    source_slots: &Humanoid,
+    target_slots: &Humanoid,
+    measured: MeasuredClip,
+) -> (Figures, Vec<FootTrack>) {
+    let times = measured_times(transfer.tracks.clip);
+    let (laws, _) = rotation_laws(transfer);
+    let removed = removed_travel(transfer, &laws, &times);
+    let segments: Vec<(&Pair, &Pair)> =
+        compared_segments().filter_map(|(from, to)| Some((transfer.pair(from)?, transfer.pair(to)?))).collect();
+    let facing_segments: Vec<(&Pair, &Pair)> =
+        FACING.into_iter().filter_map(|(from, to)| Some((transfer.pair(from)?, transfer.pair(to)?))).collect();
+    let ground_joints: Vec<JointIndex> = [Slot::LeftFoot, Slot::LeftToes, Slot::RightFoot, Slot::RightToes]
+        .into_iter()
+        .filter_map(|slot| target_slots.joint(slot))
+        .collect();
+    let ground = lowest_leg_joint(target_slots, &transfer.alignment.target.positions);
+
+    let [mut orientation, mut direction, mut facing] = [(); 3].map(|()| Spread::default());
+    let mut penetration: Option<f64> = None;
+    let soles = Soles::new(transfer);
+    let mut feet = mapped_feet(transfer, soles.feet);
+    let mut scratches = [Scratch::default(), Scratch::default()];
+    for (index, &time) in times.iter().enumerate() {
+        let source = transfer.source_pose(time);
+        let [scratch, unplanted_scratch] = &mut scratches;
+        let target = transfer.target_pose(measured.clip, time, scratch);
+        let unplanted = measured.unplanted.map(|clip| transfer.target_pose(clip, time, unplanted_scratch));
+        // Undoes the turning that the root options removed.
+        let turn_back = DQuat::from_rotation_y(-removed.yaw.as_ref().map_or(0.0, |yaw| yaw.at(time)));
+        add_orientation_errors(&mut orientation, transfer, &source, unplanted.as_ref().unwrap_or(&target), turn_back);
+        add_direction_errors(&mut direction, &segments, &source, &target, turn_back);
+        add_direction_errors(&mut facing, &facing_segments, &source, &target, turn_back);
+        if let Some(ground) = ground {
+            let depths = ground_joints.iter().map(|&joint| ground - target.position(joint).y);
+            penetration = depths.fold(penetration, |max, depth| Some(max.unwrap_or(0.0).max(depth)));
+        }
+        for foot in &mut feet {
+            foot.source.push(source.position(foot.source_joint));
+            foot.target.push(with_travel(transfer, &target, foot.target_joint, &removed, index, turn_back));
+            foot.heights.push(foot.sole.lowest(&target) - soles.ground);
+        }
+    }
+    let (contacts, tracks) = foot_tracks(transfer, &times, feet);
+    let figures = Figures {
+        limb_direction_error_degrees_mean: direction.mean(),
+        limb_direction_error_degrees_max: direction.max(),
+        facing_error_degrees_mean: facing.mean(),
+        facing_error_degrees_max: facing.max(),
+        orientation_error_degrees_mean: orientation.mean(),
+        orientation_error_degrees_max: orientation.max(),
+        foot_slide_metres_per_sec: contacts.slide,
+        foot_slide_source_metres_per_sec: contacts.source_slide,
+        ground_penetration_metres_max: penetration,
+        foot_hover_metres_mean: contacts.hover,
+        coverage: coverage(transfer.map, source_slots, target_slots),
+    };
+    (figures, tracks)
+}
+
+/// The source's keys, and halfway between them.
+fn measured_times(clip: &Clip) -> Vec<f32> {
+    let keys = union(clip.timelines().iter().map(Vec::as_slice));
+    let mut times: Vec<f32> = Vec::with_capacity(2 * keys.len());
+    for &key in &keys {
+        if let Some(&before) = times.last() {
+            let middle = before + 0.5 * (key - before);
+            if middle > before && middle < key {
+                times.push(middle);
+            }
+        }
+        times.push(key);
+    }
+    times
+}
+
+fn add_orientation_errors(
+    errors: &mut Spread,
+    transfer: &Transfer,
+    source: &WorldPose,
+    target: &WorldPose,
+    turn_back: DQuat,
+) {
+    let from_rest =
+        |pose: &WorldPose, rest: &WorldPose, joint: JointIndex| pose.rotation(joint) * rest.rotation(joint).conjugate();
+    for pair in &transfer.map.pairs {
+        let target = turn_back * from_rest(target, &transfer.alignment.target, pair.target);
+        let source = from_rest(source, &transfer.alignment.source, pair.source);
+        errors.add(angle_between(target, source).to_degrees());
+    }
+}
+
+fn add_direction_errors(
+    errors: &mut Spread,
+    segments: &[(&Pair, &Pair)],
+    source: &WorldPose,
+    target: &WorldPose,
+    turn_back: DQuat,
+) {
+    for (from, to) in segments {
+        let source = source.position(to.source) - source.position(from.source);
+        let target = turn_back * (target.position(to.target) - target.position(from.target));
+        if source.length() > 0.0 && target.length() > 0.0 {
+            errors.add(degrees_between(source, target));
+        }
+    }
+}
+
+/// Where a target joint would be if no travel had been removed from the clip.
+fn with_travel(
+    transfer: &Transfer,
+    target: &WorldPose,
+    joint: JointIndex,
+    removed: &RemovedTravel,
+    index: usize,
+    turn_back: DQuat,
+) -> DVec3 {
+    let position = target.position(joint);
+    let hips = transfer.hips_pair().map(|pair| target.position(pair.target));
+    let turned = hips.map_or(position, |hips| hips + turn_back * (position - hips));
+    turned + removed.horizontal(index)
+}
+
+fn coverage(map: &ResolvedMap, source_slots: &Humanoid, target_slots: &Humanoid) -> Option<f64> {
+    let both: Vec<JointIndex> =
+        Slot::ALL.iter().filter_map(|&slot| source_slots.joint(slot).and(target_slots.joint(slot))).collect();
+    let mapped = both.iter().filter(|&&joint| map.source_of(joint).is_some()).count();
+    (!both.is_empty()).then(|| mapped as f64 / both.len() as f64)
+}

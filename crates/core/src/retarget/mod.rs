@@ -1,0 +1,52 @@
+//! Retargets a clip: turns a clip of one skeleton and a joint map into an ordinary clip of another skeleton. Knows no file
+//! format.
+//!
+//! The steps, in order: `recognize` finds humanoid slots, `map` proposes and resolves a joint map, `align` brings the two
+//! rests together, `transfer` computes the channels, `feet` plants the feet, `bake` builds the clip, `measure` compares it
+//! with its source. `pose`, `keys` and `math` are shared by all.
+//!
+//! ```
+//! use gaitway_core::formats::{FileSet, load};
+//! use gaitway_core::retarget::propose;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let open = |name: &str| -> Result<_, Box<dyn std::error::Error>> {
+//!     let mut files = FileSet::default();
+//!     files.insert(name, std::fs::read(format!("assets/samples/{name}"))?);
+//!     Ok(load(&files)?)
+//! };
+//! let (model, motion) = (open("mannequin.glb")?, open("walk.bvh")?);
+//!
+//! let proposal = propose(&model, &motion);
+//! let hips = model.skeleton.find("mixamorig:Hips").ok_or("no hips")?;
+//! let pair = proposal.pairs.iter().find(|pair| pair.target == hips).ok_or("unmapped")?;
+//! assert_eq!(motion.skeleton.name(pair.source), "hip");
+//! println!("{} ({:.0} %)", pair.reason, 100.0 * pair.confidence);
+//! # Ok(())
+//! # }
+//! ```
+
+mod align;
+mod bake;
+mod feet;
+mod keys;
+mod map;
+mod math;
+mod measure;
+mod pose;
+mod recognize;
+mod retargeting;
+mod transfer;
+
+pub use align::rest::{FoundRest, RestOrigin};
+pub use bake::{RetargetError, Retargeted};
+pub use feet::Planting;
+pub use map::{
+    ClipRef, Feet, JointMap, JointMapFile, Keep, Layer, MapEntry, MapError, MutedChannel, MutedProperty, Pair,
+    Proposal, ProposedPair, ResolvedMap, RestChoice, RestChoices, RootOptions, RootPart, SourceRef, Unmapped,
+    opposite_joints, propose,
+};
+pub use measure::{Figures, FootTrack, StagePair};
+pub use recognize::{Contradiction, Facing, Reason, Recognized, RecognizedJoint, recognize};
+pub use retargeting::{Body, Retargeting};
+pub use transfer::{Baking, LayerClip, bake_layers, baking, layer_clips};

@@ -1,0 +1,297 @@
+//! Finds a body by its shape alone, for skeletons whose names say nothing: two legs that hang on one joint, a trunk that
+//! goes the other way from there, two arms and a head at its end. Pairs of limbs are found by equal lengths, which no pose
+//! changes. Which joint of a limb is which part is decided in `limbs`; every part has a confidence of its own.
+
+use std::collections::BTreeMap;
+
+use glam::Vec3;
+
+use super::assemble::spread;
+use super::evidence::Evidence;
+use super::tree::Tree;
+use super::{Reason, RecognizedJoint, fingers, limbs};
+use crate::anim::JointIndex;
+use crate::asset::Slot::{self, *};
+
+/// Parts that are less certain than this are left out.
+pub(super) const MIN_CONFIDENCE: f32 = 0.45;
+
+/// Maximum number of limbs on a joint and of joints in a limb. Keeps the search short in large scenes.
+const MAX_COUNT: usize = 16;
+
+/// Maximum number of pairs of limbs that are considered, longest first.
+const MAX_PAIRS: usize = 32;
+
+/// Maximum distance of the hips above the joint that the legs hang on.
+const MAX_HIPS_ABOVE: usize = 3;
+
+/// Two limbs that mirror each other, and the joint they hang on.
+#[derive(Debug, Clone)]
+pub(super) struct Twins {
+    pub base: JointIndex,
+    /// Of equal length.
+    pub chains: [Vec<JointIndex>; 2],
+    /// Mean length of the chains.
+    pub length: f32,
+}
+
+/// A skeleton in one pose.
+pub(super) struct Shape<'a> {
+    pub tree: &'a Tree<'a>,
+    pub evidence: &'a Evidence,
+    pub positions: &'a [Vec3],
+    /// Length of the longest way down from each joint.
+    reach: Vec<f32>,
+}
+
+/// Lower and upper half of a body.
+pub(super) struct Halves {
+    pub hips: JointIndex,
+    pub legs: Twins,
+    /// From the joint above the hips up to the one that the arms hang on.
+    pub trunk: Vec<JointIndex>,
+    pub arms: Twins,
+    /// From the joint above the arms to the end of the head.
+    pub head: Vec<JointIndex>,
+    /// From the feet to the shoulders.
+    pub up: Vec3,
+    /// From the second leg to the first, perpendicular to `up`.
+    pub across: Vec3,
+}
+
+/// What was found, and what was not certain enough to keep.
+#[derive(Debug, Default)]
+pub(super) struct Found {
+    pub parts: BTreeMap<Slot, RecognizedJoint>,
+    pub left_out: BTreeMap<Slot, RecognizedJoint>,
+}
+
+/// Returns the joints of a body; empty if nothing looks like one. Tries the rest, then moments of the first clip: motion
+/// capture often rests with all bones along one axis.
+pub(super) fn find(tree: &Tree, evidence: &Evidence) -> Found {
+    let shapes = evidence.poses.iter().take(2).map(|positions| Shape::new(tree, evidence, positions));
+    let mut found = Found::default();
+    let Some(parts) = shapes.into_iter().find_map(|shape| slots(&shape, &halves(&shape)?)) else { return found };
+    for (slot, joint, confidence) in parts {
+        let part = RecognizedJoint { joint, reason: Reason::Geometry, confidence };
+        // The surest part of a joint comes first.
+        if found.parts.contains_key(&slot) || found.parts.values().any(|other| other.joint == joint) {
+            continue;
+        }
+        let parts = if confidence >= MIN_CONFIDENCE { &mut found.parts } else { &mut found.left_out };
+        parts.insert(slot, part);
+    }
+    found
+}
+
+impl<'a> Shape<'a> {
+    pub fn new(tree: &'a Tree, evidence: &'a Evidence, positions: &'a [Vec3]) -> Self {
+        let mut shape = Self { tree, evidence, positions, reach: vec![0.0; positions.len()] };
+        for joint in tree.skeleton.joints().rev().filter(|joint| tree.usable[joint.get()]) {
+            if let Some(parent) = tree.skeleton.parent(joint) {
+                let reach = shape.reach[joint.get()] + shape.distance(parent, joint);
+                shape.reach[parent.get()] = shape.reach[parent.get()].max(reach);
+            }
+        }
+        shape
+    }
+
+    pub fn position(&self, joint: JointIndex) -> Vec3 {
+        self.positions[joint.get()]
+    }
+
+    pub fn distance(&self, a: JointIndex, b: JointIndex) -> f32 {
+        self.position(a).distance(self.position(b))
+    }
+
+    /// Length of the way along a chain.
+    pub fn length(&self, chain: &[JointIndex]) -> f32 {
+        chain.windows(2).map(|pair| self.distance(pair[0], pair[1])).sum()
+    }
+
+    /// The joint and what follows it, along the longest way where it forks. A tip that no skin knows is left out.
+    pub fn chain(&self, first: JointIndex) -> Vec<JointIndex> {
+        let way = |from: JointIndex, to: JointIndex| self.distance(from, to) + self.reach[to.get()];
+        let longest = |at: &JointIndex| {
+            let children = self.tree.children(*at).iter().copied();
+            children.max_by(|&a, &b| way(*at, a).total_cmp(&way(*at, b)).then(b.cmp(&a)))
+        };
+        let mut chain: Vec<JointIndex> = std::iter::successors(Some(first), longest).take(MAX_COUNT).collect();
+        let end = chain[chain.len() - 1];
+        if chain.len() > 1 && self.tree.children(end).is_empty() && self.evidence.is_skinned(end) == Some(false) {
+            chain.pop();
+        }
+        chain
+    }
+
+    /// The pairs of chains on a joint whose segments have equal lengths, as far as they do.
+    fn twins(&self, base: JointIndex) -> Vec<Twins> {
+        let children = self.tree.children(base);
+        if !(2..=MAX_COUNT).contains(&children.len()) {
+            return Vec::new();
+        }
+        let chains: Vec<Vec<JointIndex>> = children.iter().map(|&child| self.chain(child)).collect();
+        let mut found = Vec::new();
+        for (at, a) in chains.iter().enumerate() {
+            for b in &chains[at + 1..] {
+                found.extend(self.pair_up(base, a, b));
+            }
+        }
+        found
+    }
+
+    fn pair_up(&self, base: JointIndex, a: &[JointIndex], b: &[JointIndex]) -> Option<Twins> {
+        let whole = self.reach[base.get()];
+        let mut length = 0.0;
+        let mut above = [base, base];
+        let mut count = 0;
+        for (&a, &b) in a.iter().zip(b) {
+            let segments = [self.distance(above[0], a), self.distance(above[1], b)];
+            if (segments[0] - segments[1]).abs() > 0.12 * segments[0].max(segments[1]) + 0.02 * whole {
+                break;
+            }
+            length += 0.5 * (segments[0] + segments[1]);
+            above = [a, b];
+            count += 1;
+        }
+        let twins = Twins { base, chains: [a[..count].to_vec(), b[..count].to_vec()], length };
+        (count >= 2 && length > 0.0 && self.apart(&twins).is_some()).then_some(twins)
+    }
+
+    /// All pairs of limbs, the longest first.
+    pub fn limbs(&self) -> Vec<Twins> {
+        let mut pairs: Vec<Twins> = self.tree.skeleton.joints().flat_map(|joint| self.twins(joint)).collect();
+        pairs.sort_by(|a, b| b.length.total_cmp(&a.length).then(a.base.cmp(&b.base)));
+        pairs.truncate(MAX_PAIRS);
+        pairs
+    }
+
+    /// The joint that legs and trunk meet in: the legs' own or one above it.
+    pub fn trunk_root(&self, legs: &Twins, arms: &Twins) -> Option<JointIndex> {
+        self.tree.upwards(legs.base).take(MAX_HIPS_ABOVE).find(|&hips| self.tree.is_under(arms.base, hips))
+    }
+
+    /// The joint and what follows it, up to the joint where the chain forks.
+    pub fn unforked(&self, first: JointIndex) -> Vec<JointIndex> {
+        let next = |at: &JointIndex| match self.tree.children(*at) {
+            [only] => Some(*only),
+            _ => None,
+        };
+        std::iter::successors(Some(first), next).take(MAX_COUNT).collect()
+    }
+
+    /// Direction from the second chain to the first, where they first separate.
+    pub fn apart(&self, twins: &Twins) -> Option<Vec3> {
+        let [a, b] = &twins.chains;
+        let line = a.iter().zip(b).map(|(&a, &b)| self.position(a) - self.position(b));
+        line.into_iter().find(|line| line.length() > 0.02 * twins.length)?.try_normalize()
+    }
+
+    /// Midpoint of the two joints at the same place in the chains of a pair.
+    pub fn middle(&self, twins: &Twins, at: usize) -> Vec3 {
+        let [a, b] = twins.chains.each_ref().map(|chain| self.position(chain[at]));
+        a.midpoint(b)
+    }
+}
+
+/// The longest legs and arms that make an upright body.
+fn halves(shape: &Shape) -> Option<Halves> {
+    let pairs = shape.limbs();
+    let mut best: Option<Halves> = None;
+    for legs in pairs.iter().filter(|legs| legs.chains[0].len() >= 3) {
+        for arms in &pairs {
+            let length = |halves: &Halves| halves.legs.length + halves.arms.length;
+            if best.as_ref().is_none_or(|best| legs.length + arms.length > length(best)) {
+                best = body(shape, legs, arms).or(best);
+            }
+        }
+    }
+    best
+}
+
+/// None if these legs and arms don't make an upright body with a head.
+fn body(shape: &Shape, legs: &Twins, arms: &Twins) -> Option<Halves> {
+    let tree = shape.tree;
+    let on_leg = |joint| legs.chains.iter().any(|chain| tree.is_under(joint, chain[0]));
+    if arms.base == legs.base || on_leg(arms.base) || !(0.3..3.0).contains(&(arms.length / legs.length)) {
+        return None;
+    }
+    let hips = shape.trunk_root(legs, arms)?;
+    let trunk = tree.path(hips, arms.base);
+    let (hip, shoulder) = (shape.position(legs.base), shape.middle(arms, 0));
+    let feet = shape.middle(legs, legs.chains[0].len() - 1);
+    let down = (feet - hip).try_normalize()?;
+    let up = (shoulder - feet).try_normalize()?;
+    let is_upright = (shoulder - hip).try_normalize()?.dot(down) < -0.6;
+    let line = shape.apart(legs)?;
+    let across = (line - up * line.dot(up)).try_normalize()?;
+    let is_parallel = shape.apart(arms)?.dot(across).abs() > 0.7;
+    if trunk.is_empty() || !is_upright || !is_parallel || shoulder.distance(hip) < 0.15 * legs.length {
+        return None;
+    }
+    let head = head(shape, arms, up)?;
+    Some(Halves { hips, legs: legs.clone(), trunk, arms: arms.clone(), head, up, across })
+}
+
+/// The chain above the arms, up to the joint where it forks.
+fn head(shape: &Shape, arms: &Twins, up: Vec3) -> Option<Vec<JointIndex>> {
+    let top = |joint: JointIndex| {
+        let below =
+            shape.tree.skeleton.joints().skip(joint.get()).take_while(|&other| shape.tree.is_under(other, joint));
+        let heights = below.filter(|joint| shape.tree.usable[joint.get()]).map(|joint| shape.position(joint).dot(up));
+        heights.fold(f32::NEG_INFINITY, f32::max)
+    };
+    let highest = |joints: &[JointIndex]| {
+        let free = joints.iter().copied().filter(|child| !arms.chains.iter().any(|chain| chain[0] == *child));
+        free.max_by(|&a, &b| top(a).total_cmp(&top(b)).then(b.cmp(&a)))
+    };
+    let first = highest(shape.tree.children(arms.base))?;
+    if top(first) < shape.position(arms.base).dot(up) + 0.02 * arms.length {
+        return None;
+    }
+    Some(shape.unforked(first))
+}
+
+/// Slots with joint and confidence; the surest first where several are for one joint.
+fn slots(shape: &Shape, body: &Halves) -> Option<Vec<(Slot, JointIndex, f32)>> {
+    let legs = limbs::leg(shape, body)?;
+    let arms = limbs::arm(shape, body, &legs).unwrap_or_default();
+    let mut found = vec![(Hips, body.hips, if body.hips == body.legs.base { 0.9 } else { 0.7 })];
+    found.extend(limbs::head(shape, body));
+    let has_neck = found.iter().any(|(slot, ..)| *slot == Neck);
+    found.extend(trunk(shape, body, has_neck));
+    let (is_first_left, certainty) = limbs::is_first_left(shape, body, &legs);
+    // Arms may be listed in another order than legs.
+    let is_same_order = shape.apart(&body.arms)?.dot(body.across) > 0.0;
+    for (limb, twins, is_left) in
+        [(&legs, &body.legs, is_first_left), (&arms, &body.arms, is_first_left == is_same_order)]
+    {
+        for (chain, is_left) in twins.chains.iter().zip([is_left, !is_left]) {
+            let side = |slot: Slot| if is_left { slot } else { slot.mirrored() };
+            found.extend(limb.iter().map(|part| (side(part.slot), chain[part.at], part.confidence.min(certainty))));
+            let hand = limb.iter().find(|part| part.slot == LeftHand && part.confidence >= MIN_CONFIDENCE);
+            if let Some(hand) = hand {
+                let fingers = fingers::find(shape, chain[hand.at]);
+                found.extend(
+                    fingers.into_iter().map(|(slot, joint, confidence)| (side(slot), joint, confidence.min(certainty))),
+                );
+            }
+        }
+    }
+    found.sort_by(|a, b| b.2.total_cmp(&a.2).then(a.0.cmp(&b.0)));
+    Some(found)
+}
+
+/// The joints between hips and neck. A lowest one that no skin knows and that never turns only connects the spine. Without
+/// a joint for the neck, the highest ones may be it.
+fn trunk(shape: &Shape, body: &Halves, has_neck: bool) -> Vec<(Slot, JointIndex, f32)> {
+    let is_still = |joint: JointIndex| {
+        shape.evidence.turns(joint) == Some(false) && shape.evidence.is_skinned(joint) != Some(true)
+    };
+    let links = usize::from(matches!(body.trunk[..], [first, second, ..] if is_still(first) && !is_still(second)));
+    let torso = &body.trunk[links..];
+    let confidence = if torso.len() <= 3 { 0.75 } else { 0.6 };
+    let is_sure = |slot| has_neck || slot == Spine || torso.len() <= 2;
+    let parts = spread(torso).into_iter();
+    parts.map(|(slot, joint)| (slot, joint, if is_sure(slot) { confidence } else { limbs::UNSURE })).collect()
+}

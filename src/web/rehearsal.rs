@@ -1,0 +1,19 @@
+//! Opens and draws a tiny character while the first model is on its way. A browser compiles each function when it is first called,
+//! and a driver each shader when it is first drawn with: together that takes as long as everything else between the last byte
+//! and the first picture.
+
+use super::calls::with_app;
+use super::page::Page;
+use crate::files::{Item, Role, open_items};
+
+/// A skinned triangle with the two commonest materials: a base colour map alone, and with a normal map.
+const CHARACTER: &[u8] = include_bytes!("rehearsal.gltf");
+
+/// # Errors
+/// If the app has stopped. That the character can be opened is tested.
+pub async fn rehearse(page: &Page) -> Result<(), String> {
+    let items = vec![Item::File("rehearsal.gltf".to_owned(), CHARACTER.to_vec())];
+    let opened = open_items(items, Role::Model, &|_, _, _| ()).await;
+    let character = opened.ok().and_then(|contents| contents.models.into_iter().next());
+    character.map_or(Ok(()), |character| with_app(page, |app| app.rehearse(character.model)))
+}
