@@ -30,7 +30,8 @@ fn cargo_checks() -> anyhow::Result<()> {
     process::run("cargo", &[&clippy[..], &["--", "-D", "warnings"]].concat())?;
     let wasm = ["clippy", "--target", "wasm32-unknown-unknown", "--features", "bench,webgpu,webgl2"];
     process::run("cargo", &[&wasm[..], &["--", "-D", "warnings"]].concat())?;
-    run_with("cargo", &["doc", "--no-deps"], &[("RUSTDOCFLAGS", "-D warnings")])?;
+    let doc = ["doc", "--no-deps", "--package", "gaitway", "--package", "gaitway-core"];
+    run_with("cargo", &doc, &[("RUSTDOCFLAGS", "-D warnings")])?;
     // Only `cargo fuzz` runs them; the tests below feed the same readers for a moment.
     process::run("cargo", &["check", "--manifest-path", "fuzz/Cargo.toml"])?;
     process::run("cargo", &["test", "--no-default-features"])?;
