@@ -159,10 +159,9 @@ mod tests {
         check(20, 16_384, "mip level 2 is damaged");
     }
 
-    /// Flipped bits, cut and overwritten files, the same on every run. The decoder panics on some, which [`gaitway_part`]'s callers
-    /// turn into an error.
+    /// Flipped bits, cut and overwritten files, the same on every run.
     #[test]
-    fn damaged_files_end() {
+    fn damaged_files_never_panic() {
         let mut state = 0x9E37_79B9_7F4A_7C15_u64;
         let mut random = |limit: usize| {
             state ^= state << 13;
@@ -170,7 +169,7 @@ mod tests {
             state ^= state << 17;
             (state % limit as u64) as usize
         };
-        let (mut decoded, mut failed, mut panicked) = (0, 0, 0);
+        let (mut decoded, mut failed) = (0, 0);
         let cases: usize = std::env::var("CASES").map_or(200, |cases| cases.parse().unwrap());
         for file in [ETC1S, ETC1S_ALPHA, UASTC, UASTC_SINGLE] {
             for case in 0..cases {
@@ -184,14 +183,12 @@ mod tests {
                     }
                 }
                 let input = request(if case % 2 == 0 { ALL } else { Formats(6) }, 64, &damaged);
-                match std::panic::catch_unwind(|| decode(&input)) {
-                    Ok(Ok(_)) => decoded += 1,
-                    Ok(Err(_)) => failed += 1,
-                    Err(_) => panicked += 1,
+                match decode(&input) {
+                    Ok(_) => decoded += 1,
+                    Err(_) => failed += 1,
                 }
             }
         }
-        println!("{decoded} decoded, {failed} failed, {panicked} panicked");
         assert!(decoded > 10, "only {decoded} were decoded: the damage hides what it should test");
         assert!(failed > 10, "only {failed} failed");
     }
