@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde_json::{Value, json};
 
-use super::failure::{Failure, Outcome};
+use super::failure::Outcome;
 use super::motion::{DOUBTFUL_REST, doubtful_rest, open_motion};
 use super::output::{is_standard_output, print_bytes, print_json, warn, write_output};
 use super::{MapArguments, open};
@@ -23,14 +23,12 @@ pub(super) fn run(arguments: &MapArguments, disk: &Disk) -> Outcome {
             warn(&format!("{}: {text}", file.display()));
         }
     }
-    if proposal.pairs.is_empty() {
-        return Err(Failure::new(
-            "no joint of the model matches the motion by name, body part or position; write a map manually \
-             (docs/joint-maps.md)",
-        ));
-    }
-    let resolved = map.resolve(model, motion)?;
-    let doubtful = doubtful_rests(opened_model.body(), opened_motion.body(), &resolved);
+    let doubtful = if proposal.pairs.is_empty() {
+        warn(NOTHING_MATCHES);
+        Vec::new()
+    } else {
+        doubtful_rests(opened_model.body(), opened_motion.body(), &map.resolve(model, motion)?)
+    };
     for (clip, message) in &doubtful {
         eprintln!("warning: {}: {clip}: {message}", arguments.motion.display());
     }
@@ -48,22 +46,7 @@ pub(super) fn run(arguments: &MapArguments, disk: &Disk) -> Outcome {
         };
         document["unmapped_targets"] = json!(names(&model.skeleton, &proposal.unmapped_targets));
         document["unused_sources"] = json!(names(&motion.skeleton, &proposal.unused_sources));
-        let files = [(&proposal.model, &model.skeleton), (&proposal.motion, &motion.skeleton)];
-        let warnings = files.into_iter().flat_map(|(found, skeleton)| {
-            let sides = contradictions_text(found).map(|text| {
-                let place: Vec<&str> = found.contradictions.iter().map(place).collect();
-                json!({ "code": "sides-contradict", "message": text, "where": place.join(", ") })
-            });
-            let unclear = left_out_text(found).map(|text| {
-                let place: Vec<String> = found.left_out.values().map(|part| skeleton.label(part.joint)).collect();
-                json!({ "code": "unclear-joints", "message": text, "where": place.join(", ") })
-            });
-            sides.into_iter().chain(unclear)
-        });
-        let doubtful = doubtful.iter();
-        let doubtful =
-            doubtful.map(|(clip, message)| json!({ "code": DOUBTFUL_REST, "message": message, "where": clip }));
-        document["warnings"] = warnings.chain(doubtful).collect();
+        document["warnings"] = warnings(&proposal, [&model.skeleton, &motion.skeleton], &doubtful);
         return print_json(&document);
     }
     let mut text = String::new();
@@ -75,6 +58,34 @@ pub(super) fn run(arguments: &MapArguments, disk: &Disk) -> Outcome {
             writeln!(text, "{target:<32} {source:<32} {slot:<24} {:>4.0} %  {}", 100.0 * pair.confidence, pair.reason);
     }
     print_bytes(text.as_bytes())
+}
+
+/// A map without sources is printed all the same, to be filled in.
+const NOTHING_MATCHES: &str = "no joint of the model matches the motion by name, body part or position: the map is empty; \
+                               fill in its sources (docs/joint-maps.md)";
+
+/// The warnings of the document, about the model's and the motion's skeleton.
+fn warnings(proposal: &Proposal, skeletons: [&Skeleton; 2], doubtful: &[(String, String)]) -> Value {
+    let mut warnings = Vec::new();
+    let mut add = |code: &str, message: &str, place: &str| {
+        warnings.push(json!({ "code": code, "message": message, "where": place }));
+    };
+    for (found, skeleton) in [&proposal.model, &proposal.motion].into_iter().zip(skeletons) {
+        if let Some(text) = contradictions_text(found) {
+            add("sides-contradict", &text, &found.contradictions.iter().map(place).collect::<Vec<_>>().join(", "));
+        }
+        if let Some(text) = left_out_text(found) {
+            let joints: Vec<String> = found.left_out.values().map(|part| skeleton.label(part.joint)).collect();
+            add("unclear-joints", &text, &joints.join(", "));
+        }
+    }
+    if proposal.pairs.is_empty() {
+        add("nothing-matches", NOTHING_MATCHES, "");
+    }
+    for (clip, message) in doubtful {
+        add(DOUBTFUL_REST, message, clip);
+    }
+    Value::Array(warnings)
 }
 
 /// Names of the clips whose rest is not certain, each with a warning.

@@ -48,6 +48,22 @@ fn a_proposed_map_is_explained_and_can_be_reused() {
     assert_ne!(unposed["nodes"], written["nodes"]);
 }
 
+/// Nothing to propose: the map lists the model's joints without sources.
+#[test]
+fn without_a_match_the_map_is_empty_to_be_filled_in() {
+    let (folder, _) = folder("nothing");
+    let snake = folder.join("snake.bvh");
+    let text = "HIERARCHY\nROOT s1\n{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nJOINT s2\n{\nOFFSET 0 0 9\n\
+                CHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 0 9\n}\n}\n}\nMOTION\nFrames: 1\nFrame Time: 1\n\
+                0 0 0 0 0 0\n";
+    std::fs::write(&snake, text).expect("a file");
+    let snake = snake.to_str().expect("a plain path");
+    let map = document(&["map", "--model", "sample:walker", "--motion", snake, "--json"]);
+    let joints = map["joints"].as_object().expect("joints");
+    assert!(joints.len() > 10 && joints.values().all(|entry| entry["source"].is_null()), "{joints:?}");
+    assert_eq!(map["warnings"][0]["code"], "nothing-matches");
+}
+
 #[test]
 fn a_link_loads_its_motion_and_map() {
     let (folder, motion) = folder("linked");

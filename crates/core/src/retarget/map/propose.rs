@@ -250,12 +250,14 @@ fn nearest_above<T: Copy>(skeleton: &Skeleton, of: impl Fn(JointIndex) -> Option
 }
 
 impl Proposal {
-    /// Returns the proposed pairs as a map.
+    /// Returns the proposed pairs as a map. Without any, the map lists the model's joints, for someone to fill in.
     pub fn to_map(&self, model: &Asset, motion: &Asset) -> JointMap {
         let entry = |pair: &ProposedPair| {
             let source = motion.skeleton.source_index(pair.source);
             (model.skeleton.source_index(pair.target), MapEntry::following(Some(source)))
         };
-        JointMap { joints: self.pairs.iter().map(entry).collect(), ..JointMap::default() }
+        let open = self.unmapped_targets.iter().filter(|_| self.pairs.is_empty());
+        let open = open.map(|&joint| (model.skeleton.source_index(joint), MapEntry::following(None)));
+        JointMap { joints: self.pairs.iter().map(entry).chain(open).collect(), ..JointMap::default() }
     }
 }

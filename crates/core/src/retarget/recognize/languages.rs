@@ -251,7 +251,7 @@ const LANGUAGES: [Words; 6] = [GERMAN, SPANISH, FRENCH, JAPANESE, CHINESE, KOREA
 /// Translates the names of a skeleton to English, if most are in another language.
 pub(super) fn translate(names: &mut [Name]) {
     let uses = |language: Words| {
-        let words = names.iter().flat_map(|name| &name.words).flat_map(|word| cut(word, language)).flatten();
+        let words = names.iter().flat_map(|name| &name.words).filter_map(|word| cut(word, language)).flatten();
         words.map(|(word, _)| word).collect::<BTreeSet<&str>>().len()
     };
     let used = LANGUAGES.into_iter().map(|language| (uses(language), language));
