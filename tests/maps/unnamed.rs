@@ -7,6 +7,7 @@ use gaitway::asset::{Asset, AssetParts, Slot};
 use gaitway::retarget::{Recognized, recognize};
 use glam::Vec3;
 
+use crate::data::open;
 use crate::skeletons;
 use crate::truth::{each_file, is_called};
 
@@ -95,6 +96,21 @@ fn bodies_with_useless_names_are_found_by_their_shape() {
     assert!((right + open) as f64 >= 0.9 * total as f64);
     // Leaving everything open is no answer.
     assert!(right as f64 >= 0.8 * total as f64, "{right} of {total}");
+}
+
+#[test]
+fn animals_with_useless_names_are_no_bodies() {
+    for path in [
+        "khronos/Fox/glTF-Binary/Fox.glb",
+        "mesh2motion/bird-animations.glb",
+        "mesh2motion/fox-animations.glb",
+        "mesh2motion/spider-animations.glb",
+        "mesh2motion/snake-animations.glb",
+        "misc/TRex.glb",
+    ] {
+        let Some(asset) = open(path) else { return };
+        assert_eq!(recognize(&without_names(&asset)).parts, BTreeMap::new(), "{path}");
+    }
 }
 
 /// A body in a T-pose without names: what its left arm consists of, as distances outwards.

@@ -81,7 +81,8 @@ pub(super) fn find(tree: &Tree, evidence: &Evidence) -> Found {
         let parts = if confidence >= MIN_CONFIDENCE { &mut found.parts } else { &mut found.left_out };
         parts.insert(slot, part);
     }
-    found
+    // Legs and a trunk alone may be a bird's.
+    if [Head, LeftLowerArm].iter().any(|slot| found.parts.contains_key(slot)) { found } else { Found::default() }
 }
 
 impl<'a> Shape<'a> {
