@@ -12,7 +12,7 @@
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let open = |name: &str| -> Result<_, Box<dyn std::error::Error>> {
 //!     let mut files = FileSet::default();
-//!     files.insert(name, std::fs::read(format!("assets/samples/{name}"))?);
+//!     files.insert(name, std::fs::read(format!("../../assets/samples/{name}"))?);
 //!     Ok(load(&files)?)
 //! };
 //! let (model, motion) = (open("mannequin.glb")?, open("walk.bvh")?);
