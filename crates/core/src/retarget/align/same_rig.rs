@@ -163,20 +163,24 @@ impl Rigs<'_> {
 
     /// Whether joints are rolled about their children's offsets between rests that hold the same pose around them.
     fn is_rolled(&self, offsets: &[Offset]) -> bool {
+        let is_turned = |offset: &&Offset| {
+            let [target, source] =
+                [self.target.locals[offset.target.get()].rotation, self.source.locals[offset.source.get()].rotation];
+            angle_between(target, source).to_degrees() > MIN_ROLL_DEGREES
+        };
+        let turned: Vec<JointIndex> = offsets.iter().filter(is_turned).map(|offset| offset.source).collect();
+        // Comparing each offset with the others takes longer than retargeting a short clip.
+        if turned.len() < MIN_ROLLED {
+            return false;
+        }
         let mut worst_of_parent: BTreeMap<JointIndex, f64> = BTreeMap::new();
         for (offset, difference) in offsets.iter().zip(self.pose_differences(offsets)) {
             let worst = worst_of_parent.entry(offset.source_parent).or_default();
             *worst = worst.max(difference);
         }
-        let is_rolled = |offset: &&Offset| {
-            let turn = angle_between(
-                self.target.locals[offset.target.get()].rotation,
-                self.source.locals[offset.source.get()].rotation,
-            );
-            turn.to_degrees() > MIN_ROLL_DEGREES
-                && worst_of_parent.get(&offset.source).is_some_and(|&worst| worst < MAX_POSE_DEGREES)
-        };
-        offsets.iter().filter(is_rolled).count() >= MIN_ROLLED
+        let has_same_pose =
+            |joint: &&JointIndex| worst_of_parent.get(joint).is_some_and(|&worst| worst < MAX_POSE_DEGREES);
+        turned.iter().filter(has_same_pose).count() >= MIN_ROLLED
     }
 
     /// For each offset, by how much its angles to the others differ between the two rests, in degrees on average. Angles
