@@ -175,7 +175,7 @@ impl App {
         }
     }
 
-    /// Draws a character that nobody sees; see `web::rehearsal`.
+    /// Draws a character off screen, so that code and shaders get compiled; see `web::rehearsal`.
     #[cfg(target_arch = "wasm32")]
     pub fn rehearse(&mut self, character: crate::library::Model) {
         use crate::frame::{Frame, evaluate};

@@ -60,7 +60,7 @@ pub(super) fn run(arguments: &MapArguments, disk: &Disk) -> Outcome {
     print_bytes(text.as_bytes())
 }
 
-/// A map without sources is printed all the same, to be filled in.
+/// The map is still written, without sources, to be filled in.
 const NOTHING_MATCHES: &str = "no joint of the model matches the motion by name, body part or position: the map is empty; \
                                fill in its sources (docs/joint-maps.md)";
 
@@ -131,10 +131,13 @@ fn contradictions_text(found: &Recognized) -> Option<String> {
     ))
 }
 
-/// Describes the joints of one file that were left out; `None` if there are none.
+/// Describes the body parts of one file that were too uncertain to map; `None` if there are none.
 fn left_out_text(found: &Recognized) -> Option<String> {
     let slots: Vec<&str> = found.left_out.keys().map(|slot| slot.name()).collect();
-    let count = slots.len();
-    (count > 0)
-        .then(|| format!("{count} body parts were left out because several joints could be them: {}", slots.join(", ")))
+    let all = slots.join(", ");
+    match slots.len() {
+        0 => None,
+        1 => Some(format!("1 body part could not be located reliably and was left unmapped: {all}")),
+        count => Some(format!("{count} body parts could not be located reliably and were left unmapped: {all}")),
+    }
 }

@@ -4,7 +4,7 @@ use std::io::Cursor;
 
 use image::{ImageReader, Limits};
 
-use super::images::{byte_count, fitted, largest_edge, push_decoded, texture_formats, transcoded};
+use super::images::{byte_count, fitted, is_ktx2, largest_edge, push_decoded, texture_formats, transcoded};
 use crate::asset::{Asset, Image};
 use crate::formats::Part;
 use crate::formats::limits::MAX_IMAGE_SIDE;
@@ -26,13 +26,14 @@ pub fn decode_images(asset: &mut Asset) -> Vec<Option<ImageData>> {
 
 /// Returns the image, scaled down to `largest_edge`, and its size before that.
 fn decode(image: &Image, largest_edge: u32) -> Result<(ImageData, [u32; 2]), String> {
-    if image.bytes.starts_with(&gaitway_ktx2::MAGIC) {
+    if is_ktx2(image) {
         let request = gaitway_ktx2::request(texture_formats(), largest_edge, &image.bytes);
         return transcoded(image, Part::Ktx2.run(&request));
     }
     if image.mime == "image/avif" {
-        let found = "it is AVIF, which is decoded only in a browser; open the model in the page, or convert the image";
-        return Err(format!("{found} to PNG, JPEG or WebP"));
+        let problem =
+            "AVIF is decoded only by the page: open the model there, or convert the image to PNG, JPEG or WebP";
+        return Err(problem.to_owned());
     }
     let mut reader = ImageReader::new(Cursor::new(&image.bytes)).with_guessed_format().map_err(|e| e.to_string())?;
     // The decoder reads the header in its own way.

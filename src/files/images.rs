@@ -21,7 +21,7 @@ pub fn set_largest_image(pixels: u32) {
     DEVICE_EDGE.store(pixels.max(1), Ordering::Relaxed);
 }
 
-/// What the device can sample, and who waits for it on the page.
+/// Formats that the device can sample, and the tasks that wait to know them.
 static DEVICE_FORMATS: Mutex<(Option<Formats>, Vec<Waker>)> = Mutex::new((None, Vec::new()));
 
 /// Sets the compressed formats that the device can sample, for images decoded from now on.
@@ -56,9 +56,13 @@ pub(super) async fn texture_formats() -> Formats {
     .await
 }
 
+pub(super) fn is_ktx2(image: &Image) -> bool {
+    image.bytes.starts_with(&gaitway_ktx2::MAGIC)
+}
+
 /// Reads the transcoder's answer about a KTX2 image. Returns it with its full size.
 pub(super) fn transcoded(image: &Image, answer: Answer) -> Result<(ImageData, [u32; 2]), String> {
-    let texture = Texture::read(&answer?.bytes).ok_or("its converter gave an answer that cannot be read")?;
+    let texture = Texture::read(&answer?.bytes).ok_or("the KTX2 decoder returned invalid data")?;
     Ok((ImageData::Ktx2(texture), [image.width, image.height]))
 }
 

@@ -408,11 +408,11 @@ pub fn sides_contradict(who: &str, first: &str, count: usize, by_position: bool)
     }
 }
 
-/// Joints that were left out because their shape fits several parts of the body.
+/// Body parts whose joints were too uncertain to map.
 pub fn joints_left_out(who: &str, count: usize) -> String {
     match count {
-        1 => format!("1 joint of the {who} could be one of several body parts and was left unmapped."),
-        _ => format!("{count} joints of the {who} could be one of several body parts and were left unmapped."),
+        1 => format!("1 body part of the {who} couldn't be located reliably and was left unmapped."),
+        _ => format!("{count} body parts of the {who} couldn't be located reliably and were left unmapped."),
     }
 }
 

@@ -61,7 +61,7 @@ pub async fn run(
         has_arrived.set(true);
         contents
     };
-    // While the files arrive, the device is made and all is rehearsed. The files are requested first: they are far away.
+    // Request the files first: the network takes longest. Meanwhile, create the device and rehearse.
     let app = async {
         start_app(canvas, &shell).await?;
         if has_arrived.get() { Ok(()) } else { rehearse(&*page()?).await }

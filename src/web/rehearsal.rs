@@ -1,6 +1,5 @@
-//! Opens and draws a tiny character while the first model is on its way. A browser compiles each function when it is first called,
-//! and a driver each shader when it is first drawn with: together that takes as long as everything else between the last byte
-//! and the first picture.
+//! Opens and draws a tiny character while the first model downloads. A browser compiles each function when it is first called, and
+//! a driver each shader when it is first drawn with: hundreds of milliseconds that would otherwise follow the last byte.
 
 use super::calls::with_app;
 use super::page::Page;

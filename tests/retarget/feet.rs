@@ -229,7 +229,7 @@ fn the_mesh_of_a_foot_stands_on_the_ground_however_the_foot_is_turned() {
     let model = with_shoes(build(&Rig::default()));
     let planted = ResolvedMap { feet: Feet::Plant, ..map(&model, &motion) };
     let (done, figures) = retarget(&model, &motion, &planted);
-    // The shoe's sole at rest, 7 cm below the ankle's height of 8 cm.
+    // The ankle rests at 8 cm, 15 cm above the sole.
     let ground = 0.08 - 0.15;
     let mut highest: f64 = 0.0;
     for time in (0..=240).map(|frame| frame as f32 / 60.0) {

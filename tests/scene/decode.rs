@@ -109,5 +109,5 @@ fn avif_is_left_to_browsers() {
     let (image, asset) = decode_as("image/avif", include_bytes!("../support/gradients.avif").to_vec());
     assert!(image.is_none());
     let warnings: Vec<_> = asset.warnings.iter().map(ToString::to_string).collect();
-    assert!(warnings[0].contains("open the model in the page") && warnings.len() == 1, "{warnings:?}");
+    assert!(warnings[0].contains("open the model there") && warnings.len() == 1, "{warnings:?}");
 }

@@ -1,8 +1,8 @@
 //! The core of Gaitway: reads files into skeletons, clips, meshes and skins, plays them, and moves clips from one skeleton to
 //! another.
 //!
-//! Gaitway uses these modules, its lowest layers, as its own. They are a package of their own because the page builds them for
-//! speed and the rest for size.
+//! Gaitway re-exports these modules, its lowest layers. They are a package of their own so that the page can build them with
+//! opt-level `s` and the rest with `z`.
 
 #![forbid(unsafe_code)]
 // Files are untrusted: whatever is wrong with them must be reported, never panic.

@@ -14,7 +14,7 @@ pub use wire::{Attribute, Decoded, Mesh, write};
 /// # Errors
 /// If a mesh is damaged, or is not what its accessors declare; the message names it by its number in the input, from 0.
 pub fn decode(input: &[u8]) -> Answer {
-    let (mut bytes_left, meshes) = wire::read(input).ok_or("the converter's input is damaged")?;
+    let (mut bytes_left, meshes) = wire::read(input).ok_or("the decoder's input is damaged")?;
     let (mut facts, mut data) = (Vec::new(), Vec::new());
     for (number, mesh) in meshes.iter().enumerate() {
         let before = data.len();

@@ -59,7 +59,7 @@ fn section(file: &[u8], at: usize) -> Result<&[u8], String> {
 /// Returns the width and height of an image in pixels, without reading more than the header.
 ///
 /// # Errors
-/// If it is no image of the kind that the extension allows.
+/// If the extension doesn't allow this kind of image.
 pub fn size(file: &[u8]) -> Result<[u32; 2], String> {
     if !file.starts_with(&MAGIC) {
         return Err("it is not a KTX2 file".to_owned());

@@ -27,15 +27,15 @@ use container::{Codec, Container};
 /// # Errors
 /// If the image is damaged, or is not what the extension allows.
 pub fn decode(input: &[u8]) -> Answer {
-    let (formats, largest_edge, file) = texture::read_request(input).ok_or("the converter's input is damaged")?;
+    let (formats, largest_edge, file) = texture::read_request(input).ok_or("the decoder's input is damaged")?;
     let container = Container::read(file)?;
-    let level = smallest_fitting(&container, largest_edge);
+    let level = first_fitting_level(&container, largest_edge);
     let format = choose(&container, formats, level);
     let mut texture = match container.codec {
         Codec::Etc1s => etc1s::transcode(&container, format, level)?,
         Codec::Uastc => uastc::transcode(&container, format, level)?,
     };
-    // Only without blocks: an image in blocks has a level of every size.
+    // Only RGBA gets here: compressed formats are chosen only if all mip levels are there.
     while texture.width.max(texture.height) > largest_edge.max(1) {
         texture.halve();
     }
@@ -60,7 +60,7 @@ fn choose(container: &Container, formats: Formats, level: usize) -> Format {
 }
 
 /// The first level whose edges are no longer than `largest_edge`, or the last one.
-fn smallest_fitting(container: &Container, largest_edge: u32) -> usize {
+fn first_fitting_level(container: &Container, largest_edge: u32) -> usize {
     let fits = |&level: &usize| container.level_size(level).into_iter().all(|edge| edge <= largest_edge);
     let last = container.levels.len() - 1;
     (0..last).find(fits).unwrap_or(last)

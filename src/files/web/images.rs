@@ -8,13 +8,13 @@ use wasm_bindgen_futures::JsFuture;
 
 use super::parts;
 use crate::asset::{Asset, Image};
-use crate::files::images::{fitted, largest_edge, push_decoded, texture_formats, transcoded};
+use crate::files::images::{fitted, is_ktx2, largest_edge, push_decoded, texture_formats, transcoded};
 use crate::files::source::Reading;
 use crate::formats::Part;
 use crate::library::ImageData;
 
-/// KTX2 images transcoded at once: each worker needs memory of its own.
-const AT_ONCE: usize = 4;
+/// Maximum number of KTX2 images transcoded in parallel: each worker has its own memory.
+const MAX_WORKERS: usize = 4;
 
 /// An image and its full size.
 type Decoded = Result<(ImageData, [u32; 2]), String>;
@@ -84,14 +84,9 @@ async fn finish_bitmap(bitmap: JsFuture, full_size: Option<[u32; 2]>) -> Decoded
     Ok((data, full_size))
 }
 
-fn is_ktx2(image: &Image) -> bool {
-    image.bytes.starts_with(&gaitway_ktx2::MAGIC)
-}
-
-/// Transcodes the KTX2 images among `images`, in their order.
-async fn transcode(images: &[Image]) -> VecDeque<Decoded> {
-    let largest_edge = largest_edge(images);
-    let images: Vec<&Image> = images.iter().filter(|image| is_ktx2(image)).collect();
+/// Transcodes the KTX2 images, in their order.
+async fn transcode(all: &[Image]) -> VecDeque<Decoded> {
+    let images: Vec<&Image> = all.iter().filter(|image| is_ktx2(image)).collect();
     if images.is_empty() {
         return VecDeque::new();
     }
@@ -103,12 +98,14 @@ async fn transcode(images: &[Image]) -> VecDeque<Decoded> {
         }
     };
     let formats = texture_formats().await;
+    // Not before: until the device is known, this is a guess.
+    let largest_edge = largest_edge(all);
     let start = |image: &&Image| {
         let request = gaitway_ktx2::request(formats, largest_edge, &image.bytes);
         parts::start(Part::Ktx2, &module, &request)
     };
     let mut decoded = VecDeque::with_capacity(images.len());
-    for images in images.chunks(AT_ONCE) {
+    for images in images.chunks(MAX_WORKERS) {
         let running: Vec<_> = images.iter().map(start).collect();
         for (image, running) in images.iter().zip(running) {
             decoded.push_back(transcoded(image, parts::finish(Part::Ktx2, running).await));

@@ -31,7 +31,7 @@ pub async fn convert(preparation: &Preparation, reading: &mut Reading<'_>) -> Re
     Ok(finish(part, start(part, &module, &preparation.input)).await)
 }
 
-/// Returns the part's module, or why it cannot be had.
+/// Returns the part's module, or why it is unavailable.
 pub async fn download(part: Part, reading: &mut Reading<'_>) -> Result<Vec<u8>, String> {
     let url = part_url(part.name()).and_then(|url| absolute(&url, None));
     let url = url.ok_or("this page was built without it")?;

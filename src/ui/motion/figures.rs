@@ -53,7 +53,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>) {
     row(ui, "Mean height of the soles", centimetres(foot_hover_metres_mean));
     row(ui, "Max. ground penetration", centimetres(ground_penetration_metres_max));
     if let Some(planting) = pairing.model.borrowed(clip).and_then(|borrowed| borrowed.planting) {
-        controls::hint(ui, format!("Feet on the ground: {planting}."));
+        controls::hint(ui, format!("Planting: {planting}."));
     }
     group(ui, "COVERAGE", "Mapped body parts, of those that both files have.");
     row(ui, "Mapped", coverage.map(|share| format!("{:.0} %", 100.0 * share)));

@@ -271,19 +271,22 @@ fn body(
 }
 
 /// Height of the buttons that edit the whole map.
-const HEIGHT: f32 = 30.0;
+const EDIT_BUTTON_HEIGHT: f32 = 30.0;
 
 /// Returns whether the button was clicked.
 fn button(ui: &mut Ui, width: f32, enabled: bool, text: &str, hover: &str) -> bool {
-    let button = egui::Button::new(text).min_size(egui::vec2(width, HEIGHT)).truncate();
-    ui.add_enabled_ui(enabled, |ui| ui.add_sized([width, HEIGHT], button)).inner.on_hover_text(hover).clicked()
+    let button = egui::Button::new(text).min_size(egui::vec2(width, EDIT_BUTTON_HEIGHT)).truncate();
+    ui.add_enabled_ui(enabled, |ui| ui.add_sized([width, EDIT_BUTTON_HEIGHT], button))
+        .inner
+        .on_hover_text(hover)
+        .clicked()
 }
 
 /// Buttons that edit the whole map.
 fn edits(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, local: &mut UiState, out: &mut Output) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
-        let width = ui.available_width() - 2.0 * (HEIGHT + 6.0);
+        let width = ui.available_width() - 2.0 * (EDIT_BUTTON_HEIGHT + 6.0);
         let clicking = local.motion.clicking.is_some();
         let (text, hover) = if clicking {
             (text::STOP_PICKING, "Leave the viewport alone again")
@@ -299,7 +302,7 @@ fn edits(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, local: &mut UiState
             (Icon::Undo, "Undo (Ctrl+Z)", local.host.can_undo, UiAction::Undo),
             (Icon::Redo, "Redo (Ctrl+Y)", local.host.can_redo, UiAction::Redo),
         ] {
-            let pressed = ui.add_enabled_ui(enabled, |ui| icon_button_sized(ui, icon, label, false, HEIGHT)).inner;
+            let pressed = ui.add_enabled_ui(enabled, |ui| icon_button_sized(ui, icon, label, false, EDIT_BUTTON_HEIGHT)).inner;
             if pressed.clicked() {
                 out.actions.push(action);
             }
@@ -356,7 +359,7 @@ fn first_clip_of(model: &Model, motion: usize) -> Option<Command> {
     Some(Command::SetClip(choice_of_clip(model, clip)))
 }
 
-/// Whether most joints with a side follow the other side than proposed.
+/// Whether most left and right joints are mapped to the side opposite to the proposal.
 fn follows_names(pairing: &Pairing<'_>, proposal: &Proposal) -> bool {
     let number = |joint| pairing.motion.asset.skeleton.source_index(joint);
     let mut crossing = 0_i32;
@@ -371,8 +374,8 @@ fn follows_names(pairing: &Pairing<'_>, proposal: &Proposal) -> bool {
     crossing > 0
 }
 
-/// Label of the button that exchanges position and names as what decides about the sides; None if they agree, or were not
-/// used.
+/// Label of the button that switches between matching sides by position and by name; None unless position overrode the names
+/// of exactly one file.
 fn sides_choice(pairing: &Pairing<'_>) -> Option<&'static str> {
     let proposal = pairing.proposal?;
     let is_by_position = proposal.model.by_position != proposal.motion.by_position

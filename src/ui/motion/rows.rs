@@ -335,7 +335,7 @@ impl Whole {
             (None, Some(None), None) => "deliberately none".to_owned(),
             (None, None, None) if left_out.is_some() => {
                 let what = left_out.map(slot_text).unwrap_or_default();
-                format!("may be the {what}; left out because it could be another part")
+                format!("probably the {what}, but too uncertain to map")
             }
             _ => "follows nothing".to_owned(),
         });
@@ -370,7 +370,7 @@ impl Whole {
     }
 }
 
-/// The slot that a joint was left out of because it isn't certain.
+/// The slot that a joint was too uncertain to fill.
 fn left_out(recognized: &Recognized, joint: JointIndex) -> Option<Slot> {
     recognized.left_out.iter().find(|(_, part)| part.joint == joint).map(|(&slot, _)| slot)
 }

@@ -30,7 +30,7 @@ fn contents(ui: &mut Ui, model: &Model) {
     let texture_bytes: u64 = model.images.iter().flatten().map(ImageData::device_bytes).sum();
     let images = match texture_bytes {
         0 => grouped(asset.images.len()),
-        bytes => format!("{} ({:.1} MB as textures)", grouped(asset.images.len()), bytes as f64 / 1e6),
+        bytes => format!("{} ({:.1} MB of GPU memory)", grouped(asset.images.len()), bytes as f64 / 1e6),
     };
     let rows = [
         (text::FORMAT, format_name(asset.format)),

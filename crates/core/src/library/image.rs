@@ -22,7 +22,7 @@ pub enum ImageData {
 }
 
 impl ImageData {
-    /// Returns the bytes that it takes on the device, with all its mip levels, which take a third of the first.
+    /// Returns the GPU memory in bytes, mip levels included: a third on top.
     pub fn device_bytes(&self) -> u64 {
         match self {
             Self::Ktx2(texture) if texture.format != Format::Rgba8 => texture.data.len() as u64,

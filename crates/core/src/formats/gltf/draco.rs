@@ -77,6 +77,7 @@ fn read(
     let buffers = resolve_buffers(files, file, container, root, &mut Warnings::default())?;
     let accessors = Accessors::new(document, buffers);
     let (mut decoding, mut meshes) = (Decoding::default(), Vec::new());
+    let mut of_view: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (mesh, of_mesh) in root.meshes.iter().enumerate() {
         for (at, primitive) in of_mesh.primitives.iter().enumerate() {
             let Some(value) = extension(primitive) else { continue };
@@ -85,10 +86,12 @@ fn read(
             let (source, _) = accessors.view(view, &place)?;
             let max_count = max_count(&accessors, primitive, &place)?;
             let own = (view, attributes);
-            let known = decoding.meshes.iter().position(|known| *known == own);
+            let same_view = of_view.entry(view).or_default();
+            let known = same_view.iter().copied().find(|&known| decoding.meshes[known] == own);
             let decoded = known.unwrap_or_else(|| {
                 meshes.push(Mesh { source, max_count, attributes: own.1.clone() });
                 decoding.meshes.push(own);
+                same_view.push(meshes.len() - 1);
                 meshes.len() - 1
             });
             decoding.primitives.push(Target { mesh, primitive: at, decoded, semantics });
@@ -135,7 +138,7 @@ impl Decoding {
         let container = container::open(file, bytes)?;
         let mut json: Object = serde_json::from_str(&as_text(container.json)).unwrap_or_default();
         let unknown = || {
-            let problem = "its converter gave an answer that cannot be read".to_owned();
+            let problem = "the Draco decoder returned invalid data".to_owned();
             LoadError::Conversion { file: file.to_owned(), problem }
         };
         let attributes = self.meshes.iter().map(|(_, attributes)| attributes.as_slice());
@@ -224,7 +227,7 @@ impl Rewritten {
         for ((semantic, view), bounds) in target.semantics.iter().zip(first_view + 1..).zip(&facts.bounds) {
             let index = self.at(attributes.read(semantic), view, facts.vertices as usize);
             attributes.set(semantic, &index);
-            // Those of the file are of the data before it was compressed.
+            // The file's bounds describe the data before it was compressed.
             for (key, bound) in ["min", "max"].into_iter().zip(bounds) {
                 if self.list[index].read::<Array>(key).is_some() {
                     self.list[index].set(key, &bound.iter().copied().map(number).collect::<Value>());

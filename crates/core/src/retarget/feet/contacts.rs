@@ -6,12 +6,12 @@ use crate::retarget::align::Alignment;
 use crate::retarget::map::ResolvedMap;
 use crate::retarget::math::HORIZONTAL;
 
-/// Speed per second and height above the ground, as shares of the body's height. A contact begins below the first and ends
+/// Speed (per second) and height above the ground, as shares of the body's height. A contact begins below the first and ends
 /// above the second of each. For a person of 1.8 m: 0.25 and 0.5 m/s, 4 and 7 cm.
 const SPEED: [f64; 2] = [0.14, 0.28];
 const HEIGHT: [f64; 2] = [0.022, 0.039];
 
-/// The ground under a figure that walks in place moves at more than this speed per second, as a share of the body's height.
+/// Minimum speed of the ground under a walk in place, per second, as a share of the body's height.
 const MIN_TREADMILL_SPEED: f64 = 0.07;
 
 /// How far velocities of feet may be from the moving ground's, as a share of its speed.

@@ -13,10 +13,10 @@ const MAX_REACH: f64 = 0.999;
 /// foot's position turn the knee by degrees.
 const COMFORTABLE_REACH: f64 = 0.99;
 
-/// The sine of the angle up to which a bent knee does not tell its hinge.
+/// Sine of the bend below which the hinge at rest is blended in.
 const MIN_BEND: f64 = 0.17;
 
-/// A leg that bends the other way than its knee does so unless its foot moves by more than this share of its length.
+/// A knee bent the wrong way stays so unless planting moves the foot by more than this share of the leg's length.
 const SMALL_MOVE: f64 = 0.02;
 
 /// The target joints of one leg.
@@ -97,8 +97,8 @@ pub fn solve_leg(leg: &Leg, pose: &WorldPose, by: DVec3, drop: f64) -> LegTurns 
     LegTurns { thigh: swing, shin: unit(swing * knee_turn) }
 }
 
-/// By how much the knee bends further about its hinge for the ankle to be at a distance from the hip. A knee that bends the
-/// other way is brought over to its own as far as `certainty` is 1.
+/// By how much the knee bends further about its hinge for the ankle to be at a distance from the hip. A knee
+/// bent the wrong way is turned round in proportion to `certainty`.
 fn knee_bend(thigh: DVec3, shin: DVec3, hinge: DVec3, distance: f64, certainty: f64) -> f64 {
     let along = (thigh + shin).dot(hinge);
     let (upper, lower) = (thigh.reject_from_normalized(hinge), shin.reject_from_normalized(hinge));

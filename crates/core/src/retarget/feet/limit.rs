@@ -4,8 +4,7 @@ use glam::DQuat;
 
 use crate::retarget::math::{angle_between, slerp};
 
-/// Bounds rotations to `max_radians`, and slows down those that change faster than `radians_per_sec`, as much before a fast
-/// change as after it. Rotations that are small and slow enough stay as they are. `max_radians` is far enough from a half turn
+/// Clamps rotations to `max_radians` and their speed to `radians_per_sec`, beginning before a fast change and ending after it. Rotations that are small and slow enough stay as they are. `max_radians` is far enough from a half turn
 /// for the mean of two of them to be well defined; at 60°, a mean is up to 1.16 times as fast as they are.
 pub fn limit_turns(times: &[f32], turns: &mut [DQuat], max_radians: f64, radians_per_sec: f64) {
     for turn in &mut *turns {
@@ -16,7 +15,7 @@ pub fn limit_turns(times: &[f32], turns: &mut [DQuat], max_radians: f64, radians
     if (1..turns.len()).all(is_slow) {
         return;
     }
-    // Following with a limit is late; in both directions, it is late by the same, and the mean is not.
+    // A limited rate lags behind. A pass forwards and one backwards lag equally in opposite directions, so their mean does not.
     let mut forwards = turns.to_vec();
     for at in 1..turns.len() {
         forwards[at] = towards(forwards[at - 1], turns[at], max_turn(at));

@@ -16,10 +16,10 @@ pub const EASE_SECS: f64 = 0.12;
 /// than the second stands on something else.
 const GROUND_OFFSET: [f64; 2] = [0.12, 0.2];
 
-/// A foot that goes further than this share of the hips' height while it is in contact slides after all.
+/// A foot that goes further than this share of the hips' height during one contact is dragged along instead of held.
 const MAX_HOLD: f64 = 0.3;
 
-/// The same for a figure in place, whose feet move as evenly as its author saw fit, not as a treadmill does.
+/// The same for a clip in place, where feet rarely move at a constant speed.
 const MAX_HOLD_IN_PLACE: f64 = 0.1;
 
 /// A foot that would be deeper in the ground than this share of the hips' height is not lifted all the way.
@@ -73,8 +73,8 @@ pub fn plan(stage: Stage, leg: &LegContacts, contacts: &[Range<usize>]) -> Plan 
     Plan { leg: leg.leg, moves }
 }
 
-/// Adds the move at one end of a contact to the gap beside it, the less the further away. In a gap that is shorter than two
-/// transitions, those from both sides add up to one move.
+/// Fades the move at one end of a contact out over the gap beside it. A gap shorter than one transition is crossed in a single
+/// blend: the weights from both sides add up to 1.
 fn ease(times: &[f32], moves: &mut [DVec3], end: usize, gap: Range<usize>) {
     let secs = |at: usize| (f64::from(times[at]) - f64::from(times[end])).abs();
     let across = if gap.start > end { gap.end } else { gap.start.wrapping_sub(1) };

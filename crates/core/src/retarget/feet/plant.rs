@@ -1,6 +1,6 @@
 //! Planted feet: while the source's foot is in contact, the target's stays in one place on the ground. The whole body is
 //! lowered (or raised) to where its feet are lowest in contact; from there the legs reach, and the hips come down further
-//! when a leg would have to be longer than it is. A leg that still doesn't reach, or would have to turn too fast, lets go.
+//! when a leg would have to be longer than it is. A leg that still doesn't reach, or would have to turn too fast, is planted only partly.
 
 use std::fmt;
 use std::ops::Range;
@@ -53,10 +53,11 @@ pub struct Planting {
 impl fmt::Display for Planting {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (self.contacts, self.ground_metres_per_sec) {
-            (0, _) => write!(f, "no foot is ever in contact, none is held")?,
-            (contacts, None) => write!(f, "held in {contacts} contacts")?,
+            (0, _) => write!(f, "no contacts found")?,
+            (1, _) => write!(f, "1 contact held")?,
+            (contacts, None) => write!(f, "{contacts} contacts held")?,
             (contacts, Some(speed)) => {
-                write!(f, "held in {contacts} contacts, in place on ground that moves at {speed:.2} m/s")?;
+                write!(f, "{contacts} contacts held, in place on ground that moves at {speed:.2} m/s")?;
             }
         }
         match self.lowered_metres {

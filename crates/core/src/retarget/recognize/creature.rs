@@ -27,7 +27,7 @@ pub(in crate::retarget) enum Limb {
     RightWing,
 }
 
-/// Returns the chains of an animal, each from the trunk outwards; empty if the skeleton is none.
+/// Returns the chains of an animal, each from the trunk outwards; empty if the skeleton isn't one.
 pub(in crate::retarget) fn chains(asset: &Asset) -> BTreeMap<Limb, Vec<JointIndex>> {
     let (tree, evidence) = (Tree::new(asset), Evidence::new(asset));
     let shapes = evidence.poses.iter().take(2).map(|positions| Shape::new(&tree, &evidence, positions));

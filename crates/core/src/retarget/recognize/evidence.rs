@@ -6,10 +6,10 @@ use glam::{Affine3A, Vec3};
 use crate::anim::{JointIndex, Pose, SampleCursor, model_from_joint};
 use crate::asset::Asset;
 
-/// Moments of the first clip that are looked at.
+/// Number of times at which the first clip is sampled.
 const MOMENTS: u8 = 8;
 
-/// A change of a rotation's components below this is no turn.
+/// Smaller changes of a rotation are ignored.
 const MIN_TURN: f32 = 1e-3;
 
 pub(super) struct Evidence {
@@ -77,7 +77,7 @@ impl Evidence {
         Some(skinned[joint.get()] || self.regions[joint.get()].is_some())
     }
 
-    /// Whether the first clip turns a joint; None without a clip.
+    /// Whether the first clip turns a joint; None without a clip, or if it turns none.
     pub fn turns(&self, joint: JointIndex) -> Option<bool> {
         self.turns.as_ref().map(|turns| turns[joint.get()])
     }

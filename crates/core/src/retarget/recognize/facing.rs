@@ -157,8 +157,8 @@ pub(super) fn contradictions(
     found
 }
 
-/// Whether the position of the joints decides about the sides, against their names: the feet show clearly where the body
-/// faces, and both legs and arms lie on the other side.
+/// Whether position overrides the names' left and right: the feet show clearly where the body faces, and at least
+/// [`MIN_SHARE`] of the limbs' joints lie on the side opposite to their names.
 pub(super) fn position_decides(
     asset: &Asset,
     tree: &Tree,
@@ -171,7 +171,7 @@ pub(super) fn position_decides(
     feet.is_some() && pairs >= MIN_PAIRS && contradictions.len() as f32 >= MIN_SHARE * 2.0 * pairs as f32
 }
 
-/// Fewer pairs of joints do not decide about the sides.
+/// Minimum number of pairs of left and right joints to judge by.
 const MIN_PAIRS: usize = 4;
 
 /// Share of the joints that must contradict their names for all to be wrong.

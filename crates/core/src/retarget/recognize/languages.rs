@@ -5,10 +5,10 @@ use std::collections::BTreeSet;
 
 use super::names::Name;
 
-/// Words of a language with their English ones, longer ones before those that they contain.
+/// Words of a language, each with its English translation, in any order: the longest match wins.
 type Words = &'static [(&'static str, &'static str)];
 
-/// Fewer different words are chance: `hand` is German, `main` French.
+/// Fewer different words may be coincidence: “hand” is also German, “main” also French.
 const MIN_WORDS: usize = 5;
 
 const GERMAN: Words = &[
@@ -248,7 +248,7 @@ const KOREAN: Words = &[
 
 const LANGUAGES: [Words; 6] = [GERMAN, SPANISH, FRENCH, JAPANESE, CHINESE, KOREAN];
 
-/// Translates the names of a skeleton to English, if most are in another language.
+/// Translates names to English from the language of which they use most words, if these are at least [`MIN_WORDS`].
 pub(super) fn translate(names: &mut [Name]) {
     let uses = |language: Words| {
         let words = names.iter().flat_map(|name| &name.words).filter_map(|word| cut(word, language)).flatten();
@@ -274,9 +274,9 @@ pub(super) fn translate(names: &mut [Name]) {
     }
 }
 
-/// The known words that a word consists of; None if it doesn't.
+/// Splits a word into known words; None if it cannot be. Languages with spaces write each word by itself.
 fn cut(word: &str, language: Words) -> Option<Vec<(&'static str, &'static str)>> {
-    let has_spaces = language[0].0.is_ascii();
+    let has_spaces = !language.iter().any(|(foreign, _)| foreign.chars().any(|c| c >= '\u{1100}'));
     let mut parts = Vec::new();
     let mut rest = word;
     while !rest.is_empty() {

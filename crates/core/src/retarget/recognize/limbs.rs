@@ -19,32 +19,32 @@ pub(super) struct Part {
 /// Joints beyond this don't belong to an arm or leg without its fingers.
 const MAX_JOINTS: usize = 9;
 
-/// Confidence in a part that nothing speaks against, and in one that could as well be another.
+/// Confidence in an unambiguous part, and in one with an equally good alternative.
 const SURE: f32 = 0.85;
 pub(super) const UNSURE: f32 = 0.3;
 
 /// A difference in cost from which the cheaper choice is sure.
 const SURE_MARGIN: f32 = 0.3;
 
-/// Upper joint, middle joint and end of a limb, as indices into its chains, and how much speaks against it.
+/// Upper joint, middle joint and end of a limb, as indices into its chains, and their cost.
 type Triple = ([usize; 3], f32);
 
-/// Mean distance of two joints of the same limb on both sides.
-fn apart(shape: &Shape, twins: &Twins, a: usize, b: usize) -> f32 {
+/// Mean straight-line distance between two joints of a limb.
+fn span(shape: &Shape, twins: &Twins, a: usize, b: usize) -> f32 {
     let [one, other] = twins.chains.each_ref().map(|chain| shape.distance(chain[a], chain[b]));
     0.5 * (one + other)
 }
 
-/// Mean length of the way between two joints of a limb.
-fn way(shape: &Shape, twins: &Twins, a: usize, b: usize) -> f32 {
+/// Mean length of the path between two joints of a limb.
+fn path_length(shape: &Shape, twins: &Twins, a: usize, b: usize) -> f32 {
     let [one, other] = twins.chains.each_ref().map(|chain| shape.length(&chain[a..=b]));
     0.5 * (one + other)
 }
 
-/// 0 if the way between two joints is straight, growing with its bends: twist joints are on the way, other ones turn.
+/// How far the path between two joints is from straight, 0 if it is: twist joints lie on the line, other joints bend it.
 fn bend(shape: &Shape, twins: &Twins, a: usize, b: usize) -> f32 {
-    let way = way(shape, twins, a, b);
-    if way <= 0.0 {
+    let length = path_length(shape, twins, a, b);
+    if length <= 0.0 {
         return f32::INFINITY;
     }
     let corner = |chain: &Vec<JointIndex>| {
@@ -55,7 +55,7 @@ fn bend(shape: &Shape, twins: &Twins, a: usize, b: usize) -> f32 {
         corners.filter(|angle| angle.is_finite()).fold(0.0, f32::max)
     };
     let corner = twins.chains.iter().map(corner).fold(0.0, f32::max);
-    3.0 * (1.0 - apart(shape, twins, a, b) / way) + (corner / SHARP_RADIANS).min(1.0)
+    3.0 * (1.0 - span(shape, twins, a, b) / length) + (corner / SHARP_RADIANS).min(1.0)
 }
 
 /// A bend that no twist joint has.
@@ -100,10 +100,10 @@ pub(super) fn leg(shape: &Shape, body: &Halves) -> Option<Vec<Part>> {
         a.min(b)
     };
     let ground = (0..count).map(height).fold(f32::INFINITY, f32::min);
-    let whole = way(shape, twins, 0, count - 1);
+    let whole = path_length(shape, twins, 0, count - 1);
     let cost = |[upper, lower, end]: [usize; 3]| {
-        let before = way(shape, twins, 0, upper) / whole;
-        let (thigh, shin) = (apart(shape, twins, upper, lower), apart(shape, twins, lower, end));
+        let before = path_length(shape, twins, 0, upper) / whole;
+        let (thigh, shin) = (span(shape, twins, upper, lower), span(shape, twins, lower, end));
         let bends = bend(shape, twins, upper, lower) + bend(shape, twins, lower, end);
         let above_ground = ((height(end) - ground) / whole - 0.15).max(0.0);
         let missing = 1.0 - (thigh + shin) / whole;
@@ -111,10 +111,10 @@ pub(super) fn leg(shape: &Shape, body: &Halves) -> Option<Vec<Part>> {
     };
     let mut parts = decide(&triples(count, cost), [LeftUpperLeg, LeftLowerLeg, LeftFoot]);
     let foot = parts.get(2)?;
-    let shin = apart(shape, twins, parts[1].at, foot.at);
+    let shin = span(shape, twins, parts[1].at, foot.at);
     let toes = foot.at + 1;
     if toes < count {
-        let length = apart(shape, twins, foot.at, toes);
+        let length = span(shape, twins, foot.at, toes);
         let is_alive = twins.chains.iter().all(|chain| is_alive(shape, chain[toes]));
         let turn = twins.chains.each_ref().map(|chain| {
             let segment =
@@ -141,10 +141,10 @@ pub(super) fn arm(shape: &Shape, body: &Halves, leg: &[Part]) -> Option<Vec<Part
         (shape.position(twins.chains[0][at]) - shape.position(twins.chains[1][at])).dot(body.across).abs()
     };
     let hips_width = sideways(&body.legs, leg.first()?.at);
-    let leg_length = leg.windows(2).take(2).map(|pair| apart(shape, &body.legs, pair[0].at, pair[1].at)).sum::<f32>();
-    let whole = way(shape, twins, 0, count - 1);
+    let leg_length = leg.windows(2).take(2).map(|pair| span(shape, &body.legs, pair[0].at, pair[1].at)).sum::<f32>();
+    let whole = path_length(shape, twins, 0, count - 1);
     let cost = |[upper, lower, end]: [usize; 3]| {
-        let (arm, forearm) = (apart(shape, twins, upper, lower), apart(shape, twins, lower, end));
+        let (arm, forearm) = (span(shape, twins, upper, lower), span(shape, twins, lower, end));
         let bends = bend(shape, twins, upper, lower) + bend(shape, twins, lower, end);
         let near_spine = (1.0 - sideways(twins, upper) / hips_width).max(0.0);
         let missing = 1.0 - (arm + forearm) / whole;
@@ -161,8 +161,8 @@ pub(super) fn arm(shape: &Shape, body: &Halves, leg: &[Part]) -> Option<Vec<Part
     let mut parts = decide(&triples(count, cost), [LeftUpperArm, LeftLowerArm, LeftHand]);
     let upper = *parts.first()?;
     if let Some(at) = upper.at.checked_sub(1) {
-        let length = apart(shape, twins, at, upper.at);
-        let is_short = length < 0.8 * apart(shape, twins, upper.at, parts[1].at) && length > 0.0;
+        let length = span(shape, twins, at, upper.at);
+        let is_short = length < 0.8 * span(shape, twins, upper.at, parts[1].at) && length > 0.0;
         let confidence = if is_short && at == 0 { upper.confidence.min(0.7) } else { UNSURE };
         parts.push(Part { slot: LeftShoulder, at, confidence });
     }
@@ -230,15 +230,15 @@ fn head_by_lengths(shape: &Shape, chain: &[JointIndex]) -> (usize, f32) {
     }
 }
 
-/// Whether the first leg is the left one, as feet point and knees and elbows bend, and how sure that is. A body that shows
-/// none of it faces +Z.
+/// Whether the first leg is the left one, and how sure that is, judging by where the feet point or else how the knees bend. A
+/// body that shows neither is assumed to face +Z.
 pub(super) fn is_first_left(shape: &Shape, body: &Halves, leg: &[Part]) -> (bool, f32) {
     let forward_if_first_is_left = body.across.cross(body.up);
     let at = |slot: Slot| leg.iter().find(|part| part.slot == slot).map(|part| part.at);
     let (Some(upper), Some(lower), Some(foot)) = (at(LeftUpperLeg), at(LeftLowerLeg), at(LeftFoot)) else {
         return (forward_if_first_is_left.z > 0.0, UNSURE);
     };
-    let length = apart(shape, &body.legs, upper, lower) + apart(shape, &body.legs, lower, foot);
+    let length = span(shape, &body.legs, upper, lower) + span(shape, &body.legs, lower, foot);
     let mut feet = Vec3::ZERO;
     for chain in &body.legs.chains {
         let ankle = shape.position(chain[foot]);

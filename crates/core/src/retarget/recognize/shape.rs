@@ -40,7 +40,7 @@ pub(super) struct Shape<'a> {
     pub tree: &'a Tree<'a>,
     pub evidence: &'a Evidence,
     pub positions: &'a [Vec3],
-    /// Length of the longest way down from each joint.
+    /// Length of the longest path down from each joint.
     reach: Vec<f32>,
 }
 
@@ -66,8 +66,8 @@ pub(super) struct Found {
     pub left_out: BTreeMap<Slot, RecognizedJoint>,
 }
 
-/// Returns the joints of a body; empty if nothing looks like one. Tries the rest, then moments of the first clip: motion
-/// capture often rests with all bones along one axis.
+/// Returns the joints of a body; empty if nothing looks like one. Tries the rest, then the first frame of the first clip:
+/// motion capture often rests with all bones along one axis.
 pub(super) fn find(tree: &Tree, evidence: &Evidence) -> Found {
     let shapes = evidence.poses.iter().take(2).map(|positions| Shape::new(tree, evidence, positions));
     let mut found = Found::default();
@@ -105,12 +105,12 @@ impl<'a> Shape<'a> {
         self.position(a).distance(self.position(b))
     }
 
-    /// Length of the way along a chain.
+    /// Length of the path along a chain.
     pub fn length(&self, chain: &[JointIndex]) -> f32 {
         chain.windows(2).map(|pair| self.distance(pair[0], pair[1])).sum()
     }
 
-    /// The joint and what follows it, along the longest way where it forks. A tip that no skin knows is left out.
+    /// The joint and what follows it, along the longest path where it forks. A tip that no skin knows is left out.
     pub fn chain(&self, first: JointIndex) -> Vec<JointIndex> {
         let way = |from: JointIndex, to: JointIndex| self.distance(from, to) + self.reach[to.get()];
         let longest = |at: &JointIndex| {
