@@ -302,7 +302,8 @@ fn edits(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, local: &mut UiState
             (Icon::Undo, "Undo (Ctrl+Z)", local.host.can_undo, UiAction::Undo),
             (Icon::Redo, "Redo (Ctrl+Y)", local.host.can_redo, UiAction::Redo),
         ] {
-            let pressed = ui.add_enabled_ui(enabled, |ui| icon_button_sized(ui, icon, label, false, EDIT_BUTTON_HEIGHT)).inner;
+            let pressed =
+                ui.add_enabled_ui(enabled, |ui| icon_button_sized(ui, icon, label, false, EDIT_BUTTON_HEIGHT)).inner;
             if pressed.clicked() {
                 out.actions.push(action);
             }
