@@ -50,6 +50,7 @@ fn invalid_chunks() {
     no_json[16..20].copy_from_slice(b"what");
     check_bytes("model.glb", no_json, &["a JSON chunk"]);
     check_bytes("model.glb", glb(b"{\"asset\":", &[]), &["not valid JSON, asset: it ends too soon"]);
+    check_bytes("notes.glb", b"notes on a rig".to_vec(), &["expected a GLB", "found text that begins with “n”"]);
 }
 
 #[test]

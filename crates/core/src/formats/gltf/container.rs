@@ -38,6 +38,15 @@ pub fn open<'a>(file: &str, bytes: &'a [u8]) -> Result<Container<'a>, LoadError>
         return Err(invalid("the whole file", "a glTF", "nothing: it is empty".to_owned()));
     }
     if !bytes.starts_with(b"glTF") {
+        // What is cut short or misspelt is left to the JSON parser, which knows the place.
+        if let Some(first) = bytes.trim_ascii_start().first().filter(|byte| byte.is_ascii_alphabetic()) {
+            let found = format!("text that begins with “{}”", char::from(*first));
+            return Err(invalid(
+                "the whole file",
+                "a GLB, which begins with “glTF”, or JSON, which begins with “{”",
+                found,
+            ));
+        }
         return Ok(Container { json: without_bom(bytes), binary: None, is_glb: false, repeated_chunk: None });
     }
     let word = |at: usize| {

@@ -130,7 +130,7 @@ pub enum MapError {
     NothingMapped,
     /// The proposed map has no pairs.
     #[error(
-        "the model and the motion have no joint in common: neither names nor body parts agree. Write a map by hand, as docs/joint-maps.md says"
+        "the model and the motion have no joint in common: neither names nor body parts agree. Match joints by hand, in the Motion tab or in a map (docs/joint-maps.md)"
     )]
     NothingInCommon,
 }
