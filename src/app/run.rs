@@ -177,12 +177,8 @@ impl App {
 
     /// Draws a character off screen, so that code and shaders get compiled; see `web::rehearsal`.
     #[cfg(target_arch = "wasm32")]
-    pub fn rehearse(&mut self, character: crate::library::Model) {
-        use crate::frame::{Frame, evaluate};
-        let (mut library, mut frame) = (Library::default(), Frame::default());
-        library.add(character);
-        evaluate(&library, &ViewerState::default(), 1.0, &mut frame);
-        self.viewport.scene.rehearse(&library, &frame);
+    pub fn rehearse(&mut self, character: &crate::library::Model, frame: &crate::frame::Frame) {
+        self.viewport.scene.rehearse(character, frame);
     }
 
     /// Starts time: the first image is on screen.

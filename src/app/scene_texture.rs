@@ -53,11 +53,11 @@ impl SceneTexture {
         self.last_image()
     }
 
-    /// Draws the active model off screen and forgets it.
+    /// Draws a model off screen before any other, and forgets it: its id may be that of the next one.
     #[cfg(target_arch = "wasm32")]
-    pub fn rehearse(&mut self, library: &crate::library::Library, frame: &Frame) {
+    pub fn rehearse(&mut self, model: &Model, frame: &Frame) {
         const SIZE: [u32; 2] = [64, 64];
-        if library.active().is_some_and(|model| self.upload(model, None).is_ok()) {
+        if self.upload(model, None).is_ok() {
             self.draw_off_screen(frame, SIZE);
         }
         self.renderer.retain(&[]);

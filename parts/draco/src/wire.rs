@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use gaitway_part::words;
+
 use crate::number::Target;
 
 /// What an accessor declares about an attribute.
@@ -59,7 +61,7 @@ pub fn write(max_bytes: u32, meshes: &[Mesh]) -> Vec<u8> {
 
 /// Reads what [`write`] wrote.
 pub fn read(mut input: &[u8]) -> Option<(usize, Vec<Mesh<'_>>)> {
-    let max_bytes = word(&mut input)?;
+    let [max_bytes] = words(&mut input)?;
     let mut meshes = Vec::new();
     while !input.is_empty() {
         let [max_count, attributes, length] = words(&mut input)?;
@@ -72,15 +74,6 @@ pub fn read(mut input: &[u8]) -> Option<(usize, Vec<Mesh<'_>>)> {
         meshes.push(Mesh { source, max_count, attributes });
     }
     Some((max_bytes as usize, meshes))
-}
-
-fn word(bytes: &mut &[u8]) -> Option<u32> {
-    words(bytes).map(|[word]| word)
-}
-
-fn words<const COUNT: usize>(bytes: &mut &[u8]) -> Option<[u32; COUNT]> {
-    let words = bytes.split_off(..4 * COUNT)?.as_chunks::<4>().0;
-    Some(std::array::from_fn(|at| u32::from_le_bytes(words[at])))
 }
 
 impl Decoded {
@@ -119,8 +112,9 @@ impl Decoded {
 
     fn read(output: &mut &[u8], attributes: &[Attribute]) -> Option<Self> {
         let [vertices, indices] = words(output)?;
-        let mut row =
-            |components: u32| (0..components).map(|_| word(output).map(f32::from_bits)).collect::<Option<Vec<_>>>();
+        let mut row = |components: u32| {
+            (0..components).map(|_| words(output).map(|[bits]| f32::from_bits(bits))).collect::<Option<Vec<_>>>()
+        };
         let mut bounds = |attribute: &Attribute| Some([row(attribute.components)?, row(attribute.components)?]);
         let bounds = attributes.iter().map(&mut bounds).collect::<Option<_>>()?;
         Some(Self { vertices, indices, bounds })

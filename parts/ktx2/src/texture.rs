@@ -1,5 +1,7 @@
 //! What the transcoder is asked for and what it answers, as bytes. All numbers are of 32 bits, little-endian.
 
+use gaitway_part::words;
+
 /// What one texel, or one block of 4 × 4, is stored as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
@@ -79,13 +81,8 @@ pub fn request(formats: Formats, largest_edge: u32, file: &[u8]) -> Vec<u8> {
 
 /// Reads what [`request`] wrote.
 pub fn read_request(mut input: &[u8]) -> Option<(Formats, u32, &[u8])> {
-    Some((Formats(word(&mut input)?), word(&mut input)?, input))
-}
-
-fn word(bytes: &mut &[u8]) -> Option<u32> {
-    let (word, rest) = bytes.split_first_chunk()?;
-    *bytes = rest;
-    Some(u32::from_le_bytes(*word))
+    let [formats, largest_edge] = words(&mut input)?;
+    Some((Formats(formats), largest_edge, input))
 }
 
 impl Texture {
@@ -125,7 +122,7 @@ impl Texture {
 
     /// Reads what [`decode`](crate::decode) returned. `None` if it is something else.
     pub fn read(mut output: &[u8]) -> Option<Self> {
-        let mut next = || word(&mut output);
+        let mut next = || words(&mut output).map(|[word]| word);
         let format = *Format::ALL.get(next()? as usize)?;
         let [width, height, levels] = [next()?, next()?, next()?];
         let texture = Self { format, width, height, levels, data: output.to_vec() };

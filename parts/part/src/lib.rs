@@ -132,6 +132,12 @@ macro_rules! module {
     };
 }
 
+/// Takes little-endian numbers off the front of a message; `None` if it is too short.
+pub fn words<const COUNT: usize>(bytes: &mut &[u8]) -> Option<[u32; COUNT]> {
+    let words = bytes.split_off(..4 * COUNT)?.as_chunks::<4>().0;
+    Some(std::array::from_fn(|at| u32::from_le_bytes(words[at])))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

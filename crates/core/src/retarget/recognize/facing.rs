@@ -34,10 +34,11 @@ fn feet(tree: &Tree, parts: &BTreeMap<Slot, RecognizedJoint>) -> Option<Vec3> {
     })
 }
 
-pub(super) fn find(asset: &Asset, tree: &Tree, parts: &BTreeMap<Slot, RecognizedJoint>) -> Facing {
+/// `feet_point` is what [`feet_point`] found.
+pub(super) fn find(tree: &Tree, parts: &BTreeMap<Slot, RecognizedJoint>, feet_point: Option<Vec3>) -> Facing {
     let Some(up) = up(tree, parts) else { return Facing::default() };
     let left = left(tree, parts, up);
-    let mut forward = feet_point(asset, tree, parts, up)
+    let mut forward = feet_point
         .or_else(|| toes(tree, parts, up))
         .or_else(|| eyes(tree, parts, up))
         .or_else(|| knees(tree, parts, up));
@@ -72,13 +73,10 @@ fn left(tree: &Tree, parts: &BTreeMap<Slot, RecognizedJoint>, up: Vec3) -> Optio
     [LeftUpperLeg, LeftUpperArm, LeftFoot, LeftHand].into_iter().filter_map(apart).sum::<Vec3>().try_normalize()
 }
 
-/// Where feet point for certain: from the ankles to the toes or, without toes, to the middle of the skin on the feet.
-pub(super) fn feet_point(
-    asset: &Asset,
-    tree: &Tree,
-    parts: &BTreeMap<Slot, RecognizedJoint>,
-    up: Vec3,
-) -> Option<Vec3> {
+/// Where feet point for certain: from the ankles to the toes or, without toes, to the middle of the skin on the feet. Exchanging
+/// left and right does not change it.
+pub(super) fn feet_point(asset: &Asset, tree: &Tree, parts: &BTreeMap<Slot, RecognizedJoint>) -> Option<Vec3> {
+    let up = up(tree, parts)?;
     let (left, right) = (parts.get(&LeftFoot)?.joint, parts.get(&RightFoot)?.joint);
     if parts.contains_key(&LeftToes) && parts.contains_key(&RightToes) {
         return toes(tree, parts, up);
@@ -160,15 +158,13 @@ pub(super) fn contradictions(
 /// Whether position overrides the names' left and right: the feet show clearly where the body faces, and at least
 /// [`MIN_SHARE`] of the limbs' joints lie on the side opposite to their names.
 pub(super) fn position_decides(
-    asset: &Asset,
-    tree: &Tree,
     parts: &BTreeMap<Slot, RecognizedJoint>,
+    feet_point: Option<Vec3>,
     contradictions: &[Contradiction],
 ) -> bool {
     let is_pair = |slot: &&Slot| parts.contains_key(slot) && parts.contains_key(&slot.mirrored());
     let pairs = LIMBS.iter().filter(is_pair).count();
-    let feet = up(tree, parts).and_then(|up| feet_point(asset, tree, parts, up));
-    feet.is_some() && pairs >= MIN_PAIRS && contradictions.len() as f32 >= MIN_SHARE * 2.0 * pairs as f32
+    feet_point.is_some() && pairs >= MIN_PAIRS && contradictions.len() as f32 >= MIN_SHARE * 2.0 * pairs as f32
 }
 
 /// Minimum number of pairs of left and right joints to judge by.

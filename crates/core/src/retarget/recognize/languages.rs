@@ -246,11 +246,25 @@ const KOREAN: Words = &[
     ("발", "foot"),
 ];
 
-const LANGUAGES: [Words; 6] = [GERMAN, SPANISH, FRENCH, JAPANESE, CHINESE, KOREAN];
+#[derive(Clone, Copy)]
+struct Language {
+    words: Words,
+    /// Otherwise a name is a run of words.
+    has_spaces: bool,
+}
+
+const LANGUAGES: [Language; 6] = [
+    Language { words: GERMAN, has_spaces: true },
+    Language { words: SPANISH, has_spaces: true },
+    Language { words: FRENCH, has_spaces: true },
+    Language { words: JAPANESE, has_spaces: false },
+    Language { words: CHINESE, has_spaces: false },
+    Language { words: KOREAN, has_spaces: false },
+];
 
 /// Translates names to English from the language of which they use most words, if these are at least [`MIN_WORDS`].
 pub(super) fn translate(names: &mut [Name]) {
-    let uses = |language: Words| {
+    let uses = |language: Language| {
         let words = names.iter().flat_map(|name| &name.words).filter_map(|word| cut(word, language)).flatten();
         words.map(|(word, _)| word).collect::<BTreeSet<&str>>().len()
     };
@@ -275,14 +289,13 @@ pub(super) fn translate(names: &mut [Name]) {
 }
 
 /// Splits a word into known words; None if it cannot be. Languages with spaces write each word by itself.
-fn cut(word: &str, language: Words) -> Option<Vec<(&'static str, &'static str)>> {
-    let has_spaces = !language.iter().any(|(foreign, _)| foreign.chars().any(|c| c >= '\u{1100}'));
+fn cut(word: &str, language: Language) -> Option<Vec<(&'static str, &'static str)>> {
     let mut parts = Vec::new();
     let mut rest = word;
     while !rest.is_empty() {
-        let starting = language.iter().filter(|(foreign, _)| rest.starts_with(foreign));
+        let starting = language.words.iter().filter(|(foreign, _)| rest.starts_with(foreign));
         let &longest = starting.max_by_key(|(foreign, _)| foreign.len())?;
-        if has_spaces && longest.0.len() < word.len() {
+        if language.has_spaces && longest.0.len() < word.len() {
             return None;
         }
         parts.push(longest);

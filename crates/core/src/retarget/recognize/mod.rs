@@ -175,12 +175,13 @@ pub fn recognize(asset: &Asset) -> Recognized {
     if !is_declared && is_level && names_a_creature(&tree) {
         return Recognized::default();
     }
-    let mut facing = facing::find(asset, &tree, &parts);
+    let feet_point = facing::feet_point(asset, &tree, &parts);
+    let mut facing = facing::find(&tree, &parts, feet_point);
     let mut contradictions = facing::contradictions(&tree, &parts, &facing);
-    let by_position = !is_declared && facing::position_decides(asset, &tree, &parts, &contradictions);
+    let by_position = !is_declared && facing::position_decides(&parts, feet_point, &contradictions);
     if by_position {
         parts = with_sides_swapped(parts);
-        facing = facing::find(asset, &tree, &parts);
+        facing = facing::find(&tree, &parts, feet_point);
         for Contradiction::Side { slot, .. } in &mut contradictions {
             *slot = slot.mirrored();
         }
