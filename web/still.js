@@ -1,6 +1,6 @@
 // Runs before anything is shown: picks the image that covers the page while it loads, and starts downloading the samples of
-// the link side by side with the program, or its models just before the program is there: they may be large. It only guesses
-// what is worth having early; the program reads the link.
+// the link side by side with the program, and its models from part of the way on: they may be large. It only guesses what is
+// worth having early; the program reads the link.
 
 (() => {
   const still = /** @type {HTMLImageElement} */ (document.getElementById("loading-still"));
@@ -47,6 +47,6 @@
   const asked = location.hash.slice(1);
   show(asked, false);
   preloadSamples(asked || first);
-  addEventListener("gaitway:nearly-loaded", () => preloadModels(asked), { once: true });
+  addEventListener("gaitway:part-loaded", () => preloadModels(asked), { once: true });
   addEventListener("gaitway:loading", ({ detail: { link, isLocal } }) => show(link, isLocal));
 })();

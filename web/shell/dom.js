@@ -52,5 +52,11 @@ export async function frames(count) {
   for (let frame = 0; frame < count; frame++) await Promise.race([new Promise(requestAnimationFrame), new Promise((done) => setTimeout(done, 200))]);
 }
 
+/**
+ * Runs something that nobody waits for, when the browser has nothing else to do. Safari knows only timers.
+ * @param {() => void} work
+ */
+export const whenIdle = (work) => ("requestIdleCallback" in window ? requestIdleCallback(work) : setTimeout(work, 500));
+
 /** @param {unknown} error */
 export const messageOf = (error) => (error instanceof Error ? error.message : String(error));

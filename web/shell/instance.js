@@ -3,7 +3,7 @@
 import { awaitFiles, awaited, showAwaited } from "./awaited.js";
 import { BACKEND_NAMES, TRY_DOWNLOAD, TRY_GRAPHICS, hasBackend, missingCapabilities, otherBackend } from "./capabilities.js";
 import { summarize, viewChanged } from "./changes.js";
-import { button, byId, frames, messageOf } from "./dom.js";
+import { button, byId, frames, messageOf, whenIdle } from "./dom.js";
 import { drawOffScreen } from "./first-frame.js";
 import { follow, showMissing } from "./following.js";
 import { showGallery } from "./gallery.js";
@@ -130,6 +130,7 @@ async function startOn(bindings, renderer, [items, motionItems]) {
   }
   session.app = bindings;
   await showFirstFrame(canvas, aborted, bindings, presentFrames);
+  whenIdle(() => session.app === bindings && bindings.rehearse_opening());
   showPanel(null);
   summarize();
   showMissing(missing, awaited()?.link ?? link);

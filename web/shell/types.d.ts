@@ -54,6 +54,7 @@ export interface Bindings {
     shell: ShellCalls,
   ): Promise<string>;
   begin(): Promise<void>;
+  rehearse_opening(): Promise<void>;
   destroy(): void;
   open(items: ReadItem[], role: Role, isPrivate: boolean): Promise<string>;
   follow_link(link: string, again: boolean): Promise<string>;
@@ -163,6 +164,6 @@ declare global {
   interface WindowEventMap {
     "gaitway:loading": CustomEvent<{ link: string; isLocal: boolean }>;
     "gaitway:change": CustomEvent<null>;
-    "gaitway:nearly-loaded": CustomEvent<null>;
+    "gaitway:part-loaded": CustomEvent<null>;
   }
 }
