@@ -1,12 +1,13 @@
 // Measures three.js and Gaitway on the same work in the same headless Chromium, in alternating rounds, and prints medians.
 // Run `node benches/web/run.mjs` after `cargo xtask build --bench` (or with GAITWAY_DIST), with `characters`, `retargeting`,
-// `loads`, `frames`, `first` or `lighthouse` to measure only these. Nothing is asserted: times vary between machines, ratios less so.
+// `loads`, `frames`, `first`, `lighthouse` or `decoders` to measure only these. Nothing is asserted: times vary between machines, ratios less so.
 import path from "node:path";
 import { chromium } from "playwright-core";
 import { FLAGS, dist, until, whenReady } from "../../tests/browser/browser.mjs";
 import { measureFirstVisit } from "../../tests/browser/lighthouse.mjs";
 import { serve } from "../../tests/browser/server.mjs";
 import { dataFile, hasData, repository } from "../../tests/three/data.mjs";
+import { measureDecoders } from "./decoders.mjs";
 import { measureFirstFrames } from "./first.mjs";
 
 const XBOT = "threejs/Xbot.glb";
@@ -62,6 +63,7 @@ try {
   if (wanted("frames")) await measureFrames();
   if (wanted("first")) await measureFirst();
   if (wanted("lighthouse")) await measureLighthouse();
+  if (wanted("decoders")) await printDecoders();
 } finally {
   await browser.close();
   await site.close();
@@ -270,4 +272,13 @@ async function measureLighthouse() {
   const scores = [];
   for (let round = 0; round < 5; round++) scores.push((await measureFirstVisit(`${site.origin}/`)).scores.performance);
   console.log(`median ${median(scores)} of ${scores.join(", ")}`);
+}
+
+async function printDecoders() {
+  console.log("\nDecoding a file's meshes or textures, ms\n");
+  row("part", "file", "npm's decoder", "Gaitway's part");
+  row("--", "--", "--", "--");
+  const page = await gaitway("play=0");
+  for (const { part, file, npm_ms, part_ms } of await measureDecoders(page)) row(part, file, npm_ms.toFixed(2), part_ms.toFixed(2));
+  await page.close();
 }

@@ -8,7 +8,7 @@ import * as THREE from "three";
 
 const require = createRequire(import.meta.url);
 
-async function startDecoder() {
+export async function startDracoDecoder() {
   const file = require.resolve("three/examples/jsm/libs/draco/gltf/draco_decoder.js");
   // CommonJS in a package of ES modules, so `require` would not load it.
   const load = vm.compileFunction(fs.readFileSync(file, "utf8"), ["module", "exports", "require", "__filename", "__dirname"]);
@@ -26,7 +26,7 @@ let starting;
  * @param {Record<string, string>} types Typed arrays by attribute.
  */
 async function decode(bytes, ids, types) {
-  const draco = await (starting ??= startDecoder());
+  const draco = await (starting ??= startDracoDecoder());
   const [decoder, mesh] = [new draco.Decoder(), new draco.Mesh()];
   const status = decoder.DecodeArrayToMesh(new Int8Array(bytes), bytes.byteLength, mesh);
   if (!status.ok()) throw new Error(status.error_msg());

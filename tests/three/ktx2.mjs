@@ -8,9 +8,9 @@ import { readGltf } from "./data.mjs";
 
 const require = createRequire(import.meta.url);
 /** The transcoder's number for 32-bit RGBA. */
-const RGBA32 = 13;
+export const RGBA32 = 13;
 
-async function startTranscoder() {
+export async function startTranscoder() {
   const file = require.resolve("three/examples/jsm/libs/basis/basis_transcoder.js");
   // A script for browsers, which declares a variable.
   const load = vm.compileFunction(`${fs.readFileSync(file, "utf8")}\nreturn BASIS;`, ["require", "__filename", "__dirname"]);
