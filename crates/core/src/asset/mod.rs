@@ -10,9 +10,7 @@ use std::sync::Arc;
 
 use glam::{Vec3, Vec4Swizzles};
 
-use crate::anim::{
-    CameraProperty, Clip, JointIndex, LightProperty, PropertyTarget, PropertyValues, Skeleton,
-};
+use crate::anim::{CameraProperty, Clip, JointIndex, LightProperty, PropertyTarget, PropertyValues, Skeleton};
 use crate::mesh::{Material, Mesh, Skin, Texture};
 
 pub use error::AssetError;

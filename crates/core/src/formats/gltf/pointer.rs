@@ -5,9 +5,7 @@ use gltf::json::Root;
 use gltf::json::animation::Property;
 use gltf::json::extensions::scene::khr_lights_punctual;
 
-use crate::anim::{
-    CameraProperty, JointIndex, LightProperty, MaterialProperty, PropertyTarget, Skeleton, TextureSlot,
-};
+use crate::anim::{CameraProperty, JointIndex, LightProperty, MaterialProperty, PropertyTarget, Skeleton, TextureSlot};
 use crate::asset::{Asset, Camera, CameraProjection};
 use crate::mesh::Material;
 
@@ -129,9 +127,12 @@ impl Pointers<'_> {
 
     /// A mesh's weights are those of its nodes that have none of their own.
     fn mesh(&self, mesh: usize, rest: &str) -> Result<Vec<Aim>, Unresolved> {
-        let nodes = self.root.nodes.iter().enumerate().filter(|(_, node)| {
-            node.weights.is_none() && node.mesh.is_some_and(|drawn| drawn.value() == mesh)
-        });
+        let nodes = self
+            .root
+            .nodes
+            .iter()
+            .enumerate()
+            .filter(|(_, node)| node.weights.is_none() && node.mesh.is_some_and(|drawn| drawn.value() == mesh));
         match rest.split_once('/') {
             None if rest == "weights" => {
                 Ok(nodes.map(|(node, _)| Aim::Node(node, Property::MorphTargetWeights)).collect())
