@@ -85,11 +85,8 @@ fn visibility_is_never_interpolated() {
 
 #[test]
 fn of_several_channels_for_one_target_the_last_wins() {
-    let clip = clip(&[
-        (METALLIC, Step, &[0.0], &[0.1]),
-        (COLOR, Step, &[0.0], &[1.0; 3]),
-        (METALLIC, Step, &[0.0], &[0.2]),
-    ]);
+    let clip =
+        clip(&[(METALLIC, Step, &[0.0], &[0.1]), (COLOR, Step, &[0.0], &[1.0; 3]), (METALLIC, Step, &[0.0], &[0.2])]);
     assert_eq!(clip.properties().len(), 2);
     assert_eq!(at(&clip, 0.0).get(METALLIC).map(|value| value.x), Some(0.2));
 }

@@ -357,7 +357,7 @@ fn every_property_follows_its_keys_by_every_interpolation() {
         assert_eq!(asset.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(), [""; 0]);
         let not_shown = check(&library, &json, &buffers, &[0.0, 0.17, 0.31, 0.8, 1.25, 1.9, 1.999]);
         assert_eq!(not_shown, [""; 0], "{interpolation}");
-        // Both inspectors and scripts get the pointers back.
+        // Scripts get the pointers back.
         let document = inspect(library.active().expect("a model"), &[]);
         let listed = document["clips"][0]["properties"].as_array().expect("a list");
         for pointer in POINTERS.into_iter().map(|(pointer, _)| pointer) {
@@ -427,9 +427,9 @@ fn with_hidden_node() -> Build {
 #[test]
 fn a_hidden_node_hides_what_is_below_it() {
     let [shown, hidden] = [complete(), with_hidden_node()].map(library);
-    let mut frame = Frame::default();
     let state = ViewerState::default();
-    let mut visible = |library: &Library| {
+    let visible = |library: &Library| {
+        let mut frame = Frame::default();
         evaluate(library, &state, 1.0, &mut frame);
         frame.characters[0].draws.iter().map(|draw| draw.visible).collect::<Vec<_>>()
     };
