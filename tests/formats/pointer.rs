@@ -20,6 +20,23 @@ fn moving() -> Build {
     build
 }
 
+/// A pointer of every kind, and a hidden node.
+pub fn pointers() -> Build {
+    let mut build = moving();
+    build.json["nodes"][0]["extensions"] = json!({ "KHR_node_visibility": { "visible": false } });
+    build.json["meshes"][0]["primitives"][0]["targets"] = json!([{ "POSITION": 0 }]);
+    for (pointer, shape, values) in [
+        ("/nodes/0/extensions/KHR_node_visibility/visible", "SCALAR", &[0.0, 1.0][..]),
+        ("/meshes/0/weights", "SCALAR", &[0.0, 1.0]),
+        ("/materials/0/pbrMetallicRoughness/baseColorFactor", "VEC4", &[0.5; 8]),
+        ("/cameras/0/perspective/yfov", "SCALAR", &[0.5, 1.0]),
+        ("/extensions/KHR_lights_punctual/lights/0/color", "VEC3", &[0.5; 6]),
+    ] {
+        build.point(pointer, "STEP", shape, &[0.0, 1.0], values);
+    }
+    build
+}
+
 fn read(build: Build) -> Asset {
     build.load().unwrap_or_else(|problem| panic!("{problem}"))
 }

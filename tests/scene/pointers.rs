@@ -441,9 +441,9 @@ fn a_hidden_node_hides_what_is_below_it() {
     assert_eq!(visible(&insisting), [true, false, true, true]);
     // Bounds, and with them the framing.
     let rest = |library: &Library| library.active().expect("a model").rest_bounds().max.x;
-    assert_eq!((rest(&shown), rest(&hidden)), (6.0, 1.0));
+    assert_eq!((rest(&shown), rest(&hidden)), (6.0, 2.0));
     let framed = |library: &Library| resolved_bounds(library, &state).max.x;
-    assert_eq!((framed(&shown), framed(&hidden)), (6.0, 1.0));
+    assert_eq!((framed(&shown), framed(&hidden)), (6.0, 2.0));
     // The numbers stay: nodes move and meshes deform whether or not they are shown.
     let [shown, hidden] = [&shown, &hidden].map(|library| pose_document(library, &state));
     assert_eq!((&shown["nodes"], &shown["meshes"]), (&hidden["nodes"], &hidden["meshes"]));

@@ -115,7 +115,7 @@ fn the_file_tab_lists_what_clips_animate_besides_joints() {
     press(&mut harness, Tab::File.label());
     assert!(harness.query_by_label(&text::animated("Glow", 2)).is_some());
     assert!(harness.query_by_label_contains("Nothing (").is_none());
-    let values = [("Paint: base colour", "1  0.500  0  1"), ("Only: visibility", text::HIDDEN)];
+    let values = [("Paint: base colour", "1.000  0.500  0  1.000"), ("Only: visibility", text::HIDDEN)];
     for (name, value) in values {
         assert!(harness.query_by_label(&text::fact(name, value)).is_some(), "{name}");
     }

@@ -65,12 +65,12 @@ fn clip_document(asset: &Asset, index: usize, clip: &Clip) -> Value {
         "name": clip.name(),
         "duration_secs": clip.duration_secs(),
         "channels": interpolations().count(),
-        "properties": properties,
         "interpolations": {
             "linear": count(Interpolation::Linear),
             "step": count(Interpolation::Step),
             "cubicspline": count(Interpolation::CubicSpline),
         },
+        "properties": properties,
     })
 }
 
