@@ -464,6 +464,28 @@ fn hidden_meshes_cannot_be_picked() {
     }
 }
 
+/// The FBX reader hides the coarser levels of detail of an object, and what its file hides.
+#[test]
+fn hidden_objects_of_fbx_files_are_not_shown() {
+    let frame_of = |path| {
+        let library = open(path)?;
+        let mut frame = Frame::default();
+        evaluate(&library, &ViewerState::default(), 1.0, &mut frame);
+        let asset = &library.active().expect("a model").asset;
+        let visible = frame.characters[0].draws.iter().filter(|draw| draw.visible);
+        let joints = visible.map(|draw| asset.instances[draw.instance].joint);
+        let names: Vec<String> = joints.map(|joint| asset.skeleton.name(joint).to_owned()).collect();
+        Some((names, frame))
+    };
+    let Some((names, frame)) = frame_of("fbx/ufbx/maya_lod_group_7500_binary.fbx") else { return };
+    assert_eq!(names, ["pPlatonic1", "pSphere1"]);
+    assert_eq!((frame.characters[0].draws.len(), frame.look.skeleton), (6, false));
+    // Its only mesh is hidden: the skeleton is all there is to see, and is framed.
+    let Some((names, frame)) = frame_of("fbx/ufbx/max7_skin_5000_binary.fbx") else { return };
+    assert_eq!((names, frame.look.skeleton), (vec![], true));
+    assert!(frame.bounds.diagonal() > 0.0 && frame.bones.len() > 2);
+}
+
 #[test]
 fn what_is_not_a_boolean_leaves_the_node_visible() {
     let build = complete().with("/nodes/4/extensions", json!({ "KHR_node_visibility": { "visible": 0 } }));
