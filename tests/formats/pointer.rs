@@ -64,8 +64,9 @@ fn what_leads_nowhere_is_named_and_left_out() {
         ("/nodes/0/weights", "SCALAR", "no morph targets"),
         ("/meshes/2/weights", "SCALAR", "1 meshes, found 2"),
         ("/cameras/3/perspective/yfov", "SCALAR", "1 cameras, found 3"),
-        ("/cameras/0/orthographic/ymag", "SCALAR", "the other type"),
+        ("/cameras/0/orthographic/ymag", "SCALAR", "not orthographic"),
         ("/extensions/KHR_lights_punctual/lights/9/color", "VEC3", "1 lights, found 9"),
+        ("/extensions/KHR_lights_punctual/lights/0/spot/outerConeAngle", "SCALAR", "not a spot light"),
         ("/materials/0/normalTexture/extensions/KHR_texture_transform/offset", "VEC2", "no such texture"),
     ] {
         let width = if shape == "SCALAR" { 1 } else { usize::from(shape.as_bytes()[3] - b'0') };

@@ -3,7 +3,8 @@
 
 use gltf::json::Root;
 use gltf::json::animation::Property;
-use gltf::json::extensions::scene::khr_lights_punctual;
+use gltf::json::extensions::scene::khr_lights_punctual::{self, Type as LightType};
+use gltf::json::validation::Checked;
 
 use crate::anim::{CameraProperty, JointIndex, LightProperty, MaterialProperty, PropertyTarget, Skeleton, TextureSlot};
 use crate::asset::{Asset, Camera, CameraProjection};
@@ -93,23 +94,28 @@ impl Pointers<'_> {
         let rest = if list == "extensions" { rest.strip_prefix(LIGHTS) } else { Some(rest) };
         let (number, rest) = rest.and_then(|rest| rest.split_once('/')).ok_or(Unresolved::Unsupported)?;
         let number = index(number)?;
-        let in_list = |count: usize, name: &str| match number < count {
-            true => Ok(()),
-            false => Err(Unresolved::Bad(format!("expected an index into the {count} {name}, found {number}"))),
+        let (count, name) = match list {
+            "nodes" => (self.root.nodes.len(), list),
+            "meshes" => (self.root.meshes.len(), list),
+            "materials" => (self.materials.len(), list),
+            "cameras" => (self.root.cameras.len(), list),
+            "extensions" => (self.lights().len(), "lights"),
+            _ => return Err(Unresolved::Unsupported),
         };
-        match list {
-            "nodes" => in_list(self.root.nodes.len(), list).and_then(|()| self.node(number, rest)),
-            "meshes" => in_list(self.root.meshes.len(), list).and_then(|()| self.mesh(number, rest)),
-            "materials" => in_list(self.materials.len(), list).and_then(|()| self.material(number, rest)),
-            "cameras" => in_list(self.root.cameras.len(), list).and_then(|()| self.camera(number, rest)),
-            "extensions" => {
-                let lights: &[khr_lights_punctual::Light] = self.root.as_ref();
-                in_list(lights.len(), "lights")?;
-                let property = find(&LIGHT, rest).ok_or(Unresolved::Unsupported)?;
-                Ok(vec![Aim::Property(PropertyTarget::Light(number, property))])
-            }
-            _ => Err(Unresolved::Unsupported),
+        if number >= count {
+            return Err(Unresolved::Bad(format!("expected an index into the {count} {name}, found {number}")));
         }
+        match list {
+            "nodes" => self.node(number, rest),
+            "meshes" => self.mesh(number, rest),
+            "materials" => self.material(number, rest),
+            "cameras" => self.camera(number, rest),
+            _ => self.light(number, rest),
+        }
+    }
+
+    fn lights(&self) -> &[khr_lights_punctual::Light] {
+        self.root.as_ref()
     }
 
     fn node(&self, node: usize, rest: &str) -> Result<Vec<Aim>, Unresolved> {
@@ -170,16 +176,25 @@ impl Pointers<'_> {
         Ok(vec![Aim::Property(PropertyTarget::Material(material, property))])
     }
 
+    fn light(&self, light: usize, rest: &str) -> Result<Vec<Aim>, Unresolved> {
+        let property = find(&LIGHT, rest).ok_or(Unresolved::Unsupported)?;
+        let is_cone = matches!(property, LightProperty::InnerCone | LightProperty::OuterCone);
+        if is_cone && self.lights()[light].type_ != Checked::Valid(LightType::Spot) {
+            return Err(Unresolved::Bad("the light is not a spot light".to_owned()));
+        }
+        Ok(vec![Aim::Property(PropertyTarget::Light(light, property))])
+    }
+
     fn camera(&self, camera: usize, rest: &str) -> Result<Vec<Aim>, Unresolved> {
         let lens = &self.root.cameras[camera];
-        let (property, is_there) = match (find(&PERSPECTIVE, rest), find(&ORTHOGRAPHIC, rest)) {
-            (Some(property), _) => (property, lens.perspective.is_some()),
-            (_, Some(property)) => (property, lens.orthographic.is_some()),
+        let (kind, property, is_there) = match (find(&PERSPECTIVE, rest), find(&ORTHOGRAPHIC, rest)) {
+            (Some(property), _) => ("perspective", property, lens.perspective.is_some()),
+            (_, Some(property)) => ("orthographic", property, lens.orthographic.is_some()),
             (None, None) => return Err(Unresolved::Unsupported),
         };
         match is_there {
             true => Ok(vec![Aim::Property(PropertyTarget::Camera(camera, property))]),
-            false => Err(Unresolved::Bad("the camera is of the other type".to_owned())),
+            false => Err(Unresolved::Bad(format!("the camera is not {kind}"))),
         }
     }
 }
