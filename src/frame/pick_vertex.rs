@@ -7,8 +7,8 @@ use crate::library::Model;
 use crate::mesh::{DeformedVertices, Topology, deform};
 use crate::state::VertexChoice;
 
-/// Hidden meshes are passed through. `point` has x and y from −1 (left, bottom) to 1. Skins the whole character on the CPU into `scratch` and tests every
-/// triangle, so call it when the pointer has moved, not every frame.
+/// Hidden meshes are passed through. `point` has x and y from −1 (left, bottom) to 1. Skins the whole character on the CPU
+/// into `scratch` and tests every triangle, so call it when the pointer has moved, not every frame.
 pub fn pick_vertex(
     model: &Model,
     frame: &Frame,
