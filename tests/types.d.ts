@@ -5,14 +5,19 @@ export interface GltfJson {
   asset: { version: string; minVersion?: string };
   extensionsRequired?: string[];
   accessors: { count: number; bufferView: number; componentType: number; byteOffset?: number }[];
-  animations: object[];
+  animations: { channels: GltfChannel[] }[];
   buffers: { byteLength: number; uri?: string }[];
   bufferViews: { byteOffset?: number }[];
   images?: object[];
   materials?: { doubleSided?: boolean }[];
   textures?: object[];
   meshes: { primitives: GltfPrimitive[] }[];
-  nodes: { name?: string; rotation?: number[]; extensions?: object }[];
+  nodes: { name?: string; mesh?: number; weights?: number[]; rotation?: number[]; extensions?: object }[];
+}
+
+export interface GltfChannel {
+  sampler: number;
+  target: { node?: number; path: string; extensions?: { KHR_animation_pointer?: { pointer: string } } };
 }
 
 export interface GltfPrimitive {

@@ -55,7 +55,11 @@ fn text(opened: &Opened, document: &Value) -> String {
         let clip = &asset.clips[index];
         line(
             &format!("clip {index}"),
-            format!("{title}, {:.3} s, {} channels", clip.duration_secs(), clip.channels().len()),
+            format!(
+                "{title}, {:.3} s, {} channels",
+                clip.duration_secs(),
+                clip.channels().len() + clip.properties().len()
+            ),
         );
     }
     text

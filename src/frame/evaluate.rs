@@ -3,10 +3,10 @@
 use glam::{Affine3A, Vec3};
 
 use super::{Character, Draw, Frame, FrameLight, Look, overlays, view};
-use crate::anim::{JointIndex, Pose, SampleCursor, model_from_joint};
-use crate::asset::MeshInstance;
+use crate::anim::{JointIndex, Pose, PropertyTarget, PropertyValues, SampleCursor, model_from_joint};
+use crate::asset::{Asset, MeshInstance, SceneJoints};
 use crate::library::{Library, Model, ModelId};
-use crate::mesh::{Bounds, SkinningMode, palette_entry, write_palette};
+use crate::mesh::{Bounds, Material, SkinningMode, palette_entry, write_palette};
 use crate::state::{
     PoseSampler, SourceOnStage, ViewerState, active_clip, clip_secs, panes, resolved_bounds, source_on_stage,
     world_from_model,
@@ -23,18 +23,20 @@ pub(super) struct Scratch {
     first_cursor: SampleCursor,
     pub world_from_first: Vec<Affine3A>,
     source_pose: Pose,
+    source_properties: PropertyValues,
     source_cursor: SampleCursor,
-    pub model_scene: SceneJoints,
-    pub source_scene: SceneJoints,
+    pub model_scene: Scene,
+    pub source_scene: Scene,
 }
 
-/// Which joints of a model belong to the chosen scene.
+/// Which joints of a model belong to the chosen scene, and which of them are visible.
 #[derive(Debug, Default)]
-pub(super) struct SceneJoints {
+pub(super) struct Scene {
     /// The model and scene the flags were computed for.
     key: Option<(ModelId, Option<usize>)>,
-    /// One flag per joint.
-    pub visible: Vec<bool>,
+    pub joints: SceneJoints,
+    /// Whether there are meshes, visible at rest.
+    pub has_meshes: bool,
 }
 
 /// Fills `frame` for a viewport of the given aspect ratio (width over height).
@@ -60,7 +62,7 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
     let Some(model) = library.active() else {
         frame.characters.clear();
         frame.clip = None;
-        frame.scratch.sampler.pose = Pose::default();
+        frame.scratch.sampler = PoseSampler::default();
         frame.bounds = Bounds::EMPTY;
         view::place_camera(library, state, aspect, Vec3::ZERO, frame);
         return;
@@ -85,8 +87,9 @@ fn write_characters(model: &Model, state: &ViewerState, source: Option<&SourceOn
     let modes = if state.inspect.split { &COMPARED[..] } else { std::slice::from_ref(&state.display.skinning) };
     let Frame { characters, scratch, clip, .. } = frame;
     characters.resize_with(modes.len() + usize::from(source.is_some()), Character::default);
-    scratch.model_scene.update(model, state.sources.scene);
     let (skeleton, pose) = (&model.asset.skeleton, &scratch.sampler.pose);
+    let properties = &scratch.sampler.properties;
+    scratch.model_scene.update(model, state.sources.scene, properties);
     let chosen =
         state.selection.joint.and_then(|joint| skeleton.joint_of_source(joint)).filter(|_| state.inspect.weights);
     for (pane, (character, &skinning)) in characters.iter_mut().zip(modes).enumerate() {
@@ -95,7 +98,8 @@ fn write_characters(model: &Model, state: &ViewerState, source: Option<&SourceOn
         character.pane = state.inspect.split.then_some(pane as u32);
         character.morph_weights.clone_from(&pose.morph_weights);
         model_from_joint(skeleton, pose, world_from_model(state.edits.up), &mut character.world_from_joint);
-        write_draws(model, chosen, &scratch.model_scene.visible, character);
+        write_materials(&model.asset, properties, &mut character.materials);
+        write_draws(model, chosen, &scratch.model_scene.joints, character);
     }
     if let (Some(source), Some(character)) = (source, characters.last_mut()) {
         let time_secs = clip.map_or(0.0, |clip| clip_secs(model, clip, state) as f32);
@@ -105,38 +109,58 @@ fn write_characters(model: &Model, state: &ViewerState, source: Option<&SourceOn
 
 /// The source plays its own clip at the same time, always with linear skinning.
 fn write_source(source: &SourceOnStage, time_secs: f32, scratch: &mut Scratch, character: &mut Character) {
-    scratch.source_scene.update(source.model, None);
     let skeleton = &source.model.asset.skeleton;
     scratch.source_pose.copy_from(skeleton.rest());
+    scratch.source_properties.clear();
     if let Some(clip) = source.model.clip(source.clip) {
         clip.sample(skeleton, time_secs, &mut scratch.source_cursor, &mut scratch.source_pose);
+        clip.sample_properties(time_secs, &mut scratch.source_cursor, &mut scratch.source_properties);
     }
+    scratch.source_scene.update(source.model, None, &scratch.source_properties);
     character.model = source.model.id;
     character.skinning = SkinningMode::Linear;
     character.pane = None;
     character.morph_weights.clone_from(&scratch.source_pose.morph_weights);
     let pose = &scratch.source_pose;
     model_from_joint(skeleton, pose, source.world_from_source, &mut character.world_from_joint);
-    write_draws(source.model, None, &scratch.source_scene.visible, character);
+    write_materials(&source.model.asset, &scratch.source_properties, &mut character.materials);
+    write_draws(source.model, None, &scratch.source_scene.joints, character);
 }
 
-impl SceneJoints {
-    fn update(&mut self, model: &Model, scene: Option<usize>) {
+impl Scene {
+    fn update(&mut self, model: &Model, scene: Option<usize>, properties: &PropertyValues) {
         let key = (model.id, model.scene(scene));
-        if self.key != Some(key) || self.visible.len() != model.asset.skeleton.len() {
-            self.visible = model.asset.joints_in_scene(key.1);
+        if self.key != Some(key) || self.joints.visible.len() != model.asset.skeleton.len() {
+            self.joints = SceneJoints::new(&model.asset, key.1);
+            let at_rest = &self.joints.visible_at_rest;
+            self.has_meshes = model.asset.instances.iter().any(|instance| at_rest[instance.joint.get()]);
             self.key = Some(key);
+        }
+        self.joints.show(&model.asset, properties);
+    }
+}
+
+/// Fills `out` with the animated materials and their numbers, in ascending order.
+fn write_materials(asset: &Asset, properties: &PropertyValues, out: &mut Vec<(usize, Material)>) {
+    out.clear();
+    for (target, value) in properties.iter() {
+        let PropertyTarget::Material(index, property) = target else { continue };
+        if out.last().is_none_or(|&(last, _)| last != index) {
+            out.extend(asset.materials.get(index).map(|material| (index, material.nameless())));
+        }
+        if let Some((_, material)) = out.last_mut() {
+            material.set(property, value);
         }
     }
 }
 
 /// If `chosen` is set, surfaces show that joint's influence.
-fn write_draws(model: &Model, chosen: Option<JointIndex>, visible: &[bool], character: &mut Character) {
+fn write_draws(model: &Model, chosen: Option<JointIndex>, scene: &SceneJoints, character: &mut Character) {
     let asset = &model.asset;
     character.palette.clear();
     character.draws.clear();
     for (index, instance) in asset.instances.iter().enumerate() {
-        if !visible[instance.joint.get()] {
+        if !scene.in_scene[instance.joint.get()] {
             continue;
         }
         let world_from_node = character.world_from_joint[instance.joint.get()];
@@ -150,6 +174,7 @@ fn write_draws(model: &Model, chosen: Option<JointIndex>, visible: &[bool], char
         character.draws.push(Draw {
             instance: index,
             mesh: instance.mesh,
+            visible: scene.visible[instance.joint.get()],
             palette: start..character.palette.len() as u32,
             morph_weights: morphs.start as u32..morphs.end as u32,
             mirrored: skin.is_none() && world_from_node.matrix3.determinant() < 0.0,
@@ -202,16 +227,21 @@ fn translated(bounds: Bounds, by: Vec3) -> Bounds {
     if bounds.is_empty() { bounds } else { Bounds { min: bounds.min + by, max: bounds.max + by } }
 }
 
+/// A light that the clip hides stays in the list, black: otherwise the studio's key light would take over.
 fn write_lights(model: &Model, frame: &mut Frame) {
     let world_from_joint = &frame.characters[0].world_from_joint;
+    let Scratch { model_scene, sampler, .. } = &frame.scratch;
     for light in &model.asset.lights {
-        if !frame.scratch.model_scene.visible[light.joint.get()] {
+        let joint = light.joint.get();
+        let visible = model_scene.joints.visible[joint];
+        if !visible && !model_scene.joints.visible_at_rest[joint] {
             continue;
         }
-        let world_from_light = &world_from_joint[light.joint.get()];
+        let light = light.animated(&sampler.properties);
+        let world_from_light = &world_from_joint[joint];
         frame.lights.push(FrameLight {
             kind: light.kind,
-            color: light.color * light.intensity,
+            color: if visible { light.color * light.intensity } else { Vec3::ZERO },
             position: world_from_light.translation.into(),
             direction: (-world_from_light.matrix3.z_axis).normalize_or(-glam::Vec3A::Z).into(),
             range: light.range.unwrap_or(0.0),

@@ -13,10 +13,10 @@ use std::ops::Range;
 
 use glam::{Affine3A, Mat4, Vec3, Vec4};
 
-use crate::anim::Pose;
+use crate::anim::{JointIndex, Pose, PropertyValues};
 use crate::asset::LightKind;
 use crate::library::ModelId;
-use crate::mesh::{Bounds, PaletteEntry, SkinningMode};
+use crate::mesh::{Bounds, Material, PaletteEntry, SkinningMode};
 use crate::state::Background;
 
 pub use evaluate::{evaluate, travelled};
@@ -53,6 +53,16 @@ impl Frame {
     /// Local pose of the active model: the clip, blended, with everything set by hand. Empty without a model.
     pub fn pose(&self) -> &Pose {
         &self.scratch.sampler.pose
+    }
+
+    /// What the clip animates besides joints: the values of materials, lights, cameras and visibility.
+    pub fn properties(&self) -> &PropertyValues {
+        &self.scratch.sampler.properties
+    }
+
+    /// Whether what is on a joint of the active model is shown; false outside the chosen scene.
+    pub fn is_visible(&self, joint: JointIndex) -> bool {
+        self.scratch.model_scene.joints.visible.get(joint.get()).copied().unwrap_or(false)
     }
 }
 
@@ -122,6 +132,8 @@ pub struct Character {
     pub palette: Vec<PaletteEntry>,
     /// Weights of all morph targets, laid out as in [`Pose::morph_weights`].
     pub morph_weights: Vec<f32>,
+    /// The materials that the clip animates, without their names, and their indices in the asset, in ascending order.
+    pub materials: Vec<(usize, Material)>,
     /// Mesh instances of the chosen scene, in the asset's order.
     pub draws: Vec<Draw>,
 }
@@ -145,6 +157,8 @@ pub struct Draw {
     pub instance: usize,
     /// Index into [`crate::asset::AssetParts::meshes`].
     pub mesh: usize,
+    /// Neither the file nor the clip hides its node or one above.
+    pub visible: bool,
     /// Range in [`Character::palette`].
     pub palette: Range<u32>,
     /// Range in [`Character::morph_weights`].

@@ -44,10 +44,11 @@ pub(super) fn write_overlays(model: &Model, state: &ViewerState, source: Option<
     let size = model.rest_bounds().diagonal().max(1e-6);
     let chosen = state.selection.joint.and_then(|joint| model.asset.skeleton.joint_of_source(joint));
     // Skeletons show without a mesh, and beside the source so that the two can be compared.
-    look.skeleton |= character.draws.is_empty() || source.is_some();
+    let nothing_shown = !scratch.model_scene.has_meshes && !character.draws.iter().any(|draw| draw.visible);
+    look.skeleton |= nothing_shown || source.is_some();
     let boxes = state.display.show.boxes;
     let style = BoneStyle { plain: BONE, chosen, of_source: false, boxes, size };
-    write_bones(model, world_from_joint, &scratch.model_scene.visible, style, bones);
+    write_bones(model, world_from_joint, &scratch.model_scene.joints.in_scene, style, bones);
     if let (Some(source), Some(on_stage)) = (source, characters.last()) {
         if state.display.show.error {
             color_by_error(model, source, world_from_joint, &on_stage.world_from_joint, bones);
@@ -55,13 +56,13 @@ pub(super) fn write_overlays(model: &Model, state: &ViewerState, source: Option<
         let partner = source.borrowed.pairs.iter().find(|pair| Some(pair.target) == chosen).map(|pair| pair.source);
         let size = source.model.rest_bounds().transformed(&source.world_from_source).diagonal().max(1e-6);
         let style = BoneStyle { plain: SOURCE_BONE, chosen: partner, of_source: true, boxes, size };
-        write_bones(source.model, &on_stage.world_from_joint, &scratch.source_scene.visible, style, bones);
+        write_bones(source.model, &on_stage.world_from_joint, &scratch.source_scene.joints.in_scene, style, bones);
     }
-    if let Some(joint) = chosen.filter(|joint| scratch.model_scene.visible[joint.get()]) {
+    if let Some(joint) = chosen.filter(|joint| scratch.model_scene.joints.in_scene[joint.get()]) {
         write_axes(&world_from_joint[joint.get()], 0.06 * size, lines);
     }
     if state.display.show.bounds {
-        let bounds = model.pose_bounds(world_from_joint, &character.morph_weights, &scratch.model_scene.visible);
+        let bounds = model.pose_bounds(world_from_joint, &character.morph_weights, &scratch.model_scene.joints);
         if !bounds.is_empty() {
             write_box(bounds.corners(), lines);
         }
@@ -109,7 +110,7 @@ struct BoneStyle {
 fn write_bones(
     model: &Model,
     world_from_joint: &[Affine3A],
-    visible: &[bool],
+    in_scene: &[bool],
     style: BoneStyle,
     bones: &mut Vec<Bone>,
 ) {
@@ -117,7 +118,7 @@ fn write_bones(
     let skeleton = &model.asset.skeleton;
     let position = |joint: usize| Vec3::from(world_from_joint[joint].translation);
     for bone in model.rig().bones() {
-        if !visible[bone.head.get()] {
+        if !in_scene[bone.head.get()] {
             continue;
         }
         let head = position(bone.head.get());

@@ -7,8 +7,8 @@ use crate::library::Model;
 use crate::mesh::{DeformedVertices, Topology, deform};
 use crate::state::VertexChoice;
 
-/// `point` has x and y from −1 (left, bottom) to 1. Skins the whole character on the CPU into `scratch` and tests every
-/// triangle, so call it when the pointer has moved, not every frame.
+/// Hidden meshes are passed through. `point` has x and y from −1 (left, bottom) to 1. Skins the whole character on the CPU
+/// into `scratch` and tests every triangle, so call it when the pointer has moved, not every frame.
 pub fn pick_vertex(
     model: &Model,
     frame: &Frame,
@@ -20,7 +20,7 @@ pub fn pick_vertex(
     let [near, far] = [0.0, 1.0].map(|depth| world_from_projection.project_point3(point.extend(depth)));
     let along = (far - near).try_normalize()?;
     let mut nearest: Option<(f32, VertexChoice)> = None;
-    for draw in &character.draws {
+    for draw in character.draws.iter().filter(|draw| draw.visible) {
         let (palette, weights) = (character.palette_of(draw), character.morph_weights_of(draw));
         for (primitive, geometry) in model.asset.meshes.get(draw.mesh)?.primitives.iter().enumerate() {
             if geometry.topology != Topology::Triangles || palette.is_empty() {

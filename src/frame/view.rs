@@ -55,7 +55,7 @@ fn file_view(library: &Library, index: usize, aspect: f32, frame: &Frame) -> Opt
     let ahead = Vec3::from(-world_from_camera.matrix3.z_axis);
     let distance = (frame.bounds.center() - eye).length().max(1e-6);
     let (_, reach) = planes(frame, eye, ahead, distance);
-    let projection_from_view = match camera.projection {
+    let projection_from_view = match camera.animated(frame.properties()) {
         CameraProjection::Perspective { y_fov_radians, near, far, .. } => {
             let near = near.max(1e-6);
             let far = far.unwrap_or(reach).max(2.0 * near);

@@ -179,7 +179,7 @@ impl DrawList {
             let first_palette = next_palette;
             next_palette += character.palette.len() as u32;
             let Some(model) = models.iter().position(|model| model.id == character.model) else { continue };
-            for draw in &character.draws {
+            for draw in character.draws.iter().filter(|draw| draw.visible) {
                 if frame.look.wireframe {
                     models[model].prepare_edges(device, draw.mesh);
                 }
@@ -193,9 +193,11 @@ impl DrawList {
                     lighting,
                     distance: -frame.view.view_from_world.transform_point3(draw.center).z,
                 };
-                let primitives = models[model].meshes.get(draw.mesh).into_iter().flatten();
-                for (index, primitive) in primitives.enumerate() {
-                    self.add(device, pipelines, &instance, index, primitive.as_ref(), shadow);
+                let model = &models[model];
+                for (index, primitive) in model.meshes.get(draw.mesh).into_iter().flatten().enumerate() {
+                    let Some(primitive) = primitive else { continue };
+                    let shadow = shadow && model.casts_shadow(primitive);
+                    self.add(device, pipelines, &instance, index, primitive, shadow);
                 }
             }
         }
@@ -204,17 +206,16 @@ impl DrawList {
         self.blended.sort_by(|a, b| a.edges.cmp(&b.edges).then(b.distance.total_cmp(&a.distance)));
     }
 
-    /// Adds the items of one primitive, if it has anything to draw.
+    /// Adds the items of one primitive. `shadow`: it casts one.
     fn add(
         &mut self,
         device: &wgpu::Device,
         pipelines: &mut Pipelines,
         instance: &Instance<'_>,
         index: usize,
-        primitive: Option<&GpuPrimitive>,
+        primitive: &GpuPrimitive,
         shadow: bool,
     ) {
-        let Some(primitive) = primitive else { return };
         let (look, pane) = (&instance.frame.look, instance.character.pane);
         let is_surface = primitive.geometry.topology == Topology::Triangles;
         let offset = self.push_uniform(&instance.uniform(primitive));
@@ -241,7 +242,7 @@ impl DrawList {
                 self.blended.push(item(key, false));
             }
             // All panes share one shadow map.
-            if shadow && primitive.casts_shadow && pane.is_none_or(|pane| pane == 0) {
+            if shadow && pane.is_none_or(|pane| pane == 0) {
                 self.shadow.push(item(shadow_key(key), false));
             }
         }

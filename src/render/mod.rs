@@ -20,6 +20,7 @@ pub mod shaders;
 mod shadow;
 mod targets;
 mod texture;
+mod uniform_buffer;
 pub mod uniforms;
 
 pub use blit::Blit;

@@ -1,6 +1,6 @@
 //! A model on the GPU: its primitives with their materials.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 use wgpu::util::DeviceExt;
@@ -9,16 +9,31 @@ use super::UploadError;
 use super::geometry::{GpuGeometry, edges};
 use super::pipelines::{Features, Layouts, MATERIAL_MAPS, Shading};
 use super::texture::{MipMaker, sampler, single_texel};
+use super::uniform_buffer::UniformBuffer;
 use super::uniforms::{MaterialUniform, UvTransformUniform};
+use crate::anim::TextureSlot;
 use crate::asset::Asset;
 use crate::library::{Model, ModelId};
 use crate::mesh::{AlphaMode, Geometry, Material, Sampler, TextureRef, Topology, smooth_normals};
+
+/// The maps of a material in the order of their bindings.
+const TEXTURE_SLOTS: [TextureSlot; MATERIAL_MAPS] = [
+    TextureSlot::BaseColor,
+    TextureSlot::MetallicRoughness,
+    TextureSlot::Normal,
+    TextureSlot::Occlusion,
+    TextureSlot::Emissive,
+];
 
 pub(super) struct GpuModel {
     pub id: ModelId,
     asset: Arc<Asset>,
     /// The primitives of each mesh; none for one with nothing to draw.
     pub meshes: Vec<Vec<Option<GpuPrimitive>>>,
+    /// The uniforms of the file's materials that primitives use, by index.
+    materials: BTreeMap<usize, UniformBuffer<MaterialUniform>>,
+    /// Materials whose uniform is not the file's but that of an animation.
+    animated: Vec<usize>,
 }
 
 pub(super) struct GpuPrimitive {
@@ -27,8 +42,8 @@ pub(super) struct GpuPrimitive {
     pub shading: Shading,
     pub features: Features,
     pub double_sided: bool,
-    /// Blended surfaces cast a shadow only if they are more than half opaque.
-    pub casts_shadow: bool,
+    /// Index in the asset; `None` is the default material.
+    material: Option<usize>,
     /// Index buffer of the edges and its length; built when the wireframe is first shown.
     pub edges: Option<(wgpu::Buffer, u32)>,
 }
@@ -85,11 +100,37 @@ impl ModelUploader {
             }
             meshes.push(primitives);
         }
-        Ok(GpuModel { id: model.id, asset: asset.clone(), meshes })
+        let of_file = |(index, material): (Option<usize>, GpuMaterial)| Some((index?, material.uniform));
+        let materials = materials.created.into_iter().filter_map(of_file).collect();
+        Ok(GpuModel { id: model.id, asset: asset.clone(), meshes, materials, animated: Vec::new() })
     }
 }
 
 impl GpuModel {
+    /// Shows animated materials, given with their indices; all others are the file's again.
+    pub fn animate(&mut self, queue: &wgpu::Queue, materials: &[(usize, Material)]) {
+        for &index in &self.animated {
+            let is_animated = materials.iter().any(|&(other, _)| other == index);
+            if let (Some(uniform), false) = (self.materials.get_mut(&index), is_animated) {
+                uniform.write(queue, material_uniform(&self.asset.materials[index]));
+            }
+        }
+        self.animated.clear();
+        for (index, material) in materials {
+            if let Some(uniform) = self.materials.get_mut(index) {
+                uniform.write(queue, material_uniform(material));
+                self.animated.push(*index);
+            }
+        }
+    }
+
+    /// Blended surfaces cast a shadow only if they are more than half opaque.
+    pub fn casts_shadow(&self, primitive: &GpuPrimitive) -> bool {
+        let material = primitive.material.and_then(|index| self.materials.get(&index));
+        let is_faint = || material.is_some_and(|uniform| uniform.written().base_color[3] <= 0.5);
+        primitive.geometry.topology == Topology::Triangles && !(primitive.features.has(Features::BLEND) && is_faint())
+    }
+
     /// Builds the edge lists of a mesh on first use.
     pub fn prepare_edges(&mut self, device: &wgpu::Device, mesh: usize) {
         let (Some(mesh), Some(primitives)) = (self.asset.meshes.get(mesh), self.meshes.get_mut(mesh)) else { return };
@@ -108,7 +149,7 @@ impl GpuModel {
 
 /// A material's uniform buffer and maps, shared by the primitives that use it.
 struct GpuMaterial {
-    uniform: wgpu::Buffer,
+    uniform: UniformBuffer<MaterialUniform>,
     maps: [Option<(wgpu::TextureView, wgpu::Sampler)>; MATERIAL_MAPS],
 }
 
@@ -142,46 +183,22 @@ impl Materials<'_> {
         let bind_group = primitive_bind_group(self.device, layouts, gpu_material, &gpu, plain, self.uploader);
         // Points and lines without normals have no side to light (glTF 2.0 §3.7.2.1).
         let unlit = material.unlit || (geometry.topology != Topology::Triangles && geometry.normals.is_empty());
-        let blend = material.alpha_mode == AlphaMode::Blend;
         GpuPrimitive {
             bind_group,
             shading: if unlit { Shading::Unlit } else { Shading::Lit },
             features: features(material, &gpu_material.maps, geometry),
             double_sided: material.double_sided,
-            casts_shadow: geometry.topology == Topology::Triangles && (!blend || material.base_color.w > 0.5),
+            material: key,
             edges: None,
             geometry: gpu,
         }
     }
 
     fn create(&mut self, material: &Material) -> GpuMaterial {
-        let references = [
-            (material.base_color_texture, true),
-            (material.metallic_roughness_texture, false),
-            (material.normal_texture, false),
-            (material.occlusion_texture, false),
-            (material.emissive_texture, true),
-        ];
-        let uniform = MaterialUniform {
-            base_color: material.base_color.to_array(),
-            emissive: material.emissive.to_array(),
-            alpha_cutoff: match material.alpha_mode {
-                AlphaMode::Mask { cutoff } => cutoff,
-                // Cuts holes into the shadows of blended surfaces.
-                AlphaMode::Opaque | AlphaMode::Blend => 0.5,
-            },
-            metallic: material.metallic,
-            roughness: material.roughness,
-            normal_scale: material.normal_scale,
-            occlusion_strength: material.occlusion_strength,
-            uvs: references.map(|(reference, _)| reference.map_or_else(UvTransformUniform::default, uv_transform)),
-        };
-        let uniform = self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("material"),
-            contents: bytemuck::bytes_of(&uniform),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
-        GpuMaterial { uniform, maps: references.map(|(reference, srgb)| self.map(reference?, srgb)) }
+        let is_srgb = |slot| matches!(slot, TextureSlot::BaseColor | TextureSlot::Emissive);
+        let mut uniform = UniformBuffer::new(self.device, "material");
+        uniform.write(self.queue, material_uniform(material));
+        GpuMaterial { uniform, maps: TEXTURE_SLOTS.map(|slot| self.map(material.texture(slot)?, is_srgb(slot))) }
     }
 
     fn map(&mut self, reference: TextureRef, srgb: bool) -> Option<(wgpu::TextureView, wgpu::Sampler)> {
@@ -201,6 +218,24 @@ impl Materials<'_> {
             .or_insert_with(|| sampler(self.device, &texture.sampler, self.uploader.anisotropy))
             .clone();
         Some((view, sampler))
+    }
+}
+
+fn material_uniform(material: &Material) -> MaterialUniform {
+    let uvs = |slot| material.texture(slot).map_or_else(UvTransformUniform::default, uv_transform);
+    MaterialUniform {
+        base_color: material.base_color.to_array(),
+        emissive: (material.emissive * material.emissive_strength).to_array(),
+        alpha_cutoff: match material.alpha_mode {
+            AlphaMode::Mask { cutoff } => cutoff,
+            // Cuts holes into the shadows of blended surfaces.
+            AlphaMode::Opaque | AlphaMode::Blend => 0.5,
+        },
+        metallic: material.metallic,
+        roughness: material.roughness,
+        normal_scale: material.normal_scale,
+        occlusion_strength: material.occlusion_strength,
+        uvs: TEXTURE_SLOTS.map(uvs),
     }
 }
 
@@ -236,7 +271,7 @@ fn primitive_bind_group(
     plain: &wgpu::Sampler,
     placeholders: &ModelUploader,
 ) -> wgpu::BindGroup {
-    let mut entries = vec![wgpu::BindGroupEntry { binding: 0, resource: material.uniform.as_entire_binding() }];
+    let mut entries = vec![wgpu::BindGroupEntry { binding: 0, resource: material.uniform.binding() }];
     for (slot, map) in material.maps.iter().enumerate() {
         let (view, sampler) = map.as_ref().map_or((&placeholders.white, plain), |(view, sampler)| (view, sampler));
         let binding = 1 + 2 * slot as u32;

@@ -12,6 +12,7 @@ use super::palette::PaletteTexture;
 use super::pipelines::{Layouts, Pipelines};
 use super::shadow::ShadowMap;
 use super::targets::Targets;
+use super::uniform_buffer::UniformBuffer;
 use super::uniforms::FrameUniform;
 use crate::frame::Frame;
 use crate::library::{Model, ModelId};
@@ -82,9 +83,9 @@ pub struct Renderer {
     overlay: Overlay,
     draws: DrawList,
     targets: Targets,
-    frame_buffer: UniformBuffer,
+    frame_buffer: UniformBuffer<FrameUniform>,
     /// The frame's uniform with the light's projection.
-    shadow_buffer: UniformBuffer,
+    shadow_buffer: UniformBuffer<FrameUniform>,
     frame_group: wgpu::BindGroup,
     shadow_group: wgpu::BindGroup,
     light_group: wgpu::BindGroup,
@@ -93,36 +94,13 @@ pub struct Renderer {
     stats: RenderStats,
 }
 
-/// A [`FrameUniform`] on the GPU, uploaded when it changes.
-struct UniformBuffer {
-    buffer: wgpu::Buffer,
-    written: FrameUniform,
-}
-
-impl UniformBuffer {
-    fn new(device: &wgpu::Device, label: &str) -> Self {
-        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(label),
-            size: size_of::<FrameUniform>() as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        Self { buffer, written: FrameUniform::default() }
-    }
-
-    fn write(&mut self, queue: &wgpu::Queue, uniform: FrameUniform) {
-        if bytemuck::bytes_of(&uniform) != bytemuck::bytes_of(&self.written) {
-            queue.write_buffer(&self.buffer, 0, bytemuck::bytes_of(&uniform));
-            self.written = uniform;
-        }
-    }
-
+impl UniformBuffer<FrameUniform> {
     fn bind_group(&self, device: &wgpu::Device, layouts: &Layouts, palette: &PaletteTexture) -> wgpu::BindGroup {
         device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("frame"),
             layout: &layouts.frame,
             entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: self.buffer.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 0, resource: self.binding() },
                 wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(palette.view()) },
             ],
         })
@@ -217,6 +195,11 @@ impl Renderer {
         let shadow = shadow_uniform.is_some();
         if let Some(uniform) = shadow_uniform {
             self.shadow_buffer.write(queue, uniform);
+        }
+        for character in &frame.characters {
+            if let Some(model) = self.models.iter_mut().find(|model| model.id == character.model) {
+                model.animate(queue, &character.materials);
+            }
         }
         self.draws.collect(device, frame, &mut self.models, &mut self.pipelines, &mut self.palette, shadow);
         self.draws.upload(device, queue, &self.layouts);

@@ -3,7 +3,7 @@
 use glam::{Affine3A, EulerRot, Quat};
 
 use super::{ClipChoice, UpAxis, ViewerState};
-use crate::anim::{ClipQuery, Pose, SampleCursor, TimeRange, clip_time, find_clip};
+use crate::anim::{ClipQuery, Pose, PropertyValues, SampleCursor, TimeRange, clip_time, find_clip};
 use crate::library::Model;
 
 /// Returns the index of the active clip; `None` for the rest pose, a model without clips, or an unknown name.
@@ -60,18 +60,23 @@ pub fn clip_secs(model: &Model, clip: usize, state: &ViewerState) -> f64 {
 pub struct PoseSampler {
     /// The pose sampled last; empty before that.
     pub pose: Pose,
+    /// What the clip animates besides joints, sampled together with the pose.
+    pub properties: PropertyValues,
     cursor: SampleCursor,
     before: Pose,
+    before_properties: PropertyValues,
     before_cursor: SampleCursor,
 }
 
 impl PoseSampler {
     /// Samples the current pose: rest pose, layers below the clip, the clip, the crossfade from the previous one, then joints and
-    /// morph weights set manually. Allocates nothing once the buffers have grown.
+    /// morph weights set manually. Properties aren't blended: a crossfade switches them halfway. Allocates nothing once the
+    /// buffers have grown.
     pub fn sample(&mut self, model: &Model, state: &ViewerState) {
         let clip = active_clip(model, state);
         let time_secs = clip.map_or(0.0, |clip| clip_secs(model, clip, state));
-        sample_clip(model, clip, time_secs, state.playhead.time_secs, &mut self.cursor, &mut self.pose);
+        let into = (&mut self.pose, &mut self.properties);
+        sample_clip(model, clip, time_secs, state.playhead.time_secs, &mut self.cursor, into);
         if let Some(fade) = &state.playhead.fade {
             let from = clip_of(model, &fade.clip);
             let length_secs = model.crossfade_secs(from, clip);
@@ -81,7 +86,11 @@ impl PoseSampler {
                 from.and_then(|from| model.clip(from)).map_or(0.0, |clip| f64::from(clip.duration_secs()));
             let range = TimeRange { start_secs: 0.0, end_secs: duration_secs };
             let time_secs = clip_time(elapsed_secs, range, state.playback.loop_mode);
-            sample_clip(model, from, time_secs, elapsed_secs, &mut self.before_cursor, &mut self.before);
+            let into = (&mut self.before, &mut self.before_properties);
+            sample_clip(model, from, time_secs, elapsed_secs, &mut self.before_cursor, into);
+            if weight < 0.5 {
+                std::mem::swap(&mut self.properties, &mut self.before_properties);
+            }
             // Smoothstep: eases in and out.
             self.pose.blend(&self.before, (weight * weight * (3.0 - 2.0 * weight)) as f32);
         }
@@ -118,15 +127,17 @@ fn sample_clip(
     time_secs: f64,
     elapsed_secs: f64,
     cursor: &mut SampleCursor,
-    pose: &mut Pose,
+    (pose, properties): (&mut Pose, &mut PropertyValues),
 ) {
     let skeleton = &model.asset.skeleton;
     pose.copy_from(skeleton.rest());
+    properties.clear();
     let Some((index, clip)) = clip.and_then(|index| Some((index, model.clip(index)?))) else { return };
     for layer in model.layers(index) {
         layer.sample(skeleton, elapsed_secs, cursor, pose);
     }
     clip.sample(skeleton, time_secs as f32, cursor, pose);
+    clip.sample_properties(time_secs as f32, cursor, properties);
 }
 
 /// Returns the quarter turns that bring the file's up axis to +Y.

@@ -167,6 +167,8 @@ pub fn value_of(label: &str) -> String {
 // Scene tab
 /// Hint in the search field of the node tree.
 pub const SEARCH_NODES: &str = "Search nodes";
+/// Card of a joint whose mesh or light is not shown.
+pub const NODE_HIDDEN: &str = "Not shown: hidden by the file or the clip, or part of another scene.";
 /// Close button of the selected joint's card.
 pub const DESELECT_JOINT: &str = "Deselect joint";
 /// Button that starts renaming the selected joint.
@@ -326,10 +328,19 @@ pub fn frames_done(done: u32, count: u32) -> String {
 pub const FORMAT: &str = "Format";
 /// Row of the file report: the number of nodes.
 pub const NODES: &str = "Nodes";
+/// Value of an animated visibility.
+pub const SHOWN: &str = "shown";
+/// Value of an animated visibility.
+pub const HIDDEN: &str = "hidden";
 /// OBJ models: button that saves a GLB in the rest pose.
 pub const SAVE_REST_POSE: &str = "Save in rest pose";
 /// OBJ models: button that saves a GLB in the current pose.
 pub const SAVE_CURRENT_POSE: &str = "Save in current pose";
+
+/// Returns the heading above what a clip animates besides joints.
+pub fn animated(clip: &str, count: usize) -> String {
+    format!("{clip} ({count})")
+}
 
 /// A line of the file report as a screen reader reads it.
 pub fn fact(name: &str, value: &str) -> String {

@@ -8,6 +8,7 @@ mod layering;
 mod morph;
 mod playback;
 mod pose;
+mod properties;
 mod skeleton;
 #[path = "../support/skeletons.rs"]
 mod skeletons;

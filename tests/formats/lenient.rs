@@ -68,14 +68,13 @@ fn members_that_are_not_needed_may_be_missing_or_of_another_type() {
 #[test]
 fn channels_without_a_node_are_set_aside() {
     let mut build = complete();
-    let pointer = json!({ "sampler": 0, "target": { "path": "pointer", "extensions": { "KHR_animation_pointer": {
-        "pointer": "/materials/0/alphaCutoff" } } } });
-    build.json["animations"][0]["channels"].as_array_mut().unwrap().insert(0, pointer);
+    let other = json!({ "sampler": 0, "target": { "path": "mood", "extensions": { "EXT_moods": { "mood": 1 } } } });
+    build.json["animations"][0]["channels"].as_array_mut().unwrap().insert(0, other);
     let asset = read(build);
     assert_eq!(asset.clips[0].channels().len(), 1);
     let ignored =
         asset.warnings.iter().find(|warning| warning.code() == "channel-ignored").expect("a warning").to_string();
-    assert!(ignored.contains("animations[0].channels[0]") && ignored.contains("“pointer”"), "{ignored}");
+    assert!(ignored.contains("animations[0].channels[0]") && ignored.contains("“mood”"), "{ignored}");
 }
 
 /// The crate would read 2³² as 0.

@@ -1,7 +1,6 @@
 //! Tests of the loaders and writers: invalid files first, then behaviour, then every real file in the data folder.
 
 mod behaviour;
-mod build_gltf;
 mod bvh;
 mod draco;
 mod file_sets;
@@ -15,11 +14,14 @@ mod meshopt;
 mod mutation;
 mod obj;
 mod playback;
+mod pointer;
 mod rehearsal;
 mod sweep;
 mod tangents;
 mod write;
 
+#[path = "../support/build_gltf.rs"]
+mod build_gltf;
 #[path = "../support/coursework.rs"]
 mod coursework;
 #[path = "../support/data_folder.rs"]

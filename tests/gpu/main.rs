@@ -2,6 +2,10 @@
 
 #[path = "../support/gpu.rs"]
 mod adapter;
+mod animated;
+#[allow(dead_code)]
+#[path = "../support/build_gltf.rs"]
+mod build_gltf;
 mod cli;
 #[path = "../support/coursework.rs"]
 mod coursework;

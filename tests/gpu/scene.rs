@@ -76,6 +76,7 @@ impl Scene {
                 .map(|mesh| Draw {
                     instance: mesh,
                     mesh,
+                    visible: true,
                     palette: 0..1,
                     morph_weights: 0..0,
                     mirrored: false,

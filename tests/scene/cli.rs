@@ -82,7 +82,10 @@ fn inspect_prints_the_documented_keys() {
     ];
     assert_eq!(keys(&document), expected);
     assert_eq!(document["skins"], serde_json::json!([{ "name": "Walker", "joints": 22 }]));
-    assert_eq!(keys(&document["clips"][0]), ["index", "name", "duration_secs", "channels", "interpolations"]);
+    assert_eq!(
+        keys(&document["clips"][0]),
+        ["index", "name", "duration_secs", "channels", "interpolations", "properties"]
+    );
     assert_eq!(keys(&document["clips"][0]["interpolations"]), ["linear", "step", "cubicspline"]);
     assert_eq!((&document["nodes"], &document["joints"]), (&24.into(), &22.into()));
     let height = document["bounds"]["max"][1].as_f64().expect("a number");

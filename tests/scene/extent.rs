@@ -1,5 +1,6 @@
 //! Bounds of clips contain every vertex, without much slack.
 
+use gaitway::asset::SceneJoints;
 use gaitway::frame::{Frame, evaluate, pose_document};
 use gaitway::library::Library;
 use gaitway::mesh::{Bounds, SkinningMode};
@@ -33,8 +34,8 @@ fn check(library: &Library, clip: usize) {
         let mut frame = Frame::default();
         evaluate(library, &state, 1.0, &mut frame);
         let character = &frame.characters[0];
-        let in_scene = model.asset.joints_in_scene(model.asset.default_scene);
-        let close = model.pose_bounds(&character.world_from_joint, &character.morph_weights, &in_scene);
+        let scene = SceneJoints::new(&model.asset, model.asset.default_scene);
+        let close = model.pose_bounds(&character.world_from_joint, &character.morph_weights, &scene);
         let slack = 0.02 * exact.diagonal();
         assert!(
             (close.min - slack).cmple(exact.min).all() && (close.max + slack).cmpge(exact.max).all(),

@@ -5,6 +5,9 @@ mod allocation;
 #[path = "../support/allocations.rs"]
 mod allocations;
 
+#[allow(dead_code)]
+#[path = "../support/build_gltf.rs"]
+mod build_gltf;
 mod cli;
 mod cli_motion;
 mod cli_output;
@@ -29,6 +32,7 @@ mod loop_frames;
 mod manual_pose;
 mod map_edits;
 mod motion;
+mod pointers;
 #[path = "../support/random.rs"]
 mod random;
 mod real_models;

@@ -32,11 +32,13 @@ const SUPPORTED = [
   "EXT_meshopt_compression",
   "EXT_texture_avif",
   "EXT_texture_webp",
+  "KHR_animation_pointer",
   "KHR_draco_mesh_compression",
   "KHR_lights_punctual",
   "KHR_materials_emissive_strength",
   "KHR_materials_unlit",
   "KHR_mesh_quantization",
+  "KHR_node_visibility",
   "KHR_texture_basisu",
   "KHR_texture_transform",
 ];

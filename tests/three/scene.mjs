@@ -32,7 +32,26 @@ function documentOf(file) {
   for (const mesh of json.meshes ?? []) for (const primitive of mesh.primitives) delete primitive.material;
   // Instancing and lights make three.js insert objects of its own between node and mesh.
   for (const node of json.nodes ?? []) delete node.extensions;
+  for (const animation of json.animations ?? []) animation.channels = animation.channels.flatMap((channel) => withoutPointer(json, channel));
   return json;
+}
+
+/**
+ * Returns the channels that say without KHR_animation_pointer, which three.js ignores, what a pointer to nodes says; none for
+ * other pointers.
+ * @param {import("../types.d.ts").GltfJson} json
+ * @param {import("../types.d.ts").GltfChannel} channel
+ */
+function withoutPointer(json, channel) {
+  const pointer = channel.target.extensions?.KHR_animation_pointer?.pointer;
+  if (pointer === undefined) return [channel];
+  const [, list, index, path, ...rest] = pointer.split("/");
+  if (path === undefined || rest.length > 0) return [];
+  /** @type {(node: number) => import("../types.d.ts").GltfChannel} */
+  const aimedAt = (node) => ({ ...channel, target: { node, path } });
+  if (list === "nodes") return [aimedAt(Number(index))];
+  const nodes = [...json.nodes.entries()].filter(([, { mesh, weights }]) => list === "meshes" && mesh === Number(index) && weights === undefined);
+  return nodes.map(([node]) => aimedAt(node));
 }
 
 /**

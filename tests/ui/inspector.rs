@@ -1,7 +1,10 @@
 //! The right panel and its tabs.
 
 use egui_kittest::kittest::{NodeT, Queryable};
-use gaitway::mesh::SkinningMode;
+use gaitway::anim::{ClipBuilder, Interpolation, Joint, JointIndex, MaterialProperty, PropertyTarget, Skeleton};
+use gaitway::asset::{Asset, AssetParts};
+use gaitway::library::Model;
+use gaitway::mesh::{Material, SkinningMode};
 use gaitway::state::{Background, CameraChoice, Command, Inspect, Show, UpAxis};
 use gaitway::ui::{Tab, text};
 
@@ -88,6 +91,37 @@ fn the_file_report_counts_and_groups() {
     assert!(harness.query_by_label_contains("KHR_texture_transform").is_some());
     assert!(harness.query_by_label("matrix-not-decomposable (2)").is_some());
     assert_eq!(harness.query_all_by_label_contains("sheared or singular").count(), 2);
+}
+
+/// One joint and a material; a clip paints it and hides the joint, another does nothing of the kind.
+fn glowing() -> Model {
+    let joint = Joint { name: "Only".to_owned(), ..Joint::default() };
+    let skeleton = Skeleton::new(vec![joint]).expect("one joint");
+    let mut glow = ClipBuilder::new("Glow", &skeleton);
+    let color = PropertyTarget::Material(0, MaterialProperty::BaseColor);
+    glow.property(color, Interpolation::Step, &[0.0], vec![1.0, 0.5, 0.0, 1.0]).expect("one key");
+    glow.property(PropertyTarget::Visibility(JointIndex(0)), Interpolation::Step, &[0.0], vec![0.0]).expect("one key");
+    let clips = vec![glow.build(), ClipBuilder::new("Nothing", &skeleton).build()];
+    let materials = vec![Material { name: "Paint".to_owned(), ..Material::default() }];
+    let parts = AssetParts { format: "glb", skeleton, clips, materials, ..AssetParts::default() };
+    Model::new("glow.glb".to_owned(), Asset::new(parts).expect("indices in range"), Vec::new())
+}
+
+#[test]
+fn the_file_tab_lists_what_clips_animate_besides_joints() {
+    let mut harness = bench(WIDE, glowing());
+    press(&mut harness, "Only");
+    assert!(harness.query_by_label(text::NODE_HIDDEN).is_some());
+    press(&mut harness, Tab::File.label());
+    assert!(harness.query_by_label(&text::animated("Glow", 2)).is_some());
+    assert!(harness.query_by_label_contains("Nothing (").is_none());
+    let values = [("Paint: base colour", "1.000  0.500  0  1.000"), ("Only: visibility", text::HIDDEN)];
+    for (name, value) in values {
+        assert!(harness.query_by_label(&text::fact(name, value)).is_some(), "{name}");
+    }
+    let mut plain = sample_bench(WIDE);
+    press(&mut plain, "Head");
+    assert!(plain.query_by_label(text::NODE_HIDDEN).is_none());
 }
 
 #[test]

@@ -26,6 +26,9 @@ pub struct JointCard {
 pub fn show(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex, card: &mut JointCard, out: &mut Output) {
     let asset = &model.asset;
     header(ui, shown, asset, joint, card, out);
+    if !shown.frame.is_visible(joint) {
+        controls::hint(ui, text::NODE_HIDDEN);
+    }
     let local = shown.frame.pose().get(joint).unwrap_or_default();
     ui.add_space(2.0);
     if controls::switch(ui, text::POSE_MANUALLY, card.is_posing) {

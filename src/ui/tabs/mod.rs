@@ -1,5 +1,6 @@
 //! The inspector: the right panel, one tab at a time.
 
+mod animated;
 pub mod display;
 pub mod formula;
 mod joint_card;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use egui::{RichText, Ui};
 
+use super::animated;
 use crate::asset::{Asset, Warning};
 use crate::editor::Export;
 use crate::library::{ImageData, Model};
@@ -17,6 +18,7 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let Some(model) = shown.library.active() else { return };
     let asset: &Asset = &model.asset;
     contents(ui, model);
+    animated::show(ui, shown, model);
     parts(ui, asset);
     save(ui, asset, out);
     extensions(ui, asset);
@@ -129,7 +131,7 @@ fn save(ui: &mut Ui, asset: &Asset, out: &mut Output) {
 }
 
 /// A name on the left and its value on the right, or below where both don't fit.
-fn fact(ui: &mut Ui, name: &str, value: &str) {
+pub(super) fn fact(ui: &mut Ui, name: &str, value: &str) {
     let palette = style::palette(ui);
     let font = egui::TextStyle::Body.resolve(ui.style());
     let width = ui.available_width();

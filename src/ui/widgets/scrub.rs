@@ -36,7 +36,7 @@ pub struct KeyMarks {
 impl KeyMarks {
     fn refresh(&mut self, clip: &Clip, clip_id: (ModelId, usize), width: f32) {
         // The number alone is not enough: re-mapping replaces a borrowed clip under the same number.
-        let keys = clip.timelines().iter().map(|times| times.len()).sum();
+        let keys = clip.key_times_secs().count();
         let key = (clip_id.0, clip_id.1, width as u32, clip.duration_secs().to_bits(), keys);
         if self.computed_for == Some(key) {
             return;
@@ -49,7 +49,7 @@ impl KeyMarks {
         }
         let slots = width.max(1.0) as usize;
         let mut first_key = vec![None; slots + 1];
-        for &time in clip.timelines().iter().flatten() {
+        for time in clip.key_times_secs() {
             let position = time / duration;
             let slot = ((position * slots as f32).round() as usize).min(slots);
             let first = first_key[slot].get_or_insert(position);

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use super::channel::{Channel, ChannelError, Interpolation, Keys};
+use super::property::{Properties, PropertyChannel, PropertyTarget, PropertyValues};
 use super::sampler::Sampler;
 use super::{JointIndex, Pose, Skeleton};
 
@@ -14,6 +15,7 @@ pub struct Clip {
     timelines: Vec<Vec<f32>>,
     channels: Vec<Channel>,
     sampler: Sampler,
+    properties: Properties,
 }
 
 /// How a clip is asked for.
@@ -42,6 +44,7 @@ pub fn find_clip<'a>(clips: impl Iterator<Item = &'a Clip> + Clone, query: ClipQ
 #[derive(Debug, Clone, Default)]
 pub struct SampleCursor {
     pub(super) segments: Vec<u32>,
+    property_segments: Vec<u32>,
 }
 
 /// Builds a [`Clip`]. Each channel is validated when it is added.
@@ -50,10 +53,35 @@ pub struct ClipBuilder<'a> {
     skeleton: &'a Skeleton,
     name: String,
     duration_secs: f32,
-    timelines: Vec<Vec<f32>>,
-    /// Timelines by the bit patterns of their times.
-    timeline_of: HashMap<Vec<u32>, u32>,
+    timelines: Timelines,
     channels: Vec<Channel>,
+    property_timelines: Timelines,
+    properties: Vec<PropertyChannel>,
+}
+
+/// Distinct lists of key times.
+#[derive(Debug, Default)]
+struct Timelines {
+    times_secs: Vec<Vec<f32>>,
+    /// Indices by the bit patterns of the times.
+    indices: HashMap<Vec<u32>, u32>,
+}
+
+impl Timelines {
+    /// Returns the index of these times, after adding them if they are new. `last` is the index that the last call returned.
+    fn index(&mut self, times_secs: &[f32], last: Option<u32>) -> u32 {
+        let bits = times_secs.iter().map(|time_secs| time_secs.to_bits());
+        // Most channels have the times of the one before.
+        if let Some(last) = last
+            && bits.clone().eq(self.times_secs[last as usize].iter().map(|time_secs| time_secs.to_bits()))
+        {
+            return last;
+        }
+        *self.indices.entry(bits.collect()).or_insert_with(|| {
+            self.times_secs.push(times_secs.to_vec());
+            self.times_secs.len() as u32 - 1
+        })
+    }
 }
 
 impl<'a> ClipBuilder<'a> {
@@ -63,9 +91,10 @@ impl<'a> ClipBuilder<'a> {
             skeleton,
             name: name.into(),
             duration_secs: 0.0,
-            timelines: Vec::new(),
-            timeline_of: HashMap::new(),
+            timelines: Timelines::default(),
             channels: Vec::new(),
+            property_timelines: Timelines::default(),
+            properties: Vec::new(),
         }
     }
 
@@ -79,9 +108,7 @@ impl<'a> ClipBuilder<'a> {
         times_secs: &[f32],
         keys: Keys,
     ) -> Result<(), ChannelError> {
-        if joint.get() >= self.skeleton.len() {
-            return Err(ChannelError::NoSuchJoint { joint: joint.get(), count: self.skeleton.len() });
-        }
+        self.check_joint(joint)?;
         let last_secs = check_times(times_secs)?;
         if let Keys::MorphWeights { targets, .. } = &keys {
             let expected = self.skeleton.morph_range(joint).len();
@@ -89,39 +116,66 @@ impl<'a> ClipBuilder<'a> {
                 return Err(ChannelError::MorphTargetCount { expected, found: *targets });
             }
         }
-        let per_key = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
         let (found, per_entry) = keys.count();
-        let expected = times_secs.len() * per_key * per_entry;
-        if expected != found {
-            return Err(ChannelError::ValueCount { keys: times_secs.len(), expected, found });
-        }
-        let timeline = self.timeline(times_secs);
+        check_count(times_secs.len(), interpolation, per_entry, found)?;
+        let timeline = self.timelines.index(times_secs, self.channels.last().map(|channel| channel.timeline));
         self.duration_secs = self.duration_secs.max(last_secs);
         self.channels.push(Channel { joint, interpolation, timeline, keys });
         Ok(())
     }
 
-    /// Returns the timeline with these times, after adding it if there is none.
-    fn timeline(&mut self, times_secs: &[f32]) -> u32 {
-        let bits = times_secs.iter().map(|time_secs| time_secs.to_bits());
-        // Most channels have the times of the one before.
-        if let Some(last) = self.channels.last().map(|channel| channel.timeline)
-            && bits.clone().eq(self.timelines[last as usize].iter().map(|time_secs| time_secs.to_bits()))
-        {
-            return last;
+    /// Adds a channel for something other than a joint's transform, with [`PropertyTarget::width`] numbers per value.
+    /// Otherwise like [`Self::channel`]. Visibility is never interpolated.
+    pub fn property(
+        &mut self,
+        target: PropertyTarget,
+        interpolation: Interpolation,
+        times_secs: &[f32],
+        values: Vec<f32>,
+    ) -> Result<(), ChannelError> {
+        let mut interpolation = interpolation;
+        match target {
+            PropertyTarget::Visibility(joint) => {
+                self.check_joint(joint)?;
+                interpolation = Interpolation::Step;
+            }
+            PropertyTarget::MorphWeight(joint, target) => {
+                self.check_joint(joint)?;
+                let expected = self.skeleton.morph_range(joint).len();
+                if target >= expected {
+                    return Err(ChannelError::MorphTargetCount { expected, found: target + 1 });
+                }
+            }
+            _ => {}
         }
-        *self.timeline_of.entry(bits.collect()).or_insert_with(|| {
-            self.timelines.push(times_secs.to_vec());
-            self.timelines.len() as u32 - 1
-        })
+        let last_secs = check_times(times_secs)?;
+        check_count(times_secs.len(), interpolation, target.width(), values.len())?;
+        let last = self.properties.last().map(|channel| channel.timeline);
+        let timeline = self.property_timelines.index(times_secs, last);
+        self.duration_secs = self.duration_secs.max(last_secs);
+        self.properties.push(PropertyChannel { target, interpolation, timeline, values });
+        Ok(())
+    }
+
+    fn check_joint(&self, joint: JointIndex) -> Result<(), ChannelError> {
+        let count = self.skeleton.len();
+        if joint.get() < count { Ok(()) } else { Err(ChannelError::NoSuchJoint { joint: joint.get(), count }) }
     }
 
     /// Finishes the clip. Its duration is 0 if it has no channels.
     pub fn build(self) -> Clip {
-        let Self { skeleton, name, duration_secs, timelines, channels, .. } = self;
+        let Self { skeleton, name, duration_secs, timelines, channels, property_timelines, properties } = self;
+        let timelines = timelines.times_secs;
         let sampler = Sampler::new(&timelines, &channels, skeleton.rest());
-        Clip { name, duration_secs, timelines, channels, sampler }
+        let properties = Properties::new(property_timelines.times_secs, properties);
+        Clip { name, duration_secs, timelines, channels, sampler, properties }
     }
+}
+
+fn check_count(keys: usize, interpolation: Interpolation, per_entry: usize, found: usize) -> Result<(), ChannelError> {
+    let per_key = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
+    let expected = keys * per_key * per_entry;
+    if expected == found { Ok(()) } else { Err(ChannelError::ValueCount { keys, expected, found }) }
 }
 
 /// Returns the last time.
@@ -153,7 +207,7 @@ impl Clip {
         self.duration_secs
     }
 
-    /// Distinct lists of key times, in strictly increasing seconds.
+    /// Distinct lists of key times of [`Self::channels`], in strictly increasing seconds.
     pub fn timelines(&self) -> &[Vec<f32>] {
         &self.timelines
     }
@@ -163,11 +217,35 @@ impl Clip {
         &self.channels
     }
 
+    /// The channels of materials, lights, cameras, visibility and single morph weights, one per target, in their order.
+    pub fn properties(&self) -> &[PropertyChannel] {
+        &self.properties.channels
+    }
+
+    /// Distinct lists of key times of [`Self::properties`], in strictly increasing seconds.
+    pub fn property_timelines(&self) -> &[Vec<f32>] {
+        &self.properties.timelines
+    }
+
+    /// The key times of everything that the clip animates; a time may occur several times.
+    pub fn key_times_secs(&self) -> impl Iterator<Item = f32> + '_ {
+        self.timelines.iter().chain(&self.properties.timelines).flatten().copied()
+    }
+
     /// Samples the clip at `time_secs` into `pose`, leaving properties without a channel alone: start from the rest pose.
     /// Times outside the keys hold the first or the last value. `skeleton` is the one the clip was built for, and `pose`
     /// has its size. Allocates only if the clip has more timelines than any clip sampled with this cursor before.
     pub fn sample(&self, skeleton: &Skeleton, time_secs: f32, cursor: &mut SampleCursor, pose: &mut Pose) {
         self.sampler.sample(&self.timelines, &self.channels, skeleton, time_secs, &mut cursor.segments, pose);
+        self.properties.sample_weights(time_secs, &mut cursor.property_segments, |joint, target, weight| {
+            pose.morph_weights[skeleton.morph_range(joint)][target] = weight;
+        });
+    }
+
+    /// Samples what isn't in a pose, replacing `out`: materials, lights, cameras and visibility. Times outside the keys hold the
+    /// first or the last value. Allocates only if the clip has more of these than any clip sampled before.
+    pub fn sample_properties(&self, time_secs: f32, cursor: &mut SampleCursor, out: &mut PropertyValues) {
+        self.properties.sample(time_secs, &mut cursor.property_segments, out);
     }
 
     /// Estimates the frame rate the keys were authored at; [`Clip::DEFAULT_FRAMES_PER_SEC`] if their times do not tell.
@@ -175,7 +253,7 @@ impl Clip {
         const COMMON: [f64; 8] = [Clip::DEFAULT_FRAMES_PER_SEC, 24.0, 25.0, 60.0, 50.0, 48.0, 120.0, 100.0];
         const MAX_KEYS: usize = 4096;
         let on_frames = |rate: f64| {
-            self.timelines.iter().flatten().take(MAX_KEYS).all(|&time| {
+            self.key_times_secs().take(MAX_KEYS).all(|time| {
                 let frame = f64::from(time) * rate;
                 (frame - frame.round()).abs() < 0.02
             })

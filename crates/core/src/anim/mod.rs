@@ -26,6 +26,7 @@ mod kernels;
 mod playback;
 mod polar;
 mod pose;
+mod property;
 mod sampler;
 mod skeleton;
 mod transform;
@@ -35,5 +36,8 @@ pub use clip::{Clip, ClipBuilder, ClipQuery, SampleCursor, find_clip};
 pub use playback::{LoopMode, TimeRange, clip_time};
 pub use polar::nearest_rotation;
 pub use pose::{Pose, model_from_joint};
+pub use property::{
+    CameraProperty, LightProperty, MaterialProperty, PropertyChannel, PropertyTarget, PropertyValues, TextureSlot,
+};
 pub use skeleton::{Joint, JointIndex, Skeleton, SkeletonError};
 pub use transform::Transform;

@@ -289,13 +289,13 @@ fn sample_channel(channel: &Channel, at: &Segment, skeleton: &Skeleton, pose: &m
         Keys::Rotation(values) => pose.set_rotation(joint, at.quat(values, interpolation)),
         Keys::MorphWeights { values, targets } => {
             let range = skeleton.morph_range(joint);
-            at.weights(values, *targets, interpolation, &mut pose.morph_weights[range]);
+            at.numbers(values, *targets, interpolation, &mut pose.morph_weights[range]);
         }
     }
 }
 
 /// Returns the index of the last key at or before `time_secs` (0 before the first key), trying a guess first.
-fn find_segment(times: &[f32], time_secs: f32, guess: usize) -> usize {
+pub(super) fn find_segment(times: &[f32], time_secs: f32, guess: usize) -> usize {
     let fits = |index: usize| {
         times.get(index).is_some_and(|&start| start <= time_secs)
             && times.get(index + 1).is_none_or(|&end| time_secs < end)
@@ -310,7 +310,7 @@ fn find_segment(times: &[f32], time_secs: f32, guess: usize) -> usize {
 }
 
 /// Two adjacent keys and the position of the time between them.
-struct Segment {
+pub(super) struct Segment {
     key: usize,
     /// Equals `key` outside the keys, where values hold.
     next: usize,
@@ -320,7 +320,7 @@ struct Segment {
 }
 
 impl Segment {
-    fn new(times: &[f32], key: usize, time_secs: f32) -> Self {
+    pub(super) fn new(times: &[f32], key: usize, time_secs: f32) -> Self {
         let start = times[key];
         match times.get(key + 1) {
             Some(&end) if time_secs > start => {
@@ -368,23 +368,24 @@ impl Segment {
         Quat::from_vec4(sum)
     }
 
-    fn weights(&self, values: &[f32], targets: usize, interpolation: Interpolation, out: &mut [f32]) {
-        let at = |entry: usize, target: usize| values[entry * targets + target];
+    /// Any interpolation of entries of `width` numbers, each on its own.
+    pub(super) fn numbers(&self, values: &[f32], width: usize, interpolation: Interpolation, out: &mut [f32]) {
+        let at = |entry: usize, component: usize| values[entry * width + component];
         match interpolation {
-            Interpolation::Step => out.copy_from_slice(&values[self.key * targets..(self.key + 1) * targets]),
+            Interpolation::Step => out.copy_from_slice(&values[self.key * width..(self.key + 1) * width]),
             Interpolation::Linear => {
-                for (target, weight) in out.iter_mut().enumerate() {
-                    let (from, to) = (at(self.key, target), at(self.next, target));
-                    *weight = from + (to - from) * self.factor;
+                for (component, number) in out.iter_mut().enumerate() {
+                    let (from, to) = (at(self.key, component), at(self.next, component));
+                    *number = from + (to - from) * self.factor;
                 }
             }
             Interpolation::CubicSpline => {
                 let [p0, m0, p1, m1] = self.cubic_factors();
-                for (target, weight) in out.iter_mut().enumerate() {
-                    *weight = p0 * at(3 * self.key + 1, target)
-                        + m0 * at(3 * self.key + 2, target)
-                        + p1 * at(3 * self.next + 1, target)
-                        + m1 * at(3 * self.next, target);
+                for (component, number) in out.iter_mut().enumerate() {
+                    *number = p0 * at(3 * self.key + 1, component)
+                        + m0 * at(3 * self.key + 2, component)
+                        + p1 * at(3 * self.next + 1, component)
+                        + m1 * at(3 * self.next, component);
                 }
             }
         }

@@ -2,18 +2,20 @@
 
 mod error;
 mod humanoid;
+mod scene_joints;
 mod warning;
 
 use std::ops::Deref;
 use std::sync::Arc;
 
-use glam::Vec3;
+use glam::{Vec3, Vec4Swizzles};
 
-use crate::anim::{Clip, JointIndex, Skeleton};
+use crate::anim::{CameraProperty, Clip, JointIndex, LightProperty, PropertyTarget, PropertyValues, Skeleton};
 use crate::mesh::{Material, Mesh, Skin, Texture};
 
 pub use error::AssetError;
 pub use humanoid::{Humanoid, Slot};
+pub use scene_joints::SceneJoints;
 pub use warning::{Warning, Warnings};
 
 /// A model, its motion, or both. [`Self::new`] has checked that all indices are in range; the parts can be read but not
@@ -46,6 +48,8 @@ pub struct AssetParts {
     pub meshes: Vec<Mesh>,
     /// Which joint draws which mesh.
     pub instances: Vec<MeshInstance>,
+    /// Joints that the file hides (KHR_node_visibility), with everything below them.
+    pub hidden: Vec<JointIndex>,
     /// Indexed by [`crate::mesh::Geometry::material`].
     pub materials: Vec<Material>,
     /// Indexed by [`crate::mesh::TextureRef::texture`].
@@ -106,6 +110,8 @@ pub struct Camera {
     pub name: String,
     /// The node that has the camera.
     pub joint: JointIndex,
+    /// Its number in the file; several nodes can have the same camera.
+    pub number: usize,
     /// Lens and clip planes.
     pub projection: CameraProjection,
 }
@@ -134,10 +140,12 @@ pub enum CameraProjection {
 }
 
 /// A light (KHR_lights_punctual), shining along −Z of its joint. Intensity in lux (directional) or candela.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Light {
     /// The node that has the light.
     pub joint: JointIndex,
+    /// Its number in the file; several nodes can have the same light.
+    pub number: usize,
     /// Linear RGB.
     pub color: Vec3,
     /// Lux for a directional light, otherwise candela.
@@ -162,6 +170,57 @@ pub enum LightKind {
         /// Angle from the axis at which the light has fallen to zero.
         outer_cone_radians: f32,
     },
+}
+
+impl Camera {
+    /// Returns the projection with animated properties.
+    pub fn animated(&self, values: &PropertyValues) -> CameraProjection {
+        let mut projection = self.projection;
+        for (target, value) in values.iter() {
+            if let PropertyTarget::Camera(number, property) = target
+                && number == self.number
+            {
+                projection.set(property, value.x);
+            }
+        }
+        projection
+    }
+}
+
+impl CameraProjection {
+    /// Sets an animated property; one that only the other kind of camera has is ignored.
+    fn set(&mut self, property: CameraProperty, value: f32) {
+        match (self, property) {
+            (Self::Perspective { y_fov_radians, .. }, CameraProperty::YFov) => *y_fov_radians = value,
+            (Self::Perspective { near, .. } | Self::Orthographic { near, .. }, CameraProperty::Near) => *near = value,
+            (Self::Perspective { far, .. }, CameraProperty::Far) => *far = Some(value),
+            (Self::Orthographic { far, .. }, CameraProperty::Far) => *far = value,
+            (Self::Orthographic { y_mag, .. }, CameraProperty::YMag) => *y_mag = value,
+            (Self::Perspective { .. }, CameraProperty::YMag) | (Self::Orthographic { .. }, CameraProperty::YFov) => {}
+        }
+    }
+}
+
+impl Light {
+    /// Returns the light with animated properties.
+    pub fn animated(&self, values: &PropertyValues) -> Self {
+        let mut light = *self;
+        for (target, value) in values.iter() {
+            let PropertyTarget::Light(number, property) = target else { continue };
+            if number != self.number {
+                continue;
+            }
+            match (property, &mut light.kind) {
+                (LightProperty::Color, _) => light.color = value.xyz(),
+                (LightProperty::Intensity, _) => light.intensity = value.x,
+                (LightProperty::Range, _) => light.range = Some(value.x),
+                (LightProperty::InnerCone, LightKind::Spot { inner_cone_radians, .. }) => *inner_cone_radians = value.x,
+                (LightProperty::OuterCone, LightKind::Spot { outer_cone_radians, .. }) => *outer_cone_radians = value.x,
+                (LightProperty::InnerCone | LightProperty::OuterCone, _) => {}
+            }
+        }
+        light
+    }
 }
 
 impl Asset {
@@ -232,6 +291,16 @@ impl AssetParts {
             "clips",
             &mut self.clips.iter().flat_map(|clip| clip.channels().iter().map(|channel| channel.joint)),
         )?;
+        for channel in self.clips.iter().flat_map(|clip| clip.properties()) {
+            match channel.target {
+                PropertyTarget::Material(material, _) => check("clips", material, self.materials.len())?,
+                PropertyTarget::Visibility(joint) | PropertyTarget::MorphWeight(joint, _) => {
+                    check("clips", joint.get(), joints)?;
+                }
+                PropertyTarget::Light(..) | PropertyTarget::Camera(..) => {}
+            }
+        }
+        check_all("hidden", &mut self.hidden.iter().copied())?;
         check_all("cameras", &mut self.cameras.iter().map(|camera| camera.joint))?;
         check_all("lights", &mut self.lights.iter().map(|light| light.joint))?;
         check_all("humanoid", &mut self.humanoid.iter().flat_map(|humanoid| humanoid.0.values().copied()))?;

@@ -36,7 +36,7 @@ use std::sync::Arc;
 
 pub use error::LoadError;
 pub use file_set::FileSet;
-pub use gltf::WriteError;
+pub use gltf::{WriteError, pointer_to};
 #[cfg(not(target_arch = "wasm32"))]
 pub use prepare::prepare;
 pub use prepare::{Part, Preparation, next_preparation};

@@ -7,7 +7,7 @@ use glam::{Affine3A, Vec3};
 
 use super::Rig;
 use crate::anim::{JointIndex, model_from_joint};
-use crate::asset::{Asset, MeshInstance};
+use crate::asset::{Asset, MeshInstance, SceneJoints};
 use crate::mesh::{Bounds, DeformedVertices, Geometry, Skin, SkinningMode, deform, palette_entry, write_palette};
 
 #[derive(Debug, Default)]
@@ -52,11 +52,11 @@ impl Extent {
         rig: &Rig,
         world_from_joint: &[Affine3A],
         morph_weights: &[f32],
-        visible: &[bool],
+        scene: &SceneJoints,
     ) -> Bounds {
         let mut bounds = Bounds::EMPTY;
         for (extent, instance) in self.instances.iter().zip(&asset.instances) {
-            if !visible[instance.joint.get()] {
+            if !scene.visible[instance.joint.get()] {
                 continue;
             }
             let range = asset.skeleton.morph_range(instance.joint);
@@ -75,7 +75,7 @@ impl Extent {
                 }
             }
         }
-        if bounds.is_empty() { joint_bounds(asset, rig, world_from_joint, visible) } else { bounds }
+        if bounds.is_empty() { joint_bounds(asset, rig, world_from_joint, &scene.in_scene) } else { bounds }
     }
 
     pub fn instance_center(&self, asset: &Asset, instance: usize, world_from_joint: &[Affine3A]) -> Vec3 {
@@ -202,21 +202,21 @@ impl Support {
 }
 
 /// Bounds of the skeleton, for models without a mesh.
-fn joint_bounds(asset: &Asset, rig: &Rig, world_from_joint: &[Affine3A], visible: &[bool]) -> Bounds {
-    let joints = asset.skeleton.joints().filter(|&joint| visible[joint.get()] && rig.is_real(joint));
+fn joint_bounds(asset: &Asset, rig: &Rig, world_from_joint: &[Affine3A], in_scene: &[bool]) -> Bounds {
+    let joints = asset.skeleton.joints().filter(|&joint| in_scene[joint.get()] && rig.is_real(joint));
     Bounds::of(joints.map(|joint| world_from_joint[joint.get()].translation.into()))
 }
 
-/// Bounds of every skinned vertex of the default scene at rest.
+/// Bounds of every visible skinned vertex of the default scene at rest.
 fn exact_rest_bounds(asset: &Asset, rig: &Rig) -> Bounds {
     let mut world_from_joint = Vec::with_capacity(asset.skeleton.len());
     model_from_joint(&asset.skeleton, asset.skeleton.rest(), Affine3A::IDENTITY, &mut world_from_joint);
-    let visible = asset.joints_in_scene(asset.default_scene);
+    let scene = SceneJoints::new(asset, asset.default_scene);
     let mut bounds = Bounds::EMPTY;
     let mut palette = Vec::new();
     let mut deformed = DeformedVertices::default();
     for instance in &asset.instances {
-        if !visible[instance.joint.get()] {
+        if !scene.visible[instance.joint.get()] {
             continue;
         }
         palette.clear();
@@ -230,5 +230,5 @@ fn exact_rest_bounds(asset: &Asset, rig: &Rig) -> Bounds {
             bounds = deformed.positions.iter().fold(bounds, |bounds, &position| bounds.including(position));
         }
     }
-    if bounds.is_empty() { joint_bounds(asset, rig, &world_from_joint, &visible) } else { bounds }
+    if bounds.is_empty() { joint_bounds(asset, rig, &world_from_joint, &scene.in_scene) } else { bounds }
 }

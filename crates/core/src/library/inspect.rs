@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use super::Model;
 use crate::anim::{Clip, Interpolation};
 use crate::asset::{Asset, Warning, Warnings};
+use crate::formats::pointer_to;
 use crate::mesh::{Bounds, Geometry, Mesh};
 
 /// `files` are the names of the files that were read. Counts refer to the file: a mesh on two nodes counts once.
@@ -14,8 +15,9 @@ pub fn inspect(model: &Model, files: &[String]) -> Value {
     let skins: Vec<Value> =
         asset.skins.iter().map(|skin| json!({ "name": skin.name(), "joints": skin.joints().len() })).collect();
     let borrowed: Vec<Value> =
-        model.borrowed_clips().map(|(index, borrowed)| clip_document(index, &borrowed.clip)).collect();
-    let clips: Vec<Value> = asset.clips.iter().enumerate().map(|(index, clip)| clip_document(index, clip)).collect();
+        model.borrowed_clips().map(|(index, borrowed)| clip_document(asset, index, &borrowed.clip)).collect();
+    let clips: Vec<Value> =
+        asset.clips.iter().enumerate().map(|(index, clip)| clip_document(asset, index, clip)).collect();
     json!({
         "files": files,
         "format": asset.format,
@@ -50,18 +52,25 @@ fn target_count(mesh: &Mesh) -> usize {
     mesh.primitives.iter().map(|geometry| geometry.morph_targets.len()).max().unwrap_or(0)
 }
 
-fn clip_document(index: usize, clip: &Clip) -> Value {
-    let count = |interpolation| clip.channels().iter().filter(|channel| channel.interpolation == interpolation).count();
+/// `properties` are JSON pointers: what the clip animates besides joints.
+fn clip_document(asset: &Asset, index: usize, clip: &Clip) -> Value {
+    let interpolations = || {
+        let properties = clip.properties().iter().map(|channel| channel.interpolation);
+        clip.channels().iter().map(|channel| channel.interpolation).chain(properties)
+    };
+    let count = |interpolation| interpolations().filter(|&other| other == interpolation).count();
+    let properties: Vec<String> = clip.properties().iter().map(|channel| pointer_to(channel.target, asset)).collect();
     json!({
         "index": index,
         "name": clip.name(),
         "duration_secs": clip.duration_secs(),
-        "channels": clip.channels().len(),
+        "channels": interpolations().count(),
         "interpolations": {
             "linear": count(Interpolation::Linear),
             "step": count(Interpolation::Step),
             "cubicspline": count(Interpolation::CubicSpline),
         },
+        "properties": properties,
     })
 }
 

@@ -9,8 +9,8 @@ use super::ImageData;
 use super::borrowed::BorrowedClip;
 use super::extent::Extent;
 use super::rig::Rig;
-use crate::anim::{Clip, JointIndex, SampleCursor, model_from_joint};
-use crate::asset::{Asset, Humanoid};
+use crate::anim::{Clip, JointIndex, PropertyValues, SampleCursor, model_from_joint};
+use crate::asset::{Asset, Humanoid, SceneJoints};
 use crate::mesh::Bounds;
 use crate::retarget::{Body, LayerClip, recognize};
 
@@ -178,9 +178,9 @@ impl Model {
 
     /// Conservative bounds of a pose: encloses every vertex (nearly, for dual quaternions), a little loose where joints
     /// bend.
-    /// `world_from_joint` and `visible` have one entry per joint.
-    pub fn pose_bounds(&self, world_from_joint: &[Affine3A], morph_weights: &[f32], visible: &[bool]) -> Bounds {
-        self.extent.of_pose(&self.asset, &self.rig, world_from_joint, morph_weights, visible)
+    /// `world_from_joint` has one entry per joint. With no mesh in sight, the bounds of the joints.
+    pub fn pose_bounds(&self, world_from_joint: &[Affine3A], morph_weights: &[f32], scene: &SceneJoints) -> Bounds {
+        self.extent.of_pose(&self.asset, &self.rig, world_from_joint, morph_weights, scene)
     }
 
     /// Approximate center of a mesh instance in a pose, for sorting.
@@ -224,7 +224,7 @@ impl Model {
 
     fn sweep(&self, key: SweptKey) -> Bounds {
         let skeleton = &self.asset.skeleton;
-        let visible = self.asset.joints_in_scene(key.scene);
+        let (mut scene, mut values) = (SceneJoints::new(&self.asset, key.scene), PropertyValues::default());
         let mut pose = skeleton.rest().clone();
         let mut world_from_joint = Vec::with_capacity(skeleton.len());
         let Some(clip) = key.clip.and_then(|clip| self.clip(clip)) else {
@@ -232,7 +232,7 @@ impl Model {
                 return self.rest_bounds();
             }
             model_from_joint(skeleton, &pose, Affine3A::IDENTITY, &mut world_from_joint);
-            return self.pose_bounds(&world_from_joint, &pose.morph_weights, &visible);
+            return self.pose_bounds(&world_from_joint, &pose.morph_weights, &scene);
         };
         let root = key.clip.filter(|_| key.in_place).and_then(|clip| self.root_of_clip(clip));
         let mut start = None;
@@ -243,7 +243,9 @@ impl Model {
             pose.copy_from(skeleton.rest());
             clip.sample(skeleton, time_secs, &mut cursor, &mut pose);
             model_from_joint(skeleton, &pose, Affine3A::IDENTITY, &mut world_from_joint);
-            let mut at_time = self.pose_bounds(&world_from_joint, &pose.morph_weights, &visible);
+            clip.sample_properties(time_secs, &mut cursor, &mut values);
+            scene.show(&self.asset, &values);
+            let mut at_time = self.pose_bounds(&world_from_joint, &pose.morph_weights, &scene);
             if let Some(root) = root {
                 let position = Vec3::from(world_from_joint[root.get()].translation);
                 let travel = (position - *start.get_or_insert(position)) * Vec3::new(1.0, 0.0, 1.0);

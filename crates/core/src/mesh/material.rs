@@ -1,6 +1,8 @@
 //! Metallic-roughness materials as defined in glTF 2.0 §3.9. Colours are linear.
 
-use glam::{Vec2, Vec3, Vec4};
+use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
+
+use crate::anim::{MaterialProperty, TextureSlot};
 
 /// How alpha is interpreted, `alphaMode` in glTF.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,8 +29,10 @@ pub struct Material {
     pub metallic: f32,
     /// Perceptual roughness, from 0 (smooth) to 1.
     pub roughness: f32,
-    /// Includes the factor of KHR_materials_emissive_strength.
+    /// Linear RGB, multiplied with the strength.
     pub emissive: Vec3,
+    /// KHR_materials_emissive_strength.
+    pub emissive_strength: f32,
     /// Multiplies X and Y of the normal texture.
     pub normal_scale: f32,
     /// How much the occlusion texture darkens, from 0 (not at all) to 1.
@@ -60,6 +64,7 @@ impl Default for Material {
             metallic: 1.0,
             roughness: 1.0,
             emissive: Vec3::ZERO,
+            emissive_strength: 1.0,
             normal_scale: 1.0,
             occlusion_strength: 1.0,
             alpha_mode: AlphaMode::Opaque,
@@ -70,6 +75,59 @@ impl Default for Material {
             normal_texture: None,
             occlusion_texture: None,
             emissive_texture: None,
+        }
+    }
+}
+
+impl Material {
+    /// Returns a copy without the name, which allocates nothing.
+    pub fn nameless(&self) -> Self {
+        Self { name: String::new(), ..*self }
+    }
+
+    /// Sets an animated property. The alpha cutoff of a material that is not masked and the transform of a texture that it
+    /// doesn't have are ignored.
+    pub fn set(&mut self, property: MaterialProperty, value: Vec4) {
+        match property {
+            MaterialProperty::BaseColor => self.base_color = value,
+            MaterialProperty::Metallic => self.metallic = value.x,
+            MaterialProperty::Roughness => self.roughness = value.x,
+            MaterialProperty::Emissive => self.emissive = value.xyz(),
+            MaterialProperty::EmissiveStrength => self.emissive_strength = value.x,
+            MaterialProperty::AlphaCutoff => {
+                if let AlphaMode::Mask { cutoff } = &mut self.alpha_mode {
+                    *cutoff = value.x;
+                }
+            }
+            MaterialProperty::NormalScale => self.normal_scale = value.x,
+            MaterialProperty::OcclusionStrength => self.occlusion_strength = value.x,
+            MaterialProperty::UvOffset(slot) => self.change_uvs(slot, |uvs| uvs.offset = value.xy()),
+            MaterialProperty::UvRotation(slot) => self.change_uvs(slot, |uvs| uvs.rotation_radians = value.x),
+            MaterialProperty::UvScale(slot) => self.change_uvs(slot, |uvs| uvs.scale = value.xy()),
+        }
+    }
+
+    /// Returns the texture in a slot.
+    pub fn texture(&self, slot: TextureSlot) -> Option<TextureRef> {
+        match slot {
+            TextureSlot::BaseColor => self.base_color_texture,
+            TextureSlot::MetallicRoughness => self.metallic_roughness_texture,
+            TextureSlot::Normal => self.normal_texture,
+            TextureSlot::Occlusion => self.occlusion_texture,
+            TextureSlot::Emissive => self.emissive_texture,
+        }
+    }
+
+    fn change_uvs(&mut self, slot: TextureSlot, change: impl FnOnce(&mut UvTransform)) {
+        let texture = match slot {
+            TextureSlot::BaseColor => &mut self.base_color_texture,
+            TextureSlot::MetallicRoughness => &mut self.metallic_roughness_texture,
+            TextureSlot::Normal => &mut self.normal_texture,
+            TextureSlot::Occlusion => &mut self.occlusion_texture,
+            TextureSlot::Emissive => &mut self.emissive_texture,
+        };
+        if let Some(texture) = texture {
+            change(&mut texture.uv_transform);
         }
     }
 }

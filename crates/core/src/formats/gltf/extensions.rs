@@ -2,6 +2,8 @@
 
 use gltf::json::Root;
 
+use super::nodes::VISIBILITY;
+use super::pointer::POINTER;
 use crate::asset::{Warning, Warnings};
 use crate::formats::LoadError;
 
@@ -11,6 +13,8 @@ const SUPPORTED: &[&str] = &[
     "KHR_materials_unlit",
     "KHR_materials_emissive_strength",
     "KHR_lights_punctual",
+    POINTER,
+    VISIBILITY,
     "EXT_texture_avif",
     "EXT_texture_webp",
     "KHR_texture_basisu",

@@ -68,8 +68,8 @@ fn read(
         base_color: Vec4::from(pbr.base_color_factor.0),
         metallic: pbr.metallic_factor.0,
         roughness: pbr.roughness_factor.0,
-        emissive: Vec3::from(material.emissive_factor.0)
-            * emissive_strength.map_or(1.0, |strength| strength.emissive_strength.0),
+        emissive: Vec3::from(material.emissive_factor.0),
+        emissive_strength: emissive_strength.map_or(1.0, |strength| strength.emissive_strength.0),
         normal_scale: material.normal_texture.as_ref().map_or(1.0, |info| info.scale),
         occlusion_strength: material.occlusion_texture.as_ref().map_or(1.0, |info| info.strength.0),
         alpha_mode: alpha_mode(document, material, &here, warnings),

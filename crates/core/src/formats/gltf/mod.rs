@@ -20,6 +20,7 @@ mod meshes;
 pub(super) mod meshopt;
 mod nodes;
 mod object;
+mod pointer;
 mod skins;
 mod strict;
 mod write;
@@ -33,6 +34,7 @@ use document::{Document, size};
 use gltf::json::Root;
 
 pub(super) use images::image_header;
+pub use pointer::pointer_to;
 pub use write::WriteError;
 pub(super) use write::{asset as write_asset, model as write_model, motion as write_motion};
 
@@ -97,9 +99,10 @@ fn build(
     let skeleton = nodes::skeleton(root, &meshes, &accessors.budget, &mut warnings)?;
     let skins = skins::skins(&accessors, &skeleton, &mut warnings)?;
     let instances = nodes::instances(root, &skeleton, &meshes, &skins, &accessors.budget)?;
-    let clips = animations::clips(&accessors, &skeleton, &mut warnings)?;
+    let clips = animations::clips(&accessors, &skeleton, &materials, &mut warnings)?;
     let (scenes, default_scene) = nodes::scenes(root, &skeleton, &mut warnings)?;
     let cameras = nodes::cameras(document, &skeleton, &mut warnings)?;
+    let hidden = nodes::hidden(root, &skeleton, &mut warnings);
     let lights = nodes::lights(document, &skeleton, &mut warnings)?;
     let humanoid = humanoid::humanoid(root, &skeleton, &mut warnings);
     let conversion = files.conversion(file);
@@ -114,6 +117,7 @@ fn build(
         skins,
         meshes,
         instances,
+        hidden,
         materials,
         textures,
         images,

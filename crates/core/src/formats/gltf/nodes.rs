@@ -6,6 +6,7 @@ use glam::{Mat4, Quat, Vec3};
 use gltf::json::extensions::scene::khr_lights_punctual::{self, Type as LightType};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, Node, Root};
+use serde_json::Value;
 
 use super::accessor::get;
 use super::document::Document;
@@ -15,6 +16,8 @@ use crate::formats::error::Problem;
 use crate::formats::limits::{Budget, Limit};
 use crate::mesh::{Mesh, Skin};
 
+/// Hides nodes and what is below them.
+pub const VISIBILITY: &str = "KHR_node_visibility";
 /// Length in characters to which names are cut that many nodes can share.
 const MAX_SHARED_NAME: usize = 256;
 
@@ -129,6 +132,24 @@ pub fn instances(
     Ok(instances)
 }
 
+/// KHR_node_visibility.
+pub fn hidden(root: &Root, skeleton: &Skeleton, warnings: &mut Warnings) -> Vec<JointIndex> {
+    let mut hidden = Vec::new();
+    for (index, node) in root.nodes.iter().enumerate() {
+        let extension = node.extensions.as_ref().and_then(|extensions| extensions.others.get(VISIBILITY));
+        match extension.and_then(|extension| extension.get("visible")) {
+            None | Some(Value::Bool(true)) => {}
+            Some(Value::Bool(false)) => hidden.extend(skeleton.joint_of_source(index)),
+            Some(found) => {
+                let place = format!("nodes[{index}].extensions.{VISIBILITY}.visible");
+                let problem = format!("expected true or false, found {found}; the node is shown");
+                warnings.push(Warning::Other { code: "visibility", place, problem });
+            }
+        }
+    }
+    hidden
+}
+
 fn shared_name(name: &str) -> String {
     name.chars().take(MAX_SHARED_NAME).collect()
 }
@@ -178,8 +199,8 @@ pub fn cameras(document: &Document, skeleton: &Skeleton, warnings: &mut Warnings
     Ok(cameras)
 }
 
-fn read_camera(root: &Root, node: &Node, camera: usize, joint: JointIndex, place: &str) -> Result<Camera, Problem> {
-    let camera = get(&root.cameras, camera, &place, "cameras")?;
+fn read_camera(root: &Root, node: &Node, number: usize, joint: JointIndex, place: &str) -> Result<Camera, Problem> {
+    let camera = get(&root.cameras, number, &place, "cameras")?;
     let projection = match (&camera.perspective, &camera.orthographic) {
         (Some(lens), _) => CameraProjection::Perspective { y_fov_radians: lens.yfov, near: lens.znear, far: lens.zfar },
         (None, Some(lens)) => CameraProjection::Orthographic { y_mag: lens.ymag, near: lens.znear, far: lens.zfar },
@@ -189,7 +210,7 @@ fn read_camera(root: &Root, node: &Node, camera: usize, joint: JointIndex, place
         "" => node.name.clone().unwrap_or_default(),
         name => shared_name(name),
     };
-    Ok(Camera { name, joint, projection })
+    Ok(Camera { name, joint, number, projection })
 }
 
 /// KHR_lights_punctual. A light that is not there or of an unknown type is left out.
@@ -221,6 +242,7 @@ pub fn lights(document: &Document, skeleton: &Skeleton, warnings: &mut Warnings)
         };
         lights.push(Light {
             joint,
+            number: light_index,
             color: Vec3::from(light.color),
             intensity: light.intensity,
             range: light.range,

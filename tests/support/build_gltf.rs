@@ -65,6 +65,27 @@ impl Build {
         build
     }
 
+    /// Adds a channel to the first animation, which is created if there is none: KHR_animation_pointer.
+    pub fn point(&mut self, pointer: &str, interpolation: &str, shape: &str, times_secs: &[f32], values: &[f32]) {
+        let width = if shape == "SCALAR" { 1 } else { shape[3..].parse().expect("a vector") };
+        let input = self.accessor(F32, "SCALAR", times_secs.len(), &floats(times_secs));
+        let output = match pointer.ends_with("/visible") {
+            true => {
+                let bytes: Vec<u8> = values.iter().map(|&value| value as u8).collect();
+                self.accessor(U8, shape, bytes.len(), &bytes)
+            }
+            false => self.accessor(F32, shape, values.len() / width, &floats(values)),
+        };
+        if self.json["animations"].is_null() {
+            self.json["animations"] = json!([{ "name": "pointers", "channels": [], "samplers": [] }]);
+        }
+        let animation = &mut self.json["animations"][0];
+        let sampler = json!({ "input": input, "output": output, "interpolation": interpolation });
+        let sampler = push(&mut animation["samplers"], sampler);
+        let target = json!({ "path": "pointer", "extensions": { "KHR_animation_pointer": { "pointer": pointer } } });
+        push(&mut animation["channels"], json!({ "sampler": sampler, "target": target }));
+    }
+
     /// Adds a buffer view of these bytes, aligned to 4, and returns its index.
     pub fn view(&mut self, bytes: &[u8]) -> usize {
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);

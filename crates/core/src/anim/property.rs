@@ -1,0 +1,206 @@
+//! Animation of what is not a joint: materials, lights, cameras, visibility and single morph weights. Key times are kept apart
+//! from those of the joints, so that clips without such channels are sampled as if there were none.
+
+use glam::Vec4;
+
+use super::sampler::{Segment, find_segment};
+use super::{Interpolation, JointIndex};
+
+/// What a [`PropertyChannel`] animates. Materials, lights and cameras are numbered as in their file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum PropertyTarget {
+    /// A factor or texture transform of a material.
+    Material(usize, MaterialProperty),
+    /// A property of a light, on all nodes that have it.
+    Light(usize, LightProperty),
+    /// A property of a camera, on all nodes that have it.
+    Camera(usize, CameraProperty),
+    /// Whether a joint and all below it are shown: 0 hides them.
+    Visibility(JointIndex),
+    /// The weight of one morph target of the mesh on a joint.
+    MorphWeight(JointIndex, usize),
+}
+
+/// An animated property of a material.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum MaterialProperty {
+    /// Linear RGBA.
+    BaseColor,
+    /// Metallic factor.
+    Metallic,
+    /// Roughness factor.
+    Roughness,
+    /// Linear RGB, without the strength.
+    Emissive,
+    /// Factor on the emissive colour.
+    EmissiveStrength,
+    /// Only of masked materials.
+    AlphaCutoff,
+    /// Factor on X and Y of the normal texture.
+    NormalScale,
+    /// How much the occlusion texture darkens.
+    OcclusionStrength,
+    /// U and V.
+    UvOffset(TextureSlot),
+    /// Radians, counter-clockwise.
+    UvRotation(TextureSlot),
+    /// U and V.
+    UvScale(TextureSlot),
+}
+
+/// A texture of a material.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum TextureSlot {
+    /// Multiplied with the base colour.
+    BaseColor,
+    /// Multiplied with roughness and metallic.
+    MetallicRoughness,
+    /// Tangent-space normals.
+    Normal,
+    /// Ambient occlusion.
+    Occlusion,
+    /// Multiplied with the emissive colour.
+    Emissive,
+}
+
+/// An animated property of a light.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum LightProperty {
+    /// Linear RGB.
+    Color,
+    /// Lux or candela.
+    Intensity,
+    /// Metres.
+    Range,
+    /// Radians; only of spot lights.
+    InnerCone,
+    /// Radians; only of spot lights.
+    OuterCone,
+}
+
+/// An animated property of a camera.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum CameraProperty {
+    /// Vertical field of view of a perspective camera, radians.
+    YFov,
+    /// Half the height of an orthographic camera's view.
+    YMag,
+    /// Distance of the near plane.
+    Near,
+    /// Distance of the far plane.
+    Far,
+}
+
+impl PropertyTarget {
+    /// Number of components of a value, at most four.
+    pub fn width(self) -> usize {
+        use MaterialProperty::{BaseColor, Emissive, UvOffset, UvScale};
+        match self {
+            Self::Material(_, BaseColor) => 4,
+            Self::Material(_, Emissive) | Self::Light(_, LightProperty::Color) => 3,
+            Self::Material(_, UvOffset(_) | UvScale(_)) => 2,
+            _ => 1,
+        }
+    }
+}
+
+/// The keys of one property, added by [`ClipBuilder::property`](super::ClipBuilder::property).
+#[derive(Debug, Clone, PartialEq)]
+pub struct PropertyChannel {
+    /// What is animated.
+    pub target: PropertyTarget,
+    /// How values between the keys are computed. Visibility is always STEP.
+    pub interpolation: Interpolation,
+    /// Index into [`Clip::property_timelines`](super::Clip::property_timelines).
+    pub timeline: u32,
+    /// [`PropertyTarget::width`] numbers per entry; three entries per key for CUBICSPLINE.
+    pub values: Vec<f32>,
+}
+
+/// Values of animated properties at one time, in the order of their targets. Reused between frames.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct PropertyValues(Vec<(PropertyTarget, Vec4)>);
+
+impl PropertyValues {
+    /// Removes all values.
+    pub fn clear(&mut self) {
+        self.0.clear();
+    }
+
+    /// All values; components beyond the target's width are 0.
+    pub fn iter(&self) -> impl Iterator<Item = (PropertyTarget, Vec4)> + '_ {
+        self.0.iter().copied()
+    }
+
+    /// Returns the value of a target; `None` if it is not animated.
+    pub fn get(&self, target: PropertyTarget) -> Option<Vec4> {
+        let at = self.0.binary_search_by_key(&target, |&(target, _)| target).ok()?;
+        Some(self.0[at].1)
+    }
+
+    /// Whether any joint's visibility is animated.
+    pub fn has_visibility(&self) -> bool {
+        self.0.iter().any(|(target, _)| matches!(target, PropertyTarget::Visibility(_)))
+    }
+}
+
+/// The property channels of a clip.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Properties {
+    pub timelines: Vec<Vec<f32>>,
+    /// One per target, in their order: single morph weights come last.
+    pub channels: Vec<PropertyChannel>,
+    /// Index of the first channel of a morph weight.
+    first_weight: usize,
+}
+
+impl Properties {
+    /// Of several channels for one target, the last is kept.
+    pub fn new(timelines: Vec<Vec<f32>>, mut channels: Vec<PropertyChannel>) -> Self {
+        // The sort is stable.
+        channels.reverse();
+        channels.sort_by_key(|channel| channel.target);
+        channels.dedup_by_key(|channel| channel.target);
+        let is_weight = |channel: &PropertyChannel| matches!(channel.target, PropertyTarget::MorphWeight(..));
+        let first_weight = channels.iter().position(is_weight).unwrap_or(channels.len());
+        Self { timelines, channels, first_weight }
+    }
+
+    /// Replaces the values in `out` by those of all channels except morph weights.
+    pub fn sample(&self, time_secs: f32, segments: &mut Vec<u32>, out: &mut PropertyValues) {
+        out.clear();
+        let put = |target, value| out.0.push((target, value));
+        self.sample_some(&self.channels[..self.first_weight], time_secs, segments, put);
+    }
+
+    /// Calls `put` with each animated morph weight: its joint, its target and its value.
+    pub fn sample_weights(&self, time_secs: f32, segments: &mut Vec<u32>, mut put: impl FnMut(JointIndex, usize, f32)) {
+        self.sample_some(&self.channels[self.first_weight..], time_secs, segments, |target, value| {
+            if let PropertyTarget::MorphWeight(joint, target) = target {
+                put(joint, target, value.x);
+            }
+        });
+    }
+
+    fn sample_some(
+        &self,
+        channels: &[PropertyChannel],
+        time_secs: f32,
+        segments: &mut Vec<u32>,
+        mut put: impl FnMut(PropertyTarget, Vec4),
+    ) {
+        if channels.is_empty() {
+            return;
+        }
+        segments.resize(self.timelines.len(), 0);
+        for channel in channels {
+            let (times, segment) =
+                (&self.timelines[channel.timeline as usize], &mut segments[channel.timeline as usize]);
+            *segment = find_segment(times, time_secs, *segment as usize) as u32;
+            let at = Segment::new(times, *segment as usize, time_secs);
+            let (width, mut value) = (channel.target.width(), [0.0; 4]);
+            at.numbers(&channel.values, width, channel.interpolation, &mut value[..width]);
+            put(channel.target, Vec4::from(value));
+        }
+    }
+}
