@@ -2,7 +2,9 @@
 
 use super::Editor;
 use crate::frame::travelled;
-use crate::state::{CameraChoice, Command, OrbitCamera, frame_all, resolve_camera, split_ratio};
+use crate::state::{
+    CameraChoice, Command, OrbitCamera, ViewerState, comparison, comparison_ratio, frame_all, resolve_camera,
+};
 
 impl Editor {
     /// Prepares the camera for a command, and returns the command to apply.
@@ -34,9 +36,11 @@ impl Editor {
     fn compensated_camera(&self, command: &Command) -> Option<OrbitCamera> {
         let CameraChoice::Orbit(orbit) = self.state.camera else { return None };
         match *command {
-            Command::SetInspect(inspect) if inspect.split != self.state.inspect.split => {
-                let ratio = split_ratio(&self.state, self.aspect);
-                Some(OrbitCamera { distance: ratio * orbit.distance, ..orbit })
+            Command::SetInspect(inspect) if inspect != self.state.inspect => {
+                let after = ViewerState { inspect, ..self.state.clone() };
+                let [before, after] = [&self.state, &after].map(|state| comparison(&self.library, state));
+                let ratio = comparison_ratio(before, after, self.aspect);
+                (ratio != 1.0).then_some(OrbitCamera { distance: ratio * orbit.distance, ..orbit })
             }
             Command::SetFollow(follow) if follow != self.state.camera_options.follow => {
                 let travel = travelled(&self.library, &self.state);

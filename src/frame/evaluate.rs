@@ -8,12 +8,9 @@ use crate::asset::{Asset, MeshInstance, SceneJoints};
 use crate::library::{Library, Model, ModelId};
 use crate::mesh::{Bounds, Material, SkinningMode, palette_entry, write_palette};
 use crate::state::{
-    PoseSampler, SourceOnStage, ViewerState, active_clip, clip_secs, panes, resolved_bounds, source_on_stage,
-    world_from_model,
+    COMPARED_SKINNING, Comparison, PoseSampler, SourceOnStage, ViewerState, active_clip, clip_secs, compared_rests,
+    comparison, panes, resolved_bounds, source_on_stage, world_from_model,
 };
-
-/// Skinning methods shown by the side-by-side comparison.
-const COMPARED: [SkinningMode; 3] = [SkinningMode::Linear, SkinningMode::Rigid, SkinningMode::DualQuaternion];
 
 /// Buffers and lookups reused between frames.
 #[derive(Debug, Default)]
@@ -22,6 +19,8 @@ pub(super) struct Scratch {
     first_pose: Pose,
     first_cursor: SampleCursor,
     pub world_from_first: Vec<Affine3A>,
+    rest_pose: Pose,
+    rest_cursor: SampleCursor,
     source_pose: Pose,
     source_properties: PropertyValues,
     source_cursor: SampleCursor,
@@ -58,7 +57,8 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
         grid: None,
         ground_height: 0.0,
     };
-    frame.panes = panes(state, aspect);
+    frame.comparison = comparison(library, state);
+    frame.panes = panes(frame.comparison, aspect);
     let Some(model) = library.active() else {
         frame.characters.clear();
         frame.clip = None;
@@ -70,7 +70,7 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
     frame.clip = active_clip(model, state);
     frame.scratch.sampler.sample(model, state);
     let source = source_on_stage(library, state);
-    write_characters(model, state, source.as_ref(), frame);
+    write_characters(library, model, state, source.as_ref(), frame);
     let travel = match state.camera_options.follow {
         true => travel(model, frame.clip, state, &mut frame.scratch, &frame.characters[0].world_from_joint),
         false => Vec3::ZERO,
@@ -79,30 +79,52 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
     write_lights(model, frame);
     overlays::write_ground(model, state, frame);
     view::place_camera(library, state, aspect, travel, frame);
-    overlays::write_overlays(model, state, source.as_ref(), frame);
+    // They would show the first pane's pose in all panes.
+    if !matches!(frame.comparison, Some(Comparison::Rests(_))) {
+        overlays::write_overlays(model, state, source.as_ref(), frame);
+    }
 }
 
-/// The model once per skinning method, then the source.
-fn write_characters(model: &Model, state: &ViewerState, source: Option<&SourceOnStage>, frame: &mut Frame) {
-    let modes = if state.inspect.split { &COMPARED[..] } else { std::slice::from_ref(&state.display.skinning) };
-    let Frame { characters, scratch, clip, .. } = frame;
-    characters.resize_with(modes.len() + usize::from(source.is_some()), Character::default);
-    let (skeleton, pose) = (&model.asset.skeleton, &scratch.sampler.pose);
+/// The model once per pane, then the source.
+fn write_characters(
+    library: &Library,
+    model: &Model,
+    state: &ViewerState,
+    source: Option<&SourceOnStage>,
+    frame: &mut Frame,
+) {
+    let Frame { characters, scratch, clip, comparison, panes, .. } = frame;
+    let count = (panes[0] * panes[1]) as usize;
+    characters.resize_with(count + usize::from(source.is_some()), Character::default);
     let properties = &scratch.sampler.properties;
     scratch.model_scene.update(model, state.sources.scene, properties);
+    let skeleton = &model.asset.skeleton;
+    let time_secs = clip.map_or(0.0, |clip| clip_secs(model, clip, state) as f32);
     let chosen =
         state.selection.joint.and_then(|joint| skeleton.joint_of_source(joint)).filter(|_| state.inspect.weights);
-    for (pane, (character, &skinning)) in characters.iter_mut().zip(modes).enumerate() {
+    for (pane, character) in characters.iter_mut().take(count).enumerate() {
         character.model = model.id;
-        character.skinning = skinning;
-        character.pane = state.inspect.split.then_some(pane as u32);
+        character.pane = comparison.is_some().then_some(pane as u32);
+        character.skinning = match comparison {
+            Some(Comparison::Skinning) => COMPARED_SKINNING[pane],
+            _ => state.display.skinning,
+        };
+        let pose = match (*comparison, *clip) {
+            (Some(Comparison::Rests(chosen)), Some(clip)) if pane > 0 => {
+                scratch.rest_pose.copy_from(&scratch.sampler.pose);
+                if let Some(clip) = library.clip_from_rest(clip, compared_rests(chosen)[pane]) {
+                    clip.sample(skeleton, time_secs, &mut scratch.rest_cursor, &mut scratch.rest_pose);
+                }
+                &scratch.rest_pose
+            }
+            _ => &scratch.sampler.pose,
+        };
         character.morph_weights.clone_from(&pose.morph_weights);
         model_from_joint(skeleton, pose, world_from_model(state.edits.up), &mut character.world_from_joint);
         write_materials(&model.asset, properties, &mut character.materials);
         write_draws(model, chosen, &scratch.model_scene.joints, character);
     }
     if let (Some(source), Some(character)) = (source, characters.last_mut()) {
-        let time_secs = clip.map_or(0.0, |clip| clip_secs(model, clip, state) as f32);
         write_source(source, time_secs, scratch, character);
     }
 }

@@ -17,7 +17,7 @@ use crate::anim::{JointIndex, Pose, PropertyValues};
 use crate::asset::LightKind;
 use crate::library::ModelId;
 use crate::mesh::{Bounds, Material, PaletteEntry, SkinningMode};
-use crate::state::Background;
+use crate::state::{Background, Comparison};
 
 pub use evaluate::{evaluate, travelled};
 pub use formula::{FormulaTerm, JointMatrices, VertexFormula, joint_matrices, vertex_formula};
@@ -32,6 +32,8 @@ pub struct Frame {
     pub view: View,
     /// Display settings.
     pub look: Look,
+    /// What the panes compare.
+    pub comparison: Option<Comparison>,
     /// Columns and rows of equally sized panes that share one camera.
     pub panes: [u32; 2],
     /// The active model first, once per pane; then the source of its borrowed clip, if shown.

@@ -4,6 +4,7 @@ use std::f32::consts::{FRAC_PI_2, PI};
 
 use glam::{Affine3A, Mat3A, Vec2, Vec3, Vec3A};
 
+use super::comparison::{comparison, pane_aspect};
 use super::playhead::{PoseSampler, active_clip, world_from_model};
 use super::stage::source_on_stage;
 use super::{CameraChoice, OrbitCamera, ViewerState};
@@ -39,34 +40,10 @@ pub fn resolved_bounds(library: &Library, state: &ViewerState) -> Bounds {
 /// it, so callers that know the viewport send `SetCamera` with [`resolve_camera`] first.
 pub const DEFAULT_ASPECT: f32 = 1.6;
 
-/// Returns the columns and rows of panes in a viewport of this aspect ratio. The comparison of skinning methods is laid out
-/// along the longer side.
-pub fn panes(state: &ViewerState, aspect: f32) -> [u32; 2] {
-    if state.inspect.split { split_panes(aspect) } else { [1, 1] }
-}
-
-fn split_panes(aspect: f32) -> [u32; 2] {
-    if aspect >= 1.0 { [3, 1] } else { [1, 3] }
-}
-
-/// Returns the aspect ratio of one pane of a viewport of this aspect ratio.
-pub fn pane_aspect(state: &ViewerState, aspect: f32) -> f32 {
-    let [columns, rows] = panes(state, aspect);
-    aspect * rows as f32 / columns as f32
-}
-
-/// Returns the factor for the camera's distance when the comparison starts or ends in a viewport of this aspect ratio, so that
-/// each of the narrower panes shows what was in the centre of the whole viewport.
-pub fn split_ratio(state: &ViewerState, aspect: f32) -> f32 {
-    let [columns, rows] = split_panes(aspect);
-    let zoom_out = (aspect.min(1.0) / (aspect * rows as f32 / columns as f32).min(1.0)).max(1.0);
-    if state.inspect.split { 1.0 / zoom_out } else { zoom_out }
-}
-
 /// Returns the orbit camera for the state in a viewport of this aspect ratio (width over height). A camera of the file becomes
 /// the closest orbit camera: same position and direction, no roll.
 pub fn resolve_camera(library: &Library, state: &ViewerState, aspect: f32) -> OrbitCamera {
-    let aspect = pane_aspect(state, aspect);
+    let aspect = pane_aspect(comparison(library, state), aspect);
     let auto = || {
         let (yaw_radians, pitch_radians) = (front_yaw_radians(library, state) + AUTO_YAW_RADIANS, AUTO_PITCH_RADIANS);
         match library.active() {
@@ -108,7 +85,7 @@ pub fn frame_all(library: &Library, state: &ViewerState, aspect: f32) -> OrbitCa
     let now = resolve_camera(library, state, aspect);
     match library.active() {
         Some(_) => {
-            let aspect = pane_aspect(state, aspect);
+            let aspect = pane_aspect(comparison(library, state), aspect);
             fit(
                 resolved_bounds(library, state),
                 now.yaw_radians,

@@ -3,6 +3,7 @@
 mod apply;
 mod camera;
 mod command;
+mod comparison;
 mod framing;
 mod history;
 mod link;
@@ -18,9 +19,9 @@ mod view;
 pub use apply::apply;
 pub use camera::{CameraChoice, OrbitCamera};
 pub use command::Command;
+pub use comparison::{COMPARED_SKINNING, Comparison, compared_rests, comparison, comparison_ratio, pane_aspect, panes};
 pub use framing::{
-    DEFAULT_ASPECT, frame_all, front_yaw_radians, pane_aspect, panes, resolve_camera, resolved_bounds, split_ratio,
-    world_from_file_camera,
+    DEFAULT_ASPECT, frame_all, front_yaw_radians, resolve_camera, resolved_bounds, world_from_file_camera,
 };
 pub use history::History;
 pub use link::{LinkError, from_link, from_object, to_link, to_object, with_current_member};

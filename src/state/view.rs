@@ -155,6 +155,8 @@ pub struct Inspect {
     pub weights: bool,
     /// The three skinning methods side by side.
     pub split: bool,
+    /// A borrowed clip from each rest of its motion side by side, unless `split` is on.
+    pub rests: bool,
 }
 
 /// The active clip and the time in it.

@@ -268,6 +268,8 @@ pub const RIGID: &str = "Rigid";
 pub const DUAL_QUATERNION: &str = "Dual quat.";
 /// Switch that shows the three skinning methods side by side.
 pub const COMPARE_SKINNING: &str = "Compare all three";
+/// In the Motion tab.
+pub const COMPARE_RESTS: &str = "Compare rest poses";
 /// Switch for the skeleton.
 pub const SKELETON: &str = "Skeleton";
 /// Switch that replaces the octahedral bones; turning it on also shows the skeleton.
@@ -355,7 +357,7 @@ pub const STOP_PICKING: &str = "Stop picking";
 /// Button on the viewport that ends picking.
 pub const DONE_PICKING: &str = "Done";
 /// A motion whose rest is not certain.
-pub const DOUBTFUL_REST: &str = "The motion's rest looks like a pose in motion. If feet, hands or hips are turned, choose another rest pose in Options.";
+pub const DOUBTFUL_REST: &str = "The motion's rest looks like a pose in motion. If feet, hands or hips are turned, compare the rest poses in Options and choose another.";
 /// Button that returns to the proposed map.
 pub const REMATCH: &str = "Re-match";
 /// Button that exchanges the sources of left and right joints.

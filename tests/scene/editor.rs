@@ -105,7 +105,7 @@ fn another_model_resets_model_settings_and_keeps_the_rest() {
     let show = Show { wireframe: true, ..Show::default() };
     let commands = [
         Command::SetShow(show),
-        Command::SetInspect(Inspect { split: true, weights: true }),
+        Command::SetInspect(Inspect { split: true, weights: true, ..Inspect::default() }),
         Command::SetUp(UpAxis::Z),
         Command::SetSpeed(2.0),
         Command::SetFov(50.0),

@@ -106,7 +106,8 @@ fn manual_morph_weights_override_the_clip() {
 #[test]
 fn the_heat_map_shows_the_selected_joint() {
     let selection = Selection { joint: Some(HEAD), ..Selection::default() };
-    let state = ViewerState { selection, inspect: Inspect { weights: true, split: false }, ..ViewerState::default() };
+    let state =
+        ViewerState { selection, inspect: Inspect { weights: true, ..Inspect::default() }, ..ViewerState::default() };
     assert_eq!(frame_of(&walker(), &state).characters[0].draws[0].heat_joint, Some(HEAD as u32));
     let library = moving_box(0.5, &[0.0], &[Vec3::ZERO]);
     let of_box = |joint| {

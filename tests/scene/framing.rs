@@ -1,9 +1,10 @@
 //! The camera frames the whole clip in viewports of any size and shape.
 
 use gaitway::frame::{Frame, evaluate};
+use gaitway::retarget::RestChoice;
 use gaitway::state::{
-    CameraChoice, CameraOptions, Command, Edits, OrbitCamera, Playback, Playhead, UpAxis, ViewerState, apply,
-    resolve_camera, resolved_bounds, split_ratio,
+    CameraChoice, CameraOptions, Command, Comparison, Edits, OrbitCamera, Playback, Playhead, UpAxis, ViewerState,
+    apply, comparison_ratio, resolve_camera, resolved_bounds,
 };
 use glam::{Vec2, Vec3, Vec4Swizzles};
 
@@ -129,11 +130,11 @@ fn zooming_keeps_the_point_under_the_pointer() {
 #[test]
 fn a_pane_shows_what_was_in_the_centre_of_the_viewport() {
     for aspect in [0.5, 1.0, 1.6] {
-        let mut state = ViewerState::default();
-        let there = split_ratio(&state, aspect);
-        state.inspect.split = true;
-        let back = split_ratio(&state, aspect);
+        let there = comparison_ratio(None, Some(Comparison::Skinning), aspect);
+        let back = comparison_ratio(Some(Comparison::Skinning), None, aspect);
         assert!(there >= 1.0 && (there * back - 1.0).abs() < 1e-6, "{aspect}: {there} {back}");
+        assert_eq!(comparison_ratio(None, Some(Comparison::Rests(RestChoice::Auto)), aspect), 1.0);
     }
-    assert!((split_ratio(&ViewerState::default(), 1.5) - 2.0).abs() < 1e-6, "panes are half as wide as high");
+    let ratio = comparison_ratio(None, Some(Comparison::Skinning), 1.5);
+    assert!((ratio - 2.0).abs() < 1e-6, "panes are half as wide as high");
 }

@@ -146,6 +146,7 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
         ),
         ("inspect.weights", with(&|state| state.inspect.weights = true)),
         ("inspect.split", with(&|state| state.inspect.split = true)),
+        ("inspect.rests", with(&|state| state.inspect.rests = true)),
         ("selection.joint", with(&|state| state.selection.joint = Some(0))),
         (
             "selection.vertex",

@@ -143,9 +143,9 @@ impl Random {
                 let (mesh, grid, shadow) = (self.often(), self.often(), self.often());
                 let (split, source) = (self.often(), self.often());
                 let (boxes, smooth) = (self.often(), self.often());
-                let weights = self.often();
+                let (weights, rests) = (self.often(), self.often());
                 state.display.show = Show { mesh, grid, shadow, source, boxes, smooth, ..state.display.show };
-                state.inspect = Inspect { weights, split };
+                state.inspect = Inspect { weights, split, rests };
             }
             17 => state.selection.joint = Some(self.below(300)),
             18 => state.camera = self.camera(),

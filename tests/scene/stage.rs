@@ -5,11 +5,12 @@ use std::sync::Arc;
 use gaitway::anim::{Clip, ClipBuilder, Joint, Keys, Skeleton, Transform};
 use gaitway::asset::{Asset, AssetParts};
 use gaitway::frame::{Frame, PickedJoint, evaluate, pick_joint, pose_document};
-use gaitway::library::{Library, Motion};
+use gaitway::library::{Library, Motion, map_for};
 use gaitway::mesh::SkinningMode;
+use gaitway::retarget::{JointMap, RestChoice, RestChoices};
 use gaitway::state::{
-    ClipChoice, Display, Inspect, Playhead, Selection, Show, ViewerState, choice_of_clip, resolved_bounds,
-    source_on_stage,
+    ClipChoice, Comparison, Display, Inspect, Playhead, Selection, Show, ViewerState, choice_of_clip, compared_rests,
+    resolved_bounds, source_on_stage,
 };
 use glam::{Vec2, Vec3};
 
@@ -90,6 +91,37 @@ fn compared_methods_have_one_pane_each_and_the_same_pose() {
         // A pane is as high as a viewport of its own shape.
         assert_eq!(frame.view.projection_from_view, alone.view.projection_from_view);
     }
+}
+
+#[test]
+fn compared_rests_have_one_pane_each_with_the_clip_that_the_map_gives_with_that_rest() {
+    let (mut library, state) = walker_with_larger_source();
+    let state = ViewerState { inspect: Inspect { rests: true, ..Inspect::default() }, ..state };
+    let map = {
+        let (model, motion) = (library.active().expect("a model"), &library.motions()[0]);
+        map_for(&model.asset, &motion.asset, None).0
+    };
+    for chosen in RestChoice::ALL {
+        let borrow = |library: &mut Library, rest| {
+            let rest = RestChoices { motion: rest, ..map.rest };
+            library.borrow_each(vec![Some(JointMap { rest, ..map.clone() })]);
+            frame_of(library, &state, 1.5)
+        };
+        let compared = borrow(&mut library, chosen);
+        assert_eq!((compared.panes, compared.comparison), ([2, 2], Some(Comparison::Rests(chosen))));
+        for (pane, rest) in compared_rests(chosen).into_iter().enumerate() {
+            let alone = borrow(&mut library, rest);
+            assert_eq!(compared.characters[pane].pane, Some(pane as u32));
+            assert_eq!(compared.characters[pane].palette, alone.characters[0].palette, "{rest:?}");
+        }
+        let mut poses: Vec<_> =
+            compared.characters.iter().map(|character| format!("{:?}", character.palette)).collect();
+        poses.sort();
+        poses.dedup();
+        assert!(poses.len() > 1, "the rests differ");
+    }
+    let own_clip = Playhead { clip: ClipChoice::First, ..state.playhead.clone() };
+    assert_eq!(frame_of(&library, &ViewerState { playhead: own_clip, ..state }, 1.5).comparison, None);
 }
 
 #[test]

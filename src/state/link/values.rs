@@ -307,7 +307,7 @@ pub(super) fn read_vertex(text: &str) -> Option<VertexChoice> {
 
 /// Returns the words of `show`, each with its flag and the flag's value if the word is present. The mesh and its shadow are on
 /// by default, so their words hide them.
-fn show_flags<'a>(show: &'a mut Show, inspect: &'a mut Inspect) -> [(&'static str, &'a mut bool, bool); 13] {
+fn show_flags<'a>(show: &'a mut Show, inspect: &'a mut Inspect) -> [(&'static str, &'a mut bool, bool); 14] {
     [
         ("no-mesh", &mut show.mesh, false),
         ("skeleton", &mut show.skeleton, true),
@@ -317,6 +317,7 @@ fn show_flags<'a>(show: &'a mut Show, inspect: &'a mut Inspect) -> [(&'static st
         ("grid", &mut show.grid, true),
         ("no-shadow", &mut show.shadow, false),
         ("split", &mut inspect.split, true),
+        ("rests", &mut inspect.rests, true),
         ("source", &mut show.source, true),
         ("over", &mut show.over, true),
         ("error", &mut show.error, true),

@@ -26,6 +26,7 @@ use crate::state::{Command, MapEdit, ViewerState, active_clip, choice_of_clip, t
 use crate::ui::text;
 
 pub(super) use clicking::{banner, show as clicking, stop as stop_clicking};
+pub(super) use options::rest_title;
 pub(super) use picker::show as picker;
 
 /// The state of the tab.
@@ -264,7 +265,7 @@ fn body(
 ) {
     match tab.part {
         Part::Joints => joints::show(ui, shown, pairing, map, contents, tab, out),
-        Part::Options => options::show(ui, pairing, map, out),
+        Part::Options => options::show(ui, shown.state.inspect, pairing, map, out),
         Part::Figures => figures::show(ui, shown, pairing),
         Part::Files => options::files(ui, shown, pairing, out),
     }

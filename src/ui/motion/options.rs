@@ -7,22 +7,25 @@ use egui::{RichText, Ui};
 use super::Pairing;
 use crate::editor::Export;
 use crate::retarget::{ClipRef, Feet, JointMap, Keep, RestChoice, RestChoices, RootOptions, RootPart, Unmapped};
-use crate::state::{Command, MapEdit, Show, active_clip};
+use crate::state::{Command, Inspect, MapEdit, Show, active_clip};
 use crate::ui::{Output, Saved, Shown, UiAction, controls, style, text};
 
 const PARTS: [(RootPart, &str); 3] =
     [(RootPart::Keep, "Keep"), (RootPart::InPlace, "In place"), (RootPart::Freeze, "Freeze")];
 
-const RESTS: [(RestChoice, &str); 4] = [
-    (RestChoice::Auto, "Automatic"),
-    (RestChoice::Node, "As the file's nodes stand"),
-    (RestChoice::Bind, "As the mesh was bound"),
-    (RestChoice::FirstFrame, "The clip's first frame"),
-];
+/// What a choice of rest pose is called.
+pub fn rest_title(choice: RestChoice) -> &'static str {
+    match choice {
+        RestChoice::Auto => "Automatic",
+        RestChoice::Node => "As the file's nodes stand",
+        RestChoice::Bind => "As the mesh was bound",
+        RestChoice::FirstFrame => "The clip's first frame",
+    }
+}
 
 const KEEPS: [(Keep, &str); 3] = [(Keep::Auto, "Automatic"), (Keep::Keep, "Keep"), (Keep::Drop, "Drop")];
 
-pub(super) fn show(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, out: &mut Output) {
+pub(super) fn show(ui: &mut Ui, inspect: Inspect, pairing: &Pairing<'_>, map: &JointMap, out: &mut Output) {
     let edit = |edit| Command::EditMap { motion: pairing.index, edit };
     root_motion(ui, map.root, out);
 
@@ -44,6 +47,11 @@ pub(super) fn show(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, out: &mut
     if let Some(motion) = rest_choice(ui, "Motion", rest.motion) {
         out.commands.push(edit(MapEdit::Rest(RestChoices { motion, ..rest })));
     }
+    if controls::switch(ui, text::COMPARE_RESTS, inspect.rests) {
+        let rests = !inspect.rests;
+        out.commands.push(Command::SetInspect(Inspect { rests, split: inspect.split && !rests, ..inspect }));
+    }
+    controls::hint(ui, "The clip from each rest pose of the motion, side by side.");
 
     let keep = |ui: &mut Ui, about: &str, chosen: Keep| {
         controls::section(ui, &about.to_uppercase());
@@ -156,11 +164,11 @@ fn rest_choice(ui: &mut Ui, label: &str, chosen: RestChoice) -> Option<RestChoic
     ui.horizontal(|ui| {
         let weak = style::palette(ui).weak_text;
         ui.add_sized([52.0, 28.0], egui::Label::new(RichText::new(label).color(weak)));
-        let text = RESTS.iter().find(|(choice, _)| *choice == chosen).map_or("", |(_, text)| text);
-        let combo = egui::ComboBox::from_id_salt(("rest", label)).width(ui.available_width()).selected_text(text);
+        let combo =
+            egui::ComboBox::from_id_salt(("rest", label)).width(ui.available_width()).selected_text(rest_title(chosen));
         let response = combo.show_ui(ui, |ui| {
-            for (choice, text) in RESTS {
-                if ui.selectable_label(choice == chosen, text).clicked() {
+            for choice in RestChoice::ALL {
+                if ui.selectable_label(choice == chosen, rest_title(choice)).clicked() {
                     pressed = Some(choice);
                 }
             }

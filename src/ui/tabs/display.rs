@@ -62,7 +62,7 @@ fn skinning(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     ui.add_space(2.0);
     controls::hint(ui, explanation(state.display.skinning));
     if controls::switch(ui, text::COMPARE_SKINNING, state.inspect.split) {
-        out.commands.push(Command::SetInspect(Inspect { split: !state.inspect.split, ..state.inspect }));
+        out.commands.push(Command::SetInspect(Inspect { split: !state.inspect.split, rests: false, ..state.inspect }));
     }
 }
 

@@ -1,11 +1,12 @@
-//! Labels in the viewport: joint names, and the skinning methods of the comparison.
+//! Labels in the viewport: joint names, and what each pane of a comparison shows.
 
 use egui::{Painter, Rect, Ui, pos2, vec2};
 
 use super::hover::partner;
 use super::panes::{pane_at, pane_rects, to_screen};
 use crate::frame::PickedJoint;
-use crate::state::{source_on_stage, title};
+use crate::state::{Comparison, compared_rests, source_on_stage, title};
+use crate::ui::motion::rest_title;
 use crate::ui::tabs::{display, formula};
 use crate::ui::{Shown, UiState, style};
 
@@ -68,16 +69,19 @@ fn label(ui: &Ui, painter: &Painter, pane: Rect, shown: &Shown<'_>, picked: Pick
     Some(())
 }
 
-/// The skinning methods and the lines between the panes of the comparison.
+/// What each pane of the comparison shows, and the lines between them.
 fn pane_labels(ui: &Ui, painter: &Painter, rect: Rect, shown: &Shown<'_>) {
     let panes = pane_rects(shown, rect);
     if panes.len() < 2 {
         return;
     }
     let palette = style::palette(ui);
-    for (pane, character) in panes.iter().zip(&shown.frame.characters) {
-        let text = display::title(character.skinning).to_owned();
-        let galley = painter.layout_no_wrap(text, egui::FontId::proportional(13.0), palette.text);
+    for (index, (pane, character)) in panes.iter().zip(&shown.frame.characters).enumerate() {
+        let text = match shown.frame.comparison {
+            Some(Comparison::Rests(chosen)) => rest_title(compared_rests(chosen)[index]),
+            _ => display::title(character.skinning),
+        };
+        let galley = painter.layout_no_wrap(text.to_owned(), egui::FontId::proportional(13.0), palette.text);
         let middle = pos2(pane.center().x, pane.bottom() - 18.0);
         painter.rect_filled(
             Rect::from_center_size(middle, galley.size() + vec2(16.0, 6.0)),

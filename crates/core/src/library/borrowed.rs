@@ -8,8 +8,8 @@ use crate::anim::{Clip, JointIndex};
 use crate::asset::Asset;
 use crate::formats::file_stem;
 use crate::retarget::{
-    Body, Figures, FootTrack, FoundRest, JointMap, LayerClip, MapError, Planting, Proposal, ResolvedMap, RetargetError,
-    Retargeting, StagePair, layer_clips, propose,
+    Body, Figures, FootTrack, FoundRest, JointMap, LayerClip, MapError, Planting, Proposal, ResolvedMap, RestChoice,
+    RetargetError, Retargeting, StagePair, layer_clips, propose,
 };
 
 /// A clip of a motion retargeted to a model; plays like one of the model's own.
@@ -39,11 +39,29 @@ pub struct BorrowedClip {
     pub pairs: Vec<StagePair>,
     map: Arc<ResolvedMap>,
     measured: OnceLock<Option<(Figures, Vec<FootTrack>)>>,
+    from_each_rest: OnceLock<Vec<Clip>>,
     /// Crossfade to and from this clip.
     pub crossfade_secs: f64,
 }
 
 impl BorrowedClip {
+    /// The rest that the motion is measured from, as the joint map chooses it.
+    pub fn rest_choice(&self) -> RestChoice {
+        self.map.rest.motion
+    }
+
+    /// The clip as it comes from each rest of the motion, in the order of [`RestChoice::ALL`]; made on first use. Where a
+    /// rest gives none, this clip stands in.
+    pub(super) fn from_each_rest(&self, model: Body<'_>, motion: Body<'_>) -> &[Clip] {
+        let from = |choice| {
+            let mut map = ResolvedMap::clone(&self.map);
+            map.rest.motion = choice;
+            Some(Retargeting::new(model, motion, self.source_clip, &map).ok()?.bake().ok()?.clip)
+        };
+        let all = || RestChoice::ALL.map(|choice| from(choice).unwrap_or_else(|| self.clip.clone())).into();
+        self.from_each_rest.get_or_init(all)
+    }
+
     /// Measures how well the clip matches its source, on first use.
     pub(super) fn measured(&self, model: Body<'_>, motion: Body<'_>) -> Option<&(Figures, Vec<FootTrack>)> {
         let measure = || {
@@ -122,6 +140,7 @@ pub(super) fn borrow(
             pairs: pair.stage_pairs(),
             map: shared.clone(),
             measured: OnceLock::new(),
+            from_each_rest: OnceLock::new(),
             crossfade_secs: map.crossfade_secs,
         })
     };

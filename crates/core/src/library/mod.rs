@@ -18,7 +18,8 @@ pub use rig::{Rig, RigBone};
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
-use crate::retarget::{Figures, FootTrack, JointMap, MapError, Proposal, propose};
+use crate::anim::Clip;
+use crate::retarget::{Figures, FootTrack, JointMap, MapError, Proposal, RestChoice, propose};
 
 /// The active model and the files it borrows from.
 #[derive(Debug, Clone)]
@@ -241,6 +242,14 @@ impl Library {
     /// Foot-contact tracks of a borrowed clip.
     pub fn foot_tracks(&self, clip: usize) -> &[FootTrack] {
         self.measured(clip).map_or(&[], |(_, tracks)| tracks)
+    }
+
+    /// A borrowed clip as it comes from another rest of its motion; none for the model's own clips.
+    pub fn clip_from_rest(&self, clip: usize, rest: RestChoice) -> Option<&Clip> {
+        let model = self.active()?;
+        let borrowed = model.borrowed(clip)?;
+        let clips = borrowed.from_each_rest(model.body(), self.motions.get(borrowed.motion)?.body());
+        RestChoice::ALL.iter().zip(clips).find_map(|(of, clip)| (*of == rest).then_some(clip))
     }
 
     fn measured(&self, clip: usize) -> Option<&(Figures, Vec<FootTrack>)> {

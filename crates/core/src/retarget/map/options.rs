@@ -28,6 +28,11 @@ pub enum RestChoice {
     FirstFrame,
 }
 
+impl RestChoice {
+    /// In the order that they are offered.
+    pub const ALL: [Self; 4] = [Self::Auto, Self::Node, Self::Bind, Self::FirstFrame];
+}
+
 /// What happens to the travel and turning of the hips.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
