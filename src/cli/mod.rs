@@ -85,7 +85,7 @@ struct Moment {
     #[arg(long, value_name = "CLIP", allow_negative_numbers = true)]
     clip: Option<String>,
     /// Seconds into the clip, clamped to its end.
-    #[arg(long, value_name = "SECS", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECS", allow_negative_numbers = true, value_parser = read_seconds)]
     time: Option<f64>,
     /// The skinning method.
     #[arg(long, value_enum)]
@@ -132,7 +132,7 @@ struct RetargetArguments {
     #[command(flatten)]
     options: RetargetOptions,
     /// Number of loops to write [default: as few as let layered clips of the model loop seamlessly].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
+    #[arg(long, value_name = "N", value_parser = read_loops)]
     loops: Option<u16>,
     /// The file to write; `-` for standard output.
     #[arg(long, value_name = "OUT.glb")]
@@ -431,6 +431,16 @@ fn read_size(text: &str) -> Result<[u32; 2], String> {
     sides
         .filter(|sides| sides.iter().all(fits))
         .ok_or_else(|| "expected WxH in pixels, from 1x1 to 8192x8192".to_owned())
+}
+
+fn read_seconds(text: &str) -> Result<f64, String> {
+    let seconds: Option<f64> = text.trim().parse().ok();
+    seconds.filter(|seconds| seconds.is_finite()).ok_or_else(|| "expected seconds, such as 1.5".to_owned())
+}
+
+fn read_loops(text: &str) -> Result<u16, String> {
+    let loops: Option<u16> = text.trim().parse().ok();
+    loops.filter(|loops| (1..=1000).contains(loops)).ok_or_else(|| "expected a whole number from 1 to 1000".to_owned())
 }
 
 #[cfg(feature = "render")]

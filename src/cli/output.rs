@@ -5,7 +5,7 @@ use std::io::{ErrorKind, Write, stderr, stdout};
 use std::path::Path;
 
 use super::failure::{Failure, Outcome};
-use crate::files::{Disk, STANDARD_STREAM, is_stream, save_file};
+use crate::files::{Disk, STANDARD_STREAM, is_stream, refuse_input, save_file};
 
 /// Writes the file of `--out`, or to standard output for `-`. `extensions` are those that fit the content, in lower case.
 pub(super) fn write_output(out: &Path, bytes: &[u8], extensions: &[&str], disk: &Disk) -> Outcome {
@@ -18,6 +18,15 @@ pub(super) fn write_output(out: &Path, bytes: &[u8], extensions: &[&str], disk: 
 
 pub(super) fn is_standard_output(out: &Path) -> bool {
     out == STANDARD_STREAM
+}
+
+/// Refuses an output that [`write_output`] would refuse, before the work.
+pub(super) fn check_output(out: &Path, extensions: &[&str], disk: &Disk) -> Outcome {
+    if is_standard_output(out) {
+        return Ok(());
+    }
+    check_extension(out, extensions)?;
+    Ok(refuse_input(out, &disk.files_read())?)
 }
 
 /// A name without an extension fits everything, and so do devices and pipes.

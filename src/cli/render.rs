@@ -2,7 +2,7 @@
 
 use super::failure::{Failure, Outcome};
 use super::motion::{apply_link, open_editor};
-use super::output::{print_error, write_output};
+use super::output::{check_output, print_error, write_output};
 use super::quiet::Quiet;
 use super::{RenderArguments, apply_moment, open};
 use crate::editor::Editor;
@@ -11,8 +11,12 @@ use crate::frame::{Frame, evaluate};
 use crate::render::{Renderer, RendererOptions, headless_device, read_pixels};
 use crate::state::{CameraChoice, Command, OrbitCamera, resolve_camera, source_on_stage};
 
+/// That fit the picture.
+const EXTENSIONS: &[&str] = &["png"];
+
 pub(super) fn run(arguments: &RenderArguments, disk: &Disk) -> Outcome {
     let editor = open_requested_view(arguments, disk)?;
+    check_output(&arguments.out, EXTENSIONS, disk)?;
     let (library, state) = (editor.library(), editor.state());
     let [width, height] = arguments.size;
     let mut frame = Frame::default();
@@ -34,7 +38,7 @@ pub(super) fn run(arguments: &RenderArguments, disk: &Disk) -> Outcome {
     let Some(png) = encode_png(width, height, &pixels) else {
         return Err(Failure::new("couldn't read the image back from the graphics device"));
     };
-    write_output(&arguments.out, &png, &["png"], disk)
+    write_output(&arguments.out, &png, EXTENSIONS, disk)
 }
 
 /// Opens the link's view, overridden by the other options.

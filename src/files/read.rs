@@ -132,11 +132,15 @@ impl<S: Source> Reader<'_, S> {
                 self.files.origins.known.push((known, origin));
             }
             Content::Folder(files) => {
+                let folder = address.to_string_lossy();
                 self.folder_files += files.len();
                 if self.folder_files > MAX_FOLDER_FILES {
                     return Err(OpenError::TooManyFiles { path: address.into(), max: MAX_FOLDER_FILES });
                 }
+                // All of them, since they refer to each other.
+                let is_taken = files.iter().any(|(name, _)| self.files.names.contains(name));
                 for (name, place) in files {
+                    let name = if is_taken { format!("{folder}/{name}") } else { name };
                     self.read(&place, name).await?;
                 }
             }

@@ -44,14 +44,21 @@ const MAX_LEFTOVERS: usize = 100;
 /// # Errors
 /// If the output is one of the files at `inputs`, by whatever name, or cannot be written completely.
 pub fn save_file(path: &Path, bytes: &[u8], inputs: &[PathBuf]) -> Result<(), SaveError> {
-    if inputs.iter().any(|input| is_same_file(input, path)) {
-        return Err(SaveError::IsInput { path: path.to_owned() });
-    }
+    refuse_input(path, inputs)?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     if let Some(folder) = folder.filter(|folder| !folder.exists()) {
         return Err(SaveError::NoFolder { path: path.to_owned(), folder: folder.to_owned() });
     }
     write(path, bytes).map_err(|problem| SaveError::Write { path: path.to_owned(), problem })
+}
+
+/// # Errors
+/// If the output is one of the files at `inputs`, by whatever name.
+pub fn refuse_input(path: &Path, inputs: &[PathBuf]) -> Result<(), SaveError> {
+    match inputs.iter().any(|input| is_same_file(input, path)) {
+        true => Err(SaveError::IsInput { path: path.to_owned() }),
+        false => Ok(()),
+    }
 }
 
 /// Whether an output at this path is a device, a pipe or an open descriptor.

@@ -297,7 +297,7 @@ fn clips_of_real_rigs_survive_a_rest_in_motion() {
 }
 
 #[test]
-fn clips_of_split_rigs_are_bound_by_name() {
+fn clips_of_the_same_rig_in_another_file_are_bound_by_name() {
     let Some(folder) = data_folder() else { return };
     let open = |path: &str| {
         let mut files = gaitway::formats::FileSet::default();
@@ -307,6 +307,8 @@ fn clips_of_split_rigs_are_bound_by_name() {
     for (model_file, motion_file) in [
         ("playcanvas/bitmoji.glb", "playcanvas/bitmoji-anim/walk.glb"),
         ("cosc422/mannequin.glb", "cosc422/mannequin_run.glb"),
+        // Another character of the same rig, in the same rest.
+        ("threejs/Samba_Dancing.glb", "threejs/Xbot.glb"),
     ] {
         let (model, motion) = (open(model_file), open(motion_file));
         // The motion's clip with the model's joints.

@@ -225,6 +225,17 @@ fn motions_of_a_folder_have_its_name_as_origin() {
 }
 
 #[test]
+fn folders_with_files_of_the_same_names_lose_none() {
+    let folder = temporary_folder("alike");
+    write(&folder, "a/m.gltf", MESH.as_bytes());
+    write(&folder, "b/m.gltf", MESH.as_bytes());
+    let contents = read_paths(&["a", "b"].map(|name| folder.join(name)), Role::Any).expect("two models");
+    let origins: Vec<&str> = contents.models.iter().map(|opened| &*opened.model.source).collect();
+    assert!(matches!(&origins[..], ["m.gltf", other] if other.ends_with("b/m.gltf")), "{origins:?}");
+    std::fs::remove_dir_all(&folder).expect("it was created");
+}
+
+#[test]
 fn folders_have_a_limit_of_files_together() {
     let folder = temporary_folder("many");
     let folders = ["a", "b"].map(|name| folder.join(name));

@@ -7,7 +7,7 @@ use egui::{RichText, Ui};
 use super::animated;
 use crate::asset::{Asset, Warning};
 use crate::editor::Export;
-use crate::library::{ImageData, Model};
+use crate::library::Model;
 use crate::mesh::{Geometry, Mesh};
 use crate::ui::{Output, Saved, Shown, UiAction, controls, style, text};
 
@@ -29,8 +29,7 @@ fn contents(ui: &mut Ui, model: &Model) {
     let asset: &Asset = &model.asset;
     let primitives = || asset.meshes.iter().flat_map(|mesh| &mesh.primitives);
     let size = model.rest_bounds().size();
-    let texture_bytes: u64 = model.images.iter().flatten().map(ImageData::device_bytes).sum();
-    let images = match texture_bytes {
+    let images = match model.texture_bytes() {
         0 => grouped(asset.images.len()),
         bytes => format!("{} ({:.1} MB of GPU memory)", grouped(asset.images.len()), bytes as f64 / 1e6),
     };

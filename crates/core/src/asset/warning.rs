@@ -149,9 +149,10 @@ impl Warnings {
     /// Limit per code, so that a broken file does not fill the memory.
     const MAX_PER_CODE: usize = 100;
 
-    /// Adds a warning unless its code has reached the limit.
+    /// Adds a warning unless it was added before or its code has reached the limit.
     pub fn push(&mut self, warning: Warning) {
-        if self.0.iter().filter(|other| other.code() == warning.code()).count() < Self::MAX_PER_CODE {
+        let mut alike = self.0.iter().filter(|other| other.code() == warning.code());
+        if alike.clone().count() < Self::MAX_PER_CODE && !alike.any(|other| *other == warning) {
             self.0.push(warning);
         }
     }
@@ -169,5 +170,19 @@ impl Warnings {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_warnings_are_one() {
+        let mut warnings = Warnings::default();
+        for uri in ["a.png", "b.png", "a.png"] {
+            warnings.push(Warning::ImageMissing { uri: uri.to_owned() });
+        }
+        assert_eq!(warnings.len(), 2);
     }
 }

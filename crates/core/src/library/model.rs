@@ -136,6 +136,11 @@ impl Model {
         Body { asset: &self.asset, slots: &self.recognized().0 }
     }
 
+    /// Bytes of GPU memory that the textures take.
+    pub fn texture_bytes(&self) -> u64 {
+        self.images.iter().flatten().map(ImageData::device_bytes).sum()
+    }
+
     /// Facing direction of a recognized body at rest, in the file's axes.
     pub fn forward(&self) -> Option<Vec3> {
         self.recognized().1

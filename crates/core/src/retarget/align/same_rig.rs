@@ -36,9 +36,6 @@ const MAX_COMPARED: usize = 100;
 /// Rolled joints that tell other axes. A single one may be posed.
 const MIN_ROLLED: usize = 2;
 
-/// World rotations closer than this are the same rest.
-const MAX_SAME_REST_DEGREES: f64 = 0.05;
-
 /// A skeleton in its rest.
 #[derive(Clone, Copy)]
 pub struct Resting<'a> {
@@ -64,7 +61,7 @@ pub struct OwnRest<'a> {
     pub is_standing: bool,
 }
 
-/// Returns the source in the model's rest if both are the same rig and rest differently, or None.
+/// Returns the source in the model's rest if both are the same rig, or None.
 pub fn shared_rest(target: Resting, own: OwnRest, clip: &Clip, map: &ResolvedMap) -> Option<SharedRest> {
     let source = own.resting;
     let target_of = counterparts(target.skeleton, source.skeleton);
@@ -215,17 +212,10 @@ impl Rigs<'_> {
         let source_from_target = self.source_from_target(main)?;
         let size = self.size_ratio(&is_shared);
         let mut locals = self.source.locals.to_vec();
-        let rotations = self.turn(&mut locals, &is_shared, &self.target_pose, source_from_target);
+        self.turn(&mut locals, &is_shared, &self.target_pose, source_from_target);
         let nodes = WorldPose::new(self.target.skeleton, node_locals(self.target.skeleton), DQuat::IDENTITY);
         let mut unmoved = node_locals(source);
         self.turn(&mut unmoved, &is_shared, &nodes, source_from_target);
-        let differs = |joint: JointIndex| {
-            let angle = angle_between(rotations[joint.get()], self.source_pose.rotation(joint));
-            is_shared[joint.get()] && angle.to_degrees() > MAX_SAME_REST_DEGREES
-        };
-        if !source.joints().any(differs) {
-            return None;
-        }
         // The place of a moving root is as little a rest as its rotation.
         for &top in tops.keys().filter(|_| !is_in_place) {
             let Some(target) = self.target_of[top.get()] else { continue };
@@ -237,15 +227,8 @@ impl Rigs<'_> {
         Some(SharedRest { locals, unmoved, target_from_source: source_from_target.conjugate() })
     }
 
-    /// Turns the shared joints as the target's are in `pose`. Returns the rotations of all joints in the source's model
-    /// space.
-    fn turn(
-        &self,
-        locals: &mut [Local],
-        is_shared: &[bool],
-        pose: &WorldPose,
-        source_from_target: DQuat,
-    ) -> Vec<DQuat> {
+    /// Turns the shared joints as the target's are in `pose`.
+    fn turn(&self, locals: &mut [Local], is_shared: &[bool], pose: &WorldPose, source_from_target: DQuat) {
         let source = self.source.skeleton;
         let mut rotations: Vec<DQuat> = Vec::with_capacity(locals.len());
         for joint in source.joints() {
@@ -257,7 +240,6 @@ impl Rigs<'_> {
             locals[joint.get()].rotation = unit(parent.conjugate() * rotation);
             rotations.push(rotation);
         }
-        rotations
     }
 
     /// The turn from the target's model space to the source's: what lies above the moving joints differs, unless that is
