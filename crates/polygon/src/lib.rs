@@ -1,4 +1,5 @@
-//! Triangulates polygons: as a fan if the polygon is convex, else by ear clipping.
+//! Triangulates polygons: as a fan if the polygon is convex, else by ear clipping. A package of its own, since .obj and .x files are
+//! read by different programs on the page.
 
 use glam::{DVec2, DVec3};
 
