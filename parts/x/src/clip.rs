@@ -8,9 +8,9 @@ use crate::frame::Nodes;
 use crate::transform::{matrix, mirrored, parts, rotation};
 
 /// DirectX's unit of time, where the file states none.
-const DEFAULT_TICKS_PER_SEC: f64 = 4800.0;
+const DEFAULT_TICKS_PER_SEC: u32 = 4800;
 /// Frames per second where the file counts frames without saying so, as assimp's and other viewers have it.
-const FRAMES_PER_SEC: f64 = 25.0;
+const FRAMES_PER_SEC: u32 = 25;
 /// At [`DEFAULT_TICKS_PER_SEC`], nobody has keys closer than this: 240 frames per second.
 const MIN_TICKS_BETWEEN_KEYS: f64 = 20.0;
 /// Nor clips shorter than this, a tenth of a second.
@@ -130,13 +130,13 @@ fn ticks_per_sec(document: &Document, warnings: &mut Warnings) -> Result<f64, St
         }
     }
     if end == 0.0 || (end >= MIN_TICKS_OF_CLIPS && closest >= MIN_TICKS_BETWEEN_KEYS) {
-        return Ok(DEFAULT_TICKS_PER_SEC);
+        return Ok(f64::from(DEFAULT_TICKS_PER_SEC));
     }
     warnings.add(format!(
         "The file doesn't state the speed of its clips; at DirectX's {DEFAULT_TICKS_PER_SEC} ticks per second they would be far \
          too fast. {FRAMES_PER_SEC} were assumed: set the playback speed if that is wrong."
     ));
-    Ok(FRAMES_PER_SEC)
+    Ok(f64::from(FRAMES_PER_SEC))
 }
 
 fn read_keys(document: &Document, key: usize) -> Result<Keys, String> {
