@@ -12,13 +12,13 @@ use super::{FileSet, LoadError, is_bvh, is_gltf, whole_file_part};
 pub enum Part {
     /// `KHR_draco_mesh_compression`.
     Draco,
-    /// Models and motions of Autodesk's format.
+    /// Models and motions in Autodesk's format.
     Fbx,
     /// `KHR_texture_basisu`. Its images stay what they are until all images are decoded.
     Ktx2,
     /// `EXT_meshopt_compression` and `KHR_meshopt_compression`.
     Meshopt,
-    /// Models and motions of DirectX.
+    /// Models and motions in DirectX's `.x` format.
     X,
 }
 

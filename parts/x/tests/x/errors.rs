@@ -47,7 +47,10 @@ fn objects() {
             "Mesh m { 0; 0; MeshMaterialList { 1; 1; 0; Material { 1.0; } } }",
             &["Material (line 2)", "4 numbers for a colour"],
         ),
-        ("Frame a { } AnimationSet { Animation { AnimationKey { 7; } } }", &["AnimationKey (line 2)", "kind", "found 7"]),
+        (
+            "Frame a { } AnimationSet { Animation { AnimationKey { 7; } } }",
+            &["AnimationKey (line 2)", "kind", "found 7"],
+        ),
         ("Frame a { } AnimationSet { Animation { AnimationKey { 2; 9; 0; 3; 1.0; } } }", &["9 keys", "3 numbers"]),
         (
             "Frame a { } AnimationSet { Animation { { a } AnimationKey { 2; 1; 0; 2; 1.0; 1.0; 1.0; } } }",
