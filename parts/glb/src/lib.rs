@@ -285,7 +285,7 @@ impl Glb {
     /// Appends an accessor of floats with as many components as `kind` has. `bounds` adds `min` and `max`.
     pub fn floats(&mut self, values: &[f32], kind: &str, target: Option<u32>, bounds: bool) -> usize {
         let width = components(kind);
-        let view = self.view(&bytes_of(values), target);
+        let view = self.view(&bytes_of(values, f32::to_le_bytes), target);
         let mut accessor = accessor(view, FLOAT, values.len() / width, kind);
         if bounds {
             add_bounds(&mut accessor, values, width);
@@ -303,9 +303,8 @@ impl Glb {
         }
         add_bounds(&mut accessor, &reached, 3);
         if !elements.is_empty() {
-            let places: Vec<u8> = elements.iter().flat_map(|element| element.to_le_bytes()).collect();
-            let places = self.view(&places, None);
-            let values = self.view(&bytes_of(values), None);
+            let places = self.view(&bytes_of(elements, u32::to_le_bytes), None);
+            let values = self.view(&bytes_of(values, f32::to_le_bytes), None);
             accessor.raw(
                 "sparse",
                 &format!(
@@ -320,10 +319,10 @@ impl Glb {
 
     /// Appends the indices of triangles.
     pub fn triangles(&mut self, indices: &[u32], vertices: usize) -> usize {
-        let (bytes, kind): (Vec<u8>, u32) = if vertices < usize::from(u16::MAX) {
-            (indices.iter().flat_map(|&index| (index as u16).to_le_bytes()).collect(), UNSIGNED_SHORT)
+        let (bytes, kind) = if vertices < usize::from(u16::MAX) {
+            (bytes_of(indices, |index| (index as u16).to_le_bytes()), UNSIGNED_SHORT)
         } else {
-            (indices.iter().flat_map(|index| index.to_le_bytes()).collect(), UNSIGNED_INT)
+            (bytes_of(indices, u32::to_le_bytes), UNSIGNED_INT)
         };
         let view = self.view(&bytes, Some(ELEMENT_ARRAY_BUFFER));
         self.accessors.push(&accessor(view, kind, indices.len(), "SCALAR").end())
@@ -331,10 +330,10 @@ impl Glb {
 
     /// Appends four joint numbers per vertex.
     fn joints(&mut self, joints: &[u16]) -> usize {
-        let (bytes, kind): (Vec<u8>, u32) = if joints.iter().all(|&joint| joint < 256) {
-            (joints.iter().map(|&joint| joint as u8).collect(), UNSIGNED_BYTE)
+        let (bytes, kind) = if joints.iter().all(|&joint| joint < 256) {
+            (bytes_of(joints, |joint| [joint as u8]), UNSIGNED_BYTE)
         } else {
-            (joints.iter().flat_map(|joint| joint.to_le_bytes()).collect(), UNSIGNED_SHORT)
+            (bytes_of(joints, u16::to_le_bytes), UNSIGNED_SHORT)
         };
         let view = self.view(&bytes, Some(ARRAY_BUFFER));
         self.accessors.push(&accessor(view, kind, joints.len() / 4, "VEC4").end())
@@ -473,8 +472,13 @@ fn add_bounds(accessor: &mut Object, values: &[f32], width: usize) {
     accessor.numbers("min", &low).numbers("max", &high);
 }
 
-fn bytes_of(values: &[f32]) -> Vec<u8> {
-    values.iter().flat_map(|value| value.to_le_bytes()).collect()
+/// A loop, since the standard library's adapters take several times the code.
+fn bytes_of<T: Copy, const SIZE: usize>(values: &[T], bytes: impl Fn(T) -> [u8; SIZE]) -> Vec<u8> {
+    let mut all = Vec::with_capacity(SIZE * values.len());
+    for &value in values {
+        all.extend_from_slice(&bytes(value));
+    }
+    all
 }
 
 #[cfg(test)]

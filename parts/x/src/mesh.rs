@@ -226,21 +226,18 @@ impl Shape {
         let most = influences.iter().flatten().map(|own| own.len()).max().unwrap_or(0).next_multiple_of(4);
         check_size(glb.len().saturating_add(ids.len().saturating_mul(VERTEX_BYTES + most * INFLUENCE_BYTES)))?;
         let mut attributes = Object::new();
-        let flat = |vectors: &mut dyn Iterator<Item = DVec3>| -> Vec<f32> {
-            vectors.flat_map(|vector| vector.to_array().map(|value| value as f32)).collect()
-        };
-        let positions = flat(&mut ids.iter().map(|&id| mirrored(self.positions[id].to_array())));
+        let positions = gathered(&ids, |&id| floats(mirrored(self.positions[id].to_array())));
         attributes.index("POSITION", glb.floats(&positions, "VEC3", Some(ARRAY_BUFFER), true));
         if !self.normals.is_empty() {
-            let normals = flat(&mut vertices.iter().map(|key| self.normals[(key & 0xffff_ffff) as usize]));
+            let normals = gathered(&vertices, |key| floats(self.normals[(key & 0xffff_ffff) as usize]));
             attributes.index("NORMAL", glb.floats(&normals, "VEC3", Some(ARRAY_BUFFER), false));
         }
         if !self.uvs.is_empty() {
-            let uvs: Vec<f32> = ids.iter().flat_map(|&id| self.uvs[id]).collect();
+            let uvs = gathered(&ids, |&id| self.uvs[id]);
             attributes.index("TEXCOORD_0", glb.floats(&uvs, "VEC2", Some(ARRAY_BUFFER), false));
         }
         if !self.colors.is_empty() {
-            let colors: Vec<f32> = ids.iter().flat_map(|&id| self.colors[id]).collect();
+            let colors = gathered(&ids, |&id| self.colors[id]);
             attributes.index("COLOR_0", glb.floats(&colors, "VEC4", Some(ARRAY_BUFFER), false));
         }
         if let Some(influences) = influences {
@@ -251,6 +248,19 @@ impl Shape {
         primitive.index("indices", glb.triangles(&triangles, ids.len()));
         Ok(primitive)
     }
+}
+
+/// Returns the values of all vertices in a row.
+fn gathered<T, const COUNT: usize>(vertices: &[T], value: impl Fn(&T) -> [f32; COUNT]) -> Vec<f32> {
+    let mut all = Vec::with_capacity(COUNT * vertices.len());
+    for vertex in vertices {
+        all.extend_from_slice(&value(vertex));
+    }
+    all
+}
+
+fn floats(vector: DVec3) -> [f32; 3] {
+    vector.to_array().map(|value| value as f32)
 }
 
 /// Reads a count, then as many vectors.
