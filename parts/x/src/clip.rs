@@ -3,7 +3,7 @@
 use gaitway_glb::{Animation, Glb, Warnings, sort};
 use glam::DQuat;
 
-use crate::document::{Document, text};
+use crate::document::{Document, short, text};
 use crate::frame::Nodes;
 use crate::transform::{matrix, mirrored, parts, rotation};
 
@@ -89,8 +89,8 @@ impl Clips<'_, '_> {
                 continue;
             }
             self.nodes.entries[node].is_animated = true;
-            let times: Vec<f32> = track.ticks.iter().map(|ticks| (ticks / self.ticks_per_sec) as f32).collect();
-            clip.add(self.glb, (node, PATHS[path]), "LINEAR", &times, &track.values)?;
+            let (times, values) = track.in_seconds(self.ticks_per_sec);
+            clip.add(self.glb, (node, PATHS[path]), "LINEAR", &times, &values)?;
         }
         Ok(())
     }
@@ -106,7 +106,7 @@ fn target(document: &Document, animation: usize, nodes: &Nodes, warnings: &mut W
     };
     let node = nodes.named(name);
     if node.is_none() {
-        warnings.add(format!("Animation of \"{}\" left out: no frame has that name.", text(name)));
+        warnings.add(format!("Animation of \"{}\" left out: no frame has that name.", short(name)));
     }
     node
 }
@@ -214,6 +214,20 @@ impl Track {
         let rotation = if rotation.dot(*before) < 0.0 { -rotation } else { rotation };
         *before = rotation;
         self.push(ticks, &rotation.to_array());
+    }
+
+    /// Returns the times and values of keys. Of those that are too close for 32 bits, the first is kept.
+    fn in_seconds(&self, ticks_per_sec: f64) -> (Vec<f32>, Vec<f32>) {
+        let (mut times, mut values) = (Vec::new(), Vec::new());
+        let width = self.values.len() / self.ticks.len();
+        for (ticks, value) in self.ticks.iter().zip(self.values.chunks_exact(width)) {
+            let time = (ticks / ticks_per_sec) as f32;
+            if times.last() != Some(&time) {
+                times.push(time);
+                values.extend_from_slice(value);
+            }
+        }
+        (times, values)
     }
 
     /// Of values that never change, leaves the first and the last: when a clip ends matters.

@@ -11,6 +11,8 @@ const MAX_OBJECTS: usize = 1 << 19;
 const MAX_NUMBERS: usize = 1 << 25;
 /// Objects inside objects.
 const MAX_DEPTH: usize = 1000;
+/// Bytes of a name in messages.
+const MAX_SHOWN: usize = 60;
 
 /// Templates that are read, or that say nothing a glTF needs.
 const KNOWN: [&str; 20] = [
@@ -91,7 +93,7 @@ impl<'a> Document<'a> {
         for object in self.objects.iter().skip(1).filter(|object| !object.is_reference() && !is_known(object)) {
             // What is inside is left out with it.
             if object.parent == 0 || is_known(&self.objects[object.parent]) {
-                warnings.add(format!("Objects of the kind \"{}\" left out.", text(object.template)));
+                warnings.add(format!("Objects of the kind \"{}\" left out.", short(object.template)));
             }
         }
         if self.not_finite > 0 {
@@ -113,14 +115,19 @@ impl<'a> Document<'a> {
     /// Returns an object as messages call it.
     pub fn label(&self, object: usize) -> String {
         let Object { template, name, place, .. } = self.objects[object];
-        let name = if name.is_empty() { String::new() } else { format!(" \"{}\"", text(name)) };
-        format!("{}{name} ({})", text(template), self.contents.name(place))
+        let name = if name.is_empty() { String::new() } else { format!(" \"{}\"", short(name)) };
+        format!("{}{name} ({})", short(template), self.contents.name(place))
     }
 
     /// Reads the numbers of an object.
     pub fn numbers(&self, object: usize) -> Numbers<'_> {
         Numbers { document: self, object, left: &self.objects[object].numbers }
     }
+}
+
+/// A name for messages: in a damaged file, one may be as long as the file.
+pub fn short(name: &[u8]) -> String {
+    text(&name[..name.len().min(MAX_SHOWN)])
 }
 
 /// Text of any code page: UTF-8, or else Latin-1.
@@ -196,7 +203,7 @@ impl<'a> Reader<'a> {
             next = self.tokens.next()?;
         }
         if !matches!(next, Token::Open) {
-            let expected = format!("\"{{\" after \"{}\"", template[..template.len().min(40)].escape_ascii());
+            let expected = format!("\"{{\" after \"{}\"", short(template));
             return Err(self.tokens.unexpected(&expected, &next.describe()));
         }
         if self.open.len() > MAX_DEPTH {

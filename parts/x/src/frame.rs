@@ -3,7 +3,7 @@
 use gaitway_glb::{Glb, Object, Warnings, indices};
 use glam::{DAffine3, DVec3};
 
-use crate::document::{Document, Names, text};
+use crate::document::{Document, Names, short, text};
 use crate::too_large;
 use crate::transform::{columns, matrix, parts};
 
@@ -115,7 +115,8 @@ fn add_transform(node: &mut Object, entry: &Entry, warnings: &mut Warnings) {
         return;
     }
     if local.is_sheared {
-        warnings.add(format!("Frame \"{}\": its matrix is sheared, which an animated node can't be.", entry.name));
+        let name = short(entry.name.as_bytes());
+        warnings.add(format!("Frame \"{name}\": its matrix is sheared, which an animated node can't be."));
     }
     if local.translation != DVec3::ZERO {
         node.numbers("translation", &local.translation.to_array());

@@ -3,7 +3,7 @@
 use gaitway_glb::{Glb, MAX_INFLUENCES, Object, Warnings, indices, strongest};
 use glam::DAffine3;
 
-use crate::document::{Document, text};
+use crate::document::{Document, short};
 use crate::frame::Nodes;
 use crate::transform::{columns, matrix};
 
@@ -39,7 +39,7 @@ pub fn read(
         let values = numbers.take(count, "weights")?;
         let joint_from_bind = matrix(numbers.array("a matrix")?);
         let Some(node) = nodes.named(name) else {
-            warnings.add(format!("Joint \"{}\" left out: no frame has that name.", text(name)));
+            warnings.add(format!("Joint \"{}\" left out: no frame has that name.", short(name)));
             continue;
         };
         if joints.len() + 1 == MAX_JOINTS {

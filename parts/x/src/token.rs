@@ -2,6 +2,7 @@
 
 use crate::container::{Contents, Encoding};
 use crate::damaged;
+use crate::document::short;
 
 /// What a file consists of. Separators are left out.
 #[derive(Clone, Copy)]
@@ -27,7 +28,7 @@ pub enum Token<'a> {
 impl Token<'_> {
     /// What messages call it.
     pub fn describe(&self) -> String {
-        let quoted = |text: &[u8]| format!("\"{}\"", text[..text.len().min(40)].escape_ascii());
+        let quoted = |text: &[u8]| format!("\"{}\"", short(text));
         match self {
             Token::Open => "\"{\"".to_owned(),
             Token::Close => "\"}\"".to_owned(),

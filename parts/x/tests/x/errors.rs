@@ -60,6 +60,8 @@ fn objects() {
         check(&text(objects), expected);
     }
     check(&text(&"Frame a { ".repeat(1002)), &["at most 1000 objects inside each other"]);
+    let long = gaitway_x::convert(&text(&format!("Frame {} {{", "a".repeat(10_000)))).unwrap_err();
+    assert!(long.len() < 400, "{long}");
     check(&text("Mesh { 4294967295; } "), &["4294967295 vertices"]);
     let weights = "Frame j { } Mesh { 1;0.0;0.0;0.0;;0; SkinWeights { \"j\"; 1; 1; 1.0; 1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0;; } }";
     check(&text(weights), &["mesh's 1 vertices"]);

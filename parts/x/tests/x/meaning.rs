@@ -287,6 +287,13 @@ fn keys_in_any_order_ascend() {
 }
 
 #[test]
+fn keys_are_apart_in_seconds_too() {
+    let keys = "0;3;0.0,0.0,0.0;;,400000000;3;1.0,0.0,0.0;;,400000001;3;2.0,0.0,0.0;;,500000000;3;3.0,0.0,0.0;;;";
+    let glb = clean(&format!("Frame a {{ }} AnimationSet {{ Animation {{ {{a}} AnimationKey {{ 2; 4; {keys} }} }} }}"));
+    assert_eq!(glb.accessor(&glb.list("animations")[0]["samplers"][0]["input"]).len(), 3);
+}
+
+#[test]
 fn what_never_changes_has_two_keys_and_no_scale() {
     let matrix = IDENTITY.replace(";;", "");
     let keys: String = (0..5).map(|at| format!("{};16;{matrix};;,", 480 * at)).collect();
