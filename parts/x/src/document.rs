@@ -15,12 +15,13 @@ const MAX_DEPTH: usize = 1000;
 const MAX_SHOWN: usize = 60;
 
 /// Templates that are read, or that say nothing a glTF needs.
-const KNOWN: [&str; 20] = [
+const KNOWN: [&str; 21] = [
     "AnimTicksPerSecond",
     "Animation",
     "AnimationKey",
     "AnimationOptions",
     "AnimationSet",
+    "DeclData",
     "FaceAdjacency",
     "Frame",
     "FrameTransformMatrix",

@@ -6,6 +6,7 @@ use gaitway_glb::{ARRAY_BUFFER, Glb, List, Object, Warnings, check_size, linear,
 use gaitway_polygon::Cutter;
 use glam::{DAffine3, DVec3};
 
+use crate::declared::{self, Declared};
 use crate::document::{Document, Names, Numbers, text};
 use crate::frame::Nodes;
 use crate::material::Materials;
@@ -107,6 +108,9 @@ impl Shape {
             // A vertex without any is at the image's corner.
             shape.uvs.resize(shape.positions.len(), [0.0; 2]);
         }
+        if let Some((object, _)) = document.children(mesh, "DeclData").next() {
+            shape.add_declared(declared::read(document, object, shape.positions.len())?);
+        }
         if let Some((object, _)) = document.children(mesh, "MeshVertexColors").next() {
             shape.read_colors(document, object)?;
         }
@@ -121,13 +125,19 @@ impl Shape {
         warnings: &mut Warnings,
     ) -> Result<(), String> {
         let mut numbers = document.numbers(object);
-        let mut normals = vectors(&mut numbers, "normals")?;
-        let (mut corners, own_ends) = faces(&mut numbers, normals.len())?;
-        if own_ends != ends {
+        let normals = vectors(&mut numbers, "normals")?;
+        let (corners, own_ends) = faces(&mut numbers, normals.len())?;
+        if own_ends == ends {
+            self.set_normals(normals, corners);
+        } else {
             let label = document.label(object);
             warnings.add(format!("{label} left out: its faces are not those of the mesh."));
-            return Ok(());
         }
+        Ok(())
+    }
+
+    /// Takes normals, and the number of the one at each corner.
+    fn set_normals(&mut self, mut normals: Vec<DVec3>, mut corners: Vec<u32>) {
         for normal in &mut normals {
             *normal = mirrored(normal.to_array()).try_normalize().unwrap_or(DVec3::Y);
         }
@@ -136,7 +146,16 @@ impl Shape {
             *corner = merged[*corner as usize];
         }
         (self.normals, self.normal_corners) = (normals, corners);
-        Ok(())
+    }
+
+    /// Takes what the mesh doesn't have yet.
+    fn add_declared(&mut self, declared: Declared) {
+        if self.normals.is_empty() && !declared.normals.is_empty() {
+            self.set_normals(declared.normals, self.corners.clone());
+        }
+        if self.uvs.is_empty() {
+            self.uvs = declared.uvs;
+        }
     }
 
     fn read_colors(&mut self, document: &Document, object: usize) -> Result<(), String> {

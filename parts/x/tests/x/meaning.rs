@@ -147,6 +147,26 @@ fn corners_with_different_normals_are_vertices_of_their_own() {
 }
 
 #[test]
+fn vertices_may_be_declared_as_direct3d_has_them() {
+    // A packed tangent, a normal, texture coordinates.
+    let words = |vertex: usize| {
+        let [x, y, _] = SQUARE[vertex];
+        let floats = [0.0, 0.0, -4.0, x, 1.0 - y].map(f32::to_bits).map(|bits| bits.to_string());
+        format!("7,{}", floats.join(","))
+    };
+    let data = |count: usize| {
+        let vertices: Vec<String> = (0..count).map(words).collect();
+        let elements = "3; 14;0;6;0;, 2;0;3;0;, 1;0;5;0;;";
+        mesh(&SQUARE, &[&[0, 1, 2, 3]], &format!("DeclData {{ {elements} {}; {}; }}", 6 * count, vertices.join(",")))
+    };
+    let glb = clean(&data(4));
+    assert_eq!(attribute(&glb, 0, "NORMAL"), [0.0, 0.0, 1.0].repeat(4));
+    assert_eq!(attribute(&glb, 0, "TEXCOORD_0"), [0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0]);
+    let problem = gaitway_x::convert(&text(&data(3))).unwrap_err();
+    assert!(problem.contains("6 values for each of 4 vertices") && problem.contains("found 18"), "{problem}");
+}
+
+#[test]
 fn faces_of_any_size_become_triangles() {
     // An arrow head: its fan from the first corner would cover what is outside.
     let concave = [[0.0, 1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 0.0, 0.0], [-1.0, -1.0, 0.0]];
