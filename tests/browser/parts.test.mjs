@@ -27,6 +27,7 @@ const KTX2 = "compressed/agi-ktx2.glb";
 const AVIF = new URL("../support/gradients.avif", import.meta.url);
 const UASTC = new URL("../support/ktx2/uastc.ktx2", import.meta.url);
 const SAMBA = "threejs/Samba_Dancing.fbx";
+const PILOT = "cosc422/original/ArmyPilot/ArmyPilot.x";
 const COURSEWORK = {
   original: ["cosc422/original/Mannequin/mannequin.fbx", "cosc422/original/Mannequin/run.fbx"],
   converted: ["cosc422/mannequin.glb", "cosc422/mannequin_run.glb"],
@@ -241,11 +242,16 @@ for (const renderer of BACK_ENDS)
       assert.ok(largestDifference([0, 0, 0, 0, 1, -1, 1, 0, 0], meshes[0].positions) < 1e-5, `${meshes[0].positions}`);
       assert.deepEqual(page.troubles, []);
       await page.finish();
-      const borrowing = await opened(`model=${site.data("khronos/SimpleSkin/glTF-Embedded/SimpleSkin.gltf")}&motion=${made}`);
-      await whenBorrowed(borrowing, 1);
-      assert.equal(requested(borrowing).length, 1);
-      assert.deepEqual(borrowing.troubles, []);
-      await borrowing.finish();
+      for (const [model, motion] of [
+        ["threejs/Xbot.glb", PILOT],
+        [PILOT, "cosc422/original/Dwarf/avatar_walk.bvh"],
+      ]) {
+        const borrowing = await opened(`model=${site.data(model)}&motion=${site.data(motion)}`);
+        await whenBorrowed(borrowing, 1);
+        assert.equal(requested(borrowing).length, 1);
+        assert.deepEqual(borrowing.troubles, []);
+        await borrowing.finish();
+      }
     });
 
     /** @type {[string, Buffer | null, RegExp][]} */
