@@ -6,7 +6,7 @@
 #![allow(dead_code)]
 
 use gaitway::asset::Asset;
-use gaitway::formats::{FileSet, LoadOptions, convert, load, missing_files};
+use gaitway::formats::{FileSet, LoadOptions, convert, load, missing_files, prepare};
 use gaitway::retarget::JointMapFile;
 use gaitway::state::{from_link, to_link};
 
@@ -14,8 +14,15 @@ use gaitway::state::{from_link, to_link};
 pub type Entry = (&'static str, fn(&[u8]));
 
 /// All of them; each has a target of its name in `fuzz_targets`.
-pub const ENTRIES: [Entry; 6] =
-    [("gltf", gltf), ("bvh", bvh), ("exercise", exercise), ("archive", archive), ("map", map), ("link", link)];
+pub const ENTRIES: [Entry; 7] = [
+    ("gltf", gltf),
+    ("bvh", bvh),
+    ("x", x),
+    ("exercise", exercise),
+    ("archive", archive),
+    ("map", map),
+    ("link", link),
+];
 
 /// A .glb, or a .gltf whose data is inside.
 pub fn gltf(bytes: &[u8]) {
@@ -25,6 +32,16 @@ pub fn gltf(bytes: &[u8]) {
 /// A .bvh.
 pub fn bvh(bytes: &[u8]) {
     check_model(&one("motion.bvh", bytes));
+}
+
+/// A .x, text or binary, compressed or not.
+pub fn x(bytes: &[u8]) {
+    let mut files = one("model.x", bytes);
+    match prepare(&mut files) {
+        Ok(()) => check_model(&files),
+        // A panic in a part is an error in programs.
+        Err(problem) => assert!(!problem.to_string().contains("unexpectedly"), "{problem}"),
+    }
 }
 
 /// Four texts separated by 0xFF: the .obj, .skel, .attach and .mtl of one model.

@@ -120,7 +120,7 @@ struct RetargetArguments {
     /// The model to animate.
     #[arg(long, value_name = "FILE")]
     model: PathBuf,
-    /// The file with the clip to retarget: .glb, .gltf, .vrma, .fbx, .bvh.
+    /// The file with the clip to retarget: .glb, .gltf, .vrma, .fbx, .x, .bvh.
     #[arg(long, value_name = "FILE")]
     motion: PathBuf,
     /// A clip's name or index in the motion [default: its first].

@@ -17,7 +17,7 @@ use crate::state::{ClipChoice, Command, Sources, ViewerState, active_clip, from_
 /// A motion to retarget to the model, and its joint map.
 #[derive(Debug, Default, Args)]
 pub(super) struct MotionArguments {
-    /// A motion to retarget to the model: .glb, .gltf, .vrma, .fbx, .bvh.
+    /// A motion to retarget to the model: .glb, .gltf, .vrma, .fbx, .x, .bvh.
     #[arg(long, value_name = "FILE")]
     pub motion: Option<PathBuf>,
     /// The joint map [default: as `gaitway map` proposes].

@@ -34,7 +34,7 @@ pub(super) struct FilesRead {
 /// Files referring to files that refer to files.
 const MAX_ROUNDS: usize = 4;
 /// Tell the model among the items by its name.
-const MODEL_EXTENSIONS: [&str; 8] = [".glb", ".gltf", ".vrm", ".vrma", ".fbx", ".bvh", ".obj", ".zip"];
+const MODEL_EXTENSIONS: [&str; 9] = [".glb", ".gltf", ".vrm", ".vrma", ".fbx", ".x", ".bvh", ".obj", ".zip"];
 
 pub(super) async fn read_items<S: Source>(
     source: &S,

@@ -89,7 +89,7 @@ fn clips(ui: &mut Ui, shown: &Shown<'_>, model: &Model, search: &str, scrolls: b
         ui.add_space(4.0);
         controls::hint(
             ui,
-            "This model has no animations. To borrow one, drop a motion (.bvh, .vrma, or an .fbx or .glb without meshes), or use \
+            "This model has no animations. To borrow one, drop a motion (.bvh, .vrma, or an .fbx, .x or .glb without meshes), or use \
              “Motion…” to take another model's clips.",
         );
     }

@@ -5,7 +5,7 @@ import { after, before, describe, test } from "node:test";
 import binaryen from "binaryen";
 import { dataFile, skipWithoutData } from "../three/data.mjs";
 import { dataUri, png, withPngTextures, withTextures } from "../three/ktx2.mjs";
-import { BACK_ENDS, meanDifference, open, picture, pose, startSite, state, stats, whenBorrowed } from "./browser.mjs";
+import { BACK_ENDS, apply, meanDifference, open, picture, pose, startSite, state, stats, whenBorrowed } from "./browser.mjs";
 
 /** Files that need a part, with the same model without compression and a view of it. */
 const COMPRESSED = [
@@ -27,6 +27,25 @@ const KTX2 = "compressed/agi-ktx2.glb";
 const AVIF = new URL("../support/gradients.avif", import.meta.url);
 const UASTC = new URL("../support/ktx2/uastc.ktx2", import.meta.url);
 const SAMBA = "threejs/Samba_Dancing.fbx";
+const PILOT = "cosc422/original/ArmyPilot/ArmyPilot.x";
+const COURSEWORK = {
+  original: ["cosc422/original/Mannequin/mannequin.fbx", "cosc422/original/Mannequin/run.fbx"],
+  converted: ["cosc422/mannequin.glb", "cosc422/mannequin_run.glb"],
+};
+
+/** A textured triangle on two joints, and a clip that lifts the upper one by 2 along Z, which is away from the viewer there. */
+const MADE_X = `xof 0303txt 0032
+Frame hips { Frame chest { FrameTransformMatrix { 1,0,0,0, 0,1,0,0, 0,0,1,0, 0,1,0,1;; } } }
+Frame body { Mesh {
+  3; 0;0;0;, 0;1;0;, 1;0;0;; 1; 3;0,1,2;;
+  MeshTextureCoords { 3; 0;0;, 0;1;, 1;1;; }
+  MeshMaterialList { 1; 1; 0; Material { 1;1;1;1;; 0; 0;0;0;; 0;0;0;; TextureFilename { "C:\\art\\made.png"; } } }
+  SkinWeights { "hips"; 2; 0,2; 1,1; 1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1;; }
+  SkinWeights { "chest"; 1; 1; 1; 1,0,0,0, 0,1,0,0, 0,0,1,0, 0,-1,0,1;; }
+} }
+AnimTicksPerSecond { 30; }
+AnimationSet Lift { Animation { { chest } AnimationKey { 2; 2; 0;3;0,1,0;;, 60;3;0,1,2;;; } } }
+`;
 
 /** @param {import("./browser.mjs").TestPage} page */
 const requested = (page) => page.requests.filter((url) => url.includes("/parts/"));
@@ -44,6 +63,12 @@ function module(body) {
     (func (export "output_length") (result i32) (i32.const 0)))`;
   return Buffer.from(binaryen.parseText(text).emitBinary());
 }
+
+/**
+ * @param {number[]} expected
+ * @param {number[]} [found]
+ */
+const largestDifference = (expected, found) => Math.max(...expected.map((value, at) => Math.abs(value - (found?.[at] ?? NaN))));
 
 /** What is in AVIF and UASTC, as PNG; see gradients() in tests/scene/decode.rs. */
 function gradients() {
@@ -164,6 +189,69 @@ for (const renderer of BACK_ENDS)
       await whenBorrowed(borrowing, 1);
       assert.deepEqual(borrowing.troubles, []);
       await borrowing.finish();
+    });
+
+    test("the coursework's FBX files, as they were handed out, move like their converted models", async () => {
+      /** @param {string[]} files */
+      const moving = async ([model, motion]) => {
+        const page = await site.page({ renderer, link: `model=${site.data(model)}&motion=${site.data(motion)}&play=0&t=0` });
+        await whenBorrowed(page, 1);
+        const parts = requested(page);
+        const times = [];
+        // The converted clip has a key at each of these, and nothing of the curves between them.
+        for (const frame of [0, 3, 9, 17]) {
+          await apply(page, { t: frame / 30 });
+          times.push(await pose(page));
+        }
+        assert.deepEqual(page.troubles, []);
+        await page.finish();
+        return { parts, times };
+      };
+      const original = await moving(COURSEWORK.original);
+      assert.ok(original.parts.length > 0);
+      for (const url of original.parts) assert.match(url, /\/parts\/fbx-[0-9a-f]{16}\.wasm$/);
+      const converted = await moving(COURSEWORK.converted);
+      assert.deepEqual(converted.parts, []);
+      /** @typedef {Awaited<ReturnType<typeof pose>>["nodes"]} Nodes */
+      /** How far nodes of the same names are apart at most. @type {(a: Nodes, b: Nodes) => number} */
+      const apart = (a, b) => Math.max(...a.map(({ name, world }) => largestDifference(world.slice(12), b.find((node) => node.name === name)?.world.slice(12))));
+      assert.ok(apart(original.times[0].nodes, original.times[3].nodes) > 1, "it runs");
+      for (const [at, expected] of converted.times.entries()) {
+        const found = original.times[at];
+        assert.equal(found.clip, expected.clip);
+        // FBX2glTF adds a node above.
+        const off = apart(expected.nodes.filter(({ name }) => name !== "RootNode"), found.nodes);
+        assert.ok(off < 6e-4, `moment ${at}: ${off} apart, of a height of 6`);
+      }
+    });
+
+    test("a .x file is a link like any other, as a model and as a motion", async () => {
+      const files = { "made.x": MADE_X, "made.png": png(1, 1, Uint8Array.from([255, 0, 0, 255])) };
+      /** @param {string} link */
+      const opened = (link) => site.page({ renderer, files, link });
+      const made = site.data("made.x");
+      const page = await opened(`model=${made}&play=0&t=1`);
+      assert.equal(requested(page).length, 1, "once");
+      assert.match(requested(page)[0], /\/parts\/x-[0-9a-f]{16}\.wasm$/);
+      assert.equal(page.requests.filter((url) => url.endsWith("/made.png")).length, 1, "the texture is found by its base name");
+      assert.equal((await stats(page)).backend, renderer);
+      const { clip, nodes, meshes } = await pose(page);
+      assert.equal(clip, "Lift");
+      const chest = nodes.find(({ name }) => name === "chest")?.world.slice(12);
+      assert.ok(largestDifference([0, 1, -1, 1], chest) < 1e-5, `a second is 30 ticks: ${chest}`);
+      assert.ok(largestDifference([0, 0, 0, 0, 1, -1, 1, 0, 0], meshes[0].positions) < 1e-5, `${meshes[0].positions}`);
+      assert.deepEqual(page.troubles, []);
+      await page.finish();
+      for (const [model, motion] of [
+        ["threejs/Xbot.glb", PILOT],
+        [PILOT, "cosc422/original/Dwarf/avatar_walk.bvh"],
+      ]) {
+        const borrowing = await opened(`model=${site.data(model)}&motion=${site.data(motion)}`);
+        await whenBorrowed(borrowing, 1);
+        assert.equal(requested(borrowing).length, 1);
+        assert.deepEqual(borrowing.troubles, []);
+        await borrowing.finish();
+      }
     });
 
     /** @type {[string, Buffer | null, RegExp][]} */

@@ -5,9 +5,10 @@ use std::io::{Cursor, Write};
 use std::panic::catch_unwind;
 use std::time::Instant;
 
+use gaitway::formats::{load, prepare};
 use zip::write::SimpleFileOptions;
 
-use crate::build_gltf::Build;
+use crate::build_gltf::{Build, one};
 use crate::data_folder::data_folder;
 use crate::mutation::{REAL, damage, generated};
 use crate::random::Random;
@@ -24,6 +25,13 @@ const MAX_SECS: f64 = 10.0;
 const EXERCISE: &[u8] = b"mtllib m.mtl\nv 0 0 0\nv 1 0 0 1 0 0\nv 1 1 0\nv 0.3 0.3 0\nvt 0 0\nvn 0 0 1\ng a\nusemtl red\n\
     f 1/1/1 2/1/1 3/1/1 4/1/1\no b\nf -4 -3 -1\n\xFF0 0 0 -1\n0.5 0 0 0\n0 1 0 1\n\xFF0 0\n0.25 0.75\n1 0\n0.5 0.4\n\xFF\
     newmtl red\nKd 1 0.5 0\nd 0.5\nNs 10\nmap_Kd -s 1 1 1 skin.png\n";
+const X: &str =
+    "Frame a { FrameTransformMatrix { 1,0,0,0, 0,1,0,0, 0,0,1,0, 0,2,0,1;; } Mesh { 4; 0;0;0;,0;1;0;,1;1;0;,1;0;0;;
+    1; 4;0,1,2,3;; MeshNormals { 1; 0;0;-1;; 1; 4;0,0,0,0;; } MeshTextureCoords { 4; 0;0;,0;1;,1;1;,1;0;; }
+    MeshMaterialList { 1; 1; 0; Material m { 1;0;0;1;; 8; 1;1;1;; 0;0;0;; TextureFilename { \"a.png\"; } } }
+    SkinWeights { \"a\"; 2; 0,2; 0.5,0.25; 1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1;; } } }
+    AnimTicksPerSecond { 30; } AnimationSet s { Animation { { a } AnimationKey { 0; 2; 0;4;1,0,0,0;;,9;4;0,1,0,0;;; }
+    AnimationKey { 2; 2; 0;3;0,0,0;;,9;3;1,2,3;;; } } }";
 const MAP: &[u8] = br##"{"gaitway_map":1,"joints":{"spine":{"source":"neck"},"#3":{"source":5,"correction":[0,0,0,1]},
     "middle":{"source":null,"unmapped":{"clip":0,"hold":"first-key"}}},"unmapped":"rest","rest":{"model":"auto","motion":"bind"},
     "root":{"horizontal":"keep","vertical":"in-place","yaw":"freeze","extract":true},"translations":"auto","scales":"drop",
@@ -41,6 +49,22 @@ fn zipped() -> Vec<u8> {
     writer.finish().expect("in memory").into_inner()
 }
 
+/// Text, binary, and text in two compressed blocks.
+fn x_files() -> Vec<Vec<u8>> {
+    let binary = b"xof 0303bin 0032\x01\0\x05\0\0\0Frame\x01\0\x01\0\0\0a\x0A\0\x05\0guid of 16 bytes\
+        \x01\0\x06\0\0\0Camera\x0A\0\x07\0\x02\0\0\0\0\0\x80?\0\0\0\0\x02\0\x01\0\0\0b\x14\0\x0B\0\x0B\0\
+        \x01\0\x12\0\0\0AnimTicksPerSecond\x0A\0\x06\0\x01\0\0\0\x1E\0\0\0\x0B\0";
+    let mut packed = [b"xof 0303tzip0032", &(16 + X.len() as u32).to_le_bytes()[..]].concat();
+    for block in X.as_bytes().chunks(X.len() / 2 + 1) {
+        let length = block.len() as u16;
+        // Deflate's stored block: the last one, its length, and the inverse of that.
+        let stream = [&[1][..], &length.to_le_bytes(), &(!length).to_le_bytes(), block].concat();
+        packed.extend([length.to_le_bytes(), (stream.len() as u16 + 2).to_le_bytes()].concat());
+        packed.extend([b"CK", &stream[..]].concat());
+    }
+    vec![[b"xof 0303txt 0032\n", X.as_bytes()].concat(), binary.to_vec(), packed]
+}
+
 fn seeds(entry: &str) -> Vec<Vec<u8>> {
     let mut models: Vec<(String, Vec<u8>)> =
         generated().into_iter().map(|(name, bytes)| (name.to_owned(), bytes)).collect();
@@ -51,6 +75,7 @@ fn seeds(entry: &str) -> Vec<Vec<u8>> {
     match entry {
         "gltf" => of_kind(false).map(|(_, bytes)| bytes).collect(),
         "bvh" => of_kind(true).map(|(_, bytes)| bytes).collect(),
+        "x" => x_files(),
         "exercise" => vec![EXERCISE.to_vec()],
         "archive" => vec![zipped()],
         "map" => vec![MAP.to_vec()],
@@ -96,6 +121,16 @@ fn every_reader_survives_damaged_files() {
         });
         println!("{}: {cases} damaged files", entry.0);
         assert!(cases > 0);
+    }
+}
+
+/// Damage is of little use to what is refused anyway.
+#[test]
+fn the_seeds_of_x_are_whole() {
+    for seed in x_files() {
+        let mut files = one("seed.x", seed);
+        prepare(&mut files).expect("a whole file");
+        load(&files).expect("a model");
     }
 }
 

@@ -31,6 +31,11 @@ fn check_bytes(name: &str, bytes: Vec<u8>, parts: &[&str]) {
 }
 
 #[test]
+fn foreign_formats() {
+    check_bytes("model.dae", b"<COLLADA/>".to_vec(), &["COLLADA", "Blender"]);
+}
+
+#[test]
 fn truncated_glb() {
     let whole = Build::triangle().glb();
     for length in [4, 8, 11] {

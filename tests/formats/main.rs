@@ -19,6 +19,7 @@ mod rehearsal;
 mod sweep;
 mod tangents;
 mod write;
+mod x;
 
 #[path = "../support/build_gltf.rs"]
 mod build_gltf;

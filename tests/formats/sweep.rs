@@ -216,14 +216,6 @@ fn the_validators_valid_files_load() {
     }
 }
 
-#[test]
-fn foreign_formats_are_rejected_with_advice() {
-    sweep(&["cosc422/original"], &["x"], |_, result| match result {
-        Err(problem @ LoadError::UnsupportedFormat { .. }) if problem.to_string().contains("Blender") => Ok(()),
-        other => Err(format!("{other:?}")),
-    });
-}
-
 /// Whether the conversion is right is tested in parts/fbx; here, that its result is loaded and called FBX.
 #[test]
 fn fbx_files_load_or_say_why_not() {

@@ -353,6 +353,7 @@ fn bad_values_are_reported_and_skipped() {
     check_bad("camera=1,2,3", "camera");
     check_bad("camera=0,0,0,0,0,0", "camera");
     check_bad("camera=gltf:-1", "camera");
+    check_bad("camera=1e60,10,4,0,1,0", "camera");
     check_bad("joint=hips", "joint");
     check_bad("up=w", "up");
     check_bad("background=12345", "background");

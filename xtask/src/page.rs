@@ -12,7 +12,7 @@ use crate::setup;
 const BACK_ENDS: [&str; 2] = ["webgpu", "webgl2"];
 
 /// The packages in parts/ that are modules of their own.
-const PARTS: [&str; 5] = ["draco", "fbx", "ktx2", "meshopt", "qr"];
+const PARTS: [&str; 6] = ["draco", "fbx", "ktx2", "meshopt", "qr", "x"];
 
 /// Limit on a part's memory. A damaged file must not take all of a tab's.
 const MAX_PART_MEMORY: &str = "link-arg=--max-memory=2147483648";

@@ -3,21 +3,17 @@
 //! ufbx evaluates the curves with everything that lies between them and a joint's transform: pivots, rotation orders, layers,
 //! extrapolation. `curves` finds out which ones take part and where they have keys, `fit` does the rest.
 
+use gaitway_glb::{Animation, Glb, Warnings, sort};
 use ufbx::{Anim, Node, Scene};
 
 use crate::curves::{
     Curves, Drivers, Limits, PIVOT_PROPERTIES, ROTATION_PROPERTIES, SCALE_PROPERTIES, TRANSLATION_PROPERTIES,
 };
 use crate::fit::{self, Keys, Space, Track, fit};
-use crate::glb::{Glb, List, Object, check_size, quoted};
 use crate::mesh::Morph;
 use crate::node::{Nodes, finite};
-use crate::sort::sort;
 use crate::tolerance::{Tolerance, Tolerances};
-use crate::warnings::Warnings;
 
-/// How many of the key times written last are looked through for the same ones.
-const MAX_COMPARED: usize = 64;
 /// How far a blend shape's weight may be off.
 const WEIGHT_TOLERANCE: f64 = 1e-4;
 
@@ -42,21 +38,12 @@ pub fn write(
             warnings.add(format!("Clip \"{name}\" left out: it is longer than a day."));
             continue;
         };
-        let mut clip = Clip {
-            scene,
-            anim: &stack.anim,
-            curves,
-            range,
-            limits: &mut limits,
-            glb,
-            times: Vec::new(),
-            samplers: List::default(),
-            channels: List::default(),
-        };
+        let mut clip =
+            Clip { scene, anim: &stack.anim, curves, range, limits: &mut limits, glb, animation: Animation::default() };
         clip.add_nodes(nodes, &tolerances)?;
         clip.add_morphs(morphs)?;
         clip.warn(warnings, name);
-        clip.finish(name);
+        clip.animation.write(name, clip.glb);
     }
     if limits.are_reached() {
         warnings.add("The animation has too many keys to follow each one exactly: it was simplified.".to_owned());
@@ -73,10 +60,7 @@ struct Clip<'a, 'b> {
     range: [f64; 2],
     limits: &'b mut Limits,
     glb: &'b mut Glb,
-    /// Key times that have been written, with their accessors: channels with the same keys share them.
-    times: Vec<(Vec<f32>, usize)>,
-    samplers: List,
-    channels: List,
+    animation: Animation,
 }
 
 /// A property of a node: name in glTF, ufbx's flag for that part of a transform, number of components.
@@ -205,33 +189,12 @@ impl<'a> Clip<'a, '_> {
     }
 
     fn push(&mut self, keys: &Keys, node: usize, path: &str) -> Result<(), String> {
-        check_size(self.glb.len().saturating_add(4 * keys.values.len()))?;
-        let recent = self.times.iter().rev().take(MAX_COMPARED);
-        let input = match recent.into_iter().find(|(times, _)| *times == keys.times) {
-            Some(&(_, accessor)) => accessor,
-            None => {
-                let accessor = self.glb.floats(&keys.times, "SCALAR", None, true);
-                self.times.push((keys.times.clone(), accessor));
-                accessor
-            }
-        };
-        let kind = match path {
-            "rotation" => "VEC4",
-            "weights" => "SCALAR",
-            _ => "VEC3",
-        };
-        let output = self.glb.floats(&keys.values, kind, None, false);
         let interpolation = match keys.interpolation {
             fit::Interpolation::Linear => "LINEAR",
             fit::Interpolation::Step => "STEP",
             fit::Interpolation::CubicSpline => "CUBICSPLINE",
         };
-        let mut sampler = Object::new();
-        sampler.index("input", input).string("interpolation", interpolation).index("output", output);
-        let sampler = self.samplers.push(&sampler.end());
-        self.channels
-            .push(&format!("{{\"sampler\":{sampler},\"target\":{{\"node\":{node},\"path\":{}}}}}", quoted(path)));
-        Ok(())
+        self.animation.add(self.glb, (node, path), interpolation, &keys.times, &keys.values)
     }
 
     /// Names animated properties that have no place in glTF.
@@ -255,18 +218,6 @@ impl<'a> Clip<'a, '_> {
             sort(&mut others, |a, b| a < b);
             warnings.add(format!("Clip \"{clip}\": animated {} left out.", others.join(", ")));
         }
-    }
-
-    fn finish(self, name: &str) {
-        if self.channels.is_empty() {
-            return;
-        }
-        let mut json = Object::new();
-        if !name.is_empty() {
-            json.string("name", name);
-        }
-        json.raw("samplers", &self.samplers.json()).raw("channels", &self.channels.json());
-        self.glb.animations.push(&json.end());
     }
 }
 

@@ -1,9 +1,9 @@
 //! Which curves animate what, and when they have keys.
 
+use gaitway_glb::sort;
 use ufbx::{AnimCurve, AnimLayer, AnimStack, AnimValue, ExtrapolationMode, Interpolation};
 
 use crate::fit::Corner;
-use crate::sort::sort;
 
 /// Evaluations of a transform for halving pieces, at least and per key; when they are used up, curves are followed less
 /// closely.

@@ -11,20 +11,17 @@
 mod clip;
 mod curves;
 mod fit;
-mod glb;
 mod libc;
 mod material;
 mod mesh;
 mod node;
 mod raw;
 mod shape;
-mod sort;
 mod tolerance;
 mod warnings;
 
+use gaitway_glb::{Glb, Warnings};
 use gaitway_part::{Answer, Output};
-use glb::Glb;
-use warnings::Warnings;
 
 /// Largest file that is read.
 const MAX_FILE_BYTES: usize = 1 << 29;
@@ -53,9 +50,9 @@ pub fn convert(bytes: &[u8]) -> Answer {
                 .to_owned(),
         );
     }
-    let mut glb = Glb::default();
+    let mut glb = Glb::new("FBX");
     let mut warnings = Warnings::default();
-    warnings.add_scene(&scene);
+    warnings::add_scene(&mut warnings, &scene);
     let materials = material::write(&scene, &mut glb, &mut warnings);
     let mut nodes = node::Nodes::new(&scene);
     let morphs = mesh::write(&scene, &materials, &mut nodes, &mut glb, &mut warnings)?;

@@ -4,10 +4,8 @@
 //! connected texture takes the place of the value it is connected to, as the FBX SDK and Blender see it. Colours are taken as
 //! linear, as Blender and Godot do.
 
+use gaitway_glb::{Glb, Object, Warnings, base_name, percent_encoded, quoted, roughness_of_exponent};
 use ufbx::{Material, MaterialMap, Scene, ShaderType, Texture};
-
-use crate::glb::{Glb, Object, quoted};
-use crate::warnings::Warnings;
 
 const REPEAT: usize = 10497;
 const CLAMP_TO_EDGE: usize = 33071;
@@ -147,8 +145,7 @@ fn add_metal_and_roughness(material: &Material, surface: &mut Object, textures: 
     }
 }
 
-/// Returns the roughness. For Phong, the one whose highlight is as wide as the exponent's: sqrt(2 / (n + 2)), as in Walter et
-/// al. 2007; a surface without specular reflection is rough.
+/// Returns the roughness. For Phong, the exponent's; a surface without specular reflection is rough.
 fn roughness(material: &Material) -> f64 {
     match material.shader_type {
         ShaderType::FbxLambert | ShaderType::Unknown => 1.0,
@@ -157,7 +154,7 @@ fn roughness(material: &Material) -> f64 {
             let color = fbx.specular_color.value_vec4;
             let strength = fbx.specular_factor.value_vec4.x * color.x.max(color.y).max(color.z);
             let exponent = fbx.specular_exponent.value_vec4.x;
-            if strength > 0.0 && exponent > 0.0 { (2.0 / (exponent + 2.0)).sqrt() } else { 1.0 }
+            if strength > 0.0 && exponent > 0.0 { roughness_of_exponent(exponent) } else { 1.0 }
         }
         _ if material.pbr.roughness.has_value => unit(material.pbr.roughness.value_vec4.x),
         _ => 1.0,
@@ -324,45 +321,11 @@ impl Textures<'_> {
     }
 }
 
-/// Returns the last part of a path of any system.
-fn base_name(path: &str) -> &str {
-    path.rsplit(['/', '\\']).next().unwrap_or_default()
-}
-
 fn media_type(content: &[u8]) -> Option<&'static str> {
     match content {
         [0x89, b'P', b'N', b'G', ..] => Some("image/png"),
         [0xff, 0xd8, 0xff, ..] => Some("image/jpeg"),
         [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => Some("image/webp"),
         _ => None,
-    }
-}
-
-fn percent_encoded(name: &str) -> String {
-    let mut uri = String::new();
-    for byte in name.bytes() {
-        if byte.is_ascii_alphanumeric() || b"-._~".contains(&byte) {
-            uri.push(char::from(byte));
-        } else {
-            uri.push_str(&format!("%{byte:02X}"));
-        }
-    }
-    uri
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn paths_of_any_system_have_a_base_name() {
-        for path in ["C:\\a b\\skin.png", "../skin.png", "skin.png", "/x\\skin.png"] {
-            assert_eq!(base_name(path), "skin.png", "{path}");
-        }
-    }
-
-    #[test]
-    fn uris_are_encoded() {
-        assert_eq!(percent_encoded("a b#ü.png"), "a%20b%23%C3%BC.png");
     }
 }

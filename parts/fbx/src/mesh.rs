@@ -4,17 +4,13 @@
 //! becomes a primitive. An unskinned mesh takes in the geometric transform of its node; a skinned one has it in its inverse
 //! bind matrices.
 
+use gaitway_glb::{Glb, List, MAX_INFLUENCES, Object, Warnings, indices, numbers, quoted, strongest};
 use ufbx::{BlendShape, Matrix, Mesh, Node, Scene, SkinDeformer};
 
-use crate::glb::{Glb, List, Object, indices, numbers, quoted};
 use crate::material::UvNames;
 use crate::node::{Nodes, columns};
 use crate::shape::{Influences, Shape};
-use crate::sort::sort;
-use crate::warnings::Warnings;
 
-/// Most influences per vertex: four sets of four.
-const MAX_INFLUENCES: usize = 16;
 const MAX_JOINTS: usize = 1 << 16;
 
 /// A glTF node whose mesh has blend shapes.
@@ -172,16 +168,10 @@ impl Meshes<'_> {
         let own_node = skin.clusters.count as u16;
         let mut most = 0;
         let influences = (0..mesh.num_vertices).map(|vertex| {
-            let mut influences: Vec<(u16, f64)> = weights(skin, vertex).collect();
+            let influences: Vec<(u16, f64)> = weights(skin, vertex).collect();
             most = most.max(influences.len());
-            sort(&mut influences, |a, b| a.1 > b.1);
-            influences.truncate(MAX_INFLUENCES);
-            let sum: f64 = influences.iter().map(|&(_, weight)| weight).sum();
-            if sum > 0.0 && sum.is_finite() {
-                influences.into_iter().map(|(joint, weight)| (joint, (weight / sum) as f32)).collect()
-            } else {
-                vec![(own_node, 1.0)]
-            }
+            let kept = strongest(influences);
+            if kept.is_empty() { vec![(own_node, 1.0)] } else { kept }
         });
         let influences = influences.collect();
         if most > MAX_INFLUENCES {

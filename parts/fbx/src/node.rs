@@ -1,9 +1,7 @@
 //! The node hierarchy, with its cameras and lights.
 
+use gaitway_glb::{Glb, Object, Warnings, indices};
 use ufbx::{Matrix, Node, Quat, Scene, Transform, Vec3};
-
-use crate::glb::{Glb, Object, indices};
-use crate::warnings::Warnings;
 
 /// One glTF node in the making.
 pub struct Entry {

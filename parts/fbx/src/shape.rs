@@ -1,8 +1,8 @@
 //! The triangles of a mesh: from corners of polygons to vertices and indices.
 
+use gaitway_glb::{ARRAY_BUFFER, Glb, List, Object, check_size, linear};
 use ufbx::{Face, Matrix, Mesh, MeshPart, Vec3};
 
-use crate::glb::{ARRAY_BUFFER, Glb, List, Object, check_size};
 use crate::mesh::shapes;
 use crate::raw;
 
@@ -60,7 +60,10 @@ impl<'a> Shape<'a> {
             let accessor = glb.floats(vertices.colors.as_flattened(), "VEC4", Some(ARRAY_BUFFER), false);
             attributes.index("COLOR_0", accessor);
         }
-        self.add_influences(&vertices.ids, &mut attributes, glb);
+        if let Some(influences) = &self.influences {
+            let of = |id: &u32| influences.get(*id as usize).map_or(&[][..], Vec::as_slice);
+            glb.add_influences(&vertices.ids.iter().map(of).collect::<Vec<_>>(), &mut attributes);
+        }
         let mut primitive = Object::new();
         primitive.raw("attributes", &attributes.end());
         primitive.index("indices", glb.triangles(&triangles, vertices.ids.len()));
@@ -117,6 +120,7 @@ impl<'a> Shape<'a> {
                 Vec::new()
             },
             uvs: uvs.collect(),
+            // Painted in sRGB, as Blender and three.js take them; glTF has them linear.
             colors: color.map_or_else(Vec::new, |set| {
                 let color = |&corner| value(&set.values, &set.indices, corner).unwrap_or_default();
                 let rgba = |c: ufbx::Vec4| [linear(c.x), linear(c.y), linear(c.z), real(c.w).clamp(0.0, 1.0)];
@@ -135,25 +139,6 @@ impl<'a> Shape<'a> {
         let normal = ufbx::vec3_normalize(ufbx::transform_direction(&self.normals, normal));
         let normal = [normal.x, normal.y, normal.z].map(real);
         if normal == [0.0; 3] { [0.0, 1.0, 0.0] } else { normal }
-    }
-
-    /// Adds as many sets of four joints as the part needs.
-    fn add_influences(&self, ids: &[u32], attributes: &mut Object, glb: &mut Glb) {
-        let Some(influences) = &self.influences else { return };
-        let of = |id: &u32| influences.get(*id as usize).map_or(&[][..], Vec::as_slice);
-        let most = ids.iter().map(|id| of(id).len()).max().unwrap_or(0);
-        for set in 0..most.div_ceil(4).max(1) {
-            let (mut joints, mut weights) = (Vec::with_capacity(4 * ids.len()), Vec::with_capacity(4 * ids.len()));
-            for id in ids {
-                for place in 4 * set..4 * set + 4 {
-                    let (joint, weight) = of(id).get(place).copied().unwrap_or_default();
-                    joints.push(joint);
-                    weights.push(weight);
-                }
-            }
-            attributes.index(&format!("JOINTS_{set}"), glb.joints(&joints));
-            attributes.index(&format!("WEIGHTS_{set}"), glb.floats(&weights, "VEC4", Some(ARRAY_BUFFER), false));
-        }
     }
 
     fn add_shapes(&self, ids: &[u32], primitive: &mut Object, glb: &mut Glb) -> Result<(), String> {
@@ -234,10 +219,4 @@ fn value<T: Copy>(values: &[T], indices: &[u32], corner: u32) -> Option<T> {
 fn real(value: f64) -> f32 {
     let value = value as f32;
     if value.is_finite() { value } else { 0.0 }
-}
-
-/// Vertex colours are painted in sRGB, as Blender and three.js take them; glTF has them linear.
-fn linear(value: f64) -> f32 {
-    let value = if value.is_finite() { value.clamp(0.0, 1.0) } else { 0.0 };
-    (if value <= 0.04045 { value / 12.92 } else { libm::pow((value + 0.055) / 1.055, 2.4) }) as f32
 }

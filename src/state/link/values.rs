@@ -379,7 +379,10 @@ pub(super) fn read_camera(text: &str) -> Option<CameraChoice> {
     }
     let parts: Vec<&str> = text.split(',').collect();
     let &[yaw, pitch, distance, x, y, z] = parts.as_slice() else { return None };
-    let radians = |text: &str| finite::<f64>(text).map(|degrees| degrees.to_radians() as f32);
+    let radians = |text: &str| {
+        let radians = finite::<f64>(text)?.to_radians() as f32;
+        radians.is_finite().then_some(radians)
+    };
     let distance = finite::<f32>(distance).filter(|&distance| distance > 0.0)?;
     let target = glam::Vec3::new(finite(x)?, finite(y)?, finite(z)?);
     Some(CameraChoice::Orbit(OrbitCamera {

@@ -54,8 +54,8 @@ pub fn show(context: &Context, local: &mut UiState, out: &mut Output) {
 fn title_and_hint(purpose: PathPurpose) -> (&'static str, &'static str) {
     const GLB: &str = "Path of the .glb to write";
     match purpose {
-        PathPurpose::Open => ("Open a file", "Path of a .glb, .gltf, .bvh, .obj, .zip or folder"),
-        PathPurpose::OpenMotion => ("Borrow motion", "Path of a .bvh, .fbx, .glb, .vrma or joint map .json"),
+        PathPurpose::Open => ("Open a file", "Path of a .glb, .gltf, .fbx, .x, .bvh, .obj, .zip or folder"),
+        PathPurpose::OpenMotion => ("Borrow motion", "Path of a .bvh, .fbx, .x, .glb, .vrma or joint map .json"),
         PathPurpose::Save(Saved::File(Export::Map { .. })) => ("Save joint map", "Path of the .json to write"),
         PathPurpose::Save(Saved::File(Export::Model { .. } | Export::Whole { .. })) => ("Save model", GLB),
         PathPurpose::Save(Saved::File(Export::Clip { .. })) => ("Save clip", GLB),

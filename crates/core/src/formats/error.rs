@@ -8,7 +8,7 @@ use crate::mesh::GeometryError;
 pub enum LoadError {
     /// No file of the set is a model or motion.
     #[error(
-        "no model among the files ({}); Gaitway reads .glb, .gltf with its files, .vrm, .vrma, .fbx, .bvh, .obj (with .skel and .attach), a .zip of these, or a joint map (.json)",
+        "no model among the files ({}); Gaitway reads .glb, .gltf with its files, .vrm, .vrma, .fbx, .x, .bvh, .obj (with .skel and .attach), a .zip of these, or a joint map (.json)",
         listed(found)
     )]
     NoModel {
@@ -36,7 +36,7 @@ pub enum LoadError {
     UnsupportedFormat {
         /// Name of the file in the set.
         file: String,
-        /// The format as the user knows it, such as "FBX".
+        /// The format as the user knows it, such as "COLLADA".
         format: &'static str,
     },
     /// The glTF has no version, has one other than 2.x, or has a `minVersion` other than 2.0.

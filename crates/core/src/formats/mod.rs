@@ -193,11 +193,11 @@ fn find_model(files: &FileSet) -> Result<(&str, &Arc<[u8]>), LoadError> {
                 if obj::is_companion(name) {
                     return Some(obj::without_obj(name));
                 }
-                if is_fbx(name, bytes) {
-                    let problem = "an FBX file is loaded after `prepare` has converted it".to_owned();
+                if whole_file_part(name, bytes).is_some() {
+                    let problem = "a file of this format is loaded after `prepare` has converted it".to_owned();
                     return Some(LoadError::Conversion { file: name.to_owned(), problem });
                 }
-                let format = foreign_format(name, bytes)?;
+                let format = foreign_format(name)?;
                 Some(LoadError::UnsupportedFormat { file: name.to_owned(), format })
             })
             .unwrap_or_else(|| LoadError::NoModel { found: files.names().map(str::to_owned).collect() })),
@@ -232,17 +232,23 @@ fn is_gltf(name: &str, bytes: &[u8]) -> bool {
         && bytes.windows(7).take(4096).any(|window| window == b"\"asset\"")
 }
 
-/// Until it is converted.
-fn is_fbx(name: &str, bytes: &[u8]) -> bool {
-    bytes.starts_with(b"Kaydara FBX") || (extension(name) == "fbx" && !bytes.starts_with(b"glTF"))
-}
-
-fn foreign_format(name: &str, bytes: &[u8]) -> Option<&'static str> {
+/// Returns the part that converts a file as a whole, until it has done so.
+fn whole_file_part(name: &str, bytes: &[u8]) -> Option<Part> {
+    if bytes.starts_with(b"Kaydara FBX") {
+        return Some(Part::Fbx);
+    }
     if bytes.starts_with(b"xof ") {
-        return Some("DirectX .x");
+        return Some(Part::X);
     }
     match extension(name).as_str() {
-        "x" => Some("DirectX .x"),
+        "fbx" if !bytes.starts_with(b"glTF") => Some(Part::Fbx),
+        "x" if !bytes.starts_with(b"glTF") => Some(Part::X),
+        _ => None,
+    }
+}
+
+fn foreign_format(name: &str) -> Option<&'static str> {
+    match extension(name).as_str() {
         "dae" => Some("COLLADA"),
         "blend" => Some("Blender's own"),
         _ => None,

@@ -5,29 +5,32 @@ use gaitway_part::Answer;
 
 use super::file_set::Conversion;
 use super::gltf::{draco, meshopt};
-use super::{FileSet, LoadError, is_bvh, is_fbx, is_gltf};
+use super::{FileSet, LoadError, is_bvh, is_gltf, whole_file_part};
 
 /// A decoder that few files need. Natively it is linked like any crate; the page downloads it when a file needs it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
     /// `KHR_draco_mesh_compression`.
     Draco,
-    /// Models and motions of Autodesk's format.
+    /// Models and motions in Autodesk's format.
     Fbx,
     /// `KHR_texture_basisu`. Its images stay what they are until all images are decoded.
     Ktx2,
     /// `EXT_meshopt_compression` and `KHR_meshopt_compression`.
     Meshopt,
+    /// Models and motions in DirectX's `.x` format.
+    X,
 }
 
 impl Part {
-    /// Name of the package and of the page's module.
+    /// Name of the package and of the page's module; of the format as well, if the part converts whole files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Draco => "draco",
             Self::Fbx => "fbx",
             Self::Ktx2 => "ktx2",
             Self::Meshopt => "meshopt",
+            Self::X => "x",
         }
     }
 
@@ -38,6 +41,7 @@ impl Part {
             Self::Fbx => "FBX reader",
             Self::Ktx2 => "KTX2 decoder",
             Self::Meshopt => "meshopt decoder",
+            Self::X => "DirectX reader",
         }
     }
 
@@ -49,6 +53,7 @@ impl Part {
             Self::Fbx => gaitway_fbx::convert,
             Self::Ktx2 => gaitway_ktx2::decode,
             Self::Meshopt => gaitway_meshopt::decode,
+            Self::X => gaitway_x::convert,
         };
         let stopped = |_| Err(format!("the {} stopped unexpectedly; the file may be damaged", self.title()));
         std::panic::catch_unwind(|| convert(input)).unwrap_or_else(stopped)
@@ -111,8 +116,8 @@ impl Preparation {
 pub fn next_preparation(files: &FileSet) -> Result<Option<Preparation>, LoadError> {
     for (name, bytes) in files.iter() {
         let preparation = |part, input, step| Ok(Some(Preparation { part, input, file: name.to_owned(), step }));
-        if is_fbx(name, bytes) {
-            return preparation(Part::Fbx, bytes.to_vec(), Step::Whole("fbx"));
+        if let Some(part) = whole_file_part(name, bytes) {
+            return preparation(part, bytes.to_vec(), Step::Whole(part.name()));
         }
         if !is_gltf(name, bytes) || is_bvh(name, bytes) {
             continue;

@@ -3,6 +3,7 @@
 mod data;
 #[path = "../../../../tests/support/data_folder.rs"]
 mod data_folder;
+#[path = "../../../../tests/support/glb.rs"]
 mod glb;
 mod mutation;
 mod text;

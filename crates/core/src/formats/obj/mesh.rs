@@ -3,9 +3,9 @@
 
 use std::collections::HashMap;
 
+use gaitway_polygon::Cutter;
 use glam::{Vec2, Vec3, Vec4};
 
-use super::polygon::Cutter;
 use super::text::{Corner, NONE, ObjText};
 use crate::formats::error::Problem;
 use crate::formats::limits::Budget;

@@ -7,7 +7,6 @@
 mod attach;
 mod mesh;
 mod mtl;
-mod polygon;
 mod skel;
 mod text;
 

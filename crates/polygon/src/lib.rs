@@ -1,4 +1,5 @@
-//! Triangulates polygons: as a fan if the polygon is convex, else by ear clipping.
+//! Triangulates polygons: as a fan if the polygon is convex, else by ear clipping. A package of its own, since .obj and .x files are
+//! read by different programs on the page.
 
 use glam::{DVec2, DVec3};
 
@@ -26,7 +27,7 @@ impl Cutter {
         if count > 3 && count <= MAX_CLIPPED_CORNERS {
             self.flatten(corners);
             if !is_convex(&self.flat) {
-                return self.clip_ears(triangle);
+                return self.clip_ears(&mut triangle);
             }
         }
         for second in 1..count.saturating_sub(1) {
@@ -44,7 +45,7 @@ impl Cutter {
         self.flat.extend(corners.iter().map(|corner| DVec2::new(x.dot(*corner), y.dot(*corner))));
     }
 
-    fn clip_ears(&mut self, mut triangle: impl FnMut([usize; 3])) {
+    fn clip_ears(&mut self, triangle: &mut dyn FnMut([usize; 3])) {
         let flat = &self.flat;
         let ring = &mut self.ring;
         ring.clear();

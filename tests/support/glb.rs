@@ -1,4 +1,7 @@
-//! A small reader and evaluator of GLB, written from the glTF specification and independent of the converter.
+//! A small reader and evaluator of GLB, written from the glTF specification and independent of the converters that it checks.
+
+// Each test program uses a part of it.
+#![allow(dead_code)]
 
 use std::collections::HashMap;
 
@@ -141,7 +144,11 @@ impl Glb {
         let mut open: Vec<(usize, Matrix)> =
             roots.iter().map(|root| (root.as_u64().unwrap() as usize, IDENTITY)).collect();
         while let Some((index, parent)) = open.pop() {
-            worlds[index] = multiply(&parent, &matrix(&locals[index]));
+            let local = match nodes[index]["matrix"].as_array() {
+                Some(_) => columns(&array(&nodes[index]["matrix"], &[])),
+                None => matrix(&locals[index]),
+            };
+            worlds[index] = multiply(&parent, &local);
             for child in nodes[index]["children"].as_array().map_or(&[][..], Vec::as_slice) {
                 open.push((child.as_u64().unwrap() as usize, worlds[index]));
             }
@@ -211,14 +218,7 @@ impl Glb {
         let skin = &self.list("skins")[skin];
         let bind = self.accessor(&skin["inverseBindMatrices"]);
         let joints = skin["joints"].as_array().unwrap().iter().map(|joint| joint.as_u64().unwrap() as usize);
-        let matrices = joints.zip(bind.chunks(16)).map(|(joint, bind)| {
-            let mut matrix = IDENTITY;
-            for (i, value) in bind.iter().enumerate() {
-                matrix[i / 4][i % 4] = *value;
-            }
-            multiply(&pose.worlds[joint], &matrix)
-        });
-        matrices.collect()
+        joints.zip(bind.chunks(16)).map(|(joint, bind)| multiply(&pose.worlds[joint], &columns(bind))).collect()
     }
 
     fn primitive(
@@ -276,6 +276,10 @@ impl Glb {
 
 /// By columns.
 pub const IDENTITY: Matrix = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
+
+fn columns(elements: &[f64]) -> Matrix {
+    std::array::from_fn(|column| std::array::from_fn(|row| elements[4 * column + row]))
+}
 
 fn multiply(a: &Matrix, b: &Matrix) -> Matrix {
     std::array::from_fn(|column| std::array::from_fn(|row| (0..4).map(|k| a[k][row] * b[column][k]).sum()))

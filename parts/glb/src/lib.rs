@@ -1,8 +1,23 @@
-//! A glTF document under construction, written as GLB: JSON text assembled member by member, and one binary buffer.
+//! What the converters of other formats share: a glTF document under construction, written as GLB, and the rules by which values
+//! become glTF's.
 //!
-//! No serializer: the whole converter has to stay small as a wasm module, and its JSON is a few dozen fixed shapes.
+//! No serializer: a converter has to stay small as a wasm module, and its JSON is a few dozen fixed shapes, assembled member by
+//! member.
+
+#![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![forbid(unsafe_code)]
+
+mod animation;
+mod sort;
+mod values;
+mod warnings;
 
 use std::fmt::Write;
+
+pub use animation::Animation;
+pub use sort::sort;
+pub use values::{MAX_INFLUENCES, base_name, linear, percent_encoded, roughness_of_exponent, strongest};
+pub use warnings::Warnings;
 
 /// Largest GLB that is written. Its header counts bytes with 32 bits.
 const MAX_BYTES: usize = 1 << 29;
@@ -47,9 +62,16 @@ impl List {
 /// A JSON object, member by member.
 pub struct Object(String);
 
+impl Default for Object {
+    fn default() -> Self {
+        Self("{".to_owned())
+    }
+}
+
 impl Object {
+    /// Creates an object without members.
     pub fn new() -> Object {
-        Object("{".to_owned())
+        Object::default()
     }
 
     /// Adds a member whose value is JSON already.
@@ -64,26 +86,32 @@ impl Object {
         self
     }
 
+    /// Adds a string.
     pub fn string(&mut self, key: &str, value: &str) -> &mut Object {
         self.raw(key, &quoted(value))
     }
 
+    /// Adds an index or a count.
     pub fn index(&mut self, key: &str, value: usize) -> &mut Object {
         self.raw(key, &value.to_string())
     }
 
+    /// Adds a number.
     pub fn number(&mut self, key: &str, value: f64) -> &mut Object {
         self.raw(key, &number(value))
     }
 
+    /// Adds an array of numbers.
     pub fn numbers(&mut self, key: &str, values: &[f64]) -> &mut Object {
         self.raw(key, &numbers(values))
     }
 
+    /// Returns whether nothing was added.
     pub fn is_empty(&self) -> bool {
         self.0.len() == 1
     }
 
+    /// Returns the JSON object.
     pub fn end(&self) -> String {
         format!("{}}}", self.0)
     }
@@ -197,24 +225,42 @@ fn power_of_ten(exponent: i32) -> f64 {
 /// The document.
 #[derive(Default)]
 pub struct Glb {
+    /// The format that it is converted from.
+    source: &'static str,
     bytes: Vec<u8>,
     views: List,
     accessors: List,
+    /// `nodes`
     pub nodes: List,
+    /// Nodes of the only scene.
     pub scene_roots: Vec<usize>,
+    /// `meshes`
     pub meshes: List,
+    /// `skins`
     pub skins: List,
+    /// `materials`
     pub materials: List,
+    /// `textures`
     pub textures: List,
+    /// `samplers` of textures
     pub samplers: List,
+    /// `images`
     pub images: List,
+    /// `cameras`
     pub cameras: List,
+    /// Lights of `KHR_lights_punctual`.
     pub lights: List,
+    /// `animations`
     pub animations: List,
     extensions: Vec<&'static str>,
 }
 
 impl Glb {
+    /// Creates an empty document. `source` is the format that it is converted from, for `asset.generator`.
+    pub fn new(source: &'static str) -> Glb {
+        Glb { source, ..Glb::default() }
+    }
+
     /// Declares that the document uses an extension.
     pub fn use_extension(&mut self, name: &'static str) {
         if !self.extensions.contains(&name) {
@@ -239,7 +285,7 @@ impl Glb {
     /// Appends an accessor of floats with as many components as `kind` has. `bounds` adds `min` and `max`.
     pub fn floats(&mut self, values: &[f32], kind: &str, target: Option<u32>, bounds: bool) -> usize {
         let width = components(kind);
-        let view = self.view(&bytes_of(values), target);
+        let view = self.view(&bytes_of(values, f32::to_le_bytes), target);
         let mut accessor = accessor(view, FLOAT, values.len() / width, kind);
         if bounds {
             add_bounds(&mut accessor, values, width);
@@ -257,9 +303,8 @@ impl Glb {
         }
         add_bounds(&mut accessor, &reached, 3);
         if !elements.is_empty() {
-            let places: Vec<u8> = elements.iter().flat_map(|element| element.to_le_bytes()).collect();
-            let places = self.view(&places, None);
-            let values = self.view(&bytes_of(values), None);
+            let places = self.view(&bytes_of(elements, u32::to_le_bytes), None);
+            let values = self.view(&bytes_of(values, f32::to_le_bytes), None);
             accessor.raw(
                 "sparse",
                 &format!(
@@ -274,29 +319,53 @@ impl Glb {
 
     /// Appends the indices of triangles.
     pub fn triangles(&mut self, indices: &[u32], vertices: usize) -> usize {
-        let (bytes, kind): (Vec<u8>, u32) = if vertices < usize::from(u16::MAX) {
-            (indices.iter().flat_map(|&index| (index as u16).to_le_bytes()).collect(), UNSIGNED_SHORT)
+        let (bytes, kind) = if vertices < usize::from(u16::MAX) {
+            (bytes_of(indices, |index| (index as u16).to_le_bytes()), UNSIGNED_SHORT)
         } else {
-            (indices.iter().flat_map(|index| index.to_le_bytes()).collect(), UNSIGNED_INT)
+            (bytes_of(indices, u32::to_le_bytes), UNSIGNED_INT)
         };
         let view = self.view(&bytes, Some(ELEMENT_ARRAY_BUFFER));
         self.accessors.push(&accessor(view, kind, indices.len(), "SCALAR").end())
     }
 
     /// Appends four joint numbers per vertex.
-    pub fn joints(&mut self, joints: &[u16]) -> usize {
-        let (bytes, kind): (Vec<u8>, u32) = if joints.iter().all(|&joint| joint < 256) {
-            (joints.iter().map(|&joint| joint as u8).collect(), UNSIGNED_BYTE)
+    fn joints(&mut self, joints: &[u16]) -> usize {
+        let (bytes, kind) = if joints.iter().all(|&joint| joint < 256) {
+            (bytes_of(joints, |joint| [joint as u8]), UNSIGNED_BYTE)
         } else {
-            (joints.iter().flat_map(|joint| joint.to_le_bytes()).collect(), UNSIGNED_SHORT)
+            (bytes_of(joints, u16::to_le_bytes), UNSIGNED_SHORT)
         };
         let view = self.view(&bytes, Some(ARRAY_BUFFER));
         self.accessors.push(&accessor(view, kind, joints.len() / 4, "VEC4").end())
     }
 
-    /// Returns the bytes appended so far.
+    /// Appends the influences of vertices, joint and weight, as many sets of four as they need.
+    pub fn add_influences(&mut self, vertices: &[&[(u16, f32)]], attributes: &mut Object) {
+        let most = vertices.iter().map(|influences| influences.len()).max().unwrap_or(0);
+        for set in 0..most.div_ceil(4).max(1) {
+            let (mut joints, mut weights) =
+                (Vec::with_capacity(4 * vertices.len()), Vec::with_capacity(4 * vertices.len()));
+            for influences in vertices {
+                for place in 4 * set..4 * set + 4 {
+                    let (joint, weight) = influences.get(place).copied().unwrap_or_default();
+                    joints.push(joint);
+                    weights.push(weight);
+                }
+            }
+            attributes.index(&format!("JOINTS_{set}"), self.joints(&joints));
+            attributes.index(&format!("WEIGHTS_{set}"), self.floats(&weights, "VEC4", Some(ARRAY_BUFFER), false));
+        }
+    }
+
+    /// Returns about how many bytes the file has so far.
     pub fn len(&self) -> usize {
-        self.bytes.len()
+        let lists = [&self.views, &self.accessors, &self.meshes, &self.animations];
+        self.bytes.len() + lists.iter().map(|list| list.text.len()).sum::<usize>()
+    }
+
+    /// Returns whether nothing with a size was appended.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
     }
 
     /// Returns the file's bytes.
@@ -323,7 +392,7 @@ impl Glb {
 
     fn json(&self) -> String {
         let mut document = Object::new();
-        document.raw("asset", "{\"version\":\"2.0\",\"generator\":\"Gaitway, from FBX\"}");
+        document.raw("asset", &format!("{{\"version\":\"2.0\",\"generator\":\"Gaitway, from {}\"}}", self.source));
         if !self.extensions.is_empty() {
             let mut names = List::default();
             for name in &self.extensions {
@@ -403,8 +472,13 @@ fn add_bounds(accessor: &mut Object, values: &[f32], width: usize) {
     accessor.numbers("min", &low).numbers("max", &high);
 }
 
-fn bytes_of(values: &[f32]) -> Vec<u8> {
-    values.iter().flat_map(|value| value.to_le_bytes()).collect()
+/// A loop, since the standard library's adapters take several times the code.
+fn bytes_of<T: Copy, const SIZE: usize>(values: &[T], bytes: impl Fn(T) -> [u8; SIZE]) -> Vec<u8> {
+    let mut all = Vec::with_capacity(SIZE * values.len());
+    for &value in values {
+        all.extend_from_slice(&bytes(value));
+    }
+    all
 }
 
 #[cfg(test)]
