@@ -383,6 +383,14 @@ pub const IGNORED_CHANNELS: &str = "Ignored channels";
 pub const USE_ALL_CHANNELS: &str = "Use all channels";
 /// Heading of the choice of rest poses.
 pub const REST_POSE_ALIGNMENT: &str = "Rest-pose alignment";
+/// Accessible name of the choice of the model's rest pose.
+pub const REST_OF_MODEL: &str = "Rest pose of the model";
+/// Accessible name of the choice of the motion's rest pose.
+pub const REST_OF_MOTION: &str = "Rest pose of the motion";
+/// Choice of what happens to translations of joints other than the hips.
+pub const TRANSLATIONS: &str = "Translations of joints";
+/// Choice of what happens to scales of joints other than the hips.
+pub const SCALES: &str = "Scales of joints";
 /// Heading of the figures about rotations relative to the source.
 pub const ROTATION_ERROR: &str = "Rotation error";
 /// Heading of the three rotation offset fields of a mapped joint.

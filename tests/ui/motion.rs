@@ -13,6 +13,7 @@ use gaitway::ui::{PathPrompt, PathPurpose, Saved, Tab, UiAction, text};
 use glam::{Quat, Vec3};
 
 use crate::allocations::allocations_after;
+use crate::call_sites::own_allocations;
 use crate::bench::{Bench, NARROW, WIDE, bench_of, drag, motion_bench, press, press_key, sample_bench};
 use crate::skeletons;
 
@@ -632,6 +633,35 @@ fn a_frame_of_the_table_allocates_no_more_for_more_joints() {
     };
     let (few, many) = (frames(200), frames(1000));
     assert!(few.abs_diff(many) <= 4 * 50, "50 frames: {few} allocations with 200 joints, {many} with 1,000");
+}
+
+/// Every part of the tab, with a joint's details open once with a source and once without one, and all of the fit's groups.
+#[test]
+fn an_open_motion_tab_allocates_nothing_of_its_own() {
+    let mut harness = motion_bench([1280.0, 2400.0], &["dance.bvh"]);
+    press(&mut harness, "Walk (2)");
+    press(&mut harness, Tab::Motion.label());
+    let neck = number(&harness, "Neck");
+    let mute = MapEdit::Mute { source: neck, property: MutedProperty::Scale, muted: true };
+    harness.state_mut().editor.apply(edit(mute));
+    harness.state_mut().editor.apply(Command::SetFeet(Some(Feet::Plant)));
+    let mut check = |part: &str, harness: &mut Harness<'_, Bench>| {
+        press(harness, part);
+        (0..20).for_each(|_| harness.step());
+        let sites = own_allocations("gaitway::ui::motion::show", || (0..2).for_each(|_| harness.step()));
+        assert!(sites.is_empty(), "{part}: {sites:#?}");
+    };
+    for (label, source) in [("Source of Neck", Some(neck)), ("What it does instead", None)] {
+        harness.state_mut().editor.apply(Command::SetSource { motion: 0, target: neck, source });
+        harness.state_mut().editor.apply(Command::SelectJoint(Some(neck)));
+        check("Joints", &mut harness);
+        assert!(harness.query_by_label(label).is_some());
+    }
+    check("Options", &mut harness);
+    assert!(harness.query_by_label(text::USE_ALL_CHANNELS).is_some());
+    check("Fit", &mut harness);
+    assert!(harness.query_by_label_contains("Planting: ").is_some());
+    check("Files", &mut harness);
 }
 
 #[test]

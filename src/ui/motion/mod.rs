@@ -42,6 +42,7 @@ pub struct MotionTab {
     typed: Option<detail::Typed>,
     turn: Option<detail::Turn>,
     contents: Option<(Inputs, Rc<Contents>)>,
+    fit: Option<figures::Fit>,
 }
 
 /// What [`Contents`] are made from. The proposal follows from model and motion.
@@ -70,6 +71,8 @@ struct Contents {
     remarks: Vec<String>,
     /// See [`sides_choice`].
     sides_choice: Option<&'static str>,
+    /// See [`options::ignored_channels`].
+    ignored_channels: Option<String>,
 }
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
@@ -150,6 +153,7 @@ impl Contents {
             mapped: text::joints_mapped(mapped, pairing.motion.asset.skeleton.len()),
             remarks: remarks(pairing),
             sides_choice: sides_choice(pairing),
+            ignored_channels: options::ignored_channels(pairing.map),
         }
     }
 }
@@ -264,8 +268,8 @@ fn body(
 ) {
     match tab.part {
         Part::Joints => joints::show(ui, shown, pairing, map, contents, tab, out),
-        Part::Options => options::show(ui, pairing, map, out),
-        Part::Figures => figures::show(ui, shown, pairing),
+        Part::Options => options::show(ui, pairing, map, contents, out),
+        Part::Figures => figures::show(ui, shown, pairing, contents, tab),
         Part::Files => options::files(ui, shown, pairing, out),
     }
 }
