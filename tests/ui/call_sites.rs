@@ -39,14 +39,18 @@ fn own_site(trace: &str, below: &str) -> Option<String> {
     }
     let end = functions.iter().position(|(name, _)| name.contains(below))?;
     // The hook and the allocator are the test's own.
-    let start = functions.iter().rposition(|(name, _)| name.contains("allocations::") || name.contains("__rust_"))? + 1;
-    let path = functions.get(start..=end)?;
-    let is_std = |name: &str| {
-        let name = name.trim_start_matches(['<', '&', '[']);
-        ["alloc::", "core::", "std::", "hashbrown::", "T as "].iter().any(|start| name.starts_with(start))
-    };
-    let (name, place) = path.iter().find(|(name, _)| !is_std(name))?;
-    let is_ours = name.trim_start_matches('<').starts_with("gaitway::");
+    let is_of_test = |(name, _): &(&str, &str)| name.contains("allocations::") || name.contains("__rust");
+    let start = functions[..end].iter().rposition(is_of_test)? + 1;
+    let path = &functions[start..=end];
+    let (name, place) = path.iter().find(|(name, _)| crate_of(name).is_some())?;
+    let is_ours = crate_of(name).is_some_and(|name| name.starts_with("gaitway"));
     let is_counted = !path.iter().any(|(name, _)| NOT_COUNTED.iter().any(|part| name.contains(part)));
     (is_ours && is_counted).then(|| format!("{name} {place}"))
+}
+
+/// The crate of a function outside the standard library; `None` inside it, as for its traits on built-in types.
+fn crate_of(name: &str) -> Option<&str> {
+    let (name, _) = name.trim_start_matches(['<', '&', '[']).split_once("::")?;
+    let is_name = name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
+    (is_name && !["alloc", "core", "std", "hashbrown"].contains(&name)).then_some(name)
 }

@@ -645,7 +645,7 @@ fn an_open_motion_tab_allocates_nothing_of_its_own() {
     let mute = MapEdit::Mute { source: neck, property: MutedProperty::Scale, muted: true };
     harness.state_mut().editor.apply(edit(mute));
     harness.state_mut().editor.apply(Command::SetFeet(Some(Feet::Plant)));
-    let mut check = |part: &str, harness: &mut Harness<'_, Bench>| {
+    let check = |part: &str, harness: &mut Harness<'_, Bench>| {
         press(harness, part);
         (0..20).for_each(|_| harness.step());
         let sites = own_allocations("gaitway::ui::motion::show", || (0..2).for_each(|_| harness.step()));
