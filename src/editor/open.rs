@@ -103,6 +103,7 @@ impl Editor {
         let others: Vec<String> = others.map(|(name, _)| name).collect();
         self.library.show(id);
         self.close_jointless(id);
+        self.close_placeholders();
         let was_loaded = before.is_some();
         self.remember(before);
         let evicted = self.evict();
@@ -120,6 +121,9 @@ impl Editor {
             self.state.retarget.map.extend(map.map(MotionMap::Names));
             let problems = self.retarget();
             self.report(problems);
+            if is_view {
+                self.notify_unknown_clip();
+            }
             None
         };
         if was_loaded && !is_view {
@@ -131,6 +135,7 @@ impl Editor {
 
     /// Replaces the state, checking each value as if it had been set alone. Adds no step to the history: opening is the step.
     fn set_view(&mut self, view: ViewerState) {
+        let view = self.calmed_view(view);
         apply(&mut self.state, &self.library, Command::Replace(Box::new(view)));
     }
 
@@ -182,6 +187,14 @@ impl Editor {
             is_same && is_obj(&known.source) && known.asset.skins.is_empty()
         };
         if let Some(id) = self.library.models().iter().find(is_jointless).map(|known| known.id) {
+            self.library.close(id);
+        }
+    }
+
+    /// Closes the empty stages that have waited for a model, once something else is active.
+    fn close_placeholders(&mut self) {
+        let placeholders = self.library.models().iter().filter(|model| model.is_placeholder());
+        for id in placeholders.map(|model| model.id).collect::<Vec<_>>() {
             self.library.close(id);
         }
     }
@@ -274,6 +287,7 @@ impl Editor {
         self.library.set_motions(motions);
         let problems = self.retarget();
         self.report(problems);
+        self.notify_unknown_clip();
         Ok(())
     }
 
@@ -316,14 +330,6 @@ impl Editor {
         }
         (self.needs_redraw, self.is_changed) = (true, true);
         Ok(())
-    }
-
-    /// Closes the placeholder for a link's missing files, once those have been opened.
-    pub fn close_placeholder(&mut self, origin: &str) {
-        let placeholder = self.library.models().iter().find(|model| model.origin == origin).map(|model| model.id);
-        if let Some(id) = placeholder {
-            self.library.close(id);
-        }
     }
 
     /// Removes a model from the list. If it is active, its neighbour is activated; the only model cannot be closed. Undo brings

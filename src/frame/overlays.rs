@@ -38,23 +38,26 @@ pub(super) fn write_ground(model: &Model, state: &ViewerState, frame: &mut Frame
 
 /// Expects the frame's characters and bounds.
 pub(super) fn write_overlays(model: &Model, state: &ViewerState, source: Option<&SourceOnStage>, frame: &mut Frame) {
-    let Frame { characters, scratch, lines, bones, look, .. } = frame;
+    let Frame { characters, scratch, lines, bones, .. } = frame;
     let Some(character) = characters.first() else { return };
     let world_from_joint = &character.world_from_joint;
     let size = model.rest_bounds().diagonal().max(1e-6);
     let chosen = state.selection.joint.and_then(|joint| model.asset.skeleton.joint_of_source(joint));
-    // Skeletons show without a mesh, and beside the source so that the two can be compared.
-    look.skeleton |= character.draws.is_empty() || source.is_some();
-    let boxes = state.display.show.boxes;
-    let style = BoneStyle { plain: BONE, chosen, of_source: false, boxes, size };
+    // A character without a mesh is its skeleton, and errors are colours of bones.
+    let show = state.display.show;
+    let shows_all = show.skeleton || (show.error && source.is_some());
+    let boxes = show.boxes;
+    let visible = shows_all || character.draws.is_empty();
+    let style = BoneStyle { plain: BONE, chosen, of_source: false, visible, boxes, size };
     write_bones(model, world_from_joint, &scratch.model_scene.visible, style, bones);
     if let (Some(source), Some(on_stage)) = (source, characters.last()) {
-        if state.display.show.error {
+        if show.error {
             color_by_error(model, source, world_from_joint, &on_stage.world_from_joint, bones);
         }
         let partner = source.borrowed.pairs.iter().find(|pair| Some(pair.target) == chosen).map(|pair| pair.source);
         let size = source.model.rest_bounds().transformed(&source.world_from_source).diagonal().max(1e-6);
-        let style = BoneStyle { plain: SOURCE_BONE, chosen: partner, of_source: true, boxes, size };
+        let visible = shows_all || on_stage.draws.is_empty();
+        let style = BoneStyle { plain: SOURCE_BONE, chosen: partner, of_source: true, visible, boxes, size };
         write_bones(source.model, &on_stage.world_from_joint, &scratch.source_scene.visible, style, bones);
     }
     if let Some(joint) = chosen.filter(|joint| scratch.model_scene.visible[joint.get()]) {
@@ -100,6 +103,7 @@ struct BoneStyle {
     plain: Vec4,
     chosen: Option<JointIndex>,
     of_source: bool,
+    visible: bool,
     /// Gives all bones the same thickness.
     boxes: bool,
     /// Size of the model, metres.
@@ -143,6 +147,7 @@ fn write_bones(
             color,
             joint: skeleton.source_index(bone.head) as u32,
             of_source: style.of_source,
+            visible: style.visible,
         });
     }
 }

@@ -8,6 +8,7 @@ use egui::{Align2, FontId, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2
 use super::picker::Picking;
 use super::rows::{BodyPart, Filter, Row, State};
 use super::{Contents, MotionTab, Pairing, detail};
+use crate::asset::Asset;
 use crate::retarget::JointMap;
 use crate::state::Command;
 use crate::ui::{Output, Shown, controls, style};
@@ -233,7 +234,7 @@ impl Table<'_, '_> {
         let is_chosen = *chosen == Some(row.number);
         let indents = if *by_body || !search.is_empty() { 0 } else { row.depth.min(MAX_INDENTS) };
         let many = lines.len() > MANY_ROWS;
-        match show_row(ui, row, &contents.prefix, is_chosen, indents as f32 * INDENT, self.scroll, many) {
+        match show_row(ui, row, &contents.namespace, is_chosen, indents as f32 * INDENT, self.scroll, many) {
             Some(Pressed::Target) => {
                 let joint = (!is_chosen).then_some(row.number);
                 // Already visible: it was just pressed.
@@ -254,14 +255,17 @@ impl Table<'_, '_> {
     }
 }
 
-/// The namespace that the names of all skinned joints share, such as `mixamorig:`; omitted from rows to save room.
-pub(super) fn common_prefix<'a>(pairing: &Pairing<'a>) -> &'a str {
-    let asset = &pairing.model.asset;
-    let mut names = asset.skins.iter().flat_map(|skin| skin.joints()).map(|&joint| asset.skeleton.name(joint));
-    let Some(first) = names.next() else { return "" };
-    let Some((namespace, _)) = first.rsplit_once(':') else { return "" };
-    let prefix = &first[..=namespace.len()];
-    if names.all(|name| name.starts_with(prefix)) { prefix } else { "" }
+/// The namespace of all joints that have one, such as `mixamorig:`; omitted from rows to save room. Empty if names would be the
+/// same without it.
+pub(super) fn namespace(asset: &Asset) -> &str {
+    let names = || asset.skeleton.joints().map(|joint| asset.skeleton.name(joint));
+    let Some(first) = names().find(|name| name.contains(':')) else { return "" };
+    let namespace = &first[..=first.rfind(':').unwrap_or(0)];
+    let is_clear = |name: &str| match name.strip_prefix(namespace) {
+        Some(rest) => !rest.contains(':') && names().all(|other| other != rest),
+        None => !name.contains(':'),
+    };
+    if names().all(is_clear) { namespace } else { "" }
 }
 
 /// Returns whether the heading was pressed.
@@ -309,7 +313,7 @@ enum Pressed {
 fn show_row(
     ui: &mut Ui,
     row: &Row,
-    prefix: &str,
+    namespace: &str,
     chosen: bool,
     indent: f32,
     scroll: bool,
@@ -343,12 +347,12 @@ fn show_row(
         let top = |from: f32, to: f32| Rect::from_min_max(pos2(from, inner.top()), pos2(to, inner.top() + 20.0));
         badge(ui, pos2(inner.left() + 7.0, inner.top() + 10.0), row.state);
         let bright = if row.source.is_some() { palette.text } else { palette.weak_text };
-        let name = row.target.strip_prefix(prefix).unwrap_or(&row.target);
+        let name = row.target.strip_prefix(namespace).unwrap_or(&row.target);
         controls::elided(ui, top(inner.left() + 20.0, middle - 16.0), name, bright);
         let arrow = pos2(middle + 1.0, inner.top() + 10.0);
         ui.painter().arrow(arrow, vec2(-12.0, 0.0), Stroke::new(1.2, palette.weak_text));
         let color = if row.source.is_some() { palette.accent } else { palette.weak_text };
-        controls::elided(ui, top(middle + 6.0, right), &row.source_text, color);
+        controls::elided(ui, top(middle + 6.0, right), &row.short_source, color);
         let below = Rect::from_min_max(pos2(inner.left() + 20.0, inner.top() + 20.0), pos2(right, inner.bottom()));
         let color = if row.look { palette.warning } else { palette.weak_text };
         controls::elided_small(ui, below, &row.why, color);

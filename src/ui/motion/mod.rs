@@ -63,8 +63,8 @@ struct Contents {
     rows: Vec<Row>,
     /// Rows that each filter of [`rows::Filter::ALL`] lets through, in words.
     filters: [String; rows::Filter::ALL.len()],
-    /// See [`joints::common_prefix`].
-    prefix: String,
+    /// See [`joints::namespace`].
+    namespace: String,
     /// Names of all motions; empty if there is only one.
     motions: Vec<String>,
     mapped: String,
@@ -148,7 +148,7 @@ impl Contents {
         Self {
             rows,
             filters,
-            prefix: joints::common_prefix(pairing).to_owned(),
+            namespace: joints::namespace(&pairing.model.asset).to_owned(),
             motions: if several { clips::names_of(motions.iter().map(|motion| &*motion.source)) } else { Vec::new() },
             mapped: text::joints_mapped(mapped, pairing.motion.asset.skeleton.len()),
             remarks: remarks(pairing),
@@ -250,7 +250,7 @@ fn head(
     }
     ui.add_space(2.0);
     if local.motion.part == Part::Joints {
-        edits(ui, pairing, map, local, out);
+        edits(ui, pairing, map, contents, local, out);
         clips::search_field(ui, &mut local.motion.table.search, "Search joints of the model");
         joints::choices(ui, pairing, contents, &mut local.motion.table);
         ui.add_space(2.0);
@@ -287,7 +287,14 @@ fn button(ui: &mut Ui, width: f32, enabled: bool, text: &str, hover: &str) -> bo
 }
 
 /// Buttons that edit the whole map.
-fn edits(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, local: &mut UiState, out: &mut Output) {
+fn edits(
+    ui: &mut Ui,
+    pairing: &Pairing<'_>,
+    map: &JointMap,
+    contents: &Contents,
+    local: &mut UiState,
+    out: &mut Output,
+) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         let width = ui.available_width() - 2.0 * (EDIT_BUTTON_HEIGHT + 6.0);
@@ -302,9 +309,10 @@ fn edits(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, local: &mut UiState
             // On a narrow screen the sheet makes room for the viewport.
             local.layout.sheet = None;
         }
+        // Only for edits made in this tab: the step before them may be the motion itself.
         for (icon, label, enabled, action) in [
-            (Icon::Undo, "Undo (Ctrl+Z)", local.host.can_undo, UiAction::Undo),
-            (Icon::Redo, "Redo (Ctrl+Y)", local.host.can_redo, UiAction::Redo),
+            (Icon::Undo, "Undo (Ctrl+Z)", local.host.can_undo_retargeting, UiAction::Undo),
+            (Icon::Redo, "Redo (Ctrl+Y)", local.host.can_redo_retargeting, UiAction::Redo),
         ] {
             let pressed =
                 ui.add_enabled_ui(enabled, |ui| icon_button_sized(ui, icon, label, false, EDIT_BUTTON_HEIGHT)).inner;
@@ -313,18 +321,29 @@ fn edits(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, local: &mut UiState
             }
         }
     });
+    let motion = pairing.index;
+    let any = map.joints.values().any(|entry| entry.source.is_some());
+    let swap = |ui: &mut Ui, width: f32, label: &str, out: &mut Output| {
+        if button(ui, width, any, label, "Map left joints to right ones and vice versa") {
+            out.commands.push(Command::EditMap { motion, edit: MapEdit::SwapSides });
+        }
+    };
+    // Says what it does, which takes a row, where position and names disagree.
+    if let Some(label) = contents.sides_choice {
+        let width = ui.available_width();
+        swap(ui, width, label, out);
+    }
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         // Fits three labels side by side in the narrowest panel.
         ui.spacing_mut().button_padding.x = 4.0;
-        let width = (ui.available_width() - 12.0) / 3.0;
-        let motion = pairing.index;
-        let any = map.joints.values().any(|entry| entry.source.is_some());
+        let count = if contents.sides_choice.is_some() { 2.0 } else { 3.0 };
+        let width = (ui.available_width() - 6.0 * (count - 1.0)) / count;
         if button(ui, width, true, text::REMATCH, "Return to the proposed map") {
             out.commands.push(Command::SetMap { motion, map: None });
         }
-        if button(ui, width, any, text::SWAP_SIDES, "Map left joints to right ones and vice versa") {
-            out.commands.push(Command::EditMap { motion, edit: MapEdit::SwapSides });
+        if contents.sides_choice.is_none() {
+            swap(ui, width, text::SWAP_SIDES, out);
         }
         if button(ui, width, any, text::CLEAR_MAP, "Leave all joints unmapped") {
             out.commands.push(Command::EditMap { motion, edit: MapEdit::Clear });
@@ -351,12 +370,6 @@ fn header(ui: &mut Ui, pairing: &Pairing<'_>, contents: &Contents, out: &mut Out
     for text in &contents.remarks {
         ui.add(egui::Label::new(RichText::new(text).small().color(palette.warning)).wrap());
     }
-    let width = ui.available_width();
-    if let Some(label) = contents.sides_choice
-        && button(ui, width, true, label, "Map left joints to right ones and vice versa")
-    {
-        out.commands.push(Command::EditMap { motion: pairing.index, edit: MapEdit::SwapSides });
-    }
 }
 
 fn first_clip_of(model: &Model, motion: usize) -> Option<Command> {
@@ -379,8 +392,8 @@ fn follows_names(pairing: &Pairing<'_>, proposal: &Proposal) -> bool {
     crossing > 0
 }
 
-/// Label of the button that switches between matching sides by position and by name; None unless position overrode the names
-/// of exactly one file.
+/// What swapping sides does if position overrode the names of exactly one file: switch between matching sides by position and
+/// by name.
 fn sides_choice(pairing: &Pairing<'_>) -> Option<&'static str> {
     let proposal = pairing.proposal?;
     let is_by_position = proposal.model.by_position != proposal.motion.by_position

@@ -25,14 +25,14 @@ const KEEPS: [(Keep, &str); 3] = [(Keep::Auto, "Automatic"), (Keep::Keep, "Keep"
 
 pub(super) fn show(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, contents: &Contents, out: &mut Output) {
     let edit = |edit| Command::EditMap { motion: pairing.index, edit };
-    root_motion(ui, map.root, out);
-
     controls::section(ui, "FEET");
     let planted = map.feet == Feet::Plant;
     if controls::switch(ui, "Hold feet on the ground", planted) {
         out.commands.push(Command::SetFeet(Some(if planted { Feet::Off } else { Feet::Plant })));
     }
     controls::hint(ui, "Planted feet don't slide, and a hovering motion is lowered to the ground.");
+
+    root_motion(ui, map.root, out);
 
     controls::section(ui, capitals!(text::UNMAPPED_JOINTS));
     unmapped(ui, pairing, map, out);
