@@ -119,11 +119,7 @@ impl Editor {
                 None => self.state = self.view_of_new_model(origin, keeps_motions),
             }
             self.state.retarget.map.extend(map.map(MotionMap::Names));
-            let problems = self.retarget();
-            self.report(problems);
-            if is_view {
-                self.notify_unknown_clip();
-            }
+            self.finish_view(is_view);
             None
         };
         if was_loaded && !is_view {
@@ -285,10 +281,17 @@ impl Editor {
         self.set_view(view);
         self.state.retarget.map.extend(map.map(MotionMap::Names));
         self.library.set_motions(motions);
+        self.finish_view(true);
+        Ok(())
+    }
+
+    /// Retargets the motions that were loaded with a model, and says what of a link's view can't be shown.
+    fn finish_view(&mut self, is_link: bool) {
         let problems = self.retarget();
         self.report(problems);
-        self.notify_unknown_clip();
-        Ok(())
+        if is_link {
+            self.notify_unknown_clip();
+        }
     }
 
     /// Activates another loaded model with the view it had: its clip, time and range. Motions added since then are retargeted

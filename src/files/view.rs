@@ -13,9 +13,7 @@ use crate::library::{Model, Motion};
 use crate::retarget::JointMapFile;
 use crate::state::{MotionMap, RetargetEdits, Sources, ViewerState, is_to_bring};
 
-/// Opens the files of a view: an empty stage if its model is a file that the user has yet to supply. Otherwise all, except for its model if `with_model` is not set and for motions that are among `held`. A motion
-/// or map that cannot be opened becomes a problem of the contents. Maps that were read take the place of their addresses in
-/// the view. Progress is reported as "2 of 3: walk.bvh".
+/// Opens the files of a view, or an empty stage if its model is a file that the user has yet to supply; see [`open_files`].
 pub(super) async fn open_view<S: Source>(
     source: &S,
     view: ViewerState,
@@ -27,6 +25,19 @@ pub(super) async fn open_view<S: Source>(
         let models = vec![Model::placeholder(awaited).into()];
         return Ok((Contents { models, motions: Some(Vec::new()), ..Contents::default() }, view));
     }
+    open_files(source, view, with_model, held, progress).await
+}
+
+/// Opens the files of a view, except for its model if `with_model` is not set and for motions that are among `held`. A motion
+/// or map that cannot be opened becomes a problem of the contents. Maps that were read take the place of their addresses in
+/// the view. Progress is reported as "2 of 3: walk.bvh".
+async fn open_files<S: Source>(
+    source: &S,
+    view: ViewerState,
+    with_model: bool,
+    held: &[Motion],
+    progress: Progress<'_>,
+) -> Result<(Contents, ViewerState), OpenError> {
     let Sources { model: mut models, motion: motions, scene } = view.sources;
     let RetargetEdits { map: maps, .. } = view.retarget;
     let is_held = |origin: &String| held.iter().any(|motion| motion.origin == *origin);

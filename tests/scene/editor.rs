@@ -6,7 +6,7 @@ use std::sync::Arc;
 use gaitway::anim::{ClipBuilder, Interpolation, JointIndex, Keys, TimeRange};
 use gaitway::asset::{Asset, AssetParts};
 use gaitway::editor::{Contents, Editor, Event, Export, OpenedMap};
-use gaitway::files::{Role, read_paths};
+use gaitway::files::{Role, open_view, read_paths};
 use gaitway::frame::{Frame, evaluate};
 use gaitway::library::{Library, Model, Motion};
 use gaitway::retarget::{JointMapFile, RootOptions, RootPart};
@@ -482,13 +482,9 @@ fn an_empty_stage_awaits_a_model() {
     let (mut view, _) =
         from_link("v=1&model=file:in/Soldier.glb&motion=file:walk.bvh&clip=run&t=0.5&camera=10,5,3,0,1,0&exposure=1");
     view.playback.playing = false;
-    let awaited = |view: &ViewerState| Contents {
-        models: vec![Model::placeholder(&view.sources.model[0]).into()],
-        motions: Some(Vec::new()),
-        ..Contents::default()
-    };
     let mut editor = Editor::default();
-    editor.open(awaited(&view), Some(view.clone()), &mut any).expect("fits");
+    let (awaited, shown) = open_view(view.clone(), true, &[]).expect("there is nothing to read");
+    editor.open(awaited, Some(shown), &mut any).expect("fits");
     let events = editor.take_events();
     assert_eq!((editor.state(), notices(&events)), (&view, vec![]), "no notice about its clip");
     let model = editor.library().active().expect("stands for it");

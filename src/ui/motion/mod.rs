@@ -17,7 +17,7 @@ use egui::{RichText, Ui};
 
 use self::rows::Row;
 use super::icons::{Icon, icon_button_sized};
-use super::{Output, Shown, UiAction, UiState, clips, controls, style};
+use super::{HostState, Output, Shown, UiAction, UiState, clips, controls, style};
 use crate::anim::{JointIndex, find_clip};
 use crate::asset::Asset;
 use crate::library::{Model, ModelId, Motion};
@@ -286,6 +286,21 @@ fn button(ui: &mut Ui, width: f32, enabled: bool, text: &str, hover: &str) -> bo
         .clicked()
 }
 
+/// Undo and redo.
+fn arrows(ui: &mut Ui, host: &HostState, out: &mut Output) {
+    // Only for edits made in this tab: the step before them may be the motion itself.
+    for (icon, label, enabled, action) in [
+        (Icon::Undo, "Undo (Ctrl+Z)", host.can_undo_retargeting, UiAction::Undo),
+        (Icon::Redo, "Redo (Ctrl+Y)", host.can_redo_retargeting, UiAction::Redo),
+    ] {
+        let pressed =
+            ui.add_enabled_ui(enabled, |ui| icon_button_sized(ui, icon, label, false, EDIT_BUTTON_HEIGHT)).inner;
+        if pressed.clicked() {
+            out.actions.push(action);
+        }
+    }
+}
+
 /// Buttons that edit the whole map.
 fn edits(
     ui: &mut Ui,
@@ -309,17 +324,7 @@ fn edits(
             // On a narrow screen the sheet makes room for the viewport.
             local.layout.sheet = None;
         }
-        // Only for edits made in this tab: the step before them may be the motion itself.
-        for (icon, label, enabled, action) in [
-            (Icon::Undo, "Undo (Ctrl+Z)", local.host.can_undo_retargeting, UiAction::Undo),
-            (Icon::Redo, "Redo (Ctrl+Y)", local.host.can_redo_retargeting, UiAction::Redo),
-        ] {
-            let pressed =
-                ui.add_enabled_ui(enabled, |ui| icon_button_sized(ui, icon, label, false, EDIT_BUTTON_HEIGHT)).inner;
-            if pressed.clicked() {
-                out.actions.push(action);
-            }
-        }
+        arrows(ui, &local.host, out);
     });
     let motion = pairing.index;
     let any = map.joints.values().any(|entry| entry.source.is_some());

@@ -358,10 +358,7 @@ impl<'a> Whole<'a> {
         };
         let target = pairing.target_title(joint).into_owned();
         let source_text = source.map_or_else(|| "none".to_owned(), |source| joint_text(&pairing.motion.asset, source));
-        let short_source = match self.namespace {
-            "" => source_text.clone(),
-            namespace => source_text.replacen(namespace, "", 1),
-        };
+        let short_source = source_text.replacen(self.namespace, "", 1);
         let why = why.join(" · ");
         Row {
             joint,
