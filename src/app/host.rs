@@ -74,8 +74,13 @@ pub trait Host {
     /// Returns the full link to share, given the part after `#`.
     fn link(&self, fragment: &str) -> String;
 
-    /// Called when the state has changed other than by time passing.
+    /// Called when the state has changed other than by time passing, with [`Editor::shared_state`](crate::editor::Editor).
     fn state_changed(&self, state: &ViewerState);
+
+    /// Whether the user wishes for reduced motion: views start paused and don't turn.
+    fn prefers_reduced_motion(&self) -> bool {
+        false
+    }
 
     /// Called at the start of every frame, before the inbox is read.
     fn before_frame(&self, inbox: &Inbox) {

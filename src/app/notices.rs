@@ -53,7 +53,10 @@ impl App {
                     }
                 }
                 Event::ModelOpened => self.panels.on_model_opened(self.editor.library()),
-                Event::MotionsRefused => self.panels.messages.motion_refused = true,
+                Event::MotionsRefused { lacks_skeleton } => {
+                    let messages = &mut self.panels.messages;
+                    (messages.motion_refused, messages.model_lacks_skeleton) = (true, lacks_skeleton);
+                }
                 Event::MapStarted => self.panels.on_map_started(),
                 Event::Stepped => self.panels.messages.toast = None,
             }

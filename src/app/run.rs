@@ -114,16 +114,10 @@ impl App {
     /// If the model doesn't fit on the device.
     pub fn open(&mut self, contents: Contents, view: Option<ViewerState>) -> Result<(), String> {
         self.panels.messages.clear_error();
+        self.editor.prefer_reduced_motion(self.host.prefers_reduced_motion());
         let opened = self.editor.open(contents, view, &mut |model| self.viewport.admit(model));
         self.show_events();
         opened
-    }
-
-    /// Closes the placeholder for a link's missing files.
-    #[cfg(target_arch = "wasm32")]
-    pub fn close_placeholder(&mut self) {
-        self.editor.close_placeholder(&format!("sample:{}", crate::samples::WALKER));
-        self.context.request_repaint();
     }
 
     fn handle(&mut self, message: Message) {
@@ -151,7 +145,10 @@ impl App {
                 self.save_file(&file);
             }
             Message::Recorded(saved_name) => self.end_recording(saved_name),
-            Message::Commands(commands) => commands.into_iter().for_each(|command| self.apply(command)),
+            Message::Commands(commands) => {
+                self.editor.prefer_reduced_motion(self.host.prefers_reduced_motion());
+                commands.into_iter().for_each(|command| self.apply(command));
+            }
             Message::Script(call) => self.script(call),
         }
     }
@@ -260,7 +257,7 @@ impl App {
     }
 
     fn share(&mut self) {
-        let link = to_link(self.editor.state());
+        let link = to_link(&self.editor.shared_state());
         if !self.host.share(&link) {
             self.context.copy_text(self.host.link(&link));
             self.toast("Link copied.".to_owned());
@@ -361,7 +358,8 @@ impl eframe::App for App {
         if !dropped.is_empty() {
             self.host.open_dropped(dropped, &self.inbox);
         }
-        (self.panels.host.can_undo, self.panels.host.can_redo) = (self.editor.can_undo(), self.editor.can_redo());
+        self.panels.host.can_undo_retargeting = self.editor.can_undo_retargeting();
+        self.panels.host.can_redo_retargeting = self.editor.can_redo_retargeting();
         self.expire_toast();
         self.update_motions();
         let mut output = std::mem::take(&mut self.output);
@@ -388,7 +386,7 @@ impl eframe::App for App {
             context.request_repaint();
         }
         if self.editor.take_changed() {
-            self.host.state_changed(self.editor.state());
+            self.host.state_changed(&self.editor.shared_state());
         }
     }
 

@@ -8,6 +8,7 @@ use crate::files::{OpenError, SaveError, SortError};
 use crate::formats::{LoadError, WriteError};
 use crate::library::BorrowError;
 use crate::retarget::{MapError, RetargetError};
+use crate::state::UnknownClip;
 
 /// The result of a command or a part of one.
 pub(super) type Outcome<T = ()> = Result<T, Failure>;
@@ -83,6 +84,13 @@ impl Failure {
 
     fn of_file(file: &str) -> Self {
         Self::parts(Some(file), None, None, None)
+    }
+}
+
+impl From<UnknownClip> for Failure {
+    fn from(unknown: UnknownClip) -> Self {
+        let found = format!("“{}”", unknown.name);
+        Self::parts(None, None, Some(UnknownClip::EXPECTED), Some(&found)).saying(unknown)
     }
 }
 

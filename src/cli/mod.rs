@@ -27,7 +27,7 @@ use crate::files::{Disk, Opened};
 use crate::library::Model;
 use crate::mesh::SkinningMode;
 use crate::retarget::{Feet, Keep, RestChoice, RootPart};
-use crate::state::{ClipChoice, Command, active_clip, choice_of_clip};
+use crate::state::{ClipChoice, Command, choice_of_clip, unknown_clip};
 use failure::{Failure, Outcome};
 use motion::MotionArguments;
 use output::{is_standard_output, print_error, print_json, warn};
@@ -386,10 +386,10 @@ fn apply_moment(editor: &mut Editor, moment: &Moment, has_motion: bool) -> Outco
             editor.apply(Command::SetClip(choice));
         }
     }
-    if let (Some(name), Some(model)) = (&moment.clip, editor.library().active())
-        && active_clip(model, editor.state()).is_none()
+    if let (Some(_), Some(model)) = (&moment.clip, editor.library().active())
+        && let Some(unknown) = unknown_clip(model, editor.state())
     {
-        return Err(unknown_clip(name, model.clip_titles()).in_file(&model.source));
+        return Err(Failure::from(unknown).in_file(&model.source));
     }
     if let Some(time_secs) = moment.time {
         if !time_secs.is_finite() {
@@ -414,14 +414,6 @@ fn retargeted_clip(model: &Model, name: &str) -> Option<ClipChoice> {
     let clips = model.borrowed_clips().map(|(_, borrowed)| &borrowed.clip);
     let (clip, _) = model.borrowed_clips().nth(find_clip(clips, ClipQuery::NameOrIndex(name))?)?;
     Some(choice_of_clip(model, clip))
-}
-
-fn unknown_clip(name: &str, clips: &[String]) -> Failure {
-    let failure = Failure::expected("the name or index of a clip", format!("“{name}”"));
-    match clips {
-        [] => failure.with_hint("there are no clips"),
-        clips => failure.with_hint(format!("its clips are {}", clips.join(", "))),
-    }
 }
 
 #[cfg(feature = "render")]

@@ -7,12 +7,12 @@ use serde_json::{Value, json};
 
 use super::failure::{Failure, Outcome};
 use super::output::warn;
-use super::{print_warnings, unknown_clip};
+use super::print_warnings;
 use crate::editor::{Contents, Editor, Event, OpenedMap, OpenedModel};
 use crate::files::{Disk, Opened, Role, member_of};
 use crate::library::Motion;
 use crate::retarget::{FoundRest, RestOrigin};
-use crate::state::{ClipChoice, Command, Sources, ViewerState, active_clip, from_link};
+use crate::state::{ClipChoice, Command, Sources, ViewerState, from_link, unknown_clip};
 
 /// A motion to retarget to the model, and its joint map.
 #[derive(Debug, Default, Args)]
@@ -144,19 +144,11 @@ pub(super) fn apply_link(
     let unreported: Vec<String> = errors.filter(|error| !problems.contains(error)).collect();
     problems.iter().chain(&unreported).for_each(|problem| warn(problem));
     // A motion's first clip overrides the link's, too.
-    if !has_clip && arguments.motion.is_none() {
-        warn_of_unknown_clip(editor);
+    let unknown = editor.library().active().and_then(|model| unknown_clip(model, editor.state()));
+    if let Some(unknown) = unknown.filter(|_| !has_clip && arguments.motion.is_none()) {
+        warn(&format!("--view: clip: {unknown}; the rest pose is used"));
     }
     Ok(())
-}
-
-fn warn_of_unknown_clip(editor: &Editor) {
-    if let (Some(model), ClipChoice::Named(name)) = (editor.library().active(), &editor.state().playhead.clip)
-        && active_clip(model, editor.state()).is_none()
-    {
-        let failure = unknown_clip(name, model.clip_titles()).at("clip");
-        warn(&format!("--view: {}; the rest pose is used", failure.message()));
-    }
 }
 
 /// Takes the editor's events and returns the problems among them.

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::failure::{Failure, Outcome};
 use super::motion::{DOUBTFUL_REST, doubtful_rest, open_map, open_motion, rest_document};
 use super::output::{is_standard_output, print_bytes, print_error, print_json, warn, write_output};
-use super::{RetargetArguments, open, unknown_clip};
+use super::{RetargetArguments, open};
 use crate::anim::{Clip, ClipQuery, JointIndex, find_clip};
 use crate::asset::Asset;
 use crate::editor::ModelFiles;
@@ -16,6 +16,7 @@ use crate::retarget::{
     ClipRef, Figures, JointMap, MapError, ResolvedMap, Retargeted, Retargeting, Unmapped, bake_layers, baking,
     layer_clips,
 };
+use crate::state::UnknownClip;
 
 pub(super) fn run(arguments: &RetargetArguments, disk: &Disk) -> Outcome {
     let opened = open(std::slice::from_ref(&arguments.model), disk)?;
@@ -58,7 +59,11 @@ fn resolve_map(arguments: &RetargetArguments, model: &Model, motion: &Motion, di
     };
     let looked_up = given.as_ref().map(|opened| opened.map.look_up_joints(&model.asset, &motion.asset));
     let (mut map, proposal) = map_for(&model.asset, &motion.asset, looked_up.transpose().map_err(in_map)?.as_ref());
-    if proposal.is_some_and(|proposal| proposal.pairs.is_empty()) {
+    let is_empty = proposal.is_some_and(|proposal| proposal.pairs.is_empty());
+    if is_empty && !model.has_skeleton() {
+        return Err(Failure::new(format!("{} {}", model.source, Model::NO_SKELETON)).in_file(&motion.source));
+    }
+    if is_empty {
         return Err(Failure::new(format!(
             "no joint in common with {}, neither by name nor by body part; write a map manually and pass it with --map \
              (docs/joint-maps.md)",
@@ -126,8 +131,8 @@ fn choose_clip(motion: &Motion, requested: Option<&str>) -> Outcome<usize> {
     }
     let Some(requested) = requested else { return Ok(0) };
     find_clip(clips.iter(), ClipQuery::NameOrIndex(requested)).ok_or_else(|| {
-        let names: Vec<String> = clips.iter().map(|clip| clip.name().to_owned()).collect();
-        unknown_clip(requested, &names).in_file(&motion.source)
+        let clips = clips.iter().map(|clip| clip.name().to_owned()).collect();
+        Failure::from(UnknownClip { name: requested.to_owned(), clips }).in_file(&motion.source)
     })
 }
 

@@ -7,8 +7,41 @@ use crate::state::{
 };
 
 impl Editor {
+    /// Returns what the viewport shows if the camera is automatic, or stands in for an automatic one.
+    pub(super) fn automatic_view(&self) -> Option<OrbitCamera> {
+        let is_held = |orbit| self.held_camera == Some(orbit);
+        match self.state.camera {
+            CameraChoice::Auto => Some(resolve_camera(&self.library, &self.state, self.aspect)),
+            CameraChoice::Orbit(orbit) if is_held(orbit) => Some(orbit),
+            _ => None,
+        }
+    }
+
+    /// Keeps what an automatic camera showed before an option changed what it would frame. It is automatic again as soon as
+    /// that is the same.
+    pub(super) fn hold_view(&mut self, before: Option<OrbitCamera>) {
+        let Some(before) = before else { return };
+        let automatic = ViewerState { camera: CameraChoice::Auto, ..self.state.clone() };
+        let is_same = resolve_camera(&self.library, &automatic, self.aspect) == before;
+        self.held_camera = (!is_same).then_some(before);
+        let camera = self.held_camera.map_or(CameraChoice::Auto, CameraChoice::Orbit);
+        if self.state.camera != camera {
+            self.record(Command::SetCamera(camera));
+        }
+    }
+
+    /// Makes a camera that stands in for the automatic one automatic.
+    fn release_view(&mut self) {
+        if self.automatic_view().is_some() && self.held_camera.take().is_some() {
+            self.record(Command::SetCamera(CameraChoice::Auto));
+        }
+    }
+
     /// Prepares the camera for a command, and returns the command to apply.
     pub(super) fn prepare_camera(&mut self, command: Command) -> Command {
+        if matches!(command, Command::SetClip(_) | Command::FrameAll) {
+            self.release_view();
+        }
         let is_auto = self.state.camera == CameraChoice::Auto;
         let has_turntable = self.state.camera_options.turntable != 0.0;
         // Grabbing the scene or a joint stops the turntable.

@@ -16,9 +16,12 @@ pub enum Event {
     ViewOpened,
     /// Another model was opened and is active.
     ModelOpened,
-    /// None of the opened motions fits the model. [`super::Editor::open_refused_alone`] and
+    /// None of the opened motions fits the model. [`super::Editor::open_refused_alone`] and, for a model with a skeleton,
     /// [`super::Editor::map_refused_manually`] are the alternatives.
-    MotionsRefused,
+    MotionsRefused {
+        /// The model has no joints to map.
+        lacks_skeleton: bool,
+    },
     /// The user is about to edit a joint map.
     MapStarted,
     /// A step of the history was undone or redone: notices about other steps no longer hold.

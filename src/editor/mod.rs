@@ -10,6 +10,7 @@ mod export;
 mod motions;
 mod names;
 mod open;
+mod reduced_motion;
 mod steps;
 
 pub use contents::{Contents, ModelFiles, OpenedMap, OpenedModel, container_of};
@@ -22,7 +23,7 @@ use std::collections::BTreeMap;
 use serde_json::Value;
 
 use crate::library::{Library, ModelId, Motion};
-use crate::state::{Command, DEFAULT_ASPECT, History, ViewerState, from_object};
+use crate::state::{Command, DEFAULT_ASPECT, History, OrbitCamera, ViewerState, from_object, unknown_clip};
 use motions::ClipIdentity;
 use open::Shelved;
 
@@ -49,6 +50,9 @@ pub struct Editor {
     reported: Vec<String>,
     /// Width over height of the viewport, which some camera commands depend on.
     aspect: f32,
+    /// The camera that stands in for the automatic one since an option has changed what that would frame.
+    held_camera: Option<OrbitCamera>,
+    reduced_motion: reduced_motion::ReducedMotion,
     events: Vec<Event>,
     needs_redraw: bool,
     is_changed: bool,
@@ -74,6 +78,8 @@ impl Editor {
             has_private_map: false,
             reported: Vec::new(),
             aspect: DEFAULT_ASPECT,
+            held_camera: None,
+            reduced_motion: reduced_motion::ReducedMotion::default(),
             events: Vec::new(),
             needs_redraw: true,
             is_changed: false,
@@ -118,6 +124,7 @@ impl Editor {
         if matches!(&command, Command::Replace(state) if !self.has_files_of(state)) {
             return;
         }
+        let command = self.calmed(command);
         self.is_changed |= !matches!(command, Command::Advance(_));
         self.needs_redraw = true;
         let affects_retargeting = affects_retargeting(&command);
@@ -125,6 +132,9 @@ impl Editor {
         let is_map_edit = affects_retargeting && !matches!(command, Command::Replace(_));
         let playing = if is_map_edit { self.retargeted_clip() } else { None };
         let reframes = matches!(command, Command::SetUp(_));
+        let is_view = matches!(command, Command::Replace(_));
+        let rematched = self.map_to_rematch(&command);
+        let view_before = if is_map_edit { self.automatic_view() } else { None };
         self.notify_follow(&command);
         let command = self.prepare_camera(command);
         self.record(command);
@@ -137,6 +147,13 @@ impl Editor {
         }
         if is_map_edit {
             self.follow_clip(playing);
+            self.hold_view(view_before);
+        }
+        if let Some((motion, before)) = rematched {
+            self.notify_rematch(motion, &before);
+        }
+        if is_view {
+            self.notify_unknown_clip();
         }
     }
 
@@ -173,13 +190,24 @@ impl Editor {
 
     /// Applies a command through the history, without the additional rules of [`Editor::apply`].
     fn record(&mut self, command: Command) {
+        let before = self.moving_parts();
         self.history.apply(&mut self.state, &self.library, command);
+        self.note_moving_parts(before);
     }
 
     /// Whether the state names the loaded files. Replacing the state loads none.
     fn has_files_of(&self, state: &ViewerState) -> bool {
         let (new, now) = (&state.sources, &self.state.sources);
         new.model == now.model && new.motion == now.motion
+    }
+
+    /// A clip that the view names and the model lacks is not an error: the rest is shown.
+    pub(super) fn notify_unknown_clip(&mut self) {
+        let model = self.library.active().filter(|model| !model.is_placeholder());
+        let unknown = model.and_then(|model| unknown_clip(model, &self.state));
+        if let Some(unknown) = unknown {
+            self.notify(format!("clip: {unknown}; the rest pose is used."));
+        }
     }
 
     fn notify(&mut self, text: String) {

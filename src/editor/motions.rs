@@ -2,11 +2,11 @@
 //! nothing; those that succeed can be undone.
 
 use super::{Admit, Contents, Editor, Event, short_name};
-use crate::library::{BorrowError, BorrowedClip, Library, Motion, names_checksum};
+use crate::library::{BorrowError, BorrowedClip, Library, Model, Motion, names_checksum};
 use crate::retarget::{JointMap, JointMapFile, MapError, propose};
 use crate::state::{
     ClipChoice, Command, MapEdit, MapProblem, MotionMap, NumberedMap, RetargetEdits, ViewerState, active_clip,
-    active_maps, choice_of_clip, reconciled_maps,
+    active_map, active_maps, choice_of_clip, reconciled_maps,
 };
 
 /// Identifies a motion's clip across models, with the time in it.
@@ -52,7 +52,8 @@ impl Editor {
             }
             self.retarget();
             self.refused = motions;
-            self.events.push(Event::MotionsRefused);
+            let lacks_skeleton = self.library.active().is_some_and(|model| !model.has_skeleton());
+            self.events.push(Event::MotionsRefused { lacks_skeleton });
             return Err(self.why_refused(&problems));
         }
         self.remember(before);
@@ -112,7 +113,11 @@ impl Editor {
             && !motion.asset.clips.is_empty()
             && propose(&model.asset, &motion.asset).pairs.is_empty()
         {
+            let has_skeleton = model.has_skeleton();
             let (motion, model) = (short_name(&motion.source), short_name(&model.source));
+            if !has_skeleton {
+                return format!("{motion}: {model} {}", Model::NO_SKELETON);
+            }
             return format!("{motion}: it has no joint in common with {model}, neither by name nor by body part");
         }
         problems.join("\n")
@@ -180,6 +185,27 @@ impl Editor {
             self.reported = errors;
         }
         new
+    }
+
+    /// Returns the motion whose map the command matches again, and its map before that.
+    pub(super) fn map_to_rematch(&self, command: &Command) -> Option<(usize, Option<JointMap>)> {
+        let Command::SetMap { motion, map: None } = *command else { return None };
+        Some((motion, active_map(&self.library, &self.state, motion)))
+    }
+
+    /// Says so if matching joints again has changed nothing.
+    pub(super) fn notify_rematch(&mut self, motion: usize, before: &Option<JointMap>) {
+        let (Some(model), Some(about)) = (self.library.active(), self.library.motions().get(motion)) else { return };
+        let names = (short_name(&about.source), short_name(&model.source));
+        if self.library.proposal(motion).is_none_or(|proposal| proposal.pairs.is_empty()) {
+            let (about, model) = names;
+            let text = format!(
+                "{about} has no joint in common with {model}, neither by name nor by body part: choose sources in the table."
+            );
+            self.notify(text);
+        } else if active_map(&self.library, &self.state, motion) == *before {
+            self.notify("The joints are already mapped as proposed.".to_owned());
+        }
     }
 
     /// Returns the active clip if it is retargeted.

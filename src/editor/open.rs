@@ -103,6 +103,7 @@ impl Editor {
         let others: Vec<String> = others.map(|(name, _)| name).collect();
         self.library.show(id);
         self.close_jointless(id);
+        self.close_placeholders();
         let was_loaded = before.is_some();
         self.remember(before);
         let evicted = self.evict();
@@ -118,8 +119,7 @@ impl Editor {
                 None => self.state = self.view_of_new_model(origin, keeps_motions),
             }
             self.state.retarget.map.extend(map.map(MotionMap::Names));
-            let problems = self.retarget();
-            self.report(problems);
+            self.finish_view(is_view);
             None
         };
         if was_loaded && !is_view {
@@ -131,6 +131,7 @@ impl Editor {
 
     /// Replaces the state, checking each value as if it had been set alone. Adds no step to the history: opening is the step.
     fn set_view(&mut self, view: ViewerState) {
+        let view = self.calmed_view(view);
         apply(&mut self.state, &self.library, Command::Replace(Box::new(view)));
     }
 
@@ -182,6 +183,14 @@ impl Editor {
             is_same && is_obj(&known.source) && known.asset.skins.is_empty()
         };
         if let Some(id) = self.library.models().iter().find(is_jointless).map(|known| known.id) {
+            self.library.close(id);
+        }
+    }
+
+    /// Closes the empty stages that have waited for a model, once something else is active.
+    fn close_placeholders(&mut self) {
+        let placeholders = self.library.models().iter().filter(|model| model.is_placeholder());
+        for id in placeholders.map(|model| model.id).collect::<Vec<_>>() {
             self.library.close(id);
         }
     }
@@ -272,9 +281,17 @@ impl Editor {
         self.set_view(view);
         self.state.retarget.map.extend(map.map(MotionMap::Names));
         self.library.set_motions(motions);
+        self.finish_view(true);
+        Ok(())
+    }
+
+    /// Retargets the motions that were loaded with a model, and says what of a link's view can't be shown.
+    fn finish_view(&mut self, is_link: bool) {
         let problems = self.retarget();
         self.report(problems);
-        Ok(())
+        if is_link {
+            self.notify_unknown_clip();
+        }
     }
 
     /// Activates another loaded model with the view it had: its clip, time and range. Motions added since then are retargeted
@@ -316,14 +333,6 @@ impl Editor {
         }
         (self.needs_redraw, self.is_changed) = (true, true);
         Ok(())
-    }
-
-    /// Closes the placeholder for a link's missing files, once those have been opened.
-    pub fn close_placeholder(&mut self, origin: &str) {
-        let placeholder = self.library.models().iter().find(|model| model.origin == origin).map(|model| model.id);
-        if let Some(id) = placeholder {
-            self.library.close(id);
-        }
     }
 
     /// Removes a model from the list. If it is active, its neighbour is activated; the only model cannot be closed. Undo brings

@@ -16,6 +16,16 @@ impl Editor {
         self.history.can_redo()
     }
 
+    /// Whether the next undo takes back an edit of a joint map or of how motions are retargeted.
+    pub fn can_undo_retargeting(&self) -> bool {
+        self.history.would_undo_retargeting(&self.state)
+    }
+
+    /// Whether the next redo repeats such an edit.
+    pub fn can_redo_retargeting(&self) -> bool {
+        self.history.would_redo_retargeting(&self.state)
+    }
+
     /// Number of steps that can be undone.
     pub fn undo_steps(&self) -> usize {
         self.history.steps()
@@ -29,9 +39,11 @@ impl Editor {
     /// Undoes the last step; returns false if there is none.
     pub fn undo(&mut self) -> bool {
         let (before, playing) = (self.loaded_names(), self.retargeted_clip());
+        let view = if self.can_undo_retargeting() { self.automatic_view() } else { None };
         let done = self.history.undo(&mut self.state, &mut self.library);
         if done {
             self.finish_step(before, playing, "Ctrl+Y");
+            self.hold_view(view);
         }
         done
     }
@@ -39,9 +51,11 @@ impl Editor {
     /// Redoes the last undone step; returns false if there is none.
     pub fn redo(&mut self) -> bool {
         let (before, playing) = (self.loaded_names(), self.retargeted_clip());
+        let view = if self.can_redo_retargeting() { self.automatic_view() } else { None };
         let done = self.history.redo(&mut self.state, &mut self.library);
         if done {
             self.finish_step(before, playing, "Ctrl+Z");
+            self.hold_view(view);
         }
         done
     }

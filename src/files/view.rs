@@ -9,14 +9,29 @@ use super::read::Item;
 use super::source::{Content, Progress, Reading, Source};
 use super::{OpenError, Role, read_map};
 use crate::editor::{Contents, container_of};
-use crate::library::Motion;
+use crate::library::{Model, Motion};
 use crate::retarget::JointMapFile;
-use crate::state::{MotionMap, RetargetEdits, Sources, ViewerState};
+use crate::state::{MotionMap, RetargetEdits, Sources, ViewerState, is_to_bring};
+
+/// Opens the files of a view, or an empty stage if its model is a file that the user has yet to supply; see [`open_files`].
+pub(super) async fn open_view<S: Source>(
+    source: &S,
+    view: ViewerState,
+    with_model: bool,
+    held: &[Motion],
+    progress: Progress<'_>,
+) -> Result<(Contents, ViewerState), OpenError> {
+    if let Some(awaited) = view.sources.model.iter().find(|model| with_model && is_to_bring(model)) {
+        let models = vec![Model::placeholder(awaited).into()];
+        return Ok((Contents { models, motions: Some(Vec::new()), ..Contents::default() }, view));
+    }
+    open_files(source, view, with_model, held, progress).await
+}
 
 /// Opens the files of a view, except for its model if `with_model` is not set and for motions that are among `held`. A motion
 /// or map that cannot be opened becomes a problem of the contents. Maps that were read take the place of their addresses in
 /// the view. Progress is reported as "2 of 3: walk.bvh".
-pub(super) async fn open_view<S: Source>(
+async fn open_files<S: Source>(
     source: &S,
     view: ViewerState,
     with_model: bool,

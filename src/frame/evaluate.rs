@@ -50,7 +50,6 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
         background: state.display.background,
         mesh: state.display.show.mesh,
         wireframe: state.display.show.wireframe,
-        skeleton: state.display.show.skeleton,
         boxes: state.display.show.boxes,
         smooth: state.display.show.smooth,
         shadow: state.display.show.shadow,

@@ -92,8 +92,6 @@ pub struct Look {
     pub mesh: bool,
     /// Draws the edges of triangles, over the surfaces if those are drawn.
     pub wireframe: bool,
-    /// Draws [`Frame::bones`].
-    pub skeleton: bool,
     /// Draws the skeleton as spheres and boxes.
     pub boxes: bool,
     /// Shades meshes without normals smooth instead of flat.
@@ -219,6 +217,8 @@ pub struct Bone {
     pub joint: u32,
     /// Belongs to the source of the borrowed clip instead of the model.
     pub of_source: bool,
+    /// Drawn. Hidden bones can still be picked.
+    pub visible: bool,
 }
 
 impl Default for Look {
@@ -229,7 +229,6 @@ impl Default for Look {
             background: Background::Studio,
             mesh: true,
             wireframe: false,
-            skeleton: false,
             boxes: false,
             smooth: false,
             shadow: true,

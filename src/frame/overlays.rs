@@ -2,7 +2,8 @@
 
 use glam::{Affine3A, Vec3, Vec4};
 
-use super::{Bone, Frame, Grid, Line};
+use super::evaluate::Scene;
+use super::{Bone, Character, Frame, Grid, Line};
 use crate::anim::JointIndex;
 use crate::library::Model;
 use crate::state::{SourceOnStage, ViewerState};
@@ -36,26 +37,33 @@ pub(super) fn write_ground(model: &Model, state: &ViewerState, frame: &mut Frame
     }
 }
 
+/// Whether a character has no mesh to see, not only at the moment.
+fn shows_no_mesh(scene: &Scene, character: &Character) -> bool {
+    !scene.has_meshes && !character.draws.iter().any(|draw| draw.visible)
+}
+
 /// Expects the frame's characters and bounds.
 pub(super) fn write_overlays(model: &Model, state: &ViewerState, source: Option<&SourceOnStage>, frame: &mut Frame) {
-    let Frame { characters, scratch, lines, bones, look, .. } = frame;
+    let Frame { characters, scratch, lines, bones, .. } = frame;
     let Some(character) = characters.first() else { return };
     let world_from_joint = &character.world_from_joint;
     let size = model.rest_bounds().diagonal().max(1e-6);
     let chosen = state.selection.joint.and_then(|joint| model.asset.skeleton.joint_of_source(joint));
-    // Skeletons show without a mesh, and beside the source so that the two can be compared.
-    let nothing_shown = !scratch.model_scene.has_meshes && !character.draws.iter().any(|draw| draw.visible);
-    look.skeleton |= nothing_shown || source.is_some();
-    let boxes = state.display.show.boxes;
-    let style = BoneStyle { plain: BONE, chosen, of_source: false, boxes, size };
+    // A character without a mesh is its skeleton, and errors are colours of bones.
+    let show = state.display.show;
+    let shows_all = show.skeleton || (show.error && source.is_some());
+    let boxes = show.boxes;
+    let visible = shows_all || shows_no_mesh(&scratch.model_scene, character);
+    let style = BoneStyle { plain: BONE, chosen, of_source: false, visible, boxes, size };
     write_bones(model, world_from_joint, &scratch.model_scene.joints.in_scene, style, bones);
     if let (Some(source), Some(on_stage)) = (source, characters.last()) {
-        if state.display.show.error {
+        if show.error {
             color_by_error(model, source, world_from_joint, &on_stage.world_from_joint, bones);
         }
         let partner = source.borrowed.pairs.iter().find(|pair| Some(pair.target) == chosen).map(|pair| pair.source);
         let size = source.model.rest_bounds().transformed(&source.world_from_source).diagonal().max(1e-6);
-        let style = BoneStyle { plain: SOURCE_BONE, chosen: partner, of_source: true, boxes, size };
+        let visible = shows_all || shows_no_mesh(&scratch.source_scene, on_stage);
+        let style = BoneStyle { plain: SOURCE_BONE, chosen: partner, of_source: true, visible, boxes, size };
         write_bones(source.model, &on_stage.world_from_joint, &scratch.source_scene.joints.in_scene, style, bones);
     }
     if let Some(joint) = chosen.filter(|joint| scratch.model_scene.joints.in_scene[joint.get()]) {
@@ -101,6 +109,7 @@ struct BoneStyle {
     plain: Vec4,
     chosen: Option<JointIndex>,
     of_source: bool,
+    visible: bool,
     /// Gives all bones the same thickness.
     boxes: bool,
     /// Size of the model, metres.
@@ -144,6 +153,7 @@ fn write_bones(
             color,
             joint: skeleton.source_index(bone.head) as u32,
             of_source: style.of_source,
+            visible: style.visible,
         });
     }
 }

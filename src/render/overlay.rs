@@ -195,7 +195,7 @@ impl Overlay {
         self.lines.upload(device, queue);
 
         self.bones.current.clear();
-        self.bones.current.extend(bones.iter().map(|bone| BoneInstance {
+        self.bones.current.extend(bones.iter().filter(|bone| bone.visible).map(|bone| BoneInstance {
             head: bone.head.to_array(),
             radius: bone.radius,
             tail: bone.tail.to_array(),

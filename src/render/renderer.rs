@@ -207,7 +207,7 @@ impl Renderer {
             self.frame_group = self.frame_buffer.bind_group(device, &self.layouts, &self.palette);
             self.shadow_group = self.shadow_buffer.bind_group(device, &self.layouts, &self.palette);
         }
-        let bones = if frame.look.skeleton { &frame.bones[..] } else { &[] };
+        let bones = &frame.bones[..];
         self.overlay.upload(device, queue, &self.layouts, (&frame.lines, bones), frame.look.boxes);
         self.stats = RenderStats::default();
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("picture") });

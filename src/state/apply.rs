@@ -156,10 +156,11 @@ fn select_vertex(state: &mut ViewerState, model: Option<&Model>, vertex: Option<
     }
 }
 
-/// Sets the map of a motion; `None` sets the proposed one.
+/// Sets the map of a motion; `None` sets the proposed one, if there is one.
 fn set_map(state: &mut ViewerState, library: &Library, motion: usize, map: Option<JointMap>) {
-    let map = map.or_else(|| maps::proposed(library, motion));
-    maps::set_map(state, library, motion, map);
+    if let Some(map) = map.or_else(|| maps::proposed(library, motion)) {
+        maps::set_map(state, library, motion, Some(map));
+    }
 }
 
 /// Ignores joints that the files don't have.

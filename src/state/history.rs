@@ -102,6 +102,16 @@ impl History {
         !self.future.is_empty()
     }
 
+    /// Whether the last step edited joint maps or how motions are retargeted.
+    pub fn would_undo_retargeting(&self, state: &ViewerState) -> bool {
+        self.past.last().is_some_and(|step| step.is_of_retargeting(state))
+    }
+
+    /// Whether the last undone step did.
+    pub fn would_redo_retargeting(&self, state: &ViewerState) -> bool {
+        self.future.last().is_some_and(|step| step.is_of_retargeting(state))
+    }
+
     /// Undoes the last step; returns false if there is none.
     pub fn undo(&mut self, state: &mut ViewerState, library: &mut Library) -> bool {
         self.gesture = None;
@@ -120,6 +130,11 @@ impl History {
 }
 
 impl Step {
+    /// Whether taking the step changes nothing but edits, and among them those of retargeting.
+    fn is_of_retargeting(&self, state: &ViewerState) -> bool {
+        matches!(self, Self::Edits(edits) if edits.retarget != state.retarget)
+    }
+
     /// Restores what the step holds; returns the step in the opposite direction.
     fn take(self, state: &mut ViewerState, library: &mut Library) -> Self {
         match self {

@@ -26,15 +26,16 @@ pub use framing::{
 pub use history::History;
 pub use link::{LinkError, from_link, from_object, to_link, to_object, with_current_member};
 pub use link::{
-    LinkRole, LinkedFile, MEMBER_SEPARATOR, embedded_link, link_with_files, link_without_missing, linked_files,
-    most_similar_link, public_link, shown_files,
+    LinkRole, LinkedFile, MEMBER_SEPARATOR, embedded_link, is_to_bring, link_with_files, link_without_missing,
+    linked_files, most_similar_link, public_link, shown_files,
 };
 pub use loop_frames::LoopFrames;
 pub use map_edit::{MapEdit, muted_properties};
 pub use maps::{MapProblem, MotionMap, NumberedMap, active_map, active_maps, reconciled_maps};
 pub use names::{title, written_skeleton};
 pub use playhead::{
-    PoseSampler, active_clip, choice_of_clip, clip_secs, manual_degrees, manual_rotation, play_range, world_from_model,
+    PoseSampler, UnknownClip, active_clip, choice_of_clip, clip_secs, manual_degrees, manual_rotation, play_range,
+    unknown_clip, world_from_model,
 };
 pub use stage::{SourceOnStage, source_on_stage};
 pub use view::{

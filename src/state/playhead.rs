@@ -11,6 +11,40 @@ pub fn active_clip(model: &Model, state: &ViewerState) -> Option<usize> {
     clip_of(model, &state.playhead.clip)
 }
 
+/// A clip that was asked for and doesn't exist.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct UnknownClip {
+    /// The name or index that was given.
+    pub name: String,
+    /// Names of the clips that there are.
+    pub clips: Vec<String>,
+}
+
+impl UnknownClip {
+    /// What should have been given.
+    pub const EXPECTED: &str = "the name or index of a clip";
+}
+
+/// “expected the name or index of a clip, found “Fly”; its clips are Walk, Idle”.
+impl std::fmt::Display for UnknownClip {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        const MAX_NAMES: usize = 20;
+        write!(f, "expected {}, found “{}”; ", Self::EXPECTED, self.name)?;
+        match &self.clips[..] {
+            [] => f.write_str("there are no clips"),
+            clips if clips.len() <= MAX_NAMES => write!(f, "its clips are {}", clips.join(", ")),
+            clips => write!(f, "its clips are {} and {} more", clips[..MAX_NAMES].join(", "), clips.len() - MAX_NAMES),
+        }
+    }
+}
+
+/// Returns the clip that the state names and the model lacks.
+pub fn unknown_clip(model: &Model, state: &ViewerState) -> Option<UnknownClip> {
+    let ClipChoice::Named(name) = &state.playhead.clip else { return None };
+    let unknown = || UnknownClip { name: name.clone(), clips: model.clip_titles().to_vec() };
+    active_clip(model, state).is_none().then(unknown)
+}
+
 /// Returns the index of the chosen clip.
 pub(super) fn clip_of(model: &Model, choice: &ClipChoice) -> Option<usize> {
     match choice {

@@ -1,8 +1,9 @@
 //! The source of the active retargeted clip, displayed beside the model or overlaid on it.
 
-use glam::{Affine3A, Vec3};
+use glam::{Affine3A, Quat, Vec3};
 
 use super::ViewerState;
+use super::framing::front_yaw_radians;
 use super::playhead::{active_clip, world_from_model};
 use crate::library::{BorrowedClip, Library, Model};
 use crate::mesh::Bounds;
@@ -26,20 +27,36 @@ pub fn source_on_stage<'a>(library: &'a Library, state: &ViewerState) -> Option<
     let borrowed = model.borrowed(active_clip(model, state)?)?;
     let source = library.motions().get(borrowed.motion)?.stage();
     let in_place = world_from_model(state.edits.up) * borrowed.model_from_source;
-    let half_width = |bounds: Bounds| if bounds.is_empty() { 0.0 } else { 0.5 * bounds.size().x };
-    let sizes = [
-        model.rest_bounds().transformed(&world_from_model(state.edits.up)),
-        source.rest_bounds().transformed(&in_place),
+    let clip = active_clip(model, state);
+    let bounds = [
+        model.clip_bounds(state.sources.scene, clip, true).transformed(&world_from_model(state.edits.up)),
+        source.clip_bounds(None, Some(borrowed.source_clip), true).transformed(&in_place),
     ];
-    let distance = match state.display.show.over {
-        true => 0.0,
-        false => 1.15 * (half_width(sizes[0]) + half_width(sizes[1])),
-    };
-    let world_from_source = Affine3A::from_translation(distance * Vec3::NEG_X) * in_place;
+    let offset = if state.display.show.over { Vec3::ZERO } else { beside(bounds, front_yaw_radians(library, state)) };
+    let world_from_source = Affine3A::from_translation(offset) * in_place;
     world_from_source.is_finite().then_some(SourceOnStage {
         model: source,
         clip: borrowed.source_clip,
         borrowed,
         world_from_source,
     })
+}
+
+/// The gap between two characters, as a share of their widths.
+const GAP: f32 = 0.1;
+
+/// Returns the offset that brings the second character to the right of the first, as far as both reach there. `yaw_radians`
+/// is where the first one faces: a model that is long from front to back has the source at its flank.
+fn beside([model, source]: [Bounds; 2], yaw_radians: f32) -> Vec3 {
+    let right = (Quat::from_rotation_y(yaw_radians) * Vec3::NEG_X).round();
+    // From the left to the right end of a box.
+    let extent = |bounds: Bounds| {
+        let along = bounds.corners().map(|corner| corner.dot(right));
+        along.into_iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(min, max), at| (min.min(at), max.max(at)))
+    };
+    if model.is_empty() || source.is_empty() {
+        return Vec3::ZERO;
+    }
+    let ((from, to), (source_from, source_to)) = (extent(model), extent(source));
+    (to - source_from + GAP * (to - from + source_to - source_from)) * right
 }

@@ -3,9 +3,9 @@
 use egui::{RichText, ScrollArea, Ui};
 
 use super::icons::{Icon, icon_button_sized};
-use super::{Output, Shown, UiAction, UiState, controls, style, text};
+use super::{Output, Shown, UiAction, UiState, controls, style, text, title_and_hint};
 use crate::editor::{name_and_place, short_name};
-use crate::library::{Model, ModelId};
+use crate::library::{Model, ModelId, Motion};
 use crate::state::{ClipChoice, Command, choice_of_clip};
 
 /// The height of a search field, so that nothing moves when the clear button appears.
@@ -23,8 +23,20 @@ pub struct ClipList {
     search: String,
     /// The active model and the panel's height when the list of models last scrolled to it.
     seen_model: Option<(ModelId, u32)>,
-    /// The model, its current clip and the list's height when the list last scrolled to that clip.
-    seen_clip: Option<(ModelId, Option<usize>, u32)>,
+    /// The current clip when the list last scrolled to it.
+    seen_clip: Option<SeenClip>,
+}
+
+/// What the list scrolls to the current clip for, when it changes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct SeenClip {
+    model: ModelId,
+    clip: Option<usize>,
+    count: usize,
+    /// The motion that the clip is borrowed from: another one's clip may have the same number.
+    motion: Option<ModelId>,
+    /// Height of the list.
+    height: u32,
 }
 
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
@@ -43,27 +55,49 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
         list.search.clear();
     }
     // The current clip stays visible when the list gets shorter, and becomes visible when it is set elsewhere.
-    let seen = (model.id, shown.clip_index(), ui.available_height() as u32);
-    let scrolls = list.seen_clip.replace(seen) != Some(seen);
+    let clip = shown.clip_index();
+    let seen = SeenClip {
+        model: model.id,
+        clip,
+        count,
+        motion: motion_of(shown, model),
+        height: ui.available_height() as u32,
+    };
+    let before = list.seen_clip.replace(seen);
+    let scrolls = before != Some(seen);
+    // A clip that was set elsewhere, such as the first one of a motion that was just borrowed, is not hidden by a search.
+    if before.is_some_and(|before| SeenClip { height: seen.height, ..before } != seen)
+        && clip.and_then(|clip| model.clip_titles().get(clip)).is_some_and(|title| !matches(title, &list.search))
+    {
+        list.search.clear();
+    }
     ScrollArea::vertical().id_salt("clips").auto_shrink([false, true]).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         clips(ui, shown, model, &list.search, scrolls, out);
     });
 }
 
+fn motion_of(shown: &Shown<'_>, model: &Model) -> Option<ModelId> {
+    let borrowed = model.borrowed(shown.clip_index()?)?;
+    shown.library.motions().get(borrowed.motion).map(Motion::id)
+}
+
+fn matches(title: &str, search: &str) -> bool {
+    title.to_lowercase().contains(&search.to_lowercase())
+}
+
 /// The rest pose and the clips that match the search, borrowed ones under the name of their motion.
 fn clips(ui: &mut Ui, shown: &Shown<'_>, model: &Model, search: &str, scrolls: bool, out: &mut Output) {
-    let wanted = search.to_lowercase();
     let current = shown.clip_index();
     let motions = names_of(shown.library.motions().iter().map(|motion| &*motion.source));
     let titles = model.clip_titles();
-    if wanted.is_empty() && controls::list_row(ui, text::REST_POSE, "", current.is_none()).clicked() {
+    if search.is_empty() && controls::list_row(ui, text::REST_POSE, "", current.is_none()).clicked() {
         out.commands.push(Command::SetClip(ClipChoice::RestPose));
     }
-    let mut found = wanted.is_empty();
+    let mut found = search.is_empty();
     let mut heading = None;
     for (index, title) in titles.iter().enumerate() {
-        if !title.to_lowercase().contains(&wanted) {
+        if !matches(title, search) {
             continue;
         }
         found = true;
@@ -89,8 +123,13 @@ fn clips(ui: &mut Ui, shown: &Shown<'_>, model: &Model, search: &str, scrolls: b
         ui.add_space(4.0);
         controls::hint(
             ui,
-            "This model has no animations. To borrow one, drop a motion (.bvh, .vrma, or an .fbx, .x or .glb without meshes), or use \
-             “Motion…” to take another model's clips.",
+            if model.is_placeholder() {
+                title_and_hint(model).1
+            } else if model.has_skeleton() {
+                text::NO_CLIPS
+            } else {
+                text::NO_SKELETON
+            },
         );
     }
 }

@@ -2,38 +2,68 @@
 
 use egui::{FontId, Rect, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
-use super::{Shown, scrub, style, text};
+use super::{Shown, controls, scrub, style, text};
+use crate::library::Model;
 use crate::retarget::FootTrack;
 use crate::state::title;
 
-const TRACK_HEIGHT: f32 = 16.0;
+const TRACK_HEIGHT: f32 = 18.0;
+/// Height of the line that explains colours and scale.
+const LEGEND_HEIGHT: f32 = 16.0;
 const FONT_SIZE: f32 = 10.5;
-/// Opacity of the background of text in a track.
-const TEXT_BACKGROUND: f32 = 0.85;
 /// The slide speed whose bar fills a track.
 const MAX_METRES_PER_SEC: f32 = 0.5;
+/// At most this share of the width is for names.
+const MAX_GUTTER: f32 = 0.25;
 
-/// Shows the tracks of a borrowed clip.
-pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
-    let (Some(model), Some(clip), Some(index)) = (shown.library.active(), shown.clip(), shown.clip_index()) else {
-        return;
-    };
-    let tracks = shown.library.foot_tracks(index);
-    let duration_secs = clip.duration_secs();
-    if tracks.is_empty() || duration_secs <= 0.0 {
-        return;
+/// The tracks of a borrowed clip with the names of the feet.
+struct Tracks<'a> {
+    model: &'a Model,
+    tracks: &'a [FootTrack],
+    duration_secs: f32,
+}
+
+impl<'a> Tracks<'a> {
+    /// `None` if there are none.
+    fn of(shown: &Shown<'a>) -> Option<Self> {
+        let (model, clip, index) = (shown.library.active()?, shown.clip()?, shown.clip_index()?);
+        let (tracks, duration_secs) = (shown.library.foot_tracks(index), clip.duration_secs());
+        (!tracks.is_empty() && duration_secs > 0.0).then_some(Self { model, tracks, duration_secs })
     }
-    for (index, track) in tracks.iter().enumerate() {
+
+    fn name(&self, shown: &Shown<'_>, track: &FootTrack) -> String {
+        title(Some(shown.state), &self.model.asset, track.joint).into_owned()
+    }
+}
+
+/// A name without its namespace, such as `mixamorig:`.
+fn short(name: &str) -> &str {
+    name.rsplit_once(':').map_or(name, |(_, name)| name)
+}
+
+/// Returns the width that the names of the feet take at the left; 0 if there are no tracks.
+pub(super) fn gutter(ui: &Ui, shown: &Shown<'_>) -> f32 {
+    let Some(tracks) = Tracks::of(shown) else { return 0.0 };
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let widths = tracks.tracks.iter().map(|track| {
+        let name = short(&tracks.name(shown, track)).to_owned();
+        ui.painter().layout_no_wrap(name, font.clone(), egui::Color32::PLACEHOLDER).size().x
+    });
+    widths.fold(0.0, f32::max).ceil().min(MAX_GUTTER * ui.available_width())
+}
+
+/// Shows the tracks of a borrowed clip, with their names in the gutter and their legend below.
+pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, gutter: f32) {
+    let Some(tracks) = Tracks::of(shown) else { return };
+    let duration_secs = tracks.duration_secs;
+    let palette = style::palette(ui);
+    for track in tracks.tracks {
         let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), TRACK_HEIGHT), Sense::hover());
-        let lane = rect.shrink2(vec2(scrub::MARGIN, 1.0));
-        let name = title(Some(shown.state), &model.asset, track.joint);
+        let lane = rect.with_min_x(rect.left() + gutter).shrink2(vec2(scrub::MARGIN, 1.0));
+        let name = tracks.name(shown, track);
         response.widget_info(|| WidgetInfo::labeled(egui::accesskit::Role::Image, true, text::foot_contacts(&name)));
+        controls::elided_small(ui, rect.with_max_x(rect.left() + gutter), short(&name), palette.weak_text);
         contacts(ui, lane, track, duration_secs);
-        let palette = style::palette(ui);
-        // Hidden while hovering: the labels cover the first contacts.
-        if !response.hovered() {
-            labels(ui, lane, &name, index == 0);
-        }
         let x = lane.left() + (shown.clip_time_secs() as f32 / duration_secs).clamp(0.0, 1.0) * lane.width();
         ui.painter().vline(x, lane.y_range(), Stroke::new(1.5, palette.accent));
         if let Some(pointer) = response.hover_pos() {
@@ -41,54 +71,34 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>) {
             let at = track.times.partition_point(|&time| time < secs).min(track.times.len().saturating_sub(1));
             let contact = if track.touching.get(at) == Some(&true) { "contact" } else { "no contact" };
             let speed = 100.0 * track.metres_per_sec.get(at).copied().unwrap_or(0.0);
-            response.on_hover_text_at_pointer(format!(
-                "{name}: {contact}, {speed:.0} cm/s over the ground\nFull height: 50 cm/s or more"
-            ));
+            response.on_hover_text_at_pointer(format!("{name}: {contact}, {speed:.0} cm/s over the ground"));
         }
     }
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), LEGEND_HEIGHT), Sense::hover());
+    legend(ui, rect.with_min_x(rect.left() + gutter + scrub::MARGIN));
 }
 
-/// The name of the foot, and in the first track the legend.
-fn labels(ui: &Ui, lane: Rect, name: &str, first: bool) {
-    let palette = style::palette(ui);
-    let named = ui.painter().layout_no_wrap(name.to_owned(), FontId::proportional(FONT_SIZE), palette.weak_text);
-    let end = lane.left() + named.size().x + 8.0;
-    ui.painter().rect_filled(lane.with_max_x(end), 3.0, palette.surface.gamma_multiply(TEXT_BACKGROUND));
-    let at = pos2(lane.left() + 4.0, lane.center().y - 0.5 * named.size().y);
-    ui.painter().galley(at, named, palette.weak_text);
-    if first {
-        legend(ui, lane.with_min_x(end));
-    }
-}
-
-/// Explains the colours if there is room.
+/// Explains the colours and the height of the bars, as far as there is room.
 fn legend(ui: &Ui, room: Rect) {
-    let palette = style::palette(ui);
-    let entry =
-        |label: &str| ui.painter().layout_no_wrap(label.to_owned(), FontId::proportional(FONT_SIZE), palette.weak_text);
-    let entries = [(palette.chosen, entry("contact")), (palette.warning, entry("slide"))];
     const SQUARE: f32 = 8.0;
-    let width = |galley: &egui::Galley| SQUARE + 4.0 + galley.size().x + 10.0;
-    let whole = entries.iter().map(|(_, galley)| width(galley)).sum::<f32>();
-    if whole > room.width() {
-        return;
-    }
-    ui.painter().rect_filled(
-        room.with_max_x(room.left() + whole),
-        3.0,
-        palette.surface.gamma_multiply(TEXT_BACKGROUND),
-    );
+    let palette = style::palette(ui);
     let mut x = room.left() + 2.0;
-    for (color, galley) in entries {
+    for (color, label) in [(palette.chosen, text::FOOT_CONTACT), (palette.warning, text::FOOT_SLIDE)] {
+        let font = FontId::proportional(FONT_SIZE);
+        let galley = ui.painter().layout_no_wrap(label.to_owned(), font, palette.weak_text);
+        if x + SQUARE + 4.0 + galley.size().x > room.right() {
+            return;
+        }
         let square = Rect::from_center_size(pos2(x + 0.5 * SQUARE, room.center().y), egui::Vec2::splat(SQUARE));
         ui.painter().rect(square, 2.0, color, Stroke::new(1.0, palette.panel), egui::StrokeKind::Outside);
         let at = pos2(square.right() + 4.0, room.center().y - 0.5 * galley.size().y);
-        x += width(&galley);
+        x = at.x + galley.size().x + 12.0;
         ui.painter().galley(at, galley, palette.weak_text);
     }
 }
 
-/// A tint while the source's foot is planted, and in it a bar whose height is the slide speed of the model's foot.
+/// A tint while the source's foot is planted, and in it a bar whose height is the slide speed of the model's foot. A line
+/// marks half of the scale.
 fn contacts(ui: &Ui, lane: Rect, track: &FootTrack, duration_secs: f32) {
     let palette = style::palette(ui);
     let painter = ui.painter_at(lane);
@@ -115,4 +125,6 @@ fn contacts(ui: &Ui, lane: Rect, track: &FootTrack, duration_secs: f32) {
         (start, fastest) = (None, 0.0);
     }
     painter.add(mesh);
+    let half = Stroke::new(1.0, palette.weak_text.gamma_multiply(0.35));
+    painter.hline(lane.x_range(), lane.center().y, half);
 }

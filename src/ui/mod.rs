@@ -23,6 +23,7 @@ use crate::state::{ViewerState, active_clip, clip_secs};
 pub use keys::{KEY_TABLE, KeyHelp};
 pub use output::{Output, PathPurpose, Saved, UiAction, VideoSettings};
 pub use tabs::Tab;
+pub use viewport::awaited::title_and_hint;
 pub use viewport::help::Help;
 pub use viewport::labels::labels;
 pub use viewport::notices::{Messages, Progress, Toast};
@@ -113,10 +114,10 @@ pub struct UiState {
 pub struct HostState {
     /// The platform can show a gallery of samples.
     pub has_gallery: bool,
-    /// There is a step to undo.
-    pub can_undo: bool,
-    /// There is an undone step to redo.
-    pub can_redo: bool,
+    /// The next undo takes back an edit of a joint map or of how motions are retargeted.
+    pub can_undo_retargeting: bool,
+    /// The next redo repeats such an edit.
+    pub can_redo_retargeting: bool,
     /// The video that is being recorded; everything else waits.
     pub recording: Option<RecordingProgress>,
 }
@@ -239,7 +240,7 @@ fn side_panels(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Ou
     if local.layout.inspector_open {
         egui::Panel::right("inspector")
             .frame(frame)
-            .default_size(304.0)
+            .default_size((0.21 * width).clamp(304.0, 420.0))
             .size_range(260.0..=(0.38 * width).clamp(260.0, 520.0))
             .show_separator_line(false)
             .show(ui, |ui| tabs::show(ui, shown, local, out));

@@ -72,6 +72,16 @@ pub fn couldnt_open(name: &str) -> String {
     format!("Couldn't open {name}")
 }
 
+/// Returns what stands on the stage in place of a model that the user has yet to supply.
+pub fn waiting_for(name: &str) -> String {
+    format!("Waiting for {name}")
+}
+
+/// Returns what stands on the stage in place of a model that couldn't be loaded.
+pub fn couldnt_load(name: &str) -> String {
+    format!("Couldn't load {name}")
+}
+
 // Clips
 /// Button that opens files.
 pub const OPEN: &str = "Open…";
@@ -83,6 +93,18 @@ pub const SHARE: &str = "Share…";
 pub const CLIPS_SECTION: &str = "CLIPS";
 /// Row of the clip list for no clip. The transport shows it in place of the time.
 pub const REST_POSE: &str = "Rest pose";
+/// Shown for a model without clips.
+pub const NO_CLIPS: &str = "This model has no animations. To borrow one, drop a motion (.bvh, .vrma, or an .fbx, .x or .glb without meshes), or use \
+    “Motion…” to take another model's clips.";
+/// Shown for a model without clips that cannot borrow any.
+pub const NO_SKELETON: &str = "This model has no animations, and no skeleton that a borrowed one could move. Bind its mesh to a skeleton and \
+    export it again with its skin; for an .obj of the exercise, open its .skel and .attach as well.";
+/// Button that opens the awaited model.
+pub const BRING: &str = "Choose files…";
+/// What to do if a link's model couldn't be loaded.
+pub const NOT_LOADED: &str = "Try the link again later, or open a copy of the model.";
+/// What to do while a model is awaited.
+pub const BRING_HERE: &str = "Drop the file anywhere, or open it. The rest of the link is kept and applied to it.";
 /// Button that empties a search field.
 pub const CLEAR_SEARCH: &str = "Clear search";
 
@@ -362,7 +384,7 @@ pub const DOUBTFUL_REST: &str = "The motion's rest looks like a pose in motion. 
 pub const REMATCH: &str = "Re-match";
 /// Button that exchanges the sources of left and right joints.
 pub const SWAP_SIDES: &str = "Swap sides";
-/// Button that follows the names for left and right where positions contradict them.
+/// The same button where positions contradict the names and were followed.
 pub const MATCH_SIDES_BY_NAME: &str = "Match sides by name";
 /// The same button once names are followed.
 pub const MATCH_SIDES_BY_POSITION: &str = "Match sides by position";
@@ -396,6 +418,18 @@ pub const IGNORED_CHANNELS: &str = "Ignored channels";
 pub const USE_ALL_CHANNELS: &str = "Use all channels";
 /// Heading of the choice of rest poses.
 pub const REST_POSE_ALIGNMENT: &str = "Rest-pose alignment";
+/// Legend of the foot-contact tracks: the tint.
+pub const FOOT_CONTACT: &str = "contact";
+/// Legend of the foot-contact tracks: the bars and their scale.
+pub const FOOT_SLIDE: &str = "slide, 50 cm/s at full height; the line is 25";
+/// Accessible name of the choice of the model's rest pose.
+pub const REST_OF_MODEL: &str = "Rest pose of the model";
+/// Accessible name of the choice of the motion's rest pose.
+pub const REST_OF_MOTION: &str = "Rest pose of the motion";
+/// Choice of what happens to translations of joints other than the hips.
+pub const TRANSLATIONS: &str = "Translations of joints";
+/// Choice of what happens to scales of joints other than the hips.
+pub const SCALES: &str = "Scales of joints";
 /// Heading of the figures about rotations relative to the source.
 pub const ROTATION_ERROR: &str = "Rotation error";
 /// Heading of the three rotation offset fields of a mapped joint.

@@ -12,7 +12,10 @@ use crate::state::Command;
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, narrow: bool, out: &mut Output) {
     let model_id = shown.library.active().map_or(ModelId::default(), |model| model.id);
     let clip_id = (model_id, shown.clip_index().unwrap_or(usize::MAX));
-    let bar = Scrub { clip: shown.clip(), time_secs: shown.clip_time_secs(), range: shown.state.playhead.range };
+    let has_tracks = shown.state.display.show.source && !shown.state.page.embed;
+    let gutter = if has_tracks { feet::gutter(ui, shown) } else { 0.0 };
+    let range = shown.state.playhead.range;
+    let bar = Scrub { clip: shown.clip(), time_secs: shown.clip_time_secs(), range, gutter };
     let (scrubbed, is_held) = scrub::show(ui, &bar, clip_id, &mut local.key_marks);
     local.holds_time = is_held;
     match scrubbed {
@@ -20,8 +23,8 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, narrow: 
         Some(Scrubbed::Range(range)) => out.commands.push(Command::SetRange(Some(range))),
         None => {}
     }
-    if shown.state.display.show.source && !shown.state.page.embed {
-        feet::show(ui, shown);
+    if has_tracks {
+        feet::show(ui, shown, gutter);
     }
     ui.horizontal(|ui| {
         ui.set_height(44.0);

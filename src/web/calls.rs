@@ -12,9 +12,10 @@ use crate::app::{App, Message, Opening, Reply, ScriptCall};
 use crate::editor::{Contents, short_name};
 use crate::files::{Item, OpenError, Role, open_items, open_view};
 use crate::frame::PoseDocument;
-use crate::library::Motion;
+use crate::library::{Model, Motion};
 use crate::samples;
 use crate::state::{Command, MotionMap, ViewerState, active_clip, from_object, to_object, with_current_member};
+use crate::ui::title_and_hint;
 
 /// Opens one set: an array of URLs and `[name, Uint8Array]` pairs. A model becomes the active one; motions and joint maps are
 /// applied to the active model. With the role `motion`, models are opened as motions too. Resolves once it is on screen, to
@@ -50,13 +51,6 @@ pub async fn apply(partial: String) -> Result<String, JsError> {
         return settled(promise).await.map(|_| report(&[], &[])).map_err(error);
     }
     open_state(&page, state.or_sample(samples::WALKER), false, false).await.map_err(error)
-}
-
-/// Closes the placeholder for a link's missing files.
-#[wasm_bindgen]
-pub fn close_placeholder() -> Result<(), JsError> {
-    let page = page().map_err(error)?;
-    with_app(&page, App::close_placeholder).map_err(error)
 }
 
 /// Shows why the shell refused a request.
@@ -122,12 +116,16 @@ pub async fn begin() -> Result<(), JsError> {
 #[wasm_bindgen]
 pub fn summary() -> Result<String, JsError> {
     let page = page().map_err(error)?;
+    let named = |model: &Model| match model.is_placeholder() {
+        true => title_and_hint(model).0,
+        false => short_name(&model.source),
+    };
     let summary = |app: &mut App| {
         let state = app.state();
         let model = app.library().active();
         let clip = model.and_then(|model| model.clip_titles().get(active_clip(model, state)?));
         json!({
-            "model": model.map_or_else(String::new, |model| short_name(&model.source)),
+            "model": model.map_or_else(String::new, named),
             "clip": clip,
             "playing": state.playback.playing,
             "notice": app.notice(),

@@ -10,8 +10,9 @@ use super::calls::with_app;
 use super::rehearsal::rehearse;
 use super::shell::{self, Shell};
 use crate::app::{App, Host, Inbox, Loads, Message, Video, set_fatal_hook, web_options};
-use crate::editor::{Contents, OpenedModel};
+use crate::editor::Contents;
 use crate::files::{Item, OpenError, Role, open_items, open_view};
+use crate::library::Model;
 use crate::samples;
 use crate::state::{ViewerState, from_link, to_link};
 
@@ -99,7 +100,7 @@ async fn start_app(canvas: web_sys::HtmlCanvasElement, shell: &Shell) -> Result<
 }
 
 /// Loads the first contents: the items, otherwise the files of the link. Returns them with their view and the problems. If the
-/// model cannot be opened, falls back to the skeleton of the first motion that can, then to the sample.
+/// model cannot be opened, falls back to the skeleton of the first motion that can, then to an empty stage.
 async fn first_contents(
     link: &str,
     items: &Array,
@@ -157,11 +158,14 @@ async fn open_fallback(
         }
     }
     models.truncate(1);
-    if models.is_empty() {
-        models.extend(samples::load(samples::WALKER).map(OpenedModel::from));
-    }
-    let model = models.first().ok_or_else(|| problems.join("\n"))?;
-    let view = wanted.for_model(ViewerState::of_model(model.model.source.clone()));
+    let view = match (models.first(), wanted.sources.model.first()) {
+        (Some(model), _) => wanted.for_model(ViewerState::of_model(model.model.source.clone())),
+        (None, Some(awaited)) => {
+            models.push(Model::placeholder(awaited).into());
+            wanted
+        }
+        (None, None) => return Err(problems.join("\n")),
+    };
     Ok((Contents { models, motions: Some(Vec::new()), ..Contents::default() }, view, problems))
 }
 
@@ -169,14 +173,7 @@ async fn open_fallback(
 pub(super) fn state_of_link(link: &str, shell: &Shell) -> ViewerState {
     let (state, errors) = from_link(link);
     errors.iter().for_each(|error| shell.warn(&error.to_string()));
-    let state = state.or_sample(samples::WALKER);
-    if prefers_reduced_motion() { state.calmed() } else { state }
-}
-
-fn prefers_reduced_motion() -> bool {
-    let query = "(prefers-reduced-motion: reduce)";
-    let query = web_sys::window().and_then(|window| window.match_media(query).ok()).flatten();
-    query.is_some_and(|query| query.matches())
+    state.or_sample(samples::WALKER)
 }
 
 pub(super) fn page() -> Result<std::rc::Rc<Page>, String> {
@@ -248,6 +245,12 @@ impl Host for PageHost {
     fn link(&self, fragment: &str) -> String {
         let href = web_sys::window().and_then(|window| window.location().href().ok()).unwrap_or_default();
         format!("{}#{fragment}", href.split('#').next().unwrap_or_default())
+    }
+
+    fn prefers_reduced_motion(&self) -> bool {
+        let query = "(prefers-reduced-motion: reduce)";
+        let query = web_sys::window().and_then(|window| window.match_media(query).ok()).flatten();
+        query.is_some_and(|query| query.matches())
     }
 
     fn state_changed(&self, state: &ViewerState) {

@@ -84,6 +84,28 @@ fn a_motion_is_retargeted_and_follows_undo_and_redo() {
     assert!(desk.shows("Search joints of the model"), "back in the tab that was open");
 }
 
+/// Before the first edit of the map, the last step is the motion itself, and with it the tab.
+#[test]
+fn the_motion_tabs_arrows_take_back_its_own_edits_only() {
+    let Some(mut desk) = desk("sample:pilot") else { return };
+    desk.open(&["sample:walk".into()]);
+    desk.press(Tab::Motion.label());
+    let proposed = desk.state().retarget.map.clone();
+    desk.press("Undo (Ctrl+Z)");
+    assert_eq!(desk.library().motions().len(), 1, "the motion stays");
+    desk.press(text::CLEAR_MAP);
+    assert_ne!(desk.state().retarget.map, proposed);
+    desk.press("Undo (Ctrl+Z)");
+    desk.press("Undo (Ctrl+Z)");
+    assert_eq!((desk.library().motions().len(), &desk.state().retarget.map), (1, &proposed));
+    desk.press("Redo (Ctrl+Y)");
+    assert_ne!(desk.state().retarget.map, proposed);
+    // Ctrl+Z is everybody's.
+    desk.undo();
+    desk.undo();
+    assert_eq!(desk.library().motions().len(), 0);
+}
+
 #[test]
 fn a_motion_stays_with_a_model_it_fits_and_is_dropped_without_an_error_otherwise() {
     let Some(mut desk) = desk("sample:pilot") else { return };

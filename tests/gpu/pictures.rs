@@ -262,8 +262,8 @@ fn bones_are_visible_through_the_mesh() {
         color: Vec4::new(0.0, 0.0, 1.0, 1.0),
         joint: 0,
         of_source: false,
+        visible: true,
     }];
-    scene.frame.look.skeleton = true;
     let [r, _, b, _] = scene.draw(&gpu).at(0.0, -0.15);
     assert!(b > 100 && r < 100, "{r} {b}");
 }

@@ -4,15 +4,16 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use gaitway::anim::{ClipBuilder, Interpolation, JointIndex, Keys, TimeRange};
-use gaitway::asset::Asset;
+use gaitway::asset::{Asset, AssetParts};
 use gaitway::editor::{Contents, Editor, Event, Export, OpenedMap};
-use gaitway::files::{Role, read_paths};
+use gaitway::files::{Role, open_view, read_paths};
+use gaitway::frame::{Frame, evaluate};
 use gaitway::library::{Library, Model, Motion};
-use gaitway::retarget::JointMapFile;
+use gaitway::retarget::{JointMapFile, RootOptions, RootPart};
 use gaitway::samples;
 use gaitway::state::{
     CameraChoice, ClipChoice, Command, Inspect, MapEdit, OrbitCamera, RetargetEdits, Show, Sources, UpAxis,
-    ViewerState, active_clip,
+    ViewerState, active_clip, from_link, resolve_camera, to_link,
 };
 use glam::Vec3;
 
@@ -143,16 +144,31 @@ fn notices_say_how_to_go_back() {
 
 #[test]
 fn motions_without_a_joint_in_common_are_refused_until_the_user_maps_them() {
-    let mut editor = editor("sample:morphs");
+    let mut editor = editor("sample:creature");
     let before = editor.state().clone();
     let error = editor.open(contents(&["sample:walk"]), None, &mut any).expect_err("does not fit");
-    assert!(error.contains("no joint in common with Goblin"), "{error}");
-    assert_eq!((editor.take_events().last(), editor.state()), (Some(&Event::MotionsRefused), &before));
+    assert!(error.contains("no joint in common with Fox"), "{error}");
+    let refused = Event::MotionsRefused { lacks_skeleton: false };
+    assert_eq!((editor.take_events().last(), editor.state()), (Some(&refused), &before));
     editor.map_refused_manually();
     assert_eq!(editor.take_events(), [Event::MapStarted], "an empty map is not a problem");
     assert_eq!(editor.library().motions().len(), 1);
     editor.undo();
     assert!(editor.library().motions().is_empty());
+}
+
+#[test]
+fn a_model_without_a_skeleton_is_told_what_it_lacks() {
+    let moving = moving_box(0.5, &[0.0, 1.0], &[Vec3::ZERO, Vec3::X]);
+    let asset = moving.active().expect("a box").asset.clone();
+    drop(moving);
+    let parts = AssetParts { clips: Vec::new(), ..Arc::into_inner(asset).expect("of one model").into_parts() };
+    let mut library = Library::default();
+    library.add(Model::new("chair.glb".to_owned(), Asset::new(parts).expect("indices in range"), Vec::new()));
+    let mut editor = Editor::new(library, ViewerState::default());
+    let error = editor.open(contents(&["sample:walk"]), None, &mut any).expect_err("does not fit");
+    assert!(error.contains("chair.glb has no skeleton that a motion could move; bind its mesh to one"), "{error}");
+    assert_eq!(editor.take_events().last(), Some(&Event::MotionsRefused { lacks_skeleton: true }));
 }
 
 #[test]
@@ -340,4 +356,144 @@ fn an_exported_clip_is_called_by_its_own_name() {
         let name = editor.export(Export::Clip { clip }).expect("it has keys").name;
         assert_eq!(name, format!("Pilot-{title}-clip.glb"));
     }
+}
+
+/// A view's clip that the model lacks is no error, but it isn't silent either.
+#[test]
+fn an_unknown_clip_of_a_view_is_told() {
+    let told = "clip: expected the name or index of a clip, found “Fly”; its clips are Walk, Idle, Wave; the rest pose is used.";
+    let view = || {
+        let mut view = ViewerState::of_model("sample:walker".to_owned());
+        view.playhead.clip = ClipChoice::Named("Fly".to_owned());
+        view
+    };
+    let mut editor = Editor::default();
+    editor.open(contents(&["sample:walker"]), Some(view()), &mut any).expect("fits");
+    assert_eq!(notices(&editor.take_events()), [told]);
+    // A link with the same files only replaces the state.
+    editor.apply(Command::SetClip(ClipChoice::First));
+    editor.apply(Command::Replace(Box::new(view())));
+    assert_eq!(notices(&editor.take_events()), [told]);
+    editor.apply(Command::Replace(Box::new(ViewerState::of_model("sample:walker".to_owned()))));
+    assert_eq!(notices(&editor.take_events()), [""; 0]);
+}
+
+#[test]
+fn matching_again_says_if_that_changed_nothing() {
+    let mut editor = editor("sample:pilot");
+    open_motion(&mut editor, "dance.glb");
+    editor.apply(Command::SetMap { motion: 0, map: None });
+    assert_eq!(notices(&editor.take_events()), ["The joints are already mapped as proposed."]);
+    editor.apply(Command::EditMap { motion: 0, edit: MapEdit::Clear });
+    editor.apply(Command::SetMap { motion: 0, map: None });
+    assert_eq!(notices(&editor.take_events()), [""; 0], "the table shows it");
+    // Nothing to propose: what was mapped by hand stays.
+    let mut editor = self::editor("sample:creature");
+    editor.open(contents(&["sample:walk"]), None, &mut any).expect_err("does not fit");
+    editor.map_refused_manually();
+    editor.apply(Command::SetSource { motion: 0, target: 1, source: Some(0) });
+    editor.take_events();
+    let before = editor.state().clone();
+    editor.apply(Command::SetMap { motion: 0, map: None });
+    assert_eq!(editor.state(), &before);
+    let events = editor.take_events();
+    let [text] = notices(&events)[..] else { panic!("{events:?}") };
+    assert!(text.starts_with("Walk has no joint in common with Fox"), "{text}");
+}
+
+/// What the viewport shows, from where.
+fn view(editor: &Editor) -> OrbitCamera {
+    resolve_camera(editor.library(), editor.state(), 1.6)
+}
+
+#[test]
+fn an_option_never_moves_the_camera() {
+    let mut editor = editor("sample:pilot");
+    open_motion(&mut editor, "dance.glb");
+    let (before, state) = (view(&editor), editor.state().clone());
+    let set = |part| Command::SetRoot(Some(RootOptions { horizontal: part, vertical: part, ..RootOptions::default() }));
+    let options = [set(RootPart::Freeze), Command::EditMap { motion: 0, edit: MapEdit::Clear }];
+    for option in options.clone() {
+        editor.apply(option);
+        assert_eq!(view(&editor), before);
+    }
+    let automatic = ViewerState { camera: CameraChoice::Auto, ..editor.state().clone() };
+    assert_ne!(resolve_camera(editor.library(), &automatic, 1.6), before, "it would have moved");
+    // Without its cause the camera is automatic again, and another clip is framed as ever.
+    editor.undo();
+    editor.undo();
+    assert_eq!((view(&editor), editor.state()), (before, &state));
+    options.into_iter().for_each(|option| editor.apply(option));
+    editor.apply(Command::SetClip(ClipChoice::First));
+    assert_eq!(editor.state().camera, CameraChoice::Auto);
+    // A camera that the user moved stays.
+    editor.apply(Command::Orbit { yaw_radians: 0.3, pitch_radians: 0.0 });
+    let moved = orbit(&editor);
+    editor.undo();
+    editor.apply(Command::SetClip(ClipChoice::First));
+    assert_eq!(orbit(&editor), moved);
+}
+
+#[test]
+fn a_panel_knows_whose_edit_undo_takes_back() {
+    let mut editor = editor("sample:pilot");
+    open_motion(&mut editor, "dance.glb");
+    let can = |editor: &Editor| (editor.can_undo_retargeting(), editor.can_redo_retargeting());
+    assert!(editor.can_undo(), "the motion");
+    assert_eq!(can(&editor), (false, false));
+    editor.apply(Command::EditMap { motion: 0, edit: MapEdit::SwapSides });
+    assert_eq!(can(&editor), (true, false));
+    editor.undo();
+    assert_eq!(can(&editor), (false, true));
+    editor.redo();
+    editor.apply(Command::SetShow(Show { grid: false, ..Show::default() }));
+    assert_eq!(can(&editor), (false, false), "the last step is the grid's");
+}
+
+#[test]
+fn the_wish_for_reduced_motion_leaves_no_trace_in_links() {
+    let turning = || {
+        let mut view = ViewerState::of_model("sample:walker".to_owned());
+        view.camera_options.turntable = 20.0;
+        view
+    };
+    let mut editor = Editor::default();
+    editor.prefer_reduced_motion(true);
+    editor.open(contents(&["sample:walker"]), Some(turning()), &mut any).expect("fits");
+    let calm = |editor: &Editor| !editor.state().playback.playing && editor.state().camera_options.turntable == 0.0;
+    assert!(calm(&editor));
+    assert_eq!(to_link(&editor.shared_state()), to_link(&turning()));
+    editor.apply(Command::Replace(Box::new(turning())));
+    assert!(calm(&editor));
+    editor.apply(Command::SetSpeed(2.0));
+    let link = to_link(&editor.shared_state());
+    assert!(link.contains("turntable=20") && !link.contains("play="), "{link}");
+    // What the user sets is the user's.
+    editor.apply(Command::TogglePlaying);
+    assert!(editor.state().playback.playing);
+    editor.apply(Command::TogglePlaying);
+    assert!(to_link(&editor.shared_state()).contains("play=0"));
+    assert!(to_link(&editor.shared_state()).contains("turntable=20"));
+}
+
+/// An empty stage stands for a model that can't be had yet. It keeps the whole view, and goes once something is opened.
+#[test]
+fn an_empty_stage_awaits_a_model() {
+    let (mut view, _) =
+        from_link("v=1&model=file:in/Soldier.glb&motion=file:walk.bvh&clip=run&t=0.5&camera=10,5,3,0,1,0&exposure=1");
+    view.playback.playing = false;
+    let mut editor = Editor::default();
+    let (awaited, shown) = open_view(view.clone(), true, &[]).expect("there is nothing to read");
+    editor.open(awaited, Some(shown), &mut any).expect("fits");
+    let events = editor.take_events();
+    assert_eq!((editor.state(), notices(&events)), (&view, vec![]), "no notice about its clip");
+    let model = editor.library().active().expect("stands for it");
+    assert_eq!((model.is_placeholder(), model.source.as_str()), (true, "in/Soldier.glb"));
+    let mut frame = Frame::default();
+    evaluate(editor.library(), editor.state(), 1.5, &mut frame);
+    assert!(frame.bones.is_empty() && frame.characters[0].palette.len() <= 1, "there is nothing to see");
+    open(&mut editor, "sample:walker");
+    let listed: Vec<&str> = editor.library().models().iter().map(|model| model.source.as_str()).collect();
+    assert_eq!(listed, ["sample:walker"]);
+    assert_eq!(editor.state().display.exposure, 1.0);
 }

@@ -1,20 +1,22 @@
 //! The side-by-side comparison of skinning methods, and the source of a retargeted clip beside the model.
 
+use std::f32::consts::FRAC_PI_2;
 use std::sync::Arc;
 
-use gaitway::anim::{Clip, ClipBuilder, Joint, Keys, Skeleton, Transform};
+use gaitway::anim::{Clip, ClipBuilder, Interpolation, Joint, JointIndex, Keys, Skeleton, Transform};
 use gaitway::asset::{Asset, AssetParts};
 use gaitway::frame::{Frame, PickedJoint, evaluate, pick_joint, pose_document};
-use gaitway::library::{Library, Motion, map_for};
+use gaitway::library::{Library, Model, Motion, map_for};
 use gaitway::mesh::SkinningMode;
 use gaitway::retarget::{JointMap, RestChoice, RestChoices};
 use gaitway::state::{
     ClipChoice, Comparison, Display, Inspect, Playhead, Selection, Show, ViewerState, choice_of_clip, compared_rests,
     resolved_bounds, source_on_stage,
 };
-use glam::{Vec2, Vec3};
+use glam::{Quat, Vec2, Vec3};
 
 use crate::data::walker;
+use crate::skeletons;
 
 fn frame_of(library: &Library, state: &ViewerState, aspect: f32) -> Frame {
     let mut frame = Frame::default();
@@ -226,4 +228,52 @@ fn the_source_plays_along() {
     let late =
         frame_of(&library, &ViewerState { playhead: Playhead { time_secs: 0.6, ..state.playhead }, ..state }, 1.5);
     assert_ne!(early.characters[1].world_from_joint, late.characters[1].world_from_joint);
+}
+
+/// A chain that lies along Z at rest and along X in its clip, borrowed from itself.
+fn long_model() -> (Library, ViewerState) {
+    let joints = skeletons::chain(["Tail1", "Tail2", "Tail3", "Tail4"], Vec3::Z);
+    let skeleton = Skeleton::new(joints).expect("a tree");
+    let mut clip = ClipBuilder::new("turn", &skeleton);
+    let keys = Keys::Rotation(vec![Quat::IDENTITY, Quat::from_rotation_y(FRAC_PI_2)]);
+    clip.channel(JointIndex(0), Interpolation::Linear, &[0.0, 1.0], keys).expect("two keys");
+    let clips = vec![clip.build()];
+    let asset = Arc::new(Asset::new(AssetParts { skeleton, clips, ..AssetParts::default() }).expect("in range"));
+    let mut library = Library::default();
+    library.add(Model::new("snake.glb".to_owned(), asset.clone(), Vec::new()));
+    library.set_motions(vec![Motion::new("turn.glb".to_owned(), asset)]);
+    library.borrow_each(vec![None]);
+    assert_eq!(library.borrow_errors(), []);
+    let clip = choice_of_clip(library.active().expect("a model"), 1);
+    let playhead = Playhead { clip, time_secs: 1.0, ..Playhead::default() };
+    (library, ViewerState { playhead, ..ViewerState::default() })
+}
+
+#[test]
+fn a_long_model_has_its_source_clear_of_itself() {
+    let (library, state) = long_model();
+    let frame = frame_of(&library, &showing(&state, |show| show.source = true), 1.5);
+    let ends = |character: usize| {
+        let joints = frame.characters[character].world_from_joint.iter().map(|world| world.translation.x);
+        joints.fold((f32::INFINITY, f32::NEG_INFINITY), |(min, max), x| (min.min(x), max.max(x)))
+    };
+    let ((from, to), (_, source_to)) = (ends(0), ends(1));
+    assert!(to - from > 2.9, "it lies across: {from} {to}");
+    assert!(source_to < from, "the source ends at {source_to}, the model begins at {from}");
+}
+
+/// Documented: `show=source` shows the source, `skeleton` the skeletons.
+#[test]
+fn the_source_draws_no_skeleton_that_was_not_asked_for() {
+    let (library, state) = walker_with_larger_source();
+    let drawn = |change: fn(&mut Show)| {
+        let frame = frame_of(&library, &showing(&state, change), 1.5);
+        let of = |of_source| frame.bones.iter().any(|bone| bone.of_source == of_source && bone.visible);
+        [of(false), of(true)]
+    };
+    // The source has no mesh: its skeleton is all there is to see of it.
+    assert_eq!(drawn(|show| show.source = true), [false, true]);
+    assert_eq!(drawn(|show| (show.source, show.skeleton) = (true, true)), [true, true]);
+    assert_eq!(drawn(|show| (show.source, show.error) = (true, true)), [true, true], "errors are colours of bones");
+    assert_eq!(drawn(|show| show.error = true), [false, false]);
 }

@@ -84,7 +84,8 @@ pub fn bench_of(size: [f32; 2], library: Library) -> Harness<'static, Bench> {
                 let ui = &mut ui;
                 let Bench { editor, frame, panels, commands, actions, viewport } = bench;
                 evaluate(editor.library(), editor.state(), panels.viewport.aspect, frame);
-                (panels.host.can_undo, panels.host.can_redo) = (editor.can_undo(), editor.can_redo());
+                panels.host.can_undo_retargeting = editor.can_undo_retargeting();
+                panels.host.can_redo_retargeting = editor.can_redo_retargeting();
                 let mut output = Output::default();
                 let shown = Shown { library: editor.library(), state: editor.state(), frame: &*frame };
                 *viewport = ui::panels(ui, shown, panels, &mut output);
@@ -136,6 +137,23 @@ pub fn model_with_clips(count: usize) -> Model {
         asset.warnings.push(Warning::MatrixNotDecomposable { node: node.to_owned() });
     }
     Model::new("folder/many.glb".to_owned(), asset, Vec::new())
+}
+
+/// The texts that are painted, each with whether it is cut, and where.
+pub fn painted(harness: &Harness<'_, Bench>) -> Vec<(String, bool, egui::Rect)> {
+    fn collect(shape: &egui::Shape, texts: &mut Vec<(String, bool, egui::Rect)>) {
+        match shape {
+            egui::Shape::Vec(shapes) => shapes.iter().for_each(|shape| collect(shape, texts)),
+            egui::Shape::Text(text) => {
+                let rect = text.galley.rect.translate(text.pos.to_vec2());
+                texts.push((text.galley.text().to_owned(), text.galley.elided, rect));
+            }
+            _ => {}
+        }
+    }
+    let mut texts = Vec::new();
+    harness.output().shapes.iter().for_each(|clipped| collect(&clipped.shape, &mut texts));
+    texts
 }
 
 /// Presses what has this label and gives back the commands that came of it.

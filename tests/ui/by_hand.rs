@@ -6,7 +6,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use gaitway::state::{ClipChoice, Command, Inspect, Show};
 use gaitway::ui::{RecordingProgress, Saved, Tab, UiAction, VideoSettings, text};
 
-use crate::bench::{Bench, NARROW, WIDE, drag, motion_bench, press, press_key, sample_bench};
+use crate::bench::{Bench, NARROW, WIDE, drag, motion_bench, painted, press, press_key, sample_bench};
 
 /// The left shin of the walker, as the file numbers it.
 const SHIN: usize = 15;
@@ -181,4 +181,29 @@ fn the_motion_tab_tells_the_fit_and_puts_the_source_on_the_stage() {
     assert_eq!(press(&mut harness, text::SHOW_SOURCE), [Command::SetShow(Show { source: true, ..Show::default() })]);
     assert_eq!(harness.state().frame.characters.len(), 2);
     assert_eq!(harness.query_all_by_label_contains(&text::foot_contacts("")).count(), 2, "a lane for each foot");
+}
+
+/// Names stand beside the lanes and the legend with the scale below them: nothing covers the first seconds.
+#[test]
+fn the_lanes_of_the_feet_are_not_covered() {
+    for size in [WIDE, NARROW] {
+        let mut harness = motion_bench(size, &["dance.bvh"]);
+        let clip = ClipChoice::Named("3".to_owned());
+        harness.state_mut().editor.apply(Command::SetClip(clip));
+        harness.state_mut().editor.apply(Command::SetShow(Show { source: true, ..Show::default() }));
+        harness.run();
+        let lanes: Vec<egui::Rect> =
+            harness.query_all_by_label_contains(&text::foot_contacts("")).map(|lane| lane.rect()).collect();
+        assert_eq!(lanes.len(), 2);
+        // The handle of the in point is centred 3 points left of the start.
+        let start = harness.get_by_label(text::IN_POINT).rect().center().x + 3.0;
+        let texts = painted(&harness);
+        for (text, _, rect) in &texts {
+            let is_over = lanes.iter().any(|lane| lane.with_min_x(start).intersects(rect.shrink(0.5)));
+            assert!(!is_over, "{text} at {rect:?} over {lanes:?} on {size:?}");
+        }
+        let told = |wanted: &str| texts.iter().any(|(text, ..)| text == wanted);
+        assert!(told("LeftToes") && told("RightToes"), "{texts:?}");
+        assert!(told(text::FOOT_SLIDE), "the scale");
+    }
 }

@@ -1,9 +1,12 @@
 //! The left panel.
 
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
-use gaitway::anim::ClipBuilder;
-use gaitway::asset::Asset;
+use egui_kittest::kittest::{NodeT, Queryable};
+use gaitway::anim::{ClipBuilder, Joint, JointIndex, Skeleton};
+use gaitway::asset::{Asset, AssetParts, MeshInstance};
+use gaitway::editor::Contents;
+use gaitway::library::{Model, Motion};
+use gaitway::mesh::{Geometry, Mesh};
 use gaitway::state::{ClipChoice, Command};
 use gaitway::ui::{UiAction, text};
 
@@ -36,6 +39,65 @@ fn the_chosen_clip_is_in_sight() {
     harness.set_size(egui::vec2(WIDE[0], 0.6 * WIDE[1]));
     harness.run_steps(30);
     assert!(is_in_sight(&harness), "the list got shorter");
+}
+
+/// Also where a search would hide it, and where the number of the clip is that of another motion's clip.
+#[test]
+fn a_borrowed_clip_is_selected_and_in_sight() {
+    let mut harness = bench(WIDE, model_with_clips(60));
+    harness.get_by_label(&text::search_clips(60)).click();
+    harness.run();
+    harness.get_by_label(&text::search_clips(60)).type_text("move 59");
+    harness.run();
+    let borrow = |harness: &mut Harness<'_, Bench>, name: &str| {
+        let asset = model_with_clips(3).asset;
+        let motions = Some(vec![Motion::new(name.to_owned(), asset)]);
+        let contents = Contents { motions, ..Contents::default() };
+        harness.state_mut().editor.open(contents, None, &mut |_| Ok(())).expect("has the same joint");
+        harness.run_steps(40);
+        let row = harness.get_by_label("Move 0 (2)");
+        let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, WIDE.into());
+        assert!(screen.contains_rect(row.rect()), "{name}: {:?}", row.rect());
+        assert_eq!(row.accesskit_node().toggled(), Some(egui::accesskit::Toggled::True));
+    };
+    borrow(&mut harness, "first.glb");
+    let scrolled = harness.get_by_label("Move 0 (2)").rect().center();
+    harness.event(egui::Event::PointerMoved(scrolled));
+    harness.run();
+    for _ in 0..40 {
+        harness.event(egui::Event::MouseWheel {
+            unit: egui::MouseWheelUnit::Line,
+            delta: egui::vec2(0.0, 10.0),
+            source: egui::MouseWheelSource::Wheel,
+            phase: egui::TouchPhase::Move,
+            modifiers: egui::Modifiers::NONE,
+        });
+        harness.step();
+    }
+    harness.run_steps(120);
+    assert!(harness.get_by_label("Move 0 (2)").rect().top() > WIDE[1], "scrolled away");
+    harness.state_mut().editor.remove_motion(0);
+    borrow(&mut harness, "second.glb");
+}
+
+#[test]
+fn a_model_without_clips_is_told_what_it_lacks() {
+    let skeleton = Skeleton::new(vec![Joint { name: "Chair".to_owned(), ..Joint::default() }]).expect("one joint");
+    let positions = vec![glam::Vec3::ZERO, glam::Vec3::X, glam::Vec3::Y];
+    let geometry = Geometry { file_vertices: 3, positions, indices: vec![0, 1, 2], ..Geometry::default() };
+    let parts = AssetParts {
+        skeleton,
+        meshes: vec![Mesh { primitives: vec![geometry], ..Mesh::default() }],
+        instances: vec![MeshInstance { joint: JointIndex(0), mesh: 0, skin: None }],
+        ..AssetParts::default()
+    };
+    let chair = Model::new("chair.glb".to_owned(), Asset::new(parts).expect("indices in range"), Vec::new());
+    for (model, told, not_told) in
+        [(model_with_clips(0), text::NO_CLIPS, text::NO_SKELETON), (chair, text::NO_SKELETON, text::NO_CLIPS)]
+    {
+        let harness = bench(WIDE, model);
+        assert!(harness.query_by_label(told).is_some() && harness.query_by_label(not_told).is_none(), "{told}");
+    }
 }
 
 #[test]

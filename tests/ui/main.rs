@@ -4,6 +4,7 @@
 mod allocations;
 mod bench;
 mod by_hand;
+mod call_sites;
 mod clips;
 mod exercise;
 mod inspector;

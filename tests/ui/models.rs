@@ -3,9 +3,9 @@
 use egui_kittest::kittest::Queryable;
 use gaitway::library::{Library, Model};
 use gaitway::samples;
-use gaitway::ui::{Toast, UiAction, text};
+use gaitway::ui::{Tab, Toast, UiAction, text};
 
-use crate::bench::{NARROW, WIDE, bench_of, press, sample_bench};
+use crate::bench::{NARROW, WIDE, bench, bench_of, press, sample_bench};
 
 fn two_models() -> Library {
     let mut library = Library::default();
@@ -79,5 +79,28 @@ fn what_was_opened_has_a_button_to_undo_it() {
         harness.step();
         assert_eq!(harness.state().actions, [UiAction::Undo]);
         assert!(harness.state().panels.messages.toast.is_none());
+    }
+}
+
+/// A link whose model can't be had: the stage says so, and how to bring it.
+#[test]
+fn an_empty_stage_says_what_it_waits_for_and_keeps_the_offer() {
+    for size in [WIDE, NARROW] {
+        let mut harness = bench(size, Model::placeholder("file:in/Soldier.glb"));
+        assert!(harness.query_by_label(&text::waiting_for("Soldier.glb")).is_some());
+        press(&mut harness, text::BRING);
+        assert_eq!(harness.state().actions, [UiAction::OpenFiles]);
+        assert!(harness.query_by_label(text::NO_SKELETON).is_none());
+        assert!(harness.query_all_by_label(text::BRING_HERE).next().is_some());
+        let failed = bench(size, Model::placeholder("https://example.org/a/Soldier.glb"));
+        assert!(failed.query_by_label(&text::couldnt_load("Soldier.glb")).is_some());
+        assert!(failed.query_by_label(text::BRING).is_some());
+        // Nothing in the panels depends on a model being there.
+        if size == NARROW {
+            press(&mut harness, text::INSPECTOR);
+        }
+        for tab in [Tab::Scene, Tab::Display, Tab::File, Tab::View] {
+            press(&mut harness, tab.label());
+        }
     }
 }

@@ -1,5 +1,7 @@
 //! Borrowed motion: its clips at the left, the channel table and its options at the right, offers when it does not fit.
 
+use std::sync::Arc;
+
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use gaitway::anim::{ClipBuilder, Interpolation, Keys, Transform};
@@ -13,7 +15,8 @@ use gaitway::ui::{PathPrompt, PathPurpose, Saved, Tab, UiAction, text};
 use glam::{Quat, Vec3};
 
 use crate::allocations::allocations_after;
-use crate::bench::{Bench, NARROW, WIDE, bench_of, drag, motion_bench, press, press_key, sample_bench};
+use crate::bench::{Bench, NARROW, WIDE, bench_of, drag, motion_bench, painted, press, press_key, sample_bench};
+use crate::call_sites::own_allocations;
 use crate::skeletons;
 
 fn map(harness: &Harness<'_, Bench>, motion: usize) -> JointMap {
@@ -246,6 +249,19 @@ fn what_does_not_fit_can_be_looked_at_or_mapped_by_hand() {
     }
 }
 
+/// A model without a skeleton has no joints to map.
+#[test]
+fn a_motion_for_a_model_without_a_skeleton_can_only_be_looked_at() {
+    let mut harness = sample_bench(WIDE);
+    let messages = &mut harness.state_mut().panels.messages;
+    messages.error = Some("dance.bvh: Chair has no skeleton".to_owned());
+    (messages.motion_refused, messages.model_lacks_skeleton) = (true, true);
+    harness.run();
+    assert!(harness.query_by_label(text::MAP_REFUSED_MANUALLY).is_none());
+    press(&mut harness, text::SHOW_REFUSED_ALONE);
+    assert_eq!(harness.state().actions, [UiAction::ShowRefusedAlone]);
+}
+
 fn edit(edit: MapEdit) -> Command {
     Command::EditMap { motion: 0, edit }
 }
@@ -364,10 +380,12 @@ fn sides_matched_by_position_are_matched_by_name_with_one_click() {
     let mut harness = bench_of(WIDE, library);
     press(&mut harness, Tab::Motion.label());
     let at = |name: &str| skeleton.source_index(skeleton.find(name).expect(name));
-    let by_position = format!("LeftWrist follows {}  RightHand (sure", at("RightHand"));
+    let by_position =
+        format!("LeftWrist follows {}  RightHand (guess: right hand · position in space · 55 %", at("RightHand"));
     let by_name = format!("LeftWrist follows {}  LeftHand (sure", at("LeftHand"));
     assert!(harness.query_by_label_contains(&by_position).is_some());
     assert!(harness.query_by_label_contains("on the opposite side; matched by position.").is_some());
+    assert!(harness.query_by_label(text::SWAP_SIDES).is_none(), "one control for one effect");
     assert_eq!(press(&mut harness, text::MATCH_SIDES_BY_NAME), [edit(MapEdit::SwapSides)]);
     assert!(harness.query_by_label_contains(&by_name).is_some());
     assert!(harness.query_by_label_contains("on the opposite side; matched by name.").is_some());
@@ -634,6 +652,35 @@ fn a_frame_of_the_table_allocates_no_more_for_more_joints() {
     assert!(few.abs_diff(many) <= 4 * 50, "50 frames: {few} allocations with 200 joints, {many} with 1,000");
 }
 
+/// Every part of the tab, with a joint's details open once with a source and once without one, and all of the fit's groups.
+#[test]
+fn an_open_motion_tab_allocates_nothing_of_its_own() {
+    let mut harness = motion_bench([1280.0, 2400.0], &["dance.bvh", "other.bvh"]);
+    press(&mut harness, "Walk (2)");
+    press(&mut harness, Tab::Motion.label());
+    let neck = number(&harness, "Neck");
+    let mute = MapEdit::Mute { source: neck, property: MutedProperty::Scale, muted: true };
+    harness.state_mut().editor.apply(edit(mute));
+    harness.state_mut().editor.apply(Command::SetFeet(Some(Feet::Plant)));
+    let check = |part: &str, harness: &mut Harness<'_, Bench>| {
+        press(harness, part);
+        (0..20).for_each(|_| harness.step());
+        let sites = own_allocations("gaitway::ui::motion::show", || (0..2).for_each(|_| harness.step()));
+        assert!(sites.is_empty(), "{part}: {sites:#?}");
+    };
+    for (label, source) in [("Source of Neck", Some(neck)), ("What it does instead", None)] {
+        harness.state_mut().editor.apply(Command::SetSource { motion: 0, target: neck, source });
+        harness.state_mut().editor.apply(Command::SelectJoint(Some(neck)));
+        check("Joints", &mut harness);
+        assert!(harness.query_by_label(label).is_some());
+    }
+    check("Options", &mut harness);
+    assert!(harness.query_by_label(text::USE_ALL_CHANNELS).is_some());
+    check("Fit", &mut harness);
+    assert!(harness.query_by_label_contains("Planting: ").is_some());
+    check("Files", &mut harness);
+}
+
 #[test]
 fn three_hundred_joints_have_their_lines() {
     let mut harness = bench_of_chain(300);
@@ -659,6 +706,32 @@ fn three_hundred_joints_have_their_lines() {
     harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
     harness.run();
     assert_eq!(map(&harness, 0).joints.len(), 300);
+}
+
+/// Names are told apart by what follows their namespace, and a wide table has room for them.
+#[test]
+fn names_are_shown_without_the_namespace_that_all_have() {
+    let walker = samples::load("walker").expect("the sample is there").asset;
+    let parts = Arc::into_inner(walker).expect("of one model").into_parts();
+    let name = |joint| (parts.skeleton.source_index(joint), format!("mixamorig:{}Joint", parts.skeleton.name(joint)));
+    let names: Vec<(usize, String)> = parts.skeleton.joints().map(name).collect();
+    let skeleton = parts.skeleton.with_names(names.iter().map(|(number, name)| (*number, name.as_str())));
+    let asset = Arc::new(Asset::new(AssetParts { skeleton, ..parts }).expect("as before"));
+    for size in [WIDE, [1920.0, 1080.0]] {
+        let mut library = Library::default();
+        library.add(Model::new("rig.glb".to_owned(), asset.clone(), Vec::new()));
+        library.set_motions(vec![Motion::new("dance.fbx".to_owned(), asset.clone())]);
+        let mut harness = bench_of(size, library);
+        press(&mut harness, Tab::Motion.label());
+        reach(&mut harness, "Edit mixamorig:LeftUpperLegJoint");
+        let panel = harness.state().viewport.right();
+        let texts = painted(&harness);
+        let of_table = texts.iter().filter(|(text, _, rect)| text.contains("LeftUpperLegJoint") && rect.left() > panel);
+        let found: Vec<_> = of_table.collect();
+        assert_eq!(found.len(), 2, "target and source: {found:?}");
+        assert!(found.iter().all(|(text, ..)| !text.contains("mixamorig")), "{found:?}");
+        assert!(size == WIDE || found.iter().all(|(_, is_cut, _)| !is_cut), "{found:?}");
+    }
 }
 
 /// All of them are inside, and none lies over another.

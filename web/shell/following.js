@@ -95,7 +95,11 @@ export function showMissing(problems, link, isUnchanged = false) {
   const failed = problems.map((problem) => fileName(problem.split(": ")[0]));
   const isModel = models.some(({ name }) => failed.includes(fileName(name)));
   byId("missing-title").textContent = `${isModel ? "The model in" : "Part of"} this link couldn't be loaded`;
-  byId("missing-rest").textContent = isUnchanged ? "The current view stays as it was." : "Everything that could be loaded is shown.";
+  byId("missing-rest").textContent = isUnchanged
+    ? "The current view stays as it was."
+    : isModel
+      ? "The rest of the link is kept: it applies once the model is there."
+      : "Everything else is shown.";
   button("missing-again").onclick = () => {
     dialog("missing").close();
     if (heldItems(session.link).length + heldMotions(session.link).length === 0) {

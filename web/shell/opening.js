@@ -5,10 +5,10 @@ import { forgetProblem, summarize } from "./changes.js";
 import { focusCanvas, frames, messageOf } from "./dom.js";
 import { extensionOf, heldItems, heldMotions, itemNamed, nameOf, setWith } from "./held.js";
 import { follow } from "./following.js";
-import { linkWithFiles, linkWithoutMissing, linkedFiles } from "./links.js";
+import { linkWithFiles } from "./links.js";
 import { load } from "./load.js";
 import { sayNews, sayProblem } from "./panels.js";
-import { running, session } from "./session.js";
+import { running } from "./session.js";
 
 /** @typedef {import("./types.d.ts").InspectDocument} InspectDocument */
 /** @typedef {import("./types.d.ts").Item} Item */
@@ -144,5 +144,4 @@ async function completeLink(items, isShown) {
   const complete = linkWithFiles(link, names);
   forgetAwaited();
   await follow(complete, { link: complete, items: heldItems(complete), motionItems: heldMotions(complete) });
-  if (!linkedFiles(linkWithoutMissing(link)).some(({ role }) => role === "model")) session.app?.close_placeholder();
 }

@@ -59,7 +59,6 @@ export interface Bindings {
   open(items: ReadItem[], role: Role, isPrivate: boolean): Promise<string>;
   follow_link(link: string, again: boolean): Promise<string>;
   apply(partial: string): Promise<string>;
-  close_placeholder(): void;
   refuse(problem: string): void;
   is_private(): boolean;
   state(): string;

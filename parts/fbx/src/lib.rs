@@ -10,6 +10,7 @@
 
 mod clip;
 mod curves;
+mod cut;
 mod fit;
 mod libc;
 mod material;

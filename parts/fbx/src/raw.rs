@@ -6,6 +6,7 @@
 
 use std::marker::PhantomData;
 
+use crate::cut;
 use ufbx::{RawAllocatorOpts, RawLoadOpts, RawVertexStream, SceneRoot};
 
 /// What ufbx may allocate while it reads or sorts vertices.
@@ -40,7 +41,7 @@ pub fn load(bytes: &[u8]) -> Result<SceneRoot, String> {
         ..RawLoadOpts::default()
     };
     // SAFETY: the options are those that a program in C would set: all others are zero, and none holds a pointer.
-    let scene = unsafe { ufbx::load_memory_raw(bytes, &options) }.map_err(|error| explain(&error))?;
+    let scene = unsafe { ufbx::load_memory_raw(bytes, &options) }.map_err(|error| explain(&error, bytes))?;
     // ufbx reads OBJ as well, unless that is left out of it, as it is in wasm.
     if scene.metadata.file_format != ufbx::FileFormat::Fbx {
         return Err(NOT_FBX.to_owned());
@@ -49,9 +50,13 @@ pub fn load(bytes: &[u8]) -> Result<SceneRoot, String> {
 }
 
 /// Says what ufbx found and what to do about it.
-fn explain(error: &ufbx::Error) -> String {
+fn explain(error: &ufbx::Error, bytes: &[u8]) -> String {
     use ufbx::ErrorType;
     let found = &*error.description;
+    let is_of_content = matches!(error.type_, ErrorType::TruncatedFile | ErrorType::EmptyFile | ErrorType::Unknown);
+    if is_of_content && let Some(problem) = cut::problem(bytes) {
+        return problem;
+    }
     match error.type_ {
         ErrorType::UnrecognizedFileFormat | ErrorType::FeatureDisabled => NOT_FBX.to_owned(),
         ErrorType::TruncatedFile => {

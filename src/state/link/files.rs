@@ -1,12 +1,10 @@
 //! Text operations on the files that a link names: listing them, making the link to share, and the link while some files are
 //! missing. The page's scripts call these through `web::links` and never split a link themselves. Links are not parsed into a
-//! view here, so that parts this version doesn't understand pass through unchanged; only a link that lacks its model is.
+//! view here, so that parts this version doesn't understand pass through unchanged.
 
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_decode_str, utf8_percent_encode};
 
 use super::values::with_current_member;
-use super::{from_link, to_link};
-use crate::state::ViewerState;
 
 /// Separates an archive from the path of one of its models, as in the URL of an entry of a .jar. In a URL it is part of the
 /// fragment, which no server sees.
@@ -71,6 +69,11 @@ pub fn linked_files(link: &str) -> Vec<LinkedFile> {
     pairs(link).filter_map(linked_file).collect()
 }
 
+/// Whether a source of a view is a file that the recipient of its link has to supply.
+pub fn is_to_bring(source: &str) -> bool {
+    source.starts_with(TO_BRING)
+}
+
 /// Returns a key for the files of a link, whatever its view: links with the same key show the same files.
 pub fn shown_files(link: &str) -> String {
     let mut files: Vec<String> = Vec::new();
@@ -100,15 +103,12 @@ pub fn embedded_link(link: &str) -> String {
     others + "&embed=1"
 }
 
-/// Returns the part of a link that can be shown before its missing files arrive; the whole link if none are missing. If the
-/// model is missing, what belongs to a model is left out ([`ViewerState::for_model`]). Clips and maps are dropped with their motions.
+/// Returns the part of a link that can be shown before its missing files arrive; the whole link if none are missing, or if its
+/// model is: an empty stage stands for it. Clips and maps are dropped with their motions.
 pub fn link_without_missing(link: &str) -> String {
     let files = linked_files(link);
     let is_missing = |role| files.iter().any(|file| file.is_to_bring && file.role == role);
-    if is_missing(LinkRole::Model) {
-        return to_link(&from_link(link).0.for_model(ViewerState::default()));
-    }
-    if !is_missing(LinkRole::Motion) {
+    if is_missing(LinkRole::Model) || !is_missing(LinkRole::Motion) {
         return link.to_owned();
     }
     rewrite(link, &mut |pair| {

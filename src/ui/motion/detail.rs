@@ -11,13 +11,52 @@ use super::{MotionTab, Pairing, options};
 use crate::anim::JointIndex;
 use crate::retarget::{JointMap, MutedProperty, Unmapped};
 use crate::state::{Command, MapEdit, muted_properties};
-use crate::ui::{Output, Shown, style, text};
+use crate::ui::{Output, Shown, controls, style, text};
 
-/// A source being typed.
-#[derive(Debug, Clone, PartialEq)]
+/// What the details say about the chosen joint, kept with the table's lines.
+#[derive(Debug)]
+pub(super) struct Texts {
+    /// Its state, and why.
+    standing: String,
+    /// What the joint does without a source.
+    policy: String,
+    /// The policy of the whole map.
+    as_all: String,
+    /// What it can do without a source.
+    policies: Vec<(Unmapped, String)>,
+}
+
+impl Texts {
+    pub fn new(pairing: &Pairing<'_>, row: &Row) -> Self {
+        let as_all = format!("As all ({})", options::policy_text(pairing, &pairing.map.unmapped).to_lowercase());
+        let own = pairing.map.joints.get(&row.number).and_then(|entry| entry.unmapped.as_ref());
+        Self {
+            standing: format!("{}: {}", row.state.word(), row.why),
+            policy: own.map_or_else(|| as_all.clone(), |own| options::policy_text(pairing, own)),
+            as_all,
+            policies: options::policies(pairing),
+        }
+    }
+}
+
+/// The chosen joint.
+pub(super) struct About<'a, 'b> {
+    pub shown: &'b Shown<'a>,
+    pub pairing: &'b Pairing<'a>,
+    pub map: &'b JointMap,
+    pub row: &'b Row,
+    pub texts: &'b Texts,
+}
+
+/// The text in the field for the source.
+#[derive(Debug, PartialEq)]
 pub(super) struct Typed {
     target: usize,
+    /// Number of the source that the field showed before anything was typed.
+    source: Option<usize>,
     text: String,
+    /// Differs from that source.
+    is_edited: bool,
     /// Why the entered text was rejected.
     problem: Option<String>,
 }
@@ -30,15 +69,8 @@ pub(super) struct Turn {
     degrees: [f64; 3],
 }
 
-pub(super) fn show(
-    ui: &mut Ui,
-    shown: &Shown<'_>,
-    pairing: &Pairing<'_>,
-    map: &JointMap,
-    row: &Row,
-    tab: &mut MotionTab,
-    out: &mut Output,
-) {
+pub(super) fn show(ui: &mut Ui, about: &About<'_, '_>, tab: &mut MotionTab, out: &mut Output) {
+    let &About { shown, pairing, map, row, texts } = about;
     let edit = |edit| Command::EditMap { motion: pairing.index, edit };
     let palette = style::palette(ui);
     // Unfilled, so that fields and buttons stand out.
@@ -50,8 +82,7 @@ pub(super) fn show(
         ui.set_width(ui.available_width());
         ui.spacing_mut().item_spacing = egui::vec2(6.0, 6.0);
         let color = if row.look { palette.warning } else { palette.weak_text };
-        let text = format!("{}: {}", row.state.word(), row.why);
-        ui.add(egui::Label::new(RichText::new(text).small().color(color)).wrap());
+        ui.add(egui::Label::new(RichText::new(&texts.standing).small().color(color)).wrap());
         source_field(ui, pairing, row, tab, out);
         ui.horizontal_wrapped(|ui| {
             if ui.button("List…").on_hover_text("All joints of the motion").clicked() {
@@ -77,8 +108,8 @@ pub(super) fn show(
                 out.commands.extend(muting(ui, pairing, map, source).map(edit));
             }
             None => {
-                let own = map.joints.get(&row.number).and_then(|entry| entry.unmapped.clone());
-                if let Some(unmapped) = own_policy(ui, pairing, map, own) {
+                let own = map.joints.get(&row.number).and_then(|entry| entry.unmapped.as_ref());
+                if let Some(unmapped) = own_policy(ui, texts, own) {
                     out.commands.push(edit(MapEdit::Unmapped { target: row.number, unmapped }));
                 }
             }
@@ -88,51 +119,62 @@ pub(super) fn show(
 }
 
 fn source_field(ui: &mut Ui, pairing: &Pairing<'_>, row: &Row, tab: &mut MotionTab, out: &mut Output) {
-    let asset = &pairing.motion.asset;
-    let now = row.source.map_or_else(String::new, |source| asset.skeleton.source_index(source).to_string());
-    let mut typed = tab.typed.take().filter(|typed| typed.target == row.number);
-    let mut text = typed.as_ref().map_or(now, |typed| typed.text.clone());
+    let kept = tab.typed.take().filter(|typed| typed.target == row.number);
+    let kept = kept.filter(|typed| typed.is_edited || typed.source == source_number(pairing, row));
+    let mut typed = kept.unwrap_or_else(|| Typed::new(pairing, row));
     let field = ui
         .horizontal(|ui| {
             let label = ui.label("Source");
-            let field = egui::TextEdit::singleline(&mut text)
+            let field = egui::TextEdit::singleline(&mut typed.text)
                 .hint_text("Name or number; empty: none")
                 .margin(egui::Margin::symmetric(8, 5))
                 .desired_width(ui.available_width());
-            ui.add(field).labelled_by(label.id).accessible_name(format!("Source of {}", row.target))
+            ui.add(field).labelled_by(label.id)
         })
         .inner;
+    controls::named(&field, || format!("Source of {}", row.target));
     if field.changed() {
-        typed = Some(Typed { target: row.number, text: text.clone(), problem: None });
+        (typed.is_edited, typed.problem) = (true, None);
     }
     // Escape discards the typed text and does nothing else.
     let filter = EventFilter { escape: true, ..EventFilter::default() };
     if field.has_focus() {
         ui.memory_mut(|memory| memory.set_focus_lock_filter(field.id, filter));
         if ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, Key::Escape)) {
-            typed = None;
+            typed = Typed::new(pairing, row);
             field.surrender_focus();
             ui.ctx().request_repaint();
         }
     }
-    if field.lost_focus()
-        && let Some(entered) = &mut typed
-    {
-        match find_source(pairing, &entered.text) {
+    if field.lost_focus() && typed.is_edited {
+        match find_source(pairing, &typed.text) {
             Ok(source) => {
-                if source != row.source.map(|source| asset.skeleton.source_index(source)) {
+                if source != source_number(pairing, row) {
                     out.commands.push(Command::SetSource { motion: pairing.index, target: row.number, source });
                 }
-                typed = None;
+                typed = Typed::new(pairing, row);
             }
-            Err(problem) => entered.problem = Some(problem),
+            Err(problem) => typed.problem = Some(problem),
         }
     }
-    if let Some(problem) = typed.as_ref().and_then(|typed| typed.problem.as_ref()) {
+    if let Some(problem) = &typed.problem {
         let error = style::palette(ui).error;
         ui.add(egui::Label::new(RichText::new(problem).small().color(error)).wrap());
     }
-    tab.typed = typed;
+    tab.typed = Some(typed);
+}
+
+impl Typed {
+    /// The number of the row's source.
+    fn new(pairing: &Pairing<'_>, row: &Row) -> Self {
+        let source = source_number(pairing, row);
+        let text = source.map_or_else(String::new, |source| source.to_string());
+        Self { target: row.number, source, text, is_edited: false, problem: None }
+    }
+}
+
+fn source_number(pairing: &Pairing<'_>, row: &Row) -> Option<usize> {
+    row.source.map(|source| pairing.motion.asset.skeleton.source_index(source))
 }
 
 /// Finds the joint of the motion that a text names, by number or name; None for an empty text.
@@ -194,17 +236,17 @@ fn turn_fields(ui: &mut Ui, turn: &mut Turn) -> bool {
     });
     ui.horizontal(|ui| {
         let width = (ui.available_width() - 12.0) / 3.0;
-        for (angle, axis) in degrees.iter_mut().zip(["X", "Y", "Z"]) {
+        for (angle, (axis, prefix)) in degrees.iter_mut().zip([("X", "X "), ("Y", "Y "), ("Z", "Z ")]) {
             let field = egui::DragValue::new(angle)
                 .speed(0.5)
                 .range(-180.0..=180.0)
                 .max_decimals(1)
                 // Typing an angle is a single undo step, not one per digit.
                 .update_while_editing(false)
-                .prefix(format!("{axis} "))
+                .prefix(prefix)
                 .suffix("°");
             let field = ui.add_sized([width, 26.0], field);
-            field.accessible_name(text::rotation_offset_about(axis));
+            controls::named(&field, || text::rotation_offset_about(axis));
         }
     });
     if degrees == turn.degrees {
@@ -231,7 +273,8 @@ fn muting(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, source: JointIndex
         for (property, name, at) in channels {
             let mut muted = now[at];
             let response = ui.checkbox(&mut muted, name);
-            if response.accessible_name(text::ignore_channels(name)).changed() {
+            controls::named(&response, || text::ignore_channels(name));
+            if response.changed() {
                 edit = Some(MapEdit::Mute { source, property, muted });
             }
         }
@@ -240,19 +283,17 @@ fn muting(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, source: JointIndex
 }
 
 /// Chooses what this joint does without a source.
-fn own_policy(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, own: Option<Unmapped>) -> Option<Option<Unmapped>> {
+fn own_policy(ui: &mut Ui, texts: &Texts, own: Option<&Unmapped>) -> Option<Option<Unmapped>> {
     let mut pressed = None;
-    let all = options::policy_text(pairing, &map.unmapped);
-    let as_all = format!("As all ({})", all.to_lowercase());
-    let text = own.as_ref().map_or(as_all.clone(), |own| options::policy_text(pairing, own));
-    let combo = egui::ComboBox::from_id_salt("own policy").width(ui.available_width()).truncate().selected_text(text);
+    let combo = egui::ComboBox::from_id_salt("own policy").width(ui.available_width()).truncate();
+    let combo = combo.selected_text(&texts.policy);
     let response = combo.show_ui(ui, |ui| {
-        if ui.selectable_label(own.is_none(), as_all).clicked() {
+        if ui.selectable_label(own.is_none(), &texts.as_all).clicked() {
             pressed = Some(None);
         }
-        for (policy, text) in options::policies(pairing) {
-            if ui.selectable_label(own.as_ref() == Some(&policy), text).clicked() {
-                pressed = Some(Some(policy));
+        for (policy, text) in &texts.policies {
+            if ui.selectable_label(own == Some(policy), text).clicked() {
+                pressed = Some(Some(policy.clone()));
             }
         }
     });

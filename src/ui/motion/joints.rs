@@ -8,6 +8,7 @@ use egui::{Align2, FontId, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2
 use super::picker::Picking;
 use super::rows::{BodyPart, Filter, Row, State};
 use super::{Contents, MotionTab, Pairing, detail};
+use crate::asset::Asset;
 use crate::retarget::JointMap;
 use crate::state::Command;
 use crate::ui::{Output, Shown, controls, style};
@@ -79,6 +80,10 @@ struct Lines {
     chosen: Option<usize>,
     by_body: bool,
     lines: Vec<Line>,
+    /// Shown instead of lines if there are none.
+    nothing: String,
+    /// Of the chosen joint.
+    detail: Option<detail::Texts>,
 }
 
 #[derive(Debug)]
@@ -100,7 +105,13 @@ struct Heading {
 }
 
 impl Lines {
-    fn new(contents: &Rc<Contents>, table: &TableView, chosen: Option<usize>, by_body: bool) -> Self {
+    fn new(
+        contents: &Rc<Contents>,
+        pairing: &Pairing<'_>,
+        table: &TableView,
+        chosen: Option<usize>,
+        by_body: bool,
+    ) -> Self {
         let (search, filter) = (table.search.clone(), table.filter);
         let wanted = search.to_lowercase();
         let is_shown = |row: &Row| {
@@ -124,7 +135,13 @@ impl Lines {
         } else {
             lines.extend(shown.into_iter().map(Line::Row));
         }
-        Self { contents: contents.clone(), search, filter, chosen, by_body, lines }
+        let nothing = match search.is_empty() {
+            true if filter == Filter::Look => "No joints need review.".to_owned(),
+            true => "There are no such joints.".to_owned(),
+            false => format!("No such joint is called “{search}”."),
+        };
+        let detail = rows.iter().find(|row| Some(row.number) == chosen).map(|row| detail::Texts::new(pairing, row));
+        Self { contents: contents.clone(), search, filter, chosen, by_body, lines, nothing, detail }
     }
 
     fn is_current(&self, contents: &Rc<Contents>, table: &TableView, chosen: Option<usize>, by_body: bool) -> bool {
@@ -161,15 +178,10 @@ pub(super) fn show(
     let chosen = shown.state.selection.joint;
     let by_body = !tab.table.tree && has_body(pairing);
     let kept = tab.table.lines.take().filter(|lines| lines.is_current(contents, &tab.table, chosen, by_body));
-    let lines = kept.unwrap_or_else(|| Rc::new(Lines::new(contents, &tab.table, chosen, by_body)));
+    let lines = kept.unwrap_or_else(|| Rc::new(Lines::new(contents, pairing, &tab.table, chosen, by_body)));
     tab.table.lines = Some(lines.clone());
     if lines.lines.is_empty() {
-        let nothing = match lines.search.is_empty() {
-            true if lines.filter == Filter::Look => "No joints need review.".to_owned(),
-            true => "There are no such joints.".to_owned(),
-            false => format!("No such joint is called “{}”.", lines.search),
-        };
-        controls::hint(ui, nothing);
+        controls::hint(ui, &lines.nothing);
         return;
     }
     let scroll = tab.table.scrolled_to != chosen;
@@ -218,11 +230,11 @@ impl Table<'_, '_> {
     }
 
     fn row(&mut self, ui: &mut Ui, row: &Row, tab: &mut MotionTab) {
-        let Lines { contents, chosen, by_body, search, lines, .. } = self.lines;
+        let Lines { contents, chosen, by_body, search, lines, detail, .. } = self.lines;
         let is_chosen = *chosen == Some(row.number);
         let indents = if *by_body || !search.is_empty() { 0 } else { row.depth.min(MAX_INDENTS) };
         let many = lines.len() > MANY_ROWS;
-        match show_row(ui, row, &contents.prefix, is_chosen, indents as f32 * INDENT, self.scroll, many) {
+        match show_row(ui, row, &contents.namespace, is_chosen, indents as f32 * INDENT, self.scroll, many) {
             Some(Pressed::Target) => {
                 let joint = (!is_chosen).then_some(row.number);
                 // Already visible: it was just pressed.
@@ -233,9 +245,9 @@ impl Table<'_, '_> {
             Some(Pressed::Source) => tab.picking = Some(Picking::new(self.pairing.index, row.number)),
             None => {}
         }
-        if is_chosen {
-            let opened =
-                ui.scope(|ui| detail::show(ui, self.shown, self.pairing, self.map, row, tab, self.out)).response;
+        if let Some(texts) = detail.as_ref().filter(|_| is_chosen) {
+            let about = detail::About { shown: self.shown, pairing: self.pairing, map: self.map, row, texts };
+            let opened = ui.scope(|ui| detail::show(ui, &about, tab, self.out)).response;
             if std::mem::take(&mut tab.table.reveal) {
                 opened.scroll_to_me(None);
             }
@@ -243,14 +255,17 @@ impl Table<'_, '_> {
     }
 }
 
-/// The namespace that the names of all skinned joints share, such as `mixamorig:`; omitted from rows to save room.
-pub(super) fn common_prefix<'a>(pairing: &Pairing<'a>) -> &'a str {
-    let asset = &pairing.model.asset;
-    let mut names = asset.skins.iter().flat_map(|skin| skin.joints()).map(|&joint| asset.skeleton.name(joint));
-    let Some(first) = names.next() else { return "" };
-    let Some((namespace, _)) = first.rsplit_once(':') else { return "" };
-    let prefix = &first[..=namespace.len()];
-    if names.all(|name| name.starts_with(prefix)) { prefix } else { "" }
+/// The namespace of all joints that have one, such as `mixamorig:`; omitted from rows to save room. Empty if names would be the
+/// same without it.
+pub(super) fn namespace(asset: &Asset) -> &str {
+    let names = || asset.skeleton.joints().map(|joint| asset.skeleton.name(joint));
+    let Some(first) = names().find(|name| name.contains(':')) else { return "" };
+    let namespace = &first[..=first.rfind(':').unwrap_or(0)];
+    let is_clear = |name: &str| match name.strip_prefix(namespace) {
+        Some(rest) => !rest.contains(':') && names().all(|other| other != rest),
+        None => !name.contains(':'),
+    };
+    if names().all(is_clear) { namespace } else { "" }
 }
 
 /// Returns whether the heading was pressed.
@@ -265,8 +280,9 @@ fn show_heading(ui: &mut Ui, heading: &Heading, open: bool) -> bool {
         let turn = if open { vec2(0.0, 1.0) } else { vec2(1.0, 0.0) };
         let side = vec2(-turn.y, turn.x) * 3.5;
         let tip = pos2(middle, rect.center().y) + turn * 2.0;
-        let points = vec![tip - turn * 4.0 + side, tip, tip - turn * 4.0 - side];
-        ui.painter().line(points, Stroke::new(1.4, palette.weak_text));
+        for end in [side, -side] {
+            ui.painter().line_segment([tip - turn * 4.0 + end, tip], Stroke::new(1.4, palette.weak_text));
+        }
         let font = FontId::proportional(12.0);
         let color = if heading.needs_review { palette.warning } else { palette.weak_text };
         let at = rect.right_center() - vec2(8.0, 0.0);
@@ -297,7 +313,7 @@ enum Pressed {
 fn show_row(
     ui: &mut Ui,
     row: &Row,
-    prefix: &str,
+    namespace: &str,
     chosen: bool,
     indent: f32,
     scroll: bool,
@@ -331,12 +347,12 @@ fn show_row(
         let top = |from: f32, to: f32| Rect::from_min_max(pos2(from, inner.top()), pos2(to, inner.top() + 20.0));
         badge(ui, pos2(inner.left() + 7.0, inner.top() + 10.0), row.state);
         let bright = if row.source.is_some() { palette.text } else { palette.weak_text };
-        let name = row.target.strip_prefix(prefix).unwrap_or(&row.target);
+        let name = row.target.strip_prefix(namespace).unwrap_or(&row.target);
         controls::elided(ui, top(inner.left() + 20.0, middle - 16.0), name, bright);
         let arrow = pos2(middle + 1.0, inner.top() + 10.0);
         ui.painter().arrow(arrow, vec2(-12.0, 0.0), Stroke::new(1.2, palette.weak_text));
         let color = if row.source.is_some() { palette.accent } else { palette.weak_text };
-        controls::elided(ui, top(middle + 6.0, right), &row.source_text, color);
+        controls::elided(ui, top(middle + 6.0, right), &row.short_source, color);
         let below = Rect::from_min_max(pos2(inner.left() + 20.0, inner.top() + 20.0), pos2(right, inner.bottom()));
         let color = if row.look { palette.warning } else { palette.weak_text };
         controls::elided_small(ui, below, &row.why, color);
@@ -354,9 +370,12 @@ fn show_row(
 pub(super) fn badge(ui: &Ui, center: egui::Pos2, state: State) {
     let palette = style::palette(ui);
     let painter = ui.painter();
+    // Segments instead of a path, which is a vector of points in every frame.
     let line = |points: &[(f32, f32)], color| {
-        let points = points.iter().map(|&(x, y)| center + vec2(x, y)).collect();
-        painter.line(points, Stroke::new(1.6, color));
+        for ends in points.windows(2) {
+            let [from, to] = [ends[0], ends[1]].map(|(x, y)| center + vec2(x, y));
+            painter.line_segment([from, to], Stroke::new(1.6, color));
+        }
     };
     let letter = |letter: &str, color| {
         painter.circle_stroke(center, 7.0, Stroke::new(1.2, color));

@@ -17,7 +17,7 @@ use egui::{RichText, Ui};
 
 use self::rows::Row;
 use super::icons::{Icon, icon_button_sized};
-use super::{Output, Shown, UiAction, UiState, clips, controls, style};
+use super::{HostState, Output, Shown, UiAction, UiState, clips, controls, style};
 use crate::anim::{JointIndex, find_clip};
 use crate::asset::Asset;
 use crate::library::{Model, ModelId, Motion};
@@ -43,6 +43,7 @@ pub struct MotionTab {
     typed: Option<detail::Typed>,
     turn: Option<detail::Turn>,
     contents: Option<(Inputs, Rc<Contents>)>,
+    fit: Option<figures::Fit>,
 }
 
 /// What [`Contents`] are made from. The proposal follows from model and motion.
@@ -63,14 +64,16 @@ struct Contents {
     rows: Vec<Row>,
     /// Rows that each filter of [`rows::Filter::ALL`] lets through, in words.
     filters: [String; rows::Filter::ALL.len()],
-    /// See [`joints::common_prefix`].
-    prefix: String,
+    /// See [`joints::namespace`].
+    namespace: String,
     /// Names of all motions; empty if there is only one.
     motions: Vec<String>,
     mapped: String,
     remarks: Vec<String>,
     /// See [`sides_choice`].
     sides_choice: Option<&'static str>,
+    /// See [`options::ignored_channels`].
+    ignored_channels: Option<String>,
 }
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
@@ -146,11 +149,12 @@ impl Contents {
         Self {
             rows,
             filters,
-            prefix: joints::common_prefix(pairing).to_owned(),
+            namespace: joints::namespace(&pairing.model.asset).to_owned(),
             motions: if several { clips::names_of(motions.iter().map(|motion| &*motion.source)) } else { Vec::new() },
             mapped: text::joints_mapped(mapped, pairing.motion.asset.skeleton.len()),
             remarks: remarks(pairing),
             sides_choice: sides_choice(pairing),
+            ignored_channels: options::ignored_channels(pairing.map),
         }
     }
 }
@@ -247,7 +251,7 @@ fn head(
     }
     ui.add_space(2.0);
     if local.motion.part == Part::Joints {
-        edits(ui, pairing, map, local, out);
+        edits(ui, pairing, map, contents, local, out);
         clips::search_field(ui, &mut local.motion.table.search, "Search joints of the model");
         joints::choices(ui, pairing, contents, &mut local.motion.table);
         ui.add_space(2.0);
@@ -265,8 +269,8 @@ fn body(
 ) {
     match tab.part {
         Part::Joints => joints::show(ui, shown, pairing, map, contents, tab, out),
-        Part::Options => options::show(ui, shown.state.inspect, pairing, map, out),
-        Part::Figures => figures::show(ui, shown, pairing),
+        Part::Options => options::show(ui, shown.state.inspect, pairing, map, contents, out),
+        Part::Figures => figures::show(ui, shown, pairing, contents, tab),
         Part::Files => options::files(ui, shown, pairing, out),
     }
 }
@@ -283,8 +287,30 @@ fn button(ui: &mut Ui, width: f32, enabled: bool, text: &str, hover: &str) -> bo
         .clicked()
 }
 
+/// Undo and redo.
+fn arrows(ui: &mut Ui, host: &HostState, out: &mut Output) {
+    // Only for edits made in this tab: the step before them may be the motion itself.
+    for (icon, label, enabled, action) in [
+        (Icon::Undo, "Undo (Ctrl+Z)", host.can_undo_retargeting, UiAction::Undo),
+        (Icon::Redo, "Redo (Ctrl+Y)", host.can_redo_retargeting, UiAction::Redo),
+    ] {
+        let pressed =
+            ui.add_enabled_ui(enabled, |ui| icon_button_sized(ui, icon, label, false, EDIT_BUTTON_HEIGHT)).inner;
+        if pressed.clicked() {
+            out.actions.push(action);
+        }
+    }
+}
+
 /// Buttons that edit the whole map.
-fn edits(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, local: &mut UiState, out: &mut Output) {
+fn edits(
+    ui: &mut Ui,
+    pairing: &Pairing<'_>,
+    map: &JointMap,
+    contents: &Contents,
+    local: &mut UiState,
+    out: &mut Output,
+) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         let width = ui.available_width() - 2.0 * (EDIT_BUTTON_HEIGHT + 6.0);
@@ -299,29 +325,31 @@ fn edits(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, local: &mut UiState
             // On a narrow screen the sheet makes room for the viewport.
             local.layout.sheet = None;
         }
-        for (icon, label, enabled, action) in [
-            (Icon::Undo, "Undo (Ctrl+Z)", local.host.can_undo, UiAction::Undo),
-            (Icon::Redo, "Redo (Ctrl+Y)", local.host.can_redo, UiAction::Redo),
-        ] {
-            let pressed =
-                ui.add_enabled_ui(enabled, |ui| icon_button_sized(ui, icon, label, false, EDIT_BUTTON_HEIGHT)).inner;
-            if pressed.clicked() {
-                out.actions.push(action);
-            }
-        }
+        arrows(ui, &local.host, out);
     });
+    let motion = pairing.index;
+    let any = map.joints.values().any(|entry| entry.source.is_some());
+    let swap = |ui: &mut Ui, width: f32, label: &str, out: &mut Output| {
+        if button(ui, width, any, label, "Map left joints to right ones and vice versa") {
+            out.commands.push(Command::EditMap { motion, edit: MapEdit::SwapSides });
+        }
+    };
+    // Says what it does, which takes a row, where position and names disagree.
+    if let Some(label) = contents.sides_choice {
+        let width = ui.available_width();
+        swap(ui, width, label, out);
+    }
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         // Fits three labels side by side in the narrowest panel.
         ui.spacing_mut().button_padding.x = 4.0;
-        let width = (ui.available_width() - 12.0) / 3.0;
-        let motion = pairing.index;
-        let any = map.joints.values().any(|entry| entry.source.is_some());
+        let count = if contents.sides_choice.is_some() { 2.0 } else { 3.0 };
+        let width = (ui.available_width() - 6.0 * (count - 1.0)) / count;
         if button(ui, width, true, text::REMATCH, "Return to the proposed map") {
             out.commands.push(Command::SetMap { motion, map: None });
         }
-        if button(ui, width, any, text::SWAP_SIDES, "Map left joints to right ones and vice versa") {
-            out.commands.push(Command::EditMap { motion, edit: MapEdit::SwapSides });
+        if contents.sides_choice.is_none() {
+            swap(ui, width, text::SWAP_SIDES, out);
         }
         if button(ui, width, any, text::CLEAR_MAP, "Leave all joints unmapped") {
             out.commands.push(Command::EditMap { motion, edit: MapEdit::Clear });
@@ -348,12 +376,6 @@ fn header(ui: &mut Ui, pairing: &Pairing<'_>, contents: &Contents, out: &mut Out
     for text in &contents.remarks {
         ui.add(egui::Label::new(RichText::new(text).small().color(palette.warning)).wrap());
     }
-    let width = ui.available_width();
-    if let Some(label) = contents.sides_choice
-        && button(ui, width, true, label, "Map left joints to right ones and vice versa")
-    {
-        out.commands.push(Command::EditMap { motion: pairing.index, edit: MapEdit::SwapSides });
-    }
 }
 
 fn first_clip_of(model: &Model, motion: usize) -> Option<Command> {
@@ -376,8 +398,8 @@ fn follows_names(pairing: &Pairing<'_>, proposal: &Proposal) -> bool {
     crossing > 0
 }
 
-/// Label of the button that switches between matching sides by position and by name; None unless position overrode the names
-/// of exactly one file.
+/// What swapping sides does if position overrode the names of exactly one file: switch between matching sides by position and
+/// by name.
 fn sides_choice(pairing: &Pairing<'_>) -> Option<&'static str> {
     let proposal = pairing.proposal?;
     let is_by_position = proposal.model.by_position != proposal.motion.by_position

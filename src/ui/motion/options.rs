@@ -4,11 +4,12 @@ use std::collections::BTreeSet;
 
 use egui::{RichText, Ui};
 
-use super::Pairing;
+use super::{Contents, Pairing};
 use crate::editor::Export;
 use crate::retarget::{ClipRef, Feet, JointMap, Keep, RestChoice, RestChoices, RootOptions, RootPart, Unmapped};
 use crate::state::{Command, Inspect, MapEdit, Show, active_clip};
-use crate::ui::{Output, Saved, Shown, UiAction, controls, style, text};
+use crate::ui::widgets::controls::{self, capitals};
+use crate::ui::{Output, Saved, Shown, UiAction, style, text};
 
 const PARTS: [(RootPart, &str); 3] =
     [(RootPart::Keep, "Keep"), (RootPart::InPlace, "In place"), (RootPart::Freeze, "Freeze")];
@@ -25,10 +26,15 @@ pub fn rest_title(choice: RestChoice) -> &'static str {
 
 const KEEPS: [(Keep, &str); 3] = [(Keep::Auto, "Automatic"), (Keep::Keep, "Keep"), (Keep::Drop, "Drop")];
 
-pub(super) fn show(ui: &mut Ui, inspect: Inspect, pairing: &Pairing<'_>, map: &JointMap, out: &mut Output) {
+pub(super) fn show(
+    ui: &mut Ui,
+    inspect: Inspect,
+    pairing: &Pairing<'_>,
+    map: &JointMap,
+    contents: &Contents,
+    out: &mut Output,
+) {
     let edit = |edit| Command::EditMap { motion: pairing.index, edit };
-    root_motion(ui, map.root, out);
-
     controls::section(ui, "FEET");
     let planted = map.feet == Feet::Plant;
     if controls::switch(ui, "Hold feet on the ground", planted) {
@@ -36,15 +42,17 @@ pub(super) fn show(ui: &mut Ui, inspect: Inspect, pairing: &Pairing<'_>, map: &J
     }
     controls::hint(ui, "Planted feet don't slide, and a hovering motion is lowered to the ground.");
 
-    controls::section(ui, &text::UNMAPPED_JOINTS.to_uppercase());
+    root_motion(ui, map.root, out);
+
+    controls::section(ui, capitals!(text::UNMAPPED_JOINTS));
     unmapped(ui, pairing, map, out);
 
-    controls::section(ui, &text::REST_POSE_ALIGNMENT.to_uppercase());
+    controls::section(ui, capitals!(text::REST_POSE_ALIGNMENT));
     let rest = map.rest;
-    if let Some(model) = rest_choice(ui, "Model", rest.model) {
+    if let Some(model) = rest_choice(ui, "Model", text::REST_OF_MODEL, rest.model) {
         out.commands.push(edit(MapEdit::Rest(RestChoices { model, ..rest })));
     }
-    if let Some(motion) = rest_choice(ui, "Motion", rest.motion) {
+    if let Some(motion) = rest_choice(ui, "Motion", text::REST_OF_MOTION, rest.motion) {
         out.commands.push(edit(MapEdit::Rest(RestChoices { motion, ..rest })));
     }
     if controls::switch(ui, text::COMPARE_RESTS, inspect.rests) {
@@ -53,14 +61,12 @@ pub(super) fn show(ui: &mut Ui, inspect: Inspect, pairing: &Pairing<'_>, map: &J
     }
     controls::hint(ui, "The clip from each rest pose of the motion, side by side.");
 
-    let keep = |ui: &mut Ui, about: &str, chosen: Keep| {
-        controls::section(ui, &about.to_uppercase());
-        controls::segmented_about(ui, about, Some(chosen), &KEEPS)
-    };
-    if let Some(translations) = keep(ui, "Translations of joints", map.translations) {
+    controls::section(ui, capitals!(text::TRANSLATIONS));
+    if let Some(translations) = controls::segmented_about(ui, text::TRANSLATIONS, Some(map.translations), &KEEPS) {
         out.commands.push(edit(MapEdit::Translations(translations)));
     }
-    if let Some(scales) = keep(ui, "Scales of joints", map.scales) {
+    controls::section(ui, capitals!(text::SCALES));
+    if let Some(scales) = controls::segmented_about(ui, text::SCALES, Some(map.scales), &KEEPS) {
         out.commands.push(edit(MapEdit::Scales(scales)));
     }
     controls::hint(ui, "Automatic keeps them when both skeletons are the same. The hips always travel.");
@@ -72,23 +78,32 @@ pub(super) fn show(ui: &mut Ui, inspect: Inspect, pairing: &Pairing<'_>, map: &J
         out.commands.push(edit(MapEdit::CrossfadeSecs(secs)));
     }
 
-    controls::section(ui, &text::IGNORED_CHANNELS.to_uppercase());
-    if ignored_channels(ui, map) {
-        out.commands.push(edit(MapEdit::UnmuteAll));
+    controls::section(ui, capitals!(text::IGNORED_CHANNELS));
+    match &contents.ignored_channels {
+        None => controls::hint(ui, "None. To ignore channels of a joint's source, select the joint in the table."),
+        Some(joints) => {
+            controls::hint(ui, joints);
+            if ui.button(text::USE_ALL_CHANNELS).clicked() {
+                out.commands.push(edit(MapEdit::UnmuteAll));
+            }
+        }
     }
 }
 
 /// What happens to each part of the root motion.
 fn root_motion(ui: &mut Ui, root: RootOptions, out: &mut Output) {
     let set = |root: RootOptions| Command::SetRoot(Some(root));
-    if let Some(horizontal) = parts(ui, text::ROOT_HORIZONTAL, root.horizontal) {
+    controls::section(ui, capitals!(text::ROOT_HORIZONTAL));
+    if let Some(horizontal) = controls::segmented_about(ui, text::ROOT_HORIZONTAL, Some(root.horizontal), &PARTS) {
         out.commands.push(set(RootOptions { horizontal, ..root }));
     }
     controls::hint(ui, "In place: the character walks on the spot and still sways.");
-    if let Some(vertical) = parts(ui, text::ROOT_VERTICAL, root.vertical) {
+    controls::section(ui, capitals!(text::ROOT_VERTICAL));
+    if let Some(vertical) = controls::segmented_about(ui, text::ROOT_VERTICAL, Some(root.vertical), &PARTS) {
         out.commands.push(set(RootOptions { vertical, ..root }));
     }
-    if let Some(yaw) = parts(ui, text::ROOT_TURN, root.yaw) {
+    controls::section(ui, capitals!(text::ROOT_TURN));
+    if let Some(yaw) = controls::segmented_about(ui, text::ROOT_TURN, Some(root.yaw), &PARTS) {
         out.commands.push(set(RootOptions { yaw, ..root }));
     }
     ui.add_space(4.0);
@@ -97,18 +112,14 @@ fn root_motion(ui: &mut Ui, root: RootOptions, out: &mut Output) {
     }
 }
 
-/// Returns whether all channels shall be used again.
-fn ignored_channels(ui: &mut Ui, map: &JointMap) -> bool {
+/// Which channels of the motion are ignored; `None` if none are.
+pub(super) fn ignored_channels(map: &JointMap) -> Option<String> {
     let joints: BTreeSet<usize> = map.muted_channels.iter().map(|channel| channel.source).collect();
     match joints.len() {
-        0 => controls::hint(ui, "None. To ignore channels of a joint's source, select the joint in the table."),
-        count => {
-            let joints = if count == 1 { "1 joint".to_owned() } else { format!("{count} joints") };
-            controls::hint(ui, format!("Channels of {joints} in the motion."));
-            return ui.button(text::USE_ALL_CHANNELS).clicked();
-        }
+        0 => None,
+        1 => Some("Channels of 1 joint in the motion.".to_owned()),
+        count => Some(format!("Channels of {count} joints in the motion.")),
     }
-    false
 }
 
 /// Opening, saving and removing files.
@@ -154,12 +165,7 @@ pub(super) fn files(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, out: 
     }
 }
 
-fn parts(ui: &mut Ui, about: &str, chosen: RootPart) -> Option<RootPart> {
-    controls::section(ui, &about.to_uppercase());
-    controls::segmented_about(ui, about, Some(chosen), &PARTS)
-}
-
-fn rest_choice(ui: &mut Ui, label: &str, chosen: RestChoice) -> Option<RestChoice> {
+fn rest_choice(ui: &mut Ui, label: &str, name: &str, chosen: RestChoice) -> Option<RestChoice> {
     let mut pressed = None;
     ui.horizontal(|ui| {
         let weak = style::palette(ui).weak_text;
@@ -173,7 +179,7 @@ fn rest_choice(ui: &mut Ui, label: &str, chosen: RestChoice) -> Option<RestChoic
                 }
             }
         });
-        response.response.accessible_name(format!("Rest pose of the {}", label.to_lowercase()));
+        response.response.accessible_name(name);
     });
     pressed
 }

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use super::joints::namespace;
 use super::{Pairing, joint_text};
 use crate::anim::JointIndex;
 use crate::asset::{Asset, Slot};
@@ -23,6 +24,8 @@ pub(super) struct Row {
     pub source: Option<JointIndex>,
     /// The source's number and name, or “none”.
     pub source_text: String,
+    /// That without the motion's [`namespace`].
+    pub short_source: String,
     pub state: State,
     /// The joint's slot, why it has its source, and what contradicts it.
     pub why: String,
@@ -205,7 +208,7 @@ pub(super) fn rows(pairing: &Pairing<'_>, map: &JointMap) -> Vec<Row> {
 }
 
 /// Facts that involve all pairs.
-struct Whole {
+struct Whole<'a> {
     target_slots: BTreeMap<JointIndex, Slot>,
     source_slots: BTreeMap<JointIndex, Slot>,
     /// Joints named for one side but placed on the other.
@@ -215,10 +218,12 @@ struct Whole {
     followers: BTreeMap<JointIndex, Vec<JointIndex>>,
     /// Most joints follow the other side: the sides were swapped on purpose.
     swapped: bool,
+    /// That of the motion.
+    namespace: &'a str,
 }
 
-impl Whole {
-    fn new(pairing: &Pairing<'_>, given: &[Option<Option<JointIndex>>]) -> Self {
+impl<'a> Whole<'a> {
+    fn new(pairing: &Pairing<'a>, given: &[Option<Option<JointIndex>>]) -> Self {
         // Where position decided, the slots are on the sides where the joints lie.
         let misplaced = |recognized: &Recognized| -> Vec<JointIndex> {
             let joint = |contradiction: &Contradiction| {
@@ -234,6 +239,7 @@ impl Whole {
             misplaced_sources: Vec::new(),
             followers: BTreeMap::new(),
             swapped: false,
+            namespace: namespace(&pairing.motion.asset),
         };
         if let Some(proposal) = pairing.proposal {
             let slots = |parts: &BTreeMap<Slot, crate::retarget::RecognizedJoint>| {
@@ -352,6 +358,7 @@ impl Whole {
         };
         let target = pairing.target_title(joint).into_owned();
         let source_text = source.map_or_else(|| "none".to_owned(), |source| joint_text(&pairing.motion.asset, source));
+        let short_source = source_text.replacen(self.namespace, "", 1);
         let why = why.join(" · ");
         Row {
             joint,
@@ -361,6 +368,7 @@ impl Whole {
             what,
             source,
             source_text,
+            short_source,
             state,
             why,
             look,

@@ -26,7 +26,7 @@ pub fn show(ui: &Ui, painter: &Painter, response: &Response, shown: &Shown<'_>, 
         }),
     };
     // Labels appear under the pointer only while bones are drawn.
-    local.viewport.hovered = hovered.filter(|_| shown.frame.look.skeleton);
+    local.viewport.hovered = hovered.filter(|_| shown.frame.bones.iter().any(|bone| bone.visible));
     local.viewport.hovered_joint = local.viewport.hovered.and_then(of_model);
     if response.clicked() {
         if local.layout.sheet.take().is_some() {

@@ -1,6 +1,7 @@
 //! The viewport: what pointer and fingers do there, what is painted over the scene, and what floats above everything for a
 //! while. Whoever draws the scene fills in its pixels.
 
+pub mod awaited;
 mod buttons;
 mod camera;
 mod gizmo;

@@ -13,6 +13,8 @@ pub struct Messages {
     pub error: Option<String>,
     /// The error is about motions that were refused: alternatives are offered.
     pub motion_refused: bool,
+    /// Mapping joints manually is none of them.
+    pub model_lacks_skeleton: bool,
     /// The error is about opening this file.
     pub failed_to_open: Option<String>,
     /// The load under way.
@@ -51,7 +53,8 @@ impl Toast {
 impl Messages {
     /// Dismisses the error, with its title and the alternatives it offers.
     pub fn clear_error(&mut self) {
-        (self.error, self.motion_refused, self.failed_to_open) = (None, false, None);
+        (self.error, self.failed_to_open) = (None, None);
+        (self.motion_refused, self.model_lacks_skeleton) = (false, false);
     }
 
     /// Shows the load under way, the error and the toast in the viewport's lower left corner.
@@ -133,7 +136,8 @@ impl Messages {
                 (text::SHOW_REFUSED_ALONE, UiAction::ShowRefusedAlone),
                 (text::MAP_REFUSED_MANUALLY, UiAction::MapRefusedManually),
             ];
-            for (label, action) in offers {
+            let count = if self.model_lacks_skeleton { 1 } else { offers.len() };
+            for (label, action) in offers.into_iter().take(count) {
                 if ui.button(label).clicked() {
                     out.actions.push(action);
                     self.clear_error();

@@ -5,6 +5,35 @@ use egui::{Color32, Rect, Response, RichText, Sense, Stroke, Ui, Vec2, WidgetInf
 use super::style;
 use crate::ui::text;
 
+/// A constant text in capitals, for the title of a group; a constant itself.
+macro_rules! capitals {
+    ($text:expr) => {{
+        const LETTERS: [u8; $text.len()] = crate::ui::widgets::controls::capital_letters($text);
+        const CAPITALS: &str = match std::str::from_utf8(&LETTERS) {
+            Ok(text) => text,
+            Err(_) => panic!(),
+        };
+        CAPITALS
+    }};
+}
+
+pub(crate) use capitals;
+
+/// The bytes of `text` with ASCII letters in upper case. `LENGTH` is that of `text`.
+pub const fn capital_letters<const LENGTH: usize>(text: &str) -> [u8; LENGTH] {
+    let (bytes, mut capitals, mut at) = (text.as_bytes(), [0; LENGTH], 0);
+    while at < LENGTH {
+        capitals[at] = bytes[at].to_ascii_uppercase();
+        at += 1;
+    }
+    capitals
+}
+
+/// Names a control for screen readers. `name` is called only while one reads the interface.
+pub fn named(response: &Response, name: impl FnOnce() -> String) {
+    response.ctx.accesskit_node_builder(response.id, |node| node.set_label(name()));
+}
+
 /// The title of a group of settings.
 pub fn section(ui: &mut Ui, title: &str) {
     ui.add_space(10.0);
@@ -14,9 +43,9 @@ pub fn section(ui: &mut Ui, title: &str) {
 }
 
 /// Small, weak text that wraps.
-pub fn hint(ui: &mut Ui, text: impl Into<String>) {
+pub fn hint(ui: &mut Ui, text: impl Into<RichText>) {
     let weak = style::palette(ui).weak_text;
-    ui.add(egui::Label::new(RichText::new(text.into()).small().color(weak)).wrap());
+    ui.add(egui::Label::new(text.into().small().color(weak)).wrap());
 }
 
 /// A row with a label on the left and a switch on the right; returns true when it was flipped.
@@ -65,8 +94,10 @@ pub fn segmented_about<T: Copy + PartialEq>(
         let response = ui.interact(cell, whole.id.with(index), Sense::click());
         let on = chosen == Some(*value);
         let role = egui::accesskit::Role::RadioButton;
-        let name = if about.is_empty() { (*label).to_owned() } else { format!("{about}: {label}") };
-        response.widget_info(|| WidgetInfo::selected(role, ui.is_enabled(), on, &name));
+        response.widget_info(|| {
+            let name = if about.is_empty() { (*label).to_owned() } else { format!("{about}: {label}") };
+            WidgetInfo::selected(role, ui.is_enabled(), on, name)
+        });
         segment(ui, cell, &response, on, label);
         if response.clicked() {
             pressed = Some(*value);
@@ -103,8 +134,7 @@ fn slider_in(ui: &mut Ui, label: &str, value: f64, settings: SliderSettings) -> 
             .logarithmic(settings.logarithmic)
             .clamping(egui::SliderClamping::Never),
     );
-    let name = label.to_owned();
-    response.widget_info(|| WidgetInfo::slider(true, bar, name.clone()));
+    response.widget_info(|| WidgetInfo::slider(true, bar, label));
     if response.changed() {
         new = bar;
     }
@@ -151,7 +181,7 @@ fn label_and_value(ui: &mut Ui, label: &str, value: &mut f64, settings: &SliderS
                 .fixed_decimals(settings.decimals)
                 .suffix(settings.suffix),
         );
-        field.accessible_name(text::value_of(label));
+        named(&field, || text::value_of(label));
     });
 }
 
@@ -206,7 +236,8 @@ pub fn elided_small(ui: &Ui, rect: Rect, text: &str, color: Color32) -> bool {
 
 fn elided_in(ui: &Ui, rect: Rect, text: &str, color: Color32, style: egui::TextStyle) -> bool {
     let font = style.resolve(ui.style());
-    let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), font, color);
+    let mut job = egui::text::LayoutJob { break_on_newline: false, ..egui::text::LayoutJob::default() };
+    job.append(text, 0.0, egui::TextFormat::simple(font, color));
     job.wrap = egui::text::TextWrapping::truncate_at_width(rect.width().max(0.0));
     let galley = ui.painter().layout_job(job);
     let at = rect.left_center() - vec2(0.0, galley.size().y / 2.0);

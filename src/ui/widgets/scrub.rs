@@ -12,6 +12,8 @@ pub struct Scrub<'a> {
     pub clip: Option<&'a Clip>,
     pub time_secs: f64,
     pub range: Option<TimeRange>,
+    /// Space left free at the left, for the names of what is shown below at the same scale.
+    pub gutter: f32,
 }
 
 /// The result of a drag.
@@ -95,6 +97,7 @@ pub fn show(
     marks: &mut KeyMarks,
 ) -> (Option<Scrubbed>, bool) {
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
+    let rect = rect.with_min_x(rect.left() + scrub.gutter);
     let rail =
         Rect::from_x_y_ranges(rect.left() + MARGIN..=rect.right() - MARGIN, rect.top() + 20.0..=rect.top() + 25.0);
     let Some(clip) = scrub.clip.filter(|clip| clip.duration_secs() > 0.0) else {

@@ -9,9 +9,9 @@ use super::ImageData;
 use super::borrowed::BorrowedClip;
 use super::extent::Extent;
 use super::rig::Rig;
-use crate::anim::{Clip, JointIndex, PropertyValues, SampleCursor, model_from_joint};
-use crate::asset::{Asset, Humanoid, SceneJoints};
-use crate::mesh::Bounds;
+use crate::anim::{Clip, Joint, JointIndex, PropertyValues, SampleCursor, Skeleton, model_from_joint};
+use crate::asset::{Asset, AssetParts, Humanoid, MeshInstance, SceneJoints};
+use crate::mesh::{Bounds, Mesh};
 use crate::retarget::{Body, LayerClip, recognize};
 
 /// Identifies a model, or a motion shown as one, within its library. 0 until the library assigns one.
@@ -29,6 +29,7 @@ pub struct Model {
     pub origin: String,
     /// Whether it is the user's local file, which an embedding page must not learn about.
     pub is_own: bool,
+    is_placeholder: bool,
     /// The file's content.
     pub asset: Arc<Asset>,
     /// One per image of the asset; none if it could not be decoded (a warning says why).
@@ -66,6 +67,7 @@ impl Model {
             id: ModelId::default(),
             origin: source.clone(),
             is_own: false,
+            is_placeholder: false,
             source,
             asset,
             images,
@@ -144,6 +146,38 @@ impl Model {
     /// Facing direction of a recognized body at rest, in the file's axes.
     pub fn forward(&self) -> Option<Vec3> {
         self.recognized().1
+    }
+
+    /// Returns an empty stage that stands for a model that can't be had yet. A `file:` in front of the source is left out of its
+    /// name.
+    pub fn placeholder(source: &str) -> Self {
+        // A mesh without surfaces: a skeleton alone would be drawn.
+        let joint = Joint { name: "Empty".to_owned(), ..Joint::default() };
+        let parts = Skeleton::new(vec![joint]).map(|skeleton| AssetParts {
+            skeleton,
+            meshes: vec![Mesh::default()],
+            instances: vec![MeshInstance { joint: JointIndex(0), mesh: 0, skin: None }],
+            ..AssetParts::default()
+        });
+        let asset = parts.ok().and_then(|parts| Asset::new(parts).ok()).unwrap_or_default();
+        let name = source.strip_prefix("file:").unwrap_or(source);
+        let model = Self::new(name.to_owned(), asset, Vec::new());
+        Self { origin: source.to_owned(), is_placeholder: true, ..model }
+    }
+
+    /// Whether the model only stands for one that can't be had yet.
+    pub fn is_placeholder(&self) -> bool {
+        self.is_placeholder
+    }
+
+    /// What a model without a skeleton lacks, after its name.
+    pub const NO_SKELETON: &str =
+        "has no skeleton that a motion could move; bind its mesh to one and export it again with its skin";
+
+    /// Whether there is a skeleton that a motion could move: a skin, animated nodes, a recognized body, or no mesh at all.
+    pub fn has_skeleton(&self) -> bool {
+        let has_real = self.asset.skeleton.joints().any(|joint| self.rig.is_real(joint));
+        has_real || !self.recognized().0.0.is_empty()
     }
 
     fn recognized(&self) -> &(Humanoid, Option<Vec3>) {

@@ -496,3 +496,26 @@ fn what_is_not_fbx_says_so() {
         assert!(error.contains(expected), "{error}");
     }
 }
+
+/// As an interrupted download leaves them: where the file ends, what was expected there, what to do.
+#[test]
+fn a_file_that_is_cut_off_says_where() {
+    let text = character();
+    let half = &text.as_bytes()[..text.len() / 2];
+    let lines = half.iter().filter(|&&byte| byte == b'\n').count() + 1;
+    let error = gaitway_fbx::convert(half).unwrap_err();
+    assert!(error.starts_with(&format!("the FBX file is cut off in line {lines}: expected ")), "{error}");
+    assert!(error.ends_with("found the end of the file. Copy or download it again, or export it again."), "{error}");
+    for (version, width) in [(7400_u32, 4), (7700, 8)] {
+        let mut bytes = b"Kaydara FBX Binary  \0\x1a\0".to_vec();
+        bytes.extend(version.to_le_bytes());
+        for place in [1000_u64, 0, 0] {
+            bytes.extend(&place.to_le_bytes()[..width]);
+        }
+        bytes.extend(b"\x07Objects");
+        let error = gaitway_fbx::convert(&bytes).unwrap_err();
+        let found = bytes.len();
+        let expected = format!("cut off in its part \"Objects\": expected at least 1000 bytes, found {found}. Copy");
+        assert!(error.contains(&expected), "{error}");
+    }
+}

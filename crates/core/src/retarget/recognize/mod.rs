@@ -142,8 +142,8 @@ impl Recognized {
 /// Factor on the confidence in names that leave much of a body unmatched: they may mean something else.
 const PARTIAL_BODY_FACTOR: f32 = 0.7;
 
-/// Confidence in a joint whose name is wrong about the side.
-const SWAPPED_CONFIDENCE: f32 = 0.8;
+/// Confidence in a joint whose name is wrong about the side: its position decided against it, so someone should look.
+const SWAPPED_CONFIDENCE: f32 = 0.55;
 
 /// A file's own humanoid map with fewer slots than this is ignored.
 const MIN_FILE_SLOTS: usize = 6;
@@ -191,10 +191,14 @@ pub fn recognize(asset: &Asset) -> Recognized {
 
 /// Gives each joint the slot of the other side, with at most the confidence of a name that is wrong about the side.
 fn with_sides_swapped(parts: BTreeMap<Slot, RecognizedJoint>) -> BTreeMap<Slot, RecognizedJoint> {
-    let swapped = parts.into_iter().map(|(slot, part)| match slot.mirrored() {
-        same if same == slot => (slot, part),
-        other => (other, RecognizedJoint { confidence: part.confidence.min(SWAPPED_CONFIDENCE), ..part }),
-    });
+    let swapped =
+        parts.into_iter().map(|(slot, RecognizedJoint { joint, reason, confidence })| match slot.mirrored() {
+            same if same == slot => (slot, RecognizedJoint { joint, reason, confidence }),
+            other => {
+                let confidence = confidence.min(SWAPPED_CONFIDENCE);
+                (other, RecognizedJoint { joint, reason: Reason::Geometry, confidence })
+            }
+        });
     swapped.collect()
 }
 
