@@ -40,27 +40,36 @@ function decoded(page, file, framesPerSec) {
         video.addEventListener(event, resolve, { once: true });
         video.onerror = () => reject(new Error(video.error?.message));
       });
+    /**
+     * Waits until a frame of that time or an earlier one can be drawn, a moment after the seek to it.
+     * @param {number} time
+     */
+    const presented = (time) =>
+      new Promise((resolve) => {
+        // One of the seek before can still come.
+        const take = (/** @type {number} */ _, /** @type {VideoFrameCallbackMetadata} */ { mediaTime }) => (mediaTime <= time ? resolve(null) : video.requestVideoFrameCallback(take));
+        video.requestVideoFrameCallback(take);
+      });
     await next("loadeddata");
     const { videoWidth: width, videoHeight: height } = video;
     const context = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true });
     if (context === null) throw new Error("no 2D context");
     let before = "";
     let frames = 0;
-    let cornerAlpha = 0;
+    let cornerAlpha;
     // A video that was recorded in real time doesn't say how long it is before it has been played to its end.
     video.currentTime = 1e6;
     await next("seeked");
     const durationSecs = video.duration;
-    // One seek beyond the end, since a frame that was recorded last has no duration.
-    for (let index = 0; (index - 1) / framesPerSec < durationSecs; index++) {
-      // The new frame can be drawn a moment after the seek; past the end there is none.
-      const presented = new Promise((resolve) => {
-        video.requestVideoFrameCallback(resolve);
-        setTimeout(resolve, 2000);
-      });
-      video.currentTime = (index + 0.5) / framesPerSec;
+    let index = 0;
+    do {
+      const time = (index + 0.5) / framesPerSec;
+      const isPresented = presented(time);
+      video.currentTime = time;
       await next("seeked");
-      await presented;
+      // At the end, the last frame stays: nothing is presented.
+      if (!video.ended) await isPresented;
+      index += 1;
       context.clearRect(0, 0, width, height);
       context.drawImage(video, 0, 0);
       const { data } = context.getImageData(0, 0, width, height);
@@ -68,7 +77,7 @@ function decoded(page, file, framesPerSec) {
       const frame = data.join();
       if (frame !== before) frames += 1;
       before = frame;
-    }
+    } while (!video.ended);
     return { width, height, frames, durationSecs, cornerAlpha };
   };
   return page.evaluate(decode, { base64: file.toString("base64"), framesPerSec });
