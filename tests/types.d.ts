@@ -47,6 +47,8 @@ declare global {
     bench: import("../benches/web/three.mjs").Bench;
     /** Files of benches/web. */
     fetched: Uint8Array[];
+    /** Tasks of 50 ms and more, noted by benches/web/first.mjs. */
+    longTasks: PerformanceEntry[];
     /** Changes counted by page.test.mjs. */
     changes: number;
     /** Of the page around an embedded one in link.test.mjs. */

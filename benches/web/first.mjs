@@ -28,9 +28,16 @@ async function threePage() {
 }
 
 /**
- * Milliseconds from navigation to the first moving frame, which the page's own script or the one here reports.
+ * How a page started, in milliseconds: its first moving frame since navigation, and the longest task of its main thread until
+ * then, 0 if none took 50 ms.
+ * @typedef {{ moving: number, longestTask: number }} Start
+ */
+
+/**
+ * Opens a page until it shows its first moving frame, which the page's own script or the one here reports.
  * @param {Browser} browser
  * @param {string} address
+ * @returns {Promise<Start>}
  */
 async function firstFrame(browser, address) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 720 } });
@@ -40,6 +47,8 @@ async function firstFrame(browser, address) {
   await session.send("Network.setCacheDisabled", { cacheDisabled: true });
   await session.send("Network.emulateNetworkConditions", NETWORK);
   await page.addInitScript(() => {
+    window.longTasks = [];
+    new PerformanceObserver((list) => window.longTasks.push(...list.getEntries())).observe({ type: "longtask" });
     addEventListener("DOMContentLoaded", async () => {
       if (document.querySelector('meta[name="gaitway-programs"]') === null) return;
       while (window.gaitway === undefined) await new Promise((resolve) => setTimeout(resolve));
@@ -51,13 +60,16 @@ async function firstFrame(browser, address) {
   });
   await page.goto(address, { waitUntil: "commit" });
   await until(page, () => performance.getEntriesByName("moving").length > 0);
-  const time = await page.evaluate(() => performance.getEntriesByName("moving")[0].startTime);
+  const start = await page.evaluate(() => {
+    const moving = performance.getEntriesByName("moving")[0].startTime;
+    return { moving, longestTask: Math.max(0, ...window.longTasks.filter(({ startTime }) => startTime < moving).map(({ duration }) => duration)) };
+  });
   await context.close();
-  return time;
+  return start;
 }
 
 /**
- * Returns each page's times in milliseconds, by the page's name.
+ * Returns how each page started in each round, by the page's name.
  * @param {Browser} browser
  */
 export async function measureFirstFrames(browser) {
@@ -65,13 +77,13 @@ export async function measureFirstFrames(browser) {
   const site = await serve({ "/three/": folder, "/data/": dataFile(""), "/": dist }, { "cache-control": "no-store" });
   const link = `#model=${encodeURIComponent(`${site.origin}/data/${SOLDIER}`)}&clip=Walk`;
   const pages = { "three.js": `${site.origin}/three/`, WebGPU: `${site.origin}/?renderer=webgpu${link}`, WebGL2: `${site.origin}/?renderer=webgl2${link}` };
-  /** @type {Record<string, number[]>} */
-  const times = { "three.js": [], WebGPU: [], WebGL2: [] };
+  /** @type {Record<string, Start[]>} */
+  const starts = { "three.js": [], WebGPU: [], WebGL2: [] };
   try {
-    for (let round = 0; round < ROUNDS; round++) for (const [name, address] of Object.entries(pages)) times[name].push(await firstFrame(browser, address));
+    for (let round = 0; round < ROUNDS; round++) for (const [name, address] of Object.entries(pages)) starts[name].push(await firstFrame(browser, address));
   } finally {
     await site.close();
     fs.rmSync(folder, { recursive: true });
   }
-  return times;
+  return starts;
 }

@@ -1,6 +1,8 @@
 // Measures three.js and Gaitway on the same work in the same headless Chromium, in alternating rounds, and prints medians.
 // Run `node benches/web/run.mjs` after `cargo xtask build --bench` (or with GAITWAY_DIST), with `characters`, `retargeting`,
 // `loads`, `frames`, `first`, `lighthouse` or `decoders` to measure only these. Nothing is asserted: times vary between machines, ratios less so.
+import { execFileSync } from "node:child_process";
+import fs from "node:fs";
 import path from "node:path";
 import { chromium } from "playwright-core";
 import { FLAGS, dist, until, whenReady } from "../../tests/browser/browser.mjs";
@@ -71,8 +73,9 @@ try {
 
 async function measureCharacters() {
   console.log("\nSampling, world matrices and palette of Xbot's walk, µs per character-frame\n");
-  row("characters", "three.js", "Gaitway", "ratio");
-  row("--", "--", "--", "--");
+  row("characters", "three.js", "Gaitway", "ratio", "Gaitway, native");
+  row("--", "--", "--", "--", "--");
+  const native = nativeCharacters();
   const [theirs, ours] = [await three(), await gaitway("play=0")];
   if (!(await ours.evaluate(() => window.gaitway.benchCharacters !== undefined))) {
     console.log("skipped: the page was built without the feature; run `cargo xtask build --bench`");
@@ -89,10 +92,25 @@ async function measureCharacters() {
       figures.gaitway.push(await ours.evaluate(({ count, frames }) => window.gaitway.benchCharacters?.(window.fetched[0], "walk", count, frames) ?? NaN, { count, frames }));
     }
     const [slow, fast] = [median(figures.three), median(figures.gaitway)];
-    row(count, slow.toFixed(2), fast.toFixed(3), `${(slow / fast).toFixed(1)}×`);
+    row(count, slow.toFixed(2), fast.toFixed(3), `${(slow / fast).toFixed(1)}×`, native.get(count) ?? "–");
   }
+  if (native.size === 0) console.log("\nFor the native figures, run `cargo bench --bench characters` first");
   await theirs.close();
   await ours.close();
+}
+
+/**
+ * Runs the native benchmark, if it has been built, before the browser is busy, and returns its figures for the same walk by the
+ * number of characters.
+ * @returns {Map<number, string>}
+ */
+function nativeCharacters() {
+  const folder = path.join(path.resolve(repository, process.env.CARGO_TARGET_DIR ?? "target"), "release/deps");
+  const built = fs.existsSync(folder) ? fs.readdirSync(folder).filter((name) => /^characters-[0-9a-f]{16}(\.exe)?$/.test(name)) : [];
+  if (built.length === 0) return new Map();
+  const [newest] = built.map((name) => path.join(folder, name)).sort((a, b) => fs.statSync(b).mtimeMs - fs.statSync(a).mtimeMs);
+  const lines = execFileSync(newest, { cwd: repository, encoding: "utf8" }).matchAll(/^threejs\/Xbot\.glb walk +(\d+) +([\d.]+)/gm);
+  return new Map([...lines].map(([, count, micros]) => [Number(count), micros]));
 }
 
 /**
@@ -260,11 +278,17 @@ async function frameMs(page) {
 
 async function measureFirst() {
   console.log("\nFrom navigation to the first moving frame of Soldier.glb, cold, 10 Mbit/s, 40 ms latency, ms (median of 5)\n");
-  row("page", "median", "all", "ratio");
-  row("--", "--", "--", "--");
-  const times = await measureFirstFrames(browser);
-  const theirs = median(times["three.js"]);
-  for (const [name, values] of Object.entries(times)) row(name, median(values).toFixed(0), values.map((value) => value.toFixed(0)).join(", "), `${(median(values) / theirs).toFixed(2)}×`);
+  row("page", "median", "all", "ratio", "longest task", "all");
+  row("--", "--", "--", "--", "--", "--");
+  const starts = Object.entries(await measureFirstFrames(browser)).map(([name, rounds]) => ({
+    name,
+    moving: rounds.map(({ moving }) => moving),
+    longestTask: rounds.map(({ longestTask }) => longestTask),
+  }));
+  const theirs = median(starts[0].moving);
+  /** @param {number[]} values */
+  const both = (values) => [median(values).toFixed(0), values.map((value) => value.toFixed(0)).join(", ")];
+  for (const { name, moving, longestTask } of starts) row(name, ...both(moving), `${(median(moving) / theirs).toFixed(2)}×`, ...both(longestTask));
 }
 
 async function measureLighthouse() {

@@ -1,10 +1,10 @@
 // Measures a first visit with Lighthouse: on a desktop, with the program loaded and the first scene moving. A software
 // renderer draws here, which is slower than any graphics card.
 import assert from "node:assert/strict";
-import net from "node:net";
 import lighthouse, { desktopConfig } from "lighthouse";
 import { chromium } from "playwright-core";
 import { FLAGS } from "./browser.mjs";
+import { neverAnswers } from "./server.mjs";
 
 /**
  * The desktop preset with real network throttling. By default Lighthouse simulates it from a fast load, assuming that the
@@ -15,17 +15,12 @@ const CONFIG = { ...desktopConfig, settings: { ...desktopConfig.settings, thrott
 const CATEGORIES = ["performance", "accessibility", "best-practices"];
 const METRICS = ["first-contentful-paint", "largest-contentful-paint", "total-blocking-time", "cumulative-layout-shift", "speed-index"];
 
-/**
- * Finds a port that nobody listens on.
- * @returns {Promise<number>}
- */
-const freePort = () =>
-  new Promise((resolve) => {
-    const server = net.createServer().listen(0, "127.0.0.1", () => {
-      const { port } = /** @type {net.AddressInfo} */ (server.address());
-      server.close(() => resolve(port));
-    });
-  });
+/** Finds a port that nobody listens on: the one of a server that has just been closed. */
+async function freePort() {
+  const server = await neverAnswers();
+  await server.close();
+  return Number(new URL(server.origin).port);
+}
 
 /**
  * Measures once, in a browser that has never seen the page, and prints the result.
@@ -45,7 +40,6 @@ export async function measureFirstVisit(address) {
     console.log(text);
     return {
       scores,
-      lowest: Math.min(...Object.values(scores)),
       text,
       reasons: lacking.map(({ id, displayValue, details }) => `${id} ${displayValue ?? ""} ${JSON.stringify(details !== undefined && "items" in details ? details.items : []).slice(0, 400)}`).join("\n"),
     };

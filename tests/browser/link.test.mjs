@@ -247,6 +247,16 @@ for (const renderer of BACK_ENDS)
       assert.deepEqual(page.troubles, []);
     });
 
+    test("downloads a model once, whatever its address", async () => {
+      fs.copyFileSync(dataFile(FOX), path.join(folder, "red+fox.glb"));
+      // Unescaped, as some write it.
+      const page = await site.page({ renderer, link: `model=${servers.own.origin}/red+fox.glb&play=0` });
+      await whenShown(page, FOX_VERTICES);
+      assert.equal(page.requests.filter((url) => url.endsWith(".glb")).length, 1, page.requests.join());
+      assert.deepEqual(page.troubles, []);
+      await page.finish();
+    });
+
     onPage("follows another link in the address bar", () => fragment([["model", site.data(FOX)]]), async (page) => {
       await page.evaluate((hash) => void (location.hash = hash), fragment([["model", site.data(CESIUM_MAN)], ["t", 0.5], ["play", 0]]));
       await whenShown(page, CESIUM_MAN_VERTICES);

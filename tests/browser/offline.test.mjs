@@ -77,57 +77,60 @@ describe("after a visit", () => {
       await context.close();
     });
 
-  test("a part that was used works offline", { skip: skipWithoutData }, async () => {
-    const site = await serve({ [FOLDER]: dist });
-    const { context, page } = await visit(`${site.origin}${FOLDER}`);
-    const bytes = [...fs.readFileSync(dataFile("compressed/Fox-gltfpack-meshopt.glb"))];
-    /** @param {import("playwright-core").Page} page */
-    const openFox = (page) => page.evaluate(async (bytes) => (await window.gaitway.open({ "fox.glb": new Uint8Array(bytes) })).joints, bytes);
-    const joints = await openFox(page);
-    const stored = () => JSON.parse(document.querySelector('meta[name="gaitway-parts"]')?.getAttribute("content") ?? "{}").meshopt;
-    await until(page, async (file) => (await caches.match(file)) !== undefined, await page.evaluate(stored));
-    await site.close();
-    const offline = await context.newPage();
-    await offline.goto(page.url());
-    await whenReady(offline);
-    assert.deepEqual(await openFox(offline), joints);
-    await context.close();
-  });
+  for (const renderer of BACK_ENDS)
+    test(`a part that was used works offline (${renderer})`, { skip: skipWithoutData }, async () => {
+      const site = await serve({ [FOLDER]: dist });
+      const { context, page } = await visit(`${site.origin}${FOLDER}?renderer=${renderer}`);
+      const bytes = [...fs.readFileSync(dataFile("compressed/Fox-gltfpack-meshopt.glb"))];
+      /** @param {import("playwright-core").Page} page */
+      const openFox = (page) => page.evaluate(async (bytes) => (await window.gaitway.open({ "fox.glb": new Uint8Array(bytes) })).joints, bytes);
+      const joints = await openFox(page);
+      const stored = () => JSON.parse(document.querySelector('meta[name="gaitway-parts"]')?.getAttribute("content") ?? "{}").meshopt;
+      await until(page, async (file) => (await caches.match(file)) !== undefined, await page.evaluate(stored));
+      await site.close();
+      const offline = await context.newPage();
+      await offline.goto(page.url());
+      await whenReady(offline);
+      assert.deepEqual(await openFox(offline), joints);
+      await context.close();
+    });
 
-  test("a new version is offered and waits", async () => {
-    // Without the compressed copies, which would stay at the old version.
-    fs.cpSync(dist, folder, { recursive: true, filter: (file) => !/\.(br|gz)$/.test(file) });
-    const site = await serve({ [FOLDER]: folder }, { "cache-control": "no-cache" });
-    const { context, page } = await visit(`${site.origin}${FOLDER}#model=sample:walker&play=0`);
-    assert.equal(await page.locator("#update").isVisible(), false);
-    /** @param {string} name */
-    const file = (name) => path.join(folder, name);
-    const [, version] = fs.readFileSync(file("index.html"), "utf8").match(/name="gaitway-version" content="([0-9a-f]+)"/) ?? [];
-    const next = "0123456789abcdef";
-    for (const name of ["index.html", "sw.js"]) fs.writeFileSync(file(name), fs.readFileSync(file(name), "utf8").replaceAll(version, next));
-    const shown = () => page.evaluate(() => document.querySelector('meta[name="gaitway-version"]')?.getAttribute("content"));
-    await page.reload();
-    await whenReady(page);
-    assert.equal(await shown(), version, "the stored version is shown at once");
-    await page.locator("#update").waitFor({ state: "visible" });
-    await page.locator("#update-later").click();
-    assert.equal(await page.locator("#update").isVisible(), false);
-    assert.equal(await shown(), version);
-    await page.reload();
-    await whenReady(page);
-    await page.locator("#update").waitFor({ state: "visible" });
-    assert.equal(await shown(), version, "nobody is interrupted");
-    await page.locator("#update-use").click();
-    await until(page, (next) => document.querySelector('meta[name="gaitway-version"]')?.getAttribute("content") === next, next);
-    await whenReady(page);
-    assert.match(await page.evaluate(() => location.hash), /model=sample:walker/, "the view stays");
-    assert.equal((await page.evaluate(() => caches.keys())).length, 1, "the previous version is gone");
-    assert.equal((await storedPrograms(page)).length, 1, "the new version has the program without another visit");
-    assert.deepEqual(page.troubles, []);
-    await context.close();
-    await site.close();
-  });
+  for (const renderer of BACK_ENDS)
+    test(`a new version is offered and waits (${renderer})`, async () => {
+      // Without the compressed copies, which would stay at the old version.
+      fs.cpSync(dist, folder, { recursive: true, filter: (file) => !/\.(br|gz)$/.test(file) });
+      const site = await serve({ [FOLDER]: folder }, { "cache-control": "no-cache" });
+      const { context, page } = await visit(`${site.origin}${FOLDER}?renderer=${renderer}#model=sample:walker&play=0`);
+      assert.equal(await page.locator("#update").isVisible(), false);
+      /** @param {string} name */
+      const file = (name) => path.join(folder, name);
+      const [, version] = fs.readFileSync(file("index.html"), "utf8").match(/name="gaitway-version" content="([0-9a-f]+)"/) ?? [];
+      const next = "0123456789abcdef";
+      for (const name of ["index.html", "sw.js"]) fs.writeFileSync(file(name), fs.readFileSync(file(name), "utf8").replaceAll(version, next));
+      const shown = () => page.evaluate(() => document.querySelector('meta[name="gaitway-version"]')?.getAttribute("content"));
+      await page.reload();
+      await whenReady(page);
+      assert.equal(await shown(), version, "the stored version is shown at once");
+      await page.locator("#update").waitFor({ state: "visible" });
+      await page.locator("#update-later").click();
+      assert.equal(await page.locator("#update").isVisible(), false);
+      assert.equal(await shown(), version);
+      await page.reload();
+      await whenReady(page);
+      await page.locator("#update").waitFor({ state: "visible" });
+      assert.equal(await shown(), version, "nobody is interrupted");
+      await page.locator("#update-use").click();
+      await until(page, (next) => document.querySelector('meta[name="gaitway-version"]')?.getAttribute("content") === next, next);
+      await whenReady(page);
+      assert.match(await page.evaluate(() => location.hash), /model=sample:walker/, "the view stays");
+      assert.equal((await page.evaluate(() => caches.keys())).length, 1, "the previous version is gone");
+      assert.deepEqual(await storedPrograms(page), [renderer], "the new version has the program without another visit");
+      assert.deepEqual(page.troubles, []);
+      await context.close();
+      await site.close();
+    });
 
+  // Only the worker's rules about addresses are at stake, which know nothing of programs.
   test("other sites, ranges and frames are left alone", async () => {
     const site = await serve({ [FOLDER]: dist });
     const other = await serve({ [FOLDER]: dist }, { "access-control-allow-origin": "*" });

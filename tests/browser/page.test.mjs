@@ -14,6 +14,31 @@ const CESIUM_MAN_VERTICES = 3273;
 const IDLE_FRAMES = 60;
 const CENTER = { x: VIEWPORT.width / 2, y: VIEWPORT.height / 2 };
 
+/** A code point that no font has. */
+const UNASSIGNED = "\u0378";
+
+/**
+ * Runs in the page: whether its browser draws a text with letters rather than with the sign for missing ones.
+ * @param {string} text
+ */
+function hasFontFor(text) {
+  /** @param {string} text */
+  const pixels = (text) => {
+    const context = new OffscreenCanvas(200, 40).getContext("2d");
+    if (context === null) throw new Error("no 2D context");
+    context.font = "20px sans-serif";
+    context.fillText(text, 0, 30);
+    return context.getImageData(0, 0, 200, 40).data.join();
+  };
+  return pixels(text) !== pixels("\u0378".repeat(text.length));
+}
+
+/**
+ * Programs that the page has requested.
+ * @param {import("./browser.mjs").TestPage} page
+ */
+const programs = (page) => page.requests.flatMap((url) => url.match(/(webgpu|webgl2)-[0-9a-f]{16}\.wasm$/)?.[1] ?? []);
+
 // GLTFLoader's warnings about the reference file don't matter here.
 console.warn = () => {};
 
@@ -181,6 +206,26 @@ for (const renderer of BACK_ENDS) {
       assert.ok(drawn <= 2, `${drawn} frames in an idle second`);
     });
 
+    for (const [script, one, other] of [["Japanese", "腕", "脚"], ["Georgian", "მკლავი", "ფეხი"]])
+      test(`shows names in ${script}, which its own font lacks`, async (t) => {
+        const page = await site.page({ renderer, link: "model=sample:walker&play=0&joint=3" });
+        try {
+          if (!(await page.evaluate(hasFontFor, one))) return t.skip(`this machine has no font for ${script}`);
+          /** @param {string} name */
+          const labelled = async (name) => {
+            await apply(page, { names: `3:${encodeURIComponent(name)}` });
+            await untilStill(page);
+            return (await page.screenshot()).toString("base64");
+          };
+          const shown = await labelled(one);
+          assert.notEqual(shown, await labelled(other), "two names");
+          assert.notEqual(shown, await labelled(UNASSIGNED.repeat(one.length)), "a box for each letter");
+          assert.equal(shown, await labelled(one), "nothing but the name changes the picture");
+        } finally {
+          await page.finish();
+        }
+      });
+
     onPage("says that a folder has no files in it", {}, async (page) => {
       await apply(page, { play: 0 });
       const before = await page.screenshot();
@@ -252,6 +297,25 @@ for (const renderer of BACK_ENDS) {
         await own.close();
       }
     });
+
+    test("switches to the other back end when the graphics process dies", async () => {
+      const own = await startSite();
+      try {
+        const page = await own.page({ renderer, link: "model=sample:walker&play=0&t=0.5" });
+        assert.deepEqual(programs(page), [renderer]);
+        const session = await own.browser.newBrowserCDPSession();
+        await session.send("Browser.crashGpuProcess").catch(() => {});
+        await page.locator("#stopped-other").click();
+        await whenReady(page);
+        const [other] = BACK_ENDS.filter((backend) => backend !== renderer);
+        assert.equal((await stats(page)).backend, other);
+        assert.deepEqual(programs(page), [renderer, other], "the other program is downloaded now");
+        assert.equal((await pose(page)).time_secs, 0.5, "the view stays as it was");
+        assert.ok(colorsOf(await picture(page)) > 16, "something should be drawn");
+      } finally {
+        await own.close();
+      }
+    });
   });
 }
 
@@ -273,12 +337,6 @@ describe("page without graphics", () => {
     assert.match(await page.locator("#cannot-run-missing").innerText(), /WebGL\s?2/i);
     await page.finish();
   });
-
-  /**
-   * Programs that the page has requested.
-   * @param {import("./browser.mjs").TestPage} page
-   */
-  const programs = (page) => page.requests.flatMap((url) => url.match(/(webgpu|webgl2)-[0-9a-f]{16}\.wasm$/)?.[1] ?? []);
 
   test("falls back to WebGL2 without asking", async () => {
     const page = await site.page({ before: () => void Object.defineProperty(Navigator.prototype, "gpu", { value: undefined }) });

@@ -79,19 +79,36 @@ function gradients() {
   return png(64, 32, Uint8Array.from(pixels.flat()));
 }
 
-/** Hides an extension of WebGL and notes the formats of textures. */
+/** Hides BC7 from either back end and notes the formats of textures. */
 function withoutBc7() {
+  /** @type {unknown[]} */
+  const formats = (/** @type {any} */ (window).textureFormats = []);
   const { getSupportedExtensions, texStorage2D } = WebGL2RenderingContext.prototype;
   WebGL2RenderingContext.prototype.getSupportedExtensions = function () {
     return getSupportedExtensions.call(this)?.filter((name) => !name.includes("bptc")) ?? null;
   };
-  /** @type {number[]} */
-  const formats = (/** @type {any} */ (window).textureFormats = []);
   WebGL2RenderingContext.prototype.texStorage2D = function (target, levels, format, width, height) {
     formats.push(format);
     texStorage2D.call(this, target, levels, format, width, height);
   };
+  const { get: features = () => new Set() } = Object.getOwnPropertyDescriptor(GPUAdapter.prototype, "features") ?? {};
+  Object.defineProperty(GPUAdapter.prototype, "features", {
+    get() {
+      return new Set([...features.call(this)].filter((name) => name !== "texture-compression-bc"));
+    },
+  });
+  const { createTexture } = GPUDevice.prototype;
+  GPUDevice.prototype.createTexture = function (descriptor) {
+    formats.push(descriptor.format);
+    return createTexture.call(this, descriptor);
+  };
 }
+
+/** What each back end calls the formats that take the place of BC7. */
+const WITHOUT_BC7 = {
+  webgpu: { etc2: "etc2-rgb8unorm-srgb", astc: "astc-4x4-unorm-srgb" },
+  webgl2: { etc2: 0x9275, astc: 0x93d0 },
+};
 
 for (const renderer of BACK_ENDS)
   describe(`parts on ${renderer}`, { skip: skipWithoutData }, () => {
@@ -149,26 +166,26 @@ for (const renderer of BACK_ENDS)
       await failing.finish();
     });
 
-    if (renderer === "webgl2")
-      test("a device without BC7 gets KTX2 textures as ETC2 or ASTC", async () => {
-        const page = await site.page({ renderer, before: withoutBc7 });
-        const uastc = withTextures(dataFile(KTX2), [dataUri("image/ktx2", fs.readFileSync(UASTC))], "KHR_texture_basisu");
-        await page.route("**/made.gltf", (route) => route.fulfill({ body: uastc, headers: { "access-control-allow-origin": "*" } }));
-        for (const [file, format, expected] of /** @type {[string, number, Buffer][]} */ ([
-          [KTX2, 0x9275, await withPngTextures(dataFile(KTX2))],
-          ["made.gltf", 0x93d0, withTextures(dataFile(KTX2), [dataUri("image/png", gradients())])],
-        ])) {
-          await open(page, site.data(file));
-          const difference = meanDifference(await picture(page), await pictureOf(expected));
-          assert.ok(difference < 0.1, `${file}: the pictures differ by ${difference} of 255`);
-          const formats = await page.evaluate(() => /** @type {any} */ (window).textureFormats);
-          assert.ok(formats.includes(format), `${file}: ${formats}`);
-        }
-        await page.finish();
-      });
+    test("a device without BC7 gets KTX2 textures as ETC2 or ASTC", async () => {
+      const page = await site.page({ renderer, before: withoutBc7 });
+      const uastc = withTextures(dataFile(KTX2), [dataUri("image/ktx2", fs.readFileSync(UASTC))], "KHR_texture_basisu");
+      await page.route("**/made.gltf", (route) => route.fulfill({ body: uastc, headers: { "access-control-allow-origin": "*" } }));
+      const { etc2, astc } = WITHOUT_BC7[renderer];
+      for (const [file, format, expected] of /** @type {[string, string | number, Buffer][]} */ ([
+        [KTX2, etc2, await withPngTextures(dataFile(KTX2))],
+        ["made.gltf", astc, withTextures(dataFile(KTX2), [dataUri("image/png", await gradients())])],
+      ])) {
+        await open(page, site.data(file));
+        const difference = meanDifference(await picture(page), await pictureOf(expected));
+        assert.ok(difference < 0.1, `${file}: the pictures differ by ${difference} of 255`);
+        const formats = await page.evaluate(() => /** @type {any} */ (window).textureFormats);
+        assert.ok(formats.includes(format), `${file}: ${formats}`);
+      }
+      await page.finish();
+    });
 
     test("AVIF textures look like the same as PNG", async () => {
-      const expected = await pictureOf(withTextures(dataFile(KTX2), [dataUri("image/png", gradients())]));
+      const expected = await pictureOf(withTextures(dataFile(KTX2), [dataUri("image/png", await gradients())]));
       const avif = dataUri("image/avif", fs.readFileSync(AVIF));
       const difference = meanDifference(await pictureOf(withTextures(dataFile(KTX2), [avif], "EXT_texture_avif")), expected);
       assert.ok(difference < 0.5, `the pictures differ by ${difference} of 255`);

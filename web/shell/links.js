@@ -1,4 +1,5 @@
-// The text form of links. Only the program reads it (src/state/link); no script splits a link.
+// The text form of links. Only the program reads it (src/state/link); no script splits a link, except still.js, which runs
+// before the program is there.
 
 /** @typedef {import("./types.d.ts").Bindings} Bindings */
 /** @typedef {import("./types.d.ts").LinkedFile} LinkedFile */

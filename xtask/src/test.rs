@@ -55,7 +55,12 @@ fn node_tests() -> anyhow::Result<()> {
     if std::io::stdout().is_terminal() {
         arguments.push("--test-reporter=spec");
         variables.push(("FORCE_COLOR", "1"));
+    } else {
+        arguments.push("--test-reporter=tap");
     }
+    arguments.push("--test-reporter-destination=stdout");
+    // These tests take the longest of all steps. The time of each file is printed beside the output, which ends with the summary.
+    arguments.extend(["--test-reporter=./tests/times.mjs", "--test-reporter-destination=stderr"]);
     arguments.extend(files);
     let step = Step::start("node", &arguments, &variables);
     let mut node = command("node").args(&arguments).envs(variables).stdout(Stdio::piped()).spawn()?;

@@ -1,0 +1,17 @@
+// A reporter for Node's tests that prints how long each file took, the longest first.
+import path from "node:path";
+import { repository } from "./three/data.mjs";
+
+/** @param {AsyncIterable<import("node:test/reporters").TestEvent>} events */
+export default async function* times(events) {
+  /** @type {Map<string, number>} */
+  const millis = new Map();
+  for await (const { type, data } of events) {
+    // Suites and tests at a file's top level, with all that is in them.
+    if ((type !== "test:pass" && type !== "test:fail") || data.nesting > 0 || data.file === undefined) continue;
+    const file = path.relative(repository, data.file);
+    millis.set(file, (millis.get(file) ?? 0) + data.details.duration_ms);
+  }
+  yield "\nWhere the time of Node's tests went:\n";
+  for (const [file, took] of [...millis].sort(([, a], [, b]) => b - a)) yield `${(took / 1000).toFixed(1).padStart(8)} s  ${file}\n`;
+}
