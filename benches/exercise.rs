@@ -26,7 +26,7 @@ fn main() {
     for (name, split) in [("slider step", false), ("slider step, three modes side by side", true)] {
         let show = Show { skeleton: true, ..Show::default() };
         let display = Display { show, ..Display::default() };
-        let inspect = Inspect { split, weights: false };
+        let inspect = Inspect { split, ..Inspect::default() };
         let mut state = ViewerState { display, inspect, ..ViewerState::default() };
         let (mut frame, mut angle) = (Frame::default(), 0.0_f32);
         let nanos = measure(|| {

@@ -39,7 +39,7 @@ pub struct BorrowedClip {
     pub pairs: Vec<StagePair>,
     map: Arc<ResolvedMap>,
     measured: OnceLock<Option<(Figures, Vec<FootTrack>)>>,
-    from_each_rest: OnceLock<Vec<Clip>>,
+    clips_by_rest: OnceLock<Vec<Clip>>,
     /// Crossfade to and from this clip.
     pub crossfade_secs: f64,
 }
@@ -52,14 +52,14 @@ impl BorrowedClip {
 
     /// The clip as it comes from each rest of the motion, in the order of [`RestChoice::ALL`]; made on first use. Where a
     /// rest gives none, this clip stands in.
-    pub(super) fn from_each_rest(&self, model: Body<'_>, motion: Body<'_>) -> &[Clip] {
+    pub(super) fn clips_by_rest(&self, model: Body<'_>, motion: Body<'_>) -> &[Clip] {
         let from = |choice| {
             let mut map = ResolvedMap::clone(&self.map);
             map.rest.motion = choice;
             Some(Retargeting::new(model, motion, self.source_clip, &map).ok()?.bake().ok()?.clip)
         };
         let all = || RestChoice::ALL.map(|choice| from(choice).unwrap_or_else(|| self.clip.clone())).into();
-        self.from_each_rest.get_or_init(all)
+        self.clips_by_rest.get_or_init(all)
     }
 
     /// Measures how well the clip matches its source, on first use.
@@ -140,7 +140,7 @@ pub(super) fn borrow(
             pairs: pair.stage_pairs(),
             map: shared.clone(),
             measured: OnceLock::new(),
-            from_each_rest: OnceLock::new(),
+            clips_by_rest: OnceLock::new(),
             crossfade_secs: map.crossfade_secs,
         })
     };

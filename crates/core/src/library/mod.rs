@@ -248,7 +248,7 @@ impl Library {
     pub fn clip_from_rest(&self, clip: usize, rest: RestChoice) -> Option<&Clip> {
         let model = self.active()?;
         let borrowed = model.borrowed(clip)?;
-        let clips = borrowed.from_each_rest(model.body(), self.motions.get(borrowed.motion)?.body());
+        let clips = borrowed.clips_by_rest(model.body(), self.motions.get(borrowed.motion)?.body());
         RestChoice::ALL.iter().zip(clips).find_map(|(of, clip)| (*of == rest).then_some(clip))
     }
 
