@@ -3,10 +3,10 @@
 // `loads`, `frames`, `first`, `lighthouse` or `decoders` to measure only these. Nothing is asserted: times vary between machines, ratios less so.
 import path from "node:path";
 import { chromium } from "playwright-core";
-import { FLAGS, dist, until, whenReady } from "../../tests/browser/browser.mjs";
+import { FLAGS, until, whenReady } from "../../tests/browser/browser.mjs";
 import { measureFirstVisit } from "../../tests/browser/lighthouse.mjs";
 import { serve } from "../../tests/browser/server.mjs";
-import { dataFile, hasData, repository } from "../../tests/three/data.mjs";
+import { dataFile, dist, hasData, repository } from "../../tests/three/data.mjs";
 import { measureDecoders } from "./decoders.mjs";
 import { measureFirstFrames } from "./first.mjs";
 

@@ -1,7 +1,7 @@
 // A first visit as Lighthouse sees it.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { dist } from "./browser.mjs";
+import { dist } from "../three/data.mjs";
 import { measureFirstVisit } from "./lighthouse.mjs";
 import { serve } from "./server.mjs";
 

@@ -5,7 +5,7 @@ import fs from "node:fs";
 import path from "node:path";
 import { after, describe, test } from "node:test";
 import * as THREE from "three";
-import { dataFile, skipWithoutData } from "./data.mjs";
+import { dataFile, dataFiles, skipWithoutData } from "./data.mjs";
 import { document, run } from "./gaitway.mjs";
 
 /** Largest distance allowed, in multiples of the farthest node's distance from the origin. */
@@ -50,7 +50,7 @@ const totals = { compared: 0, poses: 0, positions: 0, unread: 0, worst: 0 };
 
 describe("FBX nodes agree with three.js", { skip: skipWithoutData, concurrency: 1 }, () => {
   if (skipWithoutData) return;
-  for (const name of fbxFiles()) test(name, () => compareFile(name));
+  for (const name of dataFiles(/\.fbx$/)) test(name, () => compareFile(name));
   test("each fault of FBXLoader is still seen", () => {
     for (const { because, isSeen } of FAULTS) assert.ok(isSeen, `no longer seen: FBXLoader ${because}`);
   });
@@ -59,11 +59,6 @@ describe("FBX nodes agree with three.js", { skip: skipWithoutData, concurrency: 
     console.log(`${compared} FBX files, ${poses} poses, ${positions} positions; worst ${worst.toExponential(2)}; FBXLoader reads ${unread} others not at all`);
   });
 });
-
-function fbxFiles() {
-  const names = fs.readdirSync(dataFile(""), { recursive: true, encoding: "utf8" });
-  return names.filter((name) => name.endsWith(".fbx")).map((name) => name.replaceAll("\\", "/")).sort();
-}
 
 /** @param {string} name */
 async function compareFile(name) {
