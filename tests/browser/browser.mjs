@@ -24,6 +24,7 @@ import { serve } from "./server.mjs";
  * @property {string} [link] Empty for a first visit; without it, the walker.
  * @property {{ width: number, height: number }} [viewport]
  * @property {() => void} [before] Runs in the page before its scripts.
+ * @property {Record<string, Buffer>} [files] Content by name of files that no server has.
  * @property {boolean} [ready] False: don't wait for the first image.
  */
 
@@ -99,13 +100,14 @@ export function watched(page) {
  * @param {string} address
  * @param {PageOptions} options
  */
-async function openPage(browser, address, { renderer, link = "model=sample:walker", viewport = VIEWPORT, before, ready = true }) {
+async function openPage(browser, address, { renderer, link = "model=sample:walker", viewport = VIEWPORT, before, files = {}, ready = true }) {
   // Service workers would store megabytes for each fresh profile; offline.test.mjs tests them.
   const context = await browser.newContext({ viewport, serviceWorkers: "block" });
   const page = watched(await context.newPage());
   page.setDefaultTimeout(TIMEOUT_MS);
   await page.addInitScript(() => addEventListener("securitypolicyviolation", ({ violatedDirective, blockedURI }) => console.error(`against the content security policy: ${violatedDirective} ${blockedURI}`)));
   if (before !== undefined) await page.addInitScript(before);
+  for (const [name, body] of Object.entries(files)) await page.route(`**/${name}`, (route) => route.fulfill({ body, headers: { "access-control-allow-origin": "*" } }));
   await page.goto(`${address}${renderer === undefined ? "" : `?renderer=${renderer}`}${link === "" ? "" : `#${link}`}`);
   if (ready) await whenReady(page);
   return page;
