@@ -1,19 +1,16 @@
 // The parts that decode compressed files, beside the decoders of npm that other viewers use: meshoptimizer's and Draco's, and
 // Basis Universal's transcoder, all as three.js ships them. All run in Node, on what the page hands to its parts and what
 // npm's decoders take: the compressed data of a whole file.
-import fs from "node:fs";
 import path from "node:path";
 import { MeshoptDecoder } from "three/examples/jsm/libs/meshopt_decoder.module.js";
-import { dist } from "../../tests/browser/browser.mjs";
 import { dataFile, readGltf } from "../../tests/three/data.mjs";
 import { startDracoDecoder } from "../../tests/three/draco.mjs";
 import { RGBA32, startTranscoder } from "../../tests/three/ktx2.mjs";
+import { startPart } from "../../tests/three/part.mjs";
 
 /** @typedef {{ part: string, file: string, theirs: (file: string) => Promise<() => void> }} Case */
 
 const ROUNDS = 9;
-/** The first byte of a part's answer other than an error. */
-const CONVERTED = 1;
 
 /** @type {Case[]} */
 const CASES = [
@@ -32,7 +29,10 @@ const CASES = [
 export async function measureDecoders(page) {
   const results = [];
   for (const { part, file, theirs } of CASES) {
-    const [ours, reference] = [await moduleOf(part, await inputsOf(page, file)), await theirs(dataFile(file))];
+    const [run, inputs, reference] = [await startPart(part), await inputsOf(page, file), await theirs(dataFile(file))];
+    const ours = async () => {
+      for (const input of inputs) await run(input);
+    };
     /** @type {[number[], number[]]} */
     const times = [[], []];
     for (let round = 0; round < ROUNDS; round++) {
@@ -70,27 +70,6 @@ async function inputsOf(page, file) {
     return inputs;
   }, `/data/${file}`);
   return inputs.map((bytes) => Uint8Array.from(bytes));
-}
-
-/**
- * Returns a function that runs a part on inputs, in a fresh instance for each as the page does.
- * @param {string} part
- * @param {Uint8Array[]} inputs
- */
-async function moduleOf(part, inputs) {
-  const name = fs.readdirSync(path.join(dist, "parts")).find((file) => file.startsWith(`${part}-`) && file.endsWith(".wasm"));
-  if (name === undefined) throw new Error(`the page has no part called ${part}`);
-  const module = await WebAssembly.compile(fs.readFileSync(path.join(dist, "parts", name)));
-  return async () => {
-    for (const input of inputs) {
-      const { memory, input: place, run, output, output_length: length } = /** @type {any} */ ((await WebAssembly.instantiate(module)).exports);
-      const start = place(input.length);
-      new Uint8Array(memory.buffer, start, input.length).set(input);
-      run();
-      const answer = new Uint8Array(memory.buffer, output(), length());
-      if (answer[0] !== CONVERTED) throw new Error(`${part}: ${new TextDecoder().decode(answer.subarray(1))}`);
-    }
-  };
 }
 
 /**

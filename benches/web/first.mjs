@@ -5,9 +5,9 @@ import os from "node:os";
 import path from "node:path";
 import zlib from "node:zlib";
 import { build } from "esbuild";
-import { dist, until } from "../../tests/browser/browser.mjs";
+import { until } from "../../tests/browser/browser.mjs";
 import { serve } from "../../tests/browser/server.mjs";
-import { dataFile, repository } from "../../tests/three/data.mjs";
+import { dataFile, dist, repository } from "../../tests/three/data.mjs";
 
 /** @typedef {import("playwright-core").Browser} Browser */
 

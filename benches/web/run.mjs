@@ -5,10 +5,10 @@ import { execFileSync } from "node:child_process";
 import fs from "node:fs";
 import path from "node:path";
 import { chromium } from "playwright-core";
-import { FLAGS, dist, until, whenReady } from "../../tests/browser/browser.mjs";
+import { FLAGS, until, whenReady } from "../../tests/browser/browser.mjs";
 import { measureFirstVisit } from "../../tests/browser/lighthouse.mjs";
 import { serve } from "../../tests/browser/server.mjs";
-import { dataFile, hasData, repository } from "../../tests/three/data.mjs";
+import { dataFile, dist, hasData, repository } from "../../tests/three/data.mjs";
 import { measureDecoders } from "./decoders.mjs";
 import { measureFirstFrames } from "./first.mjs";
 

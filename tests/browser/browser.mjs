@@ -2,7 +2,7 @@
 import fs from "node:fs";
 import path from "node:path";
 import { chromium } from "playwright-core";
-import { dataFile, hasData, repository } from "../three/data.mjs";
+import { dataFile, dist, hasData } from "../three/data.mjs";
 import { serve } from "./server.mjs";
 
 /** @typedef {import("playwright-core").Browser} Browser */
@@ -48,8 +48,6 @@ export const FLAGS = [
 ];
 
 const TIMEOUT_MS = 60_000;
-
-export const dist = process.env.GAITWAY_DIST ?? path.join(repository, "dist");
 
 export function launch() {
   return chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: FLAGS });

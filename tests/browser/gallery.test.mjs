@@ -5,7 +5,8 @@ import path from "node:path";
 import { after, before, describe, test } from "node:test";
 import sharp from "sharp";
 import { linkOf, readScenes } from "../../xtask/site/samples.mjs";
-import { BACK_ENDS, colorsOf, dist, drop, meanDifference, picture, startSite, state, until, untilStill, watched, whenModel, whenPictureDiffers, whenReady } from "./browser.mjs";
+import { dist } from "../three/data.mjs";
+import { BACK_ENDS, colorsOf, drop, meanDifference, picture, startSite, state, until, untilStill, watched, whenModel, whenPictureDiffers, whenReady } from "./browser.mjs";
 
 /** Of 255. The image has four samples per pixel, the page only one in software, and WebP loses a little. */
 const MAX_DIFFERENCE = 4;

@@ -1,7 +1,8 @@
 // A first visit as Lighthouse sees it.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { BACK_ENDS, dist } from "./browser.mjs";
+import { dist } from "../three/data.mjs";
+import { BACK_ENDS } from "./browser.mjs";
 import { measureFirstVisit } from "./lighthouse.mjs";
 import { serve } from "./server.mjs";
 

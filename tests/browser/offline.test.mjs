@@ -5,8 +5,8 @@ import os from "node:os";
 import path from "node:path";
 import { after, before, describe, test } from "node:test";
 import { linkOf, readScenes } from "../../xtask/site/samples.mjs";
-import { dataFile, skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, VIEWPORT, dist, launch, state, until, watched, whenReady } from "./browser.mjs";
+import { dataFile, dist, skipWithoutData } from "../three/data.mjs";
+import { BACK_ENDS, VIEWPORT, launch, state, until, watched, whenReady } from "./browser.mjs";
 import { serve } from "./server.mjs";
 
 const FOLDER = "/some/folder/";

@@ -6,6 +6,9 @@ import { fileURLToPath } from "node:url";
 
 export const repository = path.resolve(path.dirname(fileURLToPath(import.meta.url)), "../..");
 
+/** The built page. */
+export const dist = process.env.GAITWAY_DIST ?? path.join(repository, "dist");
+
 /** The data folder, or null without one. */
 const dataFolder = (() => {
   const folder = process.env.GAITWAY_DATA ?? path.resolve(repository, "../shared/data");
@@ -25,6 +28,15 @@ export const skipWithoutData =
 export function dataFile(name) {
   if (dataFolder === null) throw new Error("there is no test data folder (GAITWAY_DATA)");
   return path.join(dataFolder, name);
+}
+
+/**
+ * Returns the names of the data folder's files with this extension, sorted.
+ * @param {RegExp} extension
+ */
+export function dataFiles(extension) {
+  const names = fs.readdirSync(dataFile(""), { recursive: true, encoding: "utf8" });
+  return names.map((name) => name.replaceAll("\\", "/")).filter((name) => extension.test(name)).sort();
 }
 
 /** Extensions that are supported; a file that requires any other is rejected. */
@@ -53,15 +65,10 @@ const SUPPORTED = [
  * @returns {GltfFile[]}
  */
 export function gltfFiles() {
-  const folder = dataFile("");
-  const files = fs
-    .readdirSync(folder, { recursive: true, encoding: "utf8" })
-    .map((name) => name.replaceAll("\\", "/"))
-    .filter((name) => /\.(glb|gltf|vrm|vrma)$/.test(name))
-    .filter((name) => !/^(validator-invalid|khronos\/v1\.0-unsupported|asset-generator\/Negative)\//.test(name))
-    .sort();
-  return files.map((name) => {
-    const file = path.join(folder, name);
+  const files = dataFiles(/\.(glb|gltf|vrm|vrma)$/);
+  const valid = files.filter((name) => !/^(validator-invalid|khronos\/v1\.0-unsupported|asset-generator\/Negative)\//.test(name));
+  return valid.map((name) => {
+    const file = dataFile(name);
     const { asset, extensionsRequired = [] } = readGltf(file).json;
     const newer = asset.minVersion !== undefined && asset.minVersion > "2.0" ? asset.minVersion : undefined;
     return { name, file, rejected: newer ?? extensionsRequired.find((extension) => !SUPPORTED.includes(extension)) ?? null };

@@ -25,7 +25,7 @@ let starting;
  * @param {Record<string, number>} ids Unique ids by attribute.
  * @param {Record<string, string>} types Typed arrays by attribute.
  */
-async function decode(bytes, ids, types) {
+export async function decode(bytes, ids, types) {
   const draco = await (starting ??= startDracoDecoder());
   const [decoder, mesh] = [new draco.Decoder(), new draco.Mesh()];
   const status = decoder.DecodeArrayToMesh(new Int8Array(bytes), bytes.byteLength, mesh);

@@ -5,7 +5,7 @@ import fs from "node:fs";
 import path from "node:path";
 import { after, describe, test } from "node:test";
 import * as THREE from "three";
-import { dataFile, skipWithoutData } from "./data.mjs";
+import { dataFile, dataFiles, skipWithoutData } from "./data.mjs";
 import { document, run } from "./gaitway.mjs";
 
 /** Largest distance allowed, in multiples of the farthest node's distance from the origin. */
@@ -18,20 +18,24 @@ const ONE_FRAME = 1 / 24;
 const CENTIMETRES_PER_METRE = 100;
 
 /**
- * What FBXLoader does otherwise than the format demands. Each has to be seen in one of its files, so that the list stays true.
- * @type {{ because: string, files: RegExp, isSeen?: boolean }[]}
+ * What FBXLoader does otherwise than the format demands. Each has to be seen in every file that it names, so that the list stays
+ * true. It excuses differences in `"clips"` alone, in the rest pose as well, or of some nodes by name.
+ * @typedef {{ because: string, files: RegExp, excuses: "clips" | "poses" | RegExp }} Fault
  */
+
+/** @type {Fault[]} */
 const FAULTS = [
-  { because: "turns only files whose Z axis is up", files: /\/axes_|\/revit_/ },
-  { because: "puts pivots of animated nodes elsewhere", files: /_pivots_|_pivot_(offset|scale)_|split_pivot|zero_scale_pivot/ },
-  { because: "lets every node inherit its parent's scale", files: /no_inherit|inherit_mode/ },
-  { because: "holds the first and last key outside of a curve", files: /maya_anim_extrapolation/ },
-  { because: "interpolates in constant segments, too", files: /maya_anim_linear/ },
-  { because: "plays one of a stack's layers", files: /anim_layer_anim/ },
-  { because: "joins the keys of a rotation's three curves, which are at different times", files: /\/run\.fbx|\/cmu_/ },
-  { because: "gives a clip the keys of other clips' time ranges", files: /game_sausage_7500_(ascii|binary)_(combined|deform)/ },
-  { because: "hangs a joint on its HumanIK character instead of its parent", files: /maya_human_ik/ },
-  { because: "moves a directional light away from its node", files: /blender_293_barbarian|camera_light_axes/ },
+  { because: "turns only files whose Z axis is up", files: /\/axes_(?!nzpy|pypz)/, excuses: "poses" },
+  { because: "puts pivots of animated nodes elsewhere", files: /(child|null)_pivots_|_pivot_(offset|scale)_|split_pivot|zero_scale_pivot/, excuses: "clips" },
+  { because: "lets every node inherit its parent's scale", files: /maya_(scale|static)_no_inherit_(scale_)?7/, excuses: "poses" },
+  { because: "lets every node inherit its parent's animated scale", files: /anim_no_inherit|no_inherit_step|mixed_inherit_mode/, excuses: "clips" },
+  { because: "holds the first and last key outside of a curve", files: /maya_anim_extrapolation/, excuses: "clips" },
+  { because: "interpolates in constant segments, too", files: /maya_anim_linear/, excuses: "clips" },
+  { because: "plays one of a stack's layers", files: /anim_layer_anim/, excuses: "clips" },
+  { because: "joins the keys of a rotation's three curves, which are at different times", files: /\/run\.fbx|\/cmu_/, excuses: "clips" },
+  { because: "gives a clip the keys of other clips' time ranges", files: /game_sausage_7500_(ascii|binary)_(combined|deform)/, excuses: "clips" },
+  { because: "hangs a joint on its HumanIK character instead of its parent", files: /maya_human_ik/, excuses: "poses" },
+  { because: "moves a directional light away from its node", files: /blender_293_barbarian|camera_light_axes/, excuses: /^(Sun|forwardLight)$/ },
 ];
 
 /** Reasons of its own for which FBXLoader reads no clip, or one more. */
@@ -50,20 +54,15 @@ const totals = { compared: 0, poses: 0, positions: 0, unread: 0, worst: 0 };
 
 describe("FBX nodes agree with three.js", { skip: skipWithoutData, concurrency: 1 }, () => {
   if (skipWithoutData) return;
-  for (const name of fbxFiles()) test(name, () => compareFile(name));
-  test("each fault of FBXLoader is still seen", () => {
-    for (const { because, isSeen } of FAULTS) assert.ok(isSeen, `no longer seen: FBXLoader ${because}`);
+  for (const name of dataFiles(/\.fbx$/)) test(name, () => compareFile(name));
+  test("each fault of FBXLoader is in a file", () => {
+    for (const { because, files } of FAULTS) assert.ok(dataFiles(/\.fbx$/).some((name) => files.test(`/${name}`)), because);
   });
   after(() => {
     const { compared, poses, positions, unread, worst } = totals;
     console.log(`${compared} FBX files, ${poses} poses, ${positions} positions; worst ${worst.toExponential(2)}; FBXLoader reads ${unread} others not at all`);
   });
 });
-
-function fbxFiles() {
-  const names = fs.readdirSync(dataFile(""), { recursive: true, encoding: "utf8" });
-  return names.filter((name) => name.endsWith(".fbx")).map((name) => name.replaceAll("\\", "/")).sort();
-}
 
 /** @param {string} name */
 async function compareFile(name) {
@@ -80,23 +79,18 @@ async function compareFile(name) {
     totals.unread++;
     return;
   }
-  const compare = comparison(file, theirs);
-  let worst = await compare(null, 0, 0);
+  const fault = FAULTS.find(({ files }) => files.test(`/${name}`));
+  const compare = comparison(file, theirs, fault);
+  const worst = await compare(null, 0, 0);
   if (!OTHER_CLIPS.test(name)) {
     assert.equal(clips.length, theirs.animations.length, "number of clips");
-    for (const [clip, { duration_secs }] of clips.slice(0, MAX_CLIPS).entries()) {
-      const difference = await differenceOfClip(compare, clip, theirs.animations[clip], duration_secs);
-      if (difference.value > worst.value) worst = difference;
-    }
+    for (const [clip, { duration_secs }] of clips.slice(0, MAX_CLIPS).entries())
+      include(worst, await differenceOfClip(compare, clip, theirs.animations[clip], duration_secs));
   }
-  const { value, where } = worst;
-  const fault = FAULTS.find(({ files }) => files.test(`/${name}`));
-  if (fault === undefined) {
-    totals.worst = Math.max(totals.worst, value);
-    assert.ok(value <= TOLERANCE, `${where}: off by ${value} (allowed ${TOLERANCE})`);
-  } else if (value > TOLERANCE) {
-    fault.isSeen = true;
-  }
+  const { value, where, excused } = worst;
+  totals.worst = Math.max(totals.worst, value);
+  assert.ok(value <= TOLERANCE, `${where}: off by ${value} (allowed ${TOLERANCE})`);
+  if (fault !== undefined) assert.ok(excused > TOLERANCE, `no longer seen: FBXLoader ${fault.because}`);
   totals.compared++;
 }
 
@@ -113,16 +107,40 @@ function loadTheirs(file) {
   }
 }
 
-/** @typedef {{ value: number, where: string }} Difference */
+/**
+ * The largest difference, without and with what a fault excuses.
+ * @typedef {{ value: number, where: string, excused: number }} Difference
+ */
 /** @typedef {(clip: number | null, theirSecs: number, ourSecs: number) => Promise<Difference>} Compare */
+
+/**
+ * Makes a difference the larger of the two, in each respect.
+ * @param {Difference} worst
+ * @param {Difference} other
+ */
+function include(worst, { value, where, excused }) {
+  if (!(excused <= worst.excused)) worst.excused = excused;
+  if (!(value <= worst.value)) Object.assign(worst, { value, where });
+}
+
+/**
+ * @param {Fault} fault
+ * @param {string} node
+ * @param {number | null} clip
+ */
+function isExcused({ excuses }, node, clip) {
+  if (excuses instanceof RegExp) return excuses.test(node);
+  return excuses === "poses" || clip !== null;
+}
 
 /**
  * Returns a function that compares the nodes with names of their own in a clip at a time.
  * @param {string} file
  * @param {THREE.Group} root
+ * @param {Fault | undefined} fault
  * @returns {Compare}
  */
-function comparison(file, root) {
+function comparison(file, root, fault) {
   const mixer = new THREE.AnimationMixer(root);
   const metresPerUnit = (root.userData.unitScaleFactor ?? 1) / CENTIMETRES_PER_METRE;
   /** @type {[string, THREE.Object3D][]} */
@@ -137,13 +155,15 @@ function comparison(file, root) {
     const { nodes } = await document("pose", file, ...choice);
     const ours = unique(nodes.map(({ name, world }) => [THREE.PropertyBinding.sanitizeNodeName(name), new THREE.Vector3().fromArray(world, 12)]));
     if (clip === null) size = Math.max(size, ...[...ours.values()].map((position) => position.length()));
-    const worst = { value: 0, where: "" };
+    const worst = { value: 0, where: "", excused: 0 };
     for (const [name, position] of ours) {
       const object = theirs.get(name);
       if (object === undefined) continue;
       const value = new THREE.Vector3().setFromMatrixPosition(object.matrixWorld).multiplyScalar(metresPerUnit).distanceTo(position) / size;
       totals.positions++;
-      if (!(value <= worst.value)) Object.assign(worst, { value, where: `${name}, ${clip === null ? "rest" : `clip ${clip} at ${ourSecs} s`}` });
+      const where = `${name}, ${clip === null ? "rest" : `clip ${clip} at ${ourSecs} s`}`;
+      const isCounted = fault === undefined || !isExcused(fault, name, clip);
+      include(worst, { value: isCounted ? value : 0, where, excused: value });
     }
     totals.poses++;
     return worst;
@@ -178,20 +198,20 @@ function play(mixer, clip, timeSecs) {
 async function differenceOfClip(compare, clip, theirs, ourDurationSecs) {
   const keys = [...new Set(theirs.tracks.flatMap(({ times }) => [...times]))].sort((a, b) => a - b);
   /** @type {Difference} */
-  let best = { value: 0, where: "no key inside the clip" };
+  let best = { value: 0, where: "no key inside the clip", excused: 0 };
   let isFirst = true;
   for (const startSecs of new Set([0, keys[0], theirs.duration - ourDurationSecs, ONE_FRAME])) {
     const inside = keys.filter((time) => time >= startSecs - 1e-4 && time - startSecs <= ourDurationSecs + 1e-4);
     if (inside.length === 0) continue;
-    const worst = { value: 0, where: "" };
+    const worst = { value: 0, where: "", excused: 0 };
     for (const fraction of FRACTIONS) {
       const time = inside[Math.round(fraction * (inside.length - 1))];
-      const difference = await compare(clip, time, time - startSecs);
-      if (!(difference.value <= worst.value)) Object.assign(worst, difference);
+      include(worst, await compare(clip, time, time - startSecs));
     }
-    if (isFirst || worst.value < best.value) best = worst;
+    const isBetter = worst.value < best.value || (worst.value === best.value && worst.excused < best.excused);
+    if (isFirst || isBetter) best = worst;
     isFirst = false;
-    if (best.value <= TOLERANCE) break;
+    if (best.excused <= TOLERANCE) break;
   }
   return best;
 }

@@ -11,6 +11,8 @@ const meta = /** @type {HTMLMetaElement | null} */ (document.querySelector('meta
 const files = JSON.parse(meta?.content ?? "{}");
 
 const MAX_SECS = 60;
+/** A module's URL ends with the beginning of its SHA-256 and the extension. */
+const HASHED = /-([0-9a-f]+)\.wasm$/;
 /** The first byte of an answer other than an error. */
 const CONVERTED = 1;
 /** That byte and the length of the warnings. */
@@ -28,6 +30,20 @@ async function work({ data: { module, input } }) {
   new Uint8Array(memory.buffer, start, input.length).set(input);
   run();
   postMessage(new Uint8Array(memory.buffer, output(), length()).slice());
+}
+
+/**
+ * Throws if a module isn't the one that the page was built with: cut short, changed on its way, or damaged in a cache.
+ * @param {string} file
+ * @param {Uint8Array<ArrayBuffer>} module
+ */
+async function check(file, module) {
+  const expected = HASHED.exec(file)?.[1];
+  // Browsers compute no hashes for pages without HTTPS.
+  if (expected === undefined || crypto.subtle === undefined) return;
+  const digest = new Uint8Array(await crypto.subtle.digest("SHA-256", module));
+  const found = Array.from(digest, (byte) => byte.toString(16).padStart(2, "0")).join("").slice(0, expected.length);
+  if (found !== expected) throw new Error(`expected a download whose SHA-256 begins with ${expected}, found ${found}; clear this site's data in the browser and reload the page`);
 }
 
 export const parts = {
@@ -49,7 +65,7 @@ export const parts = {
   },
 
   /**
-   * Returns the module's answer, encoded as in parts/part/src/lib.rs.
+   * Returns the module's answer, encoded as in parts/part/src/lib.rs. Rejects if the module is damaged, traps or takes too long.
    * @param {string} name
    * @param {Uint8Array<ArrayBuffer>} module
    * @param {Uint8Array<ArrayBuffer>} input
@@ -57,7 +73,10 @@ export const parts = {
    */
   async run(name, module, input) {
     const file = files[name];
-    if (file !== undefined) keepOffline([file]);
+    if (file !== undefined) {
+      await check(file, module);
+      keepOffline([file]);
+    }
     // A sandboxed frame may start a worker from a blob, but not from a file.
     // An error inside the promise doesn't reach `onerror` by itself.
     const script = `onmessage = (event) => (${work})(event).catch((error) => setTimeout(() => { throw error; }));`;

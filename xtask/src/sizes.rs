@@ -10,7 +10,7 @@ const MAX_BYTES: [(&str, u32); 9] = [
     ("webgpu", 1_250_000),
     ("webgl2", 1_700_000),
     ("parts/draco", 65_000),
-    ("parts/fbx", 127_000),
+    ("parts/fbx", 125_000),
     ("parts/ktx2", 87_000),
     ("parts/meshopt", 20_000),
     ("parts/qr", 18_000),

@@ -8,7 +8,7 @@ use crate::glb::Glb;
 use crate::text;
 
 /// Mutations in an ordinary run; `GAITWAY_FBX_MUTATIONS` sets another number.
-const MUTATIONS: usize = 400;
+const MUTATIONS: usize = 10_000;
 /// No conversion may take longer.
 const LIMIT: Duration = Duration::from_secs(5);
 
