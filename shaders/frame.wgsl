@@ -22,7 +22,8 @@ struct Frame {
     exposure: f32,
     viewport_pixels: vec2f,
     light_count: u32,
-    padding: u32,
+    // Index of the roughest level of the environment.
+    environment_last_level: f32,
     // Cosine and sine of the environment's rotation about Y.
     environment: vec2f,
     // Size of a shadow-map texel in metres.

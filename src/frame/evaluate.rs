@@ -8,8 +8,8 @@ use crate::asset::MeshInstance;
 use crate::library::{Library, Model, ModelId};
 use crate::mesh::{Bounds, SkinningMode, palette_entry, write_palette};
 use crate::state::{
-    PoseSampler, SourceOnStage, ViewerState, active_clip, clip_secs, panes, resolved_bounds, source_on_stage,
-    world_from_model,
+    LightSetup, PoseSampler, SourceOnStage, ViewerState, active_clip, clip_secs, panes, resolved_bounds,
+    source_on_stage, world_from_model,
 };
 
 /// Skinning methods shown by the side-by-side comparison.
@@ -46,6 +46,7 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
     frame.look = Look {
         exposure: state.display.exposure.exp2(),
         environment_radians: state.display.environment_degrees.to_radians(),
+        light: LightSetup::Studio,
         background: state.display.background,
         mesh: state.display.show.mesh,
         wireframe: state.display.show.wireframe,

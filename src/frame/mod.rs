@@ -17,7 +17,7 @@ use crate::anim::Pose;
 use crate::asset::LightKind;
 use crate::library::ModelId;
 use crate::mesh::{Bounds, PaletteEntry, SkinningMode};
-use crate::state::Background;
+use crate::state::{Background, LightSetup};
 
 pub use evaluate::{evaluate, travelled};
 pub use formula::{FormulaTerm, JointMatrices, VertexFormula, joint_matrices, vertex_formula};
@@ -74,6 +74,8 @@ pub struct Look {
     pub exposure: f32,
     /// Rotation of the environment and the studio's key light about +Y.
     pub environment_radians: f32,
+    /// What lights the scene besides the file's own lights.
+    pub light: LightSetup,
     /// What shows behind the scene.
     pub background: Background,
     /// Draws the surfaces. Without them nothing casts a shadow.
@@ -210,6 +212,7 @@ impl Default for Look {
         Self {
             exposure: 1.0,
             environment_radians: 0.0,
+            light: LightSetup::Studio,
             background: Background::Studio,
             mesh: true,
             wireframe: false,

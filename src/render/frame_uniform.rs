@@ -2,7 +2,7 @@
 
 use glam::{Mat3, Vec3};
 
-use super::environment::{KEY_COLOR, KEY_DIRECTION};
+use super::environment::Environment;
 use super::shadow::shadow_view;
 use super::uniforms::{FrameUniform, LightUniform, MAX_LIGHTS};
 use crate::asset::LightKind;
@@ -56,11 +56,11 @@ pub(super) fn frame_uniform(
     frame: &Frame,
     ground: Option<&GroundPlane>,
     size: [f32; 2],
-    irradiance: &[[f32; 4]; 9],
+    environment: &Environment,
 ) -> (FrameUniform, Option<FrameUniform>) {
     let look = &frame.look;
     let (sin, cos) = look.environment_radians.sin_cos();
-    let key_direction = Mat3::from_rotation_y(look.environment_radians) * KEY_DIRECTION.normalize_or_zero();
+    let key_direction = Mat3::from_rotation_y(look.environment_radians) * environment.key.direction;
     // The file's first directional light from above casts the shadow. With other lights only, the key light casts one
     // on the ground but not on meshes.
     let sun = frame
@@ -82,13 +82,13 @@ pub(super) fn frame_uniform(
         exposure: look.exposure.max(1e-6),
         viewport_pixels: size,
         light_count: frame.lights.len().min(MAX_LIGHTS) as u32,
-        padding: 0,
+        environment_last_level: environment.last_level as f32,
         environment: [cos, sin],
         shadow_texel: shadow.map_or(0.0, |view| view.texel),
         shadow_light,
         key_direction: key_direction.to_array(),
         ground_shadow: GROUND_SHADOW,
-        key_color: KEY_COLOR.to_array(),
+        key_color: environment.key.color.to_array(),
         grid_spacing: ground.map_or(1.0, |ground| ground.spacing),
         ground: ground.map_or([0.0; 4], |ground| ground.center.extend(ground.radius).to_array()),
         background_center: STUDIO_CENTER,
@@ -97,7 +97,7 @@ pub(super) fn frame_uniform(
         shadow_x: on_ground.map_or([0.0; 2], |[_, x, _]| x),
         shadow_y: on_ground.map_or([0.0; 2], |[.., y]| y),
         padding_2: [0.0; 2],
-        irradiance: *irradiance,
+        irradiance: environment.irradiance,
         lights: Default::default(),
     };
     for (slot, light) in uniform.lights.iter_mut().zip(&frame.lights) {

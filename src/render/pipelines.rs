@@ -18,7 +18,7 @@ pub(super) const MATERIAL_MAPS: usize = 5;
 pub(super) struct Layouts {
     /// Group 0: frame, palette.
     pub frame: wgpu::BindGroupLayout,
-    /// Group 1 of meshes and ground: environment, shadow map.
+    /// Group 1 of meshes and ground: environment, shadow map, reflectance table.
     pub light: wgpu::BindGroupLayout,
     /// Group 2 of meshes: draw, with a dynamic offset.
     pub draw: wgpu::BindGroupLayout,
@@ -72,6 +72,7 @@ impl Layouts {
                     entry(1, Stages::FRAGMENT, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
                     entry(2, Stages::FRAGMENT, texture(Sample::Depth, Dimension::D2)),
                     entry(3, Stages::FRAGMENT, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison)),
+                    entry(4, Stages::FRAGMENT, texture(filtered, Dimension::D2)),
                 ],
             ),
         }

@@ -43,8 +43,8 @@ pub struct FrameUniform {
     pub viewport_pixels: [f32; 2],
     /// Number of used elements of `lights`.
     pub light_count: u32,
-    /// Unused, zero.
-    pub padding: u32,
+    /// Index of the environment's roughest level.
+    pub environment_last_level: f32,
     /// Cosine and sine of the environment's rotation about Y.
     pub environment: [f32; 2],
     /// Size of a shadow-map texel in metres; 0 without a shadow.

@@ -5,6 +5,7 @@ mod camera;
 mod command;
 mod framing;
 mod history;
+mod lighting;
 mod link;
 mod loop_frames;
 mod map_code;
@@ -23,6 +24,7 @@ pub use framing::{
     world_from_file_camera,
 };
 pub use history::History;
+pub use lighting::LightSetup;
 pub use link::{LinkError, from_link, from_object, to_link, to_object, with_current_member};
 pub use link::{
     LinkRole, LinkedFile, MEMBER_SEPARATOR, embedded_link, link_with_files, link_without_missing, linked_files,

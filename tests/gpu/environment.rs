@@ -1,0 +1,111 @@
+//! Light from all around, and what surfaces make of it.
+
+use gaitway::mesh::{Geometry, Material};
+use gaitway::state::LightSetup;
+use glam::{Vec2, Vec3};
+
+use crate::device::{Gpu, gl, gpu};
+use crate::scene::{Picture, Scene};
+
+/// What Khronos Neutral makes of white: 0.96 is compressed to 0.869, which sRGB encodes as 240.
+const WHITE: u8 = 240;
+
+/// A sphere at a place in the picture.
+fn sphere(center: Vec2, radius: f32, material: usize) -> Geometry {
+    const RINGS: u32 = 16;
+    const AROUND: u32 = 32;
+    let mut geometry = Geometry { material: Some(material), ..Default::default() };
+    for ring in 0..=RINGS {
+        for step in 0..=AROUND {
+            let (sin, cos) = (ring as f32 / RINGS as f32 * std::f32::consts::PI).sin_cos();
+            let (turn_sin, turn_cos) = (step as f32 / AROUND as f32 * std::f32::consts::TAU).sin_cos();
+            let normal = Vec3::new(sin * turn_sin, cos, sin * turn_cos);
+            geometry.normals.push(normal);
+            geometry.positions.push(center.extend(0.0) + radius * normal);
+            if ring < RINGS && step < AROUND {
+                let [a, b] = [ring, ring + 1].map(|ring| ring * (AROUND + 1) + step);
+                geometry.indices.extend([a, b, a + 1, a + 1, b, b + 1]);
+            }
+        }
+    }
+    geometry.file_vertices = geometry.positions.len();
+    geometry
+}
+
+const ROUGHNESS: [f32; 5] = [0.0, 0.1, 0.3, 0.6, 1.0];
+const METALLIC: [f32; 3] = [0.0, 0.5, 1.0];
+
+/// Spheres in columns of equal roughness and rows of equal metalness.
+fn spheres(base_color: Vec3) -> Scene {
+    let (mut geometries, mut materials) = (Vec::new(), Vec::new());
+    for (row, metallic) in METALLIC.into_iter().enumerate() {
+        for (column, roughness) in ROUGHNESS.into_iter().enumerate() {
+            let center = Vec2::new(0.4 * column as f32 - 0.8, 0.6 * row as f32 - 0.6);
+            geometries.push(sphere(center, 0.18, materials.len()));
+            materials.push(Material { base_color: base_color.extend(1.0), roughness, metallic, ..Default::default() });
+        }
+    }
+    Scene::new(geometries, materials)
+}
+
+fn drawn_pixels(picture: &Picture) -> Vec<[u8; 4]> {
+    picture.0.as_chunks::<4>().0.iter().copied().filter(|pixel| pixel[3] > 0).collect()
+}
+
+fn check_furnace(gpu: &Gpu) {
+    let mut scene = spheres(Vec3::ONE);
+    scene.frame.look.light = LightSetup::White;
+    let drawn = drawn_pixels(&scene.draw(gpu));
+    assert!(drawn.len() > 300, "{}", drawn.len());
+    for pixel in drawn {
+        assert!(pixel[..3].iter().all(|channel| channel.abs_diff(WHITE) <= 2), "{pixel:?}");
+    }
+}
+
+/// The white furnace: nothing that is white absorbs light or adds to it, whatever its roughness, metal or not.
+#[test]
+fn white_surfaces_disappear_in_white_light() {
+    let Some(gpu) = gpu() else { return };
+    check_furnace(&gpu);
+}
+
+#[test]
+fn white_surfaces_disappear_in_white_light_with_opengl() {
+    let Some(gpu) = gl() else { return };
+    check_furnace(&gpu);
+}
+
+#[test]
+fn dark_surfaces_stay_darker_than_white_light() {
+    let Some(gpu) = gpu() else { return };
+    let mut scene = spheres(Vec3::splat(0.2));
+    scene.frame.look.light = LightSetup::White;
+    let drawn = drawn_pixels(&scene.draw(&gpu));
+    assert!(drawn.iter().all(|pixel| pixel[1] <= WHITE + 1), "{drawn:?}");
+    // Metal of this colour, seen from the front: 0.2 − 0.04 encoded.
+    let metal = scene.draw(&gpu).at(-0.8, 0.6);
+    assert!(metal[1].abs_diff(111) <= 3, "{metal:?}");
+}
+
+#[test]
+fn a_mirror_is_sharp_and_a_rough_surface_is_not() {
+    let Some(gpu) = gpu() else { return };
+    let steepest = |roughness: f32| {
+        let material = Material { roughness, ..Default::default() };
+        let mut scene = Scene::new(vec![sphere(Vec2::ZERO, 0.95, 0)], vec![material]);
+        // Without the key light, whose highlight is as sharp.
+        scene.frame.lights = vec![gaitway::frame::FrameLight {
+            kind: gaitway::asset::LightKind::Directional,
+            color: Vec3::ZERO,
+            position: Vec3::ZERO,
+            direction: Vec3::NEG_Y,
+            range: 0.0,
+        }];
+        let picture = scene.draw(&gpu);
+        let rows = picture.0.as_chunks::<4>().0.chunks_exact(crate::scene::SIZE as usize);
+        let steps = rows.flat_map(|row| row.windows(2)).filter(|pair| pair.iter().all(|pixel| pixel[3] > 0));
+        steps.map(|pair| pair[0][1].abs_diff(pair[1][1])).max().unwrap()
+    };
+    let [mirror, satin, rough] = [0.0, 0.3, 1.0].map(steepest);
+    assert!(mirror > 90 && mirror > satin + 20 && satin > rough, "{mirror} {satin} {rough}");
+}
