@@ -4,7 +4,7 @@ use glam::{Affine3A, Vec3};
 
 use super::{Character, Draw, Frame, FrameLight, Look, overlays, view};
 use crate::anim::{JointIndex, Pose, SampleCursor, model_from_joint};
-use crate::asset::MeshInstance;
+use crate::asset::{LightKind, MAX_LIGHTS, MeshInstance};
 use crate::library::{Library, Model, ModelId};
 use crate::mesh::{Bounds, SkinningMode, palette_entry, write_palette};
 use crate::state::{
@@ -218,4 +218,26 @@ fn write_lights(model: &Model, frame: &mut Frame) {
             range: light.range.unwrap_or(0.0),
         });
     }
+    keep_strongest(&mut frame.lights, &frame.bounds);
+}
+
+/// Keeps the lights that contribute most, the strongest first.
+fn keep_strongest(lights: &mut Vec<FrameLight>, bounds: &Bounds) {
+    if lights.len() > MAX_LIGHTS {
+        lights.sort_unstable_by(|a, b| contribution(b, bounds).total_cmp(&contribution(a, bounds)));
+        lights.truncate(MAX_LIGHTS);
+    }
+}
+
+/// Estimates a light's irradiance on the nearest part of the bounds.
+fn contribution(light: &FrameLight, bounds: &Bounds) -> f32 {
+    let strength = light.color.max_element();
+    if light.kind == LightKind::Directional || bounds.is_empty() {
+        return strength;
+    }
+    let nearest = light.position.clamp(bounds.min, bounds.max);
+    // A light inside the bounds shines on what is around it.
+    let distance = nearest.distance(light.position).max(0.1 * bounds.diagonal()).max(1e-3);
+    let out_of_range = light.range > 0.0 && nearest.distance(light.position) >= light.range;
+    if out_of_range { 0.0 } else { strength / (distance * distance) }
 }

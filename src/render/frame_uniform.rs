@@ -4,8 +4,8 @@ use glam::{Mat3, Vec3};
 
 use super::environment::Environment;
 use super::shadow::shadow_view;
-use super::uniforms::{FrameUniform, LightUniform, MAX_LIGHTS};
-use crate::asset::LightKind;
+use super::uniforms::{FrameUniform, LightUniform};
+use crate::asset::{LightKind, MAX_LIGHTS};
 use crate::frame::{Frame, FrameLight};
 
 /// sRGB colours of the studio backdrop, at the center and at the edge.

@@ -2,8 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-/// Lights of a file beyond this number are ignored.
-pub(super) const MAX_LIGHTS: usize = 8;
+use crate::asset::MAX_LIGHTS;
 
 /// `Light` in frame.wgsl.
 #[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]

@@ -36,6 +36,19 @@ fn an_unlit_colour_is_drawn_unchanged() {
 }
 
 #[test]
+fn an_unlit_material_does_not_glow() {
+    let Some(gpu) = gpu() else { return };
+    let material = Material { emissive: Vec3::new(0.0, 0.5, 0.5), ..unlit(linear([200, 100, 50])) };
+    let shown = Scene::new(vec![square(0)], vec![material.clone()]).draw(&gpu).at(0.0, 0.0);
+    near(shown, [200, 100, 50, 255], 1);
+    // Points and lines without normals, which have no side to light, do (glTF 2.0 §3.9.6).
+    let points = Geometry { topology: Topology::Points, normals: Vec::new(), ..square(0) };
+    let material = Material { unlit: false, emissive: Vec3::Y, base_color: Vec4::new(1.0, 0.0, 0.0, 1.0), ..material };
+    let picture = Scene::new(vec![points], vec![material]).draw(&gpu);
+    assert!(picture.0.as_chunks::<4>().0.contains(&[255, 255, 0, 255]));
+}
+
+#[test]
 fn a_square_covers_exactly_its_pixels() {
     let Some(gpu) = gpu() else { return };
     let picture = Scene::new(vec![square(0)], vec![unlit(Vec4::ONE)]).draw(&gpu);

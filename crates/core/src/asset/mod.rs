@@ -133,6 +133,9 @@ pub enum CameraProjection {
     },
 }
 
+/// Lights drawn at once; of more, those that contribute most.
+pub const MAX_LIGHTS: usize = 8;
+
 /// A light (KHR_lights_punctual), shining along −Z of its joint. Intensity in lux (directional) or candela.
 #[derive(Debug, Clone)]
 pub struct Light {
