@@ -45,6 +45,7 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
     frame.lights.clear();
     frame.look = Look {
         exposure: state.display.exposure.exp2(),
+        tone_map: state.display.tone_map,
         environment_radians: state.display.environment_degrees.to_radians(),
         light: LightSetup::Studio,
         background: state.display.background,

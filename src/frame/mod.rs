@@ -17,7 +17,7 @@ use crate::anim::Pose;
 use crate::asset::LightKind;
 use crate::library::ModelId;
 use crate::mesh::{Bounds, PaletteEntry, SkinningMode};
-use crate::state::{Background, LightSetup};
+use crate::state::{Background, LightSetup, ToneMap};
 
 pub use evaluate::{evaluate, travelled};
 pub use formula::{FormulaTerm, JointMatrices, VertexFormula, joint_matrices, vertex_formula};
@@ -72,6 +72,8 @@ pub struct View {
 pub struct Look {
     /// Multiplies linear colours: 2^stops.
     pub exposure: f32,
+    /// How brightness becomes that of the picture.
+    pub tone_map: ToneMap,
     /// Rotation of the environment and the studio's key light about +Y.
     pub environment_radians: f32,
     /// What lights the scene besides the file's own lights.
@@ -211,6 +213,7 @@ impl Default for Look {
     fn default() -> Self {
         Self {
             exposure: 1.0,
+            tone_map: ToneMap::Neutral,
             environment_radians: 0.0,
             light: LightSetup::Studio,
             background: Background::Studio,

@@ -9,6 +9,7 @@ use super::shadow::SHADOW_FORMAT;
 use super::targets::{DEPTH_FORMAT, SCENE_FORMAT};
 use super::uniforms::{DrawUniform, FrameUniform, MaterialUniform};
 use crate::mesh::{SkinningMode, Topology};
+use crate::state::ToneMap;
 
 /// Number of texture and sampler pairs in a material.
 pub(super) const MATERIAL_MAPS: usize = 5;
@@ -149,6 +150,7 @@ pub(super) struct MeshKey {
     pub features: Features,
     pub cull: Option<wgpu::Face>,
     pub mirrored: bool,
+    pub tone_map: ToneMap,
 }
 
 /// Index of the pipeline for a [`MeshKey`].
@@ -376,6 +378,13 @@ fn mesh_constants(key: MeshKey) -> Vec<(&'static str, f64)> {
         SkinningMode::DualQuaternion => 2.0,
     };
     constants.push(("SKINNING", skinning));
+    let tone_map = match key.tone_map {
+        ToneMap::Neutral => 0.0,
+        ToneMap::Aces => 1.0,
+        ToneMap::Agx => 2.0,
+        ToneMap::None => 3.0,
+    };
+    constants.push(("TONE_MAP", tone_map));
     constants.push(("DEPTH_OFFSET", if key.shading == Shading::Wireframe { 3e-5 } else { 0.0 }));
     constants
 }

@@ -55,6 +55,7 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::SetTurntable(speed) => set_f32(&mut state.camera_options.turntable, speed, -360.0, 360.0),
         Command::SetUp(up) => state.edits.up = up,
         Command::SetExposure(stops) => set_f32(&mut state.display.exposure, stops, -10.0, 10.0),
+        Command::SetToneMap(tone_map) => state.display.tone_map = tone_map,
         Command::SetEnvironment(degrees) => set_rotation(&mut state.display.environment_degrees, degrees),
         Command::SetBackground(background) => state.display.background = background,
         Command::SetEmbed(embed) => state.page.embed = embed,

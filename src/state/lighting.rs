@@ -1,4 +1,4 @@
-//! What lights the scene besides the lights of a file.
+//! What lights the scene besides the lights of a file, and how bright it becomes in the picture.
 
 use serde::{Deserialize, Serialize};
 
@@ -17,4 +17,19 @@ pub enum LightSetup {
     Hard,
     /// A clear sky with the sun.
     Outdoor,
+}
+
+/// How the brightness of the scene becomes that of the picture. Unlit surfaces keep their colours.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ToneMap {
+    /// Khronos PBR Neutral: keeps colours, compresses highlights.
+    #[default]
+    Neutral,
+    /// ACES, as films look.
+    Aces,
+    /// AgX, as in Blender.
+    Agx,
+    /// Cuts off what is brighter than white.
+    None,
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::{CameraChoice, MotionMap};
+use super::{CameraChoice, MotionMap, ToneMap};
 use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
 use crate::retarget::{Feet, RootOptions, Unmapped};
@@ -209,6 +209,8 @@ pub struct Display {
     pub show: Show,
     /// In stops: the image is multiplied by 2^exposure.
     pub exposure: f32,
+    /// How brightness becomes that of the picture.
+    pub tone_map: ToneMap,
     /// Rotation of the lighting about the vertical axis.
     pub environment_degrees: f32,
     /// What is behind the scene.
@@ -221,6 +223,7 @@ impl Default for Display {
             skinning: SkinningMode::Linear,
             show: Show::default(),
             exposure: 0.0,
+            tone_map: ToneMap::Neutral,
             environment_degrees: 0.0,
             background: Background::Studio,
         }

@@ -292,6 +292,16 @@ pub const FOLLOW: &str = "Follow character";
 pub const UP_Z: &str = "Z";
 /// Exposure slider, in stops.
 pub const EXPOSURE: &str = "Exposure";
+/// The choice of tone mapping.
+pub const TONE_MAP: &str = "Tone mapping";
+/// Khronos PBR Neutral, in the choice of tone mapping.
+pub const TONE_NEUTRAL: &str = "Neutral";
+/// ACES, in the choice of tone mapping.
+pub const TONE_ACES: &str = "ACES";
+/// AgX, in the choice of tone mapping.
+pub const TONE_AGX: &str = "AgX";
+/// No tone mapping.
+pub const NO_TONE_MAP: &str = "Off";
 /// The studio, in the choice of background.
 pub const STUDIO: &str = "Studio";
 /// A single colour, in the choice of background.

@@ -14,7 +14,7 @@ use crate::retarget::{ClipRef, Feet, JointMapFile, RootOptions, RootPart, Unmapp
 use crate::state::{
     Background, CameraChoice, ClipChoice, Fade, Inspect, MotionMap, OrbitCamera, Show, UpAxis, VertexChoice,
 };
-use crate::state::{ViewerState, map_code};
+use crate::state::{ToneMap, ViewerState, map_code};
 
 const FEET: [(&str, Feet); 2] = [("off", Feet::Off), ("plant", Feet::Plant)];
 
@@ -29,6 +29,9 @@ pub(super) const SKINNING_MODES: [(&str, SkinningMode); 3] = [
     ("rigid", SkinningMode::Rigid),
     ("dual-quaternion", SkinningMode::DualQuaternion),
 ];
+
+pub(super) const TONE_MAPS: [(&str, ToneMap); 4] =
+    [("neutral", ToneMap::Neutral), ("aces", ToneMap::Aces), ("agx", ToneMap::Agx), ("none", ToneMap::None)];
 
 pub(super) const UP_AXES: [(&str, UpAxis); 6] = [
     ("x", UpAxis::X),

@@ -3,7 +3,8 @@
 use egui::{RichText, Ui};
 
 use crate::state::{
-    Background, CameraChoice, Command, OrbitCamera, UpAxis, ViewerState, frame_all, front_yaw_radians, resolve_camera,
+    Background, CameraChoice, Command, OrbitCamera, ToneMap, UpAxis, ViewerState, frame_all, front_yaw_radians,
+    resolve_camera,
 };
 use crate::ui::controls::{self, SliderSettings};
 use crate::ui::{Output, Saved, Shown, UiAction, UiState, VideoSettings, style, text};
@@ -152,6 +153,16 @@ fn light(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
         SliderSettings { range: (-5.0, 5.0), default: 0.0, decimals: 1, suffix: " stops", logarithmic: false };
     if let Some(stops) = controls::slider(ui, text::EXPOSURE, f64::from(state.display.exposure), settings) {
         out.commands.push(Command::SetExposure(stops as f32));
+    }
+    let tone_maps = [
+        (ToneMap::Neutral, text::TONE_NEUTRAL),
+        (ToneMap::Aces, text::TONE_ACES),
+        (ToneMap::Agx, text::TONE_AGX),
+        (ToneMap::None, text::NO_TONE_MAP),
+    ];
+    ui.label(RichText::new(text::TONE_MAP).color(style::palette(ui).weak_text));
+    if let Some(tone_map) = controls::segmented_about(ui, text::TONE_MAP, Some(state.display.tone_map), &tone_maps) {
+        out.commands.push(Command::SetToneMap(tone_map));
     }
     let settings =
         SliderSettings { range: (-180.0, 180.0), default: 0.0, decimals: 0, suffix: "°", logarithmic: false };
