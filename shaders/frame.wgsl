@@ -47,6 +47,10 @@ struct Frame {
     // sRGB.
     background_center: vec4f,
     background_edge: vec4f,
+    // The direction of a pixel in the environment: ahead, and what x and y in clip space add to it.
+    sky_ahead: vec4f,
+    sky_right: vec4f,
+    sky_up: vec4f,
     irradiance: array<vec4f, 9>,
     lights: array<Light, 8>,
 }

@@ -8,8 +8,8 @@ use crate::asset::{LightKind, MAX_LIGHTS, MeshInstance};
 use crate::library::{Library, Model, ModelId};
 use crate::mesh::{Bounds, SkinningMode, palette_entry, write_palette};
 use crate::state::{
-    LightSetup, PoseSampler, SourceOnStage, ViewerState, active_clip, clip_secs, panes, resolved_bounds,
-    source_on_stage, world_from_model,
+    EnvironmentChoice, LightSetup, PoseSampler, SourceOnStage, ViewerState, active_clip, clip_secs, panes,
+    resolved_bounds, source_on_stage, world_from_model,
 };
 
 /// Skinning methods shown by the side-by-side comparison.
@@ -43,11 +43,17 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
     frame.lines.clear();
     frame.bones.clear();
     frame.lights.clear();
+    let (light, panorama) = match &state.lighting.environment {
+        EnvironmentChoice::Setup(setup) => (*setup, None),
+        EnvironmentChoice::File(name) => (LightSetup::default(), library.environment(name)),
+    };
+    frame.panorama = panorama.map(|environment| environment.panorama.clone());
     frame.look = Look {
         exposure: state.display.exposure.exp2(),
         tone_map: state.display.tone_map,
         environment_radians: state.display.environment_degrees.to_radians(),
-        light: LightSetup::Studio,
+        light,
+        key: state.lighting.key,
         background: state.display.background,
         mesh: state.display.show.mesh,
         wireframe: state.display.show.wireframe,

@@ -10,14 +10,15 @@ mod pose_document;
 mod view;
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use glam::{Affine3A, Mat4, Vec3, Vec4};
 
 use crate::anim::Pose;
-use crate::asset::LightKind;
+use crate::asset::{LightKind, Panorama};
 use crate::library::ModelId;
 use crate::mesh::{Bounds, PaletteEntry, SkinningMode};
-use crate::state::{Background, LightSetup, ToneMap};
+use crate::state::{Background, KeyLight, LightSetup, ToneMap};
 
 pub use evaluate::{evaluate, travelled};
 pub use formula::{FormulaTerm, JointMatrices, VertexFormula, joint_matrices, vertex_formula};
@@ -40,6 +41,8 @@ pub struct Frame {
     pub clip: Option<usize>,
     /// The file's own lights in world space; if empty, the studio's key light is used.
     pub lights: Vec<FrameLight>,
+    /// The environment, if it is an image; replaces [`Look::light`].
+    pub panorama: Option<Arc<Panorama>>,
     /// Overlay lines (bounds, axes), their width in pixels.
     pub lines: Vec<Line>,
     /// Bones of the skeletons, present even if hidden, so that clicks can pick them.
@@ -78,6 +81,8 @@ pub struct Look {
     pub environment_radians: f32,
     /// What lights the scene besides the file's own lights.
     pub light: LightSetup,
+    /// Replaces the environment's own key light.
+    pub key: Option<KeyLight>,
     /// What shows behind the scene.
     pub background: Background,
     /// Draws the surfaces. Without them nothing casts a shadow.
@@ -216,6 +221,7 @@ impl Default for Look {
             tone_map: ToneMap::Neutral,
             environment_radians: 0.0,
             light: LightSetup::Studio,
+            key: None,
             background: Background::Studio,
             mesh: true,
             wireframe: false,

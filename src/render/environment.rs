@@ -6,18 +6,47 @@ mod cube;
 mod reflectance;
 mod setups;
 
+use std::sync::Arc;
+
 use glam::Vec3;
 
 use self::cube::Cube;
 pub(super) use self::setups::KeyLight;
 use self::setups::Surroundings;
+use crate::asset::Panorama;
+use crate::frame::Frame;
 use crate::state::LightSetup;
 
-/// Edge length of the sharpest level in texels.
-const SIZE: usize = 128;
+/// Edge length of the sharpest level in texels, of set-ups and of images.
+const SIZES: [usize; 2] = [128, 256];
+/// More samples than set-ups need: images have small bright spots, and nobody waits for a first picture.
+const IMAGE_QUALITY: usize = 3;
+
+/// What an environment is made from.
+#[derive(Clone)]
+pub(super) enum Source {
+    Setup(LightSetup),
+    Image(Arc<Panorama>),
+}
+
+impl Source {
+    pub fn of(frame: &Frame) -> Self {
+        frame.panorama.clone().map_or(Self::Setup(frame.look.light), Self::Image)
+    }
+}
+
+impl PartialEq for Source {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Setup(a), Self::Setup(b)) => a == b,
+            (Self::Image(a), Self::Image(b)) => Arc::ptr_eq(a, b),
+            _ => false,
+        }
+    }
+}
 
 pub(super) struct Environment {
-    pub setup: LightSetup,
+    pub source: Source,
     pub view: wgpu::TextureView,
     /// Irradiance coefficients divided by π, in the order of light.wgsl.
     pub irradiance: [[f32; 4]; 9],
@@ -27,18 +56,73 @@ pub(super) struct Environment {
 }
 
 impl Environment {
-    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, setup: LightSetup) -> Self {
-        let surroundings = Surroundings::of(setup);
-        let cube = Cube::new(SIZE, |direction| surroundings.radiance(direction));
-        let levels = cube.filtered(1);
-        Self {
-            setup,
-            view: upload(device, queue, &levels),
-            irradiance: cube.irradiance(),
-            last_level: levels.len() as u32 - 1,
-            key: surroundings.key,
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, source: Source) -> Self {
+        let (cube, quality, key) = match &source {
+            Source::Setup(setup) => {
+                let surroundings = Surroundings::of(*setup);
+                (Cube::new(SIZES[0], |direction| surroundings.radiance(direction)), 1, Some(surroundings.key))
+            }
+            Source::Image(image) => {
+                // Averages over four points a texel.
+                let cube = Cube::new(2 * SIZES[1], |direction| image.radiance(direction)).halved();
+                (cube, IMAGE_QUALITY, None)
+            }
+        };
+        let (levels, irradiance) = (cube.filtered(quality), cube.irradiance());
+        let key = key.unwrap_or_else(|| shadow_only(&irradiance));
+        Self { source, view: upload(device, queue, &levels), irradiance, last_level: levels.len() as u32 - 1, key }
+    }
+
+    /// Draws the environment from a panorama, for a sharp background.
+    pub fn panorama(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> wgpu::TextureView {
+        match &self.source {
+            Source::Image(image) => upload_panorama(device, queue, image.width(), image.pixels()),
+            Source::Setup(setup) => {
+                let surroundings = Surroundings::of(*setup);
+                let directions = (0..512 * 1024).map(|at| panorama_direction(at % 1024, at / 1024, [1024, 512]));
+                let pixels: Vec<Vec3> = directions.map(|direction| surroundings.radiance(direction)).collect();
+                upload_panorama(device, queue, 1024, &pixels)
+            }
         }
     }
+}
+
+/// The lights of an image are part of it, so it has no key light; the shadow falls away from its brightest side.
+fn shadow_only(irradiance: &[[f32; 4]; 9]) -> KeyLight {
+    let [y, z, x] = [1, 2, 3].map(|band: usize| irradiance[band][..3].iter().sum::<f32>());
+    let direction = Vec3::new(x, 0.0, z).normalize_or_zero() + Vec3::Y * (y / x.hypot(z).max(1e-6)).clamp(0.7, 3.0);
+    KeyLight { direction: direction.normalize_or(Vec3::Y), color: Vec3::ZERO }
+}
+
+/// Inverts [`Panorama::radiance`]'s mapping for the center of a pixel.
+fn panorama_direction(x: usize, y: usize, [width, height]: [usize; 2]) -> Vec3 {
+    let turn = ((x as f32 + 0.5) / width as f32 - 0.5) * std::f32::consts::TAU;
+    let (sin, cos) = ((y as f32 + 0.5) / height as f32 * std::f32::consts::PI).sin_cos();
+    Vec3::new(sin * turn.cos(), cos, sin * turn.sin())
+}
+
+fn upload_panorama(device: &wgpu::Device, queue: &wgpu::Queue, width: usize, pixels: &[Vec3]) -> wgpu::TextureView {
+    let (width, height) = (width as u32, (pixels.len() / width) as u32);
+    let extent = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("panorama"),
+        size: extent,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba16Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let texels: Vec<[u16; 4]> = pixels.iter().map(|&color| half_texel(color)).collect();
+    let layout =
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(8 * width), rows_per_image: Some(height) };
+    queue.write_texture(texture.as_image_copy(), bytemuck::cast_slice(&texels), layout, extent);
+    texture.create_view(&Default::default())
+}
+
+fn half_texel(color: Vec3) -> [u16; 4] {
+    color.extend(1.0).to_array().map(half_from_float)
 }
 
 /// Filters between texels and levels, and clamps to the edges.
@@ -87,8 +171,7 @@ fn upload(device: &wgpu::Device, queue: &wgpu::Queue, levels: &[(usize, Vec<Vec3
     });
     for (level, (size, colors)) in levels.iter().enumerate() {
         let size = *size as u32;
-        let texels: Vec<[u16; 4]> =
-            colors.iter().map(|color| color.extend(1.0).to_array().map(half_from_float)).collect();
+        let texels: Vec<[u16; 4]> = colors.iter().map(|&color| half_texel(color)).collect();
         let layout =
             wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(8 * size), rows_per_image: Some(size) };
         let target = wgpu::TexelCopyTextureInfo { mip_level: level as u32, ..texture.as_image_copy() };

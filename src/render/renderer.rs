@@ -3,6 +3,7 @@
 use std::ops::AddAssign;
 
 use super::draw_list::{DrawList, Item};
+use super::environment::Source;
 use super::flush;
 use super::frame_uniform::{GroundPlane, frame_uniform};
 use super::light::LightSources;
@@ -185,7 +186,11 @@ impl Renderer {
             self.targets = Targets::new(device, size, self.options.samples);
         }
 
-        self.light.choose(device, queue, &self.layouts, frame.look.light);
+        self.light.choose(device, queue, &self.layouts, Source::of(frame));
+        if matches!(frame.look.background, Background::Environment | Background::Blurred) {
+            self.light.prepare_sky(device, queue, &self.layouts);
+            self.pipelines.prepare_sky(device, &self.layouts, frame.look.tone_map);
+        }
         let ground = GroundPlane::of(frame);
         let panes = Panes::new(frame.panes, size);
         let (uniform, shadow_uniform) = frame_uniform(frame, ground.as_ref(), panes.size, &self.light.environment);
@@ -260,7 +265,7 @@ impl Renderer {
                 let [r, g, b] = color.map(|channel| f64::from(channel) / 255.0);
                 wgpu::Color { r, g, b, a: 1.0 }
             }
-            Background::Studio | Background::Transparent => wgpu::Color::TRANSPARENT,
+            _ => wgpu::Color::TRANSPARENT,
         };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("scene"),
@@ -301,6 +306,13 @@ impl Renderer {
         let overlay_call = RenderStats { draw_calls: 1, triangles: 0 };
         let draw = self.draws.bind_group();
         stats += draw_items(pass, self.draws.solid(), pane, draw, &self.models, &self.pipelines);
+        if let Some((pipeline, group)) = self.pipelines.sky(background).zip(self.light.sky.as_ref()) {
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(1, group, &[]);
+            pass.draw(0..3, 0..1);
+            pass.set_bind_group(1, &self.light.group, &[]);
+            stats += overlay_call;
+        }
         if background == Background::Studio {
             pass.set_pipeline(&self.pipelines.background);
             pass.draw(0..3, 0..1);

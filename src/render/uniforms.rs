@@ -72,6 +72,12 @@ pub struct FrameUniform {
     pub background_center: [f32; 4],
     /// sRGB colour of the studio background at its edge.
     pub background_edge: [f32; 4],
+    /// Direction of the middle of a pane in the environment; w is unused.
+    pub sky_ahead: [f32; 4],
+    /// Added to it per unit of x in clip space.
+    pub sky_right: [f32; 4],
+    /// Added to it per unit of y in clip space.
+    pub sky_up: [f32; 4],
     /// Spherical harmonics of the environment's irradiance over π, all constants folded in; w is unused.
     pub irradiance: [[f32; 4]; 9],
     /// The file's lights; unused elements are zero.

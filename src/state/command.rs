@@ -1,6 +1,6 @@
 //! Everything the user can do to the view. Menus, keys, links, scripts and tests all send these commands.
 
-use super::{Background, CameraChoice, ClipChoice, MapEdit, ToneMap, UpAxis, ViewerState};
+use super::{Background, CameraChoice, ClipChoice, EnvironmentChoice, KeyLight, MapEdit, ToneMap, UpAxis, ViewerState};
 use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
 use crate::retarget::{Feet, JointMap, RootOptions, Unmapped};
@@ -107,6 +107,10 @@ pub enum Command {
     SetToneMap(ToneMap),
     /// Rotates the lighting about the vertical axis, in degrees.
     SetEnvironment(f32),
+    /// Sets the light from all around.
+    SetLight(EnvironmentChoice),
+    /// Sets the key light; `None` leaves it to the environment. Values out of range are clamped.
+    SetKeyLight(Option<KeyLight>),
     /// Sets what is behind the scene.
     SetBackground(Background),
     /// Sets whether the page shows only the viewport and the transport.

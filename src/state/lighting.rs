@@ -33,3 +33,40 @@ pub enum ToneMap {
     /// Cuts off what is brighter than white.
     None,
 }
+
+/// Where the light comes from, besides the lights of a file. Kept with another model and covered by undo.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Lighting {
+    /// Light from all around.
+    pub environment: EnvironmentChoice,
+    /// Replaces the environment's own key light; `None` leaves it.
+    pub key: Option<KeyLight>,
+}
+
+/// Light from all around.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum EnvironmentChoice {
+    /// A generated one.
+    Setup(LightSetup),
+    /// An .hdr file: a URL or the name of a local file. The studio stands in for it as long as it is not loaded.
+    File(String),
+}
+
+impl Default for EnvironmentChoice {
+    fn default() -> Self {
+        Self::Setup(LightSetup::Studio)
+    }
+}
+
+/// A directional light besides the environment's. The lights of a file replace it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct KeyLight {
+    /// Illuminance on a surface that faces it, over π: a white one becomes as bright as this. 0 switches it off; 10 at most.
+    pub strength: f32,
+    /// Where it comes from, without light rotation: 0 is +Z, 90 is +X.
+    pub yaw_degrees: f32,
+    /// Above the horizon.
+    pub pitch_degrees: f32,
+}

@@ -24,7 +24,7 @@ pub use framing::{
     world_from_file_camera,
 };
 pub use history::History;
-pub use lighting::{LightSetup, ToneMap};
+pub use lighting::{EnvironmentChoice, KeyLight, LightSetup, Lighting, ToneMap};
 pub use link::{LinkError, from_link, from_object, to_link, to_object, with_current_member};
 pub use link::{
     LinkRole, LinkedFile, MEMBER_SEPARATOR, embedded_link, link_with_files, link_without_missing, linked_files,

@@ -1,8 +1,11 @@
 //! Light from all around, and what surfaces make of it.
 
+use std::sync::Arc;
+
+use gaitway::asset::Panorama;
 use gaitway::mesh::{Geometry, Material};
-use gaitway::state::LightSetup;
-use glam::{Vec2, Vec3};
+use gaitway::state::{Background, KeyLight, LightSetup, ToneMap};
+use glam::{Vec2, Vec3, Vec4};
 
 use crate::device::{Gpu, gl, gpu};
 use crate::scene::{Picture, Scene};
@@ -73,6 +76,81 @@ fn white_surfaces_disappear_in_white_light() {
 fn white_surfaces_disappear_in_white_light_with_opengl() {
     let Some(gpu) = gl() else { return };
     check_furnace(&gpu);
+    check_panorama(&gpu);
+}
+
+/// A panorama of one colour on each side: red at −X, green at −Z, blue at +X, white at +Z.
+fn four_sides() -> Panorama {
+    // The image begins at −X; its middle is +X.
+    let color = |column: usize| [Vec3::X, Vec3::Y, Vec3::Z, Vec3::ONE][(column + 4) % 32 / 8];
+    let pixels = (0..32 * 16).map(|at| color(at % 32)).collect();
+    Panorama::new(32, 16, pixels).unwrap()
+}
+
+fn check_panorama(gpu: &Gpu) {
+    // A panorama that is white all around is the white furnace.
+    let mut scene = spheres(Vec3::ONE);
+    scene.frame.panorama = Some(Arc::new(Panorama::new(2, 1, vec![Vec3::ONE; 2]).unwrap()));
+    for pixel in drawn_pixels(&scene.draw(gpu)) {
+        assert!(pixel[..3].iter().all(|channel| channel.abs_diff(WHITE) <= 2), "{pixel:?}");
+    }
+    // The camera looks along −Z; mirrors and matte surfaces see what is behind it.
+    scene.frame.panorama = Some(Arc::new(four_sides()));
+    let red_green_blue = |pixel: [u8; 4]| [0, 1, 2].map(|channel| pixel[channel] > 160);
+    for (turn, behind, ahead) in
+        [(0.0, [true; 3], [false, true, false]), (0.5, [true, false, false], [false, false, true])]
+    {
+        scene.frame.look.environment_radians = turn * std::f32::consts::PI;
+        for background in [Background::Environment, Background::Blurred] {
+            scene.frame.look.background = background;
+            let picture = scene.draw(gpu);
+            assert_eq!(red_green_blue(picture.at(0.0, 0.95)), ahead, "{background:?}, turned by {turn}");
+            let mirror = picture.at(-0.8, 0.6);
+            assert_eq!(red_green_blue(mirror), behind, "turned by {turn}: {mirror:?}");
+        }
+    }
+}
+
+#[test]
+fn a_panorama_lights_the_scene_and_shows_behind_it() {
+    let Some(gpu) = gpu() else { return };
+    check_panorama(&gpu);
+}
+
+#[test]
+fn every_setup_shows_the_model_without_blowing_it_out() {
+    let Some(gpu) = gpu() else { return };
+    let mut brightness = Vec::new();
+    for setup in [LightSetup::Studio, LightSetup::Soft, LightSetup::Hard, LightSetup::Outdoor] {
+        let material = Material { base_color: Vec4::new(0.5, 0.5, 0.5, 1.0), metallic: 0.0, ..Default::default() };
+        let mut scene = Scene::new(vec![sphere(Vec2::ZERO, 0.9, 0)], vec![material]);
+        scene.frame.look.light = setup;
+        let drawn = drawn_pixels(&scene.draw(&gpu));
+        let mean = drawn.iter().map(|pixel| u32::from(pixel[1])).sum::<u32>() / drawn.len() as u32;
+        let brightest = drawn.iter().map(|pixel| pixel[1]).max().unwrap();
+        assert!((70..210).contains(&mean) && brightest < 252, "{setup:?}: mean {mean}, at most {brightest}");
+        brightness.push((mean, brightest));
+    }
+    brightness.sort_unstable();
+    brightness.dedup();
+    assert_eq!(brightness.len(), 4, "each lights it in its own way: {brightness:?}");
+}
+
+#[test]
+fn a_custom_key_light_replaces_the_environments_own() {
+    let Some(gpu) = gpu() else { return };
+    let shown = |strength: f32, yaw_degrees: f32| {
+        let material = Material { base_color: Vec4::new(0.4, 0.4, 0.4, 1.0), metallic: 0.0, ..Default::default() };
+        let mut scene = Scene::new(vec![sphere(Vec2::ZERO, 0.9, 0)], vec![material]);
+        scene.frame.look.light = LightSetup::Soft;
+        scene.frame.look.tone_map = ToneMap::None;
+        scene.frame.look.key = Some(KeyLight { strength, yaw_degrees, pitch_degrees: 0.0 });
+        let picture = scene.draw(&gpu);
+        [picture.at(-0.6, 0.0)[1], picture.at(0.6, 0.0)[1]]
+    };
+    let [off, left, right] = [shown(0.0, 0.0), shown(1.0, -90.0), shown(1.0, 90.0)];
+    assert!(left[0] > off[0] + 20 && left[1] == off[1], "{left:?} {off:?}");
+    assert!(right[1] > off[1] + 20 && right[0] == off[0], "{right:?} {off:?}");
 }
 
 #[test]

@@ -120,6 +120,12 @@ impl Cube {
         Self { levels }
     }
 
+    /// Leaves out the sharpest level.
+    pub fn halved(mut self) -> Self {
+        self.levels.remove(0);
+        self
+    }
+
     /// Returns the levels for reflections, from a mirror's to those of the roughest surface: for each its edge length and the
     /// texels of all faces. `quality` multiplies the number of samples.
     pub fn filtered(&self, quality: usize) -> Vec<(usize, Vec<Vec3>)> {

@@ -2,6 +2,7 @@
 
 mod error;
 mod humanoid;
+mod panorama;
 mod warning;
 
 use std::ops::Deref;
@@ -14,6 +15,7 @@ use crate::mesh::{Material, Mesh, Skin, Texture};
 
 pub use error::AssetError;
 pub use humanoid::{Humanoid, Slot};
+pub use panorama::Panorama;
 pub use warning::{Warning, Warnings};
 
 /// A model, its motion, or both. [`Self::new`] has checked that all indices are in range; the parts can be read but not
