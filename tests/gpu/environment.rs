@@ -136,6 +136,21 @@ fn every_setup_shows_the_model_without_blowing_it_out() {
     assert_eq!(brightness.len(), 4, "each lights it in its own way: {brightness:?}");
 }
 
+/// Near white, tone mapping leaves no shading. At three quarters of a stop more, half of a white model is.
+#[test]
+fn a_white_model_keeps_its_shading_in_the_studio() {
+    let Some(gpu) = gpu() else { return };
+    let near_white = |exposure: f32| {
+        let material = Material { metallic: 0.0, ..Default::default() };
+        let mut scene = Scene::new(vec![sphere(Vec2::ZERO, 0.9, 0)], vec![material]);
+        scene.frame.look.exposure = exposure;
+        let drawn = drawn_pixels(&scene.draw(&gpu));
+        drawn.iter().filter(|pixel| pixel[1] > 242).count() as f32 / drawn.len() as f32
+    };
+    let [now, brighter] = [1.0, 1.0 / 0.6].map(near_white);
+    assert!(now < 0.25 && brighter > 0.4, "{now} and {brighter} of the sphere");
+}
+
 #[test]
 fn a_custom_key_light_replaces_the_environments_own() {
     let Some(gpu) = gpu() else { return };

@@ -90,20 +90,21 @@ impl Surroundings {
 /// Front left, above.
 const KEY_DIRECTION: [f32; 3] = [-0.48, 0.72, 0.50];
 
+/// White surfaces stay below white at exposure 0, so that their shading shows.
 fn studio() -> Surroundings {
     let boxes = vec![
         // Key, above left.
-        SoftBox::new(KEY_DIRECTION, [0.55, 0.55], [2.6, 2.6, 2.6]),
+        SoftBox::new(KEY_DIRECTION, [0.55, 0.55], [1.56, 1.56, 1.56]),
         // Fill, large and weak, right.
-        SoftBox::new([0.9, 0.25, 0.5], [0.7, 1.0], [0.855, 0.9, 0.954]),
+        SoftBox::new([0.9, 0.25, 0.5], [0.7, 1.0], [0.513, 0.54, 0.572]),
         // Rims, behind on both sides.
-        SoftBox::new([-0.75, 0.35, -0.75], [0.22, 1.2], [4.05, 4.365, 4.95]),
-        SoftBox::new([0.7, 0.45, -0.8], [0.25, 1.2], [5.0, 4.9, 4.75]),
+        SoftBox::new([-0.75, 0.35, -0.75], [0.22, 1.2], [2.43, 2.62, 2.97]),
+        SoftBox::new([0.7, 0.45, -0.8], [0.25, 1.2], [3.0, 2.94, 2.85]),
         // Ceiling.
-        SoftBox::new([0.05, 1.0, 0.0], [0.8, 0.8], [1.2, 1.2, 1.2]),
+        SoftBox::new([0.05, 1.0, 0.0], [0.8, 0.8], [0.72, 0.72, 0.72]),
     ];
-    let walls = [[0.16, 0.155, 0.15], [0.26, 0.27, 0.29], [0.32, 0.34, 0.38]];
-    Surroundings::new(boxes, walls, [KEY_DIRECTION, [1.75, 1.68, 1.58]])
+    let walls = [[0.096, 0.093, 0.09], [0.156, 0.162, 0.174], [0.192, 0.204, 0.228]];
+    Surroundings::new(boxes, walls, [KEY_DIRECTION, [1.05, 1.01, 0.95]])
 }
 
 /// The same light from everywhere: a white surface disappears in front of it (the furnace test).

@@ -205,12 +205,12 @@ fn environment(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
 fn key_light(ui: &mut Ui, key: Option<KeyLight>, out: &mut Output) {
     if controls::switch(ui, text::OWN_KEY_LIGHT, key.is_some()) {
         // Where the studio's own key light is, and as strong.
-        let studio = KeyLight { strength: 0.55, yaw_degrees: -44.0, pitch_degrees: 46.0 };
+        let studio = KeyLight { strength: 0.32, yaw_degrees: -44.0, pitch_degrees: 46.0 };
         out.commands.push(Command::SetKeyLight(if key.is_some() { None } else { Some(studio) }));
     }
     let Some(key) = key else { return };
     let degrees = |range, default| SliderSettings { range, default, decimals: 0, suffix: "°", logarithmic: false };
-    let strength = SliderSettings { range: (0.0, 3.0), default: 0.55, decimals: 2, suffix: "", logarithmic: false };
+    let strength = SliderSettings { range: (0.0, 3.0), default: 0.32, decimals: 2, suffix: "", logarithmic: false };
     let mut changed = None;
     if let Some(strength) = controls::slider(ui, text::KEY_STRENGTH, f64::from(key.strength), strength) {
         changed = Some(KeyLight { strength: strength as f32, ..key });
