@@ -130,13 +130,14 @@ impl Renderer {
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, options: RendererOptions) -> Self {
         flush(queue);
         let layouts = Layouts::new(device);
+        let pipelines = Pipelines::new(device, queue, &layouts, options.samples);
+        // A browser compiles the pipelines in another process meanwhile.
         let light = LightSources::new(device, queue, &layouts);
         flush(queue);
         let palette = PaletteTexture::new(device);
         let frame_buffer = UniformBuffer::new(device, "frame");
         let shadow_buffer = UniformBuffer::new(device, "shadow");
         let targets = Targets::new(device, [1, 1], options.samples);
-        let pipelines = Pipelines::new(device, queue, &layouts, options.samples);
         // On software adapters extra samples and texels are expensive, so both are disabled.
         let anisotropy = if options.samples > 1 { 4 } else { 1 };
         Self {
