@@ -6,7 +6,7 @@
 #![allow(dead_code)]
 
 use gaitway::asset::Asset;
-use gaitway::formats::{FileSet, LoadOptions, convert, load, missing_files, prepare};
+use gaitway::formats::{FileSet, LoadOptions, convert, load, missing_files, prepare, read_hdr};
 use gaitway::retarget::JointMapFile;
 use gaitway::state::{from_link, to_link};
 
@@ -14,7 +14,7 @@ use gaitway::state::{from_link, to_link};
 pub type Entry = (&'static str, fn(&[u8]));
 
 /// All of them; each has a target of its name in `fuzz_targets`.
-pub const ENTRIES: [Entry; 7] = [
+pub const ENTRIES: [Entry; 8] = [
     ("gltf", gltf),
     ("bvh", bvh),
     ("x", x),
@@ -22,6 +22,7 @@ pub const ENTRIES: [Entry; 7] = [
     ("archive", archive),
     ("map", map),
     ("link", link),
+    ("hdr", hdr),
 ];
 
 /// A .glb, or a .gltf whose data is inside.
@@ -78,6 +79,12 @@ pub fn link(bytes: &[u8]) {
     let (state, _) = from_link(&String::from_utf8_lossy(bytes));
     let written = to_link(&state);
     assert_eq!(to_link(&from_link(&written).0), written, "a link that was written is read as it is");
+}
+
+/// An .hdr image.
+pub fn hdr(bytes: &[u8]) {
+    let Ok(panorama) = read_hdr(bytes) else { return };
+    assert!(panorama.pixels().iter().all(|pixel| pixel.is_finite() && pixel.min_element() >= 0.0));
 }
 
 fn one(name: &str, bytes: &[u8]) -> FileSet {

@@ -22,7 +22,8 @@ struct Frame {
     exposure: f32,
     viewport_pixels: vec2f,
     light_count: u32,
-    padding: u32,
+    // Index of the roughest level of the environment.
+    environment_last_level: f32,
     // Cosine and sine of the environment's rotation about Y.
     environment: vec2f,
     // Size of a shadow-map texel in metres.
@@ -46,6 +47,10 @@ struct Frame {
     // sRGB.
     background_center: vec4f,
     background_edge: vec4f,
+    // The direction of a pixel in the environment: ahead, and what x and y in clip space add to it.
+    sky_ahead: vec4f,
+    sky_right: vec4f,
+    sky_up: vec4f,
     irradiance: array<vec4f, 9>,
     lights: array<Light, 8>,
 }

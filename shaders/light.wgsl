@@ -1,13 +1,14 @@
-// Lighting: the studio environment, the key light with its shadow, and the file's own lights.
+// Lighting: the environment, the key light with its shadow, and the file's own lights.
 
 @group(1) @binding(0) var environment: texture_cube<f32>;
 @group(1) @binding(1) var environment_sampler: sampler;
 @group(1) @binding(2) var shadow_map: texture_depth_2d;
 @group(1) @binding(3) var shadow_sampler: sampler_comparison;
+@group(1) @binding(4) var reflectance: texture_2d<f32>;
 
 const PI: f32 = 3.14159265;
-// Mip levels of the environment, roughness 0 to 1.
-const ENVIRONMENT_LAST_LEVEL: f32 = 5.0;
+// Edge length of the reflectance table, environment/reflectance.rs.
+const REFLECTANCE_SIZE: f32 = 24.0;
 
 fn environment_from_world(direction: vec3f) -> vec3f {
     let c = frame.environment.x;
@@ -32,14 +33,34 @@ fn environment_diffuse(normal: vec3f) -> vec3f {
 
 fn environment_specular(reflected: vec3f, roughness: f32) -> vec3f {
     let direction = environment_from_world(reflected);
-    return textureSampleLevel(environment, environment_sampler, direction, roughness * ENVIRONMENT_LAST_LEVEL).rgb;
+    // Smooth surfaces, whose reflections are the sharpest, get most of the levels.
+    let level = frame.environment_last_level * roughness * (2.0 - roughness);
+    return textureSampleLevel(environment, environment_sampler, direction, level).rgb;
 }
 
-// Scale and bias of the reflectance at normal incidence (Karis 2014, "Physically Based Shading on Mobile").
-fn environment_brdf(roughness: f32, normal_view: f32) -> vec2f {
-    let r = roughness * vec4f(-1.0, -0.0275, -0.572, 0.022) + vec4f(1.0, 0.0425, 1.04, -0.04);
-    let a = min(r.x * r.x, exp2(-9.28 * normal_view)) * r.x + r.y;
-    return vec2f(-1.04, 1.04) * a + r.zw;
+// Of white light from all directions, what the GGX lobe reflects towards the viewer: a factor of the reflectance at normal
+// incidence, and an offset.
+fn directional_albedo(roughness: f32, normal_view: f32) -> vec2f {
+    let at = vec2f(sqrt(normal_view), roughness) * (REFLECTANCE_SIZE - 1.0) + 0.5;
+    return textureSampleLevel(reflectance, environment_sampler, at / REFLECTANCE_SIZE, 0.0).rg;
+}
+
+// Reflected fraction of an environment, with light that leaves the surface after several reflections (Fdez-Agüera 2019, "A
+// Multiple-Scattering Microfacet Model for Real-Time Image-based Lighting", as in the Khronos glTF Sample Viewer). White
+// reflects everything.
+fn environment_reflectance(specular: vec3f, albedo: vec2f, roughness: f32, normal_view: f32) -> vec3f {
+    let grazing = max(vec3f(1.0 - roughness), specular) - specular;
+    let once = (specular + grazing * schlick(normal_view)) * albedo.x + albedo.y;
+    let lost = 1.0 - albedo.x - albedo.y;
+    let average = specular + (1.0 - specular) / 21.0;
+    return once + once * average * lost / (1.0 - average * lost);
+}
+
+// Schlick's Fresnel between normal (0) and grazing (1) incidence.
+fn schlick(cosine: f32) -> f32 {
+    let grazing = 1.0 - cosine;
+    let squared = grazing * grazing;
+    return squared * squared * grazing;
 }
 
 fn shadow_tap(at: vec3f, offset: vec2f) -> f32 {
@@ -64,6 +85,7 @@ fn mesh_shadow(world: vec3f, normal: vec3f) -> f32 {
 struct Surface {
     normal: vec3f,
     to_eye: vec3f,
+    // Reflected diffusely by what is not metal.
     diffuse: vec3f,
     // Reflectance at normal incidence.
     specular: vec3f,
@@ -71,8 +93,11 @@ struct Surface {
     normal_view: f32,
 }
 
-// BRDF times the cosine for a light direction: GGX distribution, height-correlated Smith visibility (Hammon's
-// approximation), Schlick Fresnel.
+const DIELECTRIC: f32 = 0.04;
+// A light has no size; below this roughness its highlight would be too small to see.
+const MIN_ROUGHNESS: f32 = 0.045;
+
+// BRDF times the cosine for a light direction: GGX distribution, height-correlated Smith visibility, Schlick Fresnel.
 fn reflect_light(surface: Surface, to_light: vec3f) -> vec3f {
     let normal_light = dot(surface.normal, to_light);
     if normal_light <= 0.0 {
@@ -81,16 +106,18 @@ fn reflect_light(surface: Surface, to_light: vec3f) -> vec3f {
     let half_way = normalize(to_light + surface.to_eye);
     let normal_half = max(dot(surface.normal, half_way), 0.0);
     let view_half = max(dot(surface.to_eye, half_way), 0.0);
-    let alpha = surface.roughness * surface.roughness;
+    let roughness = max(surface.roughness, MIN_ROUGHNESS);
+    let alpha = roughness * roughness;
     let alpha_squared = alpha * alpha;
     let f = normal_half * normal_half * (alpha_squared - 1.0) + 1.0;
     let distribution = alpha_squared / (PI * f * f);
-    let visibility = 0.5 / mix(2.0 * normal_light * surface.normal_view, normal_light + surface.normal_view, alpha);
-    let grazing = 1.0 - view_half;
-    let grazing_squared = grazing * grazing;
-    let fresnel = surface.specular + (1.0 - surface.specular) * (grazing_squared * grazing_squared * grazing);
-    let diffuse = (1.0 - fresnel) * surface.diffuse / PI;
-    return normal_light * (diffuse + min(distribution * visibility, 64.0) * fresnel);
+    let cosines = vec2f(normal_light, surface.normal_view);
+    let masked = cosines.yx * sqrt(cosines * cosines * (1.0 - alpha_squared) + alpha_squared);
+    let visibility = 0.5 / (masked.x + masked.y);
+    let grazing = schlick(view_half);
+    let diffuse = (1.0 - mix(DIELECTRIC, 1.0, grazing)) * surface.diffuse / PI;
+    let specular = min(distribution * visibility, 64.0) * mix(surface.specular, vec3f(1.0), grazing);
+    return normal_light * (diffuse + specular);
 }
 
 // Radiance from one of the file's lights at a point; sets `to_light` to the direction to it.

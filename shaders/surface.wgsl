@@ -148,17 +148,20 @@ fn lit(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) vec4f 
     var surface: Surface;
     surface.normal = surface_normal(in, front);
     surface.to_eye = normalize(in.to_eye);
-    surface.roughness = clamp(roughness, 0.045, 1.0);
+    metallic = clamp(metallic, 0.0, 1.0);
+    surface.roughness = clamp(roughness, 0.0, 1.0);
     surface.diffuse = base.rgb * (1.0 - metallic);
-    surface.specular = mix(vec3f(0.04), base.rgb, metallic);
+    surface.specular = mix(vec3f(DIELECTRIC), base.rgb, metallic);
     let facing = dot(surface.normal, surface.to_eye);
     surface.normal_view = clamp(facing, 0.001, 1.0);
 
-    let scale_offset = environment_brdf(surface.roughness, surface.normal_view);
-    let reflectance = max(surface.specular * scale_offset.x + scale_offset.y, vec3f(0.0));
     let reflected = 2.0 * facing * surface.normal - surface.to_eye;
-    var color = (1.0 - reflectance) * surface.diffuse * environment_diffuse(surface.normal)
-        + reflectance * environment_specular(reflected, surface.roughness);
+    let specular_light = environment_specular(reflected, surface.roughness);
+    let albedo = directional_albedo(surface.roughness, surface.normal_view);
+    let metal = environment_reflectance(base.rgb, albedo, surface.roughness, surface.normal_view);
+    let dielectric = environment_reflectance(vec3f(DIELECTRIC), albedo, surface.roughness, surface.normal_view);
+    var color = mix(base.rgb * environment_diffuse(surface.normal), specular_light, dielectric);
+    color = mix(color, metal * specular_light, metallic);
     color *= occlusion;
 
     let world = frame.eye - in.to_eye;

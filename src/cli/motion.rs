@@ -9,7 +9,7 @@ use super::failure::{Failure, Outcome};
 use super::output::warn;
 use super::print_warnings;
 use crate::editor::{Contents, Editor, Event, OpenedMap, OpenedModel};
-use crate::files::{Disk, Opened, Role, member_of};
+use crate::files::{Disk, Held, Opened, Role, member_of};
 use crate::library::Motion;
 use crate::retarget::{FoundRest, RestOrigin};
 use crate::state::{ClipChoice, Command, Sources, ViewerState, from_link, unknown_clip};
@@ -129,7 +129,10 @@ pub(super) fn apply_link(
     let retarget = if arguments.map.is_some() { now.retarget } else { view.retarget };
     let sources = Sources { model: now.sources.model, motion, ..view.sources };
     let held = if keeps_motions { editor.library().motions().to_vec() } else { Vec::new() };
-    let (mut contents, view) = disk.open_view(ViewerState { sources, retarget, ..view }, false, &held)?;
+    let (mut contents, view) = {
+        let held = Held { motions: &held, environments: editor.library().environments() };
+        disk.open_view(ViewerState { sources, retarget, ..view }, false, held)?
+    };
     std::mem::take(&mut contents.problems).iter().for_each(|problem| warn(problem));
     if keeps_motions {
         contents.motions = Some(held);

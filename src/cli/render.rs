@@ -1,15 +1,19 @@
 //! `gaitway render`: renders the same image as the page, without a window.
 
+use serde_json::json;
+
 use super::failure::{Failure, Outcome};
 use super::motion::{apply_link, open_editor};
 use super::output::{check_output, print_error, write_output};
 use super::quiet::Quiet;
 use super::{RenderArguments, apply_moment, open};
-use crate::editor::Editor;
-use crate::files::{Disk, encode_png};
+use crate::editor::{Contents, Editor};
+use crate::files::{Disk, Role, encode_png};
 use crate::frame::{Frame, evaluate};
 use crate::render::{Renderer, RendererOptions, headless_device, read_pixels};
-use crate::state::{CameraChoice, Command, OrbitCamera, resolve_camera, source_on_stage};
+use crate::state::{
+    CameraChoice, Command, EnvironmentChoice, OrbitCamera, from_object, resolve_camera, source_on_stage,
+};
 
 /// That fit the picture.
 const EXTENSIONS: &[&str] = &["png"];
@@ -41,6 +45,21 @@ pub(super) fn run(arguments: &RenderArguments, disk: &Disk) -> Outcome {
     write_output(&arguments.out, &png, EXTENSIONS, disk)
 }
 
+/// Lights the scene with what the link's key `light` would name, or with a file.
+fn light_with(editor: &mut Editor, name: &str, disk: &Disk) -> Outcome {
+    let (state, _) = from_object(editor.state(), &json!({ "light": name }));
+    let EnvironmentChoice::File(path) = state.lighting.environment else {
+        editor.apply(Command::SetLight(state.lighting.environment));
+        return Ok(());
+    };
+    let Contents { environment: Some(environment), .. } = disk.read_paths(&[path.clone().into()], Role::Any)? else {
+        return Err(Failure::expected("an .hdr image", "something else").in_file(path));
+    };
+    let contents = Contents { environment: Some(environment), ..Contents::default() };
+    editor.open(contents, None, &mut |_| Ok(()))?;
+    Ok(())
+}
+
 /// Opens the link's view, overridden by the other options.
 fn open_requested_view(arguments: &RenderArguments, disk: &Disk) -> Outcome<Editor> {
     let mut editor = open_editor(open(&arguments.input.files, disk)?, &arguments.motion, disk)?;
@@ -49,6 +68,9 @@ fn open_requested_view(arguments: &RenderArguments, disk: &Disk) -> Outcome<Edit
     editor.set_aspect(aspect);
     if let Some(link) = &arguments.view {
         apply_link(&mut editor, link, &arguments.motion, arguments.moment.clip.is_some(), disk)?;
+    }
+    if let Some(name) = &arguments.environment {
+        light_with(&mut editor, name, disk)?;
     }
     apply_moment(&mut editor, &arguments.moment, arguments.motion.motion.is_some())?;
     if let Some([yaw_degrees, pitch_degrees, distance]) = arguments.camera {

@@ -1,7 +1,7 @@
 //! The result of opening files, before it enters the library.
 
 use crate::formats::FileSet;
-use crate::library::{Model, Motion};
+use crate::library::{Environment, Model, Motion};
 use crate::retarget::JointMapFile;
 use crate::state::MEMBER_SEPARATOR;
 
@@ -14,6 +14,8 @@ pub struct Contents {
     pub motions: Option<Vec<Motion>>,
     /// A joint map for the motions; `None` if none was opened.
     pub map: Option<OpenedMap>,
+    /// Lights the scene from now on; `None` if none was opened.
+    pub environment: Option<Environment>,
     /// The map is one of the user's local files.
     pub is_map_private: bool,
     /// What could not be opened although the rest could.
@@ -58,6 +60,7 @@ impl Contents {
     pub fn into_private(mut self) -> Self {
         self.models.iter_mut().for_each(|opened| opened.model.is_own = true);
         self.motions.iter_mut().flatten().for_each(|motion| motion.is_own = true);
+        self.environment.iter_mut().for_each(|environment| environment.is_own = true);
         self.is_map_private = self.map.is_some();
         self
     }

@@ -22,8 +22,10 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-use crate::library::{Library, ModelId, Motion};
-use crate::state::{Command, DEFAULT_ASPECT, History, OrbitCamera, ViewerState, from_object, unknown_clip};
+use crate::library::{Environment, Library, ModelId, Motion};
+use crate::state::{
+    Command, DEFAULT_ASPECT, EnvironmentChoice, History, OrbitCamera, ViewerState, from_object, unknown_clip,
+};
 use motions::ClipIdentity;
 use open::Shelved;
 
@@ -181,11 +183,20 @@ impl Editor {
         Err(problems.join("; "))
     }
 
+    /// The loaded environment that lights the scene.
+    fn environment(&self) -> Option<&Environment> {
+        match &self.state.lighting.environment {
+            EnvironmentChoice::File(origin) => self.library.environment(origin),
+            EnvironmentChoice::Setup(_) => None,
+        }
+    }
+
     /// Whether anything loaded is one of the user's local files.
     pub fn is_private(&self) -> bool {
         self.has_private_map
             || self.library.active().is_some_and(|model| model.is_own)
             || self.library.motions().iter().any(|motion| motion.is_own)
+            || self.environment().is_some_and(|environment| environment.is_own)
     }
 
     /// Applies a command through the history, without the additional rules of [`Editor::apply`].

@@ -6,9 +6,9 @@ use std::sync::Arc;
 use super::motions::{ClipIdentity, added_from};
 use super::names::is_obj;
 use super::{Admit, Contents, Editor, Event, ModelFiles, OTHER_FILES, OpenedModel, short_name};
-use crate::library::{Library, Loaded, Model, ModelId, Motion};
+use crate::library::{Environment, Library, Loaded, Model, ModelId, Motion};
 use crate::retarget::JointMapFile;
-use crate::state::{ClipChoice, Command, MotionMap, RetargetEdits, Sources, ViewerState, apply};
+use crate::state::{ClipChoice, Command, EnvironmentChoice, MotionMap, RetargetEdits, Sources, ViewerState, apply};
 
 /// What is kept of a loaded model besides the model.
 #[derive(Debug, Default)]
@@ -51,7 +51,8 @@ impl Editor {
     /// # Errors
     /// The message for the user if none of the files can be used; nothing has changed then.
     pub fn open(&mut self, contents: Contents, view: Option<ViewerState>, admit: Admit<'_>) -> Result<(), String> {
-        let Contents { models, motions, map, is_map_private, problems } = contents;
+        let Contents { models, motions, map, environment, is_map_private, problems } = contents;
+        let is_view = view.is_some();
         let (file, map) = map.map(|opened| (opened.name, opened.map)).unzip();
         self.opened_map = file;
         self.has_private_map |= is_map_private;
@@ -62,9 +63,31 @@ impl Editor {
             None => map.map_or(Ok(()), |map| self.apply_map_file(&map)),
         };
         self.opened_map = None;
+        if opened.is_ok()
+            && let Some(environment) = environment
+        {
+            self.open_environment(environment, is_view);
+        }
         (self.needs_redraw, self.is_changed) = (true, true);
         self.report(problems);
         opened
+    }
+
+    /// Adds an environment and lights the scene with it, unless a view says what lights it.
+    fn open_environment(&mut self, environment: Environment, is_view: bool) {
+        let origin = environment.origin.clone();
+        self.library.add_environment(environment);
+        if is_view {
+            return;
+        }
+        let (notice, light) = (format!("Lit by {}.", short_name(&origin)), EnvironmentChoice::File(origin));
+        // A newer file of the same name takes the place of the old one.
+        if self.state.lighting.environment == light {
+            self.notify(notice);
+        } else {
+            self.record(Command::SetLight(light));
+            self.notify_undoable(notice);
+        }
     }
 
     /// Activates the first model, or the one that the view names, and lists the others. The current one stays in the list, and

@@ -13,7 +13,7 @@ use gaitway_part::Answer;
 use super::open::open_read;
 use super::read::{FilesRead, Item, read_items};
 use super::source::{Content, Located, Progress, Reading, Source};
-use super::{OpenError, Role, SortError, decode_images, view};
+use super::{Held, OpenError, Role, SortError, decode_images, view};
 use crate::asset::{Asset, Image};
 use crate::editor::{Contents, ModelFiles, OpenedMap, OpenedModel};
 use crate::formats::limits::{MAX_FOLDER_DEPTH, MAX_FOLDER_FILES};
@@ -49,7 +49,7 @@ pub fn read_paths(paths: &[PathBuf], role: Role) -> Result<Contents, OpenError> 
 }
 
 /// Opens the files of a view: see [`Disk::open_view`].
-pub fn open_view(view: ViewerState, with_model: bool, held: &[Motion]) -> Result<(Contents, ViewerState), OpenError> {
+pub fn open_view(view: ViewerState, with_model: bool, held: Held<'_>) -> Result<(Contents, ViewerState), OpenError> {
     Disk::default().open_view(view, with_model, held)
 }
 
@@ -99,13 +99,13 @@ impl Disk {
         finish(async { open_read(self, self.read_all(paths).await?, role).await })
     }
 
-    /// Opens the files of a view that are on disk, except for its model if `with_model` is not set and for motions that are
-    /// among `held`. See `view` for the details.
+    /// Opens the files of a view that are on disk, except for its model if `with_model` is not set and for what is
+    /// `held`. See `view` for the details.
     pub fn open_view(
         &self,
         view: ViewerState,
         with_model: bool,
-        held: &[Motion],
+        held: Held<'_>,
     ) -> Result<(Contents, ViewerState), OpenError> {
         finish(view::open_view(self, view, with_model, held, NO_PROGRESS))
     }

@@ -35,5 +35,6 @@ pub use read::Item;
 pub use save::{SaveError, is_stream, refuse_input, save_file};
 pub use sort::{Role, SortError, Sorted, read_map, sort};
 pub use source::Progress;
+pub use view::Held;
 #[cfg(target_arch = "wasm32")]
 pub use web::{open_items, open_view};

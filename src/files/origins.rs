@@ -5,7 +5,7 @@ use super::{Role, Sorted};
 use crate::asset::Asset;
 use crate::editor::{Contents, ModelFiles, OpenedModel, container_of};
 use crate::formats::FileSet;
-use crate::library::{ImageData, Model, Motion};
+use crate::library::{Environment, ImageData, Model, Motion};
 use crate::state::MEMBER_SEPARATOR;
 
 #[derive(Debug, Default)]
@@ -58,7 +58,12 @@ impl Origins {
         models.sort_by_key(|opened| place(&opened.model.origin));
         let problems = if role == Role::Motion { Vec::new() } else { self.missing_members(&models) };
         let motions = (!motions.is_empty()).then_some(motions);
-        Contents { motions, models, map: sorted.map, problems, ..Contents::default() }
+        let environment = sorted.environment.map(|(name, panorama)| Environment {
+            origin: self.origin_and_source(&name).0,
+            panorama: panorama.into(),
+            is_own: false,
+        });
+        Contents { motions, models, map: sorted.map, environment, problems, ..Contents::default() }
     }
 
     /// Reports models that were asked for by their path in an archive which has no such model.

@@ -1,9 +1,11 @@
 //! Sorts a set of files by content: models, motions to borrow, a joint map.
 
-use crate::asset::{Asset, Image};
+use crate::asset::{Asset, Image, Panorama};
 use crate::editor::OpenedMap;
 use crate::formats::limits::MAX_MAP_BYTES;
-use crate::formats::{FileSet, LoadError, LoadOptions, load, load_noticing_images, main_files};
+use crate::formats::{
+    FileSet, HdrError, LoadError, LoadOptions, is_hdr, load, load_noticing_images, main_files, read_hdr,
+};
 use crate::library::Library;
 use crate::retarget::{JointMapFile, MapError};
 
@@ -28,6 +30,8 @@ pub struct Sorted {
     pub motions: Vec<(String, Asset)>,
     /// `None` if no file is a joint map.
     pub map: Option<OpenedMap>,
+    /// An .hdr image with its name in the set; the last of several.
+    pub environment: Option<(String, Panorama)>,
 }
 
 /// Why a set of files cannot be used.
@@ -78,6 +82,14 @@ pub enum SortError {
         /// Names of the first two.
         found: Vec<String>,
     },
+    /// An .hdr image cannot be read.
+    #[error("{file}: {problem}")]
+    Hdr {
+        /// Name of the file.
+        file: String,
+        /// What is wrong with it.
+        problem: HdrError,
+    },
     /// More motions than the library holds.
     #[error("more than {max} motions at once; open fewer")]
     TooManyMotions {
@@ -100,8 +112,11 @@ pub(super) fn sort_noticing_images(
     role: Role,
     on_images: &mut dyn FnMut(&str, &[Image]),
 ) -> Result<Sorted, SortError> {
-    let mut sorted = Sorted { map: find_map(files)?, ..Sorted::default() };
+    let mut sorted = Sorted { map: find_map(files)?, environment: find_environment(files)?, ..Sorted::default() };
     let names = main_files(files);
+    if names.is_empty() && sorted.environment.is_some() && role != Role::Model {
+        return Ok(sorted);
+    }
     if names.is_empty() && (sorted.map.is_none() || role == Role::Model) {
         // Nothing but JSON was meant as a joint map, unless it is one and a model is required.
         if sorted.map.is_none()
@@ -144,6 +159,12 @@ fn few_names(files: &[(String, Asset)]) -> Vec<String> {
         names.push(format!("{} more", files.len() - MAX_NAMES));
     }
     names
+}
+
+fn find_environment(files: &FileSet) -> Result<Option<(String, Panorama)>, SortError> {
+    let Some((name, bytes)) = files.iter().filter(|(_, bytes)| is_hdr(bytes)).last() else { return Ok(None) };
+    let read = read_hdr(bytes).map_err(|problem| SortError::Hdr { file: name.to_owned(), problem })?;
+    Ok(Some((name.to_owned(), read)))
 }
 
 /// Finds the joint map among the files: JSON with the key `gaitway_map`. Other JSON is ignored.

@@ -9,16 +9,16 @@ use super::read::Item;
 use super::source::{Content, Progress, Reading, Source};
 use super::{OpenError, Role, read_map};
 use crate::editor::{Contents, container_of};
-use crate::library::{Model, Motion};
+use crate::library::{Environment, Model, Motion};
 use crate::retarget::JointMapFile;
-use crate::state::{MotionMap, RetargetEdits, Sources, ViewerState, is_to_bring};
+use crate::state::{EnvironmentChoice, MotionMap, RetargetEdits, Sources, ViewerState, is_to_bring};
 
 /// Opens the files of a view, or an empty stage if its model is a file that the user has yet to supply; see [`open_files`].
 pub(super) async fn open_view<S: Source>(
     source: &S,
     view: ViewerState,
     with_model: bool,
-    held: &[Motion],
+    held: Held<'_>,
     progress: Progress<'_>,
 ) -> Result<(Contents, ViewerState), OpenError> {
     if let Some(awaited) = view.sources.model.iter().find(|model| with_model && is_to_bring(model)) {
@@ -28,21 +28,38 @@ pub(super) async fn open_view<S: Source>(
     open_files(source, view, with_model, held, progress).await
 }
 
-/// Opens the files of a view, except for its model if `with_model` is not set and for motions that are among `held`. A motion
+/// What is loaded already and needs not be opened again.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Held<'a> {
+    /// By their origin.
+    pub motions: &'a [Motion],
+    /// By their origin.
+    pub environments: &'a [Environment],
+}
+
+/// Opens the files of a view, except for its model if `with_model` is not set and for what is `held`. A motion
 /// or map that cannot be opened becomes a problem of the contents. Maps that were read take the place of their addresses in
 /// the view. Progress is reported as "2 of 3: walk.bvh".
 async fn open_files<S: Source>(
     source: &S,
     view: ViewerState,
     with_model: bool,
-    held: &[Motion],
+    held: Held<'_>,
     progress: Progress<'_>,
 ) -> Result<(Contents, ViewerState), OpenError> {
+    let Held { motions: held, environments } = held;
     let Sources { model: mut models, motion: motions, scene } = view.sources;
     let RetargetEdits { map: maps, .. } = view.retarget;
     let is_held = |origin: &String| held.iter().any(|motion| motion.origin == *origin);
     let map_files = maps.iter().filter(|map| matches!(map, MotionMap::File(_))).count();
-    let parts = usize::from(with_model) + motions.iter().filter(|origin| !is_held(origin)).count() + map_files;
+    let light = match &view.lighting.environment {
+        EnvironmentChoice::File(origin) if !environments.iter().any(|held| held.origin == *origin) => Some(origin),
+        _ => None,
+    };
+    let parts = usize::from(with_model)
+        + usize::from(light.is_some())
+        + motions.iter().filter(|origin| !is_held(origin)).count()
+        + map_files;
     let part = Cell::new(0);
     let next_part = || part.set(part.get() + 1);
     let progress = &|name: &str, received: u64, total: u64| match parts {
@@ -74,22 +91,45 @@ async fn open_files<S: Source>(
             Err(error) => contents.problems.push(source.describe_omission("motion", &error)),
         }
     }
+    if let Some(origin) = light {
+        next_part();
+        open_environment(source, origin, &mut contents, progress).await;
+    }
     contents.motions = Some(opened);
     let mut read_maps = Vec::new();
     for map in maps {
-        let MotionMap::File(address) = &map else {
-            read_maps.push(map);
-            continue;
-        };
-        next_part();
-        match open_map(source, address.as_ref(), progress).await {
-            Ok(map) => read_maps.push(MotionMap::Names(map)),
-            Err(error) => contents.problems.push(source.describe_omission("map", &error)),
+        if matches!(map, MotionMap::File(_)) {
+            next_part();
         }
+        read_maps.extend(read_map_of(source, map, &mut contents, progress).await);
     }
     let sources = Sources { model: models, motion: motions, scene };
     let retarget = RetargetEdits { map: read_maps, ..view.retarget };
     Ok((contents, ViewerState { sources, retarget, ..view }))
+}
+
+/// Adds the image that lights a view to the contents; what keeps it from being one becomes a problem.
+async fn open_environment<S: Source>(source: &S, origin: &String, contents: &mut Contents, progress: Progress<'_>) {
+    match open_items(source, vec![Item::Address(origin.into())], Role::Any, progress).await {
+        // The view's own name for it.
+        Ok(Contents { environment: Some(found), .. }) => {
+            contents.environment = Some(Environment { origin: origin.clone(), ..found });
+        }
+        Ok(_) => contents.problems.push(format!("{origin}: expected an .hdr image")),
+        Err(error) => contents.problems.push(source.describe_omission("light", &error)),
+    }
+}
+
+/// Reads a map if it is a file. One that cannot be read becomes a problem of the contents.
+async fn read_map_of<S: Source>(
+    source: &S,
+    map: MotionMap,
+    contents: &mut Contents,
+    progress: Progress<'_>,
+) -> Option<MotionMap> {
+    let MotionMap::File(address) = &map else { return Some(map) };
+    let read = open_map(source, address.as_ref(), progress).await;
+    read.map(MotionMap::Names).inspect_err(|error| contents.problems.push(source.describe_omission("map", error))).ok()
 }
 
 /// Opens the models that a view lists. If the one it names is not in its archive, the archive's first one is named instead.

@@ -4,12 +4,12 @@ use glam::{Affine3A, Vec3};
 
 use super::{Character, Draw, Frame, FrameLight, Look, overlays, view};
 use crate::anim::{JointIndex, Pose, PropertyTarget, PropertyValues, SampleCursor, model_from_joint};
-use crate::asset::{Asset, MeshInstance, SceneJoints};
+use crate::asset::{Asset, LightKind, MAX_LIGHTS, MeshInstance, SceneJoints};
 use crate::library::{Library, Model, ModelId};
 use crate::mesh::{Bounds, Material, SkinningMode, palette_entry, write_palette};
 use crate::state::{
-    COMPARED_SKINNING, Comparison, PoseSampler, SourceOnStage, ViewerState, active_clip, clip_secs, compared_rests,
-    comparison, panes, resolved_bounds, source_on_stage, world_from_model,
+    COMPARED_SKINNING, Comparison, EnvironmentChoice, LightSetup, PoseSampler, SourceOnStage, ViewerState, active_clip,
+    clip_secs, compared_rests, comparison, panes, resolved_bounds, source_on_stage, world_from_model,
 };
 
 /// Buffers and lookups reused between frames.
@@ -44,9 +44,17 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
     frame.lines.clear();
     frame.bones.clear();
     frame.lights.clear();
+    let (light, panorama) = match &state.lighting.environment {
+        EnvironmentChoice::Setup(setup) => (*setup, None),
+        EnvironmentChoice::File(name) => (LightSetup::default(), library.environment(name)),
+    };
+    frame.panorama = panorama.map(|environment| environment.panorama.clone());
     frame.look = Look {
         exposure: state.display.exposure.exp2(),
+        tone_map: state.display.tone_map,
         environment_radians: state.display.environment_degrees.to_radians(),
+        light,
+        key: state.lighting.key,
         background: state.display.background,
         mesh: state.display.show.mesh,
         wireframe: state.display.show.wireframe,
@@ -268,4 +276,26 @@ fn write_lights(model: &Model, frame: &mut Frame) {
             range: light.range.unwrap_or(0.0),
         });
     }
+    keep_strongest(&mut frame.lights, &frame.bounds);
+}
+
+/// Keeps the lights that contribute most, the strongest first.
+fn keep_strongest(lights: &mut Vec<FrameLight>, bounds: &Bounds) {
+    if lights.len() > MAX_LIGHTS {
+        lights.sort_unstable_by(|a, b| contribution(b, bounds).total_cmp(&contribution(a, bounds)));
+        lights.truncate(MAX_LIGHTS);
+    }
+}
+
+/// Estimates a light's irradiance on the nearest part of the bounds.
+fn contribution(light: &FrameLight, bounds: &Bounds) -> f32 {
+    let strength = light.color.max_element();
+    if light.kind == LightKind::Directional || bounds.is_empty() {
+        return strength;
+    }
+    let nearest = light.position.clamp(bounds.min, bounds.max);
+    // A light inside the bounds shines on what is around it.
+    let distance = nearest.distance(light.position).max(0.1 * bounds.diagonal()).max(1e-3);
+    let out_of_range = light.range > 0.0 && nearest.distance(light.position) >= light.range;
+    if out_of_range { 0.0 } else { strength / (distance * distance) }
 }

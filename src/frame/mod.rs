@@ -10,14 +10,15 @@ mod pose_document;
 mod view;
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use glam::{Affine3A, Mat4, Vec3, Vec4};
 
 use crate::anim::{JointIndex, Pose, PropertyValues};
-use crate::asset::LightKind;
+use crate::asset::{LightKind, Panorama};
 use crate::library::ModelId;
 use crate::mesh::{Bounds, Material, PaletteEntry, SkinningMode};
-use crate::state::{Background, Comparison};
+use crate::state::{Background, Comparison, KeyLight, LightSetup, ToneMap};
 
 pub use evaluate::{evaluate, travelled};
 pub use formula::{FormulaTerm, JointMatrices, VertexFormula, joint_matrices, vertex_formula};
@@ -42,6 +43,8 @@ pub struct Frame {
     pub clip: Option<usize>,
     /// The file's own lights in world space; if empty, the studio's key light is used.
     pub lights: Vec<FrameLight>,
+    /// The environment, if it is an image; replaces [`Look::light`].
+    pub panorama: Option<Arc<Panorama>>,
     /// Overlay lines (bounds, axes), their width in pixels.
     pub lines: Vec<Line>,
     /// Bones of the skeletons, present even if hidden, so that clicks can pick them.
@@ -84,8 +87,14 @@ pub struct View {
 pub struct Look {
     /// Multiplies linear colours: 2^stops.
     pub exposure: f32,
+    /// How brightness becomes that of the picture.
+    pub tone_map: ToneMap,
     /// Rotation of the environment and the studio's key light about +Y.
     pub environment_radians: f32,
+    /// What lights the scene besides the file's own lights.
+    pub light: LightSetup,
+    /// Replaces the environment's own key light.
+    pub key: Option<KeyLight>,
     /// What shows behind the scene.
     pub background: Background,
     /// Draws the surfaces. Without them nothing casts a shadow.
@@ -225,7 +234,10 @@ impl Default for Look {
     fn default() -> Self {
         Self {
             exposure: 1.0,
+            tone_map: ToneMap::Neutral,
             environment_radians: 0.0,
+            light: LightSetup::Studio,
+            key: None,
             background: Background::Studio,
             mesh: true,
             wireframe: false,

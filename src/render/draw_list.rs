@@ -6,6 +6,7 @@ use super::pipelines::{Features, Layouts, MeshKey, MeshPipeline, Pipelines, Shad
 use super::uniforms::DrawUniform;
 use crate::frame::{Character, Draw, Frame};
 use crate::mesh::Topology;
+use crate::state::ToneMap;
 
 /// Stride of the draw uniforms: the alignment WebGPU and WebGL2 require of dynamic offsets.
 const ALIGNMENT: usize = 256;
@@ -83,6 +84,8 @@ impl Instance<'_> {
             features,
             cull: (!primitive.double_sided).then_some(wgpu::Face::Back),
             mirrored: self.draw.mirrored,
+            // The other kinds of shading have no use for it.
+            tone_map: if shading == Shading::Lit { self.frame.look.tone_map } else { ToneMap::default() },
         }
     }
 }
@@ -93,7 +96,7 @@ fn shadow_key(key: MeshKey) -> MeshKey {
     let alpha_sources = Features::BASE_COLOR_MAP.with(Features::VERTEX_COLORS, true);
     let features =
         if has_holes { key.features.only(alpha_sources).with(Features::MASK, true) } else { Features::default() };
-    MeshKey { shading: Shading::Shadow, features, cull: None, mirrored: false, ..key }
+    MeshKey { shading: Shading::Shadow, features, cull: None, mirrored: false, tone_map: ToneMap::default(), ..key }
 }
 
 /// The key that draws the surface's edges.
@@ -104,6 +107,7 @@ fn wireframe_key(key: MeshKey) -> MeshKey {
         features: Features::default(),
         cull: None,
         mirrored: false,
+        tone_map: ToneMap::default(),
         ..key
     }
 }

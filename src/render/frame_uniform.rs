@@ -2,11 +2,12 @@
 
 use glam::{Mat3, Vec3};
 
-use super::environment::{KEY_COLOR, KEY_DIRECTION};
+use super::environment::{Environment, KeyLight};
 use super::shadow::shadow_view;
-use super::uniforms::{FrameUniform, LightUniform, MAX_LIGHTS};
-use crate::asset::LightKind;
+use super::uniforms::{FrameUniform, LightUniform};
+use crate::asset::{LightKind, MAX_LIGHTS};
 use crate::frame::{Frame, FrameLight};
+use crate::state;
 
 /// sRGB colours of the studio backdrop, at the center and at the edge.
 const STUDIO_CENTER: [f32; 4] = [0.735, 0.748, 0.767, 1.0];
@@ -56,11 +57,13 @@ pub(super) fn frame_uniform(
     frame: &Frame,
     ground: Option<&GroundPlane>,
     size: [f32; 2],
-    irradiance: &[[f32; 4]; 9],
+    environment: &Environment,
 ) -> (FrameUniform, Option<FrameUniform>) {
     let look = &frame.look;
     let (sin, cos) = look.environment_radians.sin_cos();
-    let key_direction = Mat3::from_rotation_y(look.environment_radians) * KEY_DIRECTION.normalize_or_zero();
+    let key = look.key.map_or(environment.key, own_key_light);
+    let key_direction = Mat3::from_rotation_y(look.environment_radians) * key.direction;
+    let [sky_ahead, sky_right, sky_up] = sky_directions(frame);
     // The file's first directional light from above casts the shadow. With other lights only, the key light casts one
     // on the ground but not on meshes.
     let sun = frame
@@ -82,13 +85,13 @@ pub(super) fn frame_uniform(
         exposure: look.exposure.max(1e-6),
         viewport_pixels: size,
         light_count: frame.lights.len().min(MAX_LIGHTS) as u32,
-        padding: 0,
+        environment_last_level: environment.last_level as f32,
         environment: [cos, sin],
         shadow_texel: shadow.map_or(0.0, |view| view.texel),
         shadow_light,
         key_direction: key_direction.to_array(),
         ground_shadow: GROUND_SHADOW,
-        key_color: KEY_COLOR.to_array(),
+        key_color: key.color.to_array(),
         grid_spacing: ground.map_or(1.0, |ground| ground.spacing),
         ground: ground.map_or([0.0; 4], |ground| ground.center.extend(ground.radius).to_array()),
         background_center: STUDIO_CENTER,
@@ -97,7 +100,10 @@ pub(super) fn frame_uniform(
         shadow_x: on_ground.map_or([0.0; 2], |[_, x, _]| x),
         shadow_y: on_ground.map_or([0.0; 2], |[.., y]| y),
         padding_2: [0.0; 2],
-        irradiance: *irradiance,
+        sky_ahead,
+        sky_right,
+        sky_up,
+        irradiance: environment.irradiance,
         lights: Default::default(),
     };
     for (slot, light) in uniform.lights.iter_mut().zip(&frame.lights) {
@@ -109,6 +115,31 @@ pub(super) fn frame_uniform(
         from_light
     });
     (uniform, from_light)
+}
+
+fn own_key_light(key: state::KeyLight) -> KeyLight {
+    let (yaw_sin, yaw_cos) = key.yaw_degrees.to_radians().sin_cos();
+    let (pitch_sin, pitch_cos) = key.pitch_degrees.to_radians().sin_cos();
+    // A light of π makes a white surface as bright as 1.
+    let color = Vec3::splat(std::f32::consts::PI * key.strength);
+    KeyLight { direction: Vec3::new(yaw_sin * pitch_cos, pitch_sin, yaw_cos * pitch_cos), color }
+}
+
+/// Directions in the environment: of the middle of a pane, and what x and y in clip space add to it.
+fn sky_directions(frame: &Frame) -> [[f32; 4]; 3] {
+    let projection = frame.view.projection_from_view;
+    let environment_from_view = Mat3::from_rotation_y(-frame.look.environment_radians)
+        * Mat3::from_mat4(frame.view.view_from_world).transpose();
+    let [width, height] = [projection.x_axis.x, projection.y_axis.y];
+    let is_parallel = projection.w_axis.w == 1.0;
+    let ahead = match is_parallel {
+        true => Vec3::NEG_Z,
+        false => Vec3::new(projection.z_axis.x / width, projection.z_axis.y / height, -1.0),
+    };
+    // Without perspective, every pixel looks the same way.
+    let scale = if is_parallel { 0.0 } else { 1.0 };
+    [ahead, Vec3::X * (scale / width), Vec3::Y * (scale / height)]
+        .map(|direction| (environment_from_view * direction).extend(0.0).to_array())
 }
 
 fn light_uniform(light: &FrameLight) -> LightUniform {

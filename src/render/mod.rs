@@ -11,6 +11,7 @@ mod frame_uniform;
 mod full_screen;
 pub mod geometry;
 mod headless;
+mod light;
 mod model;
 mod overlay;
 pub mod palette;

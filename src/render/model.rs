@@ -225,7 +225,8 @@ fn material_uniform(material: &Material) -> MaterialUniform {
     let uvs = |slot| material.texture(slot).map_or_else(UvTransformUniform::default, uv_transform);
     MaterialUniform {
         base_color: material.base_color.to_array(),
-        emissive: (material.emissive * material.emissive_strength).to_array(),
+        // KHR_materials_unlit ignores it, unlike glTF's points and lines without normals.
+        emissive: if material.unlit { [0.0; 3] } else { (material.emissive * material.emissive_strength).to_array() },
         alpha_cutoff: match material.alpha_mode {
             AlphaMode::Mask { cutoff } => cutoff,
             // Cuts holes into the shadows of blended surfaces.
@@ -254,7 +255,7 @@ fn features(
         .with(Features::METALLIC_ROUGHNESS_MAP, has(1, material.metallic_roughness_texture))
         .with(Features::NORMAL_MAP, has(2, material.normal_texture))
         .with(Features::OCCLUSION_MAP, has(3, material.occlusion_texture))
-        .with(Features::EMISSIVE_MAP, has(4, material.emissive_texture))
+        .with(Features::EMISSIVE_MAP, !material.unlit && has(4, material.emissive_texture))
         .with(Features::VERTEX_COLORS, !geometry.colors.is_empty())
         .with(Features::FLAT, geometry.normals.is_empty())
         .with(Features::TANGENTS, !geometry.tangents.is_empty())

@@ -9,6 +9,7 @@ use super::shadow::SHADOW_FORMAT;
 use super::targets::{DEPTH_FORMAT, SCENE_FORMAT};
 use super::uniforms::{DrawUniform, FrameUniform, MaterialUniform};
 use crate::mesh::{SkinningMode, Topology};
+use crate::state::{Background, ToneMap};
 
 /// Number of texture and sampler pairs in a material.
 pub(super) const MATERIAL_MAPS: usize = 5;
@@ -18,8 +19,10 @@ pub(super) const MATERIAL_MAPS: usize = 5;
 pub(super) struct Layouts {
     /// Group 0: frame, palette.
     pub frame: wgpu::BindGroupLayout,
-    /// Group 1 of meshes and ground: environment, shadow map.
+    /// Group 1 of meshes and ground: environment, shadow map, reflectance table.
     pub light: wgpu::BindGroupLayout,
+    /// Group 1 of the environment as a background: environment, panorama.
+    pub sky: wgpu::BindGroupLayout,
     /// Group 2 of meshes: draw, with a dynamic offset.
     pub draw: wgpu::BindGroupLayout,
     /// Group 3 of meshes: material, morph deltas, influences.
@@ -65,6 +68,14 @@ impl Layouts {
             ),
             draw: layout("draw", &[entry(0, Stages::VERTEX_FRAGMENT, uniform(size_of::<DrawUniform>(), true))]),
             primitive: layout("primitive", &primitive),
+            sky: layout(
+                "sky",
+                &[
+                    entry(0, Stages::FRAGMENT, texture(filtered, Dimension::Cube)),
+                    entry(1, Stages::FRAGMENT, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
+                    entry(2, Stages::FRAGMENT, texture(filtered, Dimension::D2)),
+                ],
+            ),
             light: layout(
                 "light",
                 &[
@@ -72,6 +83,7 @@ impl Layouts {
                     entry(1, Stages::FRAGMENT, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
                     entry(2, Stages::FRAGMENT, texture(Sample::Depth, Dimension::D2)),
                     entry(3, Stages::FRAGMENT, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison)),
+                    entry(4, Stages::FRAGMENT, texture(filtered, Dimension::D2)),
                 ],
             ),
         }
@@ -148,6 +160,7 @@ pub(super) struct MeshKey {
     pub features: Features,
     pub cull: Option<wgpu::Face>,
     pub mirrored: bool,
+    pub tone_map: ToneMap,
 }
 
 /// Index of the pipeline for a [`MeshKey`].
@@ -164,6 +177,8 @@ pub(super) struct Pipelines {
     pub grid: wgpu::RenderPipeline,
     pub ground_shadow: wgpu::RenderPipeline,
     pub background: wgpu::RenderPipeline,
+    /// Sharp and blurred, with the tone mapping they were made for.
+    sky: Option<(ToneMap, [wgpu::RenderPipeline; 2])>,
 }
 
 pub(super) fn pipeline_layout(
@@ -295,6 +310,36 @@ impl Pipelines {
             grid,
             ground_shadow,
             background,
+            sky: None,
+        }
+    }
+
+    /// Makes the pipelines that draw the environment as a background, unless they are there.
+    pub fn prepare_sky(&mut self, device: &wgpu::Device, layouts: &Layouts, tone_map: ToneMap) {
+        if self.sky.as_ref().is_some_and(|(made_for, _)| *made_for == tone_map) {
+            return;
+        }
+        let module = shaders::SKY.module(device);
+        let layout = pipeline_layout(device, "sky", &[Some(&layouts.frame), Some(&layouts.sky)]);
+        let constants = [tone_constant(tone_map)];
+        let pipelines = ["sky_sharp", "sky_blurred"].map(|fragment| {
+            ScenePipeline {
+                blend: None,
+                constants: &constants,
+                ..ScenePipeline::new("sky", &module, &layout, ["sky_vertex", fragment])
+            }
+            .create(device, self.samples)
+        });
+        self.sky = Some((tone_map, pipelines));
+    }
+
+    /// The pipeline of a background that shows the environment; `None` for others, and before [`Self::prepare_sky`].
+    pub fn sky(&self, background: Background) -> Option<&wgpu::RenderPipeline> {
+        let (_, [sharp, blurred]) = self.sky.as_ref()?;
+        match background {
+            Background::Environment => Some(sharp),
+            Background::Blurred => Some(blurred),
+            Background::Studio | Background::Color(_) | Background::Transparent => None,
         }
     }
 
@@ -375,8 +420,19 @@ fn mesh_constants(key: MeshKey) -> Vec<(&'static str, f64)> {
         SkinningMode::DualQuaternion => 2.0,
     };
     constants.push(("SKINNING", skinning));
+    constants.push(tone_constant(key.tone_map));
     constants.push(("DEPTH_OFFSET", if key.shading == Shading::Wireframe { 3e-5 } else { 0.0 }));
     constants
+}
+
+fn tone_constant(tone_map: ToneMap) -> (&'static str, f64) {
+    let number = match tone_map {
+        ToneMap::Neutral => 0.0,
+        ToneMap::Aces => 1.0,
+        ToneMap::Agx => 2.0,
+        ToneMap::None => 3.0,
+    };
+    ("TONE_MAP", number)
 }
 
 fn fragment_entry_point(key: MeshKey) -> Option<&'static str> {

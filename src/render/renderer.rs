@@ -3,14 +3,14 @@
 use std::ops::AddAssign;
 
 use super::draw_list::{DrawList, Item};
-use super::environment::Environment;
+use super::environment::Source;
 use super::flush;
 use super::frame_uniform::{GroundPlane, frame_uniform};
+use super::light::LightSources;
 use super::model::{GpuModel, ModelUploader};
 use super::overlay::Overlay;
 use super::palette::PaletteTexture;
 use super::pipelines::{Layouts, Pipelines};
-use super::shadow::ShadowMap;
 use super::targets::Targets;
 use super::uniform_buffer::UniformBuffer;
 use super::uniforms::FrameUniform;
@@ -77,8 +77,6 @@ pub struct Renderer {
     pipelines: Pipelines,
     uploader: ModelUploader,
     models: Vec<GpuModel>,
-    environment: Environment,
-    shadow_map: ShadowMap,
     palette: PaletteTexture,
     overlay: Overlay,
     draws: DrawList,
@@ -88,9 +86,7 @@ pub struct Renderer {
     shadow_buffer: UniformBuffer<FrameUniform>,
     frame_group: wgpu::BindGroup,
     shadow_group: wgpu::BindGroup,
-    light_group: wgpu::BindGroup,
-    /// Used while the shadow map itself is drawn: binds a placeholder instead.
-    no_light_group: wgpu::BindGroup,
+    light: LightSources,
     stats: RenderStats,
 }
 
@@ -112,30 +108,14 @@ impl Renderer {
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, options: RendererOptions) -> Self {
         flush(queue);
         let layouts = Layouts::new(device);
-        let environment = Environment::new(device, queue);
+        let pipelines = Pipelines::new(device, queue, &layouts, options.samples);
+        // A browser compiles the pipelines in another process meanwhile.
+        let light = LightSources::new(device, queue, &layouts);
         flush(queue);
-        let shadow_map = ShadowMap::new(device);
         let palette = PaletteTexture::new(device);
         let frame_buffer = UniformBuffer::new(device, "frame");
         let shadow_buffer = UniformBuffer::new(device, "shadow");
         let targets = Targets::new(device, [1, 1], options.samples);
-        let light_group = |shadow_view| {
-            let resources = [
-                wgpu::BindingResource::TextureView(&environment.view),
-                wgpu::BindingResource::Sampler(&environment.sampler),
-                wgpu::BindingResource::TextureView(shadow_view),
-                wgpu::BindingResource::Sampler(&shadow_map.sampler),
-            ];
-            let mut bindings = 0..;
-            let entries =
-                resources.map(|resource| wgpu::BindGroupEntry { binding: bindings.next().unwrap_or(0), resource });
-            device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("light"),
-                layout: &layouts.light,
-                entries: &entries,
-            })
-        };
-        let pipelines = Pipelines::new(device, queue, &layouts, options.samples);
         // On software adapters extra samples and texels are expensive, so both are disabled.
         let anisotropy = if options.samples > 1 { 4 } else { 1 };
         Self {
@@ -147,10 +127,7 @@ impl Renderer {
             draws: DrawList::new(device, &layouts),
             frame_group: frame_buffer.bind_group(device, &layouts, &palette),
             shadow_group: shadow_buffer.bind_group(device, &layouts, &palette),
-            light_group: light_group(&shadow_map.view),
-            no_light_group: light_group(&shadow_map.placeholder),
-            environment,
-            shadow_map,
+            light,
             palette,
             targets,
             frame_buffer,
@@ -188,9 +165,14 @@ impl Renderer {
             self.targets = Targets::new(device, size, self.options.samples);
         }
 
+        self.light.choose(device, queue, &self.layouts, Source::of(frame));
+        if matches!(frame.look.background, Background::Environment | Background::Blurred) {
+            self.light.prepare_sky(device, queue, &self.layouts);
+            self.pipelines.prepare_sky(device, &self.layouts, frame.look.tone_map);
+        }
         let ground = GroundPlane::of(frame);
         let panes = Panes::new(frame.panes, size);
-        let (uniform, shadow_uniform) = frame_uniform(frame, ground.as_ref(), panes.size, &self.environment.irradiance);
+        let (uniform, shadow_uniform) = frame_uniform(frame, ground.as_ref(), panes.size, &self.light.environment);
         self.frame_buffer.write(queue, uniform);
         let shadow = shadow_uniform.is_some();
         if let Some(uniform) = shadow_uniform {
@@ -238,14 +220,14 @@ impl Renderer {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("shadow"),
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &self.shadow_map.view,
+                view: &self.light.shadow_map.view,
                 depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store }),
                 stencil_ops: None,
             }),
             ..Default::default()
         });
         pass.set_bind_group(0, &self.shadow_group, &[]);
-        pass.set_bind_group(1, &self.no_light_group, &[]);
+        pass.set_bind_group(1, &self.light.without_shadow, &[]);
         let draw = self.draws.bind_group();
         let stats = draw_items(&mut pass, self.draws.shadow(), 0, draw, &self.models, &self.pipelines);
         self.stats.draw_calls += stats.draw_calls;
@@ -267,7 +249,7 @@ impl Renderer {
                 let [r, g, b] = color.map(|channel| f64::from(channel) / 255.0);
                 wgpu::Color { r, g, b, a: 1.0 }
             }
-            Background::Studio | Background::Transparent => wgpu::Color::TRANSPARENT,
+            _ => wgpu::Color::TRANSPARENT,
         };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("scene"),
@@ -288,7 +270,7 @@ impl Renderer {
             ..Default::default()
         });
         pass.set_bind_group(0, &self.frame_group, &[]);
-        pass.set_bind_group(1, &self.light_group, &[]);
+        pass.set_bind_group(1, &self.light.group, &[]);
         for pane in 0..panes.count() {
             let [x, y, width, height] = panes.rect(pane);
             pass.set_viewport(x, y, width, height, 0.0, 1.0);
@@ -308,6 +290,13 @@ impl Renderer {
         let overlay_call = RenderStats { draw_calls: 1, triangles: 0 };
         let draw = self.draws.bind_group();
         stats += draw_items(pass, self.draws.solid(), pane, draw, &self.models, &self.pipelines);
+        if let Some((pipeline, group)) = self.pipelines.sky(background).zip(self.light.sky.as_ref()) {
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(1, group, &[]);
+            pass.draw(0..3, 0..1);
+            pass.set_bind_group(1, &self.light.group, &[]);
+            stats += overlay_call;
+        }
         if background == Background::Studio {
             pass.set_pipeline(&self.pipelines.background);
             pass.draw(0..3, 0..1);

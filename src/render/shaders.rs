@@ -12,6 +12,7 @@ const LINE: &str = include_str!("../../shaders/line.wgsl");
 const BONE: &str = include_str!("../../shaders/bone.wgsl");
 const CLEAR_DEPTH: &str = include_str!("../../shaders/clear_depth.wgsl");
 const BACKGROUND: &str = include_str!("../../shaders/background.wgsl");
+const SKY_BACKGROUND: &str = include_str!("../../shaders/sky.wgsl");
 const MIP: &str = include_str!("../../shaders/mip.wgsl");
 const BLIT_PICTURE: &str = include_str!("../../shaders/blit.wgsl");
 
@@ -35,6 +36,8 @@ pub(super) const BONES: Shader = Shader { label: "bones", parts: &[FRAME, TONE, 
 pub(super) const DEPTH_CLEAR: Shader = Shader { label: "clear depth", parts: &[CLEAR_DEPTH] };
 /// The gradient of the studio background.
 pub(super) const BACKDROP: Shader = Shader { label: "background", parts: &[FRAME, BACKGROUND] };
+/// The environment as a background.
+pub(super) const SKY: Shader = Shader { label: "sky", parts: &[FRAME, TONE, SKY_BACKGROUND] };
 /// Renders a mip level of a texture from the level above.
 pub(super) const MIPS: Shader = Shader { label: "mips", parts: &[MIP] };
 /// Copies the finished picture to the screen.
@@ -43,7 +46,7 @@ pub(super) const BLIT: Shader = Shader { label: "blit", parts: &[BLIT_PICTURE] }
 pub const SKINNED_VERTEX: Shader = Shader { label: "skinned vertex", parts: &[FRAME, PALETTE, SKINNING, VERTEX] };
 
 /// Every module used for drawing.
-pub const ALL: [Shader; 8] = [MESH, GROUND_PLANE, LINES, BONES, DEPTH_CLEAR, BACKDROP, MIPS, BLIT];
+pub const ALL: [Shader; 9] = [MESH, GROUND_PLANE, LINES, BONES, DEPTH_CLEAR, BACKDROP, SKY, MIPS, BLIT];
 
 impl Shader {
     /// Returns the WGSL of the whole module.

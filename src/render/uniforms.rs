@@ -2,8 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-/// Lights of a file beyond this number are ignored.
-pub(super) const MAX_LIGHTS: usize = 8;
+use crate::asset::MAX_LIGHTS;
 
 /// `Light` in frame.wgsl.
 #[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
@@ -43,8 +42,8 @@ pub struct FrameUniform {
     pub viewport_pixels: [f32; 2],
     /// Number of used elements of `lights`.
     pub light_count: u32,
-    /// Unused, zero.
-    pub padding: u32,
+    /// Index of the environment's roughest level.
+    pub environment_last_level: f32,
     /// Cosine and sine of the environment's rotation about Y.
     pub environment: [f32; 2],
     /// Size of a shadow-map texel in metres; 0 without a shadow.
@@ -73,6 +72,12 @@ pub struct FrameUniform {
     pub background_center: [f32; 4],
     /// sRGB colour of the studio background at its edge.
     pub background_edge: [f32; 4],
+    /// Direction of the middle of a pane in the environment; w is unused.
+    pub sky_ahead: [f32; 4],
+    /// Added to it per unit of x in clip space.
+    pub sky_right: [f32; 4],
+    /// Added to it per unit of y in clip space.
+    pub sky_up: [f32; 4],
     /// Spherical harmonics of the environment's irradiance over π, all constants folded in; w is unused.
     pub irradiance: [[f32; 4]; 9],
     /// The file's lights; unused elements are zero.

@@ -7,7 +7,7 @@ use glam::Vec3;
 use super::framing::{DEFAULT_ASPECT, frame_all, resolve_camera, resolved_bounds};
 use super::maps::{self, reconciled_maps};
 use super::playhead::{active_clip, choice_of_clip, clip_of, clip_secs, play_range};
-use super::{CameraChoice, ClipChoice, Command, Fade, OrbitCamera, VertexChoice, ViewerState};
+use super::{CameraChoice, ClipChoice, Command, Fade, KeyLight, OrbitCamera, VertexChoice, ViewerState};
 use crate::anim::{LoopMode, TimeRange};
 use crate::library::{Library, Model};
 use crate::retarget::JointMap;
@@ -55,7 +55,10 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::SetTurntable(speed) => set_f32(&mut state.camera_options.turntable, speed, -360.0, 360.0),
         Command::SetUp(up) => state.edits.up = up,
         Command::SetExposure(stops) => set_f32(&mut state.display.exposure, stops, -10.0, 10.0),
+        Command::SetToneMap(tone_map) => state.display.tone_map = tone_map,
         Command::SetEnvironment(degrees) => set_rotation(&mut state.display.environment_degrees, degrees),
+        Command::SetLight(environment) => state.lighting.environment = environment,
+        Command::SetKeyLight(key) => set_key_light(state, key),
         Command::SetBackground(background) => state.display.background = background,
         Command::SetEmbed(embed) => state.page.embed = embed,
         Command::SetMap { motion, map } => set_map(state, library, motion, map.map(|map| *map)),
@@ -86,6 +89,8 @@ fn replace(state: &mut ViewerState, new: ViewerState) {
     set_f32(&mut state.display.exposure, wanted.display.exposure, -10.0, 10.0);
     state.display.environment_degrees = default.display.environment_degrees;
     set_rotation(&mut state.display.environment_degrees, wanted.display.environment_degrees);
+    state.lighting.key = None;
+    set_key_light(state, wanted.lighting.key);
     state.playhead.range = None;
     set_range(state, None, wanted.playhead.range);
     state.edits.morph.clear();
@@ -115,6 +120,20 @@ fn set_scene(state: &mut ViewerState, model: Option<&Model>, scene: Option<usize
     let exists = |scene: usize| model.is_none_or(|model| scene < model.asset.scenes.len());
     if scene.is_none_or(exists) {
         state.sources.scene = scene;
+    }
+}
+
+fn set_key_light(state: &mut ViewerState, key: Option<KeyLight>) {
+    let Some(wanted) = key else {
+        state.lighting.key = None;
+        return;
+    };
+    if wanted.strength.is_finite() && wanted.yaw_degrees.is_finite() && wanted.pitch_degrees.is_finite() {
+        let mut key = wanted;
+        key.strength = wanted.strength.clamp(0.0, 10.0);
+        set_rotation(&mut key.yaw_degrees, wanted.yaw_degrees);
+        key.pitch_degrees = wanted.pitch_degrees.clamp(-90.0, 90.0);
+        state.lighting.key = Some(key);
     }
 }
 

@@ -1,6 +1,6 @@
 //! Everything the user can do to the view. Menus, keys, links, scripts and tests all send these commands.
 
-use super::{Background, CameraChoice, ClipChoice, MapEdit, UpAxis, ViewerState};
+use super::{Background, CameraChoice, ClipChoice, EnvironmentChoice, KeyLight, MapEdit, ToneMap, UpAxis, ViewerState};
 use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
 use crate::retarget::{Feet, JointMap, RootOptions, Unmapped};
@@ -103,8 +103,14 @@ pub enum Command {
     SetUp(UpAxis),
     /// Sets the exposure in stops, −10 to 10.
     SetExposure(f32),
+    /// Sets how brightness becomes that of the picture.
+    SetToneMap(ToneMap),
     /// Rotates the lighting about the vertical axis, in degrees.
     SetEnvironment(f32),
+    /// Sets the light from all around.
+    SetLight(EnvironmentChoice),
+    /// Sets the key light; `None` leaves it to the environment. Values out of range are clamped.
+    SetKeyLight(Option<KeyLight>),
     /// Sets what is behind the scene.
     SetBackground(Background),
     /// Sets whether the page shows only the viewport and the transport.

@@ -200,8 +200,35 @@ const KEYS: &[Key] = &[
     key!("turntable", camera_options.turntable, finite, write_number, "degrees per second"),
     key!("up", edits.up, |text| from_word(&UP_AXES, text), |axis| write_word(&UP_AXES, axis), "x, y, z, -x, -y or -z"),
     key!("exposure", display.exposure, finite, write_number, "stops"),
+    key!(
+        "tonemap",
+        display.tone_map,
+        |text| from_word(&TONE_MAPS, text),
+        |tone_map| write_word(&TONE_MAPS, tone_map),
+        "neutral, aces, agx or none"
+    ),
     key!("environment", display.environment_degrees, finite, write_number, "degrees"),
-    key!("background", display.background, read_background, write_background, "studio, transparent or rrggbb"),
+    key!(
+        "light",
+        lighting.environment,
+        read_light,
+        write_light,
+        "studio, white, soft, hard, outdoor, a URL or a file name"
+    ),
+    key!(
+        "key",
+        lighting.key,
+        read_unless_empty(read_key_light),
+        write_some(key_light_text),
+        "STRENGTH,YAW,PITCH, the angles in degrees"
+    ),
+    key!(
+        "background",
+        display.background,
+        read_background,
+        write_background,
+        "studio, transparent, environment, blurred or rrggbb"
+    ),
     key!("embed", page.embed, flag, write_flag, "0 or 1"),
 ];
 

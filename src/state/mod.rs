@@ -6,6 +6,7 @@ mod command;
 mod comparison;
 mod framing;
 mod history;
+mod lighting;
 mod link;
 mod loop_frames;
 mod map_code;
@@ -24,6 +25,7 @@ pub use framing::{
     DEFAULT_ASPECT, frame_all, front_yaw_radians, resolve_camera, resolved_bounds, world_from_file_camera,
 };
 pub use history::History;
+pub use lighting::{EnvironmentChoice, KeyLight, LightSetup, Lighting, ToneMap};
 pub use link::{LinkError, from_link, from_object, to_link, to_object, with_current_member};
 pub use link::{
     LinkRole, LinkedFile, MEMBER_SEPARATOR, embedded_link, is_to_bring, link_with_files, link_without_missing,

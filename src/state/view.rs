@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::{CameraChoice, MotionMap};
+use super::{CameraChoice, Lighting, MotionMap, ToneMap};
 use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
 use crate::retarget::{Feet, RootOptions, Unmapped};
@@ -15,7 +15,7 @@ use crate::retarget::{Feet, RootOptions, Unmapped};
 /// | --- | --- | --- |
 /// | `sources`, `playhead`, `selection`, `camera` | yes | no |
 /// | `retarget`, `edits`, `inspect` | yes | yes |
-/// | `display` | no | yes |
+/// | `display`, `lighting` | no | yes |
 /// | `playback`, `camera_options`, `page` | no | no |
 ///
 /// [`ViewerState::for_model`] and `undoable` are the only code that depends on that. Joints are identified by
@@ -41,6 +41,8 @@ pub struct ViewerState {
     pub playback: Playback,
     /// How the scene is drawn.
     pub display: Display,
+    /// What lights the scene.
+    pub lighting: Lighting,
     /// How any camera behaves.
     pub camera_options: CameraOptions,
     /// What the page does with the view.
@@ -50,9 +52,9 @@ pub struct ViewerState {
 impl ViewerState {
     /// Returns the view of another model: everything about the model comes from `model`, the rest is kept. Ends a crossfade.
     pub fn for_model(self, model: Self) -> Self {
-        let Self { playback, display, camera_options, page, .. } = self;
+        let Self { playback, display, lighting, camera_options, page, .. } = self;
         let playhead = Playhead { fade: None, ..model.playhead };
-        Self { playhead, playback, display, camera_options, page, ..model }
+        Self { playhead, playback, display, lighting, camera_options, page, ..model }
     }
 
     /// Returns the default view of a model from this source.
@@ -83,15 +85,16 @@ impl ViewerState {
 
     /// Returns the groups that undo covers.
     pub(super) fn undoable(&self) -> UndoableEdits<'_> {
-        let Self { retarget, edits, inspect, display, .. } = self;
-        UndoableEdits { retarget, edits, inspect, display }
+        let Self { retarget, edits, inspect, display, lighting, .. } = self;
+        UndoableEdits { retarget, edits, inspect, display, lighting }
     }
 
     /// Copies the groups that undo covers from another state.
     pub fn restore_undoable(&mut self, from: &Self) {
-        let UndoableEdits { retarget, edits, inspect, display } = from.undoable();
+        let UndoableEdits { retarget, edits, inspect, display, lighting } = from.undoable();
         self.retarget.clone_from(retarget);
         self.edits.clone_from(edits);
+        self.lighting.clone_from(lighting);
         (self.inspect, self.display) = (*inspect, *display);
     }
 }
@@ -103,6 +106,7 @@ pub(super) struct UndoableEdits<'a> {
     edits: &'a Edits,
     inspect: &'a Inspect,
     display: &'a Display,
+    lighting: &'a Lighting,
 }
 
 /// The files and the scene.
@@ -211,6 +215,8 @@ pub struct Display {
     pub show: Show,
     /// In stops: the image is multiplied by 2^exposure.
     pub exposure: f32,
+    /// How brightness becomes that of the picture.
+    pub tone_map: ToneMap,
     /// Rotation of the lighting about the vertical axis.
     pub environment_degrees: f32,
     /// What is behind the scene.
@@ -223,6 +229,7 @@ impl Default for Display {
             skinning: SkinningMode::Linear,
             show: Show::default(),
             exposure: 0.0,
+            tone_map: ToneMap::Neutral,
             environment_degrees: 0.0,
             background: Background::Studio,
         }
@@ -368,4 +375,8 @@ pub enum Background {
     Color([u8; 3]),
     /// Alpha 0.
     Transparent,
+    /// What lights the scene.
+    Environment,
+    /// The same, out of focus.
+    Blurred,
 }

@@ -318,7 +318,35 @@ pub const FOLLOW: &str = "Follow character";
 pub const UP_Z: &str = "Z";
 /// Exposure slider, in stops.
 pub const EXPOSURE: &str = "Exposure";
-/// The studio, in the choice of background.
+/// The choice of tone mapping.
+pub const TONE_MAP: &str = "Tone mapping";
+/// Khronos PBR Neutral, in the choice of tone mapping.
+pub const TONE_NEUTRAL: &str = "Neutral";
+/// ACES, in the choice of tone mapping.
+pub const TONE_ACES: &str = "ACES";
+/// AgX, in the choice of tone mapping.
+pub const TONE_AGX: &str = "AgX";
+/// No tone mapping.
+pub const NO_TONE_MAP: &str = "Off";
+/// The choice of light from all around.
+pub const LIGHT: &str = "Light";
+/// A tent of large boxes, in the choice of light.
+pub const SOFT_LIGHT: &str = "Soft";
+/// A small strong lamp, in the choice of light.
+pub const HARD_LIGHT: &str = "Hard";
+/// Sky and sun, in the choice of light.
+pub const OUTDOOR_LIGHT: &str = "Outdoor";
+/// The same from all directions, in the choice of light.
+pub const WHITE_LIGHT: &str = "White";
+/// Switch that replaces the key light.
+pub const OWN_KEY_LIGHT: &str = "Custom key light";
+/// Slider of the custom key light.
+pub const KEY_STRENGTH: &str = "Key light strength";
+/// The light, in the choice of background.
+pub const ENVIRONMENT: &str = "Light";
+/// The light out of focus, in the choice of background.
+pub const BLURRED: &str = "Blurred";
+/// The studio, in the choices of light and background.
 pub const STUDIO: &str = "Studio";
 /// A single colour, in the choice of background.
 pub const COLOR: &str = "Colour";

@@ -10,16 +10,18 @@ use wasm_bindgen::prelude::*;
 use super::page::{Page, page, state_of_link};
 use crate::app::{App, Message, Opening, Reply, ScriptCall};
 use crate::editor::{Contents, short_name};
-use crate::files::{Item, OpenError, Role, open_items, open_view};
+use crate::files::{Held, Item, OpenError, Role, open_items, open_view};
 use crate::frame::PoseDocument;
-use crate::library::{Model, Motion};
+use crate::library::{Environment, Model, Motion};
 use crate::samples;
-use crate::state::{Command, MotionMap, ViewerState, active_clip, from_object, to_object, with_current_member};
+use crate::state::{
+    Command, EnvironmentChoice, MotionMap, ViewerState, active_clip, from_object, to_object, with_current_member,
+};
 use crate::ui::title_and_hint;
 
 /// Opens one set: an array of URLs and `[name, Uint8Array]` pairs. A model becomes the active one; motions and joint maps are
 /// applied to the active model. With the role `motion`, models are opened as motions too. Resolves once it is on screen, to
-/// `{shown, document}`: which of `model`, `motion` and `map` it was, and the inspect document. Changes nothing on failure.
+/// `{shown, document}`: which of `model`, `motion`, `light` and `map` it was, and the inspect document. Changes nothing on failure.
 #[wasm_bindgen]
 pub async fn open(items: Array, role: Option<String>, is_private: bool) -> Result<String, JsError> {
     let page = page().map_err(error)?;
@@ -139,7 +141,11 @@ pub fn summary() -> Result<String, JsError> {
 /// Whether files must be read to go from `before` to `state`.
 fn needs_files(before: &ViewerState, state: &ViewerState) -> bool {
     let has_map_file = || state.retarget.map.iter().any(|map| matches!(map, MotionMap::File(_)));
-    state.sources.model != before.sources.model || state.sources.motion != before.sources.motion || has_map_file()
+    let light = &state.lighting.environment;
+    let has_other_light = matches!(light, EnvironmentChoice::File(_)) && *light != before.lighting.environment;
+    let has_other_sources =
+        state.sources.model != before.sources.model || state.sources.motion != before.sources.motion;
+    has_other_sources || has_other_light || has_map_file()
 }
 
 /// Opens a state. Loads its files if they differ from the loaded ones, or all of them with `reload`. For a link, the shell
@@ -152,11 +158,12 @@ async fn open_state(page: &Rc<Page>, state: ViewerState, reload: bool, is_link: 
     }
     let with_model = reload || !with_app(page, |app| app.editor().holds(&state))?;
     let current_motions = if reload { Vec::new() } else { with_app(page, |app| app.library().motions().to_vec())? };
+    let environments = if reload { Vec::new() } else { with_app(page, |app| app.library().environments().to_vec())? };
     let models = state.sources.model.iter().filter(|_| with_model);
     let motions =
         state.sources.motion.iter().filter(|source| !current_motions.iter().any(|motion| motion.origin == **source));
     let loaded: Vec<String> = models.chain(motions).cloned().collect();
-    let request = Request::View { state: Box::new(state), with_model, current_motions, is_link };
+    let request = Request::View { state: Box::new(state), with_model, current_motions, environments, is_link };
     let opened = load(page, request).await?;
     Ok(report(&loaded, &opened.problems))
 }
@@ -170,12 +177,18 @@ enum Request {
     /// Files; as much of the current state as fits is kept.
     Items { items: Vec<Item>, role: Role, is_private: bool },
     /// A whole view, with its model or on the active one. For a link, the shell reports what is missing.
-    View { state: Box<ViewerState>, with_model: bool, current_motions: Vec<Motion>, is_link: bool },
+    View {
+        state: Box<ViewerState>,
+        with_model: bool,
+        current_motions: Vec<Motion>,
+        environments: Vec<Environment>,
+        is_link: bool,
+    },
 }
 
 /// What was opened.
 struct Opened {
-    /// `model`, `motion` or `map`.
+    /// `model`, `motion`, `light` or `map`.
     kind: &'static str,
     /// The inspect document.
     document: Value,
@@ -201,8 +214,9 @@ async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, String> {
             let contents = open_items(items, role, &progress).await;
             contents.map(|contents| (if is_private { contents.into_private() } else { contents }, None))
         }
-        Request::View { state, with_model, current_motions, .. } => {
-            let opened = open_view(*state, with_model, &current_motions, &progress).await;
+        Request::View { state, with_model, current_motions, environments, .. } => {
+            let held = Held { motions: &current_motions, environments: &environments };
+            let opened = open_view(*state, with_model, held, &progress).await;
             opened.map(|(contents, state)| (contents, Some(Box::new(state))))
         }
     };
@@ -232,6 +246,7 @@ async fn show(
     let kind = match &contents {
         Contents { models, .. } if !models.is_empty() => "model",
         Contents { motions: Some(_), .. } => "motion",
+        Contents { environment: Some(_), .. } => "light",
         _ => "map",
     };
     let problems = contents.problems.clone();

@@ -11,7 +11,7 @@ use super::rehearsal::rehearse;
 use super::shell::{self, Shell};
 use crate::app::{App, Host, Inbox, Loads, Message, Video, set_fatal_hook, web_options};
 use crate::editor::Contents;
-use crate::files::{Item, OpenError, Role, open_items, open_view};
+use crate::files::{Held, Item, OpenError, Role, open_items, open_view};
 use crate::library::Model;
 use crate::samples;
 use crate::state::{ViewerState, from_link, to_link};
@@ -127,20 +127,26 @@ async fn open_wanted(
     motion_items: Vec<Item>,
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<(Contents, ViewerState), OpenError> {
-    let (mut models, mut motions, mut problem) = (Vec::new(), Vec::new(), None);
+    let (mut models, mut motions, mut environments, mut problem) = (Vec::new(), Vec::new(), Vec::new(), None);
     if !items.is_empty() {
         let found = open_items(items, Role::Model, progress).await?;
         models = found.models;
+        environments.extend(found.environment);
         motions.extend(found.motions.into_iter().flatten());
     }
     if !motion_items.is_empty() {
         match open_items(motion_items, Role::Motion, progress).await {
-            Ok(found) => motions.extend(found.motions.into_iter().flatten()),
+            Ok(found) => {
+                motions.extend(found.motions.into_iter().flatten());
+                environments.extend(found.environment);
+            }
             Err(error) => problem = Some(error.to_string()),
         }
     }
-    let (mut contents, view) = open_view(wanted.clone(), models.is_empty(), &motions, progress).await?;
+    let held = Held { motions: &motions, environments: &environments };
+    let (mut contents, view) = open_view(wanted.clone(), models.is_empty(), held, progress).await?;
     contents.models.extend(models);
+    contents.environment = contents.environment.or(environments.pop());
     contents.problems.extend(problem);
     Ok((contents, view))
 }

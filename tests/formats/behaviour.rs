@@ -363,6 +363,17 @@ fn lights_and_cameras() {
 }
 
 #[test]
+fn lights_beyond_the_limit_are_reported() {
+    for (count, expected) in [(8, vec![]), (9, vec!["lights-dropped"])] {
+        let node = json!({ "extensions": { "KHR_lights_punctual": { "light": 0 } } });
+        let mut build = Build::new().with("/nodes", json!(vec![node; count]));
+        build.json["extensions"] = json!({ "KHR_lights_punctual": { "lights": [{ "type": "point" }] } });
+        let asset = read(build);
+        assert_eq!((asset.lights.len(), codes(&asset)), (count, expected));
+    }
+}
+
+#[test]
 fn clips_keep_the_keys_of_the_file() {
     let values = [0.0, 0.0, 0.0, 1.0, 2.0, 3.0];
     let asset = read(Build::animated("translation", &[0.5, 2.0], "VEC3", 2, &values));

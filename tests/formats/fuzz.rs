@@ -40,6 +40,11 @@ const LINK: &[u8] = b"v=1&model=sample:pilot&motion=https://example.org/walk.bvh
     range=0.1,0.9&skinning=rigid&morph=0:1&pose=3:10,20,30&show=skeleton,grid&camera=90,10,4,0,1,0&fov=35&map=1.ffffffff.0-5,1-&\
     zoo=1%262&up=z&exposure=1.5&background=ff8800";
 
+/// Two rows of eight pixels, component by component, and one in the old encoding.
+const HDR: &[u8] = b"#?RADIANCE\nEXPOSURE=1\nFORMAT=32-bit_rle_rgbe\n\n-Y 3 +X 8\n\
+    \x02\x02\x00\x08\x88\x80\x08\x01\x02\x03\x04\x05\x06\x07\x08\x83\x00\x85\x40\x88\x81\
+    \x02\x02\x00\x08\x88\x10\x88\x20\x88\x30\x88\x90\x80\x40\x20\x81\x01\x01\x01\x07";
+
 fn zipped() -> Vec<u8> {
     let mut writer = zip::ZipWriter::new(Cursor::new(Vec::new()));
     for (name, bytes) in [("in/m.gltf", Build::triangle().gltf("mesh.bin")), ("in/mesh.bin", vec![0; 36])] {
@@ -80,6 +85,7 @@ fn seeds(entry: &str) -> Vec<Vec<u8>> {
         "archive" => vec![zipped()],
         "map" => vec![MAP.to_vec()],
         "link" => vec![LINK.to_vec()],
+        "hdr" => vec![HDR.to_vec()],
         other => panic!("no seeds for {other}"),
     }
 }

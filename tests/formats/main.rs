@@ -5,6 +5,7 @@ mod bvh;
 mod draco;
 mod file_sets;
 mod fuzz;
+mod hdr;
 mod humanoid;
 mod influences;
 mod invalid;

@@ -31,3 +31,26 @@ fn a_picture_can_be_piped_and_drivers_are_quiet() {
     assert_eq!(refused.status.code(), Some(1), "{said}");
     assert!(said.ends_with("error: picture.glb: file extension: expected .png, found .glb\n"), "{said}");
 }
+
+/// The background shows what lights the scene: white all around, however it is named.
+#[test]
+fn a_picture_is_lit_by_what_the_option_names() {
+    if or_skipped(headless_device()).is_none() {
+        return;
+    }
+    let path = std::env::temp_dir().join(format!("gaitway-white-{}.hdr", std::process::id()));
+    std::fs::write(&path, b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\x80\x80\x80\x81")
+        .expect("a file is written");
+    let file = path.to_str().expect("Unicode");
+    for environment in ["white", file] {
+        let view = "background=environment&show=";
+        let output = render(&["--out", "-", "--environment", environment, "--view", view]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let picture = image::load_from_memory(&output.stdout).expect("a PNG").into_rgba8();
+        assert_eq!(picture.get_pixel(0, 0).0, [240, 240, 240, 255], "{environment}");
+    }
+    std::fs::remove_file(&path).expect("it was written");
+    let refused = render(&["--out", "-", "--environment", file]);
+    let said = String::from_utf8_lossy(&refused.stderr);
+    assert!(refused.status.code() == Some(1) && said.contains("gaitway-white"), "{said}");
+}

@@ -13,6 +13,20 @@ pub fn gpu() -> Option<Gpu> {
     or_skipped(headless_device()).map(|(device, queue, _)| Gpu { device, queue })
 }
 
+/// The other back end: what wgpu makes of OpenGL ES is what it makes of WebGL2, through the same translation of shaders. Not
+/// every machine with a Vulkan driver has OpenGL as well, so this is never required.
+pub fn gl() -> Option<Gpu> {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = wgpu::Backends::GL;
+    let instance = wgpu::Instance::new(descriptor);
+    let adapter = pollster::block_on(instance.request_adapter(&Default::default()));
+    let Ok(adapter) = adapter.inspect_err(|problem| eprintln!("skipped: {problem}")) else { return None };
+    let required_limits = wgpu::Limits::downlevel_webgl2_defaults().using_resolution(adapter.limits());
+    let descriptor = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
+    let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).unwrap();
+    Some(Gpu { device, queue })
+}
+
 impl Gpu {
     /// Reads a texture whose texels have `size` bytes, without row padding.
     pub fn read(&self, texture: &wgpu::Texture, size: u32) -> Vec<u8> {

@@ -43,7 +43,7 @@ fn uniforms_have_the_same_layout_in_wgsl_and_rust() {
         exposure,
         viewport_pixels,
         light_count,
-        padding,
+        environment_last_level,
         environment,
         shadow_texel,
         shadow_light,
@@ -58,6 +58,9 @@ fn uniforms_have_the_same_layout_in_wgsl_and_rust() {
         padding_2,
         background_center,
         background_edge,
+        sky_ahead,
+        sky_right,
+        sky_up,
         irradiance,
         lights
     );

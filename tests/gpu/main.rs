@@ -12,6 +12,7 @@ mod coursework;
 #[path = "../support/data_folder.rs"]
 mod data_folder;
 mod device;
+mod environment;
 mod golden;
 mod layouts;
 mod lights;

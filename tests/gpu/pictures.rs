@@ -7,7 +7,7 @@ use gaitway::mesh::{
     palette_entry,
 };
 use gaitway::render::{Renderer, RendererOptions, read_pixels};
-use gaitway::state::Background;
+use gaitway::state::{Background, ToneMap};
 use glam::camera::rh::view::look_at_mat4;
 use glam::{Affine3A, Vec2, Vec3, Vec4};
 
@@ -33,6 +33,19 @@ fn an_unlit_colour_is_drawn_unchanged() {
             near(picture.at(0.0, 0.0), [color[0], color[1], color[2], 255], 1);
         }
     }
+}
+
+#[test]
+fn an_unlit_material_does_not_glow() {
+    let Some(gpu) = gpu() else { return };
+    let material = Material { emissive: Vec3::new(0.0, 0.5, 0.5), ..unlit(linear([200, 100, 50])) };
+    let shown = Scene::new(vec![square(0)], vec![material.clone()]).draw(&gpu).at(0.0, 0.0);
+    near(shown, [200, 100, 50, 255], 1);
+    // Points and lines without normals, which have no side to light, do (glTF 2.0 §3.9.6).
+    let points = Geometry { topology: Topology::Points, normals: Vec::new(), ..square(0) };
+    let material = Material { unlit: false, emissive: Vec3::Y, base_color: Vec4::new(1.0, 0.0, 0.0, 1.0), ..material };
+    let picture = Scene::new(vec![points], vec![material]).draw(&gpu);
+    assert!(picture.0.as_chunks::<4>().0.contains(&[255, 255, 0, 255]));
 }
 
 #[test]
@@ -138,21 +151,78 @@ fn flat_normals_come_from_the_triangles() {
     near(flat.at(0.3, 0.2), smooth.at(0.3, 0.2), 1);
 }
 
-/// Khronos PBR Neutral for grey light, per its specification.
+/// Columns of a matrix, as in the shader.
+fn transformed(matrix: [[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|row| matrix[0][row] * v[0] + matrix[1][row] * v[1] + matrix[2][row] * v[2])
+}
+
+/// The specification of Khronos PBR Neutral.
+fn neutral(scene: [f64; 3]) -> [f64; 3] {
+    let darkest = scene.into_iter().fold(f64::INFINITY, f64::min);
+    let offset = if darkest < 0.08 { darkest - 6.25 * darkest * darkest } else { 0.04 };
+    let color = scene.map(|channel| channel - offset);
+    let peak = color.into_iter().fold(0.0, f64::max);
+    if peak < 0.76 {
+        return color;
+    }
+    let new_peak = 1.0 - 0.24 * 0.24 / (peak + 0.24 - 0.76);
+    let gray = 1.0 - 1.0 / (0.15 * (peak - new_peak) + 1.0);
+    color.map(|channel| channel * new_peak / peak * (1.0 - gray) + new_peak * gray)
+}
+
+/// three.js r180, `ACESFilmicToneMapping`.
+fn aces(scene: [f64; 3]) -> [f64; 3] {
+    let input = [[0.59719, 0.076, 0.0284], [0.35458, 0.90834, 0.13383], [0.04823, 0.01566, 0.83777]];
+    let output = [[1.60475, -0.10208, -0.00327], [-0.53108, 1.10813, -0.07276], [-0.07367, -0.00605, 1.07602]];
+    let fitted = transformed(input, scene.map(|channel| channel / 0.6))
+        .map(|v| (v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.432951) + 0.238081));
+    transformed(output, fitted)
+}
+
+/// three.js r180, `AgXToneMapping`.
+fn agx(scene: [f64; 3]) -> [f64; 3] {
+    let to_rec2020 = [[0.6274, 0.0691, 0.0164], [0.3293, 0.9195, 0.088], [0.0433, 0.0113, 0.8956]];
+    let from_rec2020 = [[1.6605, -0.1246, -0.0182], [-0.5876, 1.1329, -0.1006], [-0.0728, -0.0083, 1.1187]];
+    let inset = [
+        [0.856627153315983, 0.137318972929847, 0.11189821299995],
+        [0.0951212405381588, 0.761241990602591, 0.0767994186031903],
+        [0.0482516061458583, 0.101439036467562, 0.811302368396859],
+    ];
+    let outset = [
+        [1.1271005818144368, -0.1413297634984383, -0.14132976349843826],
+        [-0.11060664309660323, 1.157823702216272, -0.11060664309660294],
+        [-0.016493938717834573, -0.016493938717834257, 1.2519364065950405],
+    ];
+    let curve = |channel: f64| {
+        let x = ((channel.max(1e-10).log2() + 12.47393) / (4.026069 + 12.47393)).clamp(0.0, 1.0);
+        15.5 * x.powi(6) - 40.14 * x.powi(5) + 31.96 * x.powi(4) - 6.868 * x.powi(3) + 0.4298 * x * x + 0.1191 * x
+            - 0.00232
+    };
+    let curved = transformed(inset, transformed(to_rec2020, scene)).map(curve);
+    transformed(from_rec2020, transformed(outset, curved).map(|channel| channel.max(0.0).powf(2.2)))
+}
+
 #[test]
-fn gray_light_is_tone_mapped() {
+fn light_is_tone_mapped() {
     let Some(gpu) = gpu() else { return };
-    for light in [0.02_f32, 0.3, 0.7, 1.5, 6.0] {
-        let offset = if light < 0.08 { light - 6.25 * light * light } else { 0.04 };
-        let color = light - offset;
-        let mapped = if color < 0.76 { color } else { 1.0 - 0.24 * 0.24 / (color + 0.24 - 0.76) };
-        let srgb = if mapped <= 0.0031308 { 12.92 * mapped } else { 1.055 * mapped.powf(1.0 / 2.4) - 0.055 };
-        let shown = (255.0 * srgb).round() as u8;
-        // Black metal reflects nothing, so only the emission is visible.
-        let material =
-            Material { base_color: Vec4::new(0.0, 0.0, 0.0, 1.0), emissive: Vec3::splat(light), ..Default::default() };
-        let picture = Scene::new(vec![square(0)], vec![material]).draw(&gpu);
-        near(picture.at(0.0, 0.0), [shown, shown, shown, 255], 1);
+    type Mapping = fn([f64; 3]) -> [f64; 3];
+    let mappings: [(ToneMap, Mapping); 4] =
+        [(ToneMap::Neutral, neutral), (ToneMap::Aces, aces), (ToneMap::Agx, agx), (ToneMap::None, |scene| scene)];
+    let lights = [[0.02; 3], [0.3; 3], [1.5; 3], [6.0; 3], [0.9, 0.2, 0.05], [0.0, 0.1, 3.0]];
+    for (tone_map, mapping) in mappings {
+        for light in lights {
+            let encode = |linear: f64| match linear.clamp(0.0, 1.0) {
+                linear if linear <= 0.0031308 => 12.92 * linear,
+                linear => 1.055 * linear.powf(1.0 / 2.4) - 0.055,
+            };
+            let [r, g, b] = mapping(light).map(|channel| (255.0 * encode(channel)).round() as u8);
+            // Black metal reflects only what grazes it, so head on only the emission is visible.
+            let emissive = Vec3::from(light.map(|channel| channel as f32));
+            let material = Material { base_color: Vec4::new(0.0, 0.0, 0.0, 1.0), emissive, ..Default::default() };
+            let mut scene = Scene::new(vec![square(0)], vec![material]);
+            scene.frame.look.tone_map = tone_map;
+            near(scene.draw(&gpu).at(0.0, 0.0), [r, g, b, 255], 1);
+        }
     }
 }
 

@@ -4,16 +4,16 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use gaitway::anim::{ClipBuilder, Interpolation, JointIndex, Keys, TimeRange};
-use gaitway::asset::{Asset, AssetParts};
+use gaitway::asset::{Asset, AssetParts, Panorama};
 use gaitway::editor::{Contents, Editor, Event, Export, OpenedMap};
-use gaitway::files::{Role, open_view, read_paths};
+use gaitway::files::{Held, Role, open_view, read_paths};
 use gaitway::frame::{Frame, evaluate};
-use gaitway::library::{Library, Model, Motion};
+use gaitway::library::{Environment, Library, Model, Motion};
 use gaitway::retarget::{JointMapFile, RootOptions, RootPart};
 use gaitway::samples;
 use gaitway::state::{
-    CameraChoice, ClipChoice, Command, Inspect, MapEdit, OrbitCamera, RetargetEdits, Show, Sources, UpAxis,
-    ViewerState, active_clip, from_link, resolve_camera, to_link,
+    CameraChoice, ClipChoice, Command, EnvironmentChoice, Inspect, Lighting, MapEdit, OrbitCamera, RetargetEdits, Show,
+    Sources, UpAxis, ViewerState, active_clip, from_link, resolve_camera, to_link,
 };
 use glam::Vec3;
 
@@ -32,6 +32,48 @@ fn editor(first: &str) -> Editor {
     let mut editor = Editor::default();
     open(&mut editor, first);
     editor
+}
+
+/// Grey from all directions.
+fn environment(origin: &str) -> Contents {
+    let panorama = Panorama::new(2, 1, vec![Vec3::splat(0.5); 2]).expect("the right size");
+    let environment = Environment { origin: origin.to_owned(), panorama: panorama.into(), is_own: false };
+    Contents { environment: Some(environment), ..Contents::default() }
+}
+
+#[test]
+fn an_environment_lights_the_scene_until_it_is_undone() {
+    let mut editor = editor("sample:walker");
+    editor.open(environment("beach.hdr"), None, &mut any).expect("fits");
+    assert_eq!(notices(&editor.take_events()), ["Lit by beach.hdr."]);
+    assert_eq!(editor.state().lighting.environment, EnvironmentChoice::File("beach.hdr".to_owned()));
+    let mut frame = Frame::default();
+    evaluate(editor.library(), editor.state(), 1.0, &mut frame);
+    assert!(frame.panorama.is_some() && !editor.is_private());
+    // Another model is lit by it, too.
+    open(&mut editor, "sample:pilot");
+    assert_eq!(editor.state().lighting.environment, EnvironmentChoice::File("beach.hdr".to_owned()));
+    editor.undo();
+    editor.undo();
+    assert_eq!(editor.state().lighting, Lighting::default());
+    // A view names what lights it, so opening the file for it changes nothing.
+    let view = ViewerState { sources: editor.state().sources.clone(), ..ViewerState::default() };
+    let contents = Contents { motions: Some(Vec::new()), ..environment("sky.hdr").into_private() };
+    editor.open(contents, Some(view), &mut any).expect("is loaded");
+    assert_eq!(editor.state().lighting, Lighting::default());
+    assert!(!editor.is_private(), "it is loaded, but not shown");
+    editor.apply(Command::SetLight(EnvironmentChoice::File("sky.hdr".to_owned())));
+    assert!(editor.is_private());
+}
+
+#[test]
+fn a_few_environments_are_kept() {
+    let mut editor = editor("sample:walker");
+    for index in 0..6 {
+        editor.open(environment(&format!("{index}.hdr")), None, &mut any).expect("fits");
+    }
+    let kept: Vec<&str> = editor.library().environments().iter().map(|kept| kept.origin.as_str()).collect();
+    assert_eq!(kept, ["2.hdr", "3.hdr", "4.hdr", "5.hdr"]);
 }
 
 /// Returns the events.
@@ -483,7 +525,7 @@ fn an_empty_stage_awaits_a_model() {
         from_link("v=1&model=file:in/Soldier.glb&motion=file:walk.bvh&clip=run&t=0.5&camera=10,5,3,0,1,0&exposure=1");
     view.playback.playing = false;
     let mut editor = Editor::default();
-    let (awaited, shown) = open_view(view.clone(), true, &[]).expect("there is nothing to read");
+    let (awaited, shown) = open_view(view.clone(), true, Held::default()).expect("there is nothing to read");
     editor.open(awaited, Some(shown), &mut any).expect("fits");
     let events = editor.take_events();
     assert_eq!((editor.state(), notices(&events)), (&view, vec![]), "no notice about its clip");

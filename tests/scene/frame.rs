@@ -1,13 +1,14 @@
 //! The contents of frames: models, overlays and picking.
 
-use gaitway::anim::{Pose, model_from_joint};
+use gaitway::anim::{Joint, Pose, Skeleton, Transform, model_from_joint};
+use gaitway::asset::{Asset, AssetParts, Light, LightKind, MAX_LIGHTS, MeshInstance};
 use gaitway::frame::{Frame, PickedJoint, evaluate, pick_joint};
-use gaitway::library::Library;
-use gaitway::mesh::SkinningMode;
+use gaitway::library::{Library, Model};
+use gaitway::mesh::{Geometry, Mesh, SkinningMode};
 use gaitway::state::{Background, ClipChoice, Display, Inspect, Playhead, Selection, Show, ViewerState};
 use glam::{Affine3A, Vec2, Vec3, Vec4Swizzles};
 
-use crate::data::{moving_box, walker};
+use crate::data::{library_of, moving_box, walker};
 
 fn frame_of(library: &Library, state: &ViewerState) -> Frame {
     let mut frame = Frame::default();
@@ -34,6 +35,36 @@ fn without_a_model_the_frame_is_empty() {
     assert!(frame.characters.is_empty() && frame.bones.is_empty() && frame.bounds.is_empty());
     assert_eq!(frame.look.background, state.display.background);
     assert!(frame.view.projection_from_view.is_finite());
+}
+
+/// A metre-wide triangle with a weak sun and point lights of equal strength, farther and farther away.
+#[test]
+fn of_many_lights_the_strongest_are_drawn() {
+    let places: Vec<f32> = (0..12).map(|index| 12.0 - index as f32).collect();
+    let nodes = places.iter().map(|&x| Joint {
+        rest: Transform { translation: Vec3::new(x, 0.0, 0.0), ..Transform::IDENTITY },
+        ..Joint::default()
+    });
+    let skeleton = Skeleton::new(nodes.chain([Joint::default()]).collect()).expect("no parents");
+    let node = |index| skeleton.joint_of_source(index).expect("a node");
+    let light = |index, kind, intensity| Light { joint: node(index), color: Vec3::ONE, intensity, range: None, kind, number: 0 };
+    let mut lights: Vec<Light> = (0..places.len()).map(|index| light(index, LightKind::Point, 40.0)).collect();
+    lights.push(light(12, LightKind::Directional, 2.0));
+    let positions = vec![Vec3::splat(-0.5), Vec3::splat(0.5), Vec3::new(0.5, -0.5, 0.0)];
+    let geometry = Geometry { file_vertices: 3, positions, indices: vec![0, 1, 2], ..Geometry::default() };
+    let parts = AssetParts {
+        meshes: vec![Mesh { primitives: vec![geometry], ..Mesh::default() }],
+        instances: vec![MeshInstance { joint: node(12), mesh: 0, skin: None }],
+        lights,
+        skeleton,
+        ..AssetParts::default()
+    };
+    let asset = Asset::new(parts).expect("indices in range");
+    let frame = frame_of(&library_of(Model::new("lights".to_owned(), asset, Vec::new())), &ViewerState::default());
+    assert_eq!(frame.lights.len(), MAX_LIGHTS);
+    assert!(frame.lights.iter().any(|light| light.kind == LightKind::Directional), "the sun is everywhere");
+    let farthest = frame.lights.iter().map(|light| light.position.x).fold(0.0, f32::max);
+    assert_eq!(farthest, 7.0, "the nearest of the others");
 }
 
 #[test]

@@ -9,9 +9,9 @@ use gaitway::retarget::{
     SourceRef, Unmapped,
 };
 use gaitway::state::{
-    Background, CameraChoice, ClipChoice, Display, Fade, LinkError, MotionMap, NumberedMap, OrbitCamera, Playback,
-    Playhead, RetargetEdits, Selection, Show, Sources, UpAxis, VertexChoice, ViewerState, from_link, from_object,
-    to_link, to_object,
+    Background, CameraChoice, ClipChoice, Display, EnvironmentChoice, Fade, KeyLight, LinkError, MotionMap,
+    NumberedMap, OrbitCamera, Playback, Playhead, RetargetEdits, Selection, Show, Sources, ToneMap, UpAxis,
+    VertexChoice, ViewerState, from_link, from_object, to_link, to_object,
 };
 use glam::Vec3;
 
@@ -158,7 +158,20 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
         ("camera_options.turntable", with(&|state| state.camera_options.turntable = -12.5)),
         ("edits.up", with(&|state| state.edits.up = UpAxis::MinusZ)),
         ("display.exposure", with(&|state| state.display.exposure = -0.7)),
+        ("display.tone_map", with(&|state| state.display.tone_map = ToneMap::Agx)),
         ("display.environment_degrees", with(&|state| state.display.environment_degrees = 123.4)),
+        (
+            "lighting.environment",
+            with(&|state| {
+                state.lighting.environment = EnvironmentChoice::File("https://example.org/a b.hdr".to_owned())
+            }),
+        ),
+        (
+            "lighting.key",
+            with(&|state| {
+                state.lighting.key = Some(KeyLight { strength: 0.3, yaw_degrees: -44.5, pitch_degrees: 1.0 / 3.0 });
+            }),
+        ),
         ("display.background", with(&|state| state.display.background = Background::Color([0, 128, 255]))),
         ("page.embed", with(&|state| state.page.embed = true)),
         (

@@ -120,3 +120,17 @@ fn the_most_similar_link_shows_the_same_files() {
     check("v=1&model=sample:mannequin", None);
     check("v=1", None);
 }
+
+#[test]
+fn an_image_that_lights_the_scene_is_a_file_of_the_link() {
+    let link = "v=1&model=fox.glb&clip=Run&light=beach.hdr";
+    let roles = |link: &str| linked_files(link).iter().map(|file| (file.role, file.is_to_bring)).collect::<Vec<_>>();
+    assert_eq!(roles(link), [(LinkRole::Model, false), (LinkRole::Light, false)]);
+    assert_eq!(roles("v=1&light=outdoor"), [], "a generated light is none");
+    let public = public_link(link, &["beach.hdr".to_owned()]);
+    assert_eq!(public, "v=1&model=fox.glb&clip=Run&light=file:beach.hdr");
+    assert_eq!(link_without_missing(&public), "v=1&model=fox.glb&clip=Run");
+    assert_eq!(link_without_missing("v=1&model=file:fox.glb&clip=Run&light=file:beach.hdr&fov=20"), "v=1&fov=20");
+    assert_eq!(link_with_files(&public, &["beach.hdr".to_owned()]), link);
+    assert_ne!(shown_files(link), shown_files("v=1&model=fox.glb&light=other.hdr"));
+}

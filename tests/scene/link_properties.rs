@@ -7,8 +7,9 @@ use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::mesh::SkinningMode;
 use gaitway::retarget::{ClipRef, Feet, JointMap, MapEntry, RootOptions, RootPart, Unmapped};
 use gaitway::state::{
-    Background, CameraChoice, ClipChoice, Fade, Inspect, LinkError, MotionMap, NumberedMap, OrbitCamera, RetargetEdits,
-    Show, UpAxis, VertexChoice, ViewerState, from_link, from_object, to_link, to_object,
+    Background, CameraChoice, ClipChoice, EnvironmentChoice, Fade, Inspect, KeyLight, LightSetup, LinkError, MotionMap,
+    NumberedMap, OrbitCamera, RetargetEdits, Show, ToneMap, UpAxis, VertexChoice, ViewerState, from_link, from_object,
+    to_link, to_object,
 };
 use glam::{Quat, Vec3};
 use serde_json::Value;
@@ -103,12 +104,33 @@ impl Random {
 
     fn state(&mut self) -> ViewerState {
         let mut state = ViewerState::default();
-        for field in 0..30 {
+        for field in 0..33 {
             if self.often() {
                 self.set(&mut state, field);
             }
         }
         state
+    }
+
+    fn set_look(&mut self, state: &mut ViewerState, field: usize) {
+        match field {
+            22 => state.display.exposure = self.number(),
+            23 => state.display.environment_degrees = self.number(),
+            24 => {
+                let [_, red, green, blue] = self.word().to_be_bytes();
+                state.display.background =
+                    self.one(&[Background::Transparent, Background::Blurred, Background::Color([red, green, blue])]);
+            }
+            29 => state.display.tone_map = self.one(&[ToneMap::Aces, ToneMap::Agx, ToneMap::None]),
+            30 => {
+                let named = EnvironmentChoice::File(format!("{}.hdr", self.name()));
+                state.lighting.environment = self.one(&[EnvironmentChoice::Setup(LightSetup::Outdoor), named]);
+            }
+            _ => {
+                let [strength, yaw_degrees, pitch_degrees] = [self.number(), self.number(), self.number()];
+                state.lighting.key = Some(KeyLight { strength, yaw_degrees, pitch_degrees });
+            }
+        }
     }
 
     fn set(&mut self, state: &mut ViewerState, field: usize) {
@@ -152,12 +174,6 @@ impl Random {
             19 => state.camera_options.fov_degrees = self.number(),
             20 => state.camera_options.follow = self.often(),
             21 => state.edits.up = self.one(&[UpAxis::X, UpAxis::Z, UpAxis::MinusX, UpAxis::MinusY, UpAxis::MinusZ]),
-            22 => state.display.exposure = self.number(),
-            23 => state.display.environment_degrees = self.number(),
-            24 => {
-                let [_, red, green, blue] = self.word().to_be_bytes();
-                state.display.background = self.one(&[Background::Transparent, Background::Color([red, green, blue])]);
-            }
             25 => {
                 let turns = |random: &mut Self| [random.number(), random.number(), random.number()];
                 state.edits.pose = (0..self.below(5)).map(|_| (self.below(300), turns(self))).collect();
@@ -170,6 +186,7 @@ impl Random {
                 let (instance, primitive, vertex) = (self.below(3), self.below(9), self.below(99_999));
                 state.selection.vertex = Some(VertexChoice { instance, primitive, vertex });
             }
+            22..=24 | 29..=31 => self.set_look(state, field),
             _ => state.page.embed = self.often(),
         }
     }

@@ -3,7 +3,7 @@
 use std::io::{Cursor, Write};
 use std::path::{Path, PathBuf};
 
-use gaitway::files::{OpenError, Role, SortError, open_paths, open_view, read_paths, sort};
+use gaitway::files::{Held, OpenError, Role, SortError, open_paths, open_view, read_paths, sort};
 use gaitway::formats::{FileSet, LoadError};
 use gaitway::retarget::MapError;
 use gaitway::state::from_link;
@@ -258,7 +258,7 @@ fn a_view_opens_the_files_it_lists() {
     );
     let (state, errors) = from_link(&link);
     assert!(errors.is_empty(), "{errors:?}");
-    let (contents, view) = open_view(state, true, &[]).expect("the model is there");
+    let (contents, view) = open_view(state, true, Held::default()).expect("the model is there");
     assert_eq!(contents.models.len(), 1);
     let origins = |contents: &gaitway::editor::Contents| -> Vec<String> {
         contents.motions.iter().flatten().map(|motion| motion.origin.clone()).collect()
@@ -269,11 +269,47 @@ fn a_view_opens_the_files_it_lists() {
     // Maps and loaded motions are not read again; the model only on request.
     let held: Vec<_> = contents.motions.into_iter().flatten().collect();
     std::fs::remove_dir_all(&folder).expect("it was created");
-    let (contents, view) = open_view(view, false, &held).expect("no model was asked for");
+    let (contents, view) =
+        open_view(view, false, Held { motions: &held, ..Held::default() }).expect("no model was asked for");
     assert_eq!((contents.models.len(), origins(&contents)), (0, vec!["sample:walker".to_owned()]));
     assert_eq!(contents.problems.len(), 2, "both motions that are files: {:?}", contents.problems);
     assert!(contents.problems.iter().all(|problem| problem.contains(".bvh")), "{:?}", contents.problems);
-    assert!(matches!(open_view(view, true, &held), Err(OpenError::Read { .. })));
+    assert!(matches!(open_view(view, true, Held { motions: &held, ..Held::default() }), Err(OpenError::Read { .. })));
+}
+
+/// White from all directions: one pixel.
+const HDR: &[u8] = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\x80\x80\x80\x81";
+
+#[test]
+fn an_hdr_image_is_an_environment() {
+    let files = |bytes: &[u8]| {
+        let mut set = FileSet::default();
+        set.insert("beach.hdr", bytes);
+        set
+    };
+    let sorted = sort(&files(HDR), Role::Any).expect("a whole file");
+    assert!(sorted.models.is_empty() && sorted.motions.is_empty());
+    let (name, panorama) = sorted.environment.expect("an environment");
+    assert_eq!((name.as_str(), panorama.pixels()), ("beach.hdr", &[glam::Vec3::ONE][..]));
+    assert!(sort(&files(HDR), Role::Model).is_err(), "it is no model");
+    let broken = sort(&files(&HDR[..HDR.len() - 1]), Role::Any).expect_err("a byte is missing").to_string();
+    assert_eq!(broken, "beach.hdr: row 1 of 1: the file ends here");
+}
+
+#[test]
+fn a_view_opens_what_lights_it() {
+    let folder = temporary_folder("light");
+    let path = write(&folder, "beach.hdr", HDR).to_str().expect("Unicode").to_owned();
+    let (state, _) = from_link(&format!("v=1&model=sample:walker&light={path}"));
+    let (contents, view) = open_view(state, false, Held::default()).expect("a view");
+    let environments = Vec::from_iter(contents.environment);
+    assert_eq!(environments[0].origin, path, "what the view calls it");
+    std::fs::remove_dir_all(&folder).expect("it was created");
+    let held = Held { environments: &environments, ..Held::default() };
+    let (contents, view) = open_view(view, false, held).expect("a view");
+    assert!(contents.environment.is_none() && contents.problems.is_empty(), "it is not read again");
+    let (contents, _) = open_view(view, false, Held::default()).expect("the rest");
+    assert!(contents.problems[0].contains("beach.hdr"), "{:?}", contents.problems);
 }
 
 #[test]

@@ -2,13 +2,17 @@
 
 use egui_kittest::kittest::{NodeT, Queryable};
 use gaitway::anim::{ClipBuilder, Interpolation, Joint, JointIndex, MaterialProperty, PropertyTarget, Skeleton};
-use gaitway::asset::{Asset, AssetParts};
-use gaitway::library::Model;
+use gaitway::asset::{Asset, AssetParts, Panorama};
+use gaitway::library::{Environment, Library, Model};
 use gaitway::mesh::{Material, SkinningMode};
-use gaitway::state::{Background, CameraChoice, Command, Inspect, Show, UpAxis};
+use gaitway::samples;
+use gaitway::state::{
+    Background, CameraChoice, Command, EnvironmentChoice, Inspect, KeyLight, LightSetup, Show, ToneMap, UpAxis,
+};
 use gaitway::ui::{Tab, text};
+use glam::Vec3;
 
-use crate::bench::{WIDE, bench, model_with_clips, press, sample_bench};
+use crate::bench::{WIDE, bench, bench_of, model_with_clips, press, sample_bench};
 
 #[test]
 fn the_tree_shows_all_joints_and_chooses_one() {
@@ -79,6 +83,33 @@ fn view_sets_camera_and_background() {
     harness.get_by_label(text::EXPOSURE).set_value_accesskit(2.0);
     harness.run();
     assert_eq!(harness.state().state().display.exposure, 2.0);
+}
+
+#[test]
+fn view_sets_the_light() {
+    let mut library = Library::default();
+    library.add(samples::load(samples::WALKER).expect("is generated"));
+    let panorama = Panorama::new(1, 1, vec![Vec3::ONE]).expect("one pixel");
+    library.add_environment(Environment { origin: "beach.hdr".to_owned(), panorama: panorama.into(), is_own: true });
+    // Tall enough for the whole tab.
+    let mut harness = bench_of([1280.0, 1600.0], library);
+    press(&mut harness, Tab::View.label());
+    let agx = format!("{}: {}", text::TONE_MAP, text::TONE_AGX);
+    assert_eq!(press(&mut harness, &agx), [Command::SetToneMap(ToneMap::Agx)]);
+    let outdoor = EnvironmentChoice::Setup(LightSetup::Outdoor);
+    let label = format!("{}: {}", text::LIGHT, text::OUTDOOR_LIGHT);
+    assert_eq!(press(&mut harness, &label), [Command::SetLight(outdoor)]);
+    let beach = EnvironmentChoice::File("beach.hdr".to_owned());
+    assert_eq!(press(&mut harness, "beach.hdr"), [Command::SetLight(beach)]);
+    assert_eq!(press(&mut harness, text::BLURRED), [Command::SetBackground(Background::Blurred)]);
+    let [Command::SetKeyLight(Some(key))] = press(&mut harness, text::OWN_KEY_LIGHT)[..] else {
+        panic!("no key light")
+    };
+    assert!(key.strength > 0.0);
+    harness.get_by_label(text::KEY_STRENGTH).set_value_accesskit(0.0);
+    harness.run();
+    assert_eq!(harness.state().state().lighting.key, Some(KeyLight { strength: 0.0, ..key }));
+    assert_eq!(press(&mut harness, text::OWN_KEY_LIGHT), [Command::SetKeyLight(None)]);
 }
 
 #[test]

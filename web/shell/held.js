@@ -78,12 +78,13 @@ function setsOf(link, role) {
 export const heldItems = (link) => setsOf(link, "model").flat();
 
 /**
- * Returns what a link's motions are opened from, besides the model's own files.
+ * Returns what a link's motions and its light are opened from, besides the model's own files.
  * @param {string} link
  */
 export function heldMotions(link) {
   const models = setsOf(link, "model");
-  return setsOf(link, "motion").filter((set) => !models.includes(set)).flat();
+  const others = [...new Set([...setsOf(link, "motion"), ...setsOf(link, "light")])];
+  return others.filter((set) => !models.includes(set)).flat();
 }
 
 /** @param {LinkedFile} file */

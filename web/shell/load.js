@@ -32,7 +32,7 @@ export async function read(items) {
  * @param {Item[]} items
  * @param {Role} as
  * @param {boolean} isPrivate The local files among them are the user's own.
- * @returns {Promise<{ shown: "model" | "motion" | "map", document: InspectDocument }>}
+ * @returns {Promise<{ shown: "model" | "motion" | "light" | "map", document: InspectDocument }>}
  */
 export async function load(items, as, isPrivate) {
   // A link has URLs in full; other files have to be held.

@@ -16,7 +16,7 @@ let role;
 const TEXTS = {
   any: {
     title: "Open a model",
-    what: ".glb, .gltf with its files, .vrm, .fbx, .x, .obj (with .skel and .attach) or a .zip of them, and motions to go with it (.bvh, .vrma). Files stay in this browser.",
+    what: ".glb, .gltf with its files, .vrm, .fbx, .x, .obj (with .skel and .attach) or a .zip of them, motions to go with it (.bvh, .vrma), and an .hdr image to light it. Files stay in this browser.",
     example: "https://example.org/character.glb",
     sample: "Samples",
   },

@@ -99,7 +99,7 @@ function withCompanions(items) {
 }
 
 /**
- * @param {"model" | "motion" | "map"} shown
+ * @param {"model" | "motion" | "light" | "map"} shown
  * @param {string} model The name of the active model.
  * @param {InspectDocument} document
  */
@@ -109,6 +109,7 @@ function announce(shown, model, { clips, borrowed_clips: borrowed, joints, trian
   const texts = {
     model: `Opened ${model}: ${counted(clips.length, "clip")}, ${counted(joints, "joint")}, ${counted(triangles, "triangle")}.`,
     motion: `Borrowed motion: ${counted(borrowed?.length ?? 0, "clip")} available.`,
+    light: "The image lights the scene.",
     map: "Joint map applied.",
   };
   sayNews(texts[shown]);

@@ -20,9 +20,9 @@ export type Role = "motion" | undefined;
 
 export type Backend = "webgpu" | "webgl2";
 
-/** A `model` or `motion` of a link; see `LinkedFile` in src/state/link/files.rs. */
+/** A `model`, `motion` or `light` of a link; see `LinkedFile` in src/state/link/files.rs. */
 export interface LinkedFile {
-  role: "model" | "motion";
+  role: "model" | "motion" | "light";
   name: string;
   member: string;
   isToBring: boolean;

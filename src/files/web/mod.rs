@@ -11,11 +11,11 @@ use js_sys::{Array, Reflect};
 use wasm_bindgen::JsCast;
 
 use super::source::{Content, Located, Progress, Reading, Source};
-use super::{Item, OpenError, Role, open, raw_address, view};
+use super::{Held, Item, OpenError, Role, open, raw_address, view};
 use crate::asset::{Asset, Image};
 use crate::editor::Contents;
 use crate::formats::Preparation;
-use crate::library::{ImageData, Motion};
+use crate::library::ImageData;
 use crate::samples;
 use crate::state::ViewerState;
 
@@ -24,12 +24,12 @@ pub async fn open_items(items: Vec<Item>, role: Role, progress: Progress<'_>) ->
     open::open_items(&Web, items, role, progress).await
 }
 
-/// Opens the files of a view, except for its model if `with_model` is not set and for motions that are among `held`. See
+/// Opens the files of a view, except for its model if `with_model` is not set and for what is `held`. See
 /// `view` for the details.
 pub async fn open_view(
     view: ViewerState,
     with_model: bool,
-    held: &[Motion],
+    held: Held<'_>,
     progress: Progress<'_>,
 ) -> Result<(Contents, ViewerState), OpenError> {
     view::open_view(&Web, view, with_model, held, progress).await

@@ -4,7 +4,8 @@
 
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_decode_str, utf8_percent_encode};
 
-use super::values::with_current_member;
+use super::values::{read_light, with_current_member};
+use crate::state::EnvironmentChoice;
 
 /// Separates an archive from the path of one of its models, as in the URL of an entry of a .jar. In a URL it is part of the
 /// fragment, which no server sees.
@@ -35,6 +36,8 @@ pub enum LinkRole {
     Model,
     /// A file whose clips are retargeted to the model.
     Motion,
+    /// An image that lights the scene.
+    Light,
 }
 
 impl LinkRole {
@@ -43,15 +46,19 @@ impl LinkRole {
         match self {
             Self::Model => "model",
             Self::Motion => "motion",
+            Self::Light => "light",
         }
     }
 
-    fn from_key(key: &str) -> Option<Self> {
-        [Self::Model, Self::Motion].into_iter().find(|role| role.key() == key)
+    /// `None` for a pair that names no file, such as a light that is generated.
+    fn of(pair: &str) -> Option<Self> {
+        let role = [Self::Model, Self::Motion, Self::Light].into_iter().find(|role| role.key() == key_of(pair))?;
+        let is_file = role != Self::Light || matches!(read_light(&value_of(pair)), Some(EnvironmentChoice::File(_)));
+        is_file.then_some(role)
     }
 }
 
-/// A `model=` or `motion=` part of a link.
+/// A `model=`, `motion=` or `light=` part of a link.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LinkedFile {
     /// What it is used for.
@@ -79,7 +86,7 @@ pub fn shown_files(link: &str) -> String {
     let mut files: Vec<String> = Vec::new();
     let mut has_model = false;
     for pair in pairs(link) {
-        let Some(role) = LinkRole::from_key(key_of(pair)) else { continue };
+        let Some(role) = LinkRole::of(pair) else { continue };
         has_model |= role == LinkRole::Model;
         files.push(format!("{}={}", role.key(), with_current_member(&value_of(pair))));
     }
@@ -108,11 +115,12 @@ pub fn embedded_link(link: &str) -> String {
 pub fn link_without_missing(link: &str) -> String {
     let files = linked_files(link);
     let is_missing = |role| files.iter().any(|file| file.is_to_bring && file.role == role);
-    if is_missing(LinkRole::Model) || !is_missing(LinkRole::Motion) {
+    if is_missing(LinkRole::Model) || !files.iter().any(|file| file.is_to_bring) {
         return link.to_owned();
     }
+    let lacks_motion = is_missing(LinkRole::Motion);
     rewrite(link, &mut |pair| {
-        let is_of_motion = ["clip", "map"].contains(&key_of(pair));
+        let is_of_motion = lacks_motion && ["clip", "map"].contains(&key_of(pair));
         let is_kept = !is_of_motion && linked_file(pair).is_none_or(|file| !file.is_to_bring);
         is_kept.then(|| pair.to_owned())
     })
@@ -158,7 +166,7 @@ fn value_of(pair: &str) -> String {
 }
 
 fn linked_file(pair: &str) -> Option<LinkedFile> {
-    let role = LinkRole::from_key(key_of(pair))?;
+    let role = LinkRole::of(pair)?;
     let value = value_of(pair);
     let (value, is_to_bring) = value.strip_prefix(TO_BRING).map_or((value.as_str(), false), |value| (value, true));
     let value = with_current_member(value);

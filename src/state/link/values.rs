@@ -14,7 +14,7 @@ use crate::retarget::{ClipRef, Feet, JointMapFile, RootOptions, RootPart, Unmapp
 use crate::state::{
     Background, CameraChoice, ClipChoice, Fade, Inspect, MotionMap, OrbitCamera, Show, UpAxis, VertexChoice,
 };
-use crate::state::{ViewerState, map_code};
+use crate::state::{EnvironmentChoice, KeyLight, LightSetup, ToneMap, ViewerState, map_code};
 
 const FEET: [(&str, Feet); 2] = [("off", Feet::Off), ("plant", Feet::Plant)];
 
@@ -29,6 +29,9 @@ pub(super) const SKINNING_MODES: [(&str, SkinningMode); 3] = [
     ("rigid", SkinningMode::Rigid),
     ("dual-quaternion", SkinningMode::DualQuaternion),
 ];
+
+pub(super) const TONE_MAPS: [(&str, ToneMap); 4] =
+    [("neutral", ToneMap::Neutral), ("aces", ToneMap::Aces), ("agx", ToneMap::Agx), ("none", ToneMap::None)];
 
 pub(super) const UP_AXES: [(&str, UpAxis); 6] = [
     ("x", UpAxis::X),
@@ -393,10 +396,44 @@ pub(super) fn read_camera(text: &str) -> Option<CameraChoice> {
     }))
 }
 
+pub(super) const LIGHT_SETUPS: [(&str, LightSetup); 5] = [
+    ("studio", LightSetup::Studio),
+    ("white", LightSetup::White),
+    ("soft", LightSetup::Soft),
+    ("hard", LightSetup::Hard),
+    ("outdoor", LightSetup::Outdoor),
+];
+
+pub(super) fn write_light(environment: &EnvironmentChoice) -> Written {
+    match environment {
+        EnvironmentChoice::Setup(setup) => write_word(&LIGHT_SETUPS, setup),
+        EnvironmentChoice::File(name) => Written::Text(name.clone()),
+    }
+}
+
+pub(super) fn read_light(text: &str) -> Option<EnvironmentChoice> {
+    match from_word(&LIGHT_SETUPS, text) {
+        Some(setup) => Some(EnvironmentChoice::Setup(setup)),
+        None => (!text.is_empty()).then(|| EnvironmentChoice::File(text.to_owned())),
+    }
+}
+
+pub(super) fn key_light_text(key: &KeyLight) -> String {
+    format!("{},{},{}", key.strength, key.yaw_degrees, key.pitch_degrees)
+}
+
+pub(super) fn read_key_light(text: &str) -> Option<KeyLight> {
+    let parts: Vec<&str> = text.split(',').collect();
+    let &[strength, yaw, pitch] = parts.as_slice() else { return None };
+    Some(KeyLight { strength: finite(strength)?, yaw_degrees: finite(yaw)?, pitch_degrees: finite(pitch)? })
+}
+
 pub(super) fn write_background(background: &Background) -> Written {
     Written::Text(match background {
         Background::Studio => "studio".to_owned(),
         Background::Transparent => "transparent".to_owned(),
+        Background::Environment => "environment".to_owned(),
+        Background::Blurred => "blurred".to_owned(),
         Background::Color([red, green, blue]) => format!("{red:02x}{green:02x}{blue:02x}"),
     })
 }
@@ -405,6 +442,8 @@ pub(super) fn read_background(text: &str) -> Option<Background> {
     match text {
         "studio" => Some(Background::Studio),
         "transparent" => Some(Background::Transparent),
+        "environment" => Some(Background::Environment),
+        "blurred" => Some(Background::Blurred),
         _ => {
             let hex = text.strip_prefix('#').unwrap_or(text);
             let ok = hex.len() == 6 && hex.bytes().all(|byte| byte.is_ascii_hexdigit());

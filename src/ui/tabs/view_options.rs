@@ -2,8 +2,10 @@
 
 use egui::{RichText, Ui};
 
+use crate::editor::short_name;
 use crate::state::{
-    Background, CameraChoice, Command, OrbitCamera, UpAxis, ViewerState, frame_all, front_yaw_radians, resolve_camera,
+    Background, CameraChoice, Command, EnvironmentChoice, KeyLight, LightSetup, OrbitCamera, ToneMap, UpAxis,
+    ViewerState, frame_all, front_yaw_radians, resolve_camera,
 };
 use crate::ui::controls::{self, SliderSettings};
 use crate::ui::{Output, Saved, Shown, UiAction, UiState, VideoSettings, style, text};
@@ -30,7 +32,8 @@ const MAX_PICTURE_SIZE: u32 = 4096;
 pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     let aspect = local.viewport.aspect;
     camera(ui, shown, aspect, out);
-    light(ui, shown, out);
+    controls::section(ui, "BACKGROUND");
+    background(ui, shown.state.display.background, out);
     controls::section(ui, "UP AXIS OF THE FILE");
     let axes = [
         (UpAxis::X, "X"),
@@ -45,6 +48,7 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Outpu
     }
     ui.add_space(2.0);
     controls::hint(ui, "Y in glTF. Change it if the model lies on its back.");
+    light(ui, shown, out);
     scenes(ui, shown, out);
     picture(ui, shown, &mut local.picture_settings, out);
 }
@@ -147,11 +151,22 @@ fn look_from(shown: &Shown<'_>, aspect: f32, yaw_degrees: f32, pitch_degrees: f3
 
 fn light(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let state = shown.state;
-    controls::section(ui, "LIGHT AND BACKGROUND");
+    controls::section(ui, "LIGHT");
+    environment(ui, shown, out);
     let settings =
         SliderSettings { range: (-5.0, 5.0), default: 0.0, decimals: 1, suffix: " stops", logarithmic: false };
     if let Some(stops) = controls::slider(ui, text::EXPOSURE, f64::from(state.display.exposure), settings) {
         out.commands.push(Command::SetExposure(stops as f32));
+    }
+    let tone_maps = [
+        (ToneMap::Neutral, text::TONE_NEUTRAL),
+        (ToneMap::Aces, text::TONE_ACES),
+        (ToneMap::Agx, text::TONE_AGX),
+        (ToneMap::None, text::NO_TONE_MAP),
+    ];
+    ui.label(RichText::new(text::TONE_MAP).color(style::palette(ui).weak_text));
+    if let Some(tone_map) = controls::segmented_about(ui, text::TONE_MAP, Some(state.display.tone_map), &tone_maps) {
+        out.commands.push(Command::SetToneMap(tone_map));
     }
     let settings =
         SliderSettings { range: (-180.0, 180.0), default: 0.0, decimals: 0, suffix: "°", logarithmic: false };
@@ -160,34 +175,72 @@ fn light(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     {
         out.commands.push(Command::SetEnvironment(degrees as f32));
     }
-    ui.add_space(4.0);
-    #[derive(Clone, Copy, PartialEq)]
-    enum Kind {
-        Studio,
-        Color,
-        Transparent,
+    key_light(ui, state.lighting.key, out);
+}
+
+/// Light from all around: generated set-ups, and the images that were opened.
+fn environment(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
+    let setups = [
+        (LightSetup::Studio, text::STUDIO),
+        (LightSetup::Soft, text::SOFT_LIGHT),
+        (LightSetup::Hard, text::HARD_LIGHT),
+        (LightSetup::Outdoor, text::OUTDOOR_LIGHT),
+        (LightSetup::White, text::WHITE_LIGHT),
+    ];
+    let environment = &shown.state.lighting.environment;
+    let chosen = if let EnvironmentChoice::Setup(setup) = environment { Some(*setup) } else { None };
+    if let Some(setup) = controls::segmented_about(ui, text::LIGHT, chosen, &setups) {
+        out.commands.push(Command::SetLight(EnvironmentChoice::Setup(setup)));
     }
-    let (kind, mut color) = match state.display.background {
-        Background::Studio => (Kind::Studio, [236, 238, 242]),
-        Background::Color(color) => (Kind::Color, color),
-        Background::Transparent => (Kind::Transparent, [236, 238, 242]),
-    };
-    let kinds = [(Kind::Studio, text::STUDIO), (Kind::Color, text::COLOR), (Kind::Transparent, text::NO_BACKGROUND)];
-    if let Some(kind) = controls::segmented(ui, Some(kind), &kinds) {
-        out.commands.push(Command::SetBackground(match kind {
-            Kind::Studio => Background::Studio,
-            Kind::Color => Background::Color(color),
-            Kind::Transparent => Background::Transparent,
-        }));
+    for image in shown.library.environments() {
+        let choice = EnvironmentChoice::File(image.origin.clone());
+        if controls::list_row(ui, &short_name(&image.origin), "", *environment == choice).clicked() {
+            out.commands.push(Command::SetLight(choice));
+        }
     }
-    if kind == Kind::Color {
-        ui.horizontal(|ui| {
-            let weak = style::palette(ui).weak_text;
-            ui.label(RichText::new("Background").color(weak));
-            if ui.color_edit_button_srgb(&mut color).accessible_name("Background colour").changed() {
-                out.commands.push(Command::SetBackground(Background::Color(color)));
-            }
-        });
+    ui.add_space(2.0);
+    controls::hint(ui, "Drop an .hdr image to light the scene with it.");
+}
+
+fn key_light(ui: &mut Ui, key: Option<KeyLight>, out: &mut Output) {
+    if controls::switch(ui, text::OWN_KEY_LIGHT, key.is_some()) {
+        // Where the studio's own key light is, and as strong.
+        let studio = KeyLight { strength: 0.32, yaw_degrees: -44.0, pitch_degrees: 46.0 };
+        out.commands.push(Command::SetKeyLight(if key.is_some() { None } else { Some(studio) }));
+    }
+    let Some(key) = key else { return };
+    let degrees = |range, default| SliderSettings { range, default, decimals: 0, suffix: "°", logarithmic: false };
+    let strength = SliderSettings { range: (0.0, 3.0), default: 0.32, decimals: 2, suffix: "", logarithmic: false };
+    let mut changed = None;
+    if let Some(strength) = controls::slider(ui, text::KEY_STRENGTH, f64::from(key.strength), strength) {
+        changed = Some(KeyLight { strength: strength as f32, ..key });
+    }
+    let yaw = degrees((-180.0, 180.0), -44.0);
+    if let Some(yaw) = controls::slider(ui, "Key light direction", f64::from(key.yaw_degrees), yaw) {
+        changed = Some(KeyLight { yaw_degrees: yaw as f32, ..key });
+    }
+    let pitch = degrees((-90.0, 90.0), 46.0);
+    if let Some(pitch) = controls::slider(ui, "Key light height", f64::from(key.pitch_degrees), pitch) {
+        changed = Some(KeyLight { pitch_degrees: pitch as f32, ..key });
+    }
+    out.commands.extend(changed.map(|key| Command::SetKeyLight(Some(key))));
+}
+
+fn background(ui: &mut Ui, now: Background, out: &mut Output) {
+    let mut color = if let Background::Color(color) = now { color } else { [236, 238, 242] };
+    let is_color = matches!(now, Background::Color(_));
+    let kinds = [
+        (Background::Studio, text::STUDIO),
+        (Background::Color(color), text::COLOR),
+        (Background::Environment, text::ENVIRONMENT),
+        (Background::Blurred, text::BLURRED),
+        (Background::Transparent, text::NO_BACKGROUND),
+    ];
+    if let Some(kind) = controls::segmented(ui, Some(now), &kinds) {
+        out.commands.push(Command::SetBackground(kind));
+    }
+    if is_color && ui.color_edit_button_srgb(&mut color).accessible_name("Background colour").changed() {
+        out.commands.push(Command::SetBackground(Background::Color(color)));
     }
 }
 

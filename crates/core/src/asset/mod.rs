@@ -2,6 +2,7 @@
 
 mod error;
 mod humanoid;
+mod panorama;
 mod scene_joints;
 mod warning;
 
@@ -15,6 +16,7 @@ use crate::mesh::{Material, Mesh, Skin, Texture};
 
 pub use error::AssetError;
 pub use humanoid::{Humanoid, Slot};
+pub use panorama::Panorama;
 pub use scene_joints::SceneJoints;
 pub use warning::{Warning, Warnings};
 
@@ -138,6 +140,9 @@ pub enum CameraProjection {
         far: f32,
     },
 }
+
+/// Lights drawn at once; of more, those that contribute most.
+pub const MAX_LIGHTS: usize = 8;
 
 /// A light (KHR_lights_punctual), shining along −Z of its joint. Intensity in lux (directional) or candela.
 #[derive(Debug, Clone, Copy, PartialEq)]

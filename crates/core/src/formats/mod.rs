@@ -26,6 +26,7 @@ mod bvh;
 mod error;
 mod file_set;
 mod gltf;
+mod hdr;
 pub mod limits;
 mod lines;
 mod obj;
@@ -37,6 +38,7 @@ use std::sync::Arc;
 pub use error::LoadError;
 pub use file_set::FileSet;
 pub use gltf::{WriteError, pointer_to};
+pub use hdr::{HdrError, is_hdr, read_hdr};
 #[cfg(not(target_arch = "wasm32"))]
 pub use prepare::prepare;
 pub use prepare::{Part, Preparation, next_preparation};

@@ -19,6 +19,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
 use crate::anim::Clip;
+use crate::asset::Panorama;
 use crate::retarget::{Figures, FootTrack, JointMap, MapError, Proposal, RestChoice, propose};
 
 /// The active model and the files it borrows from.
@@ -28,6 +29,17 @@ pub struct Loaded {
     pub model: ModelId,
     /// The motions it borrows, in order.
     pub motions: Vec<Motion>,
+}
+
+/// A loaded environment.
+#[derive(Debug, Clone)]
+pub struct Environment {
+    /// What a view calls it: a URL or a file's name.
+    pub origin: String,
+    /// Its light.
+    pub panorama: Arc<Panorama>,
+    /// Whether it is one of the user's local files.
+    pub is_own: bool,
 }
 
 fn borrow_motion(
@@ -63,6 +75,8 @@ pub struct Library {
     /// [`names_checksum`] per motion for the active model, computed on demand.
     checksums: Vec<OnceLock<u32>>,
     borrow_errors: Vec<BorrowError>,
+    /// The most recent last.
+    environments: Vec<Environment>,
     next_id: u64,
 }
 
@@ -71,6 +85,28 @@ impl Library {
     pub const MAX_MODELS: usize = 8;
     /// Motions held at once; every clip of each is retargeted, which takes time and memory.
     pub const MAX_MOTIONS: usize = 64;
+
+    /// Environments held at once; undo and other links come back to them.
+    pub const MAX_ENVIRONMENTS: usize = 4;
+
+    /// Adds an environment in place of one of the same origin.
+    pub fn add_environment(&mut self, environment: Environment) {
+        self.environments.retain(|known| known.origin != environment.origin);
+        if self.environments.len() == Self::MAX_ENVIRONMENTS {
+            self.environments.remove(0);
+        }
+        self.environments.push(environment);
+    }
+
+    /// The loaded environments, the most recent last.
+    pub fn environments(&self) -> &[Environment] {
+        &self.environments
+    }
+
+    /// Finds an environment by what a view calls it.
+    pub fn environment(&self, origin: &str) -> Option<&Environment> {
+        self.environments.iter().find(|known| known.origin == origin)
+    }
 
     /// Adds a model and activates it.
     pub fn add(&mut self, mut model: Model) -> ModelId {

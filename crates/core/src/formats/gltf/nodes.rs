@@ -11,7 +11,7 @@ use serde_json::Value;
 use super::accessor::get;
 use super::document::Document;
 use crate::anim::{Joint, JointIndex, Skeleton, SkeletonError, Transform};
-use crate::asset::{Camera, CameraProjection, Light, LightKind, MeshInstance, Scene, Warning, Warnings};
+use crate::asset::{Camera, CameraProjection, Light, LightKind, MAX_LIGHTS, MeshInstance, Scene, Warning, Warnings};
 use crate::formats::error::Problem;
 use crate::formats::limits::{Budget, Limit};
 use crate::mesh::{Mesh, Skin};
@@ -248,6 +248,11 @@ pub fn lights(document: &Document, skeleton: &Skeleton, warnings: &mut Warnings)
             range: light.range,
             kind,
         });
+    }
+    if lights.len() > MAX_LIGHTS {
+        let problem =
+            format!("{} lights; the {MAX_LIGHTS} that contribute most to the picture are drawn", lights.len());
+        warnings.push(Warning::Other { code: "lights-dropped", place: "KHR_lights_punctual".to_owned(), problem });
     }
     Ok(lights)
 }

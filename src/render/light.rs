@@ -1,0 +1,90 @@
+//! What lights meshes and ground, bound together: environment, reflectance table and shadow map.
+
+use super::environment::{self, Environment, Source};
+use super::pipelines::Layouts;
+use super::shadow::ShadowMap;
+use crate::state::LightSetup;
+
+pub(super) struct LightSources {
+    pub environment: Environment,
+    pub shadow_map: ShadowMap,
+    pub sampler: wgpu::Sampler,
+    reflectance: wgpu::TextureView,
+    pub group: wgpu::BindGroup,
+    /// Used while the shadow map itself is drawn: binds a placeholder instead.
+    pub without_shadow: wgpu::BindGroup,
+    /// The environment as a background; made when it is first shown.
+    pub sky: Option<wgpu::BindGroup>,
+}
+
+impl LightSources {
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, layouts: &Layouts) -> Self {
+        let environment = Environment::new(device, queue, Source::Setup(LightSetup::default()));
+        let shadow_map = ShadowMap::new(device);
+        let sampler = environment::sampler(device);
+        let reflectance = environment::reflectance_table(device, queue);
+        let [group, without_shadow] = [&shadow_map.view, &shadow_map.placeholder].map(|shadow| {
+            bind_group(device, layouts, [&environment.view, shadow, &reflectance], [&sampler, &shadow_map.sampler])
+        });
+        Self { environment, shadow_map, sampler, reflectance, group, without_shadow, sky: None }
+    }
+
+    /// Makes another environment, unless it is the current one.
+    pub fn choose(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, layouts: &Layouts, source: Source) {
+        if self.environment.source == source {
+            return;
+        }
+        self.environment = Environment::new(device, queue, source);
+        self.sky = None;
+        let shadows = [&self.shadow_map.view, &self.shadow_map.placeholder];
+        [self.group, self.without_shadow] = shadows.map(|shadow| {
+            let textures = [&self.environment.view, shadow, &self.reflectance];
+            bind_group(device, layouts, textures, [&self.sampler, &self.shadow_map.sampler])
+        });
+    }
+}
+
+impl LightSources {
+    /// Makes the environment a background, if it is not yet.
+    pub fn prepare_sky(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, layouts: &Layouts) {
+        if self.sky.is_some() {
+            return;
+        }
+        let panorama = self.environment.panorama(device, queue);
+        let resources = [
+            wgpu::BindingResource::TextureView(&self.environment.view),
+            wgpu::BindingResource::Sampler(&self.sampler),
+            wgpu::BindingResource::TextureView(&panorama),
+        ];
+        let mut bindings = 0..;
+        let entries =
+            resources.map(|resource| wgpu::BindGroupEntry { binding: bindings.next().unwrap_or(0), resource });
+        self.sky = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("sky"),
+            layout: &layouts.sky,
+            entries: &entries,
+        }));
+    }
+}
+
+fn bind_group(
+    device: &wgpu::Device,
+    layouts: &Layouts,
+    [environment, shadow, reflectance]: [&wgpu::TextureView; 3],
+    [environment_sampler, shadow_sampler]: [&wgpu::Sampler; 2],
+) -> wgpu::BindGroup {
+    let resources = [
+        wgpu::BindingResource::TextureView(environment),
+        wgpu::BindingResource::Sampler(environment_sampler),
+        wgpu::BindingResource::TextureView(shadow),
+        wgpu::BindingResource::Sampler(shadow_sampler),
+        wgpu::BindingResource::TextureView(reflectance),
+    ];
+    let mut bindings = 0..;
+    let entries = resources.map(|resource| wgpu::BindGroupEntry { binding: bindings.next().unwrap_or(0), resource });
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("light"),
+        layout: &layouts.light,
+        entries: &entries,
+    })
+}

@@ -1,0 +1,72 @@
+//! What lights the scene besides the lights of a file, and how bright it becomes in the picture.
+
+use serde::{Deserialize, Serialize};
+
+/// An environment that is generated, not loaded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LightSetup {
+    /// Soft boxes around the model, with a key light from the front left.
+    #[default]
+    Studio,
+    /// The same white light from all directions and no key light.
+    White,
+    /// A tent of large weak boxes.
+    Soft,
+    /// A small strong lamp in a dark room.
+    Hard,
+    /// A clear sky with the sun.
+    Outdoor,
+}
+
+/// How the brightness of the scene becomes that of the picture. Unlit surfaces keep their colours.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ToneMap {
+    /// Khronos PBR Neutral: keeps colours, compresses highlights.
+    #[default]
+    Neutral,
+    /// ACES, as films look.
+    Aces,
+    /// AgX, as in Blender.
+    Agx,
+    /// Cuts off what is brighter than white.
+    None,
+}
+
+/// Where the light comes from, besides the lights of a file. Kept with another model and covered by undo.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Lighting {
+    /// Light from all around.
+    pub environment: EnvironmentChoice,
+    /// Replaces the environment's own key light; `None` leaves it.
+    pub key: Option<KeyLight>,
+}
+
+/// Light from all around.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum EnvironmentChoice {
+    /// A generated one.
+    Setup(LightSetup),
+    /// An .hdr file: a URL or the name of a local file. The studio stands in for it as long as it is not loaded.
+    File(String),
+}
+
+impl Default for EnvironmentChoice {
+    fn default() -> Self {
+        Self::Setup(LightSetup::Studio)
+    }
+}
+
+/// A directional light besides the environment's. The lights of a file replace it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct KeyLight {
+    /// Illuminance on a surface that faces it, over π: a white one becomes as bright as this. 0 switches it off; 10 at most.
+    pub strength: f32,
+    /// Where it comes from, without light rotation: 0 is +Z, 90 is +X.
+    pub yaw_degrees: f32,
+    /// Above the horizon.
+    pub pitch_degrees: f32,
+}
