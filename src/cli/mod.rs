@@ -429,8 +429,7 @@ fn read_size(text: &str) -> Result<[u32; 2], String> {
 }
 
 fn read_seconds(text: &str) -> Result<f64, String> {
-    let seconds: Option<f64> = text.trim().parse().ok();
-    seconds.filter(|seconds| seconds.is_finite()).ok_or_else(|| "expected seconds, such as 1.5".to_owned())
+    text.trim().parse().map_err(|_| "expected seconds, such as 1.5".to_owned())
 }
 
 fn read_loops(text: &str) -> Result<u16, String> {

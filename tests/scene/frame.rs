@@ -47,7 +47,14 @@ fn of_many_lights_the_strongest_are_drawn() {
     });
     let skeleton = Skeleton::new(nodes.chain([Joint::default()]).collect()).expect("no parents");
     let node = |index| skeleton.joint_of_source(index).expect("a node");
-    let light = |index, kind, intensity| Light { joint: node(index), color: Vec3::ONE, intensity, range: None, kind, number: 0 };
+    let light = |index, kind, intensity| Light {
+        joint: node(index),
+        color: Vec3::ONE,
+        intensity,
+        range: None,
+        kind,
+        number: 0,
+    };
     let mut lights: Vec<Light> = (0..places.len()).map(|index| light(index, LightKind::Point, 40.0)).collect();
     lights.push(light(12, LightKind::Directional, 2.0));
     let positions = vec![Vec3::splat(-0.5), Vec3::splat(0.5), Vec3::new(0.5, -0.5, 0.0)];
