@@ -56,7 +56,7 @@ fn environment_reflectance(specular: vec3f, albedo: vec2f, roughness: f32, norma
     return once + once * average * lost / (1.0 - average * lost);
 }
 
-// Schlick's Fresnel between normal (0) and grazing (1) incidence.
+// Schlick's Fresnel weight: 0 at normal incidence, 1 at grazing incidence.
 fn schlick(cosine: f32) -> f32 {
     let grazing = 1.0 - cosine;
     let squared = grazing * grazing;

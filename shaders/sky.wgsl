@@ -20,7 +20,7 @@ fn display(radiance: vec3f) -> vec4f {
     return vec4f(srgb_from_linear(tone_map(frame.exposure * radiance)), 1.0);
 }
 
-// As `Panorama::radiance` has it.
+// The mapping of `Panorama::radiance`.
 @fragment
 fn sky_sharp(in: SkyOut) -> @location(0) vec4f {
     let direction = normalize(in.direction);

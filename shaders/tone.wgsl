@@ -1,4 +1,4 @@
-// Tone mapping and sRGB encoding. Both run in the surface shaders, so blending happens on encoded
+// Tone mapping and sRGB encoding. Both run in the shaders that draw surfaces and sky, so blending happens on encoded
 // values (as in three.js), edges next to bright light stay smooth, and no full-screen pass is needed.
 
 // 0 Khronos Neutral, 1 ACES, 2 AgX, 3 none.

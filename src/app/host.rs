@@ -77,7 +77,7 @@ pub trait Host {
     /// Called when the state has changed other than by time passing, with [`Editor::shared_state`](crate::editor::Editor).
     fn state_changed(&self, state: &ViewerState);
 
-    /// Whether the user wishes for reduced motion: views start paused and don't turn.
+    /// Whether the user prefers reduced motion: views start paused and don't turn.
     fn prefers_reduced_motion(&self) -> bool {
         false
     }

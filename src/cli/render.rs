@@ -15,7 +15,7 @@ use crate::state::{
     CameraChoice, Command, EnvironmentChoice, OrbitCamera, from_object, resolve_camera, source_on_stage,
 };
 
-/// That fit the picture.
+/// File extensions for the image.
 const EXTENSIONS: &[&str] = &["png"];
 
 pub(super) fn run(arguments: &RenderArguments, disk: &Disk) -> Outcome {
@@ -47,7 +47,10 @@ pub(super) fn run(arguments: &RenderArguments, disk: &Disk) -> Outcome {
 
 /// Lights the scene with what the link's key `light` would name, or with a file.
 fn light_with(editor: &mut Editor, name: &str, disk: &Disk) -> Outcome {
-    let (state, _) = from_object(editor.state(), &json!({ "light": name }));
+    let (state, errors) = from_object(editor.state(), &json!({ "light": name }));
+    if let Some(error) = errors.first() {
+        return Err(Failure::new(error.to_string()).at("--environment"));
+    }
     let EnvironmentChoice::File(path) = state.lighting.environment else {
         editor.apply(Command::SetLight(state.lighting.environment));
         return Ok(());

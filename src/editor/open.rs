@@ -155,6 +155,7 @@ impl Editor {
     /// Replaces the state, checking each value as if it had been set alone. Adds no step to the history: opening is the step.
     fn set_view(&mut self, view: ViewerState) {
         let view = self.calmed_view(view);
+        self.held_camera = None;
         apply(&mut self.state, &self.library, Command::Replace(Box::new(view)));
     }
 

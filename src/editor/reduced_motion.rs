@@ -1,10 +1,10 @@
-//! The user's wish for reduced motion. It stops what a view would set in motion, until the user starts it, and is no part of
-//! the view: a link to share says what the view said.
+//! The user's preference for reduced motion: views start paused and without turntable until the user starts them. It never gets
+//! into links.
 
 use super::Editor;
 use crate::state::{Command, ViewerState};
 
-/// What the view says about motion while the wish overrides it.
+/// What the view says about motion while the preference overrides it.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct ReducedMotion {
     is_preferred: bool,
@@ -18,7 +18,7 @@ impl Editor {
         self.reduced_motion.is_preferred = is_preferred;
     }
 
-    /// Returns the state for links: as it is, except that the wish for reduced motion leaves no trace.
+    /// Returns the state for links: as it is, except that the preference for reduced motion leaves no trace.
     pub fn shared_state(&self) -> ViewerState {
         let mut state = self.state.clone();
         let ReducedMotion { playing, turntable, .. } = self.reduced_motion;
@@ -44,7 +44,8 @@ impl Editor {
         match command {
             Command::Replace(view) => {
                 let view = self.calmed_view(*view);
-                // Before it is noted as a change: it is none of the user's.
+                self.held_camera = None;
+                // Set before the command is recorded, so that it doesn't count as the user's own change.
                 let calm = (view.playback.playing, view.camera_options.turntable);
                 (self.state.playback.playing, self.state.camera_options.turntable) = calm;
                 Command::Replace(Box::new(view))
@@ -53,11 +54,17 @@ impl Editor {
         }
     }
 
+    /// Drops the override: another view is back.
+    pub(super) fn forget_overridden_motion(&mut self) {
+        self.reduced_motion =
+            ReducedMotion { is_preferred: self.reduced_motion.is_preferred, ..ReducedMotion::default() };
+    }
+
     pub(super) fn moving_parts(&self) -> (bool, f32) {
         (self.state.playback.playing, self.state.camera_options.turntable)
     }
 
-    /// What has been set since then no longer follows the view.
+    /// Drops the override of what the user has set since.
     pub(super) fn note_moving_parts(&mut self, (playing, turntable): (bool, f32)) {
         let now = self.moving_parts();
         self.reduced_motion.playing.take_if(|_| now.0 != playing);

@@ -67,6 +67,9 @@ impl Editor {
         self.report(problems);
         let after = self.loaded_names();
         let is_same_model = before.model.as_ref().map(|(id, _)| id) == after.model.as_ref().map(|(id, _)| id);
+        if !is_same_model {
+            self.forget_overridden_motion();
+        }
         if is_same_model {
             self.follow_clip(playing);
         } else {

@@ -66,6 +66,8 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
     };
     frame.comparison = comparison(library, state);
     frame.panes = panes(frame.comparison, aspect);
+    // The only shadow map has the first pane's pose.
+    frame.look.shadow &= !matches!(frame.comparison, Some(Comparison::Rests(_)));
     let Some(model) = library.active() else {
         frame.characters.clear();
         frame.clip = None;
@@ -117,9 +119,9 @@ fn write_characters(
             _ => state.display.skinning,
         };
         let pose = match (*comparison, *clip) {
-            (Some(Comparison::Rests(chosen)), Some(clip)) if pane > 0 => {
+            (Some(Comparison::Rests(active_rest)), Some(clip)) if pane > 0 => {
                 scratch.rest_pose.copy_from(&scratch.sampler.pose);
-                if let Some(clip) = library.clip_from_rest(clip, compared_rests(chosen)[pane]) {
+                if let Some(clip) = library.clip_from_rest(clip, compared_rests(active_rest)[pane]) {
                     clip.sample(skeleton, time_secs, &mut scratch.rest_cursor, &mut scratch.rest_pose);
                 }
                 &scratch.rest_pose
@@ -177,7 +179,9 @@ fn write_materials(asset: &Asset, properties: &PropertyValues, out: &mut Vec<(us
         if out.last().is_none_or(|&(last, _)| last != index) {
             out.extend(asset.materials.get(index).map(|material| (index, material.nameless())));
         }
-        if let Some((_, material)) = out.last_mut() {
+        if let Some((last, material)) = out.last_mut()
+            && *last == index
+        {
             material.set(property, value);
         }
     }
@@ -256,7 +260,7 @@ fn translated(bounds: Bounds, by: Vec3) -> Bounds {
     if bounds.is_empty() { bounds } else { Bounds { min: bounds.min + by, max: bounds.max + by } }
 }
 
-/// A light that the clip hides stays in the list, black: otherwise the studio's key light would take over.
+/// A light that the clip hides stays in the list, black: otherwise the key light would take over.
 fn write_lights(model: &Model, frame: &mut Frame) {
     let world_from_joint = &frame.characters[0].world_from_joint;
     let Scratch { model_scene, sampler, .. } = &frame.scratch;

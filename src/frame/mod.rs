@@ -41,7 +41,7 @@ pub struct Frame {
     pub characters: Vec<Character>,
     /// Index of the active model's clip that the pose was sampled from; none for the rest pose.
     pub clip: Option<usize>,
-    /// The file's own lights in world space; if empty, the studio's key light is used.
+    /// The file's own lights in world space; if empty, the key light is used.
     pub lights: Vec<FrameLight>,
     /// The environment, if it is an image; replaces [`Look::light`].
     pub panorama: Option<Arc<Panorama>>,
@@ -87,9 +87,9 @@ pub struct View {
 pub struct Look {
     /// Multiplies linear colours: 2^stops.
     pub exposure: f32,
-    /// How brightness becomes that of the picture.
+    /// Tone-mapping operator, applied after exposure.
     pub tone_map: ToneMap,
-    /// Rotation of the environment and the studio's key light about +Y.
+    /// Rotation of the environment and the key light about +Y.
     pub environment_radians: f32,
     /// What lights the scene besides the file's own lights.
     pub light: LightSetup,
@@ -166,7 +166,7 @@ pub struct Draw {
     pub instance: usize,
     /// Index into [`crate::asset::AssetParts::meshes`].
     pub mesh: usize,
-    /// Neither the file nor the clip hides its node or one above.
+    /// False if the file or the clip hides the node or an ancestor.
     pub visible: bool,
     /// Range in [`Character::palette`].
     pub palette: Range<u32>,

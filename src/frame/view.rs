@@ -8,14 +8,14 @@ use glam::{Affine3A, Mat4, Vec3};
 use super::{Frame, View};
 use crate::asset::CameraProjection;
 use crate::library::Library;
-use crate::state::{CameraChoice, ViewerState, comparison, pane_aspect, resolve_camera, world_from_file_camera};
+use crate::state::{CameraChoice, ViewerState, pane_aspect, resolve_camera, world_from_file_camera};
 
 /// Smallest ratio of the near to the far plane that 24 bits of depth resolve.
 const MIN_NEAR_RATIO: f32 = 1e-4;
 
-/// Expects the frame's bounds, ground and joints. `travel` moves an orbit camera that follows the character.
+/// Expects the frame's comparison, bounds, ground and joints. `travel` moves an orbit camera that follows the character.
 pub(super) fn place_camera(library: &Library, state: &ViewerState, aspect: f32, travel: Vec3, frame: &mut Frame) {
-    let pane_aspect = pane_aspect(comparison(library, state), aspect);
+    let pane_aspect = pane_aspect(frame.comparison, aspect);
     if let CameraChoice::File(index) = state.camera
         && let Some(view) = file_view(library, index, pane_aspect, frame)
     {

@@ -1,6 +1,6 @@
 //! Light from all around: an environment prefiltered by roughness into a small cube map, with diffuse light as nine spherical
-//! harmonics, and the table of how much of it a surface reflects. All of it is computed on the CPU in a few milliseconds:
-//! floating-point render targets are optional on WebGL2, and compiling shaders for it would take longer.
+//! harmonics, and the table of how much of it a surface reflects. All of it is computed on the CPU, in some
+//! milliseconds for a set-up and noticeably longer for an image: floating-point render targets are optional on WebGL2, and compiling shaders for it would take longer.
 
 mod cube;
 mod reflectance;
@@ -125,10 +125,11 @@ fn half_texel(color: Vec3) -> [u16; 4] {
     color.extend(1.0).to_array().map(half_from_float)
 }
 
-/// Filters between texels and levels, and clamps to the edges.
+/// Filters between texels and levels. Repeats in U, so that panoramas have no seam, and clamps in V.
 pub(super) fn sampler(device: &wgpu::Device) -> wgpu::Sampler {
     device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("environment"),
+        address_mode_u: wgpu::AddressMode::Repeat,
         mag_filter: wgpu::FilterMode::Linear,
         min_filter: wgpu::FilterMode::Linear,
         mipmap_filter: wgpu::MipmapFilterMode::Linear,

@@ -120,7 +120,7 @@ pub(super) fn frame_uniform(
 fn own_key_light(key: state::KeyLight) -> KeyLight {
     let (yaw_sin, yaw_cos) = key.yaw_degrees.to_radians().sin_cos();
     let (pitch_sin, pitch_cos) = key.pitch_degrees.to_radians().sin_cos();
-    // A light of π makes a white surface as bright as 1.
+    // Irradiance π gives a white diffuse surface radiance 1.
     let color = Vec3::splat(std::f32::consts::PI * key.strength);
     KeyLight { direction: Vec3::new(yaw_sin * pitch_cos, pitch_sin, yaw_cos * pitch_cos), color }
 }

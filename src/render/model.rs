@@ -225,7 +225,7 @@ fn material_uniform(material: &Material) -> MaterialUniform {
     let uvs = |slot| material.texture(slot).map_or_else(UvTransformUniform::default, uv_transform);
     MaterialUniform {
         base_color: material.base_color.to_array(),
-        // KHR_materials_unlit ignores it, unlike glTF's points and lines without normals.
+        // KHR_materials_unlit has no emission; points and lines without normals are unlit too, but keep theirs.
         emissive: if material.unlit { [0.0; 3] } else { (material.emissive * material.emissive_strength).to_array() },
         alpha_cutoff: match material.alpha_mode {
             AlphaMode::Mask { cutoff } => cutoff,

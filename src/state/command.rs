@@ -103,7 +103,7 @@ pub enum Command {
     SetUp(UpAxis),
     /// Sets the exposure in stops, −10 to 10.
     SetExposure(f32),
-    /// Sets how brightness becomes that of the picture.
+    /// Sets the tone mapping.
     SetToneMap(ToneMap),
     /// Rotates the lighting about the vertical axis, in degrees.
     SetEnvironment(f32),

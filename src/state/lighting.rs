@@ -19,7 +19,7 @@ pub enum LightSetup {
     Outdoor,
 }
 
-/// How the brightness of the scene becomes that of the picture. Unlit surfaces keep their colours.
+/// The tone-mapping operator. Unlit surfaces bypass it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ToneMap {

@@ -215,7 +215,7 @@ pub struct Display {
     pub show: Show,
     /// In stops: the image is multiplied by 2^exposure.
     pub exposure: f32,
-    /// How brightness becomes that of the picture.
+    /// The tone mapping.
     pub tone_map: ToneMap,
     /// Rotation of the lighting about the vertical axis.
     pub environment_degrees: f32,

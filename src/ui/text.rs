@@ -97,8 +97,8 @@ pub const REST_POSE: &str = "Rest pose";
 pub const NO_CLIPS: &str = "This model has no animations. To borrow one, drop a motion (.bvh, .vrma, or an .fbx, .x or .glb without meshes), or use \
     “Motion…” to take another model's clips.";
 /// Shown for a model without clips that cannot borrow any.
-pub const NO_SKELETON: &str = "This model has no animations, and no skeleton that a borrowed one could move. Bind its mesh to a skeleton and \
-    export it again with its skin; for an .obj of the exercise, open its .skel and .attach as well.";
+pub const NO_SKELETON: &str = "This model has no animations and no skeleton, so it can't borrow any. Skin its mesh to a skeleton and export it \
+    again; for an .obj of the exercise, open its .skel and .attach as well.";
 /// Button that opens the awaited model.
 pub const BRING: &str = "Choose files…";
 /// What to do if a link's model couldn't be loaded.
@@ -343,7 +343,7 @@ pub const OWN_KEY_LIGHT: &str = "Custom key light";
 /// Slider of the custom key light.
 pub const KEY_STRENGTH: &str = "Key light strength";
 /// The light, in the choice of background.
-pub const ENVIRONMENT: &str = "Light";
+pub const ENVIRONMENT: &str = "Environment";
 /// The light out of focus, in the choice of background.
 pub const BLURRED: &str = "Blurred";
 /// The studio, in the choices of light and background.
@@ -449,7 +449,7 @@ pub const REST_POSE_ALIGNMENT: &str = "Rest-pose alignment";
 /// Legend of the foot-contact tracks: the tint.
 pub const FOOT_CONTACT: &str = "contact";
 /// Legend of the foot-contact tracks: the bars and their scale.
-pub const FOOT_SLIDE: &str = "slide, 50 cm/s at full height; the line is 25";
+pub const FOOT_SLIDE: &str = "slide (full height 50 cm/s, line 25 cm/s)";
 /// Accessible name of the choice of the model's rest pose.
 pub const REST_OF_MODEL: &str = "Rest pose of the model";
 /// Accessible name of the choice of the motion's rest pose.

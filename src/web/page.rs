@@ -12,9 +12,9 @@ use super::shell::{self, Shell};
 use crate::app::{App, Host, Inbox, Loads, Message, Video, set_fatal_hook, web_options};
 use crate::editor::Contents;
 use crate::files::{Held, Item, OpenError, Role, open_items, open_view};
-use crate::library::Model;
+use crate::library::{Environment, Model};
 use crate::samples;
-use crate::state::{ViewerState, from_link, to_link};
+use crate::state::{EnvironmentChoice, ViewerState, from_link, to_link};
 
 /// A running instance on its canvas.
 pub(super) struct Page {
@@ -117,7 +117,11 @@ async fn first_contents(
             let problems = std::mem::take(&mut contents.problems);
             Ok((if is_private { contents.into_private() } else { contents }, view, problems))
         }
-        Err(error) => open_fallback(wanted, vec![error.to_string()], &progress).await,
+        Err(error) => {
+            let (contents, view, problems) = open_fallback(wanted, vec![error.to_string()], &progress).await?;
+            // The view names the user's files although they could not be read.
+            Ok((if is_private { contents.into_private() } else { contents }, view, problems))
+        }
     }
 }
 
@@ -146,7 +150,9 @@ async fn open_wanted(
     let held = Held { motions: &motions, environments: &environments };
     let (mut contents, view) = open_view(wanted.clone(), models.is_empty(), held, progress).await?;
     contents.models.extend(models);
-    contents.environment = contents.environment.or(environments.pop());
+    let is_wanted = |held: &Environment| wanted.lighting.environment == EnvironmentChoice::File(held.origin.clone());
+    let light = environments.iter().position(is_wanted).map(|at| environments.swap_remove(at));
+    contents.environment = contents.environment.or(light);
     contents.problems.extend(problem);
     Ok((contents, view))
 }

@@ -493,7 +493,7 @@ fn a_panel_knows_whose_edit_undo_takes_back() {
 }
 
 #[test]
-fn the_wish_for_reduced_motion_leaves_no_trace_in_links() {
+fn the_preference_for_reduced_motion_leaves_no_trace_in_links() {
     let turning = || {
         let mut view = ViewerState::of_model("sample:walker".to_owned());
         view.camera_options.turntable = 20.0;

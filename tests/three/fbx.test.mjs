@@ -156,15 +156,18 @@ function comparison(file, root, fault) {
     const ours = unique(nodes.map(({ name, world }) => [THREE.PropertyBinding.sanitizeNodeName(name), new THREE.Vector3().fromArray(world, 12)]));
     if (clip === null) size = Math.max(size, ...[...ours.values()].map((position) => position.length()));
     const worst = { value: 0, where: "", excused: 0 };
+    let compared = 0;
     for (const [name, position] of ours) {
       const object = theirs.get(name);
       if (object === undefined) continue;
       const value = new THREE.Vector3().setFromMatrixPosition(object.matrixWorld).multiplyScalar(metresPerUnit).distanceTo(position) / size;
       totals.positions++;
+      compared++;
       const where = `${name}, ${clip === null ? "rest" : `clip ${clip} at ${ourSecs} s`}`;
       const isCounted = fault === undefined || !isExcused(fault, name, clip);
       include(worst, { value: isCounted ? value : 0, where, excused: value });
     }
+    assert.ok(compared > 0, "no node of the same name");
     totals.poses++;
     return worst;
   };
@@ -198,7 +201,7 @@ function play(mixer, clip, timeSecs) {
 async function differenceOfClip(compare, clip, theirs, ourDurationSecs) {
   const keys = [...new Set(theirs.tracks.flatMap(({ times }) => [...times]))].sort((a, b) => a - b);
   /** @type {Difference} */
-  let best = { value: 0, where: "no key inside the clip", excused: 0 };
+  let best = { value: Infinity, where: "no key inside the clip", excused: Infinity };
   let isFirst = true;
   for (const startSecs of new Set([0, keys[0], theirs.duration - ourDurationSecs, ONE_FRAME])) {
     const inside = keys.filter((time) => time >= startSecs - 1e-4 && time - startSecs <= ourDurationSecs + 1e-4);

@@ -300,7 +300,7 @@ fn the_table_stands_by_parts_of_the_body_or_as_a_tree() {
 fn the_table_is_filtered_by_how_it_stands() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
     press(&mut harness, Tab::Motion.label());
-    choose(&mut harness, "Which joints are shown", "To look at (0)");
+    choose(&mut harness, "Which joints are shown", "Needs review (0)");
     assert!(harness.query_by_label("No joints need review.").is_some());
     choose(&mut harness, "Which joints are shown", "All joints (24)");
     // A left arm that follows a right one, and two that follow the same.
@@ -314,7 +314,7 @@ fn the_table_is_filtered_by_how_it_stands() {
     );
     assert!(harness.query_by_label(&twice).is_some());
     assert!(harness.query_by_label_contains("Neck follows").is_none());
-    choose(&mut harness, "Which joints are shown", "To look at (2)");
+    choose(&mut harness, "Which joints are shown", "Needs review (2)");
     assert!(harness.query_by_label_contains("LeftHand follows").is_some());
     choose(&mut harness, "Which joints are shown", "Muted (0)");
     assert!(harness.query_by_label("There are no such joints.").is_some());

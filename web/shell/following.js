@@ -98,7 +98,7 @@ export function showMissing(problems, link, isUnchanged = false) {
   byId("missing-rest").textContent = isUnchanged
     ? "The current view stays as it was."
     : isModel
-      ? "The rest of the link is kept: it applies once the model is there."
+      ? "“Try again” loads the whole link."
       : "Everything else is shown.";
   button("missing-again").onclick = () => {
     dialog("missing").close();

@@ -130,7 +130,8 @@ async function startOn(bindings, renderer, [items, motionItems]) {
   }
   session.app = bindings;
   await showFirstFrame(canvas, aborted, bindings, presentFrames);
-  whenIdle(() => session.app === bindings && bindings.rehearse_opening());
+  // Only a rehearsal: without it, files open a little later.
+  whenIdle(async () => session.app === bindings && (await bindings.rehearse_opening().catch(() => {})));
   showPanel(null);
   summarize();
   showMissing(missing, awaited()?.link ?? link);

@@ -6,8 +6,8 @@ import { showProgress } from "./panels.js";
 /** @typedef {import("./types.d.ts").Backend} Backend */
 /** @typedef {import("./types.d.ts").Bindings} Bindings */
 
-/** Browsers read a program only as fast as they compile it, so from here on models are downloaded side by side with it. */
-const PART_WAY = 0.4;
+/** Models start to download at this share of the program: browsers read a program only as fast as they compile it. */
+const MODELS_START = 0.4;
 
 /** @typedef {{ compiled: Promise<WebAssembly.Module>, abort: () => void }} Download */
 
@@ -88,7 +88,7 @@ async function compile(backend, signal) {
   /** @type {TransformStream<Uint8Array<ArrayBuffer>, Uint8Array<ArrayBuffer>>} */
   const counter = new TransformStream({
     transform(chunk, controller) {
-      if (received < PART_WAY * bytes && received + chunk.byteLength >= PART_WAY * bytes) dispatchEvent(new CustomEvent("gaitway:part-loaded"));
+      if (received < MODELS_START * bytes && received + chunk.byteLength >= MODELS_START * bytes) dispatchEvent(new CustomEvent("gaitway:part-loaded"));
       received += chunk.byteLength;
       showProgress("Loading Gaitway", received, bytes);
       controller.enqueue(chunk);

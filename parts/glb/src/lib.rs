@@ -439,7 +439,7 @@ pub fn check_size(bytes: usize) -> Result<(), String> {
     }
     Err(format!(
         "the converted model is too large: expected at most {MAX_BYTES} bytes, found {bytes}. Export fewer meshes, \
-         blend shapes or takes."
+         morph targets or animations."
     ))
 }
 

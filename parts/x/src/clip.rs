@@ -11,9 +11,9 @@ use crate::transform::{matrix, mirrored, parts, rotation};
 const DEFAULT_TICKS_PER_SEC: u32 = 4800;
 /// Frames per second where the file counts frames without saying so, as assimp's and other viewers have it.
 const FRAMES_PER_SEC: u32 = 25;
-/// At [`DEFAULT_TICKS_PER_SEC`], nobody has keys closer than this: 240 frames per second.
+/// Minimum plausible key spacing at [`DEFAULT_TICKS_PER_SEC`]: 240 keys per second.
 const MIN_TICKS_BETWEEN_KEYS: f64 = 20.0;
-/// Nor clips shorter than this, a tenth of a second.
+/// Minimum plausible clip length: 0.1 s.
 const MIN_TICKS_OF_CLIPS: f64 = 480.0;
 
 const PATHS: [&str; 3] = ["translation", "rotation", "scale"];

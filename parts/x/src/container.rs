@@ -102,7 +102,8 @@ fn unpack(body: &[u8]) -> Result<Vec<u8>, String> {
     let total = u32::from_le_bytes(*total) as usize;
     let mut out = Vec::new();
     let mut inflater = DecompressorOxide::new();
-    while !rest.is_empty() {
+    // Some exporters pad the file after the last block.
+    while !rest.is_empty() && (total == 0 || out.len() + HEADER < total) {
         let at = format!("byte {}", HEADER + body.len() - rest.len());
         let cut = || damaged(&at, "a compressed block", "the end of the file");
         let sizes = rest.split_off(..4).ok_or_else(cut)?;

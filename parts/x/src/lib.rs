@@ -30,7 +30,8 @@
 //! - `Mesh`: vertices, then faces as counts and indices. `MeshNormals` has faces of its own, `MeshTextureCoords` and
 //!   `MeshVertexColors` go with the vertices. `MeshMaterialList` has one material per face; the last one is repeated.
 //!   Newer exporters have `DeclData` instead of the first two: Direct3D's types (count; type, method, usage, index), then each
-//!   vertex as 32-bit words. `VertexDuplicationIndices` says which vertices are copies of each other: all of them are in the mesh, so it is not needed.
+//!   vertex as 32-bit words. `VertexDuplicationIndices` says which vertices are copies of each other: all of them are in the
+//!   mesh, so it is not needed.
 //! - `SkinWeights`, one for each joint: the frame's name, vertices, weights, and the matrix from the bind pose to the joint.
 //! - `Material`: colour with alpha, exponent, specular and emissive colour, `TextureFilename`.
 //! - `AnimationSet` → `Animation` → a reference to a frame, and `AnimationKey`: what (0 rotation, 1 scale, 2 position, 3 or 4

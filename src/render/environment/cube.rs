@@ -208,8 +208,9 @@ struct Lobe {
 }
 
 impl Lobe {
-    /// Importance-samples GGX for a view along the normal (Karis 2013, "Real Shading in Unreal Engine 4"). Samples are filtered by their density (Křivánek and Colbert 2008, "Real-time Shading with
-    /// Filtered Importance Sampling"), so that a few of them see all of the environment.
+    /// Importance-samples GGX for a view along the normal (Karis 2013, "Real Shading in Unreal Engine 4"). Each sample reads the
+    /// mip level that matches its density (Křivánek and Colbert 2008, "Real-time Shading with Filtered Importance Sampling"), so
+    /// that a few samples cover the whole environment.
     fn new(cube: &Cube, roughness: f32, count: usize) -> Self {
         let (size, last) = (cube.levels[0].size, cube.levels.len() - 1);
         let alpha_squared = roughness.powi(4);

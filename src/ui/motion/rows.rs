@@ -74,7 +74,7 @@ pub(super) enum Filter {
 impl Filter {
     pub const ALL: [(Self, &str); 7] = [
         (Self::All, "All joints"),
-        (Self::Look, "To look at"),
+        (Self::Look, "Needs review"),
         (Self::Of(State::Sure), "Sure"),
         (Self::Of(State::Guess), "Guesses"),
         (Self::Of(State::Conflict), "Conflicts"),

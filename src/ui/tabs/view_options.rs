@@ -216,11 +216,11 @@ fn key_light(ui: &mut Ui, key: Option<KeyLight>, out: &mut Output) {
         changed = Some(KeyLight { strength: strength as f32, ..key });
     }
     let yaw = degrees((-180.0, 180.0), -44.0);
-    if let Some(yaw) = controls::slider(ui, "Key light direction", f64::from(key.yaw_degrees), yaw) {
+    if let Some(yaw) = controls::slider(ui, "Key light azimuth", f64::from(key.yaw_degrees), yaw) {
         changed = Some(KeyLight { yaw_degrees: yaw as f32, ..key });
     }
     let pitch = degrees((-90.0, 90.0), 46.0);
-    if let Some(pitch) = controls::slider(ui, "Key light height", f64::from(key.pitch_degrees), pitch) {
+    if let Some(pitch) = controls::slider(ui, "Key light elevation", f64::from(key.pitch_degrees), pitch) {
         changed = Some(KeyLight { pitch_degrees: pitch as f32, ..key });
     }
     out.commands.extend(changed.map(|key| Command::SetKeyLight(Some(key))));

@@ -143,7 +143,7 @@ impl<'a> ClipBuilder<'a> {
                 self.check_joint(joint)?;
                 let expected = self.skeleton.morph_range(joint).len();
                 if target >= expected {
-                    return Err(ChannelError::MorphTargetCount { expected, found: target + 1 });
+                    return Err(ChannelError::MorphTargetCount { expected, found: target.saturating_add(1) });
                 }
             }
             _ => {}
@@ -232,7 +232,7 @@ impl Clip {
         self.timelines.iter().chain(&self.properties.timelines).flatten().copied()
     }
 
-    /// Samples the clip at `time_secs` into `pose`, leaving properties without a channel alone: start from the rest pose.
+    /// Samples joints and morph weights at `time_secs` into `pose`; what has no channel keeps its value, so start from the rest pose.
     /// Times outside the keys hold the first or the last value. `skeleton` is the one the clip was built for, and `pose`
     /// has its size. Allocates only if the clip has more timelines than any clip sampled with this cursor before.
     pub fn sample(&self, skeleton: &Skeleton, time_secs: f32, cursor: &mut SampleCursor, pose: &mut Pose) {

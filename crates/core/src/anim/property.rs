@@ -83,11 +83,11 @@ pub enum LightProperty {
 pub enum CameraProperty {
     /// Vertical field of view of a perspective camera, radians.
     YFov,
-    /// Half the height of an orthographic camera's view.
+    /// Half the height of an orthographic camera's view, metres.
     YMag,
-    /// Distance of the near plane.
+    /// Distance to the near plane, metres.
     Near,
-    /// Distance of the far plane.
+    /// Distance to the far plane, metres.
     Far,
 }
 

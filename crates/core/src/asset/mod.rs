@@ -141,7 +141,7 @@ pub enum CameraProjection {
     },
 }
 
-/// Lights drawn at once; of more, those that contribute most.
+/// Maximum number of lights drawn; the strongest are kept.
 pub const MAX_LIGHTS: usize = 8;
 
 /// A light (KHR_lights_punctual), shining along −Z of its joint. Intensity in lux (directional) or candela.

@@ -66,7 +66,7 @@ pub fn read_hdr(bytes: &[u8]) -> Result<Panorama, HdrError> {
     }
     let size = line(&mut rest);
     let (width, height) = size.and_then(parse_size).ok_or_else(|| header("-Y HEIGHT +X WIDTH", size))?;
-    // Each byte of a run stands for at most 127 bytes, so a small file cannot claim a large image.
+    // MAX_KEPT bounds the memory. This bounds the time, as runs let a small file claim a large image.
     if !(1..=MAX_SIZE).contains(&width) || !(1..=MAX_SIZE).contains(&height) {
         return Err(HdrError::Size { width, height });
     }
@@ -96,17 +96,17 @@ fn parse_size(text: &[u8]) -> Option<(usize, usize)> {
 }
 
 fn read_rows(mut rest: &[u8], width: usize, height: usize) -> Result<Panorama, HdrError> {
-    let factor = width.div_ceil(MAX_KEPT[0]).max(height.div_ceil(MAX_KEPT[1])).min(width).min(height);
-    let (columns, rows) = (width / factor, height / factor);
+    let (across, down) = (width.div_ceil(MAX_KEPT[0]), height.div_ceil(MAX_KEPT[1]));
+    let (columns, rows) = (width / across, height / down);
     let mut row = vec![[0; 4]; width];
     let mut pixels = Vec::new();
-    for index in 0..rows * factor {
+    for index in 0..rows * down {
         let problem = |problem| HdrError::Row { row: index + 1, rows: height, problem };
         read_row(&mut rest, &mut row).map_err(problem)?;
-        let start = index / factor * columns;
+        let start = index / down * columns;
         pixels.resize(start + columns, Vec3::ZERO);
-        for (sum, pixels) in pixels[start..].iter_mut().zip(row.chunks_exact(factor)) {
-            *sum += pixels.iter().map(|&pixel| radiance(pixel)).sum::<Vec3>() / (factor * factor) as f32;
+        for (sum, pixels) in pixels[start..].iter_mut().zip(row.chunks_exact(across)) {
+            *sum += pixels.iter().map(|&pixel| radiance(pixel)).sum::<Vec3>() / (across * down) as f32;
         }
     }
     Panorama::new(columns, rows, pixels).ok_or(HdrError::Size { width, height })

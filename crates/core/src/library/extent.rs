@@ -201,7 +201,7 @@ impl Support {
     }
 }
 
-/// Bounds of the skeleton, for models without a mesh.
+/// Bounds of the scene's joints, for models without a visible mesh.
 fn joint_bounds(asset: &Asset, rig: &Rig, world_from_joint: &[Affine3A], in_scene: &[bool]) -> Bounds {
     let joints = asset.skeleton.joints().filter(|&joint| in_scene[joint.get()] && rig.is_real(joint));
     Bounds::of(joints.map(|joint| world_from_joint[joint.get()].translation.into()))

@@ -148,8 +148,7 @@ impl Model {
         self.recognized().1
     }
 
-    /// Returns an empty stage that stands for a model that can't be had yet. A `file:` in front of the source is left out of its
-    /// name.
+    /// Returns an empty model that stands in for one that isn't available yet. Its name is `source` without a leading `file:`.
     pub fn placeholder(source: &str) -> Self {
         // A mesh without surfaces: a skeleton alone would be drawn.
         let joint = Joint { name: "Empty".to_owned(), ..Joint::default() };
@@ -165,7 +164,7 @@ impl Model {
         Self { origin: source.to_owned(), is_placeholder: true, ..model }
     }
 
-    /// Whether the model only stands for one that can't be had yet.
+    /// Whether this stands in for a model that isn't available yet.
     pub fn is_placeholder(&self) -> bool {
         self.is_placeholder
     }

@@ -29,9 +29,9 @@ pub struct Material {
     pub metallic: f32,
     /// Perceptual roughness, from 0 (smooth) to 1.
     pub roughness: f32,
-    /// Linear RGB, multiplied with the strength.
+    /// Linear RGB, not yet multiplied by [`Self::emissive_strength`].
     pub emissive: Vec3,
-    /// KHR_materials_emissive_strength.
+    /// Factor on [`Self::emissive`] (KHR_materials_emissive_strength); 1 by default.
     pub emissive_strength: f32,
     /// Multiplies X and Y of the normal texture.
     pub normal_scale: f32,

@@ -18,6 +18,8 @@ use crate::mesh::Material;
 
 /// Further pointers are only counted in the warning about those that aren't shown.
 const MAX_NAMED: usize = 30;
+/// Characters of a pointer shown in a warning.
+const MAX_POINTER: usize = 120;
 
 pub fn clips(
     accessors: &Accessors,
@@ -165,7 +167,9 @@ impl ClipReader<'_> {
                 None => format!("its target {path} is not a node's property"),
             }));
         }
-        self.pointers.resolve(&pointer).map_err(|problem| match problem {
+        let resolved = self.pointers.resolve(&pointer);
+        let pointer: String = pointer.chars().take(MAX_POINTER).collect();
+        resolved.map_err(|problem| match problem {
             Unresolved::Unsupported => Ignored::NotShown(pointer),
             Unresolved::Bad(problem) => Ignored::Because(format!("its pointer “{pointer}” leads nowhere: {problem}")),
         })

@@ -142,6 +142,7 @@ pub fn hidden(root: &Root, skeleton: &Skeleton, warnings: &mut Warnings) -> Vec<
             Some(Value::Bool(false)) => hidden.extend(skeleton.joint_of_source(index)),
             Some(found) => {
                 let place = format!("nodes[{index}].extensions.{VISIBILITY}.visible");
+                let found: String = found.to_string().chars().take(40).collect();
                 let problem = format!("expected true or false, found {found}; the node is shown");
                 warnings.push(Warning::Other { code: "visibility", place, problem });
             }
