@@ -38,8 +38,8 @@ const FAULTS = [
   { because: "moves a directional light away from its node", files: /blender_293_barbarian|camera_light_axes/, excuses: /^(Sun|forwardLight)$/ },
 ];
 
-/** Reasons of its own for which FBXLoader reads no clip, or one more. */
-const OTHER_CLIPS = /maya_blend_shape_cube_7100|maya_huge_stepped_tangents|Samba_Dancing/;
+/** FBXLoader reads no keys of a stack of layers, no clip of the next two, and one more of the last. */
+const OTHER_CLIPS = /maya_anim_layers_|maya_blend_shape_cube_7100|maya_huge_stepped_tangents|Samba_Dancing/;
 
 /** One is damaged, and one has no objects. */
 const UNREADABLE = /transparentTest|motionbuilder_actor_7700_binary/;
