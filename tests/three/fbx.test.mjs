@@ -38,7 +38,7 @@ const FAULTS = [
   { because: "moves a directional light away from its node", files: /blender_293_barbarian|camera_light_axes/, excuses: /^(Sun|forwardLight)$/ },
 ];
 
-/** FBXLoader reads no keys of a stack of layers, no clip of the next two, and one more of the last. */
+/** FBXLoader reads no keys of a stack of layers, and of the others a clip without keys that we leave out. */
 const OTHER_CLIPS = /maya_anim_layers_|maya_blend_shape_cube_7100|maya_huge_stepped_tangents|Samba_Dancing/;
 
 /** One is damaged, and one has no objects. */
