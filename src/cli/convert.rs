@@ -55,5 +55,5 @@ fn posed(arguments: &ConvertArguments, link: &str, disk: &Disk) -> Outcome<Vec<u
     }
     let mut editor = open_editor(opened, &MotionArguments::default(), disk)?;
     apply_link(&mut editor, link, &MotionArguments::default(), false, disk)?;
-    Ok(editor.export(Export::Whole { posed: true })?.bytes)
+    Ok(editor.export(Export::FullModel { posed: true })?.bytes)
 }

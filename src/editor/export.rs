@@ -29,7 +29,7 @@ pub enum Export {
         clip: usize,
     },
     /// The whole model as a .glb, in its current pose or in its rest pose.
-    Whole {
+    FullModel {
         /// Makes the current pose the rest pose of the file.
         posed: bool,
     },
@@ -68,7 +68,7 @@ impl Editor {
             Export::Map { motion } => self.export_map(motion),
             Export::Model { clip } => self.export_model(clip),
             Export::Clip { clip } => self.export_clip(clip),
-            Export::Whole { posed } => self.export_whole(posed),
+            Export::FullModel { posed } => self.export_whole(posed),
         }
     }
 

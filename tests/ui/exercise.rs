@@ -190,7 +190,7 @@ fn the_model_can_be_saved_at_rest_and_as_it_stands() {
     harness.run();
     press(&mut harness, text::SAVE_REST_POSE);
     press(&mut harness, text::SAVE_CURRENT_POSE);
-    let whole = |posed| UiAction::Save(Saved::File(Export::Whole { posed }));
+    let whole = |posed| UiAction::Save(Saved::File(Export::FullModel { posed }));
     assert_eq!(harness.state().actions, [whole(false), whole(true)]);
     let mut harness = sample_bench(WIDE);
     harness.state_mut().panels.layout.tab = Tab::File;

@@ -81,7 +81,7 @@ pub(super) fn show(ui: &mut Ui, about: &About<'_, '_>, tab: &mut MotionTab, out:
     card.show(ui, |ui| {
         ui.set_width(ui.available_width());
         ui.spacing_mut().item_spacing = egui::vec2(6.0, 6.0);
-        let color = if row.look { palette.warning } else { palette.weak_text };
+        let color = if row.needs_review { palette.warning } else { palette.weak_text };
         ui.add(egui::Label::new(RichText::new(&texts.standing).small().color(color)).wrap());
         source_field(ui, pairing, row, tab, out);
         ui.horizontal_wrapped(|ui| {

@@ -136,7 +136,7 @@ impl Lines {
             lines.extend(shown.into_iter().map(Line::Row));
         }
         let nothing = match search.is_empty() {
-            true if filter == Filter::Look => "No joints need review.".to_owned(),
+            true if filter == Filter::NeedsReview => "No joints need review.".to_owned(),
             true => "There are no such joints.".to_owned(),
             false => format!("No such joint is called “{search}”."),
         };
@@ -154,15 +154,15 @@ impl Lines {
 impl Heading {
     fn new<'a>(part: BodyPart, rows: impl Iterator<Item = &'a Row> + Clone, chosen: Option<usize>) -> Self {
         let follow = rows.clone().filter(|row| row.source.is_some()).count();
-        let look = rows.clone().filter(|row| row.look).count();
+        let to_review = rows.clone().filter(|row| row.needs_review).count();
         let has_chosen = rows.clone().any(|row| Some(row.number) == chosen);
         let mut counts = format!("{follow} of {}", rows.count());
-        if look > 0 {
-            let need = if look == 1 { "needs" } else { "need" };
-            counts = format!("{look} {need} review · {counts}");
+        if to_review > 0 {
+            let need = if to_review == 1 { "needs" } else { "need" };
+            counts = format!("{to_review} {need} review · {counts}");
         }
         let label = format!("{}, {counts}", part.title());
-        Self { part, counts, label, needs_review: look > 0, has_chosen }
+        Self { part, counts, label, needs_review: to_review > 0, has_chosen }
     }
 }
 
@@ -354,7 +354,7 @@ fn show_row(
         let color = if row.source.is_some() { palette.accent } else { palette.weak_text };
         controls::elided(ui, top(middle + 6.0, right), &row.short_source, color);
         let below = Rect::from_min_max(pos2(inner.left() + 20.0, inner.top() + 20.0), pos2(right, inner.bottom()));
-        let color = if row.look { palette.warning } else { palette.weak_text };
+        let color = if row.needs_review { palette.warning } else { palette.weak_text };
         controls::elided_small(ui, below, &row.why, color);
     }
     let told = |ui: &mut Ui, click: &str| match row.source {

@@ -32,7 +32,7 @@ pub(super) use picker::show as picker;
 /// The state of the tab.
 #[derive(Debug, Default)]
 pub struct MotionTab {
-    part: Part,
+    part: Section,
     table: joints::TableView,
     /// The motion last shown, to stay on when its map is cleared and its clip is gone.
     motion: usize,
@@ -77,7 +77,7 @@ struct Contents {
 }
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
-enum Part {
+enum Section {
     #[default]
     Joints,
     Options,
@@ -245,12 +245,17 @@ fn head(
 ) {
     header(ui, pairing, contents, out);
     ui.add_space(4.0);
-    let parts = [(Part::Joints, "Joints"), (Part::Options, "Options"), (Part::Figures, "Fit"), (Part::Files, "Files")];
+    let parts = [
+        (Section::Joints, "Joints"),
+        (Section::Options, "Options"),
+        (Section::Figures, "Fit"),
+        (Section::Files, "Files"),
+    ];
     if let Some(part) = controls::segmented(ui, Some(local.motion.part), &parts) {
         local.motion.part = part;
     }
     ui.add_space(2.0);
-    if local.motion.part == Part::Joints {
+    if local.motion.part == Section::Joints {
         edits(ui, pairing, map, contents, local, out);
         clips::search_field(ui, &mut local.motion.table.search, "Search joints of the model");
         joints::choices(ui, pairing, contents, &mut local.motion.table);
@@ -268,10 +273,10 @@ fn body(
     out: &mut Output,
 ) {
     match tab.part {
-        Part::Joints => joints::show(ui, shown, pairing, map, contents, tab, out),
-        Part::Options => options::show(ui, shown.state.inspect, pairing, map, contents, out),
-        Part::Figures => figures::show(ui, shown, pairing, contents, tab),
-        Part::Files => options::files(ui, shown, pairing, out),
+        Section::Joints => joints::show(ui, shown, pairing, map, contents, tab, out),
+        Section::Options => options::show(ui, shown.state.inspect, pairing, map, contents, out),
+        Section::Figures => figures::show(ui, shown, pairing, contents, tab),
+        Section::Files => options::files(ui, shown, pairing, out),
     }
 }
 

@@ -32,7 +32,7 @@ pub(super) struct Row {
     /// All of that in a sentence, for tooltips and screen readers.
     pub follows: String,
     /// Needs review: something contradicts it and the user has not set it.
-    pub look: bool,
+    pub needs_review: bool,
     pub part: BodyPart,
     /// Number of its ancestors in the table.
     pub depth: usize,
@@ -67,14 +67,14 @@ impl State {
 pub(super) enum Filter {
     #[default]
     All,
-    Look,
+    NeedsReview,
     Of(State),
 }
 
 impl Filter {
     pub const ALL: [(Self, &str); 7] = [
         (Self::All, "All joints"),
-        (Self::Look, "Needs review"),
+        (Self::NeedsReview, "Needs review"),
         (Self::Of(State::Sure), "Sure"),
         (Self::Of(State::Guess), "Guesses"),
         (Self::Of(State::Conflict), "Conflicts"),
@@ -85,7 +85,7 @@ impl Filter {
     pub fn lets_through(self, row: &Row) -> bool {
         match self {
             Self::All => true,
-            Self::Look => row.look,
+            Self::NeedsReview => row.needs_review,
             Self::Of(state) => row.state == state,
         }
     }
@@ -184,7 +184,7 @@ pub(super) fn rows(pairing: &Pairing<'_>, map: &JointMap) -> Vec<Row> {
     let has_skins = !asset.skins.is_empty();
     let given: Vec<Option<Option<JointIndex>>> =
         skeleton.joints().map(|joint| pairing.source_in(map, skeleton.source_index(joint))).collect();
-    let whole = Whole::new(pairing, &given);
+    let whole = PairFacts::new(pairing, &given);
     // By joint; a joint without a slot belongs to the part of its parent.
     let mut parts: Vec<BodyPart> = Vec::with_capacity(skeleton.len());
     let mut depths: Vec<usize> = Vec::with_capacity(skeleton.len());
@@ -208,7 +208,7 @@ pub(super) fn rows(pairing: &Pairing<'_>, map: &JointMap) -> Vec<Row> {
 }
 
 /// Facts that involve all pairs.
-struct Whole<'a> {
+struct PairFacts<'a> {
     target_slots: BTreeMap<JointIndex, Slot>,
     source_slots: BTreeMap<JointIndex, Slot>,
     /// Joints named for one side but placed on the other.
@@ -222,7 +222,7 @@ struct Whole<'a> {
     namespace: &'a str,
 }
 
-impl<'a> Whole<'a> {
+impl<'a> PairFacts<'a> {
     fn new(pairing: &Pairing<'a>, given: &[Option<Option<JointIndex>>]) -> Self {
         // Where position decided, the slots are on the sides where the joints lie.
         let misplaced = |recognized: &Recognized| -> Vec<JointIndex> {
@@ -345,7 +345,7 @@ impl<'a> Whole<'a> {
             }
             _ => "follows nothing".to_owned(),
         });
-        let (state, look) = match source {
+        let (state, needs_review) = match source {
             None => {
                 let own = map.joints.get(&number).and_then(|entry| entry.unmapped.as_ref());
                 why.extend(unmapped_text(pairing, own.unwrap_or(&map.unmapped)));
@@ -371,7 +371,7 @@ impl<'a> Whole<'a> {
             short_source,
             state,
             why,
-            look,
+            needs_review,
             part: BodyPart::Other,
             depth: 0,
         }

@@ -123,7 +123,7 @@ fn save(ui: &mut Ui, asset: &Asset, out: &mut Output) {
     for (label, posed) in [(text::SAVE_REST_POSE, false), (text::SAVE_CURRENT_POSE, true)] {
         let button = egui::Button::new(label).min_size(egui::vec2(ui.available_width(), 32.0));
         if ui.add(button).clicked() {
-            out.actions.push(UiAction::Save(Saved::File(Export::Whole { posed })));
+            out.actions.push(UiAction::Save(Saved::File(Export::FullModel { posed })));
         }
     }
     controls::hint(ui, "Includes all weights of each vertex, in sets of four, and your joint names.");

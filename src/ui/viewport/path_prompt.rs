@@ -57,7 +57,7 @@ fn title_and_hint(purpose: PathPurpose) -> (&'static str, &'static str) {
         PathPurpose::Open => ("Open a file", "Path of a .glb, .gltf, .fbx, .x, .bvh, .obj, .zip or folder"),
         PathPurpose::OpenMotion => ("Borrow motion", "Path of a .bvh, .fbx, .x, .glb, .vrma or joint map .json"),
         PathPurpose::Save(Saved::File(Export::Map { .. })) => ("Save joint map", "Path of the .json to write"),
-        PathPurpose::Save(Saved::File(Export::Model { .. } | Export::Whole { .. })) => ("Save model", GLB),
+        PathPurpose::Save(Saved::File(Export::Model { .. } | Export::FullModel { .. })) => ("Save model", GLB),
         PathPurpose::Save(Saved::File(Export::Clip { .. })) => ("Save clip", GLB),
         PathPurpose::Save(Saved::Picture { .. }) => ("Save image", "Path of the .png to write"),
     }

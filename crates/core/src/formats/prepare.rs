@@ -75,7 +75,7 @@ pub struct Preparation {
 #[derive(Debug)]
 enum Step {
     /// A GLB in the place of a file of this format.
-    Whole(&'static str),
+    File(&'static str),
     /// Meshes of a glTF.
     Meshes(draco::Decoding),
     /// Buffer views of a glTF.
@@ -97,7 +97,7 @@ impl Preparation {
         let output = answer.map_err(failed)?;
         let Some(bytes) = files.get(&self.file).cloned() else { return Ok(()) };
         match self.step {
-            Step::Whole(format) => {
+            Step::File(format) => {
                 let conversion =
                     Conversion { format: Some(format), warnings: output.warnings, ..Conversion::default() };
                 files.convert(&self.file, output.bytes, conversion);
@@ -117,7 +117,7 @@ pub fn next_preparation(files: &FileSet) -> Result<Option<Preparation>, LoadErro
     for (name, bytes) in files.iter() {
         let preparation = |part, input, step| Ok(Some(Preparation { part, input, file: name.to_owned(), step }));
         if let Some(part) = whole_file_part(name, bytes) {
-            return preparation(part, bytes.to_vec(), Step::Whole(part.name()));
+            return preparation(part, bytes.to_vec(), Step::File(part.name()));
         }
         if !is_gltf(name, bytes) || is_bvh(name, bytes) {
             continue;

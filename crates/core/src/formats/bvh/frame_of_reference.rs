@@ -9,7 +9,7 @@
 use glam::{DQuat, DVec3, Quat, Vec3};
 
 use super::hierarchy::Hierarchy;
-use super::motion::{Motion, position, rotation};
+use super::motion::{Frames, position, rotation};
 use crate::asset::{Warning, Warnings};
 use crate::formats::LoadOptions;
 
@@ -43,7 +43,7 @@ pub struct FrameOfReference {
 impl FrameOfReference {
     pub fn find(
         hierarchy: &Hierarchy,
-        motion: Option<&Motion>,
+        motion: Option<&Frames>,
         options: &LoadOptions,
         warnings: &mut Warnings,
     ) -> Self {
@@ -97,7 +97,7 @@ fn likely_unit(height: f64) -> Option<&'static Unit> {
     UNITS.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))
 }
 
-fn is_z_up(hierarchy: &Hierarchy, motion: Option<&Motion>) -> bool {
+fn is_z_up(hierarchy: &Hierarchy, motion: Option<&Frames>) -> bool {
     let rest = extent(hierarchy, None);
     if rest.z <= REST_RATIO_OF_Z_UP * rest.y {
         return false;

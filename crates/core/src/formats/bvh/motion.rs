@@ -12,7 +12,7 @@ use crate::formats::error::Problem;
 use crate::formats::limits::Budget;
 use crate::formats::lines::{Lines, number, quoted, text};
 
-pub struct Motion {
+pub struct Frames {
     pub frame_count: usize,
     frame_secs: f64,
     /// Frame by frame, all channels in file order.
@@ -27,7 +27,7 @@ pub fn read(
     hierarchy: &Hierarchy,
     budget: &Budget,
     warnings: &mut Warnings,
-) -> Result<Option<Motion>, Problem> {
+) -> Result<Option<Frames>, Problem> {
     let mut warn = |line: usize, problem: String| {
         warnings.push(Warning::Other { code: "bvh-motion", place: format!("line {line}"), problem });
     };
@@ -50,7 +50,7 @@ pub fn read(
     if frame_count > 1 && frame_secs <= 0.0 {
         return Err(missing_time(line, &frame_secs.to_string()));
     }
-    Ok(Some(Motion { frame_count, frame_secs, numbers, line }))
+    Ok(Some(Frames { frame_count, frame_secs, numbers, line }))
 }
 
 struct Header {
@@ -133,7 +133,7 @@ fn frames(
     Ok(numbers)
 }
 
-impl Motion {
+impl Frames {
     /// Returns the numbers of one frame.
     pub fn frame(&self, frame: usize) -> &[f64] {
         let channels = self.numbers.len() / self.frame_count;

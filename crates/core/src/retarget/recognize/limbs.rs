@@ -8,7 +8,7 @@ use crate::asset::Slot::{self, *};
 
 /// A part of a limb.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Part {
+pub(super) struct LimbJoint {
     /// Of the left side.
     pub slot: Slot,
     /// Index into the chains of the limb.
@@ -75,13 +75,13 @@ fn triples(count: usize, cost: impl Fn([usize; 3]) -> f32) -> Vec<Triple> {
 }
 
 /// The best choice, each joint with a confidence from what the best choice without it costs.
-fn decide(triples: &[Triple], slots: [Slot; 3]) -> Vec<Part> {
+fn decide(triples: &[Triple], slots: [Slot; 3]) -> Vec<LimbJoint> {
     let Some(&(best, cost)) = triples.first() else { return Vec::new() };
     let parts = slots.into_iter().zip(best).enumerate().map(|(place, (slot, at))| {
         let other = triples.iter().find(|(joints, _)| joints[place] != at).map_or(f32::INFINITY, |(_, cost)| *cost);
         let margin = ((other - cost) / SURE_MARGIN).min(1.0);
         let fit = (1.4 - cost).clamp(0.0, 1.0);
-        Part { slot, at, confidence: (UNSURE + (SURE - UNSURE) * margin) * fit }
+        LimbJoint { slot, at, confidence: (UNSURE + (SURE - UNSURE) * margin) * fit }
     });
     parts.collect()
 }
@@ -92,7 +92,7 @@ fn off(ratio: f32, usual: f32) -> f32 {
 }
 
 /// Thigh, shin, foot and toes.
-pub(super) fn leg(shape: &Shape, body: &Halves) -> Option<Vec<Part>> {
+pub(super) fn leg(shape: &Shape, body: &Halves) -> Option<Vec<LimbJoint>> {
     let twins = &body.legs;
     let count = twins.chains[0].len().min(MAX_JOINTS);
     let height = |at: usize| {
@@ -126,13 +126,13 @@ pub(super) fn leg(shape: &Shape, body: &Halves) -> Option<Vec<Part>> {
             (true, true) => 0.7_f32.min(foot.confidence),
             _ => UNSURE,
         };
-        parts.push(Part { slot: LeftToes, at: toes, confidence });
+        parts.push(LimbJoint { slot: LeftToes, at: toes, confidence });
     }
     Some(parts)
 }
 
 /// Collar bone, upper arm, forearm and hand.
-pub(super) fn arm(shape: &Shape, body: &Halves, leg: &[Part]) -> Option<Vec<Part>> {
+pub(super) fn arm(shape: &Shape, body: &Halves, leg: &[LimbJoint]) -> Option<Vec<LimbJoint>> {
     let twins = &body.arms;
     let fork = (0..twins.chains[0].len()).find(|&at| is_palm(shape, twins.chains[0][at]));
     let forks = |at: usize| twins.chains.iter().all(|chain| shape.tree.children(chain[at]).len() > 1);
@@ -164,7 +164,7 @@ pub(super) fn arm(shape: &Shape, body: &Halves, leg: &[Part]) -> Option<Vec<Part
         let length = span(shape, twins, at, upper.at);
         let is_short = length < 0.8 * span(shape, twins, upper.at, parts[1].at) && length > 0.0;
         let confidence = if is_short && at == 0 { upper.confidence.min(0.7) } else { UNSURE };
-        parts.push(Part { slot: LeftShoulder, at, confidence });
+        parts.push(LimbJoint { slot: LeftShoulder, at, confidence });
     }
     Some(parts)
 }
@@ -232,7 +232,7 @@ fn head_by_lengths(shape: &Shape, chain: &[JointIndex]) -> (usize, f32) {
 
 /// Whether the first leg is the left one, and how sure that is, judging by where the feet point or else how the knees bend. A
 /// body that shows neither is assumed to face +Z.
-pub(super) fn is_first_left(shape: &Shape, body: &Halves, leg: &[Part]) -> (bool, f32) {
+pub(super) fn is_first_left(shape: &Shape, body: &Halves, leg: &[LimbJoint]) -> (bool, f32) {
     let forward_if_first_is_left = body.across.cross(body.up);
     let at = |slot: Slot| leg.iter().find(|part| part.slot == slot).map(|part| part.at);
     let (Some(upper), Some(lower), Some(foot)) = (at(LeftUpperLeg), at(LeftLowerLeg), at(LeftFoot)) else {
