@@ -13,7 +13,28 @@ use crate::library::{Environment, Model, Motion};
 use crate::retarget::JointMapFile;
 use crate::state::{EnvironmentChoice, MotionMap, RetargetEdits, Sources, ViewerState, is_to_bring};
 
-/// Opens the files of a view, or an empty stage if its model is a file that the user has yet to supply; see [`open_files`].
+/// What is loaded already and need not be opened again, by origin.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Held<'a> {
+    /// Motions of the library.
+    pub motions: &'a [Motion],
+    /// Images that light scenes.
+    pub environments: &'a [Environment],
+}
+
+impl<'a> Held<'a> {
+    fn motions_of(self, origin: &str) -> impl Iterator<Item = &'a Motion> {
+        self.motions.iter().filter(move |motion| motion.origin == origin)
+    }
+
+    fn has_motion(self, origin: &str) -> bool {
+        self.motions_of(origin).next().is_some()
+    }
+}
+
+/// Opens the files of a view, except for its model if `with_model` is not set and for what is `held`. A model that the user has
+/// yet to supply is an empty stage, and nothing else is opened then. A motion or map that cannot be opened becomes a problem of
+/// the contents. Maps that were read take the place of their addresses in the view. Progress is reported as "2 of 3: walk.bvh".
 pub(super) async fn open_view<S: Source>(
     source: &S,
     view: ViewerState,
@@ -25,40 +46,16 @@ pub(super) async fn open_view<S: Source>(
         let models = vec![Model::placeholder(awaited).into()];
         return Ok((Contents { models, motions: Some(Vec::new()), ..Contents::default() }, view));
     }
-    open_files(source, view, with_model, held, progress).await
-}
-
-/// What is loaded already and needs not be opened again.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Held<'a> {
-    /// By their origin.
-    pub motions: &'a [Motion],
-    /// By their origin.
-    pub environments: &'a [Environment],
-}
-
-/// Opens the files of a view, except for its model if `with_model` is not set and for what is `held`. A motion
-/// or map that cannot be opened becomes a problem of the contents. Maps that were read take the place of their addresses in
-/// the view. Progress is reported as "2 of 3: walk.bvh".
-async fn open_files<S: Source>(
-    source: &S,
-    view: ViewerState,
-    with_model: bool,
-    held: Held<'_>,
-    progress: Progress<'_>,
-) -> Result<(Contents, ViewerState), OpenError> {
-    let Held { motions: held, environments } = held;
     let Sources { model: mut models, motion: motions, scene } = view.sources;
     let RetargetEdits { map: maps, .. } = view.retarget;
-    let is_held = |origin: &String| held.iter().any(|motion| motion.origin == *origin);
     let map_files = maps.iter().filter(|map| matches!(map, MotionMap::File(_))).count();
     let light = match &view.lighting.environment {
-        EnvironmentChoice::File(origin) if !environments.iter().any(|held| held.origin == *origin) => Some(origin),
+        EnvironmentChoice::File(origin) if !held.environments.iter().any(|held| held.origin == *origin) => Some(origin),
         _ => None,
     };
     let parts = usize::from(with_model)
         + usize::from(light.is_some())
-        + motions.iter().filter(|origin| !is_held(origin)).count()
+        + motions.iter().filter(|origin| !held.has_motion(origin)).count()
         + map_files;
     let part = Cell::new(0);
     let next_part = || part.set(part.get() + 1);
@@ -71,24 +68,18 @@ async fn open_files<S: Source>(
         next_part();
         contents = open_models(source, &mut models, progress).await?;
     }
-    let mut opened = contents.motions.take().unwrap_or_default();
     // Motions out of the model's own archive are not listed.
     let is_of_model = |motion: &&Motion| {
         models.iter().any(|model| container_of(model) == motion.origin) && !motions.contains(&motion.origin)
     };
-    opened.extend(held.iter().filter(is_of_model).cloned());
+    let mut opened = contents.motions.take().unwrap_or_default();
+    opened.extend(held.motions.iter().filter(is_of_model).cloned());
     for origin in &motions {
-        if is_held(origin) {
-            opened.extend(held.iter().filter(|motion| motion.origin == *origin).cloned());
-            continue;
-        }
-        next_part();
-        match open_items(source, vec![Item::Address(origin.into())], Role::Motion, progress).await {
-            Ok(found) => {
-                opened.extend(found.motions.unwrap_or_default());
-                contents.map = contents.map.or(found.map);
-            }
-            Err(error) => contents.problems.push(source.describe_omission("motion", &error)),
+        if held.has_motion(origin) {
+            opened.extend(held.motions_of(origin).cloned());
+        } else {
+            next_part();
+            opened.extend(open_motion(source, origin, &mut contents, progress).await);
         }
     }
     if let Some(origin) = light {
@@ -106,6 +97,25 @@ async fn open_files<S: Source>(
     let sources = Sources { model: models, motion: motions, scene };
     let retarget = RetargetEdits { map: read_maps, ..view.retarget };
     Ok((contents, ViewerState { sources, retarget, ..view }))
+}
+
+/// Opens a motion of a view, with a joint map beside it; what keeps it from being one becomes a problem.
+async fn open_motion<S: Source>(
+    source: &S,
+    origin: &str,
+    contents: &mut Contents,
+    progress: Progress<'_>,
+) -> Vec<Motion> {
+    match open_items(source, vec![Item::Address(origin.into())], Role::Motion, progress).await {
+        Ok(found) => {
+            contents.map = contents.map.take().or(found.map);
+            found.motions.unwrap_or_default()
+        }
+        Err(error) => {
+            contents.problems.push(source.describe_omission("motion", &error));
+            Vec::new()
+        }
+    }
 }
 
 /// Adds the image that lights a view to the contents; what keeps it from being one becomes a problem.

@@ -1,6 +1,7 @@
 //! Light from all around: an environment prefiltered by roughness into a small cube map, with diffuse light as nine spherical
-//! harmonics, and the table of how much of it a surface reflects. All of it is computed on the CPU, in some
-//! milliseconds for a set-up and noticeably longer for an image: floating-point render targets are optional on WebGL2, and compiling shaders for it would take longer.
+//! harmonics, and the table of how much of it a surface reflects. All of it is computed on the CPU, in some milliseconds for
+//! a set-up and noticeably longer for an image: floating-point render targets are optional on WebGL2, and compiling shaders
+//! for it would take longer.
 
 mod cube;
 mod reflectance;
@@ -11,7 +12,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use self::cube::Cube;
-pub(super) use self::setups::KeyLight;
+pub(super) use self::setups::DirectionalLight;
 use self::setups::Surroundings;
 use crate::asset::Panorama;
 use crate::frame::Frame;
@@ -19,6 +20,8 @@ use crate::state::LightSetup;
 
 /// Edge length of the sharpest level in texels, of set-ups and of images.
 const SIZES: [usize; 2] = [128, 256];
+/// Width and height of a set-up's panorama in pixels.
+const SETUP_PANORAMA: [usize; 2] = [1024, 512];
 /// More samples than set-ups need: images have small bright spots, and nobody waits for a first picture.
 const IMAGE_QUALITY: usize = 3;
 
@@ -52,7 +55,7 @@ pub(super) struct Environment {
     pub irradiance: [[f32; 4]; 9],
     /// Index of the roughest level of the cube map.
     pub last_level: u32,
-    pub key: KeyLight,
+    pub key: DirectionalLight,
 }
 
 impl Environment {
@@ -79,19 +82,21 @@ impl Environment {
             Source::Image(image) => upload_panorama(device, queue, image.width(), image.pixels()),
             Source::Setup(setup) => {
                 let surroundings = Surroundings::of(*setup);
-                let directions = (0..512 * 1024).map(|at| panorama_direction(at % 1024, at / 1024, [1024, 512]));
+                let [width, height] = SETUP_PANORAMA;
+                let directions =
+                    (0..width * height).map(|at| panorama_direction(at % width, at / width, SETUP_PANORAMA));
                 let pixels: Vec<Vec3> = directions.map(|direction| surroundings.radiance(direction)).collect();
-                upload_panorama(device, queue, 1024, &pixels)
+                upload_panorama(device, queue, width, &pixels)
             }
         }
     }
 }
 
 /// The lights of an image are part of it, so it has no key light; the shadow falls away from its brightest side.
-fn shadow_only(irradiance: &[[f32; 4]; 9]) -> KeyLight {
+fn shadow_only(irradiance: &[[f32; 4]; 9]) -> DirectionalLight {
     let [y, z, x] = [1, 2, 3].map(|band: usize| irradiance[band][..3].iter().sum::<f32>());
     let direction = Vec3::new(x, 0.0, z).normalize_or_zero() + Vec3::Y * (y / x.hypot(z).max(1e-6)).clamp(0.7, 3.0);
-    KeyLight { direction: direction.normalize_or(Vec3::Y), color: Vec3::ZERO }
+    DirectionalLight { direction: direction.normalize_or(Vec3::Y), color: Vec3::ZERO }
 }
 
 /// Inverts [`Panorama::radiance`]'s mapping for the center of a pixel.

@@ -2,12 +2,12 @@
 
 use glam::{Mat3, Vec3};
 
-use super::environment::{Environment, KeyLight};
+use super::environment::{DirectionalLight, Environment};
 use super::shadow::shadow_view;
 use super::uniforms::{FrameUniform, LightUniform};
 use crate::asset::{LightKind, MAX_LIGHTS};
 use crate::frame::{Frame, FrameLight};
-use crate::state;
+use crate::state::KeyLight;
 
 /// sRGB colours of the studio backdrop, at the center and at the edge.
 const STUDIO_CENTER: [f32; 4] = [0.735, 0.748, 0.767, 1.0];
@@ -61,7 +61,7 @@ pub(super) fn frame_uniform(
 ) -> (FrameUniform, Option<FrameUniform>) {
     let look = &frame.look;
     let (sin, cos) = look.environment_radians.sin_cos();
-    let key = look.key.map_or(environment.key, own_key_light);
+    let key = look.key.map_or(environment.key, directional_light);
     let key_direction = Mat3::from_rotation_y(look.environment_radians) * key.direction;
     let [sky_ahead, sky_right, sky_up] = sky_directions(frame);
     // The file's first directional light from above casts the shadow. With other lights only, the key light casts one
@@ -117,15 +117,15 @@ pub(super) fn frame_uniform(
     (uniform, from_light)
 }
 
-fn own_key_light(key: state::KeyLight) -> KeyLight {
+fn directional_light(key: KeyLight) -> DirectionalLight {
     let (yaw_sin, yaw_cos) = key.yaw_degrees.to_radians().sin_cos();
     let (pitch_sin, pitch_cos) = key.pitch_degrees.to_radians().sin_cos();
     // Irradiance π gives a white diffuse surface radiance 1.
     let color = Vec3::splat(std::f32::consts::PI * key.strength);
-    KeyLight { direction: Vec3::new(yaw_sin * pitch_cos, pitch_sin, yaw_cos * pitch_cos), color }
+    DirectionalLight { direction: Vec3::new(yaw_sin * pitch_cos, pitch_sin, yaw_cos * pitch_cos), color }
 }
 
-/// Directions in the environment: of the middle of a pane, and what x and y in clip space add to it.
+/// Directions in the environment: at the center of a pane, and what x and y in normalized device coordinates add to it.
 fn sky_directions(frame: &Frame) -> [[f32; 4]; 3] {
     let projection = frame.view.projection_from_view;
     let environment_from_view = Mat3::from_rotation_y(-frame.look.environment_radians)

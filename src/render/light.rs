@@ -24,7 +24,8 @@ impl LightSources {
         let sampler = environment::sampler(device);
         let reflectance = environment::reflectance_table(device, queue);
         let [group, without_shadow] = [&shadow_map.view, &shadow_map.placeholder].map(|shadow| {
-            bind_group(device, layouts, [&environment.view, shadow, &reflectance], [&sampler, &shadow_map.sampler])
+            let views = [&environment.view, shadow, &reflectance];
+            light_group(device, layouts, views, [&sampler, &shadow_map.sampler])
         });
         Self { environment, shadow_map, sampler, reflectance, group, without_shadow, sky: None }
     }
@@ -38,13 +39,11 @@ impl LightSources {
         self.sky = None;
         let shadows = [&self.shadow_map.view, &self.shadow_map.placeholder];
         [self.group, self.without_shadow] = shadows.map(|shadow| {
-            let textures = [&self.environment.view, shadow, &self.reflectance];
-            bind_group(device, layouts, textures, [&self.sampler, &self.shadow_map.sampler])
+            let views = [&self.environment.view, shadow, &self.reflectance];
+            light_group(device, layouts, views, [&self.sampler, &self.shadow_map.sampler])
         });
     }
-}
 
-impl LightSources {
     /// Makes the environment a background, if it is not yet.
     pub fn prepare_sky(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, layouts: &Layouts) {
         if self.sky.is_some() {
@@ -56,18 +55,11 @@ impl LightSources {
             wgpu::BindingResource::Sampler(&self.sampler),
             wgpu::BindingResource::TextureView(&panorama),
         ];
-        let mut bindings = 0..;
-        let entries =
-            resources.map(|resource| wgpu::BindGroupEntry { binding: bindings.next().unwrap_or(0), resource });
-        self.sky = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("sky"),
-            layout: &layouts.sky,
-            entries: &entries,
-        }));
+        self.sky = Some(bind_group(device, &layouts.sky, "sky", resources));
     }
 }
 
-fn bind_group(
+fn light_group(
     device: &wgpu::Device,
     layouts: &Layouts,
     [environment, shadow, reflectance]: [&wgpu::TextureView; 3],
@@ -80,11 +72,17 @@ fn bind_group(
         wgpu::BindingResource::Sampler(shadow_sampler),
         wgpu::BindingResource::TextureView(reflectance),
     ];
+    bind_group(device, &layouts.light, "light", resources)
+}
+
+/// Binds resources in order, from binding 0 on.
+fn bind_group<const N: usize>(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    label: &str,
+    resources: [wgpu::BindingResource<'_>; N],
+) -> wgpu::BindGroup {
     let mut bindings = 0..;
     let entries = resources.map(|resource| wgpu::BindGroupEntry { binding: bindings.next().unwrap_or(0), resource });
-    device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("light"),
-        layout: &layouts.light,
-        entries: &entries,
-    })
+    device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
 }

@@ -74,9 +74,9 @@ pub struct FrameUniform {
     pub background_edge: [f32; 4],
     /// Direction of the middle of a pane in the environment; w is unused.
     pub sky_ahead: [f32; 4],
-    /// Added to it per unit of x in clip space.
+    /// Added to it per unit of x in normalized device coordinates.
     pub sky_right: [f32; 4],
-    /// Added to it per unit of y in clip space.
+    /// Added to it per unit of y in normalized device coordinates.
     pub sky_up: [f32; 4],
     /// Spherical harmonics of the environment's irradiance over π, all constants folded in; w is unused.
     pub irradiance: [[f32; 4]; 9],

@@ -1,4 +1,4 @@
-//! What lights the scene besides the lights of a file, and how bright it becomes in the picture.
+//! What lights the scene besides the lights of a file, and how radiance becomes colours of the screen.
 
 use serde::{Deserialize, Serialize};
 
@@ -69,4 +69,9 @@ pub struct KeyLight {
     pub yaw_degrees: f32,
     /// Above the horizon.
     pub pitch_degrees: f32,
+}
+
+impl KeyLight {
+    /// As strong as the studio's own, from the same direction.
+    pub const STUDIO: Self = Self { strength: 0.32, yaw_degrees: -44.0, pitch_degrees: 46.0 };
 }

@@ -104,6 +104,13 @@ macro_rules! key {
     };
 }
 
+/// A key whose value is one of a table's words.
+macro_rules! word {
+    ($name:literal, $group:ident.$field:ident, $words:ident, $expected:literal) => {
+        key!($name, $group.$field, |text| from_word(&$words, text), |value| write_word(&$words, value), $expected)
+    };
+}
+
 /// A key with any number of values.
 macro_rules! list {
     ($name:literal, $group:ident.$field:ident, $read:expr, $write:expr, $expected:literal) => {
@@ -155,13 +162,7 @@ const KEYS: &[Key] = &[
     ),
     key!("play", playback.playing, flag, write_flag, "0 or 1"),
     key!("speed", playback.speed, finite, write_number, "a factor such as 0.5"),
-    key!(
-        "loop",
-        playback.loop_mode,
-        |text| from_word(&LOOP_MODES, text),
-        |mode| write_word(&LOOP_MODES, mode),
-        "once, loop or ping-pong"
-    ),
+    word!("loop", playback.loop_mode, LOOP_MODES, "once, loop or ping-pong"),
     key!(
         "range",
         playhead.range,
@@ -169,13 +170,7 @@ const KEYS: &[Key] = &[
         write_some(range_text),
         "two times in seconds: 0.5,1.5"
     ),
-    key!(
-        "skinning",
-        display.skinning,
-        |text| from_word(&SKINNING_MODES, text),
-        |mode| write_word(&SKINNING_MODES, mode),
-        "linear, rigid or dual-quaternion"
-    ),
+    word!("skinning", display.skinning, SKINNING_MODES, "linear, rigid or dual-quaternion"),
     key!("morph", edits.morph, read_morph, write_morph, "pairs of index and weight: 0:0.5,3:1"),
     key!("pose", edits.pose, read_pose, write_pose, "joints with three angles in degrees: 4:30:0:-15,7:0:90:0"),
     key!("names", edits.names, read_names, write_names, "joints with their names: 4:Left%20knee,7:Hand"),
@@ -198,15 +193,9 @@ const KEYS: &[Key] = &[
     key!("fov", camera_options.fov_degrees, finite, write_number, "degrees"),
     key!("follow", camera_options.follow, flag, write_flag, "0 or 1"),
     key!("turntable", camera_options.turntable, finite, write_number, "degrees per second"),
-    key!("up", edits.up, |text| from_word(&UP_AXES, text), |axis| write_word(&UP_AXES, axis), "x, y, z, -x, -y or -z"),
+    word!("up", edits.up, UP_AXES, "x, y, z, -x, -y or -z"),
     key!("exposure", display.exposure, finite, write_number, "stops"),
-    key!(
-        "tonemap",
-        display.tone_map,
-        |text| from_word(&TONE_MAPS, text),
-        |tone_map| write_word(&TONE_MAPS, tone_map),
-        "neutral, aces, agx or none"
-    ),
+    word!("tonemap", display.tone_map, TONE_MAPS, "neutral, aces, agx or none"),
     key!("environment", display.environment_degrees, finite, write_number, "degrees"),
     key!(
         "light",

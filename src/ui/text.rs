@@ -342,6 +342,10 @@ pub const WHITE_LIGHT: &str = "White";
 pub const OWN_KEY_LIGHT: &str = "Custom key light";
 /// Slider of the custom key light.
 pub const KEY_STRENGTH: &str = "Key light strength";
+/// Slider of the custom key light.
+pub const KEY_AZIMUTH: &str = "Key light azimuth";
+/// Slider of the custom key light.
+pub const KEY_ELEVATION: &str = "Key light elevation";
 /// The light, in the choice of background.
 pub const ENVIRONMENT: &str = "Environment";
 /// The light out of focus, in the choice of background.

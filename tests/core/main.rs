@@ -19,5 +19,7 @@ mod skinning;
 mod allocations;
 #[path = "../support/random.rs"]
 mod random;
+#[path = "../support/random_vectors.rs"]
+mod random_vectors;
 #[path = "../support/skinning_cases.rs"]
 mod skinning_cases;

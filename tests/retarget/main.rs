@@ -6,6 +6,8 @@ mod data_folder;
 mod pairs_of_people;
 #[path = "../support/random.rs"]
 mod random;
+#[path = "../support/random_vectors.rs"]
+mod random_vectors;
 #[path = "../support/real.rs"]
 mod real;
 #[path = "../support/skeletons.rs"]

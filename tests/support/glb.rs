@@ -317,3 +317,16 @@ fn slerp(a: &[f64], b: &[f64], t: f64) -> Vec<f64> {
     };
     a.iter().zip(b).map(|(a, b)| weights[0] * a + sign * weights[1] * b).collect()
 }
+
+/// Reads a GLB completely: every index in range, every number finite, weights of sum 1.
+pub fn check(glb: &[u8]) {
+    let glb = Glb::new(glb);
+    for (index, _) in glb.list("accessors").iter().enumerate() {
+        assert!(glb.accessor(&index.into()).iter().all(|value| value.is_finite()), "accessor {index}");
+    }
+    let mut poses = vec![glb.pose(None)];
+    poses.extend((0..glb.list("animations").len()).map(|clip| glb.pose(Some((clip, 0.3 * glb.duration(clip))))));
+    for pose in &poses {
+        glb.vertices(pose);
+    }
+}

@@ -3,8 +3,6 @@
 // Each test program uses a part of it.
 #![allow(dead_code)]
 
-use glam::{Quat, Vec3};
-
 pub struct Random(pub u64);
 
 impl Random {
@@ -29,16 +27,5 @@ impl Random {
     /// From 0 up to, but excluding, `end`; 0 if `end` is 0.
     pub fn below(&mut self, end: usize) -> usize {
         (self.bits() % end.max(1) as u64) as usize
-    }
-
-    /// Components from -1 to 1.
-    pub fn vec3(&mut self) -> Vec3 {
-        2.0 * Vec3::new(self.f32(), self.f32(), self.f32()) - 1.0
-    }
-
-    /// A rotation of unit length.
-    pub fn quat(&mut self) -> Quat {
-        let xyz = self.vec3();
-        Quat::from_xyzw(xyz.x, xyz.y, xyz.z, 2.0 * self.f32() - 1.0).normalize()
     }
 }

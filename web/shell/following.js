@@ -2,7 +2,7 @@
 import { awaitFiles, showAwaited } from "./awaited.js";
 import { cancelSummary, summarizeSoon } from "./changes.js";
 import { button, byId, dialog, messageOf, showList } from "./dom.js";
-import { heldItems, heldMotions, localFiles } from "./held.js";
+import { heldItems, heldMotionsAndLight, localFiles } from "./held.js";
 import { beginFollowing, endFollowing, keepTypedAddress, moveToEntry, showInEntry } from "./history.js";
 import { linkWithoutMissing, linkedFiles } from "./links.js";
 import { load, takeNews } from "./load.js";
@@ -49,7 +49,7 @@ export async function follow(link, { items = [], motionItems = [], link: heldLin
     showMissing(problems, link, isUnchanged);
   };
   try {
-    const before = { items: heldItems(session.link), motionItems: heldMotions(session.link) };
+    const before = { items: heldItems(session.link), motionItems: heldMotionsAndLight(session.link) };
     if (items.length > 0 && !areSame(items, before.items)) await load(items, undefined, arePrivate(items));
     if (motionItems.length > 0 && !areSame(motionItems, before.motionItems)) await load(motionItems, "motion", arePrivate(motionItems));
     if (number !== lastFollow) return;
@@ -102,7 +102,7 @@ export function showMissing(problems, link, isUnchanged = false) {
       : "Everything else is shown.";
   button("missing-again").onclick = () => {
     dialog("missing").close();
-    if (heldItems(session.link).length + heldMotions(session.link).length === 0) {
+    if (heldItems(session.link).length + heldMotionsAndLight(session.link).length === 0) {
       follow(link, {}, true);
     } else {
       session.link = link;

@@ -81,10 +81,16 @@ export const heldItems = (link) => setsOf(link, "model").flat();
  * Returns what a link's motions and its light are opened from, besides the model's own files.
  * @param {string} link
  */
-export function heldMotions(link) {
+export function heldMotionsAndLight(link) {
   const models = setsOf(link, "model");
-  const others = [...new Set([...setsOf(link, "motion"), ...setsOf(link, "light")])];
-  return others.filter((set) => !models.includes(set)).flat();
+  const motions = setsOf(link, "motion").filter((set) => !models.includes(set));
+  const sets = [...models, ...motions];
+  // Not the whole set of the light, which may have a model that is no longer shown.
+  const lights = linkedFiles(link).flatMap(({ role, name, isToBring }) => {
+    const item = role === "light" && !isToBring ? itemNamed(name) : undefined;
+    return item === undefined || sets.some((set) => set.includes(item)) ? [] : [item];
+  });
+  return [...motions.flat(), ...lights];
 }
 
 /** @param {LinkedFile} file */

@@ -1,7 +1,7 @@
 // The address bar and the browser's history: opening other files adds an entry, everything else changes the current one.
 // Entries with local files keep them as long as the page lives.
 import { awaited } from "./awaited.js";
-import { heldItems, heldMotions, shareableLink } from "./held.js";
+import { heldItems, heldMotionsAndLight, shareableLink } from "./held.js";
 import { shownFiles } from "./links.js";
 import { isPrivate } from "./privacy.js";
 import { session } from "./session.js";
@@ -80,7 +80,7 @@ export function showInEntry(link) {
 
 function remember() {
   visits.delete(entry.number);
-  const [items, motionItems] = [heldItems(session.link), heldMotions(session.link)];
+  const [items, motionItems] = [heldItems(session.link), heldMotionsAndLight(session.link)];
   if (items.length + motionItems.length === 0) return;
   visits.set(entry.number, { link: session.link, items, motionItems });
   const [oldest] = visits.keys();

@@ -7,7 +7,7 @@ import { button, byId, frames, messageOf, whenIdle } from "./dom.js";
 import { drawOffScreen } from "./first-frame.js";
 import { follow, showMissing } from "./following.js";
 import { showGallery } from "./gallery.js";
-import { heldItems, heldMotions } from "./held.js";
+import { heldItems, heldMotionsAndLight } from "./held.js";
 import { linkWithoutMissing, readLinksWith } from "./links.js";
 import { readOrReport } from "./load.js";
 import { keepOffline } from "./offline.js";
@@ -80,7 +80,7 @@ async function start(renderer) {
     session.link = session.askedLink ?? awaited()?.link ?? session.link;
     awaitFiles(session.link);
     session.askedLink = null;
-    const files = await Promise.all([heldItems(session.link), heldMotions(session.link)].map((items) => readOrReport(items, sayProblem)));
+    const files = await Promise.all([heldItems(session.link), heldMotionsAndLight(session.link)].map((items) => readOrReport(items, sayProblem)));
     const problem = await startOn(bindings, attempt, files);
     if (problem === null) {
       keepOffline(programFiles(attempt));
@@ -120,7 +120,7 @@ async function startOn(bindings, renderer, [items, motionItems]) {
   /** @type {string[]} */
   let missing;
   try {
-    const isPrivate = arePrivate([...heldItems(link), ...heldMotions(link)]);
+    const isPrivate = arePrivate([...heldItems(link), ...heldMotionsAndLight(link)]);
     const run = bindings.run(canvas, link, items, motionItems, isPrivate, callsFor(bindings));
     missing = JSON.parse(await Promise.race([run, aborted]));
   } catch (error) {

@@ -3,7 +3,7 @@
 import { awaited, forgetAwaited, showAwaited } from "./awaited.js";
 import { forgetProblem, summarize } from "./changes.js";
 import { focusCanvas, frames, messageOf } from "./dom.js";
-import { extensionOf, heldItems, heldMotions, itemNamed, nameOf, setWith } from "./held.js";
+import { extensionOf, heldItems, heldMotionsAndLight, itemNamed, nameOf, setWith } from "./held.js";
 import { follow } from "./following.js";
 import { linkWithFiles } from "./links.js";
 import { load } from "./load.js";
@@ -144,5 +144,5 @@ async function completeLink(items, isShown) {
   const names = found.flatMap(({ item }) => (item === undefined ? [] : [nameOf(item)]));
   const complete = linkWithFiles(link, names);
   forgetAwaited();
-  await follow(complete, { link: complete, items: heldItems(complete), motionItems: heldMotions(complete) });
+  await follow(complete, { link: complete, items: heldItems(complete), motionItems: heldMotionsAndLight(complete) });
 }

@@ -151,11 +151,7 @@ impl Meshes<'_> {
         if primitives.is_empty() {
             return Ok(None);
         }
-        let mut json = Object::new();
-        if !name.is_empty() {
-            json.string("name", name);
-        }
-        json.raw("primitives", &primitives.json());
+        let mut json = gaitway_glb::mesh(name, &primitives);
         add_targets(mesh, &mut json);
         Ok(Some(self.glb.meshes.push(&json.end())))
     }

@@ -222,6 +222,16 @@ fn power_of_ten(exponent: i32) -> f64 {
     if exponent < 0 { 1.0 / power } else { power }
 }
 
+/// Returns a mesh, to which morph targets can be added; an empty name is left out.
+pub fn mesh(name: &str, primitives: &List) -> Object {
+    let mut mesh = Object::new();
+    if !name.is_empty() {
+        mesh.string("name", name);
+    }
+    mesh.raw("primitives", &primitives.json());
+    mesh
+}
+
 /// The document.
 #[derive(Default)]
 pub struct Glb {

@@ -212,12 +212,7 @@ impl Shape {
         if primitives.is_empty() {
             return Ok(None);
         }
-        let mut json = Object::new();
-        let name = document.objects[mesh].name;
-        if !name.is_empty() {
-            json.string("name", &text(name));
-        }
-        json.raw("primitives", &primitives.json());
+        let json = gaitway_glb::mesh(&text(document.objects[mesh].name), &primitives);
         Ok(Some(glb.meshes.push(&json.end())))
     }
 

@@ -6,7 +6,7 @@ use crate::state::LightSetup;
 
 /// A directional light that belongs to an environment. It casts the shadow.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::render) struct KeyLight {
+pub(in crate::render) struct DirectionalLight {
     /// Unit vector towards the light, without environment rotation.
     pub direction: Vec3,
     /// Linear colour times intensity; zero switches the light off but not the shadow on the ground.
@@ -56,7 +56,7 @@ pub(super) struct Surroundings {
     floor: Vec3,
     horizon: Vec3,
     zenith: Vec3,
-    pub key: KeyLight,
+    pub key: DirectionalLight,
 }
 
 impl Surroundings {
@@ -72,7 +72,7 @@ impl Surroundings {
 
     fn new(boxes: Vec<SoftBox>, [floor, horizon, zenith]: [[f32; 3]; 3], key: [[f32; 3]; 2]) -> Self {
         let [direction, color] = key.map(Vec3::from);
-        let key = KeyLight { direction: direction.normalize_or_zero(), color };
+        let key = DirectionalLight { direction: direction.normalize_or_zero(), color };
         Self { boxes, floor: floor.into(), horizon: horizon.into(), zenith: zenith.into(), key }
     }
 

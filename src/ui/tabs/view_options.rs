@@ -34,6 +34,7 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Outpu
     camera(ui, shown, aspect, out);
     controls::section(ui, "BACKGROUND");
     background(ui, shown.state.display.background, out);
+    light(ui, shown, out);
     controls::section(ui, "UP AXIS OF THE FILE");
     let axes = [
         (UpAxis::X, "X"),
@@ -48,7 +49,6 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Outpu
     }
     ui.add_space(2.0);
     controls::hint(ui, "Y in glTF. Change it if the model lies on its back.");
-    light(ui, shown, out);
     scenes(ui, shown, out);
     picture(ui, shown, &mut local.picture_settings, out);
 }
@@ -204,23 +204,27 @@ fn environment(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
 
 fn key_light(ui: &mut Ui, key: Option<KeyLight>, out: &mut Output) {
     if controls::switch(ui, text::OWN_KEY_LIGHT, key.is_some()) {
-        // Where the studio's own key light is, and as strong.
-        let studio = KeyLight { strength: 0.32, yaw_degrees: -44.0, pitch_degrees: 46.0 };
-        out.commands.push(Command::SetKeyLight(if key.is_some() { None } else { Some(studio) }));
+        out.commands.push(Command::SetKeyLight(if key.is_some() { None } else { Some(KeyLight::STUDIO) }));
     }
     let Some(key) = key else { return };
-    let degrees = |range, default| SliderSettings { range, default, decimals: 0, suffix: "°", logarithmic: false };
-    let strength = SliderSettings { range: (0.0, 3.0), default: 0.32, decimals: 2, suffix: "", logarithmic: false };
+    let settings = |range, default: f32, decimals, suffix| SliderSettings {
+        range,
+        default: f64::from(default),
+        decimals,
+        suffix,
+        logarithmic: false,
+    };
+    let strength = settings((0.0, 3.0), KeyLight::STUDIO.strength, 2, "");
     let mut changed = None;
     if let Some(strength) = controls::slider(ui, text::KEY_STRENGTH, f64::from(key.strength), strength) {
         changed = Some(KeyLight { strength: strength as f32, ..key });
     }
-    let yaw = degrees((-180.0, 180.0), -44.0);
-    if let Some(yaw) = controls::slider(ui, "Key light azimuth", f64::from(key.yaw_degrees), yaw) {
+    let yaw = settings((-180.0, 180.0), KeyLight::STUDIO.yaw_degrees, 0, "°");
+    if let Some(yaw) = controls::slider(ui, text::KEY_AZIMUTH, f64::from(key.yaw_degrees), yaw) {
         changed = Some(KeyLight { yaw_degrees: yaw as f32, ..key });
     }
-    let pitch = degrees((-90.0, 90.0), 46.0);
-    if let Some(pitch) = controls::slider(ui, "Key light elevation", f64::from(key.pitch_degrees), pitch) {
+    let pitch = settings((-90.0, 90.0), KeyLight::STUDIO.pitch_degrees, 0, "°");
+    if let Some(pitch) = controls::slider(ui, text::KEY_ELEVATION, f64::from(key.pitch_degrees), pitch) {
         changed = Some(KeyLight { pitch_degrees: pitch as f32, ..key });
     }
     out.commands.extend(changed.map(|key| Command::SetKeyLight(Some(key))));

@@ -6,4 +6,6 @@ mod data_folder;
 #[path = "../../../../tests/support/glb.rs"]
 mod glb;
 mod mutation;
+#[path = "../../../../tests/support/random.rs"]
+mod random;
 mod text;

@@ -4,7 +4,8 @@ use std::time::{Duration, Instant};
 
 use crate::data;
 use crate::data_folder::data_folder;
-use crate::glb::Glb;
+use crate::glb;
+use crate::random::Random;
 use crate::text;
 
 /// Mutations in an ordinary run; `GAITWAY_FBX_MUTATIONS` sets another number.
@@ -15,23 +16,6 @@ const LIMIT: Duration = Duration::from_secs(5);
 /// Numbers that counts, offsets and coordinates don't expect.
 const NUMBERS: [&str; 10] =
     ["0", "-1", "1e39", "-1e308", "nan", "2147483647", "4294967295", "9223372036854775807", "1e-320", "65536"];
-
-/// Reproducible numbers: SplitMix64.
-struct Random(u64);
-
-impl Random {
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, end: usize) -> usize {
-        (self.bits() % end.max(1) as u64) as usize
-    }
-}
 
 /// Returns small files of all kinds: text made here, and real ones where there are.
 fn seeds() -> Vec<Vec<u8>> {
@@ -101,7 +85,7 @@ fn damaged_files_convert_or_say_why_not() {
         assert!(time < LIMIT, "mutation {number} took {time:?}");
         match result {
             Ok(result) => {
-                check(&result.bytes);
+                glb::check(&result.bytes);
                 converted += 1;
             }
             Err(message) => assert!(message.ends_with('.') && message.contains(": "), "{message}"),
@@ -119,17 +103,4 @@ fn peak_bytes() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     line.trim().strip_suffix(" kB")?.trim().parse::<u64>().ok().map(|kilobytes| kilobytes << 10)
-}
-
-/// Reads a GLB completely: every index in range, every number finite, weights of sum 1.
-fn check(glb: &[u8]) {
-    let glb = Glb::new(glb);
-    for (index, _) in glb.list("accessors").iter().enumerate() {
-        assert!(glb.accessor(&index.into()).iter().all(|value| value.is_finite()), "accessor {index}");
-    }
-    let mut poses = vec![glb.pose(None)];
-    poses.extend((0..glb.list("animations").len()).map(|clip| glb.pose(Some((clip, 0.3 * glb.duration(clip))))));
-    for pose in &poses {
-        glb.vertices(pose);
-    }
 }
