@@ -51,7 +51,6 @@ struct Frame {
     sky_ahead: vec4f,
     sky_right: vec4f,
     sky_up: vec4f,
-    irradiance: array<vec4f, 9>,
     lights: array<Light, 8>,
 }
 

@@ -5,6 +5,7 @@
 @group(1) @binding(2) var shadow_map: texture_depth_2d;
 @group(1) @binding(3) var shadow_sampler: sampler_comparison;
 @group(1) @binding(4) var reflectance: texture_2d<f32>;
+@group(1) @binding(5) var irradiance: texture_cube<f32>;
 
 const PI: f32 = 3.14159265;
 // Edge length of the reflectance table, environment/reflectance.rs.
@@ -18,17 +19,7 @@ fn environment_from_world(direction: vec3f) -> vec3f {
 
 // Radiance reflected by a white diffuse surface.
 fn environment_diffuse(normal: vec3f) -> vec3f {
-    let n = environment_from_world(normal);
-    let sum = frame.irradiance[0].rgb
-        + frame.irradiance[1].rgb * n.y
-        + frame.irradiance[2].rgb * n.z
-        + frame.irradiance[3].rgb * n.x
-        + frame.irradiance[4].rgb * (n.x * n.y)
-        + frame.irradiance[5].rgb * (n.y * n.z)
-        + frame.irradiance[6].rgb * (3.0 * n.z * n.z - 1.0)
-        + frame.irradiance[7].rgb * (n.x * n.z)
-        + frame.irradiance[8].rgb * (n.x * n.x - n.y * n.y);
-    return max(sum, vec3f(0.0));
+    return textureSampleLevel(irradiance, environment_sampler, environment_from_world(normal), 0.0).rgb;
 }
 
 fn environment_specular(reflected: vec3f, roughness: f32) -> vec3f {

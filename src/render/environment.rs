@@ -1,5 +1,5 @@
-//! Light from all around: an environment prefiltered by roughness into a small cube map, with diffuse light as nine spherical
-//! harmonics, and the table of how much of it a surface reflects. All of it is computed on the CPU, in some milliseconds for
+//! Light from all around: an environment prefiltered by roughness into a small cube map, with diffuse light by normal in a
+//! second one, and the table of how much of it a surface reflects. All of it is computed on the CPU, in some milliseconds for
 //! a set-up and noticeably longer for an image: floating-point render targets are optional on WebGL2, and compiling shaders
 //! for it would take longer.
 
@@ -23,7 +23,7 @@ const SIZES: [usize; 2] = [128, 256];
 /// Width and height of a set-up's panorama in pixels.
 const SETUP_PANORAMA: [usize; 2] = [1024, 512];
 /// More samples than set-ups need: images have small bright spots, and nobody waits for a first picture.
-const IMAGE_QUALITY: usize = 3;
+const IMAGE_QUALITY: usize = 12;
 
 /// What an environment is made from.
 #[derive(Clone)]
@@ -51,8 +51,8 @@ impl PartialEq for Source {
 pub(super) struct Environment {
     pub source: Source,
     pub view: wgpu::TextureView,
-    /// Irradiance coefficients divided by π, in the order of light.wgsl.
-    pub irradiance: [[f32; 4]; 9],
+    /// What a white diffuse surface reflects, by its normal.
+    pub irradiance: wgpu::TextureView,
     /// Index of the roughest level of the cube map.
     pub last_level: u32,
     pub key: DirectionalLight,
@@ -71,8 +71,9 @@ impl Environment {
                 (cube, IMAGE_QUALITY, None)
             }
         };
-        let (levels, irradiance) = (cube.filtered(quality), cube.irradiance());
-        let key = key.unwrap_or_else(|| shadow_only(&irradiance));
+        let levels = cube.filtered(quality);
+        let key = key.unwrap_or_else(|| shadow_only(cube.mean_direction()));
+        let irradiance = upload(device, queue, &[cube.irradiance()]);
         Self { source, view: upload(device, queue, &levels), irradiance, last_level: levels.len() as u32 - 1, key }
     }
 
@@ -93,8 +94,9 @@ impl Environment {
 }
 
 /// The lights of an image are part of it, so it has no key light; the shadow falls away from its brightest side.
-fn shadow_only(irradiance: &[[f32; 4]; 9]) -> DirectionalLight {
-    let [y, z, x] = [1, 2, 3].map(|band: usize| irradiance[band][..3].iter().sum::<f32>());
+fn shadow_only(from: Vec3) -> DirectionalLight {
+    // Of the same light from everywhere, only rounding errors are left.
+    let Vec3 { x, y, z } = if from.length() < 1e-3 { Vec3::Y } else { from };
     let direction = Vec3::new(x, 0.0, z).normalize_or_zero() + Vec3::Y * (y / x.hypot(z).max(1e-6)).clamp(0.7, 3.0);
     DirectionalLight { direction: direction.normalize_or(Vec3::Y), color: Vec3::ZERO }
 }

@@ -103,7 +103,6 @@ pub(super) fn frame_uniform(
         sky_ahead,
         sky_right,
         sky_up,
-        irradiance: environment.irradiance,
         lights: Default::default(),
     };
     for (slot, light) in uniform.lights.iter_mut().zip(&frame.lights) {

@@ -24,7 +24,7 @@ impl LightSources {
         let sampler = environment::sampler(device);
         let reflectance = environment::reflectance_table(device, queue);
         let [group, without_shadow] = [&shadow_map.view, &shadow_map.placeholder].map(|shadow| {
-            let views = [&environment.view, shadow, &reflectance];
+            let views = [&environment.view, shadow, &reflectance, &environment.irradiance];
             light_group(device, layouts, views, [&sampler, &shadow_map.sampler])
         });
         Self { environment, shadow_map, sampler, reflectance, group, without_shadow, sky: None }
@@ -39,7 +39,7 @@ impl LightSources {
         self.sky = None;
         let shadows = [&self.shadow_map.view, &self.shadow_map.placeholder];
         [self.group, self.without_shadow] = shadows.map(|shadow| {
-            let views = [&self.environment.view, shadow, &self.reflectance];
+            let views = [&self.environment.view, shadow, &self.reflectance, &self.environment.irradiance];
             light_group(device, layouts, views, [&self.sampler, &self.shadow_map.sampler])
         });
     }
@@ -62,7 +62,7 @@ impl LightSources {
 fn light_group(
     device: &wgpu::Device,
     layouts: &Layouts,
-    [environment, shadow, reflectance]: [&wgpu::TextureView; 3],
+    [environment, shadow, reflectance, irradiance]: [&wgpu::TextureView; 4],
     [environment_sampler, shadow_sampler]: [&wgpu::Sampler; 2],
 ) -> wgpu::BindGroup {
     let resources = [
@@ -71,6 +71,7 @@ fn light_group(
         wgpu::BindingResource::TextureView(shadow),
         wgpu::BindingResource::Sampler(shadow_sampler),
         wgpu::BindingResource::TextureView(reflectance),
+        wgpu::BindingResource::TextureView(irradiance),
     ];
     bind_group(device, &layouts.light, "light", resources)
 }

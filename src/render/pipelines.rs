@@ -84,6 +84,7 @@ impl Layouts {
                     entry(2, Stages::FRAGMENT, texture(Sample::Depth, Dimension::D2)),
                     entry(3, Stages::FRAGMENT, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison)),
                     entry(4, Stages::FRAGMENT, texture(filtered, Dimension::D2)),
+                    entry(5, Stages::FRAGMENT, texture(filtered, Dimension::Cube)),
                 ],
             ),
         }

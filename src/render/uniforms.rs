@@ -78,8 +78,6 @@ pub struct FrameUniform {
     pub sky_right: [f32; 4],
     /// Added to it per unit of y in normalized device coordinates.
     pub sky_up: [f32; 4],
-    /// Spherical harmonics of the environment's irradiance over π, all constants folded in; w is unused.
-    pub irradiance: [[f32; 4]; 9],
     /// The file's lights; unused elements are zero.
     pub lights: [LightUniform; MAX_LIGHTS],
 }

@@ -61,7 +61,6 @@ fn uniforms_have_the_same_layout_in_wgsl_and_rust() {
         sky_ahead,
         sky_right,
         sky_up,
-        irradiance,
         lights
     );
     check!(

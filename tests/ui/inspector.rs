@@ -79,6 +79,8 @@ fn view_sets_camera_and_background() {
     }
     assert_eq!(press(&mut harness, text::FOLLOW), [Command::SetFollow(true)]);
     assert_eq!(press(&mut harness, text::NO_BACKGROUND), [Command::SetBackground(Background::Transparent)]);
+    harness.get_by_label(text::UP_Z).scroll_to_me();
+    harness.run();
     assert_eq!(press(&mut harness, text::UP_Z), [Command::SetUp(UpAxis::Z)]);
     harness.get_by_label(text::EXPOSURE).set_value_accesskit(2.0);
     harness.run();

@@ -2,6 +2,9 @@
 
 use glam::{Vec2, Vec3, Vec4};
 
+/// Edge length of a face of the irradiance, which is smooth.
+const IRRADIANCE_SIZE: usize = 16;
+
 /// One mip level. Every face has a border of one texel from its neighbours, so that filtering knows no edges.
 struct Level {
     size: usize,
@@ -44,6 +47,14 @@ fn face_of(direction: Vec3) -> (usize, Vec2) {
 /// Center of a texel, −1 to 1 inside a face.
 fn center(size: usize, x: usize, y: usize) -> Vec2 {
     (Vec2::new(x as f32, y as f32) + 0.5) * (2.0 / size as f32) - 1.0
+}
+
+/// Directions to the texels of all faces, not normalized.
+fn directions(size: usize) -> impl Iterator<Item = Vec3> {
+    (0..6 * size * size).map(move |texel| {
+        let (face, on) = (texel / (size * size), texel % (size * size));
+        on_face(face, center(size, on % size, on / size))
+    })
 }
 
 impl Level {
@@ -132,12 +143,8 @@ impl Cube {
         let mut filtered = vec![(self.levels[0].size, self.levels[0].inside())];
         for (index, level) in self.levels.iter().enumerate().skip(1) {
             let lobe = Lobe::new(self, roughness_of_level(index, self.levels.len() - 1), quality * (12 << (index - 1)));
-            let size = level.size;
-            let directions = (0..6 * size * size).map(|texel| {
-                let (face, on) = (texel / (size * size), texel % (size * size));
-                on_face(face, center(size, on % size, on / size)).normalize_or_zero()
-            });
-            filtered.push((size, directions.map(|direction| self.blurred(&lobe, direction)).collect()));
+            let blurred = directions(level.size).map(|at| self.blurred(&lobe, at.normalize_or_zero()));
+            filtered.push((level.size, blurred.collect()));
         }
         filtered
     }
@@ -151,42 +158,35 @@ impl Cube {
         sum.truncate()
     }
 
-    /// Projects the irradiance to spherical harmonics (Ramamoorthi and Hanrahan 2001), with all constants folded in.
-    pub fn irradiance(&self) -> [[f32; 4]; 9] {
-        // Squared basis constant, times the cosine lobe's factor (π, 2π/3, π/4) over π.
-        const FACTORS: [f32; 9] = [
-            0.282_095 * 0.282_095,
-            0.488_603 * 0.488_603 * 2.0 / 3.0,
-            0.488_603 * 0.488_603 * 2.0 / 3.0,
-            0.488_603 * 0.488_603 * 2.0 / 3.0,
-            1.092_548 * 1.092_548 / 4.0,
-            1.092_548 * 1.092_548 / 4.0,
-            0.315_392 * 0.315_392 / 4.0,
-            1.092_548 * 1.092_548 / 4.0,
-            0.546_274 * 0.546_274 / 4.0,
-        ];
-        let level = self.levels.iter().find(|level| level.size <= 32).unwrap_or(&self.levels[0]);
-        let mut sums = [Vec3::ZERO; 9];
-        let mut total = 0.0;
-        for face in 0..6 {
-            for texel in 0..level.size * level.size {
-                let (x, y) = (texel % level.size, texel / level.size);
-                let direction = on_face(face, center(level.size, x, y));
-                let solid_angle = direction.length_squared().powf(-1.5);
-                let n = direction.normalize_or_zero();
-                let light = solid_angle * level.texels[level.index(face, x + 1, y + 1)].truncate();
-                total += solid_angle;
-                sums.iter_mut().zip(harmonics(n)).for_each(|(sum, basis)| *sum += basis * light);
-            }
-        }
-        let scale = 4.0 * std::f32::consts::PI / total;
-        std::array::from_fn(|index| (sums[index] * (FACTORS[index] * scale)).extend(0.0).to_array())
+    /// Returns the light that a white diffuse surface reflects, the irradiance over π, for normals towards all directions: the
+    /// edge length of a face and the texels of all faces. Spherical harmonics of few bands would let a strong lamp shine
+    /// around corners.
+    pub fn irradiance(&self) -> (usize, Vec<Vec3>) {
+        let lights = self.lights();
+        let reflected = |normal: Vec3| {
+            let sum = lights.iter().fold(Vec4::ZERO, |sum, (from, light)| sum + from.dot(normal).max(0.0) * *light);
+            sum.truncate() / sum.w
+        };
+        (IRRADIANCE_SIZE, directions(IRRADIANCE_SIZE).map(|at| reflected(at.normalize_or_zero())).collect())
     }
-}
 
-/// The basis functions without their constants, in the order of light.wgsl.
-fn harmonics(n: Vec3) -> [f32; 9] {
-    [1.0, n.y, n.z, n.x, n.x * n.y, n.y * n.z, 3.0 * n.z * n.z - 1.0, n.x * n.z, n.x * n.x - n.y * n.y]
+    /// Returns the mean direction that light comes from: as long as 1 for a single lamp, 0 for light from everywhere alike.
+    pub fn mean_direction(&self) -> Vec3 {
+        let weighted = self.lights().into_iter().map(|(from, light)| from.extend(1.0) * light.truncate().element_sum());
+        let sum: Vec4 = weighted.sum();
+        sum.truncate() / sum.w.max(f32::MIN_POSITIVE)
+    }
+
+    /// The light from all directions, and in W the solid angle that it comes from, in parts of the same unit.
+    fn lights(&self) -> Vec<(Vec3, Vec4)> {
+        let size = (self.levels[0].size / 8).max(4);
+        let level = self.levels.iter().find(|level| level.size <= size).unwrap_or(&self.levels[0]);
+        let lights = directions(level.size).zip(level.inside()).map(|(at, light)| {
+            let solid_angle = at.length_squared().powf(-1.5);
+            (at.normalize_or_zero(), solid_angle * light.extend(1.0))
+        });
+        lights.collect()
+    }
 }
 
 /// Inverts light.wgsl's `level = last · roughness · (2 − roughness)`, which gives smooth surfaces, whose reflections are the
@@ -291,9 +291,8 @@ mod tests {
             assert_eq!(texels.len(), 6 * size * size);
             assert!(texels.iter().all(|texel| texel.abs_diff_eq(Vec3::splat(0.75), 1e-5)), "{size}");
         }
-        let [constant, others @ ..] = cube.irradiance();
-        assert!((constant[0] - 0.75).abs() < 1e-4, "{constant:?}");
-        assert!(others.iter().all(|other| other[0].abs() < 1e-4), "{others:?}");
+        assert!(cube.irradiance().1.iter().all(|light| light.abs_diff_eq(Vec3::splat(0.75), 1e-5)));
+        assert!(cube.mean_direction().length() < 1e-4);
     }
 
     #[test]
@@ -322,13 +321,13 @@ mod tests {
 
     #[test]
     fn irradiance_is_the_environment_weighted_by_the_cosine() {
-        let coefficients = Cube::new(64, lamp).irradiance();
-        let brightest = weighted_light(Vec3::new(-0.6, 0.8, 0.0), |cos| cos.max(0.0)).y;
-        for normal in [Vec3::Y, Vec3::NEG_Y, Vec3::X, Vec3::Z, Vec3::new(-0.6, 0.0, 0.8)] {
-            let shown: f32 = coefficients.iter().zip(harmonics(normal)).map(|(c, b)| c[1] * b).sum();
-            let expected = weighted_light(normal, |cos| cos.max(0.0)).y;
-            // Nine harmonics ring a little around a single lamp.
-            assert!((shown - expected).abs() < 0.07 * brightest, "{normal}: {shown} instead of {expected}");
+        let (size, irradiance) = Cube::new(128, lamp).irradiance();
+        let towards_lamp = Vec3::new(-0.6, 0.8, 0.0);
+        let brightest = weighted_light(towards_lamp, |cos| cos.max(0.0)).y;
+        for (normal, shown) in directions(size).zip(irradiance).step_by(31) {
+            let expected = weighted_light(normal.normalize(), |cos| cos.max(0.0)).y;
+            assert!((shown.y - expected).abs() < 0.01 * brightest, "{normal}: {} instead of {expected}", shown.y);
         }
+        assert!(Cube::new(64, lamp).mean_direction().normalize().distance(towards_lamp) < 0.02);
     }
 }
