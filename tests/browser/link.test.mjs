@@ -5,10 +5,10 @@ import fs from "node:fs";
 import os from "node:os";
 import path from "node:path";
 import { after, before, describe, test } from "node:test";
+import { neverAnswers, serve } from "../../xtask/site/server.mjs";
 import { dataFile, skipWithoutData } from "../three/data.mjs";
 import { archive } from "./archive.mjs";
 import { BACK_ENDS, apply, drop, fragment, meanDifference, open, picture, pose, share, startSite, state, until, whenBorrowed, whenModel, whenShown } from "./browser.mjs";
-import { neverAnswers, serve } from "./server.mjs";
 
 const FOX = "khronos/Fox/glTF-Binary/Fox.glb";
 const FOX_VERTICES = 1728;
@@ -33,7 +33,7 @@ for (const renderer of BACK_ENDS)
   describe(`link on ${renderer}`, { skip: skipWithoutData }, () => {
     /** @type {import("./browser.mjs").Site} */
     let site;
-    /** @type {Record<"strict" | "own" | "silent", import("./server.mjs").Server>} */
+    /** @type {Record<"strict" | "own" | "silent", import("../../xtask/site/server.mjs").Server>} */
     let servers;
     /** @type {string} */
     let folder;
