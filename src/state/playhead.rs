@@ -23,19 +23,51 @@ pub struct UnknownClip {
 impl UnknownClip {
     /// What should have been given.
     pub const EXPECTED: &str = "the name or index of a clip";
+
+    /// A file may have hundreds of clips.
+    const MAX_NAMES: usize = 5;
+
+    /// Returns the clips whose names are most like the given one, all of them if there are few; in the order of the file if
+    /// an index was given.
+    fn nearest(&self) -> Vec<&str> {
+        let mut clips: Vec<&str> = self.clips.iter().map(String::as_str).collect();
+        if clips.len() > Self::MAX_NAMES && self.name.parse::<i64>().is_err() {
+            clips.sort_by_cached_key(|clip| edit_distance(&self.name, clip));
+        }
+        clips.truncate(Self::MAX_NAMES);
+        clips
+    }
 }
 
 /// “expected the name or index of a clip, found “Fly”; its clips are Walk, Idle”.
 impl std::fmt::Display for UnknownClip {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        const MAX_NAMES: usize = 20;
         write!(f, "expected {}, found “{}”; ", Self::EXPECTED, self.name)?;
-        match &self.clips[..] {
-            [] => f.write_str("there are no clips"),
-            clips if clips.len() <= MAX_NAMES => write!(f, "its clips are {}", clips.join(", ")),
-            clips => write!(f, "its clips are {} and {} more", clips[..MAX_NAMES].join(", "), clips.len() - MAX_NAMES),
+        let names = self.nearest().join(", ");
+        match self.clips.len().saturating_sub(Self::MAX_NAMES) {
+            _ if names.is_empty() => f.write_str("there are no clips"),
+            0 => write!(f, "its clips are {names}"),
+            more => write!(f, "its clips are {names} and {more} more"),
         }
     }
+}
+
+/// Edits that turn one name into the other: characters inserted, removed or replaced (Levenshtein), whatever their case.
+/// Only the beginnings of long names are compared.
+fn edit_distance(from: &str, to: &str) -> usize {
+    const MAX_CHARS: usize = 64;
+    let letters = |name: &str| name.chars().flat_map(char::to_lowercase).take(MAX_CHARS).collect::<Vec<_>>();
+    let (from, to) = (letters(from), letters(to));
+    let mut row: Vec<usize> = (0..=to.len()).collect();
+    for (at, letter) in from.iter().enumerate() {
+        let mut diagonal = std::mem::replace(&mut row[0], at + 1);
+        for (column, other) in to.iter().enumerate() {
+            let replaced = diagonal + usize::from(letter != other);
+            diagonal = row[column + 1];
+            row[column + 1] = replaced.min(diagonal + 1).min(row[column] + 1);
+        }
+    }
+    row[to.len()]
 }
 
 /// Returns the clip that the state names and the model lacks.
