@@ -237,7 +237,8 @@ async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, String> {
     }
 }
 
-/// Hands opened files to the app; resolves once they are on screen.
+/// Hands opened files to the app; resolves once they are on screen. The shell reports problems with links only: any other
+/// `state` is a change of the current one.
 async fn show(
     page: &Rc<Page>,
     mut contents: Contents,
@@ -257,7 +258,8 @@ async fn show(
         problems.iter().for_each(|problem| page.shell.warn(problem));
     }
     let (promise, reply) = promise::<Value>(|document| JsValue::from_str(&document.to_string()));
-    page.inbox.send(Message::Opened { contents: Box::new(contents), state, reply: Some(reply) });
+    let opened = Message::Opened { contents: Box::new(contents), state, is_change: !shell_reports, reply: Some(reply) };
+    page.inbox.send(opened);
     let text = settled(promise).await?.as_string().unwrap_or_default();
     let document = serde_json::from_str(&text).map_err(|error| error.to_string())?;
     Ok(Opened { kind, document, problems })
