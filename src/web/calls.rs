@@ -115,7 +115,8 @@ pub async fn begin() -> Result<(), JsError> {
     with_app(&page, App::begin).map_err(error)
 }
 
-/// Returns the contents of the live regions as `{model, clip, playing, notice, problem}`; no clip means the rest pose.
+/// Returns the contents of the live regions as `{model, isEmpty, clip, playing, notice, problem}`; no clip means the rest pose,
+/// and `isEmpty` that the stage has no model.
 #[wasm_bindgen]
 pub fn summary() -> Result<String, JsError> {
     let page = page().map_err(error)?;
@@ -129,6 +130,7 @@ pub fn summary() -> Result<String, JsError> {
         let clip = model.and_then(|model| model.clip_titles().get(active_clip(model, state)?));
         json!({
             "model": model.map_or_else(String::new, named),
+            "isEmpty": model.is_none_or(Model::is_placeholder),
             "clip": clip,
             "playing": state.playback.playing,
             "notice": app.notice(),

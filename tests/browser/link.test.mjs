@@ -129,6 +129,19 @@ for (const renderer of BACK_ENDS)
       fs.rmSync(path.join(folder, "late.glb"));
     });
 
+    onPage("applies the link to a dropped copy of a model that can't be loaded", () => fragment([["model", `${servers.own.origin}/gone/Fox.glb?v=1`], ["clip", "Run"], ["t", 0.5], ["play", 0]]), async (page) => {
+      await whenMissing(page);
+      assert.match((await missing(page)).join(), /Fox\.glb\?v=1: .*404/);
+      await page.locator("#missing-continue").click();
+      assert.equal(await page.locator("#bring").isVisible(), false, "nobody is asked for it");
+      await drop(page, [{ name: "Fox.glb", url: site.data(FOX) }]);
+      await until(page, async () => (await window.gaitway.state()).t === 0.5);
+      await whenShown(page, FOX_VERTICES);
+      const { clip, time_secs } = await pose(page);
+      assert.deepEqual([clip, time_secs], ["Run", 0.5]);
+      assert.deepEqual((await state(page)).model, ["Fox.glb"]);
+    });
+
     onPage("takes a GitHub page for the file that it shows", () => "", async (page) => {
       await page.route("https://raw.githubusercontent.com/**", (route) =>
         route.fulfill({ path: dataFile(FOX), headers: { "access-control-allow-origin": "*" } }),
