@@ -30,12 +30,13 @@ impl UnknownClip {
     /// Returns the clips whose names are most like the given one, all of them if there are few; in the order of the file if
     /// an index was given.
     fn nearest(&self) -> Vec<&str> {
-        let mut clips: Vec<&str> = self.clips.iter().map(String::as_str).collect();
+        let wanted = beginning(&self.name);
+        let similarity = |clip: &String| strsim::jaro_winkler(&wanted, &beginning(clip));
+        let mut clips: Vec<(f64, &str)> = self.clips.iter().map(|clip| (similarity(clip), clip.as_str())).collect();
         if clips.len() > Self::MAX_NAMES && self.name.parse::<i64>().is_err() {
-            clips.sort_by_cached_key(|clip| edit_distance(&self.name, clip));
+            clips.sort_by(|a, b| b.0.total_cmp(&a.0));
         }
-        clips.truncate(Self::MAX_NAMES);
-        clips
+        clips.into_iter().map(|(_, clip)| clip).take(Self::MAX_NAMES).collect()
     }
 }
 
@@ -52,22 +53,10 @@ impl std::fmt::Display for UnknownClip {
     }
 }
 
-/// Edits that turn one name into the other: characters inserted, removed or replaced (Levenshtein), whatever their case.
-/// Only the beginnings of long names are compared.
-fn edit_distance(from: &str, to: &str) -> usize {
+/// The beginning of a name, in lower case, to compare with others. Names in links and files may be of any length.
+fn beginning(name: &str) -> String {
     const MAX_CHARS: usize = 64;
-    let letters = |name: &str| name.chars().flat_map(char::to_lowercase).take(MAX_CHARS).collect::<Vec<_>>();
-    let (from, to) = (letters(from), letters(to));
-    let mut row: Vec<usize> = (0..=to.len()).collect();
-    for (at, letter) in from.iter().enumerate() {
-        let mut diagonal = std::mem::replace(&mut row[0], at + 1);
-        for (column, other) in to.iter().enumerate() {
-            let replaced = diagonal + usize::from(letter != other);
-            diagonal = row[column + 1];
-            row[column + 1] = replaced.min(diagonal + 1).min(row[column] + 1);
-        }
-    }
-    row[to.len()]
+    name.chars().flat_map(char::to_lowercase).take(MAX_CHARS).collect()
 }
 
 /// Returns the clip that the state names and the model lacks.

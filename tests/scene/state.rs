@@ -206,7 +206,7 @@ fn an_unknown_clip_is_told_with_the_nearest_names() {
     };
     check("Fly", &[], "there are no clips");
     check("Walc", &names[..5], "its clips are Idle, Jump, Run_Backwards, Sit, Walk");
-    check("WALC", &names, "its clips are Walk, Wave, Idle, walk_b, Jump and 4 more");
+    check("WALC", &names, "its clips are Walk, walk_b, Walking, Wave, Run_Backwards and 4 more");
     check("9", &names, "its clips are Idle, Jump, Run_Backwards, Sit, Walk and 4 more");
     check(&"x".repeat(1 << 20), &names, "its clips are Idle, Jump, Run_Backwards, Sit, Walk and 4 more");
 }

@@ -1,5 +1,6 @@
-// The decoders of compressed glTF and FBX: the page's modules and the command line give the same bytes, and those that other
-// viewers' decoders give: meshoptimizer's and Draco's, and Basis Universal's transcoder, as three.js ships them.
+// The decoders of compressed glTF, and the readers of FBX and .x: the page's modules and the native programs give the same
+// bytes, and the decoders those that other viewers' give: meshoptimizer's and Draco's, and Basis Universal's transcoder, as
+// three.js ships them.
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import os from "node:os";
@@ -75,24 +76,28 @@ const words = (...values) => new Uint8Array(Uint32Array.from(values).buffer);
 /** @param {string} extension */
 const filesWith = (extension) => gltfFiles().filter(({ file }) => JSON.stringify(readGltf(file).json).includes(`"${extension}"`));
 
-describe("the FBX reader gives the same bytes as a module", { skip: skipWithoutData }, () => {
-  if (skipWithoutData) return;
-  const starting = startPart("fbx");
-  for (const name of dataFiles(/\.fbx$/))
-    test(name, async () => {
-      const native = await converted(dataFile(name));
-      const module = await starting;
-      const answer = await module(fs.readFileSync(dataFile(name))).catch((/** @type {Error} */ { message }) => message);
-      if (typeof answer === "string") {
-        assert.equal(native.status, 1);
-        assert.ok(native.stderr.includes(answer), `${answer} / ${native.stderr}`);
-        return;
-      }
-      assert.equal(native.status, 0, native.stderr);
-      assert.ok(fs.readFileSync(native.out).equals(answer.bytes), "the files differ");
-      for (const warning of answer.warnings) assert.ok(native.stderr.includes(warning), `${warning} / ${native.stderr}`);
-    });
-});
+for (const { title, part, files } of [
+  { title: "FBX", part: "fbx", files: /\.fbx$/ },
+  { title: "DirectX", part: "x", files: /\.x$/ },
+])
+  describe(`the ${title} reader gives the same bytes as a module`, { skip: skipWithoutData }, () => {
+    if (skipWithoutData) return;
+    const starting = startPart(part);
+    for (const name of dataFiles(files))
+      test(name, async () => {
+        const native = await converted(dataFile(name));
+        const module = await starting;
+        const answer = await module(fs.readFileSync(dataFile(name))).catch((/** @type {Error} */ { message }) => message);
+        if (typeof answer === "string") {
+          assert.equal(native.status, 1);
+          assert.ok(native.stderr.includes(answer), `${answer} / ${native.stderr}`);
+          return;
+        }
+        assert.equal(native.status, 0, native.stderr);
+        assert.ok(fs.readFileSync(native.out).equals(answer.bytes), "the files differ");
+        for (const warning of answer.warnings) assert.ok(native.stderr.includes(warning), `${warning} / ${native.stderr}`);
+      });
+  });
 
 describe("meshopt views are decoded as by meshoptimizer", { skip: skipWithoutData }, () => {
   if (skipWithoutData) return;
