@@ -1,11 +1,11 @@
-//! Skins a character on the CPU with each of the three methods and prints the size of its bounding box:
+//! Skins a character on the CPU with each of the three methods and prints the size of its bounding box, without props:
 //!
 //! `cargo run --no-default-features --example deform -- assets/samples/dwarf.glb 0.5`
 
 use anyhow::Context;
 use gaitway::anim::{SampleCursor, model_from_joint};
 use gaitway::formats::{FileSet, load};
-use gaitway::mesh::{DeformedVertices, SkinningMode, deform, palette_entry, write_palette};
+use gaitway::mesh::{DeformedVertices, SkinningMode, deform, write_palette};
 use glam::{Affine3A, Vec3};
 
 fn main() -> anyhow::Result<()> {
@@ -16,21 +16,17 @@ fn main() -> anyhow::Result<()> {
     let asset = load(&files)?;
 
     let mut pose = asset.skeleton.rest().clone();
-    if let Some(clip) = asset.clips.first() {
-        clip.sample(&asset.skeleton, time_secs.parse()?, &mut SampleCursor::default(), &mut pose);
-    }
+    let clip = asset.clips.first().context("the file has no clip")?;
+    clip.sample(&asset.skeleton, time_secs.parse()?, &mut SampleCursor::default(), &mut pose);
     let mut world_from_joint = Vec::new();
     model_from_joint(&asset.skeleton, &pose, Affine3A::IDENTITY, &mut world_from_joint);
 
     for mode in [SkinningMode::Linear, SkinningMode::Rigid, SkinningMode::DualQuaternion] {
         let (mut min, mut max) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        let mut deformed = DeformedVertices::default();
         for instance in &asset.instances {
-            let mut palette = Vec::new();
-            match instance.skin {
-                Some(skin) => write_palette(&asset.skins[skin], &world_from_joint, mode, &mut palette),
-                None => palette.push(palette_entry(&world_from_joint[instance.joint.get()], mode)),
-            }
+            let Some(skin) = instance.skin else { continue };
+            let (mut palette, mut deformed) = (Vec::new(), DeformedVertices::default());
+            write_palette(&asset.skins[skin], &world_from_joint, mode, &mut palette);
             let morph_weights = &pose.morph_weights[asset.skeleton.morph_range(instance.joint)];
             for geometry in &asset.meshes[instance.mesh].primitives {
                 deform(geometry, morph_weights, &palette, mode, &mut deformed);

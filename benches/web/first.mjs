@@ -6,8 +6,8 @@ import path from "node:path";
 import zlib from "node:zlib";
 import { build } from "esbuild";
 import { until } from "../../tests/browser/browser.mjs";
-import { serve } from "../../tests/browser/server.mjs";
 import { dataFile, dist, repository } from "../../tests/three/data.mjs";
+import { serve } from "../../xtask/site/server.mjs";
 
 /** @typedef {import("playwright-core").Browser} Browser */
 

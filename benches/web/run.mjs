@@ -7,8 +7,8 @@ import path from "node:path";
 import { chromium } from "playwright-core";
 import { FLAGS, until, whenReady } from "../../tests/browser/browser.mjs";
 import { measureFirstVisit } from "../../tests/browser/lighthouse.mjs";
-import { serve } from "../../tests/browser/server.mjs";
 import { dataFile, dist, hasData, repository } from "../../tests/three/data.mjs";
+import { serve } from "../../xtask/site/server.mjs";
 import { measureDecoders } from "./decoders.mjs";
 import { measureFirstFrames } from "./first.mjs";
 

@@ -120,7 +120,7 @@ impl Host for Window {
                 continue;
             }
             inbox.send(match contents {
-                Ok(contents) => Message::Opened { contents, state: None, reply: None },
+                Ok(contents) => Message::Opened { contents, state: None, is_change: false, reply: None },
                 Err(error) => Message::OpenFailed(error),
             });
         }

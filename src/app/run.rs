@@ -7,7 +7,7 @@ use super::record::Recording;
 use super::timing::Timing;
 use super::viewport::Viewport;
 use super::{Host, Inbox, Message, Opening, Reply, ScriptCall, device};
-use crate::editor::{Contents, Editor};
+use crate::editor::{Admit, Contents, Editor};
 use crate::files::{Role, set_largest_image, set_texture_formats};
 use crate::library::{Library, ModelId, Motion, inspect};
 use crate::render::texture_formats;
@@ -113,9 +113,13 @@ impl App {
     /// # Errors
     /// If the model doesn't fit on the device.
     pub fn open(&mut self, contents: Contents, view: Option<ViewerState>) -> Result<(), String> {
+        self.opening(|editor, admit| editor.open(contents, view, admit))
+    }
+
+    fn opening(&mut self, open: impl FnOnce(&mut Editor, Admit<'_>) -> Result<(), String>) -> Result<(), String> {
         self.panels.messages.clear_error();
         self.editor.prefer_reduced_motion(self.host.prefers_reduced_motion());
-        let opened = self.editor.open(contents, view, &mut |model| self.viewport.admit(model));
+        let opened = open(&mut self.editor, &mut |model| self.viewport.admit(model));
         self.show_events();
         opened
     }
@@ -123,9 +127,14 @@ impl App {
     fn handle(&mut self, message: Message) {
         match message {
             Message::OpenProgress(opening) => self.panels.messages.progress = Some(progress(&opening)),
-            Message::Opened { contents, state, reply } => {
+            Message::Opened { contents, state, is_change, reply } => {
                 let progress = self.panels.messages.progress.take();
-                let opened = self.open(*contents, state.map(|state| *state));
+                let opened = match state {
+                    Some(view) if is_change => {
+                        self.opening(|editor, admit| editor.open_change(*contents, *view, admit))
+                    }
+                    view => self.open(*contents, view.map(|view| *view)),
+                };
                 if let Err(error) = &opened {
                     self.panels.messages.error = Some(error.clone());
                     self.panels.messages.failed_to_open = progress.map(|progress| progress.name);

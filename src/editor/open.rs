@@ -8,7 +8,9 @@ use super::names::is_obj;
 use super::{Admit, Contents, Editor, Event, ModelFiles, OTHER_FILES, OpenedModel, short_name};
 use crate::library::{Environment, Library, Loaded, Model, ModelId, Motion};
 use crate::retarget::JointMapFile;
-use crate::state::{ClipChoice, Command, EnvironmentChoice, MotionMap, RetargetEdits, Sources, ViewerState, apply};
+use crate::state::{
+    ClipChoice, Command, EnvironmentChoice, MotionMap, Overridden, RetargetEdits, Sources, ViewerState, apply,
+};
 
 /// What is kept of a loaded model besides the model.
 #[derive(Debug, Default)]
@@ -23,6 +25,7 @@ pub(super) struct Shelved {
 #[derive(Debug, Clone)]
 pub(super) struct Snapshot {
     pub state: ViewerState,
+    overridden: Overridden,
     pub loaded: Loaded,
     /// The active clip if it was retargeted.
     pub playing: Option<ClipIdentity>,
@@ -233,7 +236,7 @@ impl Editor {
     pub(super) fn snapshot(&self) -> Option<Snapshot> {
         self.library.active()?;
         let (state, loaded) = (self.state.clone(), self.library.loaded());
-        Some(Snapshot { state, loaded, playing: self.retargeted_clip() })
+        Some(Snapshot { state, overridden: self.reduced_motion.overridden, loaded, playing: self.retargeted_clip() })
     }
 
     /// Adds the changes since the snapshot to the history as a step, and shelves the view of the previously active model.
@@ -245,7 +248,7 @@ impl Editor {
         {
             shelved.last_view = Some(before.clone());
         }
-        self.history.opened(before.state, before.loaded);
+        self.history.opened(before.state, before.overridden, before.loaded);
     }
 
     /// Adds a model to the library and activates it; if the same file is already loaded, activates that model.

@@ -2,14 +2,14 @@
 //! into links.
 
 use super::Editor;
-use crate::state::{Command, ViewerState};
+use super::{Admit, Contents};
+use crate::state::{Command, Overridden, ViewerState};
 
-/// What the view says about motion while the preference overrides it.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct ReducedMotion {
     is_preferred: bool,
-    playing: Option<bool>,
-    turntable: Option<f32>,
+    /// Of the current view.
+    pub overridden: Overridden,
 }
 
 impl Editor {
@@ -21,22 +21,37 @@ impl Editor {
     /// Returns the state for links: as it is, except that the preference for reduced motion leaves no trace.
     pub fn shared_state(&self) -> ViewerState {
         let mut state = self.state.clone();
-        let ReducedMotion { playing, turntable, .. } = self.reduced_motion;
+        let Overridden { playing, turntable } = self.reduced_motion.overridden;
         state.playback.playing = playing.unwrap_or(state.playback.playing);
         state.camera_options.turntable = turntable.unwrap_or(state.camera_options.turntable);
         state
     }
 
     /// Calms a view that is about to replace the state.
-    pub(super) fn calmed_view(&mut self, view: ViewerState) -> ViewerState {
+    pub(super) fn calmed_view(&mut self, mut view: ViewerState) -> ViewerState {
         let is_preferred = self.reduced_motion.is_preferred;
-        self.reduced_motion = ReducedMotion { is_preferred, ..ReducedMotion::default() };
-        if !is_preferred {
-            return view;
+        self.reduced_motion.overridden = if is_preferred { view.calm() } else { Overridden::default() };
+        view
+    }
+
+    /// Opens the files that a change of the current view needs, in the changed view. Unlike a link, it doesn't stop what the
+    /// user has started.
+    ///
+    /// # Errors
+    /// As [`Editor::open`].
+    pub fn open_change(&mut self, contents: Contents, view: ViewerState, admit: Admit<'_>) -> Result<(), String> {
+        let Overridden { playing, turntable } = self.reduced_motion.overridden;
+        let (plays, turns) = self.moving_parts();
+        let keeps_playing = playing.is_none() && plays == view.playback.playing;
+        let keeps_turning = turntable.is_none() && turns == view.camera_options.turntable;
+        self.open(contents, Some(view), admit)?;
+        if keeps_playing {
+            (self.state.playback.playing, self.reduced_motion.overridden.playing) = (plays, None);
         }
-        self.reduced_motion.playing = Some(view.playback.playing);
-        self.reduced_motion.turntable = Some(view.camera_options.turntable);
-        view.calmed()
+        if keeps_turning {
+            (self.state.camera_options.turntable, self.reduced_motion.overridden.turntable) = (turns, None);
+        }
+        Ok(())
     }
 
     /// Calms the view of a command that replaces the state.
@@ -54,12 +69,6 @@ impl Editor {
         }
     }
 
-    /// Drops the override: another view is back.
-    pub(super) fn forget_overridden_motion(&mut self) {
-        self.reduced_motion =
-            ReducedMotion { is_preferred: self.reduced_motion.is_preferred, ..ReducedMotion::default() };
-    }
-
     pub(super) fn moving_parts(&self) -> (bool, f32) {
         (self.state.playback.playing, self.state.camera_options.turntable)
     }
@@ -67,7 +76,8 @@ impl Editor {
     /// Drops the override of what the user has set since.
     pub(super) fn note_moving_parts(&mut self, (playing, turntable): (bool, f32)) {
         let now = self.moving_parts();
-        self.reduced_motion.playing.take_if(|_| now.0 != playing);
-        self.reduced_motion.turntable.take_if(|_| now.1 != turntable);
+        let overridden = &mut self.reduced_motion.overridden;
+        overridden.playing.take_if(|_| now.0 != playing);
+        overridden.turntable.take_if(|_| now.1 != turntable);
     }
 }

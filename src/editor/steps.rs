@@ -40,7 +40,7 @@ impl Editor {
     pub fn undo(&mut self) -> bool {
         let (before, playing) = (self.loaded_names(), self.retargeted_clip());
         let view = if self.can_undo_retargeting() { self.automatic_view() } else { None };
-        let done = self.history.undo(&mut self.state, &mut self.library);
+        let done = self.history.undo(&mut self.state, &mut self.reduced_motion.overridden, &mut self.library);
         if done {
             self.finish_step(before, playing, "Ctrl+Y");
             self.hold_view(view);
@@ -52,7 +52,7 @@ impl Editor {
     pub fn redo(&mut self) -> bool {
         let (before, playing) = (self.loaded_names(), self.retargeted_clip());
         let view = if self.can_redo_retargeting() { self.automatic_view() } else { None };
-        let done = self.history.redo(&mut self.state, &mut self.library);
+        let done = self.history.redo(&mut self.state, &mut self.reduced_motion.overridden, &mut self.library);
         if done {
             self.finish_step(before, playing, "Ctrl+Z");
             self.hold_view(view);
@@ -67,9 +67,6 @@ impl Editor {
         self.report(problems);
         let after = self.loaded_names();
         let is_same_model = before.model.as_ref().map(|(id, _)| id) == after.model.as_ref().map(|(id, _)| id);
-        if !is_same_model {
-            self.forget_overridden_motion();
-        }
         if is_same_model {
             self.follow_clip(playing);
         } else {

@@ -198,8 +198,8 @@ impl DrawList {
                     distance: -frame.view.view_from_world.transform_point3(draw.center).z,
                 };
                 let model = &models[model];
-                for (index, primitive) in model.meshes.get(draw.mesh).into_iter().flatten().enumerate() {
-                    let Some(primitive) = primitive else { continue };
+                let primitives = model.meshes.get(draw.mesh).into_iter().flatten().enumerate();
+                for (index, primitive) in primitives.filter_map(|(index, known)| Some((index, known.as_ref()?))) {
                     let shadow = shadow && model.casts_shadow(primitive);
                     self.add(device, pipelines, &instance, index, primitive, shadow);
                 }

@@ -2,7 +2,7 @@
 
 use std::mem::Discriminant;
 
-use super::{Command, ViewerState, apply};
+use super::{Command, Overridden, ViewerState, apply};
 use crate::library::{Library, Loaded, ModelId};
 
 /// The undo and redo stacks, newest step last.
@@ -19,7 +19,7 @@ enum Step {
     /// Restores edits alone.
     Edits(ViewerState),
     /// Restores what was loaded, with its whole view.
-    View(ViewerState, Loaded),
+    View(ViewerState, Overridden, Loaded),
     /// Restores the list of models.
     Listed(Vec<ModelId>),
 }
@@ -53,8 +53,8 @@ impl History {
     }
 
     /// Adds a step with what was loaded before something was opened, retargeted or removed.
-    pub fn opened(&mut self, state: ViewerState, loaded: Loaded) {
-        self.begin(Step::View(state, loaded));
+    pub fn opened(&mut self, state: ViewerState, overridden: Overridden, loaded: Loaded) {
+        self.begin(Step::View(state, overridden, loaded));
     }
 
     /// Adds a step with the list of models before one was closed.
@@ -77,7 +77,7 @@ impl History {
 
     /// Drops the steps that depend on evicted models.
     pub fn forget_gone(&mut self, library: &Library) {
-        let is_gone = |step: &Step| matches!(step, Step::View(_, loaded) if library.get(loaded.model).is_none());
+        let is_gone = |step: &Step| matches!(step, Step::View(_, _, loaded) if library.get(loaded.model).is_none());
         let is_whole = |ids: &[ModelId]| ids.iter().all(|&id| library.get(id).is_some());
         for steps in [&mut self.past, &mut self.future] {
             steps.retain(|step| !matches!(step, Step::Listed(ids) if !is_whole(ids)));
@@ -113,18 +113,18 @@ impl History {
     }
 
     /// Undoes the last step; returns false if there is none.
-    pub fn undo(&mut self, state: &mut ViewerState, library: &mut Library) -> bool {
+    pub fn undo(&mut self, state: &mut ViewerState, overridden: &mut Overridden, library: &mut Library) -> bool {
         self.gesture = None;
         let Some(step) = self.past.pop() else { return false };
-        self.future.push(step.take(state, library));
+        self.future.push(step.take(state, overridden, library));
         true
     }
 
     /// Redoes the last undone step; returns false if there is none.
-    pub fn redo(&mut self, state: &mut ViewerState, library: &mut Library) -> bool {
+    pub fn redo(&mut self, state: &mut ViewerState, overridden: &mut Overridden, library: &mut Library) -> bool {
         self.gesture = None;
         let Some(step) = self.future.pop() else { return false };
-        self.past.push(step.take(state, library));
+        self.past.push(step.take(state, overridden, library));
         true
     }
 }
@@ -136,17 +136,19 @@ impl Step {
     }
 
     /// Restores what the step holds; returns the step in the opposite direction.
-    fn take(self, state: &mut ViewerState, library: &mut Library) -> Self {
+    fn take(self, state: &mut ViewerState, overridden: &mut Overridden, library: &mut Library) -> Self {
         match self {
             Self::Edits(edits) => {
                 let before = state.clone();
                 state.restore_undoable(&edits);
                 Self::Edits(before)
             }
-            Self::View(view, loaded) => {
-                let back = library.loaded();
-                let before = if library.restore(loaded) { std::mem::replace(state, view) } else { state.clone() };
-                Self::View(before, back)
+            Self::View(view, said, loaded) => {
+                let before = (state.clone(), *overridden, library.loaded());
+                if library.restore(loaded) {
+                    (*state, *overridden) = (view, said);
+                }
+                Self::View(before.0, before.1, before.2)
             }
             Self::Listed(ids) => {
                 let before = library.listed();

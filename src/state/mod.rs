@@ -41,6 +41,6 @@ pub use playhead::{
 };
 pub use stage::{SourceOnStage, source_on_stage};
 pub use view::{
-    Background, CameraOptions, ClipChoice, Display, Edits, Fade, Inspect, PageOptions, Playback, Playhead,
+    Background, CameraOptions, ClipChoice, Display, Edits, Fade, Inspect, Overridden, PageOptions, Playback, Playhead,
     RetargetEdits, Selection, Show, Sources, UpAxis, VertexChoice, ViewerState,
 };

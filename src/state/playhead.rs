@@ -23,19 +23,40 @@ pub struct UnknownClip {
 impl UnknownClip {
     /// What should have been given.
     pub const EXPECTED: &str = "the name or index of a clip";
+
+    /// A file may have hundreds of clips.
+    const MAX_NAMES: usize = 5;
+
+    /// Returns the clips whose names are most like the given one, all of them if there are few; in the order of the file if
+    /// an index was given.
+    fn nearest(&self) -> Vec<&str> {
+        let wanted = beginning(&self.name);
+        let similarity = |clip: &String| strsim::jaro_winkler(&wanted, &beginning(clip));
+        let mut clips: Vec<(f64, &str)> = self.clips.iter().map(|clip| (similarity(clip), clip.as_str())).collect();
+        if clips.len() > Self::MAX_NAMES && self.name.parse::<i64>().is_err() {
+            clips.sort_by(|a, b| b.0.total_cmp(&a.0));
+        }
+        clips.into_iter().map(|(_, clip)| clip).take(Self::MAX_NAMES).collect()
+    }
 }
 
 /// “expected the name or index of a clip, found “Fly”; its clips are Walk, Idle”.
 impl std::fmt::Display for UnknownClip {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        const MAX_NAMES: usize = 20;
         write!(f, "expected {}, found “{}”; ", Self::EXPECTED, self.name)?;
-        match &self.clips[..] {
-            [] => f.write_str("there are no clips"),
-            clips if clips.len() <= MAX_NAMES => write!(f, "its clips are {}", clips.join(", ")),
-            clips => write!(f, "its clips are {} and {} more", clips[..MAX_NAMES].join(", "), clips.len() - MAX_NAMES),
+        let names = self.nearest().join(", ");
+        match self.clips.len().saturating_sub(Self::MAX_NAMES) {
+            _ if names.is_empty() => f.write_str("there are no clips"),
+            0 => write!(f, "its clips are {names}"),
+            more => write!(f, "its clips are {names} and {more} more"),
         }
     }
+}
+
+/// The beginning of a name, in lower case, to compare with others. Names in links and files may be of any length.
+fn beginning(name: &str) -> String {
+    const MAX_CHARS: usize = 64;
+    name.chars().flat_map(char::to_lowercase).take(MAX_CHARS).collect()
 }
 
 /// Returns the clip that the state names and the model lacks.

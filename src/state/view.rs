@@ -76,11 +76,11 @@ impl ViewerState {
         self.camera_options.turntable != 0.0 && !matches!(self.camera, CameraChoice::File(_))
     }
 
-    /// Returns the view paused and without turntable, for users who prefer reduced motion.
-    pub fn calmed(mut self) -> Self {
-        self.playback.playing = false;
-        self.camera_options.turntable = 0.0;
-        self
+    /// Pauses the view and stops its turntable, for users who prefer reduced motion. Returns what it said.
+    pub fn calm(&mut self) -> Overridden {
+        let playing = Some(std::mem::take(&mut self.playback.playing));
+        let turntable = Some(std::mem::take(&mut self.camera_options.turntable));
+        Overridden { playing, turntable }
     }
 
     /// Returns the groups that undo covers.
@@ -97,6 +97,15 @@ impl ViewerState {
         self.lighting.clone_from(lighting);
         (self.inspect, self.display) = (*inspect, *display);
     }
+}
+
+/// What a view says about motion while the preference for reduced motion overrides it; `None` for what the user has set.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Overridden {
+    /// Whether clips play.
+    pub playing: Option<bool>,
+    /// Degrees per second.
+    pub turntable: Option<f32>,
 }
 
 /// The groups of a [`ViewerState`] that undo covers.

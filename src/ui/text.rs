@@ -1,5 +1,7 @@
 //! Texts of controls that tests look for, so that each can change in one place.
 
+use crate::retarget::RestChoice;
+
 // Viewport and layout
 /// Accessible name of the 3D view.
 pub const VIEWPORT: &str = "Viewport";
@@ -102,7 +104,8 @@ pub const NO_SKELETON: &str = "This model has no animations and no skeleton, so 
 /// Button that opens the awaited model.
 pub const BRING: &str = "Choose files…";
 /// What to do if a link's model couldn't be loaded.
-pub const NOT_LOADED: &str = "Try the link again later, or open a copy of the model.";
+pub const NOT_LOADED: &str =
+    "Try the link again later, or drop a copy of the file: the rest of the link is applied to it.";
 /// What to do while a model is awaited.
 pub const BRING_HERE: &str = "Drop the file anywhere, or open it. The rest of the link is kept and applied to it.";
 /// Button that empties a search field.
@@ -180,7 +183,23 @@ pub fn foot_contacts(joint: &str) -> String {
     format!("{joint}: foot contacts")
 }
 
-// Sliders
+// Undo and redo
+/// Button that undoes an edit of the map, with its key.
+pub const UNDO_KEY: &str = "Undo (Ctrl+Z)";
+/// Button that redoes an edit of the map, with its key.
+pub const REDO_KEY: &str = "Redo (Ctrl+Y)";
+
+// Sliders and choices
+/// Returns the accessible name of an option in the choice of `about`.
+pub fn option_of(about: &str, option: &str) -> String {
+    format!("{about}: {option}")
+}
+
+/// Returns an option or a heading with the number of things it stands for.
+pub fn counted(what: &str, count: usize) -> String {
+    format!("{what} ({count})")
+}
+
 /// Returns the accessible name of the number field beside the slider `label`.
 pub fn value_of(label: &str) -> String {
     format!("{label} value")
@@ -282,6 +301,17 @@ impl FormulaRow {
         format!("{name}, {meaning}:")
     }
 }
+
+/// Row of a joint's transform: the translation.
+pub const POSITION: &str = "Position";
+/// Row of a joint's transform: the scale.
+pub const SCALE: &str = "Scale";
+/// A joint's inverse bind matrix.
+pub const INVERSE_BIND: &str = "inv(B)";
+/// A joint's world matrix.
+pub const WORLD_MATRIX: &str = "T";
+/// The product of the two, by which a joint moves the mesh.
+pub const SKINNING_MATRIX: &str = "T · inv(B)";
 
 // Display tab
 /// Skinning method: each vertex follows its strongest joint.
@@ -393,17 +423,137 @@ pub const SAVE_REST_POSE: &str = "Save in rest pose";
 /// OBJ models: button that saves a GLB in the current pose.
 pub const SAVE_CURRENT_POSE: &str = "Save in current pose";
 
-/// Returns the heading above what a clip animates besides joints.
-pub fn animated(clip: &str, count: usize) -> String {
-    format!("{clip} ({count})")
-}
+/// Property of a material that a clip can animate.
+pub const BASE_COLOR: &str = "base colour";
+/// Property of a node that a clip can animate.
+pub const VISIBILITY: &str = "visibility";
 
 /// A line of the file report as a screen reader reads it.
 pub fn fact(name: &str, value: &str) -> String {
     format!("{name} {value}")
 }
 
-// Motion
+// Motion tab
+/// Part of the tab: the joint table.
+pub const JOINTS: &str = "Joints";
+/// Part of the tab: the retargeting options.
+pub const OPTIONS: &str = "Options";
+/// Part of the tab: how well the clip fits.
+pub const FIT: &str = "Fit";
+/// Part of the tab: opening, saving and removing files.
+pub const FILES: &str = "Files";
+/// Accessible name of the choice of one of several motions.
+pub const MOTION_FILE: &str = "Motion file";
+
+// Motion tab: the joint table
+/// Hint and accessible name of the table's search field.
+pub const SEARCH_JOINTS: &str = "Search joints of the model";
+/// The choice of the table's order.
+pub const ORDER: &str = "Order";
+/// By parts of the body, in the choice of order.
+pub const BY_BODY: &str = "Body";
+/// By hierarchy, in the choice of order.
+pub const BY_TREE: &str = "Tree";
+/// Heading of a part of the body.
+pub const LEFT_ARM: &str = "Left arm";
+/// Heading of a part of the body.
+pub const RIGHT_ARM: &str = "Right arm";
+/// Accessible name of the table's filter.
+pub const JOINT_FILTER: &str = "Which joints are shown";
+/// A filter of the table.
+pub const ALL_JOINTS: &str = "All joints";
+/// A filter of the table.
+pub const NEEDS_REVIEW: &str = "Needs review";
+/// A filter of the table.
+pub const CONFLICTS: &str = "Conflicts";
+/// A filter of the table.
+pub const UNMAPPED: &str = "Follow nothing";
+/// A filter of the table.
+pub const MUTED: &str = "Muted";
+/// Shown if [`NEEDS_REVIEW`] lets no joint through.
+pub const NOTHING_TO_REVIEW: &str = "No joints need review.";
+/// Shown if another filter lets no joint through.
+pub const NO_SUCH_JOINTS: &str = "There are no such joints.";
+/// State of a joint whose source is certain.
+pub const IS_SURE: &str = "sure";
+/// State of a joint whose source is uncertain.
+pub const IS_GUESS: &str = "guess";
+/// State of a joint whose source something contradicts.
+pub const IS_CONFLICT: &str = "conflict";
+/// State and source of a joint that follows nothing.
+pub const NO_SOURCE: &str = "none";
+/// Reason in the table: the user chose no source.
+pub const DELIBERATELY_NONE: &str = "deliberately none";
+/// Reason in the table: the joint has a [`ROTATION_OFFSET`].
+pub const HAS_OFFSET: &str = "rotation offset";
+
+/// Returns a joint as lists show it: its number in the file and its name.
+pub fn joint(number: usize, name: &str) -> String {
+    format!("{number}  {name}")
+}
+
+/// Returns what a joint of the model follows: the [`joint`] of the motion, or [`NO_SOURCE`]. Begins the accessible name of its row.
+pub fn follows(target: &str, source: &str) -> String {
+    format!("{target} follows {source}")
+}
+
+/// Returns the accessible name of a row of the table as far as the reasons.
+pub fn row(target: &str, source: &str, state: &str) -> String {
+    format!("{} ({state}: ", follows(target, source))
+}
+
+/// Returns the accessible name of the half of a row that selects the joint.
+pub fn edit_joint(target: &str) -> String {
+    format!("Edit {target}")
+}
+
+/// Returns a reason in the table: a joint without a source holds the first key of a clip.
+pub fn holds_first_key(clip: &str) -> String {
+    format!("first key of {clip}")
+}
+
+/// Returns a reason in the table: these channels of the source are ignored.
+pub fn left_out(channels: &str) -> String {
+    format!("{channels} left out")
+}
+
+// Motion tab: choosing a source
+/// Accessible name of the search field in the list of sources.
+pub const SEARCH_SOURCES: &str = "Name or number of a joint of the motion";
+/// Row of the list that leaves the joint without a source.
+pub const FOLLOW_NOTHING: &str = "Nothing";
+/// Button that opens the list of sources.
+pub const LIST_SOURCES: &str = "List…";
+/// Button that picks the source in the viewport.
+pub const CLICK_SOURCE: &str = "Click its source";
+/// Button that removes the source.
+pub const CLEAR_SOURCE: &str = "Clear";
+/// Says that a joint of the model is to be picked in the viewport.
+pub const PICK_TARGET: &str = "Click a joint of the model";
+/// Button on the viewport that opens the list of sources instead.
+pub const CHOOSE_FROM_LIST: &str = "Choose from the list";
+
+/// Returns the heading of the list of sources.
+pub fn what_follows(target: &str) -> String {
+    format!("What does {target} follow?")
+}
+
+/// Says that a joint's source is to be picked in the viewport.
+pub fn pick_source_of(target: &str) -> String {
+    format!("Click the joint of the motion that {target} is to follow")
+}
+
+/// Returns the accessible name of the field for a joint's source.
+pub fn source_of(target: &str) -> String {
+    format!("Source of {target}")
+}
+
+/// Returns the error for a typed name that no joint of the motion has.
+pub fn no_source_called(typed: &str) -> String {
+    format!("No joint of the motion is called “{typed}”.")
+}
+
+// Motion tab: editing the map
 /// Button that starts mapping joints by clicking them.
 pub const PICK_IN_VIEWPORT: &str = "Pick in viewport";
 /// The same button while picking.
@@ -422,6 +572,22 @@ pub const MATCH_SIDES_BY_NAME: &str = "Match sides by name";
 pub const MATCH_SIDES_BY_POSITION: &str = "Match sides by position";
 /// Button that leaves all joints unmapped.
 pub const CLEAR_MAP: &str = "Clear all";
+
+// Motion tab: options
+/// Switch that plants the feet.
+pub const PLANT_FEET: &str = "Hold feet on the ground";
+/// In several choices.
+pub const AUTOMATIC: &str = "Automatic";
+/// Keeps translations, scales or a part of the root motion.
+pub const KEEP: &str = "Keep";
+/// Drops translations or scales.
+pub const DROP: &str = "Drop";
+/// Removes the travel from a part of the root motion.
+pub const IN_PLACE: &str = "In place";
+/// Holds a part of the root motion.
+pub const FREEZE: &str = "Freeze";
+/// Slider of the seconds that a change of clips takes.
+pub const CROSSFADE: &str = "Crossfade";
 /// Choice of what happens to the root's horizontal travel.
 pub const ROOT_HORIZONTAL: &str = "Root motion: horizontal";
 /// Choice of what happens to the root's vertical travel.
@@ -432,6 +598,55 @@ pub const ROOT_TURN: &str = "Root motion: turn";
 pub const EXTRACT_ROOT_MOTION: &str = "Extract root motion";
 /// Accessible name of the choice of what unmapped joints do.
 pub const UNMAPPED_JOINTS: &str = "Unmapped joints";
+/// Switch that freezes the clip of joints without a source.
+pub const HOLD_FIRST_KEY: &str = "Stand still at the clip's first key";
+/// In the choice of what joints without a source do.
+pub const REST: &str = "Rest";
+/// Accessible name of the choice of what one joint does without a source.
+pub const OWN_POLICY: &str = "What it does instead";
+
+/// Returns the option of following the policy of the whole map.
+pub fn as_all(policy: &str) -> String {
+    format!("As all ({})", policy.to_lowercase())
+}
+
+/// Returns the option of holding the first key of a clip.
+pub fn first_key_of(clip: &str) -> String {
+    format!("First key of {clip}")
+}
+
+/// Returns what a choice of rest pose is called.
+pub fn rest_choice(choice: RestChoice) -> &'static str {
+    match choice {
+        RestChoice::Auto => AUTOMATIC,
+        RestChoice::Node => "As the file's nodes stand",
+        RestChoice::Bind => "As the mesh was bound",
+        RestChoice::FirstFrame => "The clip's first frame",
+    }
+}
+
+// Motion tab: fit
+/// Shown instead of the figures while one of the model's own clips is active.
+pub const NOTHING_TO_MEASURE: &str = "Choose a borrowed clip to see how well it fits.";
+/// Figure: the mean of a group.
+pub const MEAN: &str = "Mean";
+/// Figure: the mapped share of the body parts.
+pub const COVERAGE: &str = "Mapped";
+/// What planting the feet did.
+pub const PLANTING: &str = "Planting";
+
+/// Returns a figure as a screen reader reads it.
+pub fn figure(name: &str, value: &str) -> String {
+    format!("{name}: {value}")
+}
+
+// Motion tab: files
+/// Button that saves the joint map.
+pub const SAVE_MAP: &str = "Save map";
+/// Button that loads a joint map.
+pub const LOAD_MAP: &str = "Load map";
+/// Button that removes the motion.
+pub const REMOVE_MOTION: &str = "Remove motion";
 /// Button that saves the model's file with the current clip.
 pub const SAVE_GLB: &str = "Save GLB";
 /// Button that saves the current clip with its skeleton, without the meshes.
@@ -444,6 +659,10 @@ pub const HIDE_SOURCE: &str = "Hide it";
 pub const NEEDS_BORROWED_CLIP: &str = "Choose a borrowed clip in the clip list first.";
 /// Button that opens the motion's skeleton as the model.
 pub const OPEN_INSTEAD: &str = "Open it instead of the model";
+
+// Motion tab: channels and rotation offset
+/// Channels of a joint, as switches and reasons name them: translation, rotation, scale.
+pub const CHANNELS: [&str; 3] = ["translation", "rotation", "scale"];
 /// Heading of a source's channels that the model ignores.
 pub const IGNORED_CHANNELS: &str = "Ignored channels";
 /// Button that ends ignoring channels.
@@ -466,6 +685,8 @@ pub const SCALES: &str = "Scales of joints";
 pub const ROTATION_ERROR: &str = "Rotation error";
 /// Heading of the three rotation offset fields of a mapped joint.
 pub const ROTATION_OFFSET: &str = "Rotation offset";
+/// Button that removes the rotation offset.
+pub const RESET_OFFSET: &str = "Reset";
 
 /// Returns the accessible name of the rotation offset field for an axis.
 pub fn rotation_offset_about(axis: &str) -> String {
@@ -480,11 +701,16 @@ pub fn ignore_channels(property: &str) -> String {
 /// Joints whose names say left or right but that lie on the other side, in the model or the motion; `first` is the first of
 /// them.
 pub fn sides_contradict(who: &str, first: &str, count: usize, by_position: bool) -> String {
-    let matched = if by_position { "position" } else { "name" };
+    let matched = sides_matched(by_position);
     match count {
-        1 => format!("{first} of the {who} has a left/right name on the opposite side; matched by {matched}."),
-        _ => format!("{count} joints of the {who} have left/right names on the opposite side; matched by {matched}."),
+        1 => format!("{first} of the {who} has a left/right name on the opposite side; {matched}."),
+        _ => format!("{count} joints of the {who} have left/right names on the opposite side; {matched}."),
     }
+}
+
+/// Returns what decided the sides of such joints.
+pub fn sides_matched(by_position: bool) -> &'static str {
+    if by_position { "matched by position" } else { "matched by name" }
 }
 
 /// Body parts whose joints were too uncertain to map.

@@ -115,7 +115,8 @@ pub async fn begin() -> Result<(), JsError> {
     with_app(&page, App::begin).map_err(error)
 }
 
-/// Returns the contents of the live regions as `{model, clip, playing, notice, problem}`; no clip means the rest pose.
+/// Returns the contents of the live regions as `{model, isEmpty, clip, playing, notice, problem}`; no clip means the rest pose,
+/// and `isEmpty` that the stage has no model.
 #[wasm_bindgen]
 pub fn summary() -> Result<String, JsError> {
     let page = page().map_err(error)?;
@@ -129,6 +130,7 @@ pub fn summary() -> Result<String, JsError> {
         let clip = model.and_then(|model| model.clip_titles().get(active_clip(model, state)?));
         json!({
             "model": model.map_or_else(String::new, named),
+            "isEmpty": model.is_none_or(Model::is_placeholder),
             "clip": clip,
             "playing": state.playback.playing,
             "notice": app.notice(),
@@ -237,7 +239,8 @@ async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, String> {
     }
 }
 
-/// Hands opened files to the app; resolves once they are on screen.
+/// Hands opened files to the app; resolves once they are on screen. The shell reports problems with links only: any other
+/// `state` is a change of the current one.
 async fn show(
     page: &Rc<Page>,
     mut contents: Contents,
@@ -257,7 +260,8 @@ async fn show(
         problems.iter().for_each(|problem| page.shell.warn(problem));
     }
     let (promise, reply) = promise::<Value>(|document| JsValue::from_str(&document.to_string()));
-    page.inbox.send(Message::Opened { contents: Box::new(contents), state, reply: Some(reply) });
+    let opened = Message::Opened { contents: Box::new(contents), state, is_change: !shell_reports, reply: Some(reply) };
+    page.inbox.send(opened);
     let text = settled(promise).await?.as_string().unwrap_or_default();
     let document = serde_json::from_str(&text).map_err(|error| error.to_string())?;
     Ok(Opened { kind, document, problems })

@@ -69,7 +69,9 @@ impl Desk {
     /// Opens files or samples as one set.
     pub fn open(&mut self, files: &[PathBuf]) {
         self.inbox.send(match read_paths(files, Role::Any) {
-            Ok(contents) => Message::Opened { contents: Box::new(contents), state: None, reply: None },
+            Ok(contents) => {
+                Message::Opened { contents: Box::new(contents), state: None, is_change: false, reply: None }
+            }
             Err(error) => Message::OpenFailed(error.to_string()),
         });
         self.run_frames();

@@ -76,12 +76,12 @@ fn a_motion_is_retargeted_and_follows_undo_and_redo() {
     desk.redo();
     assert_eq!((desk.retargeted_clips(), &desk.state().playhead.clip), (1, &clip));
     assert!(desk.shows("Added motion Walk again."));
-    assert!(!desk.shows("Search joints of the model"), "the tab stays");
+    assert!(!desk.shows(text::SEARCH_JOINTS), "the tab stays");
     desk.press(Tab::Motion.label());
-    assert!(desk.shows("Search joints of the model"));
+    assert!(desk.shows(text::SEARCH_JOINTS));
     desk.undo();
     desk.redo();
-    assert!(desk.shows("Search joints of the model"), "back in the tab that was open");
+    assert!(desk.shows(text::SEARCH_JOINTS), "back in the tab that was open");
 }
 
 /// Before the first edit of the map, the last step is the motion itself, and with it the tab.
@@ -91,14 +91,14 @@ fn the_motion_tabs_arrows_take_back_its_own_edits_only() {
     desk.open(&["sample:walk".into()]);
     desk.press(Tab::Motion.label());
     let proposed = desk.state().retarget.map.clone();
-    desk.press("Undo (Ctrl+Z)");
+    desk.press(text::UNDO_KEY);
     assert_eq!(desk.library().motions().len(), 1, "the motion stays");
     desk.press(text::CLEAR_MAP);
     assert_ne!(desk.state().retarget.map, proposed);
-    desk.press("Undo (Ctrl+Z)");
-    desk.press("Undo (Ctrl+Z)");
+    desk.press(text::UNDO_KEY);
+    desk.press(text::UNDO_KEY);
     assert_eq!((desk.library().motions().len(), &desk.state().retarget.map), (1, &proposed));
-    desk.press("Redo (Ctrl+Y)");
+    desk.press(text::REDO_KEY);
     assert_ne!(desk.state().retarget.map, proposed);
     // Ctrl+Z is everybody's.
     desk.undo();

@@ -2,8 +2,8 @@
 import fs from "node:fs";
 import path from "node:path";
 import { chromium } from "playwright-core";
+import { serve } from "../../xtask/site/server.mjs";
 import { dataFile, dist, hasData } from "../three/data.mjs";
-import { serve } from "./server.mjs";
 
 /** @typedef {import("playwright-core").Browser} Browser */
 /** @typedef {import("playwright-core").Frame} Frame */

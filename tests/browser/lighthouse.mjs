@@ -3,8 +3,8 @@
 import assert from "node:assert/strict";
 import lighthouse, { desktopConfig } from "lighthouse";
 import { chromium } from "playwright-core";
+import { neverAnswers } from "../../xtask/site/server.mjs";
 import { FLAGS } from "./browser.mjs";
-import { neverAnswers } from "./server.mjs";
 
 /**
  * The desktop preset with real network throttling. By default Lighthouse simulates it from a fast load, assuming that the

@@ -1,10 +1,10 @@
 // A first visit as Lighthouse sees it.
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { serve } from "../../xtask/site/server.mjs";
 import { dist } from "../three/data.mjs";
 import { BACK_ENDS } from "./browser.mjs";
 import { measureFirstVisit } from "./lighthouse.mjs";
-import { serve } from "./server.mjs";
 
 const MIN_SCORE = 90;
 

@@ -5,10 +5,10 @@ import fs from "node:fs";
 import os from "node:os";
 import path from "node:path";
 import { after, before, describe, test } from "node:test";
+import { neverAnswers, serve } from "../../xtask/site/server.mjs";
 import { dataFile, skipWithoutData } from "../three/data.mjs";
 import { archive } from "./archive.mjs";
 import { BACK_ENDS, apply, drop, fragment, meanDifference, open, picture, pose, share, startSite, state, until, whenBorrowed, whenModel, whenShown } from "./browser.mjs";
-import { neverAnswers, serve } from "./server.mjs";
 
 const FOX = "khronos/Fox/glTF-Binary/Fox.glb";
 const FOX_VERTICES = 1728;
@@ -33,7 +33,7 @@ for (const renderer of BACK_ENDS)
   describe(`link on ${renderer}`, { skip: skipWithoutData }, () => {
     /** @type {import("./browser.mjs").Site} */
     let site;
-    /** @type {Record<"strict" | "own" | "silent", import("./server.mjs").Server>} */
+    /** @type {Record<"strict" | "own" | "silent", import("../../xtask/site/server.mjs").Server>} */
     let servers;
     /** @type {string} */
     let folder;
@@ -127,6 +127,19 @@ for (const renderer of BACK_ENDS)
       assert.deepEqual([clip, time_secs], ["Run", 0.5]);
       assert.equal(await page.locator("#missing").isVisible(), false);
       fs.rmSync(path.join(folder, "late.glb"));
+    });
+
+    onPage("applies the link to a dropped copy of a model that can't be loaded", () => fragment([["model", `${servers.own.origin}/gone/Fox.glb?v=1`], ["clip", "Run"], ["t", 0.5], ["play", 0]]), async (page) => {
+      await whenMissing(page);
+      assert.match((await missing(page)).join(), /Fox\.glb\?v=1: .*404/);
+      await page.locator("#missing-continue").click();
+      assert.equal(await page.locator("#bring").isVisible(), false, "nobody is asked for it");
+      await drop(page, [{ name: "Fox.glb", url: site.data(FOX) }]);
+      await until(page, async () => (await window.gaitway.state()).t === 0.5);
+      await whenShown(page, FOX_VERTICES);
+      const { clip, time_secs } = await pose(page);
+      assert.deepEqual([clip, time_secs], ["Run", 0.5]);
+      assert.deepEqual((await state(page)).model, ["Fox.glb"]);
     });
 
     onPage("takes a GitHub page for the file that it shows", () => "", async (page) => {

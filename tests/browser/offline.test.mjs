@@ -5,9 +5,9 @@ import os from "node:os";
 import path from "node:path";
 import { after, before, describe, test } from "node:test";
 import { linkOf, readScenes } from "../../xtask/site/samples.mjs";
+import { serve } from "../../xtask/site/server.mjs";
 import { dataFile, dist, skipWithoutData } from "../three/data.mjs";
 import { BACK_ENDS, VIEWPORT, launch, state, until, watched, whenReady } from "./browser.mjs";
-import { serve } from "./server.mjs";
 
 const FOLDER = "/some/folder/";
 

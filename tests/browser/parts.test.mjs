@@ -299,7 +299,7 @@ for (const renderer of BACK_ENDS)
     /** @type {[string, Buffer | null, RegExp, (() => void)?][]} */
     const troubles = [
       ["that can't be downloaded", null, /needs Gaitway's meshopt decoder, which cannot be loaded: .*cannot be reached/],
-      ["that isn't what the page was built with", module("(nop)"), /expected .* SHA-256 begins with [0-9a-f]{16}, found [0-9a-f]{16}; clear .*and reload/],
+      ["that isn't what the page was built with", module("(nop)"), /the meshopt decoder is damaged or of another version: expected .* SHA-256 begins with [0-9a-f]{16}, found [0-9a-f]{16}; reload the page/],
       ["that traps", module("(unreachable)"), /meshopt decoder stopped \(.*unreachable.*\)/, withoutHashes],
       ["that never ends", module("(loop (br 0))"), /meshopt decoder stopped \(it took longer than 60 seconds\)/, withoutHashes],
       ["that answers nothing", module("(nop)"), /answer that cannot be read/, withoutHashes],

@@ -4,6 +4,7 @@ mod data;
 mod facing;
 mod files;
 mod proposals;
+mod recognition;
 mod resolving;
 mod rigs;
 #[path = "../support/skeletons.rs"]

@@ -13,7 +13,7 @@ use glam::{Quat, Vec3};
 use crate::data_folder::data_folder;
 use crate::figure::{Figure, Rig, build};
 use crate::laws::{body, map};
-use crate::pairs_of_people::largest_excess_turn;
+use crate::people::largest_excess_turn;
 use crate::real::read;
 
 /// How a figure walks.

@@ -2,8 +2,7 @@
 
 #[path = "../support/data_folder.rs"]
 mod data_folder;
-#[path = "../support/pairs.rs"]
-mod pairs_of_people;
+mod people;
 #[path = "../support/random.rs"]
 mod random;
 #[path = "../support/random_vectors.rs"]

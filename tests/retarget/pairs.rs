@@ -1,12 +1,13 @@
-//! Every pair of real characters and motions, retargeted by the proposed map.
+//! Every pair of real characters and motions, retargeted by the proposed map. `UPDATE_PAIRS=1` writes the published table.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use gaitway::asset::Slot;
 use glam::{Mat4, Vec4};
 
 use crate::data_folder::data_folder;
-use crate::pairs_of_people::{
+use crate::people::{
     COLUMNS, Loaded, Outcome, borrow, each_pair, largest_excess_turn, load_people, measured, planted, proposed,
 };
 
@@ -14,6 +15,10 @@ use crate::pairs_of_people::{
 fn every_real_pair_keeps_orientations_and_directions() {
     let Some(folder) = data_folder() else { return };
     let people = load_people(&folder);
+    if std::env::var_os("UPDATE_PAIRS").is_some() {
+        update(&people);
+        return;
+    }
     let recorded = recorded();
     let mut pairs = 0;
     let mut problems = Vec::new();
@@ -103,6 +108,17 @@ fn hips_height(model: &Loaded) -> f64 {
     let [hips, foot] = [Slot::Hips, Slot::LeftFoot]
         .map(|slot| model.slots.joint(slot).map_or(Vec4::ZERO, |joint| model_from_joint[joint.get()].w_axis));
     f64::from((hips - foot).length())
+}
+
+/// Writes the table that [`recorded`] reads, in release builds within minutes.
+fn update(people: &[Loaded]) {
+    let mut table = format!("model\tmotion\t{}\n", COLUMNS.map(|(name, _)| name).join("\t"));
+    for (model, motion) in each_pair(people) {
+        let outcome = borrow(model, motion, true).unwrap_or_else(|e| panic!("{} ← {}: {e}", model.name, motion.name));
+        table += &format!("{}\t{}\t{}\n", model.name, motion.name, outcome.cells().join("\t"));
+    }
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/retargeting-pairs.tsv");
+    std::fs::write(path, table).expect("the table can be written");
 }
 
 /// The cells of each pair in the published table.

@@ -9,7 +9,7 @@ use glam::{DQuat, DVec3, Quat, Vec3};
 use crate::data_folder::data_folder;
 use crate::figure::{BODY, Figure, Rig, build};
 use crate::laws::{body, degrees, map};
-use crate::pairs_of_people::load_people;
+use crate::people::load_people;
 use crate::random::Random;
 
 /// Binding by name is exact in theory; the clips are stored in single precision.

@@ -290,3 +290,16 @@ fn an_unknown_clip_of_a_link_is_reported() {
     }
     assert_eq!(document(&["pose", "sample:walker", "--view", "v=1&clip=Fly", "--json"])["clip"], Value::Null);
 }
+
+#[test]
+fn a_warning_about_a_converted_file_names_it_once() {
+    let desk = Desk::new("converted");
+    let path = desk.path("odd.x");
+    fs::write(&path, "xof 0303txt 0032\nFrame a { Camera { 1.0; Lens { 2.0; } } }").expect("a file");
+    for arguments in [&["inspect", &path][..], &["pose", &path], &["convert", &path, "--out", &desk.path("odd.glb")]] {
+        let output = run(arguments);
+        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success() && stderr.contains("kind \"Camera\""), "{arguments:?}: {stderr}");
+        assert_eq!(stderr.matches("odd.x").count(), 1, "{arguments:?}: {stderr}");
+    }
+}

@@ -518,6 +518,62 @@ fn the_preference_for_reduced_motion_leaves_no_trace_in_links() {
     assert!(to_link(&editor.shared_state()).contains("turntable=20"));
 }
 
+/// Undo restores a view as it was: calmed, or as the user had set it in motion.
+#[test]
+fn undo_returns_to_a_calmed_view_and_its_link() {
+    let view = |model: &str, turntable: f32| {
+        let mut view = ViewerState::of_model(model.to_owned());
+        view.camera_options.turntable = turntable;
+        view
+    };
+    let mut editor = Editor::default();
+    editor.prefer_reduced_motion(true);
+    let follow = |editor: &mut Editor, model: &str, turntable: f32| {
+        editor.open(contents(&[model]), Some(view(model, turntable)), &mut any).expect("fits");
+    };
+    let moving = |editor: &Editor| (editor.state().playback.playing, editor.state().camera_options.turntable);
+    follow(&mut editor, "sample:walker", 20.0);
+    // One model with another link, and another model.
+    follow(&mut editor, "sample:walker", 0.0);
+    follow(&mut editor, "sample:pilot", 30.0);
+    for (model, turntable) in [("sample:walker", 0.0), ("sample:walker", 20.0)] {
+        assert!(editor.undo());
+        assert_eq!(moving(&editor), (false, 0.0));
+        assert_eq!(to_link(&editor.shared_state()), to_link(&view(model, turntable)));
+    }
+    editor.apply(Command::TogglePlaying);
+    follow(&mut editor, "sample:pilot", 30.0);
+    assert_eq!(moving(&editor), (false, 0.0), "another link");
+    assert!(editor.undo());
+    assert_eq!(moving(&editor), (true, 0.0), "the user had started it");
+    assert_eq!(to_link(&editor.shared_state()), to_link(&view("sample:walker", 20.0)));
+    assert!(editor.redo());
+    assert_eq!(moving(&editor), (false, 0.0));
+    assert_eq!(to_link(&editor.shared_state()), to_link(&view("sample:pilot", 30.0)));
+}
+
+/// An embedding page that changes something else doesn't stop what the user has started.
+#[test]
+fn a_change_that_needs_files_leaves_a_started_clip_playing() {
+    let mut editor = Editor::default();
+    editor.prefer_reduced_motion(true);
+    let view = ViewerState::of_model("sample:walker".to_owned());
+    editor.open(contents(&["sample:walker"]), Some(view), &mut any).expect("fits");
+    let change = |editor: &mut Editor, name: &str, playing: Option<bool>| {
+        let mut view = editor.shared_state();
+        view.sources.motion = vec![name.to_owned()];
+        view.playback.playing = playing.unwrap_or(view.playback.playing);
+        let contents = Contents { motions: Some(vec![motion(name)]), ..Contents::default() };
+        editor.open_change(contents, view, &mut any).expect("fits");
+        editor.state().playback.playing
+    };
+    assert!(!change(&mut editor, "a.bvh", None), "nobody has started it");
+    assert!(!to_link(&editor.shared_state()).contains("play="));
+    editor.apply(Command::TogglePlaying);
+    assert!(change(&mut editor, "b.bvh", None));
+    assert!(!change(&mut editor, "c.bvh", Some(false)), "the change says so");
+}
+
 /// An empty stage stands for a model that can't be had yet. It keeps the whole view, and goes once something is opened.
 #[test]
 fn an_empty_stage_awaits_a_model() {

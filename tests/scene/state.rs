@@ -5,8 +5,8 @@ use std::f32::consts::PI;
 use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::library::Library;
 use gaitway::state::{
-    CameraChoice, CameraOptions, ClipChoice, Command, OrbitCamera, Playback, Playhead, ViewerState, active_clip, apply,
-    choice_of_clip, clip_secs, resolve_camera,
+    CameraChoice, CameraOptions, ClipChoice, Command, OrbitCamera, Playback, Playhead, UnknownClip, ViewerState,
+    active_clip, apply, choice_of_clip, clip_secs, resolve_camera,
 };
 use glam::Vec3;
 
@@ -193,4 +193,20 @@ fn panning_by_a_viewport_height_moves_by_the_visible_height() {
     let CameraChoice::Orbit(panned) = state.camera else { panic!("{:?}", state.camera) };
     let height = 4.0 * 17.5_f32.to_radians().tan();
     assert!(panned.target.distance(Vec3::new(height, 0.5 * height, 0.0)) < 1e-5, "{}", panned.target);
+}
+
+/// Of many clips, those whose names are most like the one that doesn't exist; by index, the first ones.
+#[test]
+fn an_unknown_clip_is_told_with_the_nearest_names() {
+    let names = ["Idle", "Jump", "Run_Backwards", "Sit", "Walk", "walk_b", "Wave", "Walking", "Run"];
+    let check = |name: &str, clips: &[&str], expected: &str| {
+        let clips = clips.iter().map(|clip| (*clip).to_owned()).collect();
+        let message = UnknownClip { name: name.to_owned(), clips }.to_string();
+        assert_eq!(message, format!("expected the name or index of a clip, found “{name}”; {expected}"));
+    };
+    check("Fly", &[], "there are no clips");
+    check("Walc", &names[..5], "its clips are Idle, Jump, Run_Backwards, Sit, Walk");
+    check("WALC", &names, "its clips are Walk, walk_b, Walking, Wave, Run_Backwards and 4 more");
+    check("9", &names, "its clips are Idle, Jump, Run_Backwards, Sit, Walk and 4 more");
+    check(&"x".repeat(1 << 20), &names, "its clips are Idle, Jump, Run_Backwards, Sit, Walk and 4 more");
 }

@@ -1,7 +1,10 @@
-// Runs the page's parts in Node as web/shell/parts.js does in a worker; parts/part/src/lib.rs says how they are called.
+// Runs the page's parts in Node as web/shell/parts.js does in a worker, and their native programs; parts/part/src/lib.rs says how
+// they are called.
+import { execFileSync } from "node:child_process";
 import fs from "node:fs";
 import path from "node:path";
 import { dist } from "./data.mjs";
+import { program } from "./gaitway.mjs";
 
 /** The first byte of an answer other than an error. */
 const CONVERTED = 1;
@@ -25,10 +28,25 @@ export async function startPart(part) {
     const start = place(input.length);
     new Uint8Array(memory.buffer, start, input.length).set(input);
     run();
-    const answer = Buffer.from(memory.buffer, output(), length());
-    if (answer[0] !== CONVERTED) throw new Error(answer.toString("utf8", 1));
-    const end = HEADER_BYTES + answer.readUInt32LE(1);
-    const warnings = answer.toString("utf8", HEADER_BYTES, end).split("\0").slice(0, -1);
-    return { bytes: answer.subarray(end), warnings };
+    return decode(Buffer.from(memory.buffer, output(), length()));
   };
+}
+
+/**
+ * Runs a part as the native programs have it, like a function of {@link startPart}.
+ * @param {string} part
+ * @param {Uint8Array} input
+ */
+export function runNatively(part, input) {
+  const file = path.join(path.dirname(program), `gaitway-${part}${path.extname(program)}`);
+  if (!fs.existsSync(file)) throw new Error(`no ${file}: run \`cargo build --release --package gaitway-${part}\``);
+  return decode(execFileSync(file, { input, maxBuffer: 1 << 30 }));
+}
+
+/** @param {Buffer} answer */
+function decode(answer) {
+  if (answer[0] !== CONVERTED) throw new Error(answer.toString("utf8", 1));
+  const end = HEADER_BYTES + answer.readUInt32LE(1);
+  const warnings = answer.toString("utf8", HEADER_BYTES, end).split("\0").slice(0, -1);
+  return { bytes: answer.subarray(end), warnings };
 }

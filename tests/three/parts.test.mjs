@@ -1,5 +1,6 @@
-// The decoders of compressed glTF and FBX: the page's modules and the command line give the same bytes, and those that other
-// viewers' decoders give: meshoptimizer's and Draco's, and Basis Universal's transcoder, as three.js ships them.
+// The decoders of compressed glTF, and the readers of FBX and .x: the page's modules and the native programs give the same
+// bytes, and the decoders those that other viewers' give: meshoptimizer's and Draco's, and Basis Universal's transcoder, as
+// three.js ships them.
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import os from "node:os";
@@ -10,7 +11,7 @@ import { dataFile, dataFiles, gltfFiles, readGltf, repository, skipWithoutData }
 import { decode as decodeDraco } from "./draco.mjs";
 import { run } from "./gaitway.mjs";
 import { RGBA32, startTranscoder } from "./ktx2.mjs";
-import { startPart } from "./part.mjs";
+import { runNatively, startPart } from "./part.mjs";
 
 const MESHOPT = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 const DRACO = "KHR_draco_mesh_compression";
@@ -91,6 +92,19 @@ describe("the FBX reader gives the same bytes as a module", { skip: skipWithoutD
       assert.equal(native.status, 0, native.stderr);
       assert.ok(fs.readFileSync(native.out).equals(answer.bytes), "the files differ");
       for (const warning of answer.warnings) assert.ok(native.stderr.includes(warning), `${warning} / ${native.stderr}`);
+    });
+});
+
+// The command line embeds the textures that lie beside these, so the reader has to run by itself.
+describe("the .x reader gives the same bytes as a module", { skip: skipWithoutData }, () => {
+  if (skipWithoutData) return;
+  const starting = startPart("x");
+  for (const name of dataFiles(/\.x$/))
+    test(name, async () => {
+      const file = fs.readFileSync(dataFile(name));
+      const [module, native] = [await (await starting)(file), runNatively("x", file)];
+      assert.ok(native.bytes.equals(module.bytes), "the files differ");
+      assert.deepEqual(native.warnings, module.warnings);
     });
 });
 
@@ -197,7 +211,7 @@ const KTX2_FORMATS = [
   { device: "ASTC", formats: 4, answers: { 0: RGBA32, 4: 10 } },
 ];
 
-// The command line writes KTX2 images as they are, so here are only the module and the reference.
+// The command line writes KTX2 images as they are, so the transcoder has to run by itself.
 describe("KTX2 images are transcoded as by Basis Universal", () => {
   const starting = Promise.all([startPart("ktx2"), startTranscoder()]);
   const own = path.join(repository, "tests/support/ktx2");
@@ -211,7 +225,9 @@ describe("KTX2 images are transcoded as by Basis Universal", () => {
     for (const { device, formats, answers } of KTX2_FORMATS)
       test(`${name} for a device with ${device}`, async () => {
         const [module, transcoder] = await starting;
-        const { bytes: answer } = await module(Buffer.concat([words(formats, 1 << 14), bytes]));
+        const request = Buffer.concat([words(formats, 1 << 14), bytes]);
+        const { bytes: answer } = await module(request);
+        assert.ok(runNatively("ktx2", request).bytes.equals(answer), "the native transcoder gives other bytes");
         const [format, width, height, levels] = [0, 4, 8, 12].map((at) => answer.readUInt32LE(at));
         const reference = answers[format];
         assert.ok(reference !== undefined, `format ${format}`);

@@ -49,7 +49,7 @@ fn sliders_turn_the_chosen_joint_and_it_can_be_given_back() {
     });
     harness.run();
     assert!(harness.query_by_label(text::POSE_ANGLES[0]).is_none());
-    assert!(harness.query_by_label_contains("Reset").is_none());
+    assert!(harness.query_by_label_contains(text::RESET_JOINT).is_none());
     press(&mut harness, text::POSE_MANUALLY);
     harness.get_by_label(text::POSE_ANGLES[0]).set_value_accesskit(40.0);
     harness.run();
@@ -136,7 +136,7 @@ fn modes_are_compared_by_a_switch() {
 fn pictures_and_videos_are_asked_for() {
     let mut harness = sample_bench(WIDE);
     press(&mut harness, Tab::View.label());
-    let rate = format!("{}: {}", text::FRAME_RATE, text::frames_per_sec(60));
+    let rate = text::option_of(text::FRAME_RATE, &text::frames_per_sec(60));
     for label in [text::SQUARE, text::TRANSPARENT_BACKGROUND, text::SAVE_IMAGE, &rate, text::RECORD] {
         harness.get_by_label(label).scroll_to_me();
         harness.run();
@@ -165,17 +165,21 @@ fn a_recording_shows_its_progress_and_can_only_be_cancelled() {
 fn the_motion_tab_tells_the_fit_and_puts_the_source_on_the_stage() {
     let mut harness = motion_bench(WIDE, &["dance.bvh"]);
     press(&mut harness, Tab::Motion.label());
-    press(&mut harness, "Fit");
-    assert!(harness.query_by_label_contains("Choose a borrowed clip").is_some());
-    press(&mut harness, "Files");
+    press(&mut harness, text::FIT);
+    assert!(harness.query_by_label(text::NOTHING_TO_MEASURE).is_some());
+    press(&mut harness, text::FILES);
     for label in [text::SAVE_GLB, text::SAVE_CLIP, text::SHOW_SOURCE] {
         assert!(harness.get_by_label(label).accesskit_node().is_disabled(), "{label}: the clip is the model's own");
     }
-    press(&mut harness, "Fit");
+    press(&mut harness, text::FIT);
     press(&mut harness, "Walk (2)");
-    assert_eq!(harness.query_all_by_label_contains("Mean: 0.0").count(), 3, "a copy fits: limbs, facing, rotations");
-    assert!(harness.query_by_label("Mapped: 100 %").is_some());
-    press(&mut harness, "Files");
+    assert_eq!(
+        harness.query_all_by_label_contains(&text::figure(text::MEAN, "0.0")).count(),
+        3,
+        "a copy fits: limbs, facing, rotations"
+    );
+    assert!(harness.query_by_label(&text::figure(text::COVERAGE, "100 %")).is_some());
+    press(&mut harness, text::FILES);
     harness.get_by_label(text::SHOW_SOURCE).scroll_to_me();
     harness.run();
     assert_eq!(press(&mut harness, text::SHOW_SOURCE), [Command::SetShow(Show { source: true, ..Show::default() })]);

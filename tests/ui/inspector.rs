@@ -22,7 +22,7 @@ fn the_tree_shows_all_joints_and_chooses_one() {
     let hand = skeleton.source_index(skeleton.find("LeftHand").unwrap());
     assert_eq!(commands, [Command::SelectJoint(Some(hand))]);
     assert!(harness.query_by_label(&text::local_transform(Some("LeftLowerArm"))).is_some());
-    assert!(harness.query_all_by_label_contains("Position").count() >= 2, "local and world");
+    assert!(harness.query_all_by_label_contains(text::POSITION).count() >= 2, "local and world");
     assert_eq!(press(&mut harness, text::DESELECT_JOINT), [Command::SelectJoint(None)]);
 }
 
@@ -68,7 +68,8 @@ fn display_sets_skinning_overlays_and_morphs() {
 
 #[test]
 fn view_sets_camera_and_background() {
-    let mut harness = sample_bench(WIDE);
+    // Tall enough for the whole tab.
+    let mut harness = sample_bench([1280.0, 1600.0]);
     press(&mut harness, Tab::View.label());
     let angles = [(text::FRONT, 0.0, 0.0), (text::SIDE, 90.0, 0.0), (text::TOP, 0.0, 89.9)];
     for (label, yaw_degrees, pitch_degrees) in angles {
@@ -96,10 +97,10 @@ fn view_sets_the_light() {
     // Tall enough for the whole tab.
     let mut harness = bench_of([1280.0, 1600.0], library);
     press(&mut harness, Tab::View.label());
-    let agx = format!("{}: {}", text::TONE_MAP, text::TONE_AGX);
+    let agx = text::option_of(text::TONE_MAP, text::TONE_AGX);
     assert_eq!(press(&mut harness, &agx), [Command::SetToneMap(ToneMap::Agx)]);
     let outdoor = EnvironmentChoice::Setup(LightSetup::Outdoor);
-    let label = format!("{}: {}", text::LIGHT, text::OUTDOOR_LIGHT);
+    let label = text::option_of(text::LIGHT, text::OUTDOOR_LIGHT);
     assert_eq!(press(&mut harness, &label), [Command::SetLight(outdoor)]);
     let beach = EnvironmentChoice::File("beach.hdr".to_owned());
     assert_eq!(press(&mut harness, "beach.hdr"), [Command::SetLight(beach)]);
@@ -122,7 +123,7 @@ fn the_file_report_counts_and_groups() {
         assert!(harness.query_by_label(&text::fact(name, value)).is_some(), "{name}");
     }
     assert!(harness.query_by_label_contains("KHR_texture_transform").is_some());
-    assert!(harness.query_by_label("matrix-not-decomposable (2)").is_some());
+    assert!(harness.query_by_label(&text::counted("matrix-not-decomposable", 2)).is_some());
     assert_eq!(harness.query_all_by_label_contains("sheared or singular").count(), 2);
 }
 
@@ -146,9 +147,11 @@ fn the_file_tab_lists_what_clips_animate_besides_joints() {
     press(&mut harness, "Only");
     assert!(harness.query_by_label(text::NODE_HIDDEN).is_some());
     press(&mut harness, Tab::File.label());
-    assert!(harness.query_by_label(&text::animated("Glow", 2)).is_some());
+    assert!(harness.query_by_label(&text::counted("Glow", 2)).is_some());
     assert!(harness.query_by_label_contains("Nothing (").is_none());
-    let values = [("Paint: base colour", "1.000  0.500  0  1.000"), ("Only: visibility", text::HIDDEN)];
+    let color = text::option_of("Paint", text::BASE_COLOR);
+    let visibility = text::option_of("Only", text::VISIBILITY);
+    let values = [(&color, "1.000  0.500  0  1.000"), (&visibility, text::HIDDEN)];
     for (name, value) in values {
         assert!(harness.query_by_label(&text::fact(name, value)).is_some(), "{name}");
     }

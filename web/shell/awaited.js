@@ -1,15 +1,17 @@
-// Links that name local files: the page asks for them and meanwhile shows what it can.
+// Links that name local files: the page asks for them and meanwhile shows what it can. A copy of a model that couldn't be
+// loaded is welcome in the same way, although nobody is asked for it.
 import { button, dialog, showList } from "./dom.js";
 import { companionWords } from "./held.js";
-import { linkedFiles } from "./links.js";
+import { linkedFiles, publicLink } from "./links.js";
 import { panel } from "./panels.js";
 
 /** @typedef {import("./types.d.ts").Item} Item */
 /** @typedef {import("./types.d.ts").LinkedFile} LinkedFile */
 
 /**
- * A link whose files are waited for, those that are missing still, and the sets that arrived meanwhile.
- * @typedef {{ link: string, wanted: LinkedFile[], missing: LinkedFile[], sets: Item[][] }} Awaited
+ * A link whose files are waited for, the same with all of them marked as local, those that are to be asked for still, and the
+ * sets that arrived meanwhile.
+ * @typedef {{ link: string, marked: string, wanted: LinkedFile[], missing: LinkedFile[], sets: Item[][] }} Awaited
  */
 
 /** @type {Awaited | null} */
@@ -28,13 +30,26 @@ export function forgetAwaited() {
  */
 export function awaitFiles(link) {
   dialog("bring").close();
-  const wanted = linkedFiles(link).filter(({ isToBring }) => isToBring);
-  current = wanted.length > 0 ? { link, wanted, missing: wanted, sets: [] } : null;
+  const wanted = filesToBring(link);
+  current = wanted.length > 0 ? { link, marked: link, wanted, missing: wanted, sets: [] } : null;
 }
+
+/**
+ * Waits for copies of a link's files that couldn't be loaded as well.
+ * @param {string} link
+ * @param {string[]} names
+ */
+export function awaitCopies(link, names) {
+  const marked = publicLink(link, names);
+  current = { link, marked, wanted: filesToBring(marked), missing: current?.missing ?? [], sets: [] };
+}
+
+/** @param {string} link */
+const filesToBring = (link) => linkedFiles(link).filter(({ isToBring }) => isToBring);
 
 /** Asks for the files that are missing. */
 export function showAwaited() {
-  if (current === null || panel() !== null || dialog("bring").open) return;
+  if (current === null || current.missing.length === 0 || panel() !== null || dialog("bring").open) return;
   dialog("bring").returnValue = "";
   const lines = current.missing.map(({ role, name }) => {
     const companions = companionWords(name);

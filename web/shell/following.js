@@ -1,8 +1,8 @@
 // Following links: back and forward, another link typed into the address bar, and what of a link could not be loaded.
-import { awaitFiles, showAwaited } from "./awaited.js";
+import { awaitCopies, awaitFiles, showAwaited } from "./awaited.js";
 import { cancelSummary, summarizeSoon } from "./changes.js";
 import { button, byId, dialog, messageOf, showList } from "./dom.js";
-import { heldItems, heldMotionsAndLight, localFiles } from "./held.js";
+import { fileName, heldItems, heldMotionsAndLight, localFiles } from "./held.js";
 import { beginFollowing, endFollowing, keepTypedAddress, moveToEntry, showInEntry } from "./history.js";
 import { linkWithoutMissing, linkedFiles } from "./links.js";
 import { load, takeNews } from "./load.js";
@@ -74,11 +74,8 @@ export async function follow(link, { items = [], motionItems = [], link: heldLin
  */
 const areSame = (items, others) => items.length === others.length && items.every((item, index) => item === others[index]);
 
-/**
- * Returns the last part of a path or URL, without its query.
- * @param {string} address
- */
-const fileName = (address) => address.split(/[?#]/)[0].split("/").pop();
+/** Whether nothing stands where a link's model should be. */
+const isStageEmpty = () => session.app !== null && JSON.parse(session.app.summary()).isEmpty;
 
 /**
  * Says what of a link could not be loaded, and offers to try again.
@@ -90,10 +87,11 @@ export function showMissing(problems, link, isUnchanged = false) {
   if (problems.length === 0) return;
   sayProblem(problems.join(" "));
   showList("missing-parts", problems);
-  const models = linkedFiles(link).filter(({ role }) => role === "model");
   // A problem may name the absolute URL of a relative one, or only the file.
   const failed = problems.map((problem) => fileName(problem.split(": ")[0]));
-  const isModel = models.some(({ name }) => failed.includes(fileName(name)));
+  const models = linkedFiles(link).flatMap(({ role, name }) => (role === "model" && failed.includes(fileName(name)) ? [name] : []));
+  const isModel = models.length > 0;
+  if (isModel && isStageEmpty()) awaitCopies(link, models);
   byId("missing-title").textContent = `${isModel ? "The model in" : "Part of"} this link couldn't be loaded`;
   byId("missing-rest").textContent = isUnchanged
     ? "The current view stays as it was."

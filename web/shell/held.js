@@ -16,6 +16,19 @@ const held = [];
 /** @param {Item} item */
 export const nameOf = (item) => (typeof item === "string" ? item : item.name);
 
+/**
+ * Returns the last part of a path or URL, without its query and decoded.
+ * @param {string} address
+ */
+export function fileName(address) {
+  const name = /** @type {string} */ (address.split(/[?#]/)[0].split("/").pop());
+  try {
+    return decodeURIComponent(name);
+  } catch {
+    return name;
+  }
+}
+
 /** @param {string} name */
 export const extensionOf = (name) => /** @type {string} */ (name.split(".").pop()).toLowerCase();
 

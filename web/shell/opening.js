@@ -3,7 +3,7 @@
 import { awaited, forgetAwaited, showAwaited } from "./awaited.js";
 import { forgetProblem, summarize } from "./changes.js";
 import { focusCanvas, frames, messageOf } from "./dom.js";
-import { extensionOf, heldItems, heldMotionsAndLight, itemNamed, nameOf, setWith } from "./held.js";
+import { extensionOf, fileName, heldItems, heldMotionsAndLight, itemNamed, nameOf, setWith } from "./held.js";
 import { follow } from "./following.js";
 import { linkWithFiles } from "./links.js";
 import { load } from "./load.js";
@@ -115,9 +115,6 @@ function announce(shown, model, { clips, borrowed_clips: borrowed, joints, trian
   sayNews(texts[shown]);
 }
 
-/** @param {string} path */
-const lastPart = (path) => path.split("/").pop();
-
 /**
  * Takes a set of files towards the link that waits for files, and shows the link once it has all of them.
  * @param {Item[]} items
@@ -127,10 +124,10 @@ async function completeLink(items, isShown) {
   const waiting = awaited();
   if (waiting === null) return;
   waiting.sets.push(items);
-  const { link, wanted, sets } = waiting;
+  const { marked, wanted, sets } = waiting;
   const found = wanted.map((file) => {
     /** @type {(item: Item) => boolean} */
-    const isIt = (item) => lastPart(nameOf(item)) === lastPart(file.name);
+    const isIt = (item) => fileName(nameOf(item)) === fileName(file.name);
     const set = sets.findLast((items) => items.some(isIt));
     return { file, set, item: set?.find(isIt) };
   });
@@ -142,7 +139,7 @@ async function completeLink(items, isShown) {
     return showAwaited();
   }
   const names = found.flatMap(({ item }) => (item === undefined ? [] : [nameOf(item)]));
-  const complete = linkWithFiles(link, names);
+  const complete = linkWithFiles(marked, names);
   forgetAwaited();
   await follow(complete, { link: complete, items: heldItems(complete), motionItems: heldMotionsAndLight(complete) });
 }

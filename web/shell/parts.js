@@ -32,6 +32,9 @@ async function work({ data: { module, input } }) {
   postMessage(new Uint8Array(memory.buffer, output(), length()).slice());
 }
 
+/** The name of the error for a module that the page wasn't built with: such a failure says nothing about the file. */
+const CHANGED = "ChangedPart";
+
 /**
  * Throws if a module isn't the one that the page was built with: cut short, changed on its way, or damaged in a cache.
  * @param {string} file
@@ -43,7 +46,10 @@ async function check(file, module) {
   if (expected === undefined || crypto.subtle === undefined) return;
   const digest = new Uint8Array(await crypto.subtle.digest("SHA-256", module));
   const found = Array.from(digest, (byte) => byte.toString(16).padStart(2, "0")).join("").slice(0, expected.length);
-  if (found !== expected) throw new Error(`expected a download whose SHA-256 begins with ${expected}, found ${found}; clear this site's data in the browser and reload the page`);
+  if (found === expected) return;
+  const error = new Error(`expected a download whose SHA-256 begins with ${expected}, found ${found}; reload the page, and if that doesn't help, clear this site's data in the browser first`);
+  error.name = CHANGED;
+  throw error;
 }
 
 export const parts = {

@@ -123,10 +123,10 @@ fn hex_sha256(bytes: &[u8]) -> String {
 #[cfg(test)]
 mod tests {
     use std::collections::HashSet;
-    use std::net::{Ipv4Addr, TcpListener};
+    use std::io::{BufRead, BufReader};
+    use std::process::Child;
 
     use super::*;
-    use crate::serve;
 
     const LICENCE: &str = "anyone may have it";
 
@@ -147,18 +147,32 @@ mod tests {
         std::iter::once("file\trepository\tpath\tsha256\n".to_owned()).chain(rows).collect()
     }
 
-    /// A local stand-in for GitHub with one repository, `owner/name`.
-    fn host(name: &str, files: &[(&str, &str)]) -> String {
+    /// A local stand-in for GitHub with one repository, `owner/name`. It ends when it is dropped.
+    struct Host {
+        server: Child,
+        origin: String,
+    }
+
+    impl Drop for Host {
+        fn drop(&mut self) {
+            self.server.kill().ok();
+            self.server.wait().ok();
+        }
+    }
+
+    fn host(name: &str, files: &[(&str, &str)]) -> Host {
         let folder = empty_folder(name);
         for (path, text) in files {
             let path = folder.join("owner/name/HEAD").join(path);
             fs::create_dir_all(path.parent().unwrap()).unwrap();
             fs::write(path, text).unwrap();
         }
-        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
-        let address = listener.local_addr().unwrap();
-        std::thread::spawn(move || serve::folder(&listener, &folder));
-        format!("http://{address}")
+        let mut server =
+            command("node").arg("xtask/site/serve.mjs").arg(&folder).arg("0").stdout(Stdio::piped()).spawn().unwrap();
+        let mut line = String::new();
+        BufReader::new(server.stdout.take().unwrap()).read_line(&mut line).unwrap();
+        let origin = line.split(' ').find(|word| word.starts_with("http://")).unwrap().trim_end_matches('/').to_owned();
+        Host { server, origin }
     }
 
     #[test]
@@ -173,7 +187,7 @@ mod tests {
             ["b.glb", "owner/name", "b.glb", &hash("second")],
         ]);
         let entries = entries(&text).unwrap();
-        fetch(&entries, &folder, &host).unwrap();
+        fetch(&entries, &folder, &host.origin).unwrap();
         assert_eq!(fs::read_to_string(folder.join("deep/er/a.glb")).unwrap(), "first");
         assert_eq!(fs::read_to_string(folder.join("b.glb")).unwrap(), "second");
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 3, "no partial file is left behind");
@@ -192,7 +206,7 @@ mod tests {
             ["damaged.glb", "owner/name", "damaged.glb", &hash("half of it")],
             ["good.glb", "owner/name", "good.glb", &hash("good")],
         ]);
-        let error = fetch(&entries(&text).unwrap(), &folder, &host).unwrap_err().to_string();
+        let error = fetch(&entries(&text).unwrap(), &folder, &host.origin).unwrap_err().to_string();
         for expected in [
             "3 of 4 files",
             "changed.glb: owner/name/changed.glb has changed",

@@ -5,7 +5,6 @@
 mod data;
 mod page;
 mod process;
-mod serve;
 mod setup;
 mod sizes;
 mod test;
@@ -71,5 +70,5 @@ fn site_url(url: &str) -> anyhow::Result<String> {
 fn serve_page(port: u16) -> anyhow::Result<()> {
     setup::page()?;
     page::build(&[], None)?;
-    serve::run(port)
+    page::serve(port)
 }

@@ -55,6 +55,11 @@ pub fn build(features: &[&str], url: Option<&str>) -> anyhow::Result<()> {
     run("node", &arguments)
 }
 
+/// Serves the built page until the process is stopped.
+pub fn serve(port: u16) -> anyhow::Result<()> {
+    run("node", &["xtask/site/serve.mjs", text(&dist())?, &port.to_string()])
+}
+
 /// Holds `BACK_END.js`, `BACK_END.wasm` and `parts/PART.wasm`.
 fn programs() -> PathBuf {
     target_folder().join("page")

@@ -36,7 +36,9 @@ fn cargo_checks() -> anyhow::Result<()> {
     process::run("cargo", &["check", "--manifest-path", "fuzz/Cargo.toml"])?;
     process::run("cargo", &["test", "--no-default-features"])?;
     process::run("cargo", &["test", "--workspace"])?;
-    process::run("cargo", &["build", "--release"])
+    // The parts by themselves are only for the tests.
+    let packages = ["gaitway", "gaitway-ktx2", "gaitway-x"].map(|package| ["--package", package]);
+    process::run("cargo", &[&["build", "--release"], packages.as_flattened()].concat())
 }
 
 /// Runs the tests in tests/three and tests/browser, and prints the time table before their summary.

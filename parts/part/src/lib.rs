@@ -5,6 +5,7 @@
 //! A part is one function from bytes to an [`Answer`]. [`module!`] exports it: the caller writes the input to where `input(length)`
 //! points, calls `run()` and finds the encoded answer at `output()`, `output_length()` bytes of it.
 
+use std::io::{self, Read, Write};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// What a part returns.
@@ -97,7 +98,7 @@ impl Exchange {
 }
 
 /// Makes a program of a function `fn(&[u8]) -> Answer`: a module with the exports that the crate's documentation describes.
-/// Natively, a program that does nothing.
+/// Natively, a program that does the same by [`pipe`].
 #[macro_export]
 macro_rules! module {
     ($convert:path) => {
@@ -128,8 +129,24 @@ macro_rules! module {
             EXCHANGE.output().1
         }
 
+        #[cfg(target_arch = "wasm32")]
         fn main() {}
+
+        #[cfg(not(target_arch = "wasm32"))]
+        fn main() -> std::io::Result<()> {
+            $crate::pipe($convert)
+        }
     };
+}
+
+/// Converts standard input and writes the encoded answer to standard output, for tests to compare with the module's.
+///
+/// # Errors
+/// If the input cannot be read or the answer not be written.
+pub fn pipe(convert: fn(&[u8]) -> Answer) -> io::Result<()> {
+    let mut input = Vec::new();
+    io::stdin().read_to_end(&mut input)?;
+    io::stdout().write_all(&encode(convert(&input)))
 }
 
 /// Takes little-endian numbers off the front of a message; `None` if it is too short.

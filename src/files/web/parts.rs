@@ -1,7 +1,7 @@
 //! Parts of Gaitway that are modules of their own, downloaded when a file needs them.
 
 use gaitway_part::{Answer, decode};
-use js_sys::{JsString, Promise, Uint8Array};
+use js_sys::{Promise, Uint8Array};
 use wasm_bindgen::prelude::*;
 use wasm_bindgen_futures::JsFuture;
 
@@ -48,9 +48,14 @@ pub async fn finish(part: Part, running: JsFuture) -> Answer {
     match running.await {
         Ok(encoded) => decode(&Uint8Array::from(encoded).to_vec()),
         Err(problem) => {
-            let problem =
-                problem.dyn_into::<js_sys::Error>().map_or_else(|_| JsString::from(""), |error| error.message());
-            Err(format!("the {} stopped ({problem}); the file may be damaged", part.title()))
+            let named = |error: js_sys::Error| (String::from(error.name()), String::from(error.message()));
+            let (name, message) = problem.dyn_into().map_or_else(|_| Default::default(), named);
+            let title = part.title();
+            // The shell's name for a module that isn't the one the page was built with.
+            Err(match name == "ChangedPart" {
+                true => format!("the {title} is damaged or of another version: {message}"),
+                false => format!("the {title} stopped ({message}); the file may be damaged"),
+            })
         }
     }
 }

@@ -145,13 +145,13 @@ pub(in crate::ui) fn banner(context: &Context, picture: Rect, shown: &Shown<'_>,
     let Some(clicking) = local.motion.clicking else { return };
     let (Clicking::Target { motion } | Clicking::Source { motion, .. }) = clicking;
     let Some(pairing) = Pairing::of(shown, motion) else { return };
-    let text = match clicking {
-        Clicking::Target { .. } => "Click a joint of the model".to_owned(),
+    let what = match clicking {
+        Clicking::Target { .. } => text::PICK_TARGET.to_owned(),
         Clicking::Source { target, .. } => {
             let asset = &pairing.model.asset;
             let joint = asset.skeleton.joint_of_source(target);
             let name = joint.map_or_else(String::new, |joint| pairing.target_title(joint).into_owned());
-            format!("Click the joint of the motion that {name} is to follow")
+            text::pick_source_of(&name)
         }
     };
     let area = Area::new(Id::unique("clicking"))
@@ -167,11 +167,11 @@ pub(in crate::ui) fn banner(context: &Context, picture: Rect, shown: &Shown<'_>,
             .inner_margin(egui::Margin::symmetric(12, 8));
         frame.show(ui, |ui| {
             ui.set_max_width((picture.width() - 56.0).clamp(120.0, 420.0));
-            ui.add(egui::Label::new(text).wrap());
+            ui.add(egui::Label::new(what).wrap());
             ui.horizontal_wrapped(|ui| {
                 ui.spacing_mut().item_spacing = vec2(6.0, 6.0);
                 if let Clicking::Source { target, .. } = clicking
-                    && ui.button("Choose from the list").clicked()
+                    && ui.button(text::CHOOSE_FROM_LIST).clicked()
                 {
                     local.motion.picking = Some(Picking::new(motion, target));
                     finish(local);

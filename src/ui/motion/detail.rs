@@ -28,7 +28,7 @@ pub(super) struct Texts {
 
 impl Texts {
     pub fn new(pairing: &Pairing<'_>, row: &Row) -> Self {
-        let as_all = format!("As all ({})", options::policy_text(pairing, &pairing.map.unmapped).to_lowercase());
+        let as_all = text::as_all(&options::policy_text(pairing, &pairing.map.unmapped));
         let own = pairing.map.joints.get(&row.number).and_then(|entry| entry.unmapped.as_ref());
         Self {
             standing: format!("{}: {}", row.state.word(), row.why),
@@ -85,15 +85,15 @@ pub(super) fn show(ui: &mut Ui, about: &About<'_, '_>, tab: &mut MotionTab, out:
         ui.add(egui::Label::new(RichText::new(&texts.standing).small().color(color)).wrap());
         source_field(ui, pairing, row, tab, out);
         ui.horizontal_wrapped(|ui| {
-            if ui.button("List…").on_hover_text("All joints of the motion").clicked() {
+            if ui.button(text::LIST_SOURCES).on_hover_text("All joints of the motion").clicked() {
                 tab.picking = Some(Picking::new(pairing.index, row.number));
             }
             if source_is_shown(shown, pairing)
-                && ui.button("Click its source").on_hover_text("In the viewport, on the motion's skeleton").clicked()
+                && ui.button(text::CLICK_SOURCE).on_hover_text("In the viewport, on the motion's skeleton").clicked()
             {
                 tab.clicking = Some(Clicking::Source { motion: pairing.index, target: row.number });
             }
-            let clear = ui.add_enabled(row.source.is_some(), egui::Button::new("Clear"));
+            let clear = ui.add_enabled(row.source.is_some(), egui::Button::new(text::CLEAR_SOURCE));
             if clear.on_hover_text("Follow nothing").clicked() {
                 out.commands.push(Command::SetSource { motion: pairing.index, target: row.number, source: None });
             }
@@ -132,7 +132,7 @@ fn source_field(ui: &mut Ui, pairing: &Pairing<'_>, row: &Row, tab: &mut MotionT
             ui.add(field).labelled_by(label.id)
         })
         .inner;
-    controls::named(&field, || format!("Source of {}", row.target));
+    controls::named(&field, || text::source_of(&row.target));
     if field.changed() {
         (typed.is_edited, typed.problem) = (true, None);
     }
@@ -200,7 +200,7 @@ fn find_source(pairing: &Pairing<'_>, text: &str) -> Result<Option<usize>, Strin
     }
     match found.as_slice() {
         [number] => Ok(Some(*number)),
-        [] => Err(format!("No joint of the motion is called “{text}”.")),
+        [] => Err(text::no_source_called(text)),
         several => {
             let numbers: Vec<String> = several.iter().map(ToString::to_string).collect();
             Err(format!("Several joints are called “{text}”: type one of their numbers, {}.", numbers.join(", ")))
@@ -230,7 +230,7 @@ fn turn_fields(ui: &mut Ui, turn: &mut Turn) -> bool {
         ui.label(RichText::new(text::ROTATION_OFFSET).small().color(weak))
             .on_hover_text("In the joint's own space: about its X, then Y, then Z");
         let turned = turn.rotation != Quat::IDENTITY;
-        if turned && ui.small_button("Reset").on_hover_text("No offset").clicked() {
+        if turned && ui.small_button(text::RESET_OFFSET).on_hover_text("No offset").clicked() {
             degrees = [0.0; 3];
         }
     });
@@ -262,16 +262,12 @@ fn muting(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, source: JointIndex
     let source = pairing.motion.asset.skeleton.source_index(source);
     let weak = style::palette(ui).weak_text;
     ui.label(RichText::new(text::IGNORED_CHANNELS).small().color(weak));
-    let channels = [
-        (MutedProperty::Rotation, "rotation", 1),
-        (MutedProperty::Translation, "translation", 0),
-        (MutedProperty::Scale, "scale", 2),
-    ];
+    let channels = [(MutedProperty::Rotation, 1), (MutedProperty::Translation, 0), (MutedProperty::Scale, 2)];
     let now = muted_properties(map, source);
     let mut edit = None;
     ui.horizontal_wrapped(|ui| {
-        for (property, name, at) in channels {
-            let mut muted = now[at];
+        for (property, at) in channels {
+            let (mut muted, name) = (now[at], text::CHANNELS[at]);
             let response = ui.checkbox(&mut muted, name);
             controls::named(&response, || text::ignore_channels(name));
             if response.changed() {
@@ -297,6 +293,6 @@ fn own_policy(ui: &mut Ui, texts: &Texts, own: Option<&Unmapped>) -> Option<Opti
             }
         }
     });
-    response.response.accessible_name("What it does instead");
+    response.response.accessible_name(text::OWN_POLICY);
     pressed
 }

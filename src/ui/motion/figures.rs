@@ -42,7 +42,7 @@ pub(super) fn show(
 ) {
     let clip = active_clip(pairing.model, shown.state);
     let Some((clip, figures)) = clip.and_then(|clip| Some((clip, shown.library.figures(clip)?))) else {
-        controls::hint(ui, "Choose a borrowed clip to see how well it fits.");
+        controls::hint(ui, text::NOTHING_TO_MEASURE);
         return;
     };
     tab.fit.take_if(|fit| fit.clip != clip || !Rc::ptr_eq(&fit.contents, contents));
@@ -83,16 +83,16 @@ fn lines(figures: &Figures, planting: Option<Planting>) -> Vec<Line> {
     let group = |title, hint| Line::Group { title, hint };
     let mut lines = vec![
         group("LIMB DIRECTION ERROR", "Angle between a limb and its source: the visible error."),
-        degrees("Mean", limb_direction_error_degrees_mean),
+        degrees(text::MEAN, limb_direction_error_degrees_mean),
         degrees("Largest", limb_direction_error_degrees_max),
         group(
             "FACING ERROR",
             "Angle between hips, shoulders, feet or hands and the source's, as far as their build allows.",
         ),
-        degrees("Mean", facing_error_degrees_mean),
+        degrees(text::MEAN, facing_error_degrees_mean),
         degrees("Largest", facing_error_degrees_max),
         group(capitals!(text::ROTATION_ERROR), "Difference from the source's rotations, each from its own rest pose."),
-        degrees("Mean", orientation_error_degrees_mean),
+        degrees(text::MEAN, orientation_error_degrees_mean),
         degrees("Largest", orientation_error_degrees_max),
         group("FEET", "Measured while the source's foot is on the ground, next to the source's own slide."),
         speed("Slide", foot_slide_metres_per_sec),
@@ -100,15 +100,15 @@ fn lines(figures: &Figures, planting: Option<Planting>) -> Vec<Line> {
         length("Mean height of the soles", foot_hover_metres_mean),
         length("Max. ground penetration", ground_penetration_metres_max),
     ];
-    lines.extend(planting.map(|planting| Line::Note(format!("Planting: {planting}."))));
+    lines.extend(planting.map(|planting| Line::Note(text::figure(text::PLANTING, &format!("{planting}.")))));
     lines.push(group("COVERAGE", "Mapped body parts, of those that both files have."));
-    lines.push(figure("Mapped", coverage.map(|share| format!("{:.0} %", 100.0 * share))));
+    lines.push(figure(text::COVERAGE, coverage.map(|share| format!("{:.0} %", 100.0 * share))));
     lines
 }
 
 fn figure(name: &'static str, value: Option<String>) -> Line {
     let value = value.unwrap_or_else(|| "cannot be measured".to_owned());
-    Line::Figure { name, text: format!("{name}: {value}"), value }
+    Line::Figure { name, text: text::figure(name, &value), value }
 }
 
 fn row(ui: &mut Ui, name: &str, value: &str, text: &str) {

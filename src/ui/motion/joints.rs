@@ -11,7 +11,7 @@ use super::{Contents, MotionTab, Pairing, detail};
 use crate::asset::Asset;
 use crate::retarget::JointMap;
 use crate::state::Command;
-use crate::ui::{Output, Shown, controls, style};
+use crate::ui::{Output, Shown, controls, style, text};
 
 const ROW_HEIGHT: f32 = 44.0;
 /// Tables with more rows than this skip the hidden ones: a rig may have hundreds.
@@ -52,8 +52,8 @@ pub(super) fn choices(ui: &mut Ui, pairing: &Pairing<'_>, contents: &Contents, t
         if has_body(pairing) {
             ui.scope(|ui| {
                 ui.set_max_width(half);
-                let orders = [(false, "Body"), (true, "Tree")];
-                if let Some(tree) = controls::segmented_about(ui, "Order", Some(table.tree), &orders) {
+                let orders = [(false, text::BY_BODY), (true, text::BY_TREE)];
+                if let Some(tree) = controls::segmented_about(ui, text::ORDER, Some(table.tree), &orders) {
                     table.tree = tree;
                 }
             });
@@ -67,7 +67,7 @@ pub(super) fn choices(ui: &mut Ui, pairing: &Pairing<'_>, contents: &Contents, t
                 }
             }
         });
-        response.response.accessible_name("Which joints are shown");
+        response.response.accessible_name(text::JOINT_FILTER);
     });
 }
 
@@ -136,8 +136,8 @@ impl Lines {
             lines.extend(shown.into_iter().map(Line::Row));
         }
         let nothing = match search.is_empty() {
-            true if filter == Filter::NeedsReview => "No joints need review.".to_owned(),
-            true => "There are no such joints.".to_owned(),
+            true if filter == Filter::NeedsReview => text::NOTHING_TO_REVIEW.to_owned(),
+            true => text::NO_SUCH_JOINTS.to_owned(),
             false => format!("No such joint is called “{search}”."),
         };
         let detail = rows.iter().find(|row| Some(row.number) == chosen).map(|row| detail::Texts::new(pairing, row));
@@ -333,7 +333,7 @@ fn show_row(
     let target = ui.interact(rect.with_max_x(middle), id.with("target"), Sense::click());
     let source = ui.interact(rect.with_min_x(middle), id.with("source"), Sense::click());
     let role = egui::accesskit::Role::Button;
-    target.widget_info(|| WidgetInfo::selected(role, true, chosen, format!("Edit {}", row.target)));
+    target.widget_info(|| WidgetInfo::selected(role, true, chosen, text::edit_joint(&row.target)));
     source.widget_info(|| WidgetInfo::labeled(role, true, &row.follows));
     if ui.is_rect_visible(rect) {
         let palette = style::palette(ui);

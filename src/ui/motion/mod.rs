@@ -26,7 +26,6 @@ use crate::state::{Command, MapEdit, ViewerState, active_clip, choice_of_clip, t
 use crate::ui::text;
 
 pub(super) use clicking::{banner, show as clicking, stop as stop_clicking};
-pub(super) use options::rest_title;
 pub(super) use picker::show as picker;
 
 /// The state of the tab.
@@ -142,7 +141,7 @@ impl Contents {
         let rows = rows::rows(pairing, pairing.map);
         let filters = rows::Filter::ALL.map(|(filter, name)| {
             let count = rows.iter().filter(|row| filter.lets_through(row)).count();
-            format!("{name} ({count})")
+            text::counted(name, count)
         });
         let several = motions.len() > 1;
         let mapped = pairing.map.joints.values().filter(|entry| entry.source.is_some()).count();
@@ -246,10 +245,10 @@ fn head(
     header(ui, pairing, contents, out);
     ui.add_space(4.0);
     let parts = [
-        (Section::Joints, "Joints"),
-        (Section::Options, "Options"),
-        (Section::Figures, "Fit"),
-        (Section::Files, "Files"),
+        (Section::Joints, text::JOINTS),
+        (Section::Options, text::OPTIONS),
+        (Section::Figures, text::FIT),
+        (Section::Files, text::FILES),
     ];
     if let Some(part) = controls::segmented(ui, Some(local.motion.part), &parts) {
         local.motion.part = part;
@@ -257,7 +256,7 @@ fn head(
     ui.add_space(2.0);
     if local.motion.part == Section::Joints {
         edits(ui, pairing, map, contents, local, out);
-        clips::search_field(ui, &mut local.motion.table.search, "Search joints of the model");
+        clips::search_field(ui, &mut local.motion.table.search, text::SEARCH_JOINTS);
         joints::choices(ui, pairing, contents, &mut local.motion.table);
         ui.add_space(2.0);
     }
@@ -296,8 +295,8 @@ fn button(ui: &mut Ui, width: f32, enabled: bool, text: &str, hover: &str) -> bo
 fn arrows(ui: &mut Ui, host: &HostState, out: &mut Output) {
     // Only for edits made in this tab: the step before them may be the motion itself.
     for (icon, label, enabled, action) in [
-        (Icon::Undo, "Undo (Ctrl+Z)", host.can_undo_retargeting, UiAction::Undo),
-        (Icon::Redo, "Redo (Ctrl+Y)", host.can_redo_retargeting, UiAction::Redo),
+        (Icon::Undo, text::UNDO_KEY, host.can_undo_retargeting, UiAction::Undo),
+        (Icon::Redo, text::REDO_KEY, host.can_redo_retargeting, UiAction::Redo),
     ] {
         let pressed =
             ui.add_enabled_ui(enabled, |ui| icon_button_sized(ui, icon, label, false, EDIT_BUTTON_HEIGHT)).inner;
@@ -375,7 +374,7 @@ fn header(ui: &mut Ui, pairing: &Pairing<'_>, contents: &Contents, out: &mut Out
                 }
             }
         });
-        response.response.accessible_name("Motion file");
+        response.response.accessible_name(text::MOTION_FILE);
     }
     controls::hint(ui, &contents.mapped);
     for text in &contents.remarks {
@@ -439,5 +438,5 @@ fn remarks(pairing: &Pairing<'_>) -> Vec<String> {
 
 /// A joint as shown in lists: its number in the file and its name.
 fn joint_text(asset: &Asset, joint: JointIndex) -> String {
-    format!("{}  {}", asset.skeleton.source_index(joint), title(None, asset, joint))
+    text::joint(asset.skeleton.source_index(joint), &title(None, asset, joint))
 }

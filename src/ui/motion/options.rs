@@ -12,19 +12,9 @@ use crate::ui::widgets::controls::{self, capitals};
 use crate::ui::{Output, Saved, Shown, UiAction, style, text};
 
 const PARTS: [(RootPart, &str); 3] =
-    [(RootPart::Keep, "Keep"), (RootPart::InPlace, "In place"), (RootPart::Freeze, "Freeze")];
+    [(RootPart::Keep, text::KEEP), (RootPart::InPlace, text::IN_PLACE), (RootPart::Freeze, text::FREEZE)];
 
-/// What a choice of rest pose is called.
-pub fn rest_title(choice: RestChoice) -> &'static str {
-    match choice {
-        RestChoice::Auto => "Automatic",
-        RestChoice::Node => "As the file's nodes stand",
-        RestChoice::Bind => "As the mesh was bound",
-        RestChoice::FirstFrame => "The clip's first frame",
-    }
-}
-
-const KEEPS: [(Keep, &str); 3] = [(Keep::Auto, "Automatic"), (Keep::Keep, "Keep"), (Keep::Drop, "Drop")];
+const KEEPS: [(Keep, &str); 3] = [(Keep::Auto, text::AUTOMATIC), (Keep::Keep, text::KEEP), (Keep::Drop, text::DROP)];
 
 pub(super) fn show(
     ui: &mut Ui,
@@ -37,7 +27,7 @@ pub(super) fn show(
     let edit = |edit| Command::EditMap { motion: pairing.index, edit };
     controls::section(ui, "FEET");
     let planted = map.feet == Feet::Plant;
-    if controls::switch(ui, "Hold feet on the ground", planted) {
+    if controls::switch(ui, text::PLANT_FEET, planted) {
         out.commands.push(Command::SetFeet(Some(if planted { Feet::Off } else { Feet::Plant })));
     }
     controls::hint(ui, "Planted feet don't slide, and a hovering motion is lowered to the ground.");
@@ -74,7 +64,7 @@ pub(super) fn show(
     controls::section(ui, "CHANGING CLIPS");
     let settings =
         controls::SliderSettings { range: (0.0, 2.0), default: 0.0, decimals: 2, suffix: " s", logarithmic: false };
-    if let Some(secs) = controls::slider(ui, "Crossfade", map.crossfade_secs, settings) {
+    if let Some(secs) = controls::slider(ui, text::CROSSFADE, map.crossfade_secs, settings) {
         out.commands.push(edit(MapEdit::CrossfadeSecs(secs)));
     }
 
@@ -131,10 +121,10 @@ pub(super) fn files(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, out: 
     controls::section(ui, "JOINT MAP");
     controls::hint(ui, "The source of each joint, as JSON. You can also drop a map anywhere.");
     ui.add_space(2.0);
-    if wide(ui, true, "Save map") {
+    if wide(ui, true, text::SAVE_MAP) {
         out.actions.push(UiAction::Save(Saved::File(Export::Map { motion: pairing.index })));
     }
-    if wide(ui, true, "Load map") {
+    if wide(ui, true, text::LOAD_MAP) {
         out.actions.push(UiAction::ChooseMotion);
     }
     controls::section(ui, "MODEL WITH THIS CLIP");
@@ -160,7 +150,7 @@ pub(super) fn files(ui: &mut Ui, shown: &Shown<'_>, pairing: &Pairing<'_>, out: 
     if wide(ui, true, text::OPEN_INSTEAD) {
         out.actions.push(UiAction::ShowMotionAlone(pairing.index));
     }
-    if wide(ui, true, "Remove motion") {
+    if wide(ui, true, text::REMOVE_MOTION) {
         out.actions.push(UiAction::RemoveMotion(pairing.index));
     }
 }
@@ -170,11 +160,12 @@ fn rest_choice(ui: &mut Ui, label: &str, name: &str, chosen: RestChoice) -> Opti
     ui.horizontal(|ui| {
         let weak = style::palette(ui).weak_text;
         ui.add_sized([52.0, 28.0], egui::Label::new(RichText::new(label).color(weak)));
-        let combo =
-            egui::ComboBox::from_id_salt(("rest", label)).width(ui.available_width()).selected_text(rest_title(chosen));
+        let combo = egui::ComboBox::from_id_salt(("rest", label))
+            .width(ui.available_width())
+            .selected_text(text::rest_choice(chosen));
         let response = combo.show_ui(ui, |ui| {
             for choice in RestChoice::ALL {
-                if ui.selectable_label(choice == chosen, rest_title(choice)).clicked() {
+                if ui.selectable_label(choice == chosen, text::rest_choice(choice)).clicked() {
                     pressed = Some(choice);
                 }
             }
@@ -186,7 +177,7 @@ fn rest_choice(ui: &mut Ui, label: &str, name: &str, chosen: RestChoice) -> Opti
 
 /// What joints without a source can do, with display texts.
 pub(super) fn policies(pairing: &Pairing<'_>) -> Vec<(Unmapped, String)> {
-    let mut policies = vec![(Unmapped::Rest, "Rest".to_owned())];
+    let mut policies = vec![(Unmapped::Rest, text::REST.to_owned())];
     for index in 0..pairing.model.asset.clips.len() {
         for frozen in [false, true] {
             let policy = Unmapped::Clip { clip: ClipRef::Index(index), frozen };
@@ -199,9 +190,9 @@ pub(super) fn policies(pairing: &Pairing<'_>) -> Vec<(Unmapped, String)> {
 
 pub(super) fn policy_text(pairing: &Pairing<'_>, policy: &Unmapped) -> String {
     match pairing.own_clip(policy) {
-        None => "Rest".to_owned(),
+        None => text::REST.to_owned(),
         Some((clip, false)) => format!("Play {}", pairing.clip_title(clip)),
-        Some((clip, true)) => format!("First key of {}", pairing.clip_title(clip)),
+        Some((clip, true)) => text::first_key_of(pairing.clip_title(clip)),
     }
 }
 
@@ -214,12 +205,12 @@ fn unmapped(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, out: &mut Output
         Command::SetUnmapped(Some(unmapped))
     };
     let text = match playing {
-        None => "Rest",
+        None => text::REST,
         Some((clip, _)) => pairing.clip_title(clip),
     };
     let combo = egui::ComboBox::from_id_salt("unmapped").width(ui.available_width()).truncate().selected_text(text);
     let response = combo.show_ui(ui, |ui| {
-        if ui.selectable_label(playing.is_none(), "Rest").clicked() {
+        if ui.selectable_label(playing.is_none(), text::REST).clicked() {
             out.commands.push(Command::SetUnmapped(Some(Unmapped::Rest)));
         }
         for (index, title) in titles.iter().enumerate().take(clips.len()) {
@@ -232,7 +223,7 @@ fn unmapped(ui: &mut Ui, pairing: &Pairing<'_>, map: &JointMap, out: &mut Output
     response.response.accessible_name(text::UNMAPPED_JOINTS);
     match playing {
         Some((clip, frozen)) => {
-            if controls::switch(ui, "Stand still at the clip's first key", frozen) {
+            if controls::switch(ui, text::HOLD_FIRST_KEY, frozen) {
                 out.commands.push(plays(clip, !frozen));
             }
         }

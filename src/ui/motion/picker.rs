@@ -5,7 +5,7 @@ use egui::{Context, Key, ScrollArea, Ui};
 use super::{Pairing, joint_text};
 use crate::anim::JointIndex;
 use crate::state::{Command, title};
-use crate::ui::{Output, Shown, UiState, controls, overlays};
+use crate::ui::{Output, Shown, UiState, controls, overlays, text};
 
 /// The joint whose source is being chosen.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,7 +41,7 @@ pub fn show(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut
         let asset = &pairing.model.asset;
         let target = asset.skeleton.joint_of_source(picking.target);
         let name = target.map_or_else(String::new, |joint| pairing.target_title(joint).into_owned());
-        ui.heading(format!("What does {name} follow?"));
+        ui.heading(text::what_follows(&name));
         ui.add_space(4.0);
         let steps = ui.input_mut(|input| {
             let mut presses = |key| input.count_and_consume_key(egui::Modifiers::NONE, key) as isize;
@@ -51,7 +51,7 @@ pub fn show(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut
             .hint_text("Name or number")
             .margin(egui::Margin::symmetric(10, 6))
             .desired_width(f32::INFINITY);
-        let field = ui.add(field).accessible_name("Name or number of a joint of the motion");
+        let field = ui.add(field).accessible_name(text::SEARCH_SOURCES);
         let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
         if ui.memory(|memory| memory.focused().is_none()) && !entered {
             field.request_focus();
@@ -79,7 +79,7 @@ pub fn show(context: &Context, shown: &Shown<'_>, local: &mut UiState, out: &mut
         let scroll_to = if steps != 0 { picking.stepped } else { now.filter(|_| fresh) };
         list(ui, &pairing, &found, scroll_to, marked, marked.is_none(), &mut chosen);
         ui.add_space(4.0);
-        closed |= ui.button("Cancel").clicked();
+        closed |= ui.button(text::CANCEL).clicked();
     });
     if let Some(source) = chosen {
         out.commands.push(Command::SetSource { motion: picking.motion, target: picking.target, source });
@@ -99,7 +99,7 @@ fn list(
     marks_nothing: bool,
     chosen: &mut Option<Option<usize>>,
 ) {
-    if controls::list_row(ui, "Nothing", "", marks_nothing).clicked() {
+    if controls::list_row(ui, text::FOLLOW_NOTHING, "", marks_nothing).clicked() {
         *chosen = Some(None);
     }
     let height = (ui.ctx().content_rect().height() - 292.0).clamp(90.0, 360.0);

@@ -9,6 +9,7 @@ use crate::anim::JointIndex;
 use crate::asset::{Asset, Slot};
 use crate::retarget::{Contradiction, JointMap, Recognized, Unmapped};
 use crate::state::muted_properties;
+use crate::ui::text;
 
 /// Below this confidence a proposal counts as a guess.
 const UNSURE: f32 = 0.6;
@@ -53,10 +54,10 @@ pub(super) enum State {
 impl State {
     pub fn word(self) -> &'static str {
         match self {
-            Self::Sure => "sure",
-            Self::Guess => "guess",
-            Self::Conflict => "conflict",
-            Self::None => "none",
+            Self::Sure => text::IS_SURE,
+            Self::Guess => text::IS_GUESS,
+            Self::Conflict => text::IS_CONFLICT,
+            Self::None => text::NO_SOURCE,
             Self::Muted => "muted",
         }
     }
@@ -73,13 +74,13 @@ pub(super) enum Filter {
 
 impl Filter {
     pub const ALL: [(Self, &str); 7] = [
-        (Self::All, "All joints"),
-        (Self::NeedsReview, "Needs review"),
+        (Self::All, text::ALL_JOINTS),
+        (Self::NeedsReview, text::NEEDS_REVIEW),
         (Self::Of(State::Sure), "Sure"),
         (Self::Of(State::Guess), "Guesses"),
-        (Self::Of(State::Conflict), "Conflicts"),
-        (Self::Of(State::None), "Follow nothing"),
-        (Self::Of(State::Muted), "Muted"),
+        (Self::Of(State::Conflict), text::CONFLICTS),
+        (Self::Of(State::None), text::UNMAPPED),
+        (Self::Of(State::Muted), text::MUTED),
     ];
 
     pub fn lets_through(self, row: &Row) -> bool {
@@ -118,9 +119,9 @@ impl BodyPart {
     pub fn title(self) -> &'static str {
         match self {
             Self::Trunk => "Trunk and head",
-            Self::LeftArm => "Left arm",
+            Self::LeftArm => text::LEFT_ARM,
             Self::LeftHand => "Left fingers",
-            Self::RightArm => "Right arm",
+            Self::RightArm => text::RIGHT_ARM,
             Self::RightHand => "Right fingers",
             Self::LeftLeg => "Left leg",
             Self::RightLeg => "Right leg",
@@ -314,7 +315,7 @@ impl<'a> PairFacts<'a> {
         let is_turned = entry.is_some_and(|entry| entry.correction != glam::Quat::IDENTITY);
         why.extend(conflict);
         why.extend(muted);
-        why.extend(is_turned.then(|| "rotation offset".to_owned()));
+        why.extend(is_turned.then(|| text::HAS_OFFSET.to_owned()));
         standing
     }
 
@@ -338,7 +339,7 @@ impl<'a> PairFacts<'a> {
         why.push(match (source, given, as_proposed) {
             (_, _, Some(pair)) => format!("{} · {:.0} %", pair.reason, 100.0 * pair.confidence),
             (Some(_), _, None) => "chosen by hand".to_owned(),
-            (None, Some(None), None) => "deliberately none".to_owned(),
+            (None, Some(None), None) => text::DELIBERATELY_NONE.to_owned(),
             (None, None, None) if left_out.is_some() => {
                 let what = left_out.map(slot_text).unwrap_or_default();
                 format!("probably the {what}, but too uncertain to map")
@@ -357,13 +358,14 @@ impl<'a> PairFacts<'a> {
             }
         };
         let target = pairing.target_title(joint).into_owned();
-        let source_text = source.map_or_else(|| "none".to_owned(), |source| joint_text(&pairing.motion.asset, source));
+        let source_text =
+            source.map_or_else(|| text::NO_SOURCE.to_owned(), |source| joint_text(&pairing.motion.asset, source));
         let short_source = source_text.replacen(self.namespace, "", 1);
         let why = why.join(" · ");
         Row {
             joint,
             number,
-            follows: format!("{target} follows {source_text} ({}: {why})", state.word()),
+            follows: format!("{}{why})", text::row(&target, &source_text, state.word())),
             target,
             what,
             source,
@@ -387,16 +389,16 @@ fn left_out(recognized: &Recognized, joint: JointIndex) -> Option<Slot> {
 fn unmapped_text(pairing: &Pairing<'_>, unmapped: &Unmapped) -> Option<String> {
     let (clip, is_frozen) = pairing.own_clip(unmapped)?;
     let title = pairing.clip_title(clip);
-    Some(if is_frozen { format!("first key of {title}") } else { format!("plays {title}") })
+    Some(if is_frozen { text::holds_first_key(title) } else { format!("plays {title}") })
 }
 
 fn muted_text(muted: [bool; 3]) -> Option<String> {
-    let names = ["translation", "rotation", "scale"];
-    let muted: Vec<&str> = names.into_iter().zip(muted).filter(|(_, muted)| *muted).map(|(name, _)| name).collect();
+    let muted: Vec<&str> =
+        text::CHANNELS.into_iter().zip(muted).filter(|(_, muted)| *muted).map(|(name, _)| name).collect();
     match muted.len() {
         0 => None,
         3 => Some("all of it left out".to_owned()),
-        _ => Some(format!("{} left out", muted.join(" and "))),
+        _ => Some(text::left_out(&muted.join(" and "))),
     }
 }
 

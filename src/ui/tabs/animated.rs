@@ -21,7 +21,7 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, model: &Model) {
     controls::section(ui, "ANIMATED PROPERTIES");
     for index in clips {
         let (Some(clip), is_current) = (model.clip(index), shown.frame.clip == Some(index)) else { continue };
-        let title = text::animated(&model.clip_titles()[index], clip.properties().len());
+        let title = text::counted(&model.clip_titles()[index], clip.properties().len());
         let header = egui::CollapsingHeader::new(title).id_salt(("animated", index)).default_open(is_current);
         header.show(ui, |ui| {
             for channel in clip.properties().iter().take(MAX_LISTED) {
@@ -74,19 +74,19 @@ fn name(shown: &Shown<'_>, model: &Model, target: PropertyTarget) -> String {
             (called(camera.map(|camera| &*camera.name), "Camera", number), camera_property(property).to_owned())
         }
         PropertyTarget::Visibility(joint) => {
-            (title(Some(shown.state), asset, joint).into_owned(), "visibility".to_owned())
+            (title(Some(shown.state), asset, joint).into_owned(), text::VISIBILITY.to_owned())
         }
         PropertyTarget::MorphWeight(joint, target) => {
             (title(Some(shown.state), asset, joint).into_owned(), format!("morph weight {target}"))
         }
     };
-    format!("{subject}: {property}")
+    text::option_of(&subject, &property)
 }
 
 fn material_property(property: MaterialProperty) -> String {
     let texture = |slot, what: &str| {
         let slot = match slot {
-            TextureSlot::BaseColor => "base colour",
+            TextureSlot::BaseColor => text::BASE_COLOR,
             TextureSlot::MetallicRoughness => "metallic-roughness",
             TextureSlot::Normal => "normal",
             TextureSlot::Occlusion => "occlusion",
@@ -95,7 +95,7 @@ fn material_property(property: MaterialProperty) -> String {
         format!("{slot} texture {what}")
     };
     match property {
-        MaterialProperty::BaseColor => "base colour".to_owned(),
+        MaterialProperty::BaseColor => text::BASE_COLOR.to_owned(),
         MaterialProperty::Metallic => "metallic".to_owned(),
         MaterialProperty::Roughness => "roughness".to_owned(),
         MaterialProperty::Emissive => "emissive colour".to_owned(),

@@ -135,9 +135,9 @@ pub fn matrices(ui: &mut Ui, shown: &Shown<'_>, model: &Model, joint: JointIndex
     };
     controls::hint(ui, "A joint moves the mesh by T · inv(B).");
     ui.spacing_mut().item_spacing.y = 1.0;
-    matrix(ui, "inv(B)", "bind pose: world to joint", &found.joint_from_bind);
-    matrix(ui, "T", "current pose: joint to world", &found.world_from_joint);
-    matrix(ui, "T · inv(B)", "bind pose to current pose", &found.world_from_bind());
+    matrix(ui, text::INVERSE_BIND, "bind pose: world to joint", &found.joint_from_bind);
+    matrix(ui, text::WORLD_MATRIX, "current pose: joint to world", &found.world_from_joint);
+    matrix(ui, text::SKINNING_MATRIX, "bind pose to current pose", &found.world_from_bind());
 }
 
 fn matrix(ui: &mut Ui, name: &str, meaning: &str, matrix: &Affine3A) {

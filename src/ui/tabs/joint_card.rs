@@ -157,7 +157,7 @@ fn transform(ui: &mut Ui, title: &str, value: &Transform) {
     ui.add(egui::Label::new(RichText::new(title).small().color(palette.weak_text)).truncate());
     let (x, y, z) = value.rotation.normalize_or_identity().to_euler(EulerRot::XYZ);
     let degrees = Vec3::new(x, y, z) * (180.0 / std::f32::consts::PI);
-    let rows = [("Position", value.translation, " m"), ("Rotation", degrees, "°"), ("Scale", value.scale, "")];
+    let rows = [(text::POSITION, value.translation, " m"), ("Rotation", degrees, "°"), (text::SCALE, value.scale, "")];
     for (name, numbers, unit) in rows {
         let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 18.0), Sense::hover());
         let font = egui::FontId::proportional(12.5);
@@ -172,7 +172,7 @@ fn transform(ui: &mut Ui, title: &str, value: &Transform) {
             let at = pos2(rect.left() + 60.0 + width * (column + 1) as f32, rect.center().y);
             ui.painter().text(at, egui::Align2::RIGHT_CENTER, text, font.clone(), palette.text);
         }
-        let whole = format!("{name} {}", texts.join(" "));
+        let whole = text::fact(name, &texts.join(" "));
         response.widget_info(|| WidgetInfo::labeled(egui::accesskit::Role::Label, true, &whole));
         let exact = match unit {
             "°" => quaternion_text(value.rotation),

@@ -86,7 +86,7 @@ fn warnings(ui: &mut Ui, asset: &Asset) {
     }
     let color = style::palette(ui).warning;
     for (code, warnings) in by_code {
-        let title = RichText::new(format!("{code} ({})", warnings.len())).color(color);
+        let title = RichText::new(text::counted(code, warnings.len())).color(color);
         egui::CollapsingHeader::new(title).id_salt(code).default_open(warnings.len() <= 3).show(ui, |ui| {
             for warning in warnings {
                 controls::hint(ui, warning.to_string());

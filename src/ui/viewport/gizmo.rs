@@ -169,14 +169,15 @@ impl Gizmo {
         }
         for (axis, color) in COLORS.into_iter().enumerate() {
             let strong = matches!(lit, Some(Grab::Ring(lit, _)) if lit == axis);
+            let front = Stroke::new(if strong { 4.5 } else { 2.5 }, color);
+            // The half behind the joint is faded.
+            let back = Stroke { color: color.gamma_multiply(0.25), ..front };
             let mut previous: Option<Pos2> = None;
             for arm in self.ring(axis) {
                 let point = self.on_screen(shown, arm);
-                if let (Some(from), Some(to)) = (previous, point) {
-                    // Fade the half behind the joint.
-                    let color = if arm.dot(towards_eye) < -0.05 { color.gamma_multiply(0.25) } else { color };
-                    let width = if strong { 4.5 } else { 2.5 };
-                    painter.add(Shape::line_segment([from, to], Stroke::new(width, color)));
+                let stroke = if arm.dot(towards_eye) < -0.05 { back } else { front };
+                if let Some((from, to)) = previous.zip(point) {
+                    painter.add(Shape::line_segment([from, to], stroke));
                 }
                 previous = point;
             }

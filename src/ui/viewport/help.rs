@@ -41,20 +41,22 @@ impl Help {
         let modal = overlays::modal("help", context).show(context, |ui| {
             let width = (ui.ctx().content_rect().width() - 64.0).min(400.0);
             ui.set_width(width);
-            ui.horizontal(|ui| {
-                ui.heading(text::HELP_TITLE);
-                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    if icon_button(ui, Icon::Close, text::CLOSE_HELP, false).clicked() {
-                        self.is_open = false;
-                    }
-                });
-            });
+            let is_closed = title_bar(ui);
             list(ui, width);
+            is_closed
         });
-        if modal.should_close() {
-            self.is_open = false;
-        }
+        self.is_open &= !(modal.inner || modal.should_close());
     }
+}
+
+/// Returns whether its close button was clicked.
+fn title_bar(ui: &mut Ui) -> bool {
+    let close = |ui: &mut Ui| icon_button(ui, Icon::Close, text::CLOSE_HELP, false).clicked();
+    ui.horizontal(|ui| {
+        ui.heading(text::HELP_TITLE);
+        ui.with_layout(Layout::right_to_left(Align::Center), close).inner
+    })
+    .inner
 }
 
 fn list(ui: &mut Ui, width: f32) {

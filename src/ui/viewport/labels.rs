@@ -6,9 +6,8 @@ use super::hover::partner;
 use super::panes::{pane_at, pane_rects, to_screen};
 use crate::frame::PickedJoint;
 use crate::state::{Comparison, compared_rests, source_on_stage, title};
-use crate::ui::motion::rest_title;
 use crate::ui::tabs::{display, formula};
-use crate::ui::{Shown, UiState, style};
+use crate::ui::{Shown, UiState, style, text};
 
 /// Labels the selected and the hovered joint, and the panes of the comparison. Call once the frame has been evaluated, or
 /// the labels lag behind the scene.
@@ -78,7 +77,7 @@ fn pane_labels(ui: &Ui, painter: &Painter, rect: Rect, shown: &Shown<'_>) {
     let palette = style::palette(ui);
     for (index, (pane, character)) in panes.iter().zip(&shown.frame.characters).enumerate() {
         let text = match shown.frame.comparison {
-            Some(Comparison::Rests(chosen)) => rest_title(compared_rests(chosen)[index]),
+            Some(Comparison::Rests(chosen)) => text::rest_choice(compared_rests(chosen)[index]),
             _ => display::title(character.skinning),
         };
         let galley = painter.layout_no_wrap(text.to_owned(), egui::FontId::proportional(13.0), palette.text);

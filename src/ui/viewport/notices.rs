@@ -108,17 +108,20 @@ impl Messages {
                 if icon_button(ui, Icon::Close, text::DISMISS_ERROR, false).clicked() {
                     self.clear_error();
                 }
-                ui.with_layout(Layout::top_down(Align::Min), |ui| {
-                    ui.label(RichText::new(self.error_title()).strong().color(color));
-                    egui::ScrollArea::vertical().max_height(180.0).show(ui, |ui| {
-                        ui.add(egui::Label::new(error).wrap().selectable(true));
-                    });
-                    if self.motion_refused {
-                        self.offer_alternatives(ui, out);
-                    }
-                });
+                ui.with_layout(Layout::top_down(Align::Min), |ui| self.show_error_text(ui, &error, out));
             });
         });
+    }
+
+    fn show_error_text(&mut self, ui: &mut Ui, error: &str, out: &mut Output) {
+        let color = style::palette(ui).error;
+        ui.label(RichText::new(self.error_title()).strong().color(color));
+        egui::ScrollArea::vertical().max_height(180.0).show(ui, |ui| {
+            ui.add(egui::Label::new(error).wrap().selectable(true));
+        });
+        if self.motion_refused {
+            self.offer_alternatives(ui, out);
+        }
     }
 
     fn error_title(&self) -> String {

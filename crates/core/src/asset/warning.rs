@@ -72,7 +72,7 @@ pub enum Warning {
     Other {
         /// What [`Warning::code`] returns.
         code: &'static str,
-        /// Place in the file.
+        /// Place in the file; empty if `problem` says where, or if it is about the whole file.
         place: String,
         /// What is wrong, and how it was handled.
         problem: String,
@@ -136,6 +136,7 @@ impl fmt::Display for Warning {
                 write!(f, "{node}: its matrix is sheared or singular and has no exact translation, rotation and scale")
             }
             Self::ChannelIgnored { clip, place, problem } => write!(f, "clip “{clip}”, {place} is left out: {problem}"),
+            Self::Other { place, problem, .. } if place.is_empty() => f.write_str(problem),
             Self::Other { place, problem, .. } => write!(f, "{place}: {problem}"),
         }
     }

@@ -75,13 +75,12 @@ fn vertices(scene: &Scene) -> Option<Vec<[f64; 3]>> {
             }
             let faces = mesh.faces.into_iter().zip(0..);
             let faces = faces.filter(|(_, face)| !mesh.face_hole.get(*face).copied().unwrap_or(false));
-            for (face, _) in faces.filter(|(face, _)| face.num_indices >= 3) {
-                for corner in face.index_begin..face.index_begin + face.num_indices {
-                    let vertex = mesh.skinned_position[corner as usize];
-                    let local = mesh.skinned_is_local;
-                    let p = if local { ufbx::transform_position(&node.geometry_to_world, vertex) } else { vertex };
-                    all.push([p.x, p.y, p.z]);
-                }
+            let faces = faces.filter(|(face, _)| face.num_indices >= 3);
+            for corner in faces.flat_map(|(face, _)| face.index_begin..face.index_begin + face.num_indices) {
+                let vertex = mesh.skinned_position[corner as usize];
+                let local = mesh.skinned_is_local;
+                let p = if local { ufbx::transform_position(&node.geometry_to_world, vertex) } else { vertex };
+                all.push([p.x, p.y, p.z]);
             }
         }
     }

@@ -75,7 +75,8 @@ pub(super) fn load(
     extensions::check(file, &document.root, &mut warnings)?;
     let conversion = files.conversion(file);
     for problem in conversion.into_iter().flat_map(|conversion| &conversion.warnings) {
-        warnings.push(Warning::Other { code: "conversion", place: file.to_owned(), problem: problem.clone() });
+        // It names the place itself.
+        warnings.push(Warning::Other { code: "conversion", place: String::new(), problem: problem.clone() });
     }
     build(files, file, &container, &document, warnings, on_images).map_err(|problem| problem.in_file(file))
 }

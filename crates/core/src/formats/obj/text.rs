@@ -240,24 +240,26 @@ impl Reader<'_> {
         Ok(())
     }
 
+    /// Reads the indices of one corner of a face. The error says more about what was expected.
+    fn corner(&self, word: &[u8]) -> Result<Corner, &'static str> {
+        let mut indices = word.split(|&byte| byte == b'/');
+        let mut corner = [NONE; 3];
+        let so_far = [self.obj.positions.len(), self.obj.uvs.len(), self.obj.normals.len()];
+        for (slot, so_far) in corner.iter_mut().zip(so_far) {
+            if let Some(digits) = indices.next().filter(|digits| !digits.is_empty()) {
+                *slot = index(digits, so_far).ok_or(", counted from 1 or backwards from -1")?;
+            }
+        }
+        if corner[0] == NONE || indices.next().is_some() { Err("") } else { Ok(corner) }
+    }
+
     fn face<'a>(&mut self, line: usize, words: impl Iterator<Item = &'a [u8]>) -> Result<(), Problem> {
         let first = self.obj.corners.len();
         for word in words {
-            let mut indices = word.split(|&byte| byte == b'/');
-            let mut corner = [NONE; 3];
-            let so_far = [self.obj.positions.len(), self.obj.uvs.len(), self.obj.normals.len()];
-            for (slot, so_far) in corner.iter_mut().zip(so_far) {
-                if let Some(digits) = indices.next().filter(|digits| !digits.is_empty()) {
-                    *slot = index(digits, so_far).ok_or_else(|| {
-                        let expected = "corners such as 1, 1/1, 1//1 or 1/1/1, counted from 1 or backwards from -1";
-                        Problem::new(place(line), expected, quoted(Some(word)))
-                    })?;
-                }
-            }
-            if corner[0] == NONE || indices.next().is_some() {
-                let expected = "corners such as 1, 1/1, 1//1 or 1/1/1";
-                return Err(Problem::new(place(line), expected, quoted(Some(word))));
-            }
+            let corner = self.corner(word).map_err(|more| {
+                let expected = format!("corners such as 1, 1/1, 1//1 or 1/1/1{more}");
+                Problem::new(place(line), expected, quoted(Some(word)))
+            })?;
             self.allocate::<Corner>(line)?;
             self.obj.corners.push(corner);
         }

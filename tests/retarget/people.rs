@@ -110,8 +110,7 @@ impl Loaded {
     }
 }
 
-/// The result of one pair. Each test program uses a part of it.
-#[allow(dead_code)]
+/// The result of one pair.
 pub struct Outcome {
     pub mapped: usize,
     pub figures: Figures,
@@ -120,7 +119,6 @@ pub struct Outcome {
 }
 
 /// The columns of `docs/retargeting-pairs.tsv` after model and motion, with their decimal places.
-#[allow(dead_code)]
 pub const COLUMNS: [(&str, usize); 15] = [
     ("joints", 0),
     ("coverage", 2),
@@ -139,7 +137,6 @@ pub const COLUMNS: [(&str, usize); 15] = [
     ("ground_penetration_max_m", 3),
 ];
 
-#[allow(dead_code)]
 impl Outcome {
     /// One value per column; none where there is nothing to measure.
     pub fn values(&self) -> [Option<f64>; COLUMNS.len()] {
@@ -199,7 +196,6 @@ pub fn measured(model: &Loaded, motion: &Loaded, map: &ResolvedMap) -> Result<(F
 
 /// By how many degrees a joint of a leg at most turns further than its source from one sixtieth of a second to the next. Both
 /// arrays are of the model and its motion.
-#[allow(dead_code)]
 pub fn largest_excess_turn(assets: [&Asset; 2], clips: [&Clip; 2], map: &ResolvedMap, slots: &Humanoid) -> f64 {
     const LEGS: [Slot; 6] = [
         Slot::LeftUpperLeg,

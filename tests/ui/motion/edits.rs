@@ -1,0 +1,162 @@
+//! Edits of the map: sides, rotation offsets, channels, joints without a source, and their undo.
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use gaitway::asset::Asset;
+use gaitway::library::{Library, Model, Motion};
+use gaitway::retarget::{ClipRef, MutedProperty, Unmapped};
+use gaitway::samples;
+use gaitway::state::{Command, MapEdit, muted_properties};
+use gaitway::ui::{Tab, UiAction, text};
+
+use super::{choose, edit, map, number, reach, says};
+use crate::bench::{Bench, WIDE, bench_of, drag, motion_bench, press, press_key};
+
+#[test]
+fn whole_maps_are_swapped_cleared_and_taken_back() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, Tab::Motion.label());
+    let before = harness.state().state().clone();
+    let [left, right] = ["LeftHand", "RightHand"].map(|name| number(&harness, name));
+    assert_eq!(press(&mut harness, text::SWAP_SIDES), [edit(MapEdit::SwapSides)]);
+    let swapped = text::row("LeftHand", &text::joint(right, "RightHand"), text::IS_SURE);
+    assert!(harness.query_by_label_contains(&swapped).is_some(), "on purpose: no conflict");
+    press(&mut harness, text::UNDO_KEY);
+    assert!(harness.query_by_label_contains(&text::follows("LeftHand", &text::joint(left, "LeftHand"))).is_some());
+    press(&mut harness, text::REDO_KEY);
+    assert!(harness.query_by_label_contains(&swapped).is_some());
+    assert_eq!(press(&mut harness, text::CLEAR_MAP), [edit(MapEdit::Clear)]);
+    assert!(harness.query_by_label(&text::joints_mapped(0, 0)).is_some());
+    assert!(harness.query_by_label_contains(&text::row("Hips", text::NO_SOURCE, text::NO_SOURCE)).is_some());
+    assert_eq!(press(&mut harness, text::REMATCH), [Command::SetMap { motion: 0, map: None }]);
+    for _ in 0..3 {
+        harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
+        harness.run();
+    }
+    assert_eq!(harness.state().state(), &before);
+}
+
+/// The walker in other words, with left and right exchanged, as converters that mirror a model leave it.
+#[test]
+fn sides_matched_by_position_are_matched_by_name_with_one_click() {
+    let walker = samples::load("walker").expect("the sample is there");
+    let skeleton = &walker.asset.skeleton;
+    const WORDS: [(&str, &str); 12] = [
+        ("UpperArm", "Humerus"),
+        ("LowerArm", "Forearm"),
+        ("Shoulder", "Clavicle"),
+        ("Hand", "Wrist"),
+        ("UpperLeg", "Thigh"),
+        ("LowerLeg", "Shin"),
+        ("Foot", "Ankle"),
+        ("Toes", "Ball"),
+        ("Hips", "Pelvis"),
+        ("Spine", "Belly"),
+        ("Chest", "Thorax"),
+        ("Head", "Skull"),
+    ];
+    let reworded =
+        |rest: &str| WORDS.iter().find(|(word, _)| *word == rest).map_or(rest, |(_, other)| other).to_owned();
+    let exchanged = |name: &str| match (name.strip_prefix("Left"), name.strip_prefix("Right")) {
+        (Some(rest), _) => format!("Right{}", reworded(rest)),
+        (_, Some(rest)) => format!("Left{}", reworded(rest)),
+        _ => reworded(name),
+    };
+    let names: Vec<(usize, String)> =
+        skeleton.joints().map(|joint| (skeleton.source_index(joint), exchanged(skeleton.name(joint)))).collect();
+    let renamed = skeleton.with_names(names.iter().map(|(number, name)| (*number, name.as_str())));
+    let mut library = Library::default();
+    library.add(Model::new("mirrored.glb".to_owned(), Asset::from(renamed), Vec::new()));
+    library.set_motions(vec![Motion::new("dance.bvh".to_owned(), walker.asset.clone())]);
+    let mut harness = bench_of(WIDE, library);
+    press(&mut harness, Tab::Motion.label());
+    let at = |name: &str| skeleton.source_index(skeleton.find(name).expect(name));
+    let by_position = text::row("LeftWrist", &text::joint(at("RightHand"), "RightHand"), text::IS_GUESS);
+    let by_name = text::row("LeftWrist", &text::joint(at("LeftHand"), "LeftHand"), text::IS_SURE);
+    assert!(harness.query_by_label_contains(&by_position).is_some());
+    assert!(harness.query_by_label_contains(text::sides_matched(true)).is_some());
+    assert!(harness.query_by_label(text::SWAP_SIDES).is_none(), "one control for one effect");
+    assert_eq!(press(&mut harness, text::MATCH_SIDES_BY_NAME), [edit(MapEdit::SwapSides)]);
+    assert!(harness.query_by_label_contains(&by_name).is_some());
+    assert!(harness.query_by_label_contains(text::sides_matched(false)).is_some());
+    press(&mut harness, text::MATCH_SIDES_BY_POSITION);
+    assert!(harness.query_by_label_contains(&by_position).is_some());
+}
+
+/// A button that was reached with the tab key keeps the keyboard; edits made with it can be undone all the same.
+#[test]
+fn undo_works_while_a_button_has_the_keyboard() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, Tab::Motion.label());
+    harness.get_by_label(text::SWAP_SIDES).focus();
+    harness.run();
+    assert_eq!(press_key(&mut harness, egui::Key::Enter), [edit(MapEdit::SwapSides)]);
+    let undo = |harness: &mut Harness<'_, Bench>| {
+        harness.state_mut().actions.clear();
+        harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
+        harness.run();
+        harness.state().actions.clone()
+    };
+    assert_eq!(undo(&mut harness), [UiAction::Undo]);
+    // Where text is typed it is the text that is undone.
+    harness.get_by_label(text::SEARCH_JOINTS).focus();
+    harness.run();
+    assert_eq!(undo(&mut harness), []);
+}
+
+#[test]
+fn a_joint_is_turned_further_and_back() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, Tab::Motion.label());
+    let neck = number(&harness, "Neck");
+    press(&mut harness, &text::edit_joint("Neck"));
+    let from = harness.get_by_label(&text::rotation_offset_about("Y")).rect().center();
+    let commands = drag(&mut harness, from, from + egui::vec2(40.0, 0.0), egui::PointerButton::Primary);
+    assert!(!commands.is_empty());
+    let turned = map(&harness, 0).joints[&neck].correction;
+    let (axis, angle) = turned.to_axis_angle();
+    assert!(axis.abs_diff_eq(glam::Vec3::Y, 1e-4) && angle > 0.05, "{axis} {angle}");
+    assert!(says(&harness, &format!("{})", text::HAS_OFFSET)));
+    let reset = press(&mut harness, text::RESET_OFFSET);
+    assert_eq!(reset, [edit(MapEdit::Correction { target: neck, correction: glam::Quat::IDENTITY })]);
+    // The drag was one step, the reset another.
+    press(&mut harness, text::UNDO_KEY);
+    assert_eq!(map(&harness, 0).joints[&neck].correction, turned);
+    press(&mut harness, text::UNDO_KEY);
+    assert_eq!(map(&harness, 0).joints[&neck].correction, glam::Quat::IDENTITY);
+    assert!(!harness.state().editor.can_undo());
+}
+
+#[test]
+fn channels_of_a_source_are_left_out() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, Tab::Motion.label());
+    let neck = number(&harness, "Neck");
+    press(&mut harness, &text::edit_joint("Neck"));
+    let [_, rotation, scale] = text::CHANNELS;
+    let mute = |property, muted| [edit(MapEdit::Mute { source: neck, property, muted })];
+    assert_eq!(reach(&mut harness, &text::ignore_channels(rotation)), mute(MutedProperty::Rotation, true));
+    assert!(harness.query_by_label_contains(&text::follows("Neck", "")).is_some());
+    assert!(says(&harness, &text::left_out(rotation)));
+    assert_eq!(muted_properties(&map(&harness, 0), neck), [false, true, false]);
+    assert_eq!(reach(&mut harness, &text::ignore_channels(rotation)), mute(MutedProperty::Rotation, false));
+    reach(&mut harness, &text::ignore_channels(scale));
+    press(&mut harness, text::OPTIONS);
+    assert_eq!(reach(&mut harness, text::USE_ALL_CHANNELS), [edit(MapEdit::UnmuteAll)]);
+}
+
+#[test]
+fn one_joint_without_a_source_has_a_policy_of_its_own() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, Tab::Motion.label());
+    let neck = number(&harness, "Neck");
+    press(&mut harness, &text::edit_joint("Neck"));
+    let clear = Command::SetSource { motion: 0, target: neck, source: None };
+    assert_eq!(reach(&mut harness, text::CLEAR_SOURCE), [clear]);
+    let frozen = Unmapped::Clip { clip: ClipRef::Index(2), frozen: true };
+    let commands = choose(&mut harness, text::OWN_POLICY, &text::first_key_of("Wave"));
+    assert_eq!(commands, [edit(MapEdit::Unmapped { target: neck, unmapped: Some(frozen) })]);
+    assert!(says(&harness, &text::holds_first_key("Wave")));
+    let commands = choose(&mut harness, text::OWN_POLICY, &text::as_all(text::REST));
+    assert_eq!(commands, [edit(MapEdit::Unmapped { target: neck, unmapped: None })]);
+}

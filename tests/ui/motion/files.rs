@@ -1,0 +1,104 @@
+//! Motions and their files: borrowing, saving, removing, and what is offered when one does not fit.
+
+use egui_kittest::kittest::Queryable;
+use gaitway::editor::Export;
+use gaitway::state::{ClipChoice, Command};
+use gaitway::ui::{PathPrompt, PathPurpose, Saved, Tab, UiAction, text};
+
+use super::reach;
+use crate::bench::{WIDE, motion_bench, press, sample_bench};
+
+#[test]
+fn borrowed_clips_stand_under_the_name_of_their_file() {
+    let mut harness = motion_bench(WIDE, &["folder/dance.bvh"]);
+    assert!(harness.query_by_label(&text::from_motion("dance.bvh")).is_some());
+    let [walk, idle, wave] = ["Walk (2)", "Idle (2)", "Wave (2)"];
+    for (title, index) in [(walk, 3), (idle, 4), (wave, 5)] {
+        let expected = Command::SetClip(ClipChoice::Named(index.to_string()));
+        assert_eq!(press(&mut harness, title), [expected], "{title}");
+    }
+}
+
+#[test]
+fn without_a_motion_there_is_no_tab_for_it() {
+    let mut harness = sample_bench(WIDE);
+    assert!(harness.query_by_label(Tab::Motion.label()).is_none());
+    press(&mut harness, text::BORROW_MOTION);
+    assert_eq!(harness.state().actions, [UiAction::ChooseMotion]);
+}
+
+#[test]
+fn files_are_asked_of_the_host() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, Tab::Motion.label());
+    press(&mut harness, text::FILES);
+    press(&mut harness, text::SAVE_MAP);
+    press(&mut harness, text::LOAD_MAP);
+    press(&mut harness, "Walk (2)");
+    press(&mut harness, text::SAVE_GLB);
+    reach(&mut harness, text::OPEN_INSTEAD);
+    reach(&mut harness, text::REMOVE_MOTION);
+    let expected = [
+        UiAction::Save(Saved::File(Export::Map { motion: 0 })),
+        UiAction::ChooseMotion,
+        UiAction::Save(Saved::File(Export::Model { clip: 3 })),
+        UiAction::ShowMotionAlone(0),
+        UiAction::RemoveMotion(0),
+    ];
+    assert_eq!(harness.state().actions, expected);
+}
+
+#[test]
+fn a_path_to_save_at_can_be_typed() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    let purpose = PathPurpose::Save(Saved::File(Export::Map { motion: 0 }));
+    harness.state_mut().panels.messages.path_prompt = Some(PathPrompt { purpose, path: "map.json".to_owned() });
+    harness.run();
+    press(&mut harness, text::PROMPT_SAVE);
+    assert_eq!(harness.state().actions, [UiAction::UsePath(purpose, "map.json".to_owned())]);
+}
+
+/// The tab shows the motion whose clip plays.
+#[test]
+fn one_of_several_motions_is_chosen() {
+    let mut harness = motion_bench(WIDE, &["first.bvh", "second.bvh"]);
+    press(&mut harness, Tab::Motion.label());
+    press(&mut harness, text::MOTION_FILE);
+    let commands = press(&mut harness, "second.bvh");
+    assert_eq!(commands, [Command::SetClip(ClipChoice::Named("6".to_owned()))]);
+    press(&mut harness, text::FILES);
+    press(&mut harness, text::SAVE_MAP);
+    assert_eq!(harness.state().actions, [UiAction::Save(Saved::File(Export::Map { motion: 1 }))]);
+}
+
+#[test]
+fn what_does_not_fit_can_be_looked_at_or_mapped_by_hand() {
+    let offers = [
+        (text::SHOW_REFUSED_ALONE, UiAction::ShowRefusedAlone),
+        (text::MAP_REFUSED_MANUALLY, UiAction::MapRefusedManually),
+    ];
+    for (label, action) in offers {
+        let mut harness = sample_bench(WIDE);
+        harness.state_mut().panels.messages.error = Some("snake.bvh: no joint in common".to_owned());
+        harness.run();
+        assert!(harness.query_by_label(label).is_none(), "only for motions");
+        harness.state_mut().panels.messages.motion_refused = true;
+        harness.run();
+        press(&mut harness, label);
+        assert_eq!(harness.state().actions, [action]);
+        assert_eq!(harness.state().panels.messages.error, None);
+    }
+}
+
+/// A model without a skeleton has no joints to map.
+#[test]
+fn a_motion_for_a_model_without_a_skeleton_can_only_be_looked_at() {
+    let mut harness = sample_bench(WIDE);
+    let messages = &mut harness.state_mut().panels.messages;
+    messages.error = Some("dance.bvh: Chair has no skeleton".to_owned());
+    (messages.motion_refused, messages.model_lacks_skeleton) = (true, true);
+    harness.run();
+    assert!(harness.query_by_label(text::MAP_REFUSED_MANUALLY).is_none());
+    press(&mut harness, text::SHOW_REFUSED_ALONE);
+    assert_eq!(harness.state().actions, [UiAction::ShowRefusedAlone]);
+}

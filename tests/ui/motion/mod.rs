@@ -1,0 +1,60 @@
+//! The Motion tab: borrowed clips, the joint table, how sources are chosen, options and files.
+
+mod edits;
+mod files;
+mod layout;
+mod options;
+mod source;
+mod table;
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use gaitway::retarget::JointMap;
+use gaitway::state::{Command, MapEdit, active_map};
+
+use crate::bench::{Bench, press};
+
+pub fn map(harness: &Harness<'_, Bench>, motion: usize) -> JointMap {
+    let bench = harness.state();
+    active_map(bench.library(), bench.state(), motion).expect("a map for the motion")
+}
+
+pub fn number(harness: &Harness<'_, Bench>, name: &str) -> usize {
+    let skeleton = &harness.state().library().active().expect("a model").asset.skeleton;
+    skeleton.source_index(skeleton.find(name).expect("a joint of the walker"))
+}
+
+/// Presses what may have to be scrolled to first.
+pub fn reach(harness: &mut Harness<'_, Bench>, label: &str) -> Vec<Command> {
+    harness.get_by_label(label).scroll_to_me();
+    harness.run();
+    press(harness, label)
+}
+
+/// Presses the line of the table that begins so.
+pub fn press_row(harness: &mut Harness<'_, Bench>, start: &str) {
+    harness.get_by_label_contains(start).scroll_to_me();
+    harness.run();
+    harness.get_by_label_contains(start).click();
+    harness.run();
+}
+
+pub fn edit(edit: MapEdit) -> Command {
+    Command::EditMap { motion: 0, edit }
+}
+
+/// Chooses from a list that opens under a button; the entry may stand elsewhere too.
+pub fn choose(harness: &mut Harness<'_, Bench>, list: &str, entry: &str) -> Vec<Command> {
+    reach(harness, list);
+    harness.get_all_by_label(entry).last().expect("in the list").scroll_to_me();
+    harness.run();
+    harness.state_mut().commands.clear();
+    harness.get_all_by_label(entry).last().expect("in the list").click();
+    harness.run();
+    std::mem::take(&mut harness.state_mut().commands)
+}
+
+/// Whether a label contains this: a row of the table, the details below it, or both.
+pub fn says(harness: &Harness<'_, Bench>, words: &str) -> bool {
+    harness.query_all_by_label_contains(words).next().is_some()
+}

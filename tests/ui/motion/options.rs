@@ -1,0 +1,116 @@
+//! The retargeting options of the whole map.
+
+use egui_kittest::kittest::Queryable;
+use gaitway::anim::{ClipBuilder, Interpolation, Keys, Transform};
+use gaitway::asset::{Asset, AssetParts};
+use gaitway::library::{Library, Motion};
+use gaitway::retarget::{ClipRef, Feet, Keep, RestChoice, RootOptions, RootPart, Unmapped};
+use gaitway::samples;
+use gaitway::state::{Command, MapEdit};
+use gaitway::ui::{Tab, text};
+use glam::{Quat, Vec3};
+
+use super::{edit, map, press_row, reach, says};
+use crate::bench::{WIDE, bench_of, drag, motion_bench, press};
+use crate::skeletons;
+
+#[test]
+fn the_options_say_how_the_motion_is_carried_over() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, Tab::Motion.label());
+    press(&mut harness, text::OPTIONS);
+    let mut root = RootOptions { horizontal: RootPart::InPlace, ..RootOptions::default() };
+    assert_eq!(
+        press(&mut harness, &text::option_of(text::ROOT_HORIZONTAL, text::IN_PLACE)),
+        [Command::SetRoot(Some(root))]
+    );
+    root.yaw = RootPart::Freeze;
+    assert_eq!(press(&mut harness, &text::option_of(text::ROOT_TURN, text::FREEZE)), [Command::SetRoot(Some(root))]);
+    root.extract = true;
+    assert_eq!(reach(&mut harness, text::EXTRACT_ROOT_MOTION), [Command::SetRoot(Some(root))]);
+    let plant = Command::SetFeet(Some(Feet::Plant));
+    assert_eq!(reach(&mut harness, text::PLANT_FEET), [plant]);
+    reach(&mut harness, text::REST_OF_MODEL);
+    press(&mut harness, text::rest_choice(RestChoice::Bind));
+    let now = map(&harness, 0);
+    assert_eq!((now.rest.model, now.root, now.feet), (RestChoice::Bind, root, Feet::Plant));
+}
+
+#[test]
+fn joints_without_a_source_can_play_a_clip() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, Tab::Motion.label());
+    press(&mut harness, text::OPTIONS);
+    reach(&mut harness, text::UNMAPPED_JOINTS);
+    // One in the list at the left, one in the list that has opened.
+    harness.state_mut().commands.clear();
+    harness.get_all_by_label("Wave").last().expect("in the list").click();
+    harness.run();
+    let wave = |frozen| Command::SetUnmapped(Some(Unmapped::Clip { clip: ClipRef::Index(2), frozen }));
+    assert_eq!(harness.state().commands, [wave(false)]);
+    assert_eq!(press(&mut harness, text::HOLD_FIRST_KEY), [wave(true)]);
+    press(&mut harness, text::JOINTS);
+    press_row(&mut harness, &text::follows("Head", ""));
+    press(&mut harness, text::FOLLOW_NOTHING);
+    assert!(harness.query_by_label_contains(&text::row("Head", text::NO_SOURCE, text::NO_SOURCE)).is_some());
+    assert!(says(&harness, &text::holds_first_key("Wave")));
+}
+
+#[test]
+fn translations_scales_and_the_crossfade_are_options() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, Tab::Motion.label());
+    press(&mut harness, text::OPTIONS);
+    assert_eq!(
+        reach(&mut harness, &text::option_of(text::TRANSLATIONS, text::DROP)),
+        [edit(MapEdit::Translations(Keep::Drop))]
+    );
+    assert_eq!(reach(&mut harness, &text::option_of(text::SCALES, text::KEEP)), [edit(MapEdit::Scales(Keep::Keep))]);
+    let field = text::value_of(text::CROSSFADE);
+    harness.get_by_label(&field).scroll_to_me();
+    harness.run();
+    let from = harness.get_by_label(&field).rect().center();
+    drag(&mut harness, from, from + egui::vec2(50.0, 0.0), egui::PointerButton::Primary);
+    let now = map(&harness, 0);
+    assert_eq!((now.translations, now.scales), (Keep::Drop, Keep::Keep));
+    assert!(now.crossfade_secs > 0.1, "{}", now.crossfade_secs);
+}
+
+/// A body in mid-stride that only nods.
+fn striding() -> Asset {
+    let at = |x, y, z| Transform::from_translation(Vec3::new(x, y, z));
+    let joints = [
+        ("Hips", None, at(0.0, 1.0, 0.0)),
+        ("Spine", Some(0), at(0.0, 0.2, 0.0)),
+        ("Neck", Some(1), at(0.0, 0.3, 0.0)),
+        ("Head", Some(2), at(0.0, 0.1, 0.0)),
+        ("LeftUpLeg", Some(0), at(0.1, 0.0, 0.0)),
+        ("LeftLeg", Some(4), at(0.0, -0.3, 0.3)),
+        ("LeftFoot", Some(5), at(0.0, -0.3, 0.3)),
+        ("RightUpLeg", Some(0), at(-0.1, 0.0, 0.0)),
+        ("RightLeg", Some(7), at(0.0, -0.3, -0.3)),
+        ("RightFoot", Some(8), at(0.0, -0.3, -0.3)),
+    ];
+    let joints = joints.map(|(name, parent, rest)| skeletons::joint(name, parent, rest));
+    let parts = skeletons::asset(joints.to_vec()).into_parts();
+    let mut clip = ClipBuilder::new("nod", &parts.skeleton);
+    let keys = Keys::Rotation(vec![Quat::IDENTITY, Quat::from_rotation_x(0.3)]);
+    let head = parts.skeleton.find("Head").expect("it is there");
+    clip.channel(head, Interpolation::Linear, &[0.0, 1.0], keys).expect("a valid channel");
+    let clips = vec![clip.build()];
+    Asset::new(AssetParts { clips, ..parts }).expect("a valid asset")
+}
+
+#[test]
+fn a_rest_in_motion_is_remarked_until_one_is_chosen() {
+    let mut library = Library::default();
+    library.add(samples::load("walker").expect("the sample is there"));
+    library.set_motions(vec![Motion::new("stride.glb".to_owned(), striding().into())]);
+    let mut harness = bench_of(WIDE, library);
+    press(&mut harness, Tab::Motion.label());
+    assert!(harness.query_by_label(text::DOUBTFUL_REST).is_some());
+    press(&mut harness, text::OPTIONS);
+    reach(&mut harness, text::REST_OF_MOTION);
+    press(&mut harness, text::rest_choice(RestChoice::Node));
+    assert!(harness.query_by_label(text::DOUBTFUL_REST).is_none());
+}

@@ -1,0 +1,183 @@
+//! Choosing the source of a joint: from the list, by typing, in the viewport.
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use gaitway::state::Command;
+use gaitway::ui::{Tab, text};
+
+use super::{map, number, press_row, reach};
+use crate::bench::{Bench, NARROW, WIDE, drag, motion_bench, press, press_key};
+
+#[test]
+fn another_source_is_chosen_from_a_list() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, Tab::Motion.label());
+    let (neck, head) = (number(&harness, "Neck"), number(&harness, "Head"));
+    press_row(&mut harness, &text::follows("Neck", ""));
+    assert!(harness.query_by_label(&text::what_follows("Neck")).is_some());
+    let commands = press(&mut harness, &text::joint(head, "Head"));
+    assert_eq!(commands, [Command::SetSource { motion: 0, target: neck, source: Some(head) }]);
+    assert!(harness.query_by_label(&text::what_follows("Neck")).is_none());
+    assert!(harness.query_by_label_contains(&text::follows("Neck", &text::joint(head, "Head"))).is_some());
+    assert_eq!(map(&harness, 0).joints[&neck].source, Some(head));
+    press_row(&mut harness, &text::follows("Neck", ""));
+    press(&mut harness, text::FOLLOW_NOTHING);
+    assert!(harness.query_by_label_contains(&text::follows("Neck", text::NO_SOURCE)).is_some());
+    // And all the way back.
+    press(&mut harness, text::REMATCH);
+    assert!(harness.query_by_label_contains(&text::follows("Neck", &text::joint(neck, "Neck"))).is_some());
+}
+
+#[test]
+fn a_source_is_typed_by_number_or_name() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, Tab::Motion.label());
+    let (neck, head, chest) = (number(&harness, "Neck"), number(&harness, "Head"), number(&harness, "Chest"));
+    for (typed, source) in [(head.to_string(), head), ("chest".to_owned(), chest)] {
+        press_row(&mut harness, &text::follows("Neck", ""));
+        harness.get_by_label(text::SEARCH_SOURCES).type_text(&typed);
+        harness.run();
+        let commands = press_key(&mut harness, egui::Key::Enter);
+        assert_eq!(commands, [Command::SetSource { motion: 0, target: neck, source: Some(source) }], "{typed}");
+    }
+}
+
+#[test]
+fn a_source_is_chosen_by_arrow_keys() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, Tab::Motion.label());
+    let neck = number(&harness, "Neck");
+    for (keys, source) in
+        [(&[egui::Key::ArrowDown][..], neck + 1), (&[egui::Key::ArrowUp, egui::Key::ArrowUp], neck - 1)]
+    {
+        press_row(&mut harness, &text::follows("Neck", ""));
+        keys.iter().for_each(|&key| assert_eq!(press_key(&mut harness, key), []));
+        let commands = press_key(&mut harness, egui::Key::Enter);
+        assert_eq!(commands, [Command::SetSource { motion: 0, target: neck, source: Some(source) }]);
+    }
+}
+
+#[test]
+fn keys_do_nothing_else_while_a_source_is_chosen() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, Tab::Motion.label());
+    press_row(&mut harness, &text::follows("Neck", ""));
+    assert_eq!(press_key(&mut harness, egui::Key::Space), []);
+    assert_eq!(press_key(&mut harness, egui::Key::Escape), []);
+    assert!(harness.query_by_label(&text::what_follows("Neck")).is_none());
+}
+
+#[test]
+fn a_source_is_typed_in_the_table() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, Tab::Motion.label());
+    let [neck, head, chest] = ["Neck", "Head", "Chest"].map(|name| number(&harness, name));
+    press(&mut harness, &text::edit_joint("Neck"));
+    let mut enter = |text: &str| {
+        harness.get_by_label(&text::source_of("Neck")).focus();
+        harness.run();
+        harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+        harness.key_press(egui::Key::Delete);
+        harness.run();
+        harness.get_by_label(&text::source_of("Neck")).type_text(text);
+        harness.run();
+        press_key(&mut harness, egui::Key::Enter)
+    };
+    let set = |source| vec![Command::SetSource { motion: 0, target: neck, source }];
+    assert_eq!(enter(&head.to_string()), set(Some(head)));
+    assert_eq!(enter("chest"), set(Some(chest)));
+    assert_eq!(enter("Head"), set(Some(head)));
+    assert_eq!(enter(""), set(None));
+    assert_eq!(enter("9999"), []);
+    assert_eq!(enter("tail"), []);
+    assert!(harness.query_by_label(&text::no_source_called("tail")).is_some());
+    assert_eq!(map(&harness, 0).joints[&neck].source, None);
+    // Escape takes back what was typed and leaves the joint chosen.
+    harness.get_by_label(&text::source_of("Neck")).focus();
+    harness.run();
+    harness.get_by_label(&text::source_of("Neck")).type_text("5");
+    harness.run();
+    assert_eq!(press_key(&mut harness, egui::Key::Escape), []);
+    assert_eq!(harness.get_by_label(&text::source_of("Neck")).value().unwrap_or_default(), "");
+    assert_eq!(harness.state().state().selection.joint, Some(neck));
+}
+
+/// Where a joint of the walker is in the picture: of the model, or of the motion beside it.
+fn place(harness: &Harness<'_, Bench>, character: usize, name: &str) -> egui::Pos2 {
+    let bench = harness.state();
+    let joint = bench.library().active().expect("a model").asset.skeleton.find(name).expect("a joint");
+    let view = &bench.frame.view;
+    let world = bench.frame.characters[character].world_from_joint[joint.get()].translation;
+    let at = (view.projection_from_view * view.view_from_world).project_point3(world.into());
+    let rect = bench.viewport;
+    rect.min + egui::vec2(0.5 + 0.5 * at.x, 0.5 - 0.5 * at.y) * rect.size()
+}
+
+fn click(harness: &mut Harness<'_, Bench>, at: egui::Pos2) -> Vec<Command> {
+    drag(harness, at, at, egui::PointerButton::Primary)
+}
+
+/// The skeleton is not drawn, and need not be: dots show what can be clicked.
+#[test]
+fn the_joint_is_chosen_by_clicking_it() {
+    for size in [WIDE, NARROW] {
+        let mut harness = motion_bench(size, &["dance.bvh"]);
+        let [hand, head] = ["LeftHand", "Head"].map(|name| number(&harness, name));
+        if size == NARROW {
+            press(&mut harness, text::INSPECTOR);
+        }
+        press(&mut harness, Tab::Motion.label());
+        press(&mut harness, text::PICK_IN_VIEWPORT);
+        assert!(harness.query_by_label(text::PICK_TARGET).is_some());
+        let at = place(&harness, 0, "LeftHand");
+        assert_eq!(click(&mut harness, at), [Command::SelectJoint(Some(hand))]);
+        assert!(harness.query_by_label(&text::what_follows("LeftHand")).is_some());
+        let commands = press(&mut harness, &text::joint(head, "Head"));
+        assert_eq!(commands, [Command::SetSource { motion: 0, target: hand, source: Some(head) }]);
+        assert!(harness.query_by_label(&text::source_of("LeftHand")).is_some(), "the table is back on {size:?}");
+        // And by escape, or the button, to nothing.
+        for stop in [true, false] {
+            harness.get_by_label(text::PICK_IN_VIEWPORT).scroll_to_me();
+            harness.run();
+            press(&mut harness, text::PICK_IN_VIEWPORT);
+            if stop {
+                press(&mut harness, text::DONE_PICKING);
+            } else {
+                press_key(&mut harness, egui::Key::Escape);
+                if size == NARROW {
+                    press(&mut harness, text::INSPECTOR);
+                }
+            }
+            assert!(harness.query_by_label(text::PICK_TARGET).is_none());
+        }
+        assert_eq!(harness.state().state().selection.joint, Some(hand));
+    }
+}
+
+/// Where the motion's skeleton stands on the stage, its joint is clicked too.
+#[test]
+fn both_joints_are_clicked_where_both_are_shown() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, "Walk (2)");
+    press(&mut harness, Tab::Motion.label());
+    harness.state_mut().change(|state| {
+        state.display.show.source = true;
+    });
+    harness.run();
+    let [hand, head, foot] = ["LeftHand", "Head", "RightFoot"].map(|name| number(&harness, name));
+    press(&mut harness, text::PICK_IN_VIEWPORT);
+    let at = place(&harness, 0, "LeftHand");
+    assert_eq!(click(&mut harness, at), [Command::SelectJoint(Some(hand))]);
+    assert!(harness.query_by_label(&text::pick_source_of("LeftHand")).is_some());
+    let at = place(&harness, 1, "Head");
+    let source = |source| [Command::SetSource { motion: 0, target: hand, source: Some(source) }];
+    assert_eq!(click(&mut harness, at), source(head));
+    assert_eq!(map(&harness, 0).joints[&hand].source, Some(head));
+    // From the table the model's joint is known already.
+    reach(&mut harness, text::CLICK_SOURCE);
+    let at = place(&harness, 1, "RightFoot");
+    assert_eq!(click(&mut harness, at), source(foot));
+    reach(&mut harness, text::CLICK_SOURCE);
+    press(&mut harness, text::CHOOSE_FROM_LIST);
+    assert_eq!(reach(&mut harness, &text::joint(head, "Head")), source(head));
+}

@@ -1,0 +1,240 @@
+//! The joint table: its order, filters and words, and what it costs.
+
+use std::sync::Arc;
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use gaitway::asset::{Asset, AssetParts};
+use gaitway::library::{Library, Model, Motion};
+use gaitway::retarget::{Feet, MutedProperty};
+use gaitway::samples;
+use gaitway::state::{Command, MapEdit};
+use gaitway::ui::{Tab, text};
+
+use super::{choose, edit, map, number, press_row, reach};
+use crate::allocations::allocations_after;
+use crate::bench::{Bench, WIDE, bench_of, motion_bench, painted, press};
+use crate::call_sites::own_allocations;
+use crate::skeletons;
+
+#[test]
+fn the_table_says_who_follows_whom_and_why() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, Tab::Motion.label());
+    let (hips, spine) = (number(&harness, "Hips"), number(&harness, "Spine"));
+    assert!(harness.query_by_label_contains(&text::follows("Hips", &text::joint(hips, "Hips"))).is_some());
+    assert!(harness.query_by_label_contains(&text::follows("Spine", &text::joint(spine, "Spine"))).is_some());
+    let joints = harness.state().library().active().expect("a model").asset.skeleton.len();
+    assert!(harness.query_by_label(&text::joints_mapped(joints, joints)).is_some());
+    harness.get_by_label(text::SEARCH_JOINTS).click();
+    harness.run();
+    harness.get_by_label(text::SEARCH_JOINTS).type_text("lefttoes");
+    harness.run();
+    assert!(harness.query_by_label_contains(&text::follows("LeftToes", "")).is_some());
+    assert!(harness.query_by_label_contains(&text::follows("Hips", "")).is_none());
+    // By what it is, too.
+    press(&mut harness, text::CLEAR_SEARCH);
+    harness.get_by_label(text::SEARCH_JOINTS).click();
+    harness.run();
+    harness.get_by_label(text::SEARCH_JOINTS).type_text("left lower");
+    harness.run();
+    assert!(harness.query_by_label_contains(&text::follows("LeftLowerArm", "")).is_some());
+    assert!(harness.query_by_label_contains(&text::follows("RightLowerArm", "")).is_none());
+}
+
+/// The one test of the table's own wording.
+#[test]
+fn rows_read_like_sentences() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, Tab::Motion.label());
+    let [left, head, right] = ["LeftHand", "Head", "RightHand"].map(|name| number(&harness, name));
+    for (target, source) in [(left, Some(right)), (head, None)] {
+        harness.state_mut().editor.apply(Command::SetSource { motion: 0, target, source });
+    }
+    harness.run();
+    let shared = format!("{right}  RightHand (conflict: right hand · same name · 100 % · shared with LeftHand)");
+    for row in [&format!("RightHand follows {shared}"), "Head follows none (none: head · deliberately none)"] {
+        assert!(harness.query_by_label(row).is_some(), "{row}");
+    }
+}
+
+#[test]
+fn the_table_stands_by_parts_of_the_body_or_as_a_tree() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, Tab::Motion.label());
+    let top = |harness: &Harness<'_, Bench>, label: &str| harness.get_by_label_contains(label).rect().top();
+    let left_arm = harness.get_by_label_contains(text::LEFT_ARM).rect();
+    assert!(top(&harness, &text::follows("LeftHand", "")) > left_arm.top());
+    assert!(
+        top(&harness, &text::follows("LeftUpperLeg", "")) > top(&harness, &text::follows("RightHand", "")),
+        "arms before legs"
+    );
+    let before = top(&harness, text::RIGHT_ARM);
+    harness.get_by_label_contains(text::LEFT_ARM).click();
+    harness.run();
+    assert!(harness.query_by_label_contains(&text::follows("LeftHand", "")).is_none());
+    assert!(top(&harness, text::RIGHT_ARM) < before);
+    press(&mut harness, &text::option_of(text::ORDER, text::BY_TREE));
+    assert!(harness.query_by_label_contains(text::LEFT_ARM).is_none());
+    let order = [&text::follows("Hips", ""), &text::follows("Spine", ""), &text::follows("LeftHand", "")]
+        .map(|label| top(&harness, label));
+    assert!(order.is_sorted(), "{order:?}");
+}
+
+#[test]
+fn the_table_is_filtered_by_how_it_stands() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, Tab::Motion.label());
+    choose(&mut harness, text::JOINT_FILTER, &text::counted(text::NEEDS_REVIEW, 0));
+    assert!(harness.query_by_label(text::NOTHING_TO_REVIEW).is_some());
+    choose(&mut harness, text::JOINT_FILTER, &text::counted(text::ALL_JOINTS, 24));
+    // A left arm that follows a right one, and two that follow the same.
+    let (left, right) = (number(&harness, "LeftHand"), number(&harness, "RightHand"));
+    press_row(&mut harness, &text::follows("LeftHand", ""));
+    press(&mut harness, &text::joint(right, "RightHand"));
+    choose(&mut harness, text::JOINT_FILTER, &text::counted(text::CONFLICTS, 2));
+    assert!(harness.query_by_label_contains(&text::follows("LeftHand", "")).is_some());
+    let twice = text::row("RightHand", &text::joint(right, "RightHand"), text::IS_CONFLICT);
+    assert!(harness.query_by_label_contains(&twice).is_some());
+    assert!(harness.query_by_label_contains(&text::follows("Neck", "")).is_none());
+    choose(&mut harness, text::JOINT_FILTER, &text::counted(text::NEEDS_REVIEW, 2));
+    assert!(harness.query_by_label_contains(&text::follows("LeftHand", "")).is_some());
+    choose(&mut harness, text::JOINT_FILTER, &text::counted(text::MUTED, 0));
+    assert!(harness.query_by_label(text::NO_SUCH_JOINTS).is_some());
+    assert_ne!(left, right);
+}
+
+#[test]
+fn a_joint_chosen_anywhere_opens_in_the_table() {
+    let mut harness = motion_bench(WIDE, &["dance.bvh"]);
+    press(&mut harness, Tab::Motion.label());
+    let [neck, toes] = ["Neck", "RightToes"].map(|name| number(&harness, name));
+    assert_eq!(press(&mut harness, &text::edit_joint("Neck")), [Command::SelectJoint(Some(neck))]);
+    assert!(harness.query_by_label(&text::source_of("Neck")).is_some());
+    assert_eq!(press(&mut harness, &text::edit_joint("Neck")), [Command::SelectJoint(None)]);
+    assert!(harness.query_by_label(&text::source_of("Neck")).is_none());
+    // Far down, what opens is not left below the edge.
+    reach(&mut harness, &text::edit_joint("LeftHand"));
+    let inside = harness.get_by_label(&text::ignore_channels(text::CHANNELS[2])).rect();
+    assert!(inside.bottom() < WIDE[1] - 100.0, "{inside:?}");
+    // As a click in the picture does; the table scrolls to it.
+    harness.state_mut().change(|state| {
+        state.selection.joint = Some(toes);
+    });
+    harness.run();
+    let field = harness.get_by_label(&text::source_of("RightToes")).rect();
+    assert!(field.bottom() < WIDE[1] - 80.0, "{field:?}");
+}
+
+/// The Motion tab of a chain of joints that borrows from itself.
+fn bench_of_chain(joints: usize) -> Harness<'static, Bench> {
+    let names: Vec<String> = (0..joints).map(|index| format!("Tentacle{index}")).collect();
+    let asset = skeletons::asset(skeletons::chain(names.iter().map(String::as_str), glam::Vec3::Y * 0.01));
+    let mut library = Library::default();
+    library.add(Model::new("squid.glb".to_owned(), asset, Vec::new()));
+    let asset = library.active().expect("just set").asset.clone();
+    library.set_motions(vec![Motion::new("swim.bvh".to_owned(), asset)]);
+    let mut harness = bench_of(WIDE, library);
+    press(&mut harness, Tab::Motion.label());
+    harness
+}
+
+#[test]
+fn three_hundred_joints_have_their_lines() {
+    let mut harness = bench_of_chain(300);
+    assert!(harness.query_by_label(&text::joints_mapped(300, 300)).is_some());
+    assert!(harness.query_by_label(&text::option_of(text::ORDER, text::BY_BODY)).is_none(), "it has no body");
+    assert!(harness.query_by_label_contains(&text::follows("Tentacle250", "")).is_none(), "far out of sight");
+    harness.state_mut().change(|state| {
+        state.selection.joint = Some(250);
+    });
+    harness.run();
+    let found = harness.get_by_label_contains(&text::follows("Tentacle250", "")).rect();
+    assert!(found.top() > 0.0 && found.bottom() < WIDE[1], "{found:?}");
+    harness.state_mut().change(|state| {
+        state.selection.joint = None;
+    });
+    harness.run();
+    press_row(&mut harness, &text::follows("Tentacle250", ""));
+    assert_eq!(
+        press(&mut harness, text::FOLLOW_NOTHING),
+        [Command::SetSource { motion: 0, target: 250, source: None }]
+    );
+    choose(&mut harness, text::JOINT_FILTER, &text::counted(text::UNMAPPED, 1));
+    assert!(harness.query_by_label_contains(&text::row("Tentacle250", text::NO_SOURCE, text::NO_SOURCE)).is_some());
+    assert!(harness.query_by_label_contains(&text::follows("Tentacle249", "")).is_none());
+    press(&mut harness, text::CLEAR_MAP);
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
+    harness.run();
+    assert_eq!(map(&harness, 0).joints.len(), 300);
+}
+
+/// Names are told apart by what follows their namespace, and a wide table has room for them.
+#[test]
+fn names_are_shown_without_the_namespace_that_all_have() {
+    let walker = samples::load("walker").expect("the sample is there").asset;
+    let parts = Arc::into_inner(walker).expect("of one model").into_parts();
+    let name = |joint| (parts.skeleton.source_index(joint), format!("mixamorig:{}Joint", parts.skeleton.name(joint)));
+    let names: Vec<(usize, String)> = parts.skeleton.joints().map(name).collect();
+    let skeleton = parts.skeleton.with_names(names.iter().map(|(number, name)| (*number, name.as_str())));
+    let asset = Arc::new(Asset::new(AssetParts { skeleton, ..parts }).expect("as before"));
+    for size in [WIDE, [1920.0, 1080.0]] {
+        let mut library = Library::default();
+        library.add(Model::new("rig.glb".to_owned(), asset.clone(), Vec::new()));
+        library.set_motions(vec![Motion::new("dance.fbx".to_owned(), asset.clone())]);
+        let mut harness = bench_of(size, library);
+        press(&mut harness, Tab::Motion.label());
+        reach(&mut harness, &text::edit_joint("mixamorig:LeftUpperLegJoint"));
+        let panel = harness.state().viewport.right();
+        let texts = painted(&harness);
+        let of_table = texts.iter().filter(|(text, _, rect)| text.contains("LeftUpperLegJoint") && rect.left() > panel);
+        let found: Vec<_> = of_table.collect();
+        assert_eq!(found.len(), 2, "target and source: {found:?}");
+        assert!(found.iter().all(|(text, ..)| !text.contains("mixamorig")), "{found:?}");
+        assert!(size == WIDE || found.iter().all(|(_, is_cut, _)| !is_cut), "{found:?}");
+    }
+}
+
+/// egui allocates for what it lays out, which is the same for both, and grows some lists of its own. Rows out of sight must
+/// cost nothing.
+#[test]
+fn a_frame_of_the_table_allocates_no_more_for_more_joints() {
+    let frames = |joints: usize| {
+        let mut harness = bench_of_chain(joints);
+        let run = |harness: &mut Harness<'static, Bench>, frames: usize| (0..frames).for_each(|_| harness.step());
+        let counted = allocations_after(&mut harness, |harness| run(harness, 20), |harness| run(harness, 50));
+        assert!(harness.query_by_label_contains(&text::follows("Tentacle3", "")).is_some());
+        counted
+    };
+    let (few, many) = (frames(200), frames(1000));
+    assert!(few.abs_diff(many) <= 4 * 50, "50 frames: {few} allocations with 200 joints, {many} with 1,000");
+}
+
+/// Every part of the tab, with a joint's details open once with a source and once without one, and all of the fit's groups.
+#[test]
+fn an_open_motion_tab_allocates_nothing_of_its_own() {
+    let mut harness = motion_bench([1280.0, 2400.0], &["dance.bvh", "other.bvh"]);
+    press(&mut harness, "Walk (2)");
+    press(&mut harness, Tab::Motion.label());
+    let neck = number(&harness, "Neck");
+    let mute = MapEdit::Mute { source: neck, property: MutedProperty::Scale, muted: true };
+    harness.state_mut().editor.apply(edit(mute));
+    harness.state_mut().editor.apply(Command::SetFeet(Some(Feet::Plant)));
+    let check = |part: &str, harness: &mut Harness<'_, Bench>| {
+        press(harness, part);
+        (0..20).for_each(|_| harness.step());
+        let sites = own_allocations("gaitway::ui::motion::show", || (0..2).for_each(|_| harness.step()));
+        assert!(sites.is_empty(), "{part}: {sites:#?}");
+    };
+    for (label, source) in [(text::source_of("Neck"), Some(neck)), (text::OWN_POLICY.to_owned(), None)] {
+        harness.state_mut().editor.apply(Command::SetSource { motion: 0, target: neck, source });
+        harness.state_mut().editor.apply(Command::SelectJoint(Some(neck)));
+        check(text::JOINTS, &mut harness);
+        assert!(harness.query_by_label(&label).is_some());
+    }
+    check(text::OPTIONS, &mut harness);
+    assert!(harness.query_by_label(text::USE_ALL_CHANNELS).is_some());
+    check(text::FIT, &mut harness);
+    assert!(harness.query_by_label_contains(text::PLANTING).is_some());
+    check(text::FILES, &mut harness);
+}
