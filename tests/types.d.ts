@@ -3,6 +3,7 @@
 /** The parts of a glTF document that the tests look at. */
 export interface GltfJson {
   asset: { version: string; minVersion?: string };
+  extensionsUsed?: string[];
   extensionsRequired?: string[];
   accessors: { count: number; bufferView: number; componentType: number; byteOffset?: number }[];
   animations: { channels: GltfChannel[] }[];
@@ -45,6 +46,8 @@ declare global {
   interface Window {
     /** The three.js side of benches/web. */
     bench: import("../benches/web/three.mjs").Bench;
+    /** The renderers of tests/reference, which return PNGs as data URLs. */
+    reference: import("./reference/page.mjs").Reference;
     /** Files of benches/web. */
     fetched: Uint8Array[];
     /** Tasks of 50 ms and more, noted by benches/web/first.mjs. */

@@ -1,14 +1,22 @@
 // Rendering: the two back ends agree, and on both, with every skinning method, the model's silhouette matches the numbers of
 // `pose()`. So numbers and images can only be wrong together.
 import assert from "node:assert/strict";
+import fs from "node:fs";
+import os from "node:os";
+import path from "node:path";
 import { after, before, describe, test } from "node:test";
+import sharp from "sharp";
+import { deltaE2000, labFromSrgb } from "../reference/colour.mjs";
 import { dataFile, skipWithoutData } from "../three/data.mjs";
+import { run } from "../three/gaitway.mjs";
 import { BACK_ENDS, apply, colorsOf, meanDifference, open, picture, pose, startSite } from "./browser.mjs";
 import { cameraFor, cameraText, maskOf, overlap, rasterize, trianglesOf } from "./silhouette.mjs";
 
 const MIN_OVERLAP = 0.97;
 /** Of 255, over the whole image. */
 const MAX_DIFFERENCE = 0.5;
+/** CIEDE2000, over the whole image. */
+const MAX_COLOR_DIFFERENCE = 0.5;
 const FOV_DEGREES = 35;
 const MODES = ["linear", "rigid", "dual-quaternion"];
 
@@ -29,6 +37,31 @@ const MORE_PICTURES = [
   { name: "Node_NegativeScale", file: "asset-generator/Positive/Node_NegativeScale/Node_NegativeScale_08.gltf", clip: "", t: 0 },
 ];
 
+/**
+ * Draws a model with `gaitway render`, as the page shows it.
+ * @param {{ file: string, clip: string, t: number }} model
+ * @param {{ width: number, height: number }} size
+ */
+async function drawnByCommand({ file, clip, t }, { width, height }) {
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), "gaitway-"));
+  const out = path.join(folder, "picture.png");
+  const { status, stderr } = await run("render", dataFile(file), "--out", out, "--size", `${width}x${height}`, "--view", `clip=${clip}&t=${t}`);
+  assert.equal(status, 0, stderr);
+  const rgb = await sharp(out).removeAlpha().raw().toBuffer();
+  fs.rmSync(folder, { recursive: true });
+  return rgb;
+}
+
+/**
+ * @param {import("./browser.mjs").Image} image
+ * @param {Buffer} rgb
+ */
+function colorDifference({ width, height, rgba }, rgb) {
+  let sum = 0;
+  for (let at = 0; at < width * height; at++) sum += deltaE2000(labFromSrgb(rgba, 4 * at), labFromSrgb(rgb, 3 * at));
+  return sum / (width * height);
+}
+
 describe("pictures", { skip: skipWithoutData }, () => {
   /** @type {import("./browser.mjs").Site} */
   let site;
@@ -36,7 +69,7 @@ describe("pictures", { skip: skipWithoutData }, () => {
   after(() => site?.close());
 
   for (const model of [...MODELS, ...MORE_PICTURES])
-    test(`${model.name}: the back ends agree`, async () => {
+    test(`${model.name}: the back ends and the command line agree`, async () => {
       const pictures = [];
       for (const renderer of BACK_ENDS) {
         const page = await site.page({ renderer });
@@ -49,7 +82,9 @@ describe("pictures", { skip: skipWithoutData }, () => {
       assert.ok(colorsOf(pictures[0]) > 64, "something should be drawn");
       const difference = meanDifference(pictures[0], pictures[1]);
       assert.ok(difference <= MAX_DIFFERENCE, `mean difference ${difference} of 255`);
-      console.log(`${model.name}: mean difference ${difference.toFixed(4)} of 255`);
+      const printed = colorDifference(pictures[0], await drawnByCommand(model, pictures[0]));
+      assert.ok(printed <= MAX_COLOR_DIFFERENCE, `mean CIEDE2000 to the command line ${printed}`);
+      console.log(`${model.name}: mean difference ${difference.toFixed(4)} of 255, CIEDE2000 to the command line ${printed.toFixed(4)}`);
     });
 
   for (const renderer of BACK_ENDS)

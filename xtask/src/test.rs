@@ -41,7 +41,7 @@ fn cargo_checks() -> anyhow::Result<()> {
     process::run("cargo", &[&["build", "--release"], packages.as_flattened()].concat())
 }
 
-/// Runs the tests in tests/three and tests/browser, and prints the time table before their summary.
+/// Runs the tests in tests/three, tests/reference and tests/browser, and prints the time table before their summary.
 fn node_tests() -> anyhow::Result<()> {
     let files = node_test_files()?;
     let files: Vec<&str> = files.iter().map(String::as_str).collect();
@@ -98,7 +98,7 @@ fn is_start_of_summary(line: &str) -> bool {
 
 fn node_test_files() -> anyhow::Result<Vec<String>> {
     let mut files = Vec::new();
-    for folder in ["tests/three", "tests/browser"] {
+    for folder in ["tests/three", "tests/reference", "tests/browser"] {
         for entry in fs::read_dir(repository().join(folder)).context(folder)? {
             let name = entry?.file_name();
             if let Some(name) = name.to_str().filter(|name| name.ends_with(".test.mjs")) {

@@ -1,0 +1,138 @@
+// Draws a model with the Khronos glTF Sample Renderer and three.js in Chromium, and with the command line, under the same camera
+// and the same light from an image.
+import { execFile } from "node:child_process";
+import fs from "node:fs";
+import os from "node:os";
+import path from "node:path";
+import { promisify } from "node:util";
+import { build } from "esbuild";
+import sharp from "sharp";
+import { launch } from "../browser/browser.mjs";
+import { serve } from "../../xtask/site/server.mjs";
+import { dataFile, repository } from "../three/data.mjs";
+import { program } from "../three/gaitway.mjs";
+import { BACKGROUND } from "./colour.mjs";
+import { roomImage } from "./room.mjs";
+
+/**
+ * @typedef {object} View
+ * @property {string} model A URL.
+ * @property {string} environment The URL of an .hdr image.
+ * @property {boolean} hasLights
+ * @property {[number, number]} size
+ * @property {number} yaw
+ * @property {number} pitch
+ * @property {number} distance
+ * @property {number[]} target
+ * @property {number} fov
+ */
+
+/** 3 bytes a pixel, top row first. @typedef {{ width: number, height: number, rgb: Buffer }} Picture */
+
+/** @type {[number, number]} */
+const SIZE = [320, 320];
+const FOV = 35;
+
+const run = promisify(execFile);
+
+/**
+ * Starts the browser; the stages in it keep their filtered environment from picture to picture.
+ * @param {Buffer} [environment] An .hdr image.
+ */
+export async function startReference(environment = roomImage()) {
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), "gaitway-reference-"));
+  await build({ entryPoints: [path.join(repository, "tests/reference/page.mjs")], bundle: true, format: "iife", outfile: path.join(folder, "page.js"), logLevel: "error" });
+  fs.writeFileSync(path.join(folder, "index.html"), '<!doctype html><script src="page.js"></script>');
+  const libraries = path.join(repository, "node_modules/@khronosgroup/gltf-viewer/dist/libs");
+  const server = await serve({ "/data/": dataFile(""), "/made/": folder, "/libs/": libraries, "/": folder });
+  const browser = await launch();
+  const page = await browser.newPage();
+  page.setDefaultTimeout(300_000);
+  await page.goto(`${server.origin}/index.html`);
+  const hdr = path.join(folder, "environment.hdr");
+  fs.writeFileSync(hdr, environment);
+
+  /**
+   * @param {string} file
+   * @returns {Promise<Record<"gaitway" | "khronos" | "three", Picture>>}
+   */
+  const draw = async (file) => {
+    const { bounds, lights } = await inspect(file);
+    const camera = cameraFor(bounds);
+    const relative = path.relative(dataFile(""), file);
+    const model = relative.startsWith("..") ? `/made/${path.basename(file)}` : `/data/${relative}`;
+    const view = { ...camera, model: server.origin + model, environment: `${server.origin}/made/environment.hdr`, hasLights: lights > 0, size: SIZE, fov: FOV };
+    const [khronos, three] = await page.evaluate(async (view) => [await window.reference.khronos(view), await window.reference.three(view)], view);
+    return { gaitway: await drawGaitway(file, hdr, camera, folder), khronos: withSrgbCurve(await decoded(khronos)), three: await decoded(three) };
+  };
+  const close = async () => {
+    await browser.close();
+    await server.close();
+    fs.rmSync(folder, { recursive: true });
+  };
+  return { draw, close, folder };
+}
+
+/** @param {string} file */
+async function inspect(file) {
+  const { stdout } = await run(program, ["inspect", file, "--json"], { maxBuffer: 1 << 28 });
+  return JSON.parse(stdout);
+}
+
+/**
+ * Looks from the front, a little from the right and above, as near as shows the whole bounding box.
+ * @param {{ min: number[], max: number[] }} bounds
+ */
+function cameraFor({ min, max }) {
+  const [yaw, pitch] = [25, 15];
+  const [y, p] = [yaw, pitch].map((degrees) => (degrees * Math.PI) / 180);
+  const away = [Math.sin(y) * Math.cos(p), Math.sin(p), Math.cos(y) * Math.cos(p)];
+  const right = [Math.cos(y), 0, -Math.sin(y)];
+  const up = [-Math.sin(y) * Math.sin(p), Math.cos(p), -Math.cos(y) * Math.sin(p)];
+  const target = min.map((value, axis) => (value + max[axis]) / 2);
+  const slope = 0.95 * Math.tan((FOV * Math.PI) / 360);
+  let distance = 0;
+  for (let corner = 0; corner < 8; corner++) {
+    const offset = target.map((value, axis) => ((corner >> axis) & 1 ? max : min)[axis] - value);
+    /** @param {number[]} axis */
+    const along = (axis) => axis.reduce((sum, value, index) => sum + value * offset[index], 0);
+    distance = Math.max(distance, along(away) + Math.max(Math.abs(along(right)), Math.abs(along(up))) / slope);
+  }
+  return { yaw, pitch, distance, target };
+}
+
+/**
+ * @param {string} file
+ * @param {string} hdr
+ * @param {ReturnType<typeof cameraFor>} camera
+ * @param {string} folder
+ */
+async function drawGaitway(file, hdr, { yaw, pitch, distance, target }, folder) {
+  const out = path.join(folder, "gaitway.png");
+  const link = `clip=&show=no-shadow&background=808080&fov=${FOV}&camera=${[yaw, pitch, distance, ...target].join(",")}`;
+  await run(program, ["render", file, "--out", out, "--size", SIZE.join("x"), "--environment", hdr, "--view", link]);
+  return await decoded(fs.readFileSync(out));
+}
+
+/** @param {string | Buffer} image A PNG, or its data URL. */
+async function decoded(image) {
+  const bytes = typeof image === "string" ? Buffer.from(image.split(",")[1], "base64") : image;
+  const { data, info } = await sharp(bytes).removeAlpha().raw().toBuffer({ resolveWithObject: true });
+  return { width: info.width, height: info.height, rgb: data };
+}
+
+/**
+ * The sample renderer encodes colours with a power of 1/2.2, which is not sRGB's curve and makes dark ones brighter.
+ * @param {Picture} picture
+ */
+function withSrgbCurve({ rgb, ...size }) {
+  /** @param {number} linear */
+  const encode = (linear) => (linear <= 0.0031308 ? 12.92 * linear : 1.055 * linear ** (1 / 2.4) - 0.055);
+  const curve = Array.from({ length: 256 }, (_, value) => Math.round(255 * encode((value / 255) ** 2.2)));
+  // The background is not drawn by a shader.
+  curve[BACKGROUND] = BACKGROUND;
+  return { ...size, rgb: Buffer.from(rgb.map((value) => curve[value])) };
+}
+
+/** @param {Picture} picture */
+export const encoded = ({ width, height, rgb }) => sharp(rgb, { raw: { width, height, channels: 3 } }).png().toBuffer();

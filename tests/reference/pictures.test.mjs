@@ -1,0 +1,77 @@
+// Pictures against the Khronos glTF Sample Renderer's, drawn in the same run: same camera, same light from an image, Khronos PBR
+// Neutral. The difference is CIEDE2000 over the object; three.js's is printed beside it.
+import assert from "node:assert";
+import fs from "node:fs";
+import path from "node:path";
+import { after, before, describe, test } from "node:test";
+import { dataFile, skipWithoutData } from "../three/data.mjs";
+import { meanDifference } from "./colour.mjs";
+import { startReference } from "./draw.mjs";
+import { sphereGrid } from "./spheres.mjs";
+
+/** Files that need no extension of materials. */
+const CORE = [
+  "cosc422/ArmyPilot.glb",
+  "cosc422/dwarf.glb",
+  "kaykit/Knight.glb",
+  "khronos/BrainStem/glTF-Binary/BrainStem.glb",
+  "khronos/CesiumMan/glTF-Binary/CesiumMan.glb",
+  "khronos/Duck/glTF-Binary/Duck.glb",
+  "khronos/Fox/glTF-Binary/Fox.glb",
+  "khronos/Monster/glTF-Binary/Monster.glb",
+  "khronos/RiggedFigure/glTF-Binary/RiggedFigure.glb",
+  "khronos/TwoSidedPlane/glTF/TwoSidedPlane.gltf",
+  "materials/babylon/PBR_Spheres.glb",
+  "materials/bevy/alien.glb",
+  "materials/bevy/cakeBirthday.glb",
+  "mesh2motion/human-male.glb",
+  "misc/TRex.glb",
+  "misc/godot_mannequiny.glb",
+  "misc/godot_robot_player.glb",
+  "threejs/Horse.glb",
+  "threejs/RobotExpressive.glb",
+  "threejs/Soldier.glb",
+  "threejs/Xbot.glb",
+];
+
+/** @type {Awaited<ReturnType<typeof startReference>>} */
+let reference;
+
+/** @param {string} file */
+async function compare(file) {
+  const { gaitway, khronos, three } = await reference.draw(file);
+  const { mean, share } = meanDifference(gaitway, khronos);
+  assert.ok(share > 0.005, `${file}: hardly anything is drawn`);
+  const ofThree = meanDifference(three, khronos).mean;
+  console.log(`${path.basename(file)}: ${mean.toFixed(2)} (three.js ${ofThree.toFixed(2)})`);
+  return { mean, ofThree };
+}
+
+/** @param {number[]} values */
+const average = (values) => values.reduce((sum, value) => sum + value, 0) / values.length;
+
+describe("pictures against the Khronos glTF Sample Renderer", { skip: skipWithoutData }, () => {
+  before(async () => {
+    reference = await startReference();
+  });
+  after(() => reference.close());
+
+  test("spheres of every roughness, white to black, metal and dielectric", async () => {
+    const file = path.join(reference.folder, "spheres.glb");
+    fs.writeFileSync(file, sphereGrid());
+    const { mean, ofThree } = await compare(file);
+    assert.ok(mean <= 1, `${mean}`);
+    assert.ok(mean < ofThree, `three.js is nearer: ${ofThree} instead of ${mean}`);
+  });
+
+  test("files that need no extension of materials", async () => {
+    const differences = [];
+    for (const name of CORE) differences.push({ name, ...(await compare(dataFile(name))) });
+    for (const { name, mean } of differences) assert.ok(mean <= 4, `${name}: ${mean}`);
+    const mean = average(differences.map(({ mean }) => mean));
+    const ofThree = average(differences.map(({ ofThree }) => ofThree));
+    console.log(`on average ${mean.toFixed(2)} (three.js ${ofThree.toFixed(2)})`);
+    assert.ok(mean <= 1.5, `${mean}`);
+    assert.ok(mean < ofThree, `three.js is nearer: ${ofThree} instead of ${mean}`);
+  });
+});

@@ -1,0 +1,71 @@
+// A grid of spheres in a GLB made in code: roughness to the right, and a row for each material.
+
+const RINGS = 32;
+const SEGMENTS = 64;
+/** The rows, top first: linear base colour and metalness. @type {[number, number][]} */
+const ROWS = [[1, 1], [0.5, 1], [0.8, 0], [0.2, 0], [0, 0]];
+const COLUMNS = 5;
+
+/** Returns the positions, which are the normals of a unit sphere as well, and triangles. */
+function unitSphere() {
+  const positions = [];
+  const indices = [];
+  for (let ring = 0; ring <= RINGS; ring++)
+    for (let segment = 0; segment <= SEGMENTS; segment++) {
+      const [down, turn] = [(Math.PI * ring) / RINGS, (2 * Math.PI * segment) / SEGMENTS];
+      positions.push(Math.sin(down) * Math.cos(turn), Math.cos(down), -Math.sin(down) * Math.sin(turn));
+    }
+  for (let ring = 0; ring < RINGS; ring++)
+    for (let segment = 0; segment < SEGMENTS; segment++) {
+      const at = ring * (SEGMENTS + 1) + segment;
+      const below = at + SEGMENTS + 1;
+      indices.push(at, below, at + 1, at + 1, below, below + 1);
+    }
+  return { positions: new Float32Array(positions), indices: new Uint32Array(indices) };
+}
+
+/** Returns the GLB's bytes. */
+export function sphereGrid() {
+  const { positions, indices } = unitSphere();
+  const cells = ROWS.flatMap(([color, metallicFactor], row) => Array.from({ length: COLUMNS }, (_, column) => ({ color, metallicFactor, row, column })));
+  const materials = cells.map(({ color, metallicFactor, column }) => ({
+    pbrMetallicRoughness: { baseColorFactor: [color, color, color, 1], metallicFactor, roughnessFactor: column / (COLUMNS - 1) },
+  }));
+  const json = {
+    asset: { version: "2.0" },
+    scene: 0,
+    scenes: [{ nodes: cells.map((_, index) => index) }],
+    nodes: cells.map(({ row, column }, mesh) => ({ mesh, translation: [2.1 * column, -2.1 * row, 0] })),
+    meshes: materials.map((_, material) => ({ primitives: [{ attributes: { POSITION: 0, NORMAL: 0 }, indices: 1, material }] })),
+    materials,
+    accessors: [
+      { bufferView: 0, componentType: 5126, count: positions.length / 3, type: "VEC3", min: [-1, -1, -1], max: [1, 1, 1] },
+      { bufferView: 1, componentType: 5125, count: indices.length, type: "SCALAR" },
+    ],
+    bufferViews: [
+      { buffer: 0, byteOffset: 0, byteLength: positions.byteLength },
+      { buffer: 0, byteOffset: positions.byteLength, byteLength: indices.byteLength },
+    ],
+    buffers: [{ byteLength: positions.byteLength + indices.byteLength }],
+  };
+  return glb(json, Buffer.concat([Buffer.from(positions.buffer), Buffer.from(indices.buffer)]));
+}
+
+/**
+ * @param {object} json
+ * @param {Buffer} binary A multiple of 4 bytes.
+ */
+function glb(json, binary) {
+  const text = Buffer.from(JSON.stringify(json));
+  const padded = Buffer.concat([text, Buffer.alloc(-text.length & 3, " ")]);
+  const header = Buffer.from("glTF\0\0\0\0\0\0\0\0");
+  header.writeUInt32LE(2, 4);
+  header.writeUInt32LE(28 + padded.length + binary.length, 8);
+  /** @type {(kind: string, content: Buffer) => Buffer} */
+  const chunk = (kind, content) => {
+    const head = Buffer.from(`\0\0\0\0${kind}`);
+    head.writeUInt32LE(content.length, 0);
+    return Buffer.concat([head, content]);
+  };
+  return Buffer.concat([header, chunk("JSON", padded), chunk("BIN\0", binary)]);
+}
