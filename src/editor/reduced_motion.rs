@@ -34,8 +34,8 @@ impl Editor {
         view
     }
 
-    /// Opens the files that a change of the current view needs, in the changed view. Unlike a link, it doesn't stop what the
-    /// user has started.
+    /// Opens the files that a change of the current view needs, in the changed view. Unlike a link, it doesn't stop what
+    /// the user has started.
     ///
     /// # Errors
     /// As [`Editor::open`].

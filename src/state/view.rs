@@ -99,7 +99,7 @@ impl ViewerState {
     }
 }
 
-/// What a view says about motion while the preference for reduced motion overrides it; `None` for what the user has set.
+/// What a view says about motion while the preference for reduced motion overrides it. `None`: the user has set it.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Overridden {
     /// Whether clips play.

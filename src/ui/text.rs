@@ -492,7 +492,8 @@ pub fn joint(number: usize, name: &str) -> String {
     format!("{number}  {name}")
 }
 
-/// Returns what a joint of the model follows: the [`joint`] of the motion, or [`NO_SOURCE`]. Begins the accessible name of its row.
+/// Returns what a joint of the model follows: the [`joint`] of the motion, or [`NO_SOURCE`]. The accessible name of its row
+/// begins so.
 pub fn follows(target: &str, source: &str) -> String {
     format!("{target} follows {source}")
 }

@@ -115,8 +115,8 @@ pub async fn begin() -> Result<(), JsError> {
     with_app(&page, App::begin).map_err(error)
 }
 
-/// Returns the contents of the live regions as `{model, isEmpty, clip, playing, notice, problem}`; no clip means the rest pose,
-/// and `isEmpty` that the stage has no model.
+/// Returns the contents of the live regions as `{model, isEmpty, clip, playing, notice, problem}`. No clip means the rest
+/// pose, and `isEmpty` that the stage has no model.
 #[wasm_bindgen]
 pub fn summary() -> Result<String, JsError> {
     let page = page().map_err(error)?;
@@ -239,7 +239,7 @@ async fn load(page: &Rc<Page>, request: Request) -> Result<Opened, String> {
     }
 }
 
-/// Hands opened files to the app; resolves once they are on screen. The shell reports problems with links only: any other
+/// Hands opened files to the app; resolves once they are on screen. The shell reports problems of links only, so any other
 /// `state` is a change of the current one.
 async fn show(
     page: &Rc<Page>,

@@ -1,4 +1,5 @@
-//! The body parts of real skeletons, labelled by a person from the joints' names, or from the skeleton's shape if there are none.
+//! The body parts of real skeletons, labelled by a person from the joints' names, or from the skeleton's shape if it has no
+//! names.
 
 use std::collections::BTreeMap;
 

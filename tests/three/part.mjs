@@ -1,5 +1,5 @@
-// Runs the page's parts in Node as web/shell/parts.js does in a worker, and their native programs; parts/part/src/lib.rs says how
-// they are called.
+// Runs the page's parts in Node as web/shell/parts.js does in a worker, and their native programs; parts/part/src/lib.rs says
+// how they are called.
 import { execFileSync } from "node:child_process";
 import fs from "node:fs";
 import path from "node:path";

@@ -9,8 +9,8 @@ import { panel } from "./panels.js";
 /** @typedef {import("./types.d.ts").LinkedFile} LinkedFile */
 
 /**
- * A link whose files are waited for, the same with all of them marked as local, those that are to be asked for still, and the
- * sets that arrived meanwhile.
+ * A link whose files are waited for, the same with all of them marked as local, those to ask for still, and the sets that
+ * arrived meanwhile.
  * @typedef {{ link: string, marked: string, wanted: LinkedFile[], missing: LinkedFile[], sets: Item[][] }} Awaited
  */
 

@@ -74,8 +74,17 @@ export async function follow(link, { items = [], motionItems = [], link: heldLin
  */
 const areSame = (items, others) => items.length === others.length && items.every((item, index) => item === others[index]);
 
-/** Whether nothing stands where a link's model should be. */
-const isStageEmpty = () => session.app !== null && JSON.parse(session.app.summary()).isEmpty;
+/**
+ * Whether the stage is empty, or has a motion's skeleton, where the link's model should be.
+ * @param {string[]} models
+ * @param {boolean} isUnchanged
+ */
+function lacksModel(models, isUnchanged) {
+  if (session.app === null) return false;
+  const isEmpty = JSON.parse(session.app.summary()).isEmpty;
+  const isShown = (/** @type {string} */ source) => models.some((name) => source.startsWith(name));
+  return isEmpty || !(isUnchanged || JSON.parse(session.app.state()).model.some(isShown));
+}
 
 /**
  * Says what of a link could not be loaded, and offers to try again.
@@ -91,7 +100,7 @@ export function showMissing(problems, link, isUnchanged = false) {
   const failed = problems.map((problem) => fileName(problem.split(": ")[0]));
   const models = linkedFiles(link).flatMap(({ role, name }) => (role === "model" && failed.includes(fileName(name)) ? [name] : []));
   const isModel = models.length > 0;
-  if (isModel && isStageEmpty()) awaitCopies(link, models);
+  if (isModel && lacksModel(models, isUnchanged)) awaitCopies(link, models);
   byId("missing-title").textContent = `${isModel ? "The model in" : "Part of"} this link couldn't be loaded`;
   byId("missing-rest").textContent = isUnchanged
     ? "The current view stays as it was."

@@ -46,8 +46,9 @@ export function endFollowing() {
 /** Writes the current view to the address bar. */
 export function recordView() {
   const files = shownFiles(session.link);
-  // While files are missing, the address stays as it was until something else is shown.
-  if (followingCount > 0 || session.link === entry.typed || (awaited() !== null && files === entry.files)) return;
+  // While files are asked for, the address stays as it was until something else is shown.
+  const isAsking = (awaited()?.missing.length ?? 0) > 0;
+  if (followingCount > 0 || session.link === entry.typed || (isAsking && files === entry.files)) return;
   entry.typed = null;
   const address = `#${shareableLink(session.link)}`;
   if (files === entry.files) {
