@@ -4,6 +4,7 @@
 //! `textureLoad`. A picture takes a shadow pass and a single scene pass, whose fragment stages write display-ready
 //! colours.
 
+mod behind;
 mod blit;
 mod draw_list;
 mod environment;
@@ -12,6 +13,7 @@ mod full_screen;
 pub mod geometry;
 mod headless;
 mod light;
+mod lobes;
 mod model;
 mod overlay;
 pub mod palette;
