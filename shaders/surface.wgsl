@@ -1,4 +1,5 @@
-// Fragment stages of meshes: metallic-roughness, unlit, heat map, wireframe, shadow. Overrides remove unused features.
+// Fragment stages of meshes: metallic-roughness with lobes, unlit, heat map, wireframe, shadow. Overrides remove unused
+// features; `#if` and `#maps` are explained in src/render/shaders.rs.
 
 override BASE_COLOR_MAP: bool = false;
 override METALLIC_ROUGHNESS_MAP: bool = false;
@@ -225,10 +226,11 @@ fn lit(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) vec4f 
 #if TRANSMISSION
     let transmission = clamp(material.transmission * transmission_texel(in.uv).r, 0.0, 1.0);
     surface.transmission_roughness = transmission_roughness(surface.roughness);
-    let seen = light_behind(in, surface, thickness);
-    diffuse = mix(diffuse, clearness * base.rgb * seen.rgb, transmission);
     surface.diffuse *= 1.0 - transmission;
     surface.transmitted = (1.0 - metallic) * transmission * clearness * base.rgb;
+    let shown = shown_behind(in, surface, thickness);
+    let seen = scene_from_display(shown.rgb);
+    diffuse = mix(diffuse, clearness * base.rgb * seen / frame.exposure, transmission);
 #if DIFFUSE_TRANSMISSION
     surface.diffuse_transmitted *= 1.0 - transmission;
 #endif
@@ -286,12 +288,15 @@ fn lit(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) vec4f 
     } else {
         color += shadow * frame.key_color * reflect_light(surface, frame.key_direction);
     }
-    let finished = finish(tone_map(frame.exposure * (color + emitted)), base.a);
+    var display = tone_map(frame.exposure * (color + emitted));
 #if TRANSMISSION
+    // Colours that tone mapping cannot make, such as unlit ones, keep what they differ by.
+    display += surface.transmitted * (shown.rgb - tone_map(seen));
     // Nothing behind stays nothing. What is reflected is added to it.
-    return vec4f(finished.rgb, finished.a * mix(1.0, seen.a, transmission * (1.0 - metallic)));
+    let finished = finish(display, base.a);
+    return vec4f(finished.rgb, finished.a * mix(1.0, shown.a, transmission * (1.0 - metallic)));
 #else
-    return finished;
+    return finish(display, base.a);
 #endif
 }
 

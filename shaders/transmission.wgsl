@@ -3,13 +3,13 @@
 
 #if TRANSMISSION
 
-// Inverts tone mapping, whatever it is: what the opaque picture shows becomes light again.
+// Inverts tone mapping, whatever it is: what the opaque picture shows becomes light again, times exposure.
 fn scene_from_display(display: vec3f) -> vec3f {
     var scene = display;
     for (var step = 0u; step < 8u; step++) {
-        scene *= sqrt(display / max(tone_map(scene), vec3f(1e-4)));
+        scene = min(scene * sqrt(display / max(tone_map(scene), vec3f(1e-4))), vec3f(16.0));
     }
-    return min(scene, vec3f(32.0)) / frame.exposure;
+    return scene;
 }
 
 // Where a refracted ray leaves the volume. Everything behind is taken to be there.
@@ -36,8 +36,8 @@ fn refracted(surface: Surface, ior: f32) -> vec3f {
     return refract(-surface.to_eye, surface.normal, 1.0 / max(ior, 1.0));
 }
 
-// Radiance and coverage of what is behind. `thickness` in metres.
-fn light_behind(in: VertexOut, surface: Surface, thickness: f32) -> vec4f {
+// What is shown behind, linear, and its coverage. `thickness` in metres.
+fn shown_behind(in: VertexOut, surface: Surface, thickness: f32) -> vec4f {
     let roughness = surface.transmission_roughness;
 #if VOLUME
     let ray = thickness * refracted(surface, material.ior);
@@ -50,6 +50,6 @@ fn light_behind(in: VertexOut, surface: Surface, thickness: f32) -> vec4f {
 #else
     let found = behind(in.position.xy, roughness);
 #endif
-    return vec4f(scene_from_display(found.rgb), found.a);
+    return found;
 }
 #endif

@@ -21,7 +21,7 @@ pub(super) fn of(material: &Material) -> u32 {
         (Variant::CLEARCOAT, lobes.clearcoat > 0.0),
         (Variant::SHEEN, lobes.sheen_color.max_element() > 0.0),
         (Variant::IRIDESCENCE, lobes.iridescence > 0.0),
-        (Variant::ANISOTROPY, lobes.anisotropy != 0.0),
+        (Variant::ANISOTROPY, lobes.anisotropy > 0.0),
         (Variant::TRANSMISSION, lobes.transmission > 0.0),
         (Variant::VOLUME, lobes.thickness > 0.0),
         (Variant::DISPERSION, lobes.dispersion > 0.0),

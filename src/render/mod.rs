@@ -1,8 +1,8 @@
 //! Draws a [`Frame`](crate::frame::Frame) into a texture with wgpu. Independent of the state and the user interface.
 //!
 //! All back ends share one path within WebGL2's limits: palettes and morph targets are textures read with
-//! `textureLoad`. A picture takes a shadow pass and a single scene pass, whose fragment stages write display-ready
-//! colours.
+//! `textureLoad`. A picture takes a shadow pass and a single scene pass (two if there is glass), whose fragment stages write
+//! display-ready colours.
 
 mod behind;
 mod blit;

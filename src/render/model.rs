@@ -16,7 +16,7 @@ use super::uniforms::{MaterialUniform, UvTransformUniform};
 use crate::anim::TextureSlot;
 use crate::asset::Asset;
 use crate::library::{Model, ModelId};
-use crate::mesh::{AlphaMode, Geometry, Lobes, Material, Sampler, TextureRef, Topology, smooth_normals};
+use crate::mesh::{AlphaMode, Geometry, Lobes, Material, Sampler, TextureRef, Topology, UvTransform, smooth_normals};
 
 /// The maps of a material, by slot.
 type Maps = [Option<(wgpu::TextureView, wgpu::Sampler)>; TextureSlot::ALL.len()];
@@ -188,6 +188,9 @@ impl Materials<'_> {
             reference.is_some_and(|reference| !geometry.uvs[reference.uv_set & 1].is_empty())
         };
         let lobes = if unlit { 0 } else { lobes::of(material) | key.map_or(0, |index| lobes::animated(&asset, index)) };
+        // Without texture coordinates there is no direction to stretch highlights in.
+        let has_tangents = geometry.uvs.iter().any(|uvs| !uvs.is_empty()) || !geometry.tangents.is_empty();
+        let lobes = if has_tangents { lobes } else { lobes & !SurfaceVariant::ANISOTROPY };
         let surface = lobes::variant(lobes, has_map);
         GpuPrimitive {
             bind_group: primitive_bind_group(self.device, surface, gpu_material, &gpu, plain, self.uploader),
@@ -228,7 +231,8 @@ impl Materials<'_> {
 }
 
 fn material_uniform(material: &Material) -> MaterialUniform {
-    let uvs = |slot| material.texture(slot).map_or_else(UvTransformUniform::default, uv_transform);
+    let plain = TextureRef { texture: 0, uv_set: 0, uv_transform: UvTransform::IDENTITY };
+    let uvs = |slot| uv_transform(material.texture(slot).unwrap_or(plain));
     let mut uniform = MaterialUniform {
         base_color: material.base_color.to_array(),
         // KHR_materials_unlit has no emission; points and lines without normals are unlit too, but keep theirs.

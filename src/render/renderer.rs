@@ -2,7 +2,7 @@
 
 use std::ops::AddAssign;
 
-use super::behind::Behind;
+use super::behind::BehindMaker;
 use super::draw_list::{DrawList, Item};
 use super::environment::Source;
 use super::flush;
@@ -88,6 +88,8 @@ pub struct Renderer {
     frame_group: wgpu::BindGroup,
     shadow_group: wgpu::BindGroup,
     light: LightSources,
+    /// Created for the first picture with transmissive surfaces.
+    behind_maker: Option<BehindMaker>,
     stats: RenderStats,
 }
 
@@ -134,6 +136,7 @@ impl Renderer {
             frame_buffer,
             shadow_buffer,
             layouts,
+            behind_maker: None,
             stats: RenderStats::default(),
         }
     }
@@ -187,8 +190,9 @@ impl Renderer {
         self.draws.collect(device, frame, &mut self.models, &mut self.pipelines, &mut self.palette, shadow);
         self.draws.upload(device, queue, &self.layouts);
         if self.draws.shows_behind() {
-            let (behind, output) = (&mut self.targets.behind, &self.targets.output_view);
-            let behind = behind.get_or_insert_with(|| Behind::new(device, output, size));
+            let maker = self.behind_maker.get_or_insert_with(|| BehindMaker::new(device));
+            let output = &self.targets.output_view;
+            let behind = self.targets.behind.get_or_insert_with(|| maker.behind(device, output, size));
             self.light.show_behind(device, &self.layouts, &behind.view);
         }
         if self.palette.upload(device, queue) {
@@ -255,7 +259,8 @@ impl Renderer {
             _ => wgpu::Color::TRANSPARENT,
         };
         let clear = (wgpu::LoadOp::Clear(clear), wgpu::LoadOp::Clear(1.0));
-        let behind = self.targets.behind.as_ref().filter(|_| self.draws.shows_behind());
+        let behind = self.behind_maker.as_ref().zip(self.targets.behind.as_ref());
+        let behind = behind.filter(|_| self.draws.shows_behind());
         let mut stats = RenderStats::default();
         let mut pass = self.scene_pass(encoder, clear, behind.is_some());
         for pane in 0..panes.count() {
@@ -266,8 +271,8 @@ impl Renderer {
             }
         }
         drop(pass);
-        if let Some(behind) = behind {
-            behind.record(encoder);
+        if let Some((maker, behind)) = behind {
+            maker.record(behind, encoder);
             let mut pass = self.scene_pass(encoder, (wgpu::LoadOp::Load, wgpu::LoadOp::Load), false);
             for pane in 0..panes.count() {
                 panes.choose(&mut pass, pane);

@@ -131,6 +131,14 @@ impl Material {
         }
     }
 
+    /// Returns the texture coordinates that tangents follow; `None` if nothing needs tangents.
+    pub fn tangent_uv_set(&self) -> Option<usize> {
+        let slots = [TextureSlot::Normal, TextureSlot::ClearcoatNormal, TextureSlot::Anisotropy];
+        let texture = slots.into_iter().find_map(|slot| self.texture(slot));
+        let is_stretched = || self.lobes.as_ref().is_some_and(|lobes| lobes.anisotropy > 0.0);
+        texture.map(|texture| texture.uv_set).or_else(|| is_stretched().then_some(0))
+    }
+
     /// The place of a texture; `None` if it is one of lobes and there are none.
     pub fn texture_mut(&mut self, slot: TextureSlot) -> Option<&mut Option<TextureRef>> {
         Some(match slot {
