@@ -178,20 +178,20 @@ fn of_too_many_textures_the_least_visible_are_dropped() {
         "extensions": {
             "KHR_materials_clearcoat": {
                 "clearcoatTexture": texture(5), "clearcoatRoughnessTexture": texture(6), "clearcoatNormalTexture": texture(7) },
-            "KHR_materials_sheen": { "sheenColorTexture": texture(8) },
         },
     });
     assert_eq!(warnings(&read(material.clone())), [""; 0]);
-    material["extensions"]["KHR_materials_sheen"]["sheenRoughnessTexture"] = texture(9);
+    material["extensions"]["KHR_materials_sheen"] =
+        json!({ "sheenColorTexture": texture(8), "sheenRoughnessTexture": texture(9) });
     material["extensions"]["KHR_materials_transmission"] = json!({ "transmissionTexture": texture(10) });
     let asset = read(material);
     let warnings = warnings(&asset);
     let [warning] = &warnings[..] else { panic!("{warnings:?}") };
     assert!(warning.contains("11 textures") && warning.contains("sheenRoughnessTexture"), "{warning}");
-    let dropped = [TextureSlot::SheenRoughness, TextureSlot::ClearcoatRoughness];
+    let dropped = [TextureSlot::SheenRoughness, TextureSlot::ClearcoatRoughness, TextureSlot::ClearcoatNormal];
     for slot in dropped {
         assert_eq!(asset.materials[0].texture(slot), None);
     }
     let count = TextureSlot::ALL.into_iter().filter(|&slot| asset.materials[0].texture(slot).is_some()).count();
-    assert_eq!(count, 9);
+    assert_eq!(count, 8);
 }

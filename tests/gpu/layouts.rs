@@ -32,7 +32,7 @@ macro_rules! check {
 }
 
 #[test]
-fn uniforms_have_the_same_layout_in_wgsl_and_rust() {
+fn frames_and_draws_have_the_same_layout_in_wgsl_and_rust() {
     check!("Light", LightUniform, position, range, color, kind, direction, spot_scale, spot_offset);
     check!(
         "Frame",
@@ -75,6 +75,10 @@ fn uniforms_have_the_same_layout_in_wgsl_and_rust() {
         heat_joint,
         color
     );
+}
+
+#[test]
+fn materials_have_the_same_layout_in_wgsl_and_rust() {
     check!("UvTransform", UvTransformUniform, matrix, offset, uv_set);
     check!(
         "Material",

@@ -91,7 +91,7 @@ fn every_pair_of_lobes_is_valid_and_translates_to_webgl2() {
             checked.extend([pair, pair | maps | 1 << 2]);
         }
     }
-    checked.insert(Variant::LOBES | 0b1_1111 | maps_of(Variant::CLEARCOAT) | maps_of(Variant::ANISOTROPY));
+    checked.insert(Variant::LOBES | 0b1_1111 | maps_of(Variant::CLEARCOAT));
     for variant in checked {
         for overrides in 0..2 {
             check(&Shader::mesh(Variant(variant)), overrides);

@@ -66,10 +66,10 @@ pub const TEXTURES: [(&str, TextureSlot); 14] = [
     ("KHR_materials_diffuse_transmission/diffuseTransmissionTexture", TextureSlot::DiffuseTransmission),
     ("KHR_materials_diffuse_transmission/diffuseTransmissionColorTexture", TextureSlot::DiffuseTransmissionColor),
 ];
-/// Textures that a material can have. WebGL2 has 16; light, skinning and what is behind glass take seven.
-pub const MAX_TEXTURES: usize = 9;
+/// Textures that a material can have. WebGL2 has 16; light, skinning and what is behind glass take eight.
+const MAX_TEXTURES: usize = 8;
 /// The first of these are missed the least.
-const DISPENSABLE: [TextureSlot; 10] = [
+const DISPENSABLE: [TextureSlot; 11] = [
     TextureSlot::IridescenceThickness,
     TextureSlot::SheenRoughness,
     TextureSlot::Specular,
@@ -80,6 +80,7 @@ const DISPENSABLE: [TextureSlot; 10] = [
     TextureSlot::DiffuseTransmissionColor,
     TextureSlot::Anisotropy,
     TextureSlot::SheenColor,
+    TextureSlot::Clearcoat,
 ];
 
 /// Reads the lobes of a material whose other members have been read.
