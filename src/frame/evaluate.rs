@@ -173,18 +173,21 @@ impl Scene {
 
 /// Fills `out` with the animated materials and their numbers, in ascending order.
 fn write_materials(asset: &Asset, properties: &PropertyValues, out: &mut Vec<(usize, Material)>) {
-    out.clear();
+    let mut count = 0;
     for (target, value) in properties.iter() {
         let PropertyTarget::Material(index, property) = target else { continue };
-        if out.last().is_none_or(|&(last, _)| last != index) {
-            out.extend(asset.materials.get(index).map(|material| (index, material.nameless())));
+        if count == 0 || out[count - 1].0 != index {
+            let Some(material) = asset.materials.get(index) else { continue };
+            if out.len() == count {
+                out.push((index, Material::default()));
+            }
+            out[count].0 = index;
+            out[count].1.copy_values(material);
+            count += 1;
         }
-        if let Some((last, material)) = out.last_mut()
-            && *last == index
-        {
-            material.set(property, value);
-        }
+        out[count - 1].1.set(property, value);
     }
+    out.truncate(count);
 }
 
 /// If `chosen` is set, surfaces show that joint's influence.

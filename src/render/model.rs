@@ -7,23 +7,19 @@ use wgpu::util::DeviceExt;
 
 use super::UploadError;
 use super::geometry::{GpuGeometry, edges};
-use super::pipelines::{Features, Layouts, MATERIAL_MAPS, Shading};
+use super::lobes::{self, write_uniform};
+use super::pipelines::{Features, Shading, primitive_layout};
+use super::shaders::SurfaceVariant;
 use super::texture::{MipMaker, sampler, single_texel};
 use super::uniform_buffer::UniformBuffer;
 use super::uniforms::{MaterialUniform, UvTransformUniform};
 use crate::anim::TextureSlot;
 use crate::asset::Asset;
 use crate::library::{Model, ModelId};
-use crate::mesh::{AlphaMode, Geometry, Material, Sampler, TextureRef, Topology, smooth_normals};
+use crate::mesh::{AlphaMode, Geometry, Lobes, Material, Sampler, TextureRef, Topology, UvTransform, smooth_normals};
 
-/// The maps of a material in the order of their bindings.
-const TEXTURE_SLOTS: [TextureSlot; MATERIAL_MAPS] = [
-    TextureSlot::BaseColor,
-    TextureSlot::MetallicRoughness,
-    TextureSlot::Normal,
-    TextureSlot::Occlusion,
-    TextureSlot::Emissive,
-];
+/// The maps of a material, by slot.
+type Maps = [Option<(wgpu::TextureView, wgpu::Sampler)>; TextureSlot::ALL.len()];
 
 pub(super) struct GpuModel {
     pub id: ModelId,
@@ -41,6 +37,7 @@ pub(super) struct GpuPrimitive {
     pub bind_group: wgpu::BindGroup,
     pub shading: Shading,
     pub features: Features,
+    pub surface: SurfaceVariant,
     pub double_sided: bool,
     /// Index in the asset; `None` is the default material.
     material: Option<usize>,
@@ -71,7 +68,6 @@ impl ModelUploader {
         &mut self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
-        layouts: &Layouts,
         model: &Model,
     ) -> Result<GpuModel, UploadError> {
         let asset = &model.asset;
@@ -94,7 +90,7 @@ impl ModelUploader {
                     false => None,
                     true => {
                         let gpu = GpuGeometry::new(device, queue, geometry, smooth, mesh_index, primitive_index)?;
-                        Some(materials.primitive(layouts, geometry, gpu))
+                        Some(materials.primitive(geometry, gpu))
                     }
                 });
             }
@@ -124,11 +120,15 @@ impl GpuModel {
         }
     }
 
-    /// Blended surfaces cast a shadow only if they are more than half opaque.
+    /// Blended and transmissive surfaces cast a shadow only if they are more than half opaque.
     pub fn casts_shadow(&self, primitive: &GpuPrimitive) -> bool {
         let material = primitive.material.and_then(|index| self.materials.get(&index));
-        let is_faint = || material.is_some_and(|uniform| uniform.written().base_color[3] <= 0.5);
-        primitive.geometry.topology == Topology::Triangles && !(primitive.features.has(Features::BLEND) && is_faint())
+        let is_faint = |uniform: &MaterialUniform| {
+            (primitive.features.has(Features::BLEND) && uniform.base_color[3] <= 0.5)
+                || (primitive.surface.has(SurfaceVariant::TRANSMISSION) && uniform.transmission >= 0.5)
+        };
+        primitive.geometry.topology == Topology::Triangles
+            && !material.is_some_and(|uniform| is_faint(uniform.written()))
     }
 
     /// Builds the edge lists of a mesh on first use.
@@ -150,7 +150,7 @@ impl GpuModel {
 /// A material's uniform buffer and maps, shared by the primitives that use it.
 struct GpuMaterial {
     uniform: UniformBuffer<MaterialUniform>,
-    maps: [Option<(wgpu::TextureView, wgpu::Sampler)>; MATERIAL_MAPS],
+    maps: Maps,
 }
 
 /// Materials of a model during upload. An image is uploaded once as sRGB and once as linear, as its uses require.
@@ -165,7 +165,7 @@ struct Materials<'a> {
 }
 
 impl Materials<'_> {
-    fn primitive(&mut self, layouts: &Layouts, geometry: &Geometry, gpu: GpuGeometry) -> GpuPrimitive {
+    fn primitive(&mut self, geometry: &Geometry, gpu: GpuGeometry) -> GpuPrimitive {
         let default = Material::default();
         let asset = self.model.asset.clone();
         let found = geometry.material.and_then(|index| asset.materials.get(index));
@@ -180,13 +180,23 @@ impl Materials<'_> {
             .entry(Sampler::default())
             .or_insert_with(|| sampler(self.device, &Sampler::default(), self.uploader.anisotropy));
         let gpu_material = &self.created[&key];
-        let bind_group = primitive_bind_group(self.device, layouts, gpu_material, &gpu, plain, self.uploader);
         // Points and lines without normals have no side to light (glTF 2.0 §3.7.2.1).
         let unlit = material.unlit || (geometry.topology != Topology::Triangles && geometry.normals.is_empty());
+        // A map without texture coordinates is ignored; otherwise its first texel would colour everything.
+        let has_map = |slot: TextureSlot| {
+            let reference = material.texture(slot).filter(|_| gpu_material.maps[slot as usize].is_some());
+            reference.is_some_and(|reference| !geometry.uvs[reference.uv_set & 1].is_empty())
+        };
+        let lobes = if unlit { 0 } else { lobes::of(material) | key.map_or(0, |index| lobes::animated(&asset, index)) };
+        // Without texture coordinates there is no direction to stretch highlights in.
+        let has_tangents = geometry.uvs.iter().any(|uvs| !uvs.is_empty()) || !geometry.tangents.is_empty();
+        let lobes = if has_tangents { lobes } else { lobes & !SurfaceVariant::ANISOTROPY };
+        let surface = lobes::variant(lobes, has_map);
         GpuPrimitive {
-            bind_group,
+            bind_group: primitive_bind_group(self.device, surface, gpu_material, &gpu, plain, self.uploader),
             shading: if unlit { Shading::Unlit } else { Shading::Lit },
-            features: features(material, &gpu_material.maps, geometry),
+            features: features(material, has_map, geometry),
+            surface,
             double_sided: material.double_sided,
             material: key,
             edges: None,
@@ -195,10 +205,9 @@ impl Materials<'_> {
     }
 
     fn create(&mut self, material: &Material) -> GpuMaterial {
-        let is_srgb = |slot| matches!(slot, TextureSlot::BaseColor | TextureSlot::Emissive);
         let mut uniform = UniformBuffer::new(self.device, "material");
         uniform.write(self.queue, material_uniform(material));
-        GpuMaterial { uniform, maps: TEXTURE_SLOTS.map(|slot| self.map(material.texture(slot)?, is_srgb(slot))) }
+        GpuMaterial { uniform, maps: TextureSlot::ALL.map(|slot| self.map(material.texture(slot)?, slot.is_color())) }
     }
 
     fn map(&mut self, reference: TextureRef, srgb: bool) -> Option<(wgpu::TextureView, wgpu::Sampler)> {
@@ -222,8 +231,9 @@ impl Materials<'_> {
 }
 
 fn material_uniform(material: &Material) -> MaterialUniform {
-    let uvs = |slot| material.texture(slot).map_or_else(UvTransformUniform::default, uv_transform);
-    MaterialUniform {
+    let plain = TextureRef { texture: 0, uv_set: 0, uv_transform: UvTransform::IDENTITY };
+    let uvs = |slot| uv_transform(material.texture(slot).unwrap_or(plain));
+    let mut uniform = MaterialUniform {
         base_color: material.base_color.to_array(),
         // KHR_materials_unlit has no emission; points and lines without normals are unlit too, but keep theirs.
         emissive: if material.unlit { [0.0; 3] } else { (material.emissive * material.emissive_strength).to_array() },
@@ -236,26 +246,21 @@ fn material_uniform(material: &Material) -> MaterialUniform {
         roughness: material.roughness,
         normal_scale: material.normal_scale,
         occlusion_strength: material.occlusion_strength,
-        uvs: TEXTURE_SLOTS.map(uvs),
-    }
+        uvs: TextureSlot::ALL.map(uvs),
+        ..Default::default()
+    };
+    write_uniform(material.lobes.as_deref().unwrap_or(&Lobes::default()), &mut uniform);
+    uniform
 }
 
 /// The parts of the surface shader that a primitive needs.
-fn features(
-    material: &Material,
-    maps: &[Option<(wgpu::TextureView, wgpu::Sampler)>; MATERIAL_MAPS],
-    geometry: &Geometry,
-) -> Features {
-    // A map without texture coordinates is ignored; otherwise its first texel would colour everything.
-    let has = |slot: usize, reference: Option<TextureRef>| {
-        maps[slot].is_some() && reference.is_some_and(|reference| !geometry.uvs[reference.uv_set & 1].is_empty())
-    };
+fn features(material: &Material, has_map: impl Fn(TextureSlot) -> bool, geometry: &Geometry) -> Features {
     Features::default()
-        .with(Features::BASE_COLOR_MAP, has(0, material.base_color_texture))
-        .with(Features::METALLIC_ROUGHNESS_MAP, has(1, material.metallic_roughness_texture))
-        .with(Features::NORMAL_MAP, has(2, material.normal_texture))
-        .with(Features::OCCLUSION_MAP, has(3, material.occlusion_texture))
-        .with(Features::EMISSIVE_MAP, !material.unlit && has(4, material.emissive_texture))
+        .with(Features::BASE_COLOR_MAP, has_map(TextureSlot::BaseColor))
+        .with(Features::METALLIC_ROUGHNESS_MAP, has_map(TextureSlot::MetallicRoughness))
+        .with(Features::NORMAL_MAP, has_map(TextureSlot::Normal))
+        .with(Features::OCCLUSION_MAP, has_map(TextureSlot::Occlusion))
+        .with(Features::EMISSIVE_MAP, !material.unlit && has_map(TextureSlot::Emissive))
         .with(Features::VERTEX_COLORS, !geometry.colors.is_empty())
         .with(Features::FLAT, geometry.normals.is_empty())
         .with(Features::TANGENTS, !geometry.tangents.is_empty())
@@ -266,16 +271,17 @@ fn features(
 /// `plain` is the sampler of the maps that the material does not have.
 fn primitive_bind_group(
     device: &wgpu::Device,
-    layouts: &Layouts,
+    surface: SurfaceVariant,
     material: &GpuMaterial,
     geometry: &GpuGeometry,
     plain: &wgpu::Sampler,
     placeholders: &ModelUploader,
 ) -> wgpu::BindGroup {
     let mut entries = vec![wgpu::BindGroupEntry { binding: 0, resource: material.uniform.binding() }];
-    for (slot, map) in material.maps.iter().enumerate() {
-        let (view, sampler) = map.as_ref().map_or((&placeholders.white, plain), |(view, sampler)| (view, sampler));
-        let binding = 1 + 2 * slot as u32;
+    for map in surface.maps() {
+        let (view, sampler) =
+            material.maps[map].as_ref().map_or((&placeholders.white, plain), |(view, sampler)| (view, sampler));
+        let binding = SurfaceVariant::binding(map);
         entries.push(wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) });
         entries.push(wgpu::BindGroupEntry { binding: binding + 1, resource: wgpu::BindingResource::Sampler(sampler) });
     }
@@ -286,7 +292,7 @@ fn primitive_bind_group(
     }));
     device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("primitive"),
-        layout: &layouts.primitive,
+        layout: &primitive_layout(device, surface),
         entries: &entries,
     })
 }

@@ -1,5 +1,7 @@
 //! Render targets of a picture.
 
+use super::behind::Behind;
+
 pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth24Plus;
 pub(super) const SCENE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
@@ -9,6 +11,8 @@ pub(super) struct Targets {
     pub depth: wgpu::TextureView,
     pub output: wgpu::Texture,
     pub output_view: wgpu::TextureView,
+    /// Created for the first picture with transmissive surfaces.
+    pub behind: Option<Behind>,
 }
 
 impl Targets {
@@ -34,6 +38,7 @@ impl Targets {
             depth: view(texture("depth", DEPTH_FORMAT, samples, attachment)),
             output_view: output.create_view(&Default::default()),
             output,
+            behind: None,
         }
     }
 

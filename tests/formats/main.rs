@@ -11,6 +11,7 @@ mod influences;
 mod invalid;
 mod lenient;
 mod limits;
+mod lobes;
 mod meshopt;
 mod mutation;
 mod obj;

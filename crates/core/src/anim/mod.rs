@@ -37,7 +37,8 @@ pub use playback::{LoopMode, TimeRange, clip_time};
 pub use polar::nearest_rotation;
 pub use pose::{Pose, model_from_joint};
 pub use property::{
-    CameraProperty, LightProperty, MaterialProperty, PropertyChannel, PropertyTarget, PropertyValues, TextureSlot,
+    CameraProperty, LightProperty, LobeFactor, MaterialProperty, PropertyChannel, PropertyTarget, PropertyValues,
+    TextureSlot,
 };
 pub use skeleton::{Joint, JointIndex, Skeleton, SkeletonError};
 pub use transform::Transform;

@@ -46,6 +46,45 @@ pub enum MaterialProperty {
     UvRotation(TextureSlot),
     /// U and V.
     UvScale(TextureSlot),
+    /// Only of materials with lobes.
+    Lobe(LobeFactor),
+}
+
+/// An animated factor of a material's lobes, which `mesh::Lobes` describes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[expect(missing_docs, reason = "named like the fields of `mesh::Lobes`")]
+pub enum LobeFactor {
+    Ior,
+    Specular,
+    SpecularColor,
+    Clearcoat,
+    ClearcoatRoughness,
+    ClearcoatNormalScale,
+    SheenColor,
+    SheenRoughness,
+    Iridescence,
+    IridescenceIor,
+    IridescenceThicknessMin,
+    IridescenceThicknessMax,
+    Anisotropy,
+    AnisotropyRotation,
+    Transmission,
+    Thickness,
+    AttenuationDistance,
+    AttenuationColor,
+    Dispersion,
+    DiffuseTransmission,
+    DiffuseTransmissionColor,
+}
+
+impl LobeFactor {
+    /// Number of components: 3 for colours, otherwise 1.
+    pub fn width(self) -> usize {
+        match self {
+            Self::SpecularColor | Self::SheenColor | Self::AttenuationColor | Self::DiffuseTransmissionColor => 3,
+            _ => 1,
+        }
+    }
 }
 
 /// A texture of a material.
@@ -61,6 +100,67 @@ pub enum TextureSlot {
     Occlusion,
     /// Multiplied with the emissive colour.
     Emissive,
+    /// Weight of the dielectric reflection, in alpha.
+    Specular,
+    /// Colour of the dielectric reflection.
+    SpecularColor,
+    /// Weight of the clearcoat, in red.
+    Clearcoat,
+    /// Roughness of the clearcoat, in green.
+    ClearcoatRoughness,
+    /// Tangent-space normals of the clearcoat.
+    ClearcoatNormal,
+    /// Multiplied with the sheen colour.
+    SheenColor,
+    /// Roughness of the sheen, in alpha.
+    SheenRoughness,
+    /// Weight of the iridescence, in red.
+    Iridescence,
+    /// Thickness of the thin film between minimum and maximum, in green.
+    IridescenceThickness,
+    /// Direction in red and green, strength in blue.
+    Anisotropy,
+    /// Transmitted fraction, in red.
+    Transmission,
+    /// Thickness of the volume, in green.
+    Thickness,
+    /// Diffusely transmitted fraction, in alpha.
+    DiffuseTransmission,
+    /// Colour of the diffuse transmission.
+    DiffuseTransmissionColor,
+}
+
+impl TextureSlot {
+    /// All slots in the order of their numbers: first those of core glTF, then from [`Self::Specular`] on those of lobes.
+    pub const ALL: [Self; 19] = [
+        Self::BaseColor,
+        Self::MetallicRoughness,
+        Self::Normal,
+        Self::Occlusion,
+        Self::Emissive,
+        Self::Specular,
+        Self::SpecularColor,
+        Self::Clearcoat,
+        Self::ClearcoatRoughness,
+        Self::ClearcoatNormal,
+        Self::SheenColor,
+        Self::SheenRoughness,
+        Self::Iridescence,
+        Self::IridescenceThickness,
+        Self::Anisotropy,
+        Self::Transmission,
+        Self::Thickness,
+        Self::DiffuseTransmission,
+        Self::DiffuseTransmissionColor,
+    ];
+
+    /// Whether the texture holds colours, which are sRGB; otherwise it holds linear data.
+    pub fn is_color(self) -> bool {
+        matches!(
+            self,
+            Self::BaseColor | Self::Emissive | Self::SpecularColor | Self::SheenColor | Self::DiffuseTransmissionColor
+        )
+    }
 }
 
 /// An animated property of a light.
@@ -94,8 +194,9 @@ pub enum CameraProperty {
 impl PropertyTarget {
     /// Number of components of a value, at most four.
     pub fn width(self) -> usize {
-        use MaterialProperty::{BaseColor, Emissive, UvOffset, UvScale};
+        use MaterialProperty::{BaseColor, Emissive, Lobe, UvOffset, UvScale};
         match self {
+            Self::Material(_, Lobe(factor)) => factor.width(),
             Self::Material(_, BaseColor) => 4,
             Self::Material(_, Emissive) | Self::Light(_, LightProperty::Color) => 3,
             Self::Material(_, UvOffset(_) | UvScale(_)) => 2,

@@ -11,7 +11,9 @@ use std::sync::Arc;
 
 use glam::{Vec3, Vec4Swizzles};
 
-use crate::anim::{CameraProperty, Clip, JointIndex, LightProperty, PropertyTarget, PropertyValues, Skeleton};
+use crate::anim::{
+    CameraProperty, Clip, JointIndex, LightProperty, PropertyTarget, PropertyValues, Skeleton, TextureSlot,
+};
 use crate::mesh::{Material, Mesh, Skin, Texture};
 
 pub use error::AssetError;
@@ -319,14 +321,7 @@ impl AssetParts {
 
     fn check_surfaces(&self) -> Result<(), AssetError> {
         for material in &self.materials {
-            let textures = [
-                material.base_color_texture,
-                material.metallic_roughness_texture,
-                material.normal_texture,
-                material.occlusion_texture,
-                material.emissive_texture,
-            ];
-            for texture in textures.into_iter().flatten() {
+            for texture in TextureSlot::ALL.into_iter().filter_map(|slot| material.texture(slot)) {
                 check("materials", texture.texture, self.textures.len())?;
             }
         }

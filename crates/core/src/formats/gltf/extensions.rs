@@ -2,6 +2,7 @@
 
 use gltf::json::Root;
 
+use super::lobes;
 use super::nodes::VISIBILITY;
 use super::pointer::POINTER;
 use crate::asset::{Warning, Warnings};
@@ -13,6 +14,7 @@ const SUPPORTED: &[&str] = &[
     "KHR_materials_unlit",
     "KHR_materials_emissive_strength",
     "KHR_lights_punctual",
+    lobes::SPECULAR_GLOSSINESS,
     POINTER,
     VISIBILITY,
     "EXT_texture_avif",
@@ -30,7 +32,8 @@ const SUPPORTED: &[&str] = &[
 
 /// Rejects required extensions that are not supported, and warns about each optional one.
 pub fn check(file: &str, root: &Root, warnings: &mut Warnings) -> Result<(), LoadError> {
-    let unsupported = |name: &&String| !SUPPORTED.contains(&name.as_str());
+    let unsupported =
+        |name: &&String| !SUPPORTED.contains(&name.as_str()) && !lobes::EXTENSIONS.contains(&name.as_str());
     if let Some(name) = root.extensions_required.iter().find(unsupported) {
         return Err(LoadError::RequiredExtension {
             file: file.to_owned(),

@@ -181,12 +181,11 @@ fn read_primitive(
         file_vertices: vertices,
         file_vertex: Vec::new(),
     };
-    let normal_texture = material.and_then(|material| materials[material].normal_texture);
-    if let Some(texture) = normal_texture
+    if let Some(uv_set) = material.and_then(|material| materials[material].tangent_uv_set())
         && topology == Topology::Triangles
         && geometry.tangents.is_empty()
     {
-        let copied_bytes = add_tangents(&mut geometry, texture.uv_set, accessors.budget.left(Limit::DataBytes));
+        let copied_bytes = add_tangents(&mut geometry, uv_set, accessors.budget.left(Limit::DataBytes));
         accessors.budget.allocate(1, copied_bytes, &place)?;
     }
     Ok(geometry)

@@ -14,6 +14,7 @@ mod humanoid;
 mod images;
 mod indices;
 mod influences;
+mod lobes;
 mod loosen;
 mod materials;
 mod meshes;
