@@ -8,9 +8,13 @@ use crate::anim::{LobeFactor, MaterialProperty, PropertyTarget, TextureSlot};
 use crate::asset::Asset;
 use crate::mesh::{Lobes, Material};
 
-/// Returns the lobes that change how a material looks, as bits of a variant.
-pub(super) fn of(material: &Material) -> u32 {
+/// Returns the lobes that a material, whose index in the asset this is, shows or that a clip can show, as bits of a variant.
+pub(super) fn visible(asset: &Asset, index: Option<usize>, material: &Material) -> u32 {
     let Some(lobes) = material.lobes.as_deref() else { return 0 };
+    at_rest(lobes) | index.map_or(0, |index| animated(asset, index))
+}
+
+fn at_rest(lobes: &Lobes) -> u32 {
     let default = Lobes::default();
     let has_specular = (lobes.ior, lobes.specular, lobes.specular_color)
         != (default.ior, default.specular, default.specular_color)
@@ -32,8 +36,7 @@ pub(super) fn of(material: &Material) -> u32 {
     .sum()
 }
 
-/// Returns the lobes that the clips of a file can make visible.
-pub(super) fn animated(asset: &Asset, material: usize) -> u32 {
+fn animated(asset: &Asset, material: usize) -> u32 {
     let targets = asset.clips.iter().flat_map(|clip| clip.properties()).map(|channel| channel.target);
     let lobes = targets.map(|target| match target {
         PropertyTarget::Material(index, MaterialProperty::Lobe(factor)) if index == material => lobe_of(factor),

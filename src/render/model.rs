@@ -187,7 +187,7 @@ impl Materials<'_> {
             let reference = material.texture(slot).filter(|_| gpu_material.maps[slot as usize].is_some());
             reference.is_some_and(|reference| !geometry.uvs[reference.uv_set & 1].is_empty())
         };
-        let lobes = if unlit { 0 } else { lobes::of(material) | key.map_or(0, |index| lobes::animated(&asset, index)) };
+        let lobes = if unlit { 0 } else { lobes::visible(&asset, key, material) };
         // Without texture coordinates there is no direction to stretch highlights in.
         let has_tangents = geometry.uvs.iter().any(|uvs| !uvs.is_empty()) || !geometry.tangents.is_empty();
         let lobes = if has_tangents { lobes } else { lobes & !SurfaceVariant::ANISOTROPY };

@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use crate::anim::TextureSlot;
+
 /// A file of `shaders/` without comments and indentation (build.rs).
 macro_rules! wgsl {
     ($name:literal) => {
@@ -32,7 +34,7 @@ const MIP: &str = wgsl!("mip");
 const BLIT_PICTURE: &str = wgsl!("blit");
 
 /// The maps of a material in the order of their bindings and texture transforms, as the shaders call them.
-const MAPS: [&str; 19] = [
+const MAPS: [&str; TextureSlot::ALL.len()] = [
     "base_color",
     "metallic_roughness",
     "normal",
@@ -54,7 +56,7 @@ const MAPS: [&str; 19] = [
     "diffuse_transmission_color",
 ];
 
-/// Which maps and lobes the mesh shader has, as bits: one for each slot of [`TextureSlot`](crate::anim::TextureSlot), then the
+/// Which maps and lobes the mesh shader has, as bits: one for each slot of [`TextureSlot`], then the
 /// lobes. The shader's text is cut to what is needed, since WebGL2 has few texture units, and most files have no lobes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct SurfaceVariant(pub u32);
@@ -90,11 +92,11 @@ impl SurfaceVariant {
         ("SPECULAR", Self::SPECULAR),
         ("GLOSSINESS", Self::GLOSSINESS),
         ("CLEARCOAT", Self::CLEARCOAT),
-        ("CLEARCOAT_NORMAL_MAP", 1 << 9),
+        ("CLEARCOAT_NORMAL_MAP", 1 << TextureSlot::ClearcoatNormal as u32),
         ("SHEEN", Self::SHEEN),
         ("IRIDESCENCE", Self::IRIDESCENCE),
         ("ANISOTROPY", Self::ANISOTROPY),
-        ("ANISOTROPY_MAP", 1 << 14),
+        ("ANISOTROPY_MAP", 1 << TextureSlot::Anisotropy as u32),
         ("TRANSMISSION", Self::TRANSMISSION),
         ("VOLUME", Self::VOLUME),
         ("DISPERSION", Self::DISPERSION),

@@ -32,20 +32,19 @@ fn white_lobes() -> Vec<Lobes> {
 
 fn check_furnace(gpu: &Gpu) {
     for lobes in white_lobes() {
-        for (roughness, tone_map, white) in [(0.1, ToneMap::Neutral, WHITE), (0.6, ToneMap::None, 255)] {
-            let material = Material { roughness, ..with(lobes) };
-            let mut scene = Scene::new(vec![sphere(Vec2::ZERO, 0.8, 0)], vec![material]);
-            scene.frame.look.light = LightSetup::White;
-            scene.frame.look.background = Background::Environment;
-            scene.frame.look.tone_map = tone_map;
-            let drawn = drawn_pixels(&scene.draw(gpu));
-            assert!(drawn.len() > 300);
-            for pixel in drawn {
-                assert!(
-                    pixel[..3].iter().all(|channel| channel.abs_diff(white) <= 2),
-                    "{pixel:?}, {roughness}, {lobes:?}"
-                );
-            }
+        let (roughness, tone_map, white) = match lobes.transmission > 0.0 {
+            true => (0.1, ToneMap::None, 255),
+            false => (0.6, ToneMap::Neutral, WHITE),
+        };
+        let material = Material { roughness, ..with(lobes) };
+        let mut scene = Scene::new(vec![sphere(Vec2::ZERO, 0.8, 0)], vec![material]);
+        scene.frame.look.light = LightSetup::White;
+        scene.frame.look.background = Background::Environment;
+        scene.frame.look.tone_map = tone_map;
+        let drawn = drawn_pixels(&scene.draw(gpu));
+        assert!(drawn.len() > 300);
+        for pixel in drawn {
+            assert!(pixel[..3].iter().all(|channel| channel.abs_diff(white) <= 2), "{pixel:?}, {lobes:?}");
         }
     }
 }
@@ -114,7 +113,8 @@ fn behind(pane: Material) -> Scene {
 fn check_glass(gpu: &Gpu) {
     let clear = || Lobes { transmission: 1.0, specular: 0.0, ..Default::default() };
     for samples in [1, 4] {
-        for tone_map in [ToneMap::Neutral, ToneMap::Aces, ToneMap::Agx, ToneMap::None] {
+        let others = [ToneMap::Aces, ToneMap::Agx, ToneMap::None].into_iter().filter(|_| samples == 1);
+        for tone_map in [ToneMap::Neutral].into_iter().chain(others) {
             let shown = |material: Material| {
                 let mut scene = behind(material);
                 scene.frame.look.tone_map = tone_map;

@@ -1,5 +1,6 @@
 //! Every shader is valid and translates to GLSL ES 3.00, the language of WebGL2.
 
+use gaitway::anim::TextureSlot;
 use gaitway::render::shaders::{ALL, SKINNED_VERTEX, Shader, SurfaceVariant};
 use naga::back::glsl;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -49,6 +50,22 @@ fn every_shader_is_valid_and_translates_to_webgl2() {
         for overrides in 0..4 {
             check(shader, overrides);
         }
+    }
+}
+
+/// The shader and the slots of the material have the same names and numbers.
+#[test]
+fn every_texture_slot_is_a_map_of_the_shader() {
+    let every_map = (1 << TextureSlot::ALL.len()) - 1;
+    let source = Shader::mesh(SurfaceVariant(every_map)).source();
+    for (number, slot) in TextureSlot::ALL.into_iter().enumerate() {
+        assert_eq!(slot as usize, number);
+        let spelled = format!("{slot:?}").replace(|letter: char| letter.is_uppercase(), "_?");
+        let initials: Vec<String> = format!("{slot:?}").matches(char::is_uppercase).map(str::to_lowercase).collect();
+        let name = initials.iter().fold(spelled, |name, initial| name.replacen('?', initial, 1));
+        let name = name.trim_start_matches('_');
+        let texel = format!("return textureSample({name}_map, {name}_sampler, map_uv({number}u, uv));");
+        assert!(source.contains(&texel), "{texel}");
     }
 }
 
