@@ -76,6 +76,7 @@ fn inspect_prints_the_documented_keys() {
         "borrowed_clips",
         "texture_bytes",
         "cameras",
+        "avatar",
         "extensions_used",
         "extensions_required",
         "bounds",

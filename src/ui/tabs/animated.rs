@@ -1,4 +1,5 @@
-//! What clips animate besides joints, in the File tab: materials, lights, cameras, visibility and single morph weights.
+//! What clips animate besides joints, in the File tab: materials, lights, cameras, visibility,
+//! expressions and single morph weights.
 
 use egui::Ui;
 
@@ -75,6 +76,10 @@ fn name(shown: &Shown<'_>, model: &Model, target: PropertyTarget) -> String {
         }
         PropertyTarget::Visibility(joint) => {
             (title(Some(shown.state), asset, joint).into_owned(), text::VISIBILITY.to_owned())
+        }
+        PropertyTarget::Expression(number) => {
+            let name = asset.avatar.expressions.get(number).map(|expression| &*expression.name);
+            (called(name, "Expression", number), "expression".to_owned())
         }
         PropertyTarget::MorphWeight(joint, target) => {
             (title(Some(shown.state), asset, joint).into_owned(), format!("morph weight {target}"))

@@ -17,6 +17,8 @@ pub enum PropertyTarget {
     Camera(usize, CameraProperty),
     /// Whether a joint and all below it are shown: 0 hides them.
     Visibility(JointIndex),
+    /// The weight of an expression, by its number in [`Avatar::expressions`](crate::avatar::Avatar::expressions).
+    Expression(usize),
     /// The weight of one morph target of the mesh on a joint.
     MorphWeight(JointIndex, usize),
 }
@@ -239,6 +241,14 @@ impl PropertyValues {
         Some(self.0[at].1)
     }
 
+    /// Adds to a target's value, which is `rest` unless it is animated.
+    pub fn add(&mut self, target: PropertyTarget, rest: Vec4, delta: Vec4) {
+        match self.0.binary_search_by_key(&target, |&(target, _)| target) {
+            Ok(at) => self.0[at].1 += delta,
+            Err(at) => self.0.insert(at, (target, rest + delta)),
+        }
+    }
+
     /// Whether any joint's visibility is animated.
     pub fn has_visibility(&self) -> bool {
         self.0.iter().any(|(target, _)| matches!(target, PropertyTarget::Visibility(_)))
@@ -265,6 +275,19 @@ impl Properties {
         let is_weight = |channel: &PropertyChannel| matches!(channel.target, PropertyTarget::MorphWeight(..));
         let first_weight = channels.iter().position(is_weight).unwrap_or(channels.len());
         Self { timelines, channels, first_weight }
+    }
+
+    /// Adds the channels of another clip whose target `map` finds.
+    pub fn add_mapped(&mut self, other: &Self, map: &dyn Fn(PropertyTarget) -> Option<PropertyTarget>) {
+        let start = self.timelines.len() as u32;
+        let mut channels = std::mem::take(&mut self.channels);
+        channels.extend(other.channels.iter().filter_map(|channel| {
+            let timeline = start + channel.timeline;
+            Some(PropertyChannel { target: map(channel.target)?, timeline, ..channel.clone() })
+        }));
+        let mut timelines = std::mem::take(&mut self.timelines);
+        timelines.extend(other.timelines.iter().cloned());
+        *self = Self::new(timelines, channels);
     }
 
     /// Replaces the values in `out` by those of all channels except morph weights.

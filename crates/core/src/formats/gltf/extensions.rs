@@ -5,6 +5,7 @@ use gltf::json::Root;
 use super::lobes;
 use super::nodes::VISIBILITY;
 use super::pointer::POINTER;
+use super::vrm::{EXTENDED_COLLIDER, NODE_CONSTRAINT, SPRING_BONE};
 use crate::asset::{Warning, Warnings};
 use crate::formats::LoadError;
 
@@ -24,10 +25,12 @@ const SUPPORTED: &[&str] = &[
     "EXT_meshopt_compression",
     "KHR_draco_mesh_compression",
     "KHR_meshopt_compression",
-    // Only their map of humanoid bones is used.
     "VRM",
     "VRMC_vrm",
     "VRMC_vrm_animation",
+    NODE_CONSTRAINT,
+    SPRING_BONE,
+    EXTENDED_COLLIDER,
 ];
 
 /// Rejects required extensions that are not supported, and warns about each optional one.

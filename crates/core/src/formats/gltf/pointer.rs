@@ -87,6 +87,8 @@ pub struct Pointers<'a> {
     pub root: &'a Root,
     pub skeleton: &'a Skeleton,
     pub materials: &'a [Material],
+    /// Joints whose X translation is the weight of an expression, by number.
+    pub expression_nodes: &'a [(JointIndex, usize)],
 }
 
 impl Pointers<'_> {
@@ -219,6 +221,13 @@ pub fn pointer_to(target: PropertyTarget, asset: &Asset) -> String {
             format!("/cameras/{camera}/{}", name(lens, property))
         }
         PropertyTarget::Visibility(joint) => format!("/nodes/{}/{VISIBLE}", node(joint)),
+        PropertyTarget::Expression(number) => {
+            let Some(expression) = asset.avatar.expressions.get(number) else { return String::new() };
+            let extension = if asset.format == "vrma" { "VRMC_vrm_animation" } else { "VRMC_vrm" };
+            let kind = if expression.is_preset { "preset" } else { "custom" };
+            let name = expression.name.replace('~', "~0").replace('/', "~1");
+            format!("/extensions/{extension}/expressions/{kind}/{name}")
+        }
         PropertyTarget::MorphWeight(joint, target) => format!("/nodes/{}/weights/{target}", node(joint)),
     }
 }

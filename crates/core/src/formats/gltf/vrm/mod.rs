@@ -1,0 +1,122 @@
+//! VRM 0.x and 1.0 besides the humanoid bones: `VRM`, `VRMC_vrm`, `VRMC_springBone`, `VRMC_node_constraint` and
+//! `VRMC_vrm_animation`. What a statement refers to and isn't there costs that statement, with a warning; the model still loads.
+
+mod constraints;
+mod expressions;
+mod look_at;
+mod meta;
+mod springs;
+
+use glam::Vec3;
+use gltf::json::Root;
+use serde_json::Value;
+
+use super::loosen::whole;
+use crate::anim::{JointIndex, Skeleton};
+use crate::asset::{Humanoid, MeshInstance, Warning, Warnings};
+use crate::avatar::Avatar;
+use crate::mesh::Material;
+
+/// Node constraints of glTF nodes, with or without a humanoid.
+pub const NODE_CONSTRAINT: &str = "VRMC_node_constraint";
+/// Spring bones of VRM 1.0.
+pub const SPRING_BONE: &str = "VRMC_springBone";
+/// Colliders that hold tails inside, and planes.
+pub const EXTENDED_COLLIDER: &str = "VRMC_springBone_extended_collider";
+
+/// What the extensions refer to.
+pub struct Parts<'a> {
+    pub root: &'a Root,
+    pub skeleton: &'a Skeleton,
+    pub instances: &'a [MeshInstance],
+    pub materials: &'a [Material],
+    pub humanoid: Option<&'a Humanoid>,
+}
+
+/// An avatar, and the nodes whose X translation is the weight of an expression (VRMA).
+#[derive(Default)]
+pub struct Read {
+    pub avatar: Avatar,
+    pub expression_nodes: Vec<(JointIndex, usize)>,
+}
+
+/// Reads what the file says about its avatar. Empty for other files.
+pub fn read(parts: &Parts, warnings: &mut Warnings) -> Read {
+    let mut reader = Reader { parts, warnings };
+    let mut read = Read::default();
+    if let Some(vrm) = reader.extension("VRMC_vrm") {
+        expressions::read_1(&mut reader, vrm, &mut read.avatar.expressions);
+        read.avatar.look_at = look_at::read_1(&mut reader, vrm, &read.avatar);
+        meta::read(&mut reader, vrm, &mut read.avatar);
+    }
+    if let Some(vrm) = reader.extension("VRM") {
+        expressions::read_0(&mut reader, vrm, &mut read.avatar.expressions);
+        read.avatar.look_at = look_at::read_0(&mut reader, vrm, &read.avatar);
+        meta::read(&mut reader, vrm, &mut read.avatar);
+        read.avatar.springs = springs::read_0(&mut reader, vrm);
+    }
+    if let Some(vrma) = reader.extension("VRMC_vrm_animation") {
+        expressions::read_animated(&mut reader, vrma, &mut read);
+    }
+    if let Some(springs) = reader.extension(SPRING_BONE) {
+        read.avatar.springs = springs::read_1(&mut reader, springs);
+    }
+    read.avatar.constraints = constraints::read(&mut reader);
+    read
+}
+
+struct Reader<'a> {
+    parts: &'a Parts<'a>,
+    warnings: &'a mut Warnings,
+}
+
+impl<'a> Reader<'a> {
+    fn extension(&self, name: &str) -> Option<&'a Value> {
+        self.parts.root.extensions.as_ref()?.others.get(name)
+    }
+
+    fn joint(&self, node: &Value) -> Option<JointIndex> {
+        self.parts.skeleton.joint_of_source(index(node)?)
+    }
+
+    /// Returns the joint of a node; warns if there is none.
+    fn joint_at(&mut self, place: &str, node: &Value) -> Option<JointIndex> {
+        let joint = self.joint(node);
+        if joint.is_none() {
+            self.ignore(format!("{place}.node"), format!("expected the index of a node, found {node}; it is left out"));
+        }
+        joint
+    }
+
+    fn ignore(&mut self, place: String, problem: String) {
+        self.warnings.push(Warning::Other { code: "vrm-ignored", place, problem });
+    }
+}
+
+fn index(value: &Value) -> Option<usize> {
+    usize::try_from(whole(value)?).ok()
+}
+
+fn text<'a>(value: &'a Value, key: &str) -> &'a str {
+    value[key].as_str().unwrap_or_default()
+}
+
+/// Returns the elements of an array, none of anything else.
+fn list(value: &Value) -> &[Value] {
+    value.as_array().map_or(&[], |list| list)
+}
+
+/// Returns the member or a default, also if it is not a finite number.
+fn number(value: &Value, key: &str, default: f32) -> f32 {
+    let number = value[key].as_f64().map(|number| number as f32);
+    number.filter(|number| number.is_finite()).unwrap_or(default)
+}
+
+/// Reads `[x, y, z]` or VRM 0.x's `{x, y, z}`; missing components are those of the default.
+fn vector(value: &Value, default: Vec3) -> Vec3 {
+    let component = |index: usize, name: &str| {
+        let number = value.get(index).or_else(|| value.get(name)).and_then(Value::as_f64);
+        number.map(|number| number as f32).filter(|number| number.is_finite()).unwrap_or(default[index])
+    };
+    Vec3::new(component(0, "x"), component(1, "y"), component(2, "z"))
+}
