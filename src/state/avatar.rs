@@ -60,14 +60,17 @@ impl AvatarPose {
         let (skeleton, avatar) = (&model.asset.skeleton, &model.asset.avatar);
         self.set_weights(avatar, state, properties);
         self.shown.clone_from(&self.weights);
-        let target = match state.display.look_at {
-            LookTarget::Off => None,
-            LookTarget::Camera => eye,
-            LookTarget::Point(point) => Some(point),
-        };
-        if let (Some(look_at), Some(target)) = (&avatar.look_at, target) {
-            let target = world_from_model(state.edits.up).inverse().transform_point3(target);
-            look_at.apply(target, skeleton, pose, &mut self.shown);
+        if let Some(look_at) = &avatar.look_at {
+            let model_from_world = world_from_model(state.edits.up).inverse();
+            let towards = |point| look_at.direction(model_from_world.transform_point3(point), skeleton, pose);
+            let direction = match state.display.look_at {
+                LookTarget::Off => properties.get(PropertyTarget::LookAt).map(|angles| [angles.x, angles.y]),
+                LookTarget::Camera => eye.and_then(towards),
+                LookTarget::Point(point) => towards(point),
+            };
+            if let Some(direction) = direction {
+                look_at.apply(direction, skeleton, pose, &mut self.shown);
+            }
         }
         resolve_weights(&avatar.expressions, &mut self.shown);
         apply_expressions(&avatar.expressions, &self.shown, pose, properties);

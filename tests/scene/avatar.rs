@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use gaitway::anim::{JointIndex, PropertyTarget};
+use gaitway::anim::{JointIndex, LoopMode, PropertyTarget};
 use gaitway::asset::Asset;
 use gaitway::avatar::{Expression, Override, resolve_weights};
 use gaitway::frame::{Frame, evaluate};
@@ -261,6 +261,28 @@ fn a_vrma_animates_the_expressions_of_the_model_by_name() {
 }
 
 #[test]
+fn a_vrma_turns_the_eyes_unless_they_look_elsewhere() {
+    let mut motion = person("VRMC_vrm_animation", json!([{ "name": "gaze" }]), json!({ "lookAt": { "node": 7 } }));
+    let times = motion.accessor(F32, "SCALAR", 2, &floats(&[0.0, 1.0]));
+    let left = Quat::from_rotation_y(45.0_f32.to_radians()).to_array();
+    let turns = motion.accessor(F32, "VEC4", 2, &floats(&[&[0.0, 0.0, 0.0, 1.0], &left[..]].concat()));
+    let channel = |node: usize| json!({ "sampler": 0, "target": { "node": node, "path": "rotation" } });
+    motion.json["animations"] = json!([{
+        "channels": [channel(7), channel(1)], "samplers": [{ "input": times, "output": turns }],
+    }]);
+    let mut library = library(eyes("bone", json!({})));
+    library.set_motions(vec![Motion::new("gaze.vrma".to_owned(), Arc::new(loaded(motion)))]);
+    library.borrow_each(vec![None]);
+    let mut state = ViewerState::default();
+    apply(&mut state, &library, Command::Seek(0.5));
+    let eye = |state: &ViewerState| rotation(&library, &frame(&library, state), "eye.L");
+    // 22.5° of 45°, of at most 30° outwards.
+    assert!(is_near(eye(&state), Quat::from_rotation_y(15.0_f32.to_radians())), "{}", eye(&state));
+    state.display.look_at = LookTarget::Camera;
+    assert!(!is_near(eye(&state), Quat::from_rotation_y(15.0_f32.to_radians())));
+}
+
+#[test]
 fn unusable_statements_are_left_out_with_a_warning() {
     let bad = json!({ "expressions": {
         "preset": {
@@ -502,7 +524,10 @@ fn eyes_can_be_expressions() {
     let asset = loaded(eyes("expression", bind));
     let look_at = asset.avatar.look_at.expect("eyes");
     let mut weights = [0.0; 5];
-    look_at.apply(seen_at(22.5, 45.0), &asset.skeleton, &mut asset.skeleton.rest().clone(), &mut weights);
+    let mut pose = asset.skeleton.rest().clone();
+    let direction = look_at.direction(seen_at(22.5, 45.0), &asset.skeleton, &pose).expect("a direction");
+    assert!((Vec2::from(direction) - Vec2::new(22.5, 45.0)).length() < 1e-3, "{direction:?}");
+    look_at.apply(direction, &asset.skeleton, &mut pose, &mut weights);
     let expected = [0.25, 0.0, 0.0, 0.5, 0.0];
     assert!(weights.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-4), "{weights:?}");
 }
@@ -574,6 +599,28 @@ fn playing_and_seeking_give_the_same_springs_bit_for_bit() {
     }
 }
 
+/// Rotations of `a` and `b` by @pixiv/three-vrm-springbone 3.5.5 with three 0.180: the chain with gravity 3 and the capsule, after 60
+/// updates of 1/60 s at rest, and after 20 more in which the root moves as in the clip.
+#[test]
+fn springs_match_three_vrm() {
+    let expected = [
+        (0.0, [[0.0, 0.0, -0.609236, 0.792989], [0.0, 0.0, 0.138728, 0.99033]]),
+        (20.0 / 60.0, [[0.0, 0.120323, -0.599207, 0.7915], [0.0, -0.022192, 0.142365, 0.989565]]),
+    ];
+    let capsule = json!({ "capsule": { "offset": [0, 0, -0.5], "tail": [0, 0, 0.5], "radius": 0.12 } });
+    let library = library(chain(3.0, json!([{ "node": 4, "shape": capsule }])));
+    for (time_secs, rotations) in expected {
+        let mut state = swinging();
+        apply(&mut state, &library, Command::SetLoopMode(LoopMode::Once));
+        apply(&mut state, &library, Command::Seek(time_secs));
+        let frame = frame(&library, &state);
+        for (name, expected) in ["a", "b"].into_iter().zip(rotations) {
+            let found = rotation(&library, &frame, name);
+            assert!((found - Quat::from_array(expected)).length() < 1e-4, "{name} at {time_secs}: {found}");
+        }
+    }
+}
+
 #[test]
 fn a_loop_of_springs_has_no_seam() {
     let library = library(chain(0.3, json!([])));
@@ -635,10 +682,11 @@ fn colliders_keep_springs_out() {
     let capsule = json!([{
         "node": 4, "shape": { "capsule": { "offset": [0, 0, -0.5], "tail": [0, 0, 0.5], "radius": 0.12 } },
     }]);
-    assert!(deepest(json!([])) < 0.8 * touching, "they would pass through");
+    assert!(deepest(json!([])) < 0.5 * touching, "they would pass through");
     for collider in [sphere, capsule] {
         let nearest = deepest(collider);
-        assert!(nearest > 0.97 * touching, "{nearest} of {touching}");
+        // The root jerks by 3 cm a step; a push and the length of the bone agree only after some steps.
+        assert!(nearest > 0.9 * touching, "{nearest} of {touching}");
     }
     let plane = json!({ "specVersion": "1.0", "shape": { "plane": { "offset": [0, 0.33, 0], "normal": [0, 1, 0] } } });
     let plane = json!([{

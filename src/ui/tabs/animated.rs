@@ -77,6 +77,7 @@ fn name(shown: &Shown<'_>, model: &Model, target: PropertyTarget) -> String {
         PropertyTarget::Visibility(joint) => {
             (title(Some(shown.state), asset, joint).into_owned(), text::VISIBILITY.to_owned())
         }
+        PropertyTarget::LookAt => ("Eyes".to_owned(), "direction".to_owned()),
         PropertyTarget::Expression(number) => {
             let name = asset.avatar.expressions.get(number).map(|expression| &*expression.name);
             (called(name, "Expression", number), "expression".to_owned())

@@ -19,6 +19,8 @@ pub enum PropertyTarget {
     Visibility(JointIndex),
     /// The weight of an expression, by its number in [`Avatar::expressions`](crate::avatar::Avatar::expressions).
     Expression(usize),
+    /// Yaw to the left and pitch downwards of an avatar's eyes, in degrees.
+    LookAt,
     /// The weight of one morph target of the mesh on a joint.
     MorphWeight(JointIndex, usize),
 }
@@ -201,7 +203,7 @@ impl PropertyTarget {
             Self::Material(_, Lobe(factor)) => factor.width(),
             Self::Material(_, BaseColor) => 4,
             Self::Material(_, Emissive) | Self::Light(_, LightProperty::Color) => 3,
-            Self::Material(_, UvOffset(_) | UvScale(_)) => 2,
+            Self::Material(_, UvOffset(_) | UvScale(_)) | Self::LookAt => 2,
             _ => 1,
         }
     }

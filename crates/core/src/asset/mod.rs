@@ -308,7 +308,7 @@ impl AssetParts {
                     check("clips", joint.get(), joints)?;
                 }
                 PropertyTarget::Expression(number) => check("clips", number, self.avatar.expressions.len())?,
-                PropertyTarget::Light(..) | PropertyTarget::Camera(..) => {}
+                PropertyTarget::Light(..) | PropertyTarget::Camera(..) | PropertyTarget::LookAt => {}
             }
         }
         check_all("hidden", &mut self.hidden.iter().copied())?;

@@ -54,9 +54,8 @@ impl LookAt {
         std::iter::once(self.head).chain(eyes.into_iter().flatten())
     }
 
-    /// Looks at a point in model space: turns the eyes from their rest, or sets the weights of expressions.
-    pub fn apply(&self, target: Vec3, skeleton: &Skeleton, pose: &mut Pose, weights: &mut [f32]) {
-        let Some([yaw, pitch]) = self.direction(target, skeleton, pose) else { return };
+    /// Looks in a direction (see [`Self::direction`]): turns the eyes from their rest, or sets the weights of expressions.
+    pub fn apply(&self, [yaw, pitch]: [f32; 2], skeleton: &Skeleton, pose: &mut Pose, weights: &mut [f32]) {
         match self.kind {
             LookAtKind::Bones(eyes) => {
                 for (eye, is_left) in eyes.into_iter().zip([true, false]) {
@@ -77,7 +76,8 @@ impl LookAt {
         }
     }
 
-    /// Returns yaw (positive to the character's left) and pitch (positive down) of a point, relative to the face, in degrees.
+    /// Returns yaw (positive to the character's left) and pitch (positive down) of a point in model space, relative to the
+    /// face, in degrees.
     pub fn direction(&self, target: Vec3, skeleton: &Skeleton, pose: &Pose) -> Option<[f32; 2]> {
         let rotation_of = |pose| model_from_one(skeleton, pose, self.head).to_scale_rotation_translation().1;
         let eyes = model_from_one(skeleton, pose, self.head).transform_point3(self.offset);

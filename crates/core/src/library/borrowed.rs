@@ -122,13 +122,16 @@ pub(super) fn borrow(
         let pair = Retargeting::new(model, motion, source_clip, map).map_err(error)?;
         let baked = pair.bake().map_err(error)?;
         let root = root_of(&baked.clip);
-        let own_expression = |target| {
-            let PropertyTarget::Expression(number) = target else { return None };
-            let name = &motion.asset.avatar.expressions.get(number)?.name;
-            model.asset.avatar.expression(name).map(PropertyTarget::Expression)
+        let own = |target| match target {
+            PropertyTarget::Expression(number) => {
+                let name = &motion.asset.avatar.expressions.get(number)?.name;
+                model.asset.avatar.expression(name).map(PropertyTarget::Expression)
+            }
+            PropertyTarget::LookAt => model.asset.avatar.look_at.map(|_| target),
+            _ => None,
         };
         let clip = match motion.asset.clips.get(source_clip) {
-            Some(source) => baked.clip.with_properties_of(source, &own_expression),
+            Some(source) => baked.clip.with_properties_of(source, &own),
             None => baked.clip,
         };
         Ok(BorrowedClip {

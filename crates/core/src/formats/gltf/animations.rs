@@ -11,7 +11,8 @@ use gltf::json::validation::Checked;
 use super::accessor::{Accessors, get};
 use super::document::{Document, present};
 use super::pointer::{Aim, POINTER, Pointers, Unresolved};
-use crate::anim::{ChannelError, Clip, ClipBuilder, Interpolation, JointIndex, Keys, PropertyTarget, Skeleton};
+use super::vrm::AnimatedNodes;
+use crate::anim::{ChannelError, Clip, ClipBuilder, Interpolation, Keys, PropertyTarget, Skeleton};
 use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
 use crate::mesh::Material;
@@ -21,16 +22,15 @@ const MAX_NAMED: usize = 30;
 /// Characters of a pointer shown in a warning.
 const MAX_POINTER: usize = 120;
 
-/// `expression_nodes`: joints whose X translation is the weight of an expression, by number (VRMA).
 pub fn clips(
     accessors: &Accessors,
     skeleton: &Skeleton,
     materials: &[Material],
-    expression_nodes: &[(JointIndex, usize)],
+    animated: &AnimatedNodes,
     warnings: &mut Warnings,
 ) -> Result<Vec<Clip>, Problem> {
     let root = &accessors.document.root;
-    let pointers = Pointers { root, skeleton, materials, expression_nodes };
+    let pointers = Pointers { root, skeleton, materials, animated };
     let mut times = Times { accessors, read: BTreeMap::new() };
     let mut clips = Vec::with_capacity(root.animations.len());
     for (index, animation) in root.animations.iter().enumerate() {
@@ -197,11 +197,12 @@ impl ClipReader<'_> {
         let keys = keys(accessors, property, source.output, &format_args!("{here}.output"), targets)?;
         let key_times = times.get(source.input, &format_args!("{here}.input"))?;
         let interpolation = interpolation_mode(accessors.document, source, warnings);
-        if let Keys::Translation(values) = &keys
-            && let Some(&(_, number)) = self.pointers.expression_nodes.iter().find(|(other, _)| *other == joint)
+        // Tangents of a rotation aren't those of its angles.
+        let is_spline_of_angles = matches!(keys, Keys::Rotation(_)) && interpolation == Interpolation::CubicSpline;
+        if let Some((target, values)) = self.pointers.animated.property(joint, &keys)
+            && !is_spline_of_angles
         {
-            let weights = values.iter().map(|value| value.x).collect();
-            let added = self.builder.property(PropertyTarget::Expression(number), interpolation, key_times, weights);
+            let added = self.builder.property(target, interpolation, key_times, values);
             added.map_err(|problem| unusable(source, problem))?;
         }
         self.builder.channel(joint, interpolation, key_times, keys).map_err(|problem| unusable(source, problem))?;

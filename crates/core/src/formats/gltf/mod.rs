@@ -110,8 +110,8 @@ fn build(
         materials: &materials,
         humanoid: humanoid.as_ref(),
     };
-    let vrm::Read { avatar, expression_nodes } = vrm::read(&parts, &mut warnings);
-    let clips = animations::clips(&accessors, &skeleton, &materials, &expression_nodes, &mut warnings)?;
+    let vrm::Read { avatar, animated } = vrm::read(&parts, &mut warnings);
+    let clips = animations::clips(&accessors, &skeleton, &materials, &animated, &mut warnings)?;
     let (scenes, default_scene) = nodes::scenes(root, &skeleton, &mut warnings)?;
     let cameras = nodes::cameras(document, &skeleton, &mut warnings)?;
     let hidden = nodes::hidden(root, &skeleton, &mut warnings);

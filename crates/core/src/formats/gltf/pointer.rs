@@ -7,6 +7,7 @@ use gltf::json::extensions::scene::khr_lights_punctual::{self, Type as LightType
 use gltf::json::validation::Checked;
 
 use super::lobes;
+use super::vrm::AnimatedNodes;
 use crate::anim::{CameraProperty, JointIndex, LightProperty, MaterialProperty, PropertyTarget, Skeleton, TextureSlot};
 use crate::asset::{Asset, Camera, CameraProjection};
 use crate::mesh::Material;
@@ -87,8 +88,7 @@ pub struct Pointers<'a> {
     pub root: &'a Root,
     pub skeleton: &'a Skeleton,
     pub materials: &'a [Material],
-    /// Joints whose X translation is the weight of an expression, by number.
-    pub expression_nodes: &'a [(JointIndex, usize)],
+    pub animated: &'a AnimatedNodes,
 }
 
 impl Pointers<'_> {
@@ -221,15 +221,20 @@ pub fn pointer_to(target: PropertyTarget, asset: &Asset) -> String {
             format!("/cameras/{camera}/{}", name(lens, property))
         }
         PropertyTarget::Visibility(joint) => format!("/nodes/{}/{VISIBLE}", node(joint)),
+        PropertyTarget::LookAt => format!("/extensions/{}/lookAt", vrm_extension(asset)),
         PropertyTarget::Expression(number) => {
             let Some(expression) = asset.avatar.expressions.get(number) else { return String::new() };
-            let extension = if asset.format == "vrma" { "VRMC_vrm_animation" } else { "VRMC_vrm" };
+            let extension = vrm_extension(asset);
             let kind = if expression.is_preset { "preset" } else { "custom" };
             let name = expression.name.replace('~', "~0").replace('/', "~1");
             format!("/extensions/{extension}/expressions/{kind}/{name}")
         }
         PropertyTarget::MorphWeight(joint, target) => format!("/nodes/{}/weights/{target}", node(joint)),
     }
+}
+
+fn vrm_extension(asset: &Asset) -> &'static str {
+    if asset.format == "vrma" { "VRMC_vrm_animation" } else { "VRMC_vrm" }
 }
 
 fn material_name(property: MaterialProperty) -> String {

@@ -127,7 +127,7 @@ pub fn read_animated(reader: &mut Reader, vrma: &Value, read: &mut Read) {
         if let Some(joint) = reader.joint_at(place, &value["node"])
             && read.avatar.expressions.len() < MAX_EXPRESSIONS
         {
-            read.expression_nodes.push((joint, read.avatar.expressions.len()));
+            read.animated.expressions.push((joint, read.avatar.expressions.len()));
             read.avatar.expressions.push(Expression::new(name, name, is_preset));
         }
     });

@@ -7,12 +7,12 @@ mod look_at;
 mod meta;
 mod springs;
 
-use glam::Vec3;
+use glam::{EulerRot, Quat, Vec3};
 use gltf::json::Root;
 use serde_json::Value;
 
 use super::loosen::whole;
-use crate::anim::{JointIndex, Skeleton};
+use crate::anim::{JointIndex, Keys, PropertyTarget, Skeleton};
 use crate::asset::{Humanoid, MeshInstance, Warning, Warnings};
 use crate::avatar::Avatar;
 use crate::mesh::Material;
@@ -33,11 +33,40 @@ pub struct Parts<'a> {
     pub humanoid: Option<&'a Humanoid>,
 }
 
-/// An avatar, and the nodes whose X translation is the weight of an expression (VRMA).
+/// Nodes of a .vrma that stand for what its clips animate besides joints.
+#[derive(Default)]
+pub struct AnimatedNodes {
+    /// Their X translation is the weight of an expression, by number.
+    pub expressions: Vec<(JointIndex, usize)>,
+    /// Its rotation is the direction of the eyes.
+    pub look_at: Option<JointIndex>,
+}
+
+impl AnimatedNodes {
+    /// Returns what keys of a joint animate besides, with its values.
+    pub fn property(&self, joint: JointIndex, keys: &Keys) -> Option<(PropertyTarget, Vec<f32>)> {
+        match keys {
+            Keys::Translation(values) => {
+                let &(_, number) = self.expressions.iter().find(|(node, _)| *node == joint)?;
+                Some((PropertyTarget::Expression(number), values.iter().map(|value| value.x).collect()))
+            }
+            Keys::Rotation(values) if self.look_at == Some(joint) => {
+                let angles = |rotation: &Quat| {
+                    let (yaw, pitch, _) = rotation.normalize().to_euler(EulerRot::YXZ);
+                    [yaw.to_degrees(), pitch.to_degrees()]
+                };
+                Some((PropertyTarget::LookAt, values.iter().flat_map(angles).collect()))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// An avatar, and what stands for it in clips.
 #[derive(Default)]
 pub struct Read {
     pub avatar: Avatar,
-    pub expression_nodes: Vec<(JointIndex, usize)>,
+    pub animated: AnimatedNodes,
 }
 
 /// Reads what the file says about its avatar. Empty for other files.
@@ -57,6 +86,7 @@ pub fn read(parts: &Parts, warnings: &mut Warnings) -> Read {
     }
     if let Some(vrma) = reader.extension("VRMC_vrm_animation") {
         expressions::read_animated(&mut reader, vrma, &mut read);
+        read.animated.look_at = reader.joint(&vrma["lookAt"]["node"]);
     }
     if let Some(springs) = reader.extension(SPRING_BONE) {
         read.avatar.springs = springs::read_1(&mut reader, springs);
