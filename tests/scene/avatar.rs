@@ -621,6 +621,34 @@ fn springs_match_three_vrm() {
     }
 }
 
+/// Long ranges are simulated in sections.
+#[test]
+fn springs_go_on_without_a_seam_in_long_clips() {
+    let mut build = chain(0.5, json!([]));
+    let times = build.accessor(F32, "SCALAR", 61, &floats(&(0..61).map(|secs| secs as f32).collect::<Vec<_>>()));
+    let places: Vec<f32> = (0..61).flat_map(|secs| [0.0, 0.0, (secs % 2) as f32]).collect();
+    let places = build.accessor(F32, "VEC3", 61, &floats(&places));
+    build.json["animations"][0]["samplers"][0] = json!({ "input": times, "output": places });
+    let library = library(build);
+    let mut playing = Frame::default();
+    let mut at = |time_secs: f64| {
+        let mut state = swinging();
+        apply(&mut state, &library, Command::Seek(time_secs));
+        evaluate(&library, &state, 1.5, &mut playing);
+        let [played, sought] = [&playing, &frame(&library, &state)].map(|frame| place(&library, frame, "c"));
+        assert_eq!(played, sought, "{time_secs}");
+        played - place(&library, &playing, "root")
+    };
+    // The motion repeats every two seconds.
+    for start in [9.9, 39.8] {
+        for step in 0..20 {
+            let time_secs = start + f64::from(step) / 60.0;
+            let (before, now) = (at(time_secs - 2.0), at(time_secs));
+            assert!((now - before).length() < 1e-3, "{time_secs}: {now}, and {before} two seconds before");
+        }
+    }
+}
+
 #[test]
 fn a_loop_of_springs_has_no_seam() {
     let library = library(chain(0.3, json!([])));

@@ -133,6 +133,20 @@ impl Random {
         }
     }
 
+    fn set_avatar(&mut self, state: &mut ViewerState, field: usize) {
+        match field {
+            32 => {
+                let expressions = (0..self.below(4)).map(|_| (self.text(), self.below(5) as f32 / 4.0));
+                state.edits.expressions = expressions.collect();
+            }
+            33 => {
+                let point = LookTarget::Point(Vec3::new(self.number(), self.number(), self.number()));
+                state.display.look_at = self.one(&[LookTarget::Camera, point]);
+            }
+            _ => state.display.springs = self.often(),
+        }
+    }
+
     fn set(&mut self, state: &mut ViewerState, field: usize) {
         match field {
             0 => state.sources.model = self.texts(),
@@ -187,15 +201,7 @@ impl Random {
                 state.selection.vertex = Some(VertexChoice { instance, primitive, vertex });
             }
             22..=24 | 29..=31 => self.set_look(state, field),
-            32 => {
-                let expressions = (0..self.below(4)).map(|_| (self.text(), self.below(5) as f32 / 4.0));
-                state.edits.expressions = expressions.collect();
-            }
-            33 => {
-                let point = LookTarget::Point(Vec3::new(self.number(), self.number(), self.number()));
-                state.display.look_at = self.one(&[LookTarget::Camera, point]);
-            }
-            34 => state.display.springs = self.often(),
+            32..=34 => self.set_avatar(state, field),
             _ => state.page.embed = self.often(),
         }
     }

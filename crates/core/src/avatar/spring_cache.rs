@@ -13,12 +13,14 @@ const RATE: f64 = 60.0;
 /// Steps in which the tails come to rest in the first pose.
 const SETTLE_STEPS: u32 = 60;
 
-/// Steps before the start of a loop, from its end.
+/// Steps before the start of a loop, from its end, and before the start of a later section.
 const MAX_LEAD_STEPS: u32 = 120;
 
-/// At most this many steps lie between kept states, unless the clip is very long.
-const MIN_INTERVAL: u32 = 30;
-const MAX_KEPT: u32 = 512;
+/// Steps in a section. Each is simulated on its own, so that no jump takes longer than one of them.
+const SECTION_STEPS: u32 = 600;
+
+/// Steps between kept states.
+const INTERVAL: u32 = 30;
 
 /// The motion that spring bones follow.
 pub trait SpringMotion {
@@ -32,15 +34,15 @@ pub struct SpringCache {
     range: TimeRange,
     /// Whether the clip repeats: then the tails at its start are those after its end.
     repeats: bool,
-    /// Steps from the range's start to the state in `tails`; `None` before the first.
-    step: Option<u32>,
+    /// The section that was simulated last.
+    section: Option<u32>,
+    /// Steps from the range's start to the state in `tails`.
+    step: u32,
     tails: Vec<Tail>,
     /// Local rotations of the spring joints at `step` and one step before.
     rotations: Vec<Quat>,
     rotations_before: Vec<Quat>,
-    /// Steps between kept states.
-    interval: u32,
-    /// Each kept state: the tails of all joints and their rotations, after every `interval` steps from the start.
+    /// The tails of all joints and their rotations, after every [`INTERVAL`] steps from the section's start.
     kept_tails: Vec<Tail>,
     kept_rotations: Vec<Quat>,
     pose: Pose,
@@ -52,18 +54,14 @@ impl SpringCache {
     /// Starts over: another model, clip, range or pose.
     pub fn restart(&mut self, springs: &Springs, range: TimeRange, repeats: bool) {
         let count = springs.joints().len();
-        self.range = range;
-        self.repeats = repeats;
-        self.step = None;
+        (self.range, self.repeats, self.section) = (range, repeats, None);
         self.tails.clear();
         self.tails.resize(count, Tail::default());
         for rotations in [&mut self.rotations, &mut self.rotations_before] {
             rotations.clear();
             rotations.resize(count, Quat::IDENTITY);
         }
-        let steps = self.steps();
-        self.interval = MIN_INTERVAL.max(steps / MAX_KEPT);
-        let kept = (steps / self.interval + 2) as usize * count;
+        let kept = (self.steps().min(SECTION_STEPS) / INTERVAL + 1) as usize * count;
         self.kept_tails.clear();
         self.kept_tails.reserve(kept);
         self.kept_rotations.clear();
@@ -80,6 +78,9 @@ impl SpringCache {
         motion: &mut dyn SpringMotion,
         pose: &mut Pose,
     ) {
+        if springs.joints().is_empty() {
+            return;
+        }
         let steps = (time_secs - self.range.start_secs).max(0.0) * RATE;
         let to = (steps.ceil() as u32).min(self.steps());
         let factor = 1.0 - (f64::from(to) - steps).clamp(0.0, 1.0) as f32;
@@ -97,29 +98,30 @@ impl SpringCache {
 
     fn seek(&mut self, to: u32, skeleton: &Skeleton, springs: &Springs, motion: &mut dyn SpringMotion) {
         let count = springs.joints().len();
-        let kept = (self.kept_tails.len() / count.max(1)) as u32;
-        if kept == 0 {
-            self.begin(skeleton, springs, motion);
+        // The step before the wanted one is in the same section: the image shows rotations between the two.
+        let section = to.saturating_sub(1) / SECTION_STEPS;
+        let first = section * SECTION_STEPS;
+        if self.section != Some(section) {
+            self.begin(section, skeleton, springs, motion);
+            (self.section, self.step) = (Some(section), first);
+            self.kept_tails.clear();
+            self.kept_rotations.clear();
             self.keep();
-            self.step = Some(0);
         }
-        // The state before the wanted one is needed too, for the rotations between them.
-        let last_kept = (to.saturating_sub(1) / self.interval).min(kept.max(1) - 1);
-        let is_ahead = |step: u32| step > to || step + self.interval < last_kept * self.interval;
-        if self.step.is_none_or(is_ahead) {
-            let at = last_kept as usize * count;
+        let last_kept = self.kept_tails.len() / count - 1;
+        let nearest = ((to.saturating_sub(1) - first) / INTERVAL).min(last_kept as u32);
+        if self.step > to || self.step < first + nearest * INTERVAL {
+            let at = nearest as usize * count;
             self.tails.copy_from_slice(&self.kept_tails[at..at + count]);
             self.rotations.copy_from_slice(&self.kept_rotations[at..at + count]);
-            self.rotations_before.copy_from_slice(&self.rotations);
-            self.step = Some(last_kept * self.interval);
+            self.step = first + nearest * INTERVAL;
         }
-        while let Some(step) = self.step.filter(|&step| step < to) {
-            let next = step + 1;
-            let end_secs = self.range.end_secs;
-            let time_secs = (self.range.start_secs + f64::from(next) / RATE).min(end_secs);
-            self.advance(time_secs, skeleton, springs, motion);
-            self.step = Some(next);
-            if next.is_multiple_of(self.interval) && self.kept_tails.len() == (next / self.interval) as usize * count {
+        while self.step < to {
+            self.step += 1;
+            let time_secs = self.range.start_secs + f64::from(self.step) / RATE;
+            self.advance(time_secs.min(self.range.end_secs), skeleton, springs, motion);
+            let kept = self.kept_tails.len() / count;
+            if self.step == first + kept as u32 * INTERVAL {
                 self.keep();
             }
         }
@@ -130,23 +132,25 @@ impl SpringCache {
         self.kept_rotations.extend_from_slice(&self.rotations);
     }
 
-    /// The state at the start of the range. In a loop the tails arrive there from its end, carried along to where the model
-    /// starts again, so that a walk that comes back to its start doesn't whip them.
-    fn begin(&mut self, skeleton: &Skeleton, springs: &Springs, motion: &mut dyn SpringMotion) {
+    /// The state at the start of a section. In a loop, the tails arrive at the first one from the end, carried along to where the
+    /// model starts again, so that a walk doesn't whip them when it jumps back.
+    fn begin(&mut self, section: u32, skeleton: &Skeleton, springs: &Springs, motion: &mut dyn SpringMotion) {
         let TimeRange { start_secs, end_secs } = self.range;
-        let lead = if self.repeats { self.steps().min(MAX_LEAD_STEPS) } else { 0 };
-        let lead_start = end_secs - f64::from(lead) / RATE;
-        let first_secs = if lead > 0 { lead_start.max(start_secs) } else { start_secs };
-        motion.pose_at(first_secs, &mut self.pose, &mut self.world);
+        let (lead, lead_end_secs) = match section {
+            0 if self.repeats => (self.steps().min(MAX_LEAD_STEPS), end_secs),
+            0 => (0, start_secs),
+            _ => (MAX_LEAD_STEPS, start_secs + f64::from(section * SECTION_STEPS) / RATE),
+        };
+        let before = |steps: u32| (lead_end_secs - f64::from(steps) / RATE).max(start_secs);
+        motion.pose_at(before(lead), &mut self.pose, &mut self.world);
         springs.reset(&self.world, &mut self.tails);
         for _ in 0..SETTLE_STEPS {
-            self.advance(first_secs, skeleton, springs, motion);
+            self.advance(before(lead), skeleton, springs, motion);
         }
-        for step in 1..=lead {
-            let time_secs = (lead_start + f64::from(step) / RATE).max(start_secs);
-            self.advance(time_secs, skeleton, springs, motion);
+        for step in (0..lead).rev() {
+            self.advance(before(step), skeleton, springs, motion);
         }
-        if lead > 0 {
+        if section == 0 && lead > 0 {
             motion.pose_at(end_secs, &mut self.pose, &mut self.world_before);
             motion.pose_at(start_secs, &mut self.pose, &mut self.world);
             springs.carry(&self.world_before, &self.world, &mut self.tails);
