@@ -65,28 +65,28 @@ impl Constraint {
         turn.is_finite().then(|| turn * rest)
     }
 
-    /// Whether `other` must be applied first: it turns what this one depends on.
-    fn depends_on(&self, other: &Self, skeleton: &Skeleton) -> bool {
-        let is_under = |mut joint: JointIndex| loop {
-            if joint == other.joint {
-                return true;
-            }
-            match skeleton.parent(joint) {
-                Some(parent) => joint = parent,
-                None => return false,
-            }
-        };
-        let aims_from = |joint| matches!(self.kind, ConstraintKind::Aim(_)) && joint != other.joint && is_under(joint);
-        is_under(self.source) || aims_from(self.joint)
+    /// Whether `other` must be applied first: it turns what this one depends on. `subtree_ends`: the joint after the last one
+    /// below each joint.
+    fn depends_on(&self, other: &Self, subtree_ends: &[u32]) -> bool {
+        let is_turned = |joint: JointIndex| (other.joint.0..subtree_ends[other.joint.get()]).contains(&joint.0);
+        let aims_from = |joint| matches!(self.kind, ConstraintKind::Aim(_)) && joint != other.joint && is_turned(joint);
+        is_turned(self.source) || aims_from(self.joint)
     }
 }
 
 /// Returns the constraints sorted so that each comes after those it depends on, then the ones in a cycle, which have no such
 /// order.
 pub fn in_order(skeleton: &Skeleton, constraints: Vec<Constraint>) -> (Vec<Constraint>, Vec<Constraint>) {
+    // Joints are sorted depth first.
+    let mut subtree_ends: Vec<u32> = (1..=skeleton.len() as u32).collect();
+    for joint in skeleton.joints().rev() {
+        if let Some(parent) = skeleton.parent(joint) {
+            subtree_ends[parent.get()] = subtree_ends[parent.get()].max(subtree_ends[joint.get()]);
+        }
+    }
     let (mut sorted, mut left) = (Vec::with_capacity(constraints.len()), constraints);
     loop {
-        let is_free = |one: &Constraint| !left.iter().any(|other| one.depends_on(other, skeleton));
+        let is_free = |one: &Constraint| !left.iter().any(|other| one.depends_on(other, &subtree_ends));
         let (free, bound): (Vec<_>, Vec<_>) = left.iter().copied().partition(is_free);
         left = bound;
         if free.is_empty() {

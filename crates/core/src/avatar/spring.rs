@@ -8,6 +8,9 @@ use crate::anim::{JointIndex, Pose, Skeleton};
 /// Length of a tail without a child joint, in metres (VRM 0.x).
 const END_LENGTH: f32 = 0.07;
 
+/// Joints that may lie between both ends of a bone.
+const MAX_BONE_LEVELS: usize = 256;
+
 /// The spring bones of a model and what they collide with.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Springs {
@@ -152,18 +155,21 @@ impl Springs {
 
 impl SpringJoint {
     /// Returns the tail of a joint: the origin of a joint below it or, without one, 7 cm in the direction in which the joint
-    /// lies from its parent. `None` if `child` isn't below the joint.
+    /// lies from its parent. `None` if `child` isn't below the joint, or by more than [`MAX_BONE_LEVELS`].
     pub fn tail(skeleton: &Skeleton, joint: JointIndex, child: Option<JointIndex>) -> Option<Vec3> {
         let rest = skeleton.rest();
         let Some(mut at) = child else {
             return Some(rest.local(joint).translation.normalize_or(Vec3::Y) * END_LENGTH);
         };
         let mut tail = Vec3::ZERO;
-        while at != joint {
+        for _ in 0..MAX_BONE_LEVELS {
+            if at == joint {
+                return Some(tail);
+            }
             tail = rest.local(at).to_affine().transform_point3(tail);
             at = skeleton.parent(at)?;
         }
-        Some(tail)
+        None
     }
 
     fn world_from_center(&self, world: &[Affine3A]) -> Affine3A {

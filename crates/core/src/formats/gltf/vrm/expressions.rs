@@ -1,15 +1,17 @@
 //! `expressions` of VRM 1.0, `blendShapeMaster` of 0.x, and the names of animated expressions in a .vrma.
 
+use std::collections::BTreeMap;
+
 use glam::Vec4;
 use serde_json::Value;
 
-use super::{Read, Reader, index, list, number, text};
+use super::{Read, Reader, index, number, text};
 use crate::anim::{JointIndex, MaterialProperty, PropertyTarget, TextureSlot};
 use crate::avatar::{Expression, MaterialBind, MorphBind, Override};
 
 /// Further expressions, and further parts of one, are left out.
-const MAX_EXPRESSIONS: usize = 1024;
-const MAX_BINDS: usize = 4096;
+const MAX_EXPRESSIONS: usize = 256;
+const MAX_BINDS: usize = 1024;
 
 const TEXTURES: [TextureSlot; 5] = [
     TextureSlot::BaseColor,
@@ -46,14 +48,22 @@ fn each(
     reader: &mut Reader,
     extension: &str,
     value: &Value,
-    mut add: impl FnMut(&mut Reader, &str, &str, bool, &Value),
+    add: &mut dyn FnMut(&mut Reader, &str, &str, bool, &Value),
 ) {
+    let mut count = 0;
     for (kind, is_preset) in [("preset", true), ("custom", false)] {
-        for (name, value) in value["expressions"][kind].as_object().into_iter().flatten() {
+        let entries = value["expressions"][kind].as_object().into_iter().flatten();
+        for (name, value) in entries.filter(|(_, value)| !value.is_null()) {
             let place = format!("extensions.{extension}.expressions.{kind}.{name}");
+            count += 1;
+            if count > MAX_EXPRESSIONS {
+                reader
+                    .ignore(place, format!("expected at most {MAX_EXPRESSIONS} expressions; the others are left out"));
+                return;
+            }
             if Expression::PRESETS.contains(&name.as_str()) == is_preset && !name.is_empty() {
                 add(reader, &place, name, is_preset, value);
-            } else if !value.is_null() {
+            } else {
                 reader.ignore(place, format!("“{name}” can't be the name of a {kind} expression; it is left out"));
             }
         }
@@ -61,10 +71,7 @@ fn each(
 }
 
 pub fn read_1(reader: &mut Reader, vrm: &Value, out: &mut Vec<Expression>) {
-    each(reader, "VRMC_vrm", vrm, |reader, place, name, is_preset, value| {
-        if out.len() >= MAX_EXPRESSIONS || value.is_null() {
-            return;
-        }
+    each(reader, "VRMC_vrm", vrm, &mut |reader, place, name, is_preset, value| {
         let mut expression = Expression::new(name, name, is_preset);
         expression.is_binary = value["isBinary"] == true;
         expression.overrides = ["overrideBlink", "overrideLookAt", "overrideMouth"].map(|key| match text(value, key) {
@@ -72,18 +79,25 @@ pub fn read_1(reader: &mut Reader, vrm: &Value, out: &mut Vec<Expression>) {
             "blend" => Override::Blend,
             _ => Override::None,
         });
-        for (at, bind) in list(&value["morphTargetBinds"]).iter().take(MAX_BINDS).enumerate() {
-            let place = format!("{place}.morphTargetBinds[{at}]");
+        let mut binds = |key: &str| {
+            let place = format!("{place}.{key}");
+            (reader.list(&place, &value[key], MAX_BINDS), place)
+        };
+        let (morphs, morphs_place) = binds("morphTargetBinds");
+        let (colors, _) = binds("materialColorBinds");
+        let (transforms, _) = binds("textureTransformBinds");
+        for (at, bind) in morphs.iter().enumerate() {
+            let place = format!("{morphs_place}[{at}]");
             if let Some(joint) = reader.joint_at(&place, &bind["node"]) {
                 morph(reader, &place, &[joint], &bind["index"], number(bind, "weight", 1.0), &mut expression);
             }
         }
-        for bind in list(&value["materialColorBinds"]).iter().take(MAX_BINDS) {
+        for bind in colors {
             if let Some(material) = index(&bind["material"]) {
                 color(reader, material, text(bind, "type"), &bind["targetValue"], &mut expression);
             }
         }
-        for bind in list(&value["textureTransformBinds"]).iter().take(MAX_BINDS) {
+        for bind in transforms {
             if let Some(material) = index(&bind["material"]) {
                 let offset = pair(&bind["offset"], 0, [0.0, 0.0]);
                 texture_transform(reader, material, pair(&bind["scale"], 0, [1.0, 1.0]), offset, &mut expression);
@@ -94,8 +108,14 @@ pub fn read_1(reader: &mut Reader, vrm: &Value, out: &mut Vec<Expression>) {
 }
 
 pub fn read_0(reader: &mut Reader, vrm: &Value, out: &mut Vec<Expression>) {
-    for (at, value) in list(&vrm["blendShapeMaster"]["blendShapeGroups"]).iter().take(MAX_EXPRESSIONS).enumerate() {
-        let place = format!("extensions.VRM.blendShapeMaster.blendShapeGroups[{at}]");
+    let mut joints_of_mesh: BTreeMap<usize, Vec<JointIndex>> = BTreeMap::new();
+    for instance in reader.parts.instances {
+        joints_of_mesh.entry(instance.mesh).or_default().push(instance.joint);
+    }
+    let place = "extensions.VRM.blendShapeMaster.blendShapeGroups";
+    let groups = reader.list(place, &vrm["blendShapeMaster"]["blendShapeGroups"], MAX_EXPRESSIONS);
+    for (at, value) in groups.iter().enumerate() {
+        let place = format!("{place}[{at}]");
         let (title, preset) = (text(value, "name"), text(value, "presetName").to_lowercase());
         let preset = PRESETS_0.iter().find(|(name, _)| *name == preset).map(|&(_, name)| name);
         let name = preset.unwrap_or(title);
@@ -107,14 +127,14 @@ pub fn read_0(reader: &mut Reader, vrm: &Value, out: &mut Vec<Expression>) {
         let title = if title.is_empty() { name } else { title };
         let mut expression = Expression::new(name, title, preset.is_some());
         expression.is_binary = value["isBinary"] == true;
-        for (at, bind) in list(&value["binds"]).iter().take(MAX_BINDS).enumerate() {
-            let mesh = index(&bind["mesh"]);
-            let draws = reader.parts.instances.iter().filter(|instance| Some(instance.mesh) == mesh);
-            let joints: Vec<JointIndex> = draws.map(|instance| instance.joint).collect();
+        let binds_place = format!("{place}.binds");
+        for (at, bind) in reader.list(&binds_place, &value["binds"], MAX_BINDS).iter().enumerate() {
+            let joints =
+                index(&bind["mesh"]).and_then(|mesh| joints_of_mesh.get(&mesh)).map_or(&[][..], |joints| joints);
             let weight = number(bind, "weight", 100.0) / 100.0;
-            morph(reader, &format!("{place}.binds[{at}]"), &joints, &bind["index"], weight, &mut expression);
+            morph(reader, &format!("{binds_place}[{at}]"), joints, &bind["index"], weight, &mut expression);
         }
-        for bind in list(&value["materialValues"]).iter().take(MAX_BINDS) {
+        for bind in reader.list(&format!("{place}.materialValues"), &value["materialValues"], MAX_BINDS) {
             material_value(reader, bind, &mut expression);
         }
         out.push(expression);
@@ -123,10 +143,8 @@ pub fn read_0(reader: &mut Reader, vrm: &Value, out: &mut Vec<Expression>) {
 
 /// The expressions that a .vrma animates: their names and nodes.
 pub fn read_animated(reader: &mut Reader, vrma: &Value, read: &mut Read) {
-    each(reader, "VRMC_vrm_animation", vrma, |reader, place, name, is_preset, value| {
-        if let Some(joint) = reader.joint_at(place, &value["node"])
-            && read.avatar.expressions.len() < MAX_EXPRESSIONS
-        {
+    each(reader, "VRMC_vrm_animation", vrma, &mut |reader, place, name, is_preset, value| {
+        if let Some(joint) = reader.joint_at(place, &value["node"]) {
             read.animated.expressions.push((joint, read.avatar.expressions.len()));
             read.avatar.expressions.push(Expression::new(name, name, is_preset));
         }
@@ -142,7 +160,7 @@ fn morph(
     expression: &mut Expression,
 ) {
     let before = expression.morphs.len();
-    for &joint in joints {
+    for &joint in joints.iter().take(MAX_BINDS) {
         let range = reader.parts.skeleton.morph_range(joint);
         let target = index(target).filter(|&target| target < range.len());
         if let Some(target) = target.filter(|_| expression.morphs.len() < MAX_BINDS) {

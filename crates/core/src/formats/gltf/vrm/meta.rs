@@ -2,12 +2,13 @@
 
 use serde_json::Value;
 
-use super::{Reader, index, list, text};
+use super::{Reader, index, text};
 use crate::avatar::Avatar;
 
 /// Characters of a value that are kept.
 const MAX_CHARS: usize = 500;
 const MAX_ENTRIES: usize = 64;
+const MAX_FLAGS: usize = 1024;
 
 pub fn read(reader: &mut Reader, vrm: &Value, avatar: &mut Avatar) {
     avatar.spec_version = text(vrm, "specVersion").chars().take(MAX_CHARS).collect();
@@ -23,7 +24,8 @@ pub fn read(reader: &mut Reader, vrm: &Value, avatar: &mut Avatar) {
             avatar.meta.push((key.clone(), value.chars().take(MAX_CHARS).collect()));
         }
     }
-    for value in list(&vrm["firstPerson"]["meshAnnotations"]) {
+    let flags = reader.list("firstPerson.meshAnnotations", &vrm["firstPerson"]["meshAnnotations"], MAX_FLAGS);
+    for value in flags {
         let mesh = index(&value["mesh"]);
         // 1.0 names nodes, 0.x meshes.
         let (joint, flag) = match reader.joint(&value["node"]) {

@@ -118,6 +118,18 @@ impl<'a> Reader<'a> {
         joint
     }
 
+    /// Returns the elements of an array, at most `max`; warns about further ones.
+    fn list<'v>(&mut self, place: &str, value: &'v Value, max: usize) -> &'v [Value] {
+        let all = list(value);
+        if all.len() > max {
+            self.ignore(
+                place.to_owned(),
+                format!("expected at most {max}, found {}; the others are left out", all.len()),
+            );
+        }
+        &all[..all.len().min(max)]
+    }
+
     fn ignore(&mut self, place: String, problem: String) {
         self.warnings.push(Warning::Other { code: "vrm-ignored", place, problem });
     }

@@ -10,43 +10,48 @@ use crate::avatar::{Collider, SpringJoint, Springs};
 /// Further ones are left out: each joint is tested against each of its colliders in every step.
 const MAX_JOINTS: usize = 4096;
 const MAX_COLLIDERS: usize = 1024;
-
+/// Groups of a file, and groups of colliders of a spring.
 const MAX_GROUPS: usize = 512;
+const MAX_GROUPS_OF_SPRING: usize = 64;
 
 const DOWN: Vec3 = Vec3::NEG_Y;
 
 pub fn read_1(reader: &mut Reader, value: &Value) -> Springs {
-    // The file's indices count colliders that have no node, too.
-    let mut place_of = Vec::new();
-    let mut colliders = Vec::new();
-    for (at, value) in list(&value["colliders"]).iter().take(MAX_COLLIDERS).enumerate() {
-        let place = format!("extensions.{SPRING_BONE}.colliders[{at}]");
-        let collider = reader.joint_at(&place, &value["node"]).and_then(|joint| collider(joint, value));
-        place_of.push(collider.map(|collider| {
+    let place_of = |list: &str| format!("extensions.{SPRING_BONE}.{list}");
+    // The file's indices count colliders that are left out, too.
+    let (mut numbers, mut colliders) = (Vec::new(), Vec::new());
+    for (at, value) in reader.list(&place_of("colliders"), &value["colliders"], MAX_COLLIDERS).iter().enumerate() {
+        let joint = reader.joint_at(&place_of(&format!("colliders[{at}]")), &value["node"]);
+        numbers.push(joint.and_then(|joint| collider(joint, value)).map(|collider| {
             colliders.push(collider);
             colliders.len() as u32 - 1
         }));
     }
     let group = |at: &Value| {
         let group = index(at).and_then(|at| value["colliderGroups"].get(at)).unwrap_or(&Value::Null);
-        list(&group["colliders"]).iter().filter_map(|at| *place_of.get(index(at)?)?)
+        list(&group["colliders"]).iter().take(MAX_COLLIDERS).filter_map(|at| *numbers.get(index(at)?)?)
     };
     let mut joints = Vec::new();
+    let mut left = MAX_JOINTS;
     for (at, spring) in list(&value["springs"]).iter().enumerate() {
-        let colliders = distinct(list(&spring["colliderGroups"]).iter().flat_map(group));
+        let place = place_of(&format!("springs[{at}]"));
+        let chain = reader.list(&format!("{place}.joints"), &spring["joints"], left);
+        left -= chain.len();
+        let groups = reader.list(&format!("{place}.colliderGroups"), &spring["colliderGroups"], MAX_GROUPS_OF_SPRING);
+        let colliders = distinct(groups.iter().flat_map(group));
         let center = spring.get("center").and_then(|node| reader.joint(node));
-        for (end, pair) in list(&spring["joints"]).windows(2).enumerate() {
-            let place = |joint: usize| format!("extensions.{SPRING_BONE}.springs[{at}].joints[{joint}]");
+        for (end, pair) in chain.windows(2).enumerate() {
+            let place = |joint: usize| format!("{place}.joints[{joint}]");
             let joint = reader.joint_at(&place(end), &pair[0]["node"]);
             let child = reader.joint_at(&place(end + 1), &pair[1]["node"]);
             let (Some(joint), Some(child)) = (joint, child) else { continue };
             match SpringJoint::tail(reader.parts.skeleton, joint, Some(child)) {
-                Some(tail) if joints.len() < MAX_JOINTS => {
-                    joints.push(spring_joint(&pair[0], "stiffness", joint, tail, center, &colliders));
-                }
-                Some(_) => {}
+                Some(tail) => joints.push(spring_joint(&pair[0], "stiffness", joint, tail, center, &colliders)),
                 None => reader.ignore(place(end + 1), "it isn't below the joint before it; it is left out".to_owned()),
             }
+        }
+        if left == 0 {
+            break;
         }
     }
     Springs::new(reader.parts.skeleton, joints, colliders)
@@ -79,9 +84,10 @@ pub fn read_0(reader: &mut Reader, vrm: &Value) -> Springs {
     }
     let mut joints: Vec<SpringJoint> = Vec::new();
     // Each group looks at every joint.
-    for group in list(&value["boneGroups"]).iter().take(MAX_GROUPS) {
+    for group in reader.list("extensions.VRM.secondaryAnimation.boneGroups", &value["boneGroups"], MAX_GROUPS) {
         let of_group = |at: &Value| index(at).and_then(|at| groups.get(at)).cloned().into_iter().flatten();
-        let colliders = distinct(list(&group["colliderGroups"]).iter().flat_map(of_group));
+        let colliders = list(&group["colliderGroups"]).iter().take(MAX_GROUPS_OF_SPRING).flat_map(of_group);
+        let colliders = distinct(colliders);
         // Exporters write −1 for none.
         let center = reader.joint(&group["center"]);
         let mut is_below = vec![false; skeleton.len()];
@@ -102,8 +108,10 @@ pub fn read_0(reader: &mut Reader, vrm: &Value) -> Springs {
 }
 
 fn distinct(indices: impl Iterator<Item = u32>) -> Vec<u32> {
-    let indices: std::collections::BTreeSet<u32> = indices.collect();
-    indices.into_iter().collect()
+    let mut indices: Vec<u32> = indices.collect();
+    indices.sort_unstable();
+    indices.dedup();
+    indices
 }
 
 /// `stiffness`: the name of that member; 0.x misspells it.
