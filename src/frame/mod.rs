@@ -60,7 +60,8 @@ impl Frame {
         &self.scratch.sampler.pose
     }
 
-    /// What the clip and the expressions change besides joints: the values of materials, lights, cameras and visibility.
+    /// What the clip and the expressions change besides joints: the values of materials, lights, cameras and
+    /// visibility.
     pub fn properties(&self) -> &PropertyValues {
         &self.scratch.sampler.properties
     }

@@ -1,4 +1,5 @@
-//! What an avatar adds to the pose of a clip: where the eyes look, expressions, constraints and spring bones, in this order.
+//! What an avatar adds to the pose of a clip: where the eyes look, expressions, constraints and spring bones, in this
+//! order.
 
 use std::collections::BTreeMap;
 

@@ -125,8 +125,8 @@ pub fn world_from_file_camera(world_from_joint: &Affine3A) -> Option<Affine3A> {
     world_from_joint.translation.is_finite().then_some(Affine3A { matrix3, translation: world_from_joint.translation })
 }
 
-/// Returns the camera's position in world space, in a pose of the active model. `travel` moves an orbit camera that follows the
-/// character.
+/// Returns the camera's position in world space, in a pose of the active model. `travel` moves an orbit camera that
+/// follows the character.
 pub fn camera_eye(library: &Library, state: &ViewerState, aspect: f32, travel: Vec3, pose: &Pose) -> Option<Vec3> {
     let of_file = |camera: usize| {
         let model = library.active()?;

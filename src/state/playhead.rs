@@ -126,15 +126,16 @@ pub struct PoseSampler {
 }
 
 impl PoseSampler {
-    /// Samples the current pose: [`Self::sample_motion`], then [`Self::apply_avatar`], for whom the camera's position is
-    /// unknown.
+    /// Samples the current pose: [`Self::sample_motion`], then [`Self::apply_avatar`], for whom the camera's position
+    /// is unknown.
     pub fn sample(&mut self, model: &Model, state: &ViewerState) {
         self.sample_motion(model, state);
         self.apply_avatar(model, state, None);
     }
 
-    /// Samples rest pose, layers below the clip, the clip, the crossfade from the previous one, then joints set manually.
-    /// Properties aren't blended: a crossfade switches them halfway. Allocates nothing once the buffers have grown.
+    /// Samples rest pose, layers below the clip, the clip, the crossfade from the previous one, then joints set
+    /// manually. Properties aren't blended: a crossfade switches them halfway. Allocates nothing once the buffers have
+    /// grown.
     pub fn sample_motion(&mut self, model: &Model, state: &ViewerState) {
         let clip = active_clip(model, state);
         let time_secs = clip.map_or(0.0, |clip| clip_secs(model, clip, state));
@@ -160,8 +161,8 @@ impl PoseSampler {
         pose_joints(model, state, &mut self.pose);
     }
 
-    /// Applies the avatar to the sampled motion, then morph weights set manually. `eye` is the camera's position in world
-    /// space: eyes that look into the camera keep still without it. Allocates only when spring bones start over.
+    /// Applies the avatar to the sampled motion, then morph weights set manually. `eye` is the camera's position in
+    /// world space: eyes that look into the camera keep still without it. Allocates only when spring bones start over.
     pub fn apply_avatar(&mut self, model: &Model, state: &ViewerState, eye: Option<Vec3>) {
         self.avatar.apply(model, state, eye, &mut self.pose, &mut self.properties);
         for (&index, &weight) in &state.edits.morph {

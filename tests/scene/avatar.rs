@@ -235,7 +235,10 @@ fn a_vrma_animates_the_expressions_of_the_model_by_name() {
     let times = motion.accessor(F32, "SCALAR", 2, &floats(&[0.0, 1.0]));
     let weights = motion.accessor(F32, "VEC3", 2, &floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0]));
     let turns = motion.accessor(F32, "VEC4", 2, &floats(&[0.0, 0.0, 0.0, 1.0, 0.6, 0.0, 0.0, 0.8]));
-    let channel = |sampler: usize, node: usize, path: &str| json!({ "sampler": sampler, "target": { "node": node, "path": path } });
+    let channel = |sampler: usize, node: usize, path: &str| {
+        let target = json!({ "node": node, "path": path });
+        json!({ "sampler": sampler, "target": target })
+    };
     motion.json["animations"] = json!([{
         "name": "smile",
         "channels": [channel(0, 7, "translation"), channel(0, 8, "translation"), channel(1, 1, "rotation")],
@@ -601,8 +604,8 @@ fn playing_and_seeking_give_the_same_springs_bit_for_bit() {
     }
 }
 
-/// Rotations of `a` and `b` by @pixiv/three-vrm-springbone 3.5.5 with three 0.180: the chain with gravity 3 and the capsule, after 60
-/// updates of 1/60 s at rest, and after 20 more in which the root moves as in the clip.
+/// Rotations of `a` and `b` by @pixiv/three-vrm-springbone 3.5.5 with three 0.180: the chain with gravity 3 and the
+/// capsule, after 60 updates of 1/60 s at rest, and after 20 more in which the root moves as in the clip.
 #[test]
 fn springs_match_three_vrm() {
     let expected = [
@@ -867,4 +870,79 @@ fn a_real_vrma_animates_a_real_avatar() {
     }
     let most = weights.iter().copied().fold(0.0, f32::max);
     assert!(most > 0.5 && weights.iter().any(|&weight| weight < 0.5 * most), "{weights:?}");
+}
+
+/// Pointers to everything at or below a value.
+fn pointers(value: &Value, at: &str, out: &mut Vec<String>) {
+    out.push(at.to_owned());
+    match value {
+        Value::Array(list) => {
+            for (index, value) in list.iter().enumerate() {
+                pointers(value, &format!("{at}/{index}"), out);
+            }
+        }
+        Value::Object(object) => {
+            for (key, value) in object {
+                pointers(value, &format!("{at}/{}", key.replace('~', "~0").replace('/', "~1")), out);
+            }
+        }
+        _ => {}
+    }
+}
+
+/// Whatever stands where in the extensions, the model loads or is refused, and its pose has no NaN.
+#[test]
+fn odd_values_do_no_harm() {
+    let capsule =
+        json!([{ "node": 4, "shape": { "capsule": { "offset": [0, 0, 0], "tail": [0, 0, 1], "radius": 0.1 } } }]);
+    let spring_0 = json!({ "secondaryAnimation": {
+        "boneGroups": [{ "stiffiness": 1, "gravityDir": { "x": 0, "y": -1 }, "bones": [1], "colliderGroups": [0] }],
+        "colliderGroups": [{ "node": 2, "colliders": [{ "offset": { "x": 0 }, "radius": 0.1 }] }],
+    } });
+    let fixtures = [
+        face_0(),
+        face_1(),
+        eyes("bone", json!({})),
+        constrained(json!({ "aim": { "source": SOURCE, "aimAxis": "PositiveX", "weight": 0.5 } })),
+        chain(1.0, capsule),
+        person("VRM", json!([]), spring_0),
+    ];
+    let odd = [
+        Value::Null,
+        json!(-1),
+        json!(1e30),
+        json!(0),
+        json!(1_u64 << 40),
+        json!("x"),
+        json!([]),
+        json!([[], 3]),
+        json!({ "node": 0 }),
+        json!(true),
+    ];
+    let mut loaded = 0;
+    for Build { json, bytes } in fixtures {
+        let mut places = Vec::new();
+        for root in ["/extensions", "/nodes/3/extensions"] {
+            if let Some(value) = json.pointer(root) {
+                pointers(value, root, &mut places);
+            }
+        }
+        for (place, value) in places.iter().flat_map(|place| odd.iter().map(move |value| (place, value))) {
+            let mut build = Build { json: json.clone(), bytes: bytes.clone() };
+            *build.json.pointer_mut(place).expect("a place") = value.clone();
+            let Ok(asset) = build.load() else { continue };
+            let library = library_of(Model::new("odd.vrm".to_owned(), asset, Vec::new()));
+            let mut state = looking_at(Vec3::new(0.3, 2.0, 1.0));
+            state.display.springs = true;
+            let names = model(&library).asset.avatar.expressions.iter().map(|expression| expression.name.clone());
+            state.edits.expressions = names.map(|name| (name, 1.0)).collect();
+            state.playhead.time_secs = 0.4;
+            let frame = frame(&library, &state);
+            let is_nan = frame.characters[0].world_from_joint.iter().any(|world| world.is_nan());
+            let has_nan_weight = frame.pose().morph_weights.iter().any(|weight| weight.is_nan());
+            assert!(!is_nan && !has_nan_weight, "{place} = {value}");
+            loaded += 1;
+        }
+    }
+    assert!(loaded > 2000, "{loaded}");
 }

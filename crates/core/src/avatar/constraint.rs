@@ -65,8 +65,8 @@ impl Constraint {
         turn.is_finite().then(|| turn * rest)
     }
 
-    /// Whether `other` must be applied first: it turns what this one depends on. `subtree_ends`: the joint after the last one
-    /// below each joint.
+    /// Whether `other` must be applied first: it turns what this one depends on. `subtree_ends`: the joint after the
+    /// last one below each joint.
     fn depends_on(&self, other: &Self, subtree_ends: &[u32]) -> bool {
         let is_turned = |joint: JointIndex| (other.joint.0..subtree_ends[other.joint.get()]).contains(&joint.0);
         let aims_from = |joint| matches!(self.kind, ConstraintKind::Aim(_)) && joint != other.joint && is_turned(joint);
@@ -74,8 +74,8 @@ impl Constraint {
     }
 }
 
-/// Returns the constraints sorted so that each comes after those it depends on, then the ones in a cycle, which have no such
-/// order.
+/// Returns the constraints sorted so that each comes after those it depends on, then the ones in a cycle, which have no
+/// such order.
 pub fn in_order(skeleton: &Skeleton, constraints: Vec<Constraint>) -> (Vec<Constraint>, Vec<Constraint>) {
     // Joints are sorted depth first.
     let mut subtree_ends: Vec<u32> = (1..=skeleton.len() as u32).collect();

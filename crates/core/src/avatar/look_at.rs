@@ -1,5 +1,5 @@
-//! Eyes that look at a point (`VRMC_vrm-1.0`, lookAt.md; `firstPerson` of VRM 0.x): the direction from the head, limited and
-//! scaled, as rotations of the eyes or as weights of expressions.
+//! Eyes that look at a point (`VRMC_vrm-1.0`, lookAt.md; `firstPerson` of VRM 0.x): the direction from the head,
+//! limited and scaled, as rotations of the eyes or as weights of expressions.
 
 use glam::{EulerRot, Quat, Vec3};
 
@@ -54,7 +54,8 @@ impl LookAt {
         std::iter::once(self.head).chain(eyes.into_iter().flatten())
     }
 
-    /// Looks in a direction (see [`Self::direction`]): turns the eyes from their rest, or sets the weights of expressions.
+    /// Looks in a direction (see [`Self::direction`]): turns the eyes from their rest, or sets the weights of
+    /// expressions.
     pub fn apply(&self, [yaw, pitch]: [f32; 2], skeleton: &Skeleton, pose: &mut Pose, weights: &mut [f32]) {
         match self.kind {
             LookAtKind::Bones(eyes) => {
@@ -76,8 +77,8 @@ impl LookAt {
         }
     }
 
-    /// Returns yaw (positive to the character's left) and pitch (positive down) of a point in model space, relative to the
-    /// face, in degrees.
+    /// Returns yaw (positive to the character's left) and pitch (positive down) of a point in model space, relative to
+    /// the face, in degrees.
     pub fn direction(&self, target: Vec3, skeleton: &Skeleton, pose: &Pose) -> Option<[f32; 2]> {
         let rotation_of = |pose| model_from_one(skeleton, pose, self.head).to_scale_rotation_translation().1;
         let eyes = model_from_one(skeleton, pose, self.head).transform_point3(self.offset);

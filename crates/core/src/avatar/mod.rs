@@ -1,5 +1,5 @@
-//! What an avatar format (VRM) adds to a model: expressions, node constraints, where the eyes look, spring bones, and the
-//! licence. Plain data with the arithmetic that applies it to a pose; reading it from files is left to the loaders.
+//! What an avatar format (VRM) adds to a model: expressions, node constraints, where the eyes look, spring bones, and
+//! the licence. Plain data with the arithmetic that applies it to a pose; reading it from files is left to the loaders.
 
 mod constraint;
 mod expression;

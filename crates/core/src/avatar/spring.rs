@@ -1,5 +1,6 @@
-//! Spring bones (`VRMC_springBone-1.0`, `VRMC_springBone_extended_collider-1.0`; `secondaryAnimation` of VRM 0.x): chains of
-//! joints that swing, as Verlet integration of their tails. One step; `spring_cache` decides which steps are taken.
+//! Spring bones (`VRMC_springBone-1.0`, `VRMC_springBone_extended_collider-1.0`; `secondaryAnimation` of VRM 0.x):
+//! chains of joints that swing, as Verlet integration of their tails. One step; `spring_cache` decides which steps are
+//! taken.
 
 use glam::{Affine3A, Quat, Vec3};
 
@@ -66,8 +67,8 @@ pub(super) struct Tail {
 }
 
 impl Springs {
-    /// Sorts the joints so that parents come first. Of several springs of one joint, the first is kept. `colliders` are checked
-    /// by the caller.
+    /// Sorts the joints so that parents come first. Of several springs of one joint, the first is kept. `colliders` are
+    /// checked by the caller.
     pub fn new(skeleton: &Skeleton, mut joints: Vec<SpringJoint>, colliders: Vec<Collider>) -> Self {
         joints.sort_by_key(|spring| spring.joint);
         joints.dedup_by_key(|spring| spring.joint);
@@ -154,8 +155,8 @@ impl Springs {
 }
 
 impl SpringJoint {
-    /// Returns the tail of a joint: the origin of a joint below it or, without one, 7 cm in the direction in which the joint
-    /// lies from its parent. `None` if `child` isn't below the joint, or by more than [`MAX_BONE_LEVELS`].
+    /// Returns the tail of a joint: the origin of a joint below it or, without one, 7 cm in the direction in which the
+    /// joint lies from its parent. `None` if `child` isn't below the joint, or by more than [`MAX_BONE_LEVELS`].
     pub fn tail(skeleton: &Skeleton, joint: JointIndex, child: Option<JointIndex>) -> Option<Vec3> {
         let rest = skeleton.rest();
         let Some(mut at) = child else {

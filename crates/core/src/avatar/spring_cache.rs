@@ -1,5 +1,5 @@
-//! Spring bones at a time of a clip: simulated in fixed steps from the clip's start, so that every way to a time gives the same
-//! pose. States along the way are kept, which makes going back cheap.
+//! Spring bones at a time of a clip: simulated in fixed steps from the clip's start, so that every way to a time gives
+//! the same pose. States along the way are kept, which makes going back cheap.
 
 use glam::{Affine3A, Quat};
 
@@ -68,8 +68,8 @@ impl SpringCache {
         self.kept_rotations.reserve(kept);
     }
 
-    /// Turns the spring joints in `pose` as they are at a time in the range. `skeleton` and `springs` are those of the model,
-    /// whose pose in the clip `motion` gives.
+    /// Turns the spring joints in `pose` as they are at a time in the range. `skeleton` and `springs` are those of the
+    /// model, whose pose in the clip `motion` gives.
     pub fn apply(
         &mut self,
         skeleton: &Skeleton,
@@ -132,8 +132,8 @@ impl SpringCache {
         self.kept_rotations.extend_from_slice(&self.rotations);
     }
 
-    /// The state at the start of a section. In a loop, the tails arrive at the first one from the end, carried along to where the
-    /// model starts again, so that a walk doesn't whip them when it jumps back.
+    /// The state at the start of a section. In a loop, the tails arrive at the first one from the end, carried along to
+    /// where the model starts again, so that a walk doesn't whip them when it jumps back.
     fn begin(&mut self, section: u32, skeleton: &Skeleton, springs: &Springs, motion: &mut dyn SpringMotion) {
         let TimeRange { start_secs, end_secs } = self.range;
         let (lead, lead_end_secs) = match section {

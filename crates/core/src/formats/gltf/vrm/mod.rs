@@ -1,5 +1,6 @@
 //! VRM 0.x and 1.0 besides the humanoid bones: `VRM`, `VRMC_vrm`, `VRMC_springBone`, `VRMC_node_constraint` and
-//! `VRMC_vrm_animation`. What a statement refers to and isn't there costs that statement, with a warning; the model still loads.
+//! `VRMC_vrm_animation`. What a statement refers to and isn't there costs that statement, with a warning; the model
+//! still loads.
 
 mod constraints;
 mod expressions;
