@@ -13,14 +13,6 @@ use crate::avatar::{Expression, MaterialBind, MorphBind, Override};
 const MAX_EXPRESSIONS: usize = 256;
 const MAX_BINDS: usize = 1024;
 
-const TEXTURES: [TextureSlot; 5] = [
-    TextureSlot::BaseColor,
-    TextureSlot::MetallicRoughness,
-    TextureSlot::Normal,
-    TextureSlot::Occlusion,
-    TextureSlot::Emissive,
-];
-
 /// VRM 0.x's preset names and those of 1.0.
 const PRESETS_0: [(&str, &str); 18] = [
     ("neutral", "neutral"),
@@ -201,7 +193,7 @@ fn color(reader: &Reader, at: usize, kind: &str, target: &Value, expression: &mu
 
 fn texture_transform(reader: &Reader, at: usize, scale: [f32; 2], offset: [f32; 2], expression: &mut Expression) {
     let Some(material) = reader.parts.materials.get(at) else { return };
-    for slot in TEXTURES {
+    for slot in TextureSlot::ALL {
         let Some(texture) = material.texture(slot) else { continue };
         let uvs = texture.uv_transform;
         let wide = |[x, y]: [f32; 2]| Vec4::new(x, y, 0.0, 0.0);
