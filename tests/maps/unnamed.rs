@@ -32,6 +32,8 @@ pub fn without_names(asset: &Asset) -> Asset {
         materials: asset.materials.clone(),
         textures: asset.textures.clone(),
         images: asset.images.clone(),
+        // Clips animate its expressions.
+        avatar: asset.avatar.clone(),
         ..AssetParts::default()
     };
     Asset::new(parts).expect("still valid")
