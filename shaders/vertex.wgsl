@@ -58,9 +58,10 @@ fn position_out(in: VertexIn, blend: Blend) -> vec4f {
     return frame.projection_from_world * vec4f(moved, 1.0);
 }
 
+// Without influences, each copy of the mesh has a palette entry.
 @vertex
-fn position_0(in: VertexIn) -> @builtin(position) vec4f {
-    return position_out(in, single(0u));
+fn position_0(in: VertexIn, @builtin(instance_index) copy: u32) -> @builtin(position) vec4f {
+    return position_out(in, single(copy));
 }
 
 @vertex
@@ -80,8 +81,8 @@ fn position_texture(in: VertexIn) -> @builtin(position) vec4f {
 }
 
 @vertex
-fn vertex_0(in: VertexIn) -> VertexOut {
-    return vertex_out(in, single(0u), select(0.0, 1.0, draw.heat_joint == 0u));
+fn vertex_0(in: VertexIn, @builtin(instance_index) copy: u32) -> VertexOut {
+    return vertex_out(in, single(copy), select(0.0, 1.0, draw.heat_joint == 0u));
 }
 
 @vertex

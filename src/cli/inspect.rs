@@ -40,6 +40,9 @@ fn text(opened: &Opened, document: &Value) -> String {
     line("triangles", number("triangles"));
     line("morphs", number("morph_targets"));
     line("cameras", number("cameras"));
+    if !asset.variants.is_empty() {
+        line("variants", asset.variants.join(", "));
+    }
     if !asset.extensions_used.is_empty() {
         line("extensions", asset.extensions_used.join(", "));
     }

@@ -21,9 +21,12 @@ pub(super) struct Item {
     model: usize,
     mesh: usize,
     primitive: usize,
+    variant: Option<usize>,
     pub pipeline: MeshPipeline,
     /// Byte offset of the draw's uniform in the dynamic buffer.
     pub offset: u32,
+    /// How many copies to draw; each has a palette entry.
+    pub copies: u32,
     /// Draws the edges instead of the triangles.
     pub edges: bool,
     /// View depth, for sorting.
@@ -32,15 +35,19 @@ pub(super) struct Item {
 
 impl Item {
     pub fn primitive<'a>(&self, models: &'a [GpuModel]) -> Option<&'a GpuPrimitive> {
-        models.get(self.model)?.meshes.get(self.mesh)?.get(self.primitive)?.as_ref()
+        let primitive = models.get(self.model)?.meshes.get(self.mesh)?.get(self.primitive)?.as_ref()?;
+        // Edges have no material.
+        Some(if self.edges { primitive } else { primitive.in_variant(self.variant) })
     }
 }
 
-/// What the primitives of one mesh instance have in common.
+/// What the primitives of one mesh instance, or of several copies of one, have in common.
 struct Instance<'a> {
     frame: &'a Frame,
     character: &'a Character,
     draw: &'a Draw,
+    /// The draw and its copies that follow.
+    copies: u32,
     /// Index into the renderer's models.
     model: usize,
     /// First entry in the palette texture.
@@ -156,10 +163,10 @@ impl DrawList {
     }
 
     /// Fills the lists and the palette. `shadow`: a shadow map is drawn.
-    pub fn collect(
+    pub fn collect<'a>(
         &mut self,
         device: &wgpu::Device,
-        frame: &Frame,
+        frame: &'a Frame,
         models: &mut [GpuModel],
         pipelines: &mut Pipelines,
         palette: &mut PaletteTexture,
@@ -183,25 +190,32 @@ impl DrawList {
             let first_palette = next_palette;
             next_palette += character.palette.len() as u32;
             let Some(model) = models.iter().position(|model| model.id == character.model) else { continue };
-            for draw in character.draws.iter().filter(|draw| draw.visible) {
+            for copies in character.draws.chunk_by(|draw, next| next.is_copy && next.mirrored == draw.mirrored) {
+                let Some(draw) = copies.first().filter(|draw| draw.visible) else { continue };
                 if frame.look.wireframe {
                     models[model].prepare_edges(device, draw.mesh);
                 }
-                let instance = Instance {
+                let morph_weights = palette.push_morph_weights(character.morph_weights_of(draw));
+                let instance = |draws: &'a [Draw]| Instance {
                     frame,
                     character,
-                    draw,
+                    draw: &draws[0],
+                    copies: draws.len() as u32,
                     model,
-                    palette: first_palette + draw.palette.start,
-                    morph_weights: palette.push_morph_weights(character.morph_weights_of(draw)),
+                    palette: first_palette + draws[0].palette.start,
+                    morph_weights,
                     lighting,
-                    distance: -frame.view.view_from_world.transform_point3(draw.center).z,
+                    distance: -frame.view.view_from_world.transform_point3(draws[0].center).z,
                 };
                 let model = &models[model];
                 let primitives = model.meshes.get(draw.mesh).into_iter().flatten().enumerate();
                 for (index, primitive) in primitives.filter_map(|(index, known)| Some((index, known.as_ref()?))) {
+                    let primitive = primitive.in_variant(character.variant);
                     let shadow = shadow && model.casts_shadow(primitive);
-                    self.add(device, pipelines, &instance, index, primitive, shadow);
+                    let at_once = if primitive.can_repeat() { copies.len() } else { 1 };
+                    for draws in copies.chunks(at_once) {
+                        self.add(device, pipelines, &instance(draws), index, primitive, shadow);
+                    }
                 }
             }
         }
@@ -229,8 +243,10 @@ impl DrawList {
             model: instance.model,
             mesh: instance.draw.mesh,
             primitive: index,
+            variant: instance.character.variant,
             pipeline: pipelines.mesh(device, key),
             offset,
+            copies: instance.copies,
             edges,
             distance: instance.distance,
         };

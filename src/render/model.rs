@@ -6,7 +6,7 @@ use std::sync::Arc;
 use wgpu::util::DeviceExt;
 
 use super::UploadError;
-use super::geometry::{GpuGeometry, edges};
+use super::geometry::{GpuGeometry, InfluenceSource, edges};
 use super::pipelines::{Features, Layouts, MATERIAL_MAPS, Shading};
 use super::texture::{MipMaker, sampler, single_texel};
 use super::uniform_buffer::UniformBuffer;
@@ -46,6 +46,21 @@ pub(super) struct GpuPrimitive {
     material: Option<usize>,
     /// Index buffer of the edges and its length; built when the wireframe is first shown.
     pub edges: Option<(wgpu::Buffer, u32)>,
+    /// The same geometry with the materials of variants, by the variant's index.
+    variants: Vec<(usize, GpuPrimitive)>,
+}
+
+impl GpuPrimitive {
+    /// Whether copies can share a draw call: blended ones have to be sorted, and influences leave no palette entry per copy.
+    pub fn can_repeat(&self) -> bool {
+        !self.features.has(Features::BLEND) && self.geometry.influences == InfluenceSource::None
+    }
+
+    /// Returns the primitive as a variant shows it.
+    pub fn in_variant(&self, variant: Option<usize>) -> &Self {
+        let found = self.variants.iter().find(|&&(index, _)| Some(index) == variant);
+        found.map_or(self, |(_, primitive)| primitive)
+    }
 }
 
 /// Uploads models. Holds the mipmap pipelines and placeholders for missing maps and vertex data.
@@ -94,7 +109,12 @@ impl ModelUploader {
                     false => None,
                     true => {
                         let gpu = GpuGeometry::new(device, queue, geometry, smooth, mesh_index, primitive_index)?;
-                        Some(materials.primitive(layouts, geometry, gpu))
+                        let of_variant = |&(variant, material): &(usize, usize)| {
+                            (variant, materials.primitive(layouts, geometry, gpu.clone(), Some(material)))
+                        };
+                        let variants = geometry.variants.iter().map(of_variant).collect();
+                        let primitive = materials.primitive(layouts, geometry, gpu, geometry.material);
+                        Some(GpuPrimitive { variants, ..primitive })
                     }
                 });
             }
@@ -165,12 +185,18 @@ struct Materials<'a> {
 }
 
 impl Materials<'_> {
-    fn primitive(&mut self, layouts: &Layouts, geometry: &Geometry, gpu: GpuGeometry) -> GpuPrimitive {
+    fn primitive(
+        &mut self,
+        layouts: &Layouts,
+        geometry: &Geometry,
+        gpu: GpuGeometry,
+        material: Option<usize>,
+    ) -> GpuPrimitive {
         let default = Material::default();
         let asset = self.model.asset.clone();
-        let found = geometry.material.and_then(|index| asset.materials.get(index));
+        let found = material.and_then(|index| asset.materials.get(index));
+        let key = found.and(material);
         let material = found.unwrap_or(&default);
-        let key = found.and(geometry.material);
         if !self.created.contains_key(&key) {
             let created = self.create(material);
             self.created.insert(key, created);
@@ -190,6 +216,7 @@ impl Materials<'_> {
             double_sided: material.double_sided,
             material: key,
             edges: None,
+            variants: Vec::new(),
             geometry: gpu,
         }
     }

@@ -383,10 +383,10 @@ fn draw_items(
         pass.set_bind_group(3, &primitive.bind_group, &[]);
         primitive.geometry.bind(pass);
         pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
-        pass.draw_indexed(0..count, 0, 0..1);
+        pass.draw_indexed(0..count, 0, 0..item.copies);
         stats.draw_calls += 1;
         if !item.edges && primitive.geometry.topology == crate::mesh::Topology::Triangles {
-            stats.triangles += count / 3;
+            stats.triangles += item.copies * (count / 3);
         }
     }
     stats

@@ -186,6 +186,7 @@ impl Random {
                 let (instance, primitive, vertex) = (self.below(3), self.below(9), self.below(99_999));
                 state.selection.vertex = Some(VertexChoice { instance, primitive, vertex });
             }
+            22 if self.often() => state.edits.variant = Some(self.text()),
             22..=24 | 29..=31 => self.set_look(state, field),
             _ => state.page.embed = self.often(),
         }

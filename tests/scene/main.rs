@@ -43,4 +43,5 @@ mod sets;
 mod skeletons;
 mod stage;
 mod state;
+mod variants;
 mod walker;

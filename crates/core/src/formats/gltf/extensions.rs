@@ -2,8 +2,10 @@
 
 use gltf::json::Root;
 
+use super::instancing;
 use super::nodes::VISIBILITY;
 use super::pointer::POINTER;
+use super::variants;
 use crate::asset::{Warning, Warnings};
 use crate::formats::LoadError;
 
@@ -13,6 +15,8 @@ const SUPPORTED: &[&str] = &[
     "KHR_materials_unlit",
     "KHR_materials_emissive_strength",
     "KHR_lights_punctual",
+    variants::NAME,
+    instancing::NAME,
     POINTER,
     VISIBILITY,
     "EXT_texture_avif",

@@ -14,6 +14,7 @@ mod humanoid;
 mod images;
 mod indices;
 mod influences;
+mod instancing;
 mod loosen;
 mod materials;
 mod meshes;
@@ -23,6 +24,7 @@ mod object;
 mod pointer;
 mod skins;
 mod strict;
+mod variants;
 mod write;
 
 use crate::asset::{Asset, AssetParts, Image, Warning, Warnings};
@@ -96,10 +98,11 @@ fn build(
     let textures = materials::textures(document, &mut warnings)?;
     let images = images::images(files, file, &accessors, &mut warnings)?;
     on_images(&images);
-    let meshes = meshes::meshes(&accessors, &materials, &mut warnings)?;
+    let variants = variants::names(root, &mut warnings)?;
+    let meshes = meshes::meshes(&accessors, &materials, variants.len(), &mut warnings)?;
     let skeleton = nodes::skeleton(root, &meshes, &accessors.budget, &mut warnings)?;
     let skins = skins::skins(&accessors, &skeleton, &mut warnings)?;
-    let instances = nodes::instances(root, &skeleton, &meshes, &skins, &accessors.budget)?;
+    let instances = nodes::instances(&accessors, &skeleton, &meshes, &skins, &mut warnings)?;
     let clips = animations::clips(&accessors, &skeleton, &materials, &mut warnings)?;
     let (scenes, default_scene) = nodes::scenes(root, &skeleton, &mut warnings)?;
     let cameras = nodes::cameras(document, &skeleton, &mut warnings)?;
@@ -120,6 +123,7 @@ fn build(
         instances,
         hidden,
         materials,
+        variants,
         textures,
         images,
         cameras,
