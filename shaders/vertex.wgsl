@@ -23,7 +23,8 @@ struct Influences8 {
 }
 
 struct VertexOut {
-    @builtin(position) position: vec4f,
+    // Invariant, since surfaces are compared with the depth that another pipeline has drawn.
+    @builtin(position) @invariant position: vec4f,
     // World-space vector to the eye. Unlike positions it stays small far from the origin, which keeps derivatives
     // precise.
     @location(0) to_eye: vec3f,

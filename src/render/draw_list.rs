@@ -6,7 +6,7 @@ use super::pipelines::{Features, Layouts, MeshKey, MeshPipeline, Pipelines, Shad
 use super::uniforms::DrawUniform;
 use crate::frame::{Character, Draw, Frame};
 use crate::mesh::Topology;
-use crate::state::ToneMap;
+use crate::state::{Background, ToneMap};
 
 /// Stride of the draw uniforms: the alignment WebGPU and WebGL2 require of dynamic offsets.
 const ALIGNMENT: usize = 256;
@@ -29,6 +29,8 @@ pub(super) struct Item {
     pub copies: u32,
     /// Draws the edges instead of the triangles.
     pub edges: bool,
+    /// Draws no colour.
+    pub depth_only: bool,
     /// View depth, for sorting.
     distance: f32,
 }
@@ -56,6 +58,7 @@ struct Instance<'a> {
     morph_weights: (u32, u32),
     /// Features that depend on the frame's lights.
     lighting: Features,
+    multisampled: bool,
     distance: f32,
 }
 
@@ -93,6 +96,10 @@ impl Instance<'_> {
             mirrored: self.draw.mirrored,
             // The other kinds of shading have no use for it.
             tone_map: if shading == Shading::Lit { self.frame.look.tone_map } else { ToneMap::default() },
+            // In front of nothing, the alpha of the picture would be wrong.
+            coverage: self.multisampled
+                && features.has(Features::MASK)
+                && self.frame.look.background != Background::Transparent,
         }
     }
 }
@@ -103,7 +110,14 @@ fn shadow_key(key: MeshKey) -> MeshKey {
     let alpha_sources = Features::BASE_COLOR_MAP.with(Features::VERTEX_COLORS, true);
     let features =
         if has_holes { key.features.only(alpha_sources).with(Features::MASK, true) } else { Features::default() };
-    MeshKey { shading: Shading::Shadow, features, cull: None, mirrored: false, tone_map: ToneMap::default(), ..key }
+    let tone_map = ToneMap::default();
+    MeshKey { shading: Shading::Shadow, features, cull: None, mirrored: false, tone_map, coverage: false, ..key }
+}
+
+/// The key that draws the depth of a blended surface's opaque parts.
+fn depth_key(key: MeshKey) -> MeshKey {
+    let features = key.features.only(Features::BASE_COLOR_MAP.with(Features::VERTEX_COLORS, true));
+    MeshKey { shading: Shading::Depth, features, tone_map: ToneMap::default(), ..key }
 }
 
 /// The key that draws the surface's edges.
@@ -115,8 +129,18 @@ fn wireframe_key(key: MeshKey) -> MeshKey {
         cull: None,
         mirrored: false,
         tone_map: ToneMap::default(),
+        coverage: false,
         ..key
     }
+}
+
+/// What a primitive draws besides colours.
+#[derive(Clone, Copy)]
+struct Depths {
+    /// It casts a shadow.
+    shadow: bool,
+    /// It is blended and hides what is behind it in places.
+    surface: bool,
 }
 
 /// Draw calls of a frame, reused between frames.
@@ -185,6 +209,7 @@ impl DrawList {
         }
         let lighting =
             Features::default().with(Features::SHADOW, shadow).with(Features::FILE_LIGHTS, !frame.lights.is_empty());
+        let multisampled = pipelines.is_multisampled();
         let mut next_palette = 0;
         for character in &frame.characters {
             let first_palette = next_palette;
@@ -205,16 +230,20 @@ impl DrawList {
                     palette: first_palette + draws[0].palette.start,
                     morph_weights,
                     lighting,
+                    multisampled,
                     distance: -frame.view.view_from_world.transform_point3(draws[0].center).z,
                 };
                 let model = &models[model];
                 let primitives = model.meshes.get(draw.mesh).into_iter().flatten().enumerate();
                 for (index, primitive) in primitives.filter_map(|(index, known)| Some((index, known.as_ref()?))) {
                     let primitive = primitive.in_variant(character.variant);
-                    let shadow = shadow && model.casts_shadow(primitive);
+                    let depths = Depths {
+                        shadow: shadow && model.casts_shadow(primitive),
+                        surface: primitive.features.has(Features::BLEND) && model.has_opaque_parts(primitive),
+                    };
                     let at_once = if primitive.can_repeat() { copies.len() } else { 1 };
                     for draws in copies.chunks(at_once) {
-                        self.add(device, pipelines, &instance(draws), index, primitive, shadow);
+                        self.add(device, pipelines, &instance(draws), index, primitive, depths);
                     }
                 }
             }
@@ -224,7 +253,7 @@ impl DrawList {
         self.blended.sort_by(|a, b| a.edges.cmp(&b.edges).then(b.distance.total_cmp(&a.distance)));
     }
 
-    /// Adds the items of one primitive. `shadow`: it casts one.
+    /// Adds the items of one primitive.
     fn add(
         &mut self,
         device: &wgpu::Device,
@@ -232,7 +261,7 @@ impl DrawList {
         instance: &Instance<'_>,
         index: usize,
         primitive: &GpuPrimitive,
-        shadow: bool,
+        depths: Depths,
     ) {
         let (look, pane) = (&instance.frame.look, instance.character.pane);
         let is_surface = primitive.geometry.topology == Topology::Triangles;
@@ -248,9 +277,14 @@ impl DrawList {
             offset,
             copies: instance.copies,
             edges,
+            depth_only: key.shading == Shading::Depth,
             distance: instance.distance,
         };
         if look.mesh {
+            // Of a blended surface, only the nearest of its opaque layers shows, whatever the order of its triangles.
+            if depths.surface {
+                self.blended.push(item(depth_key(key), false));
+            }
             if !key.features.has(Features::BLEND) {
                 self.solid.push(item(key, false));
             } else if primitive.double_sided && is_surface {
@@ -262,7 +296,7 @@ impl DrawList {
                 self.blended.push(item(key, false));
             }
             // All panes share one shadow map.
-            if shadow && pane.is_none_or(|pane| pane == 0) {
+            if depths.shadow && pane.is_none_or(|pane| pane == 0) {
                 self.shadow.push(item(shadow_key(key), false));
             }
         }

@@ -2,7 +2,7 @@
 //!
 //! All back ends share one path within WebGL2's limits: palettes and morph targets are textures read with
 //! `textureLoad`. A picture takes a shadow pass and a single scene pass, whose fragment stages write display-ready
-//! colours.
+//! colours; without multisampling, further scene passes refine it.
 
 mod blit;
 mod draw_list;
@@ -16,6 +16,7 @@ mod model;
 mod overlay;
 pub mod palette;
 mod pipelines;
+mod refine;
 mod renderer;
 pub mod shaders;
 mod shadow;

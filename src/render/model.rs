@@ -25,6 +25,9 @@ const TEXTURE_SLOTS: [TextureSlot; MATERIAL_MAPS] = [
     TextureSlot::Emissive,
 ];
 
+/// Alpha from which a blended surface counts as opaque; must match surface.wgsl.
+const OPAQUE_ALPHA: f32 = 0.9;
+
 pub(super) struct GpuModel {
     pub id: ModelId,
     asset: Arc<Asset>,
@@ -146,9 +149,19 @@ impl GpuModel {
 
     /// Blended surfaces cast a shadow only if they are more than half opaque.
     pub fn casts_shadow(&self, primitive: &GpuPrimitive) -> bool {
+        let is_solid = || !primitive.features.has(Features::BLEND) || self.alpha(primitive) > 0.5;
+        primitive.geometry.topology == Topology::Triangles && is_solid()
+    }
+
+    /// Whether a blended surface may have parts that hide what is behind them.
+    pub fn has_opaque_parts(&self, primitive: &GpuPrimitive) -> bool {
+        primitive.geometry.topology == Topology::Triangles && self.alpha(primitive) >= OPAQUE_ALPHA
+    }
+
+    /// The alpha of the material without its texture.
+    fn alpha(&self, primitive: &GpuPrimitive) -> f32 {
         let material = primitive.material.and_then(|index| self.materials.get(&index));
-        let is_faint = || material.is_some_and(|uniform| uniform.written().base_color[3] <= 0.5);
-        primitive.geometry.topology == Topology::Triangles && !(primitive.features.has(Features::BLEND) && is_faint())
+        material.map_or(1.0, |uniform| uniform.written().base_color[3])
     }
 
     /// Builds the edge lists of a mesh on first use.

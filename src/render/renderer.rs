@@ -11,6 +11,7 @@ use super::model::{GpuModel, ModelUploader};
 use super::overlay::Overlay;
 use super::palette::PaletteTexture;
 use super::pipelines::{Layouts, Pipelines};
+use super::refine::{Average, SAMPLES};
 use super::targets::Targets;
 use super::uniform_buffer::UniformBuffer;
 use super::uniforms::FrameUniform;
@@ -21,7 +22,7 @@ use crate::state::Background;
 /// Settings that last as long as the renderer.
 #[derive(Debug, Clone, Copy)]
 pub struct RendererOptions {
-    /// Samples per pixel: 4, or 1 on software adapters.
+    /// Samples per pixel of a picture that isn't refined: 4, or 1 on software adapters.
     pub samples: u32,
 }
 
@@ -87,6 +88,11 @@ pub struct Renderer {
     frame_group: wgpu::BindGroup,
     shadow_group: wgpu::BindGroup,
     light: LightSources,
+    /// The uniform of the last picture, without the shift of a sample.
+    uniform: FrameUniform,
+    /// How many of [`SAMPLES`] the last picture has; all with multisampling.
+    samples: usize,
+    average: Option<Average>,
     stats: RenderStats,
 }
 
@@ -133,6 +139,9 @@ impl Renderer {
             frame_buffer,
             shadow_buffer,
             layouts,
+            uniform: FrameUniform::default(),
+            samples: SAMPLES.len(),
+            average: None,
             stats: RenderStats::default(),
         }
     }
@@ -174,6 +183,7 @@ impl Renderer {
         let panes = Panes::new(frame.panes, size);
         let (uniform, shadow_uniform) = frame_uniform(frame, ground.as_ref(), panes.size, &self.light.environment);
         self.frame_buffer.write(queue, uniform);
+        self.uniform = uniform;
         let shadow = shadow_uniform.is_some();
         if let Some(uniform) = shadow_uniform {
             self.shadow_buffer.write(queue, uniform);
@@ -196,14 +206,59 @@ impl Renderer {
         if shadow {
             self.draw_shadow(&mut encoder);
         }
-        self.draw_scene(&mut encoder, frame.look.background, ground.as_ref(), &panes);
+        let output = self.targets.output_view.clone();
+        let (view, resolve_target) = match self.targets.multisampled.clone() {
+            Some(samples) => (samples, Some(&output)),
+            None => (output.clone(), None),
+        };
+        let target = Target { view: &view, resolve_target, background: frame.look.background };
+        self.draw_scene(&mut encoder, &target, ground.as_ref(), &panes);
         queue.submit([encoder.finish()]);
+        self.samples = if self.options.samples > 1 { SAMPLES.len() } else { 1 };
         &self.targets.output_view
+    }
+
+    /// Whether the last picture lacks samples.
+    pub fn can_refine(&self) -> bool {
+        self.samples < SAMPLES.len()
+    }
+
+    /// Adds a sample per pixel to the last picture, which must be that of this frame. Returns whether it lacks more; with
+    /// multisampling, it never does.
+    pub fn refine(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, frame: &Frame) -> bool {
+        let Some([right, down]) = SAMPLES.get(self.samples) else { return false };
+        let panes = Panes::new(frame.panes, self.targets.size());
+        let mut uniform = self.uniform;
+        let shift = [-2.0 * right / panes.size[0], 2.0 * down / panes.size[1]];
+        for column in &mut uniform.projection_from_world {
+            column[0] += shift[0] * column[3];
+            column[1] += shift[1] * column[3];
+        }
+        self.frame_buffer.write(queue, uniform);
+        let sample = self.targets.prepare_sample(device);
+        let stats = self.stats;
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("sample") });
+        let target = Target { view: &sample, resolve_target: None, background: frame.look.background };
+        self.draw_scene(&mut encoder, &target, GroundPlane::of(frame).as_ref(), &panes);
+        self.stats = stats;
+        let average = self.average.get_or_insert_with(|| Average::new(device));
+        let group = average.bind(device, &sample);
+        self.samples += 1;
+        average.draw(&mut encoder, &group, &self.targets.output_view, 1.0 / self.samples as f64);
+        queue.submit([encoder.finish()]);
+        self.can_refine()
+    }
+
+    /// Like [`Self::draw`], with at least four samples per pixel on every device.
+    pub fn draw_refined(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, frame: &Frame, size: [u32; 2]) {
+        self.draw(device, queue, frame, size);
+        while self.refine(device, queue, frame) {}
     }
 
     /// Makes the next picture use a new texture, so that the caller can keep the last one.
     pub fn give_output_away(&mut self, device: &wgpu::Device) {
         self.targets = Targets::new(device, [1, 1], self.options.samples);
+        self.samples = SAMPLES.len();
     }
 
     /// The texture of the last picture.
@@ -236,20 +291,19 @@ impl Renderer {
     fn draw_scene(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        background: Background,
+        target: &Target<'_>,
         ground: Option<&GroundPlane>,
         panes: &Panes,
     ) {
-        let (view, resolve_target) = match &self.targets.multisampled {
-            Some(samples) => (samples, Some(&self.targets.output_view)),
-            None => (&self.targets.output_view, None),
-        };
+        let &Target { view, resolve_target, background } = target;
         let clear = match background {
             Background::Color(color) => {
                 let [r, g, b] = color.map(|channel| f64::from(channel) / 255.0);
                 wgpu::Color { r, g, b, a: 1.0 }
             }
-            _ => wgpu::Color::TRANSPARENT,
+            Background::Transparent => wgpu::Color::TRANSPARENT,
+            // Drawn over; masked surfaces keep its alpha.
+            _ => wgpu::Color::BLACK,
         };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("scene"),
@@ -332,6 +386,13 @@ impl Renderer {
     }
 }
 
+/// What the scene is drawn into.
+struct Target<'a> {
+    view: &'a wgpu::TextureView,
+    resolve_target: Option<&'a wgpu::TextureView>,
+    background: Background,
+}
+
 /// The panes of a picture: equal rectangles in rows.
 struct Panes {
     columns: u32,
@@ -385,7 +446,7 @@ fn draw_items(
         pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
         pass.draw_indexed(0..count, 0, 0..item.copies);
         stats.draw_calls += 1;
-        if !item.edges && primitive.geometry.topology == crate::mesh::Topology::Triangles {
+        if !item.edges && !item.depth_only && primitive.geometry.topology == crate::mesh::Topology::Triangles {
             stats.triangles += item.copies * (count / 3);
         }
     }

@@ -411,7 +411,7 @@ fn copies_are_drawn_in_one_call_unless_they_have_to_be_sorted() {
     let Some(gpu) = gpu() else { return };
     let Gpu { device, queue } = &gpu;
     let half = Affine3A::from_scale(Vec3::splat(0.5));
-    for (alpha_mode, calls) in [(AlphaMode::Opaque, 2), (AlphaMode::Blend, 3)] {
+    for (alpha_mode, calls) in [(AlphaMode::Opaque, 2), (AlphaMode::Blend, 6)] {
         let material = Material { alpha_mode, ..unlit(Vec4::ONE) };
         let mut scene = Scene::new(vec![square(0)], vec![material]);
         scene.frame.characters[0].palette = vec![palette_entry(&half, SkinningMode::Linear)];
