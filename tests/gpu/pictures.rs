@@ -11,7 +11,7 @@ use gaitway::state::{Background, ToneMap};
 use glam::camera::rh::view::look_at_mat4;
 use glam::{Affine3A, Vec2, Vec3, Vec4};
 
-use crate::device::{Gpu, gpu};
+use crate::device::{Gpu, gl, gpu};
 use crate::scene::{Picture, SIZE, Scene, near, square, unlit};
 
 fn linear(color: [u8; 3]) -> Vec4 {
@@ -408,10 +408,10 @@ fn a_variant_has_its_own_material() {
 
 #[test]
 fn copies_are_drawn_in_one_call_unless_they_have_to_be_sorted() {
-    let Some(gpu) = gpu() else { return };
-    let Gpu { device, queue } = &gpu;
     let half = Affine3A::from_scale(Vec3::splat(0.5));
-    for (alpha_mode, calls) in [(AlphaMode::Opaque, 2), (AlphaMode::Blend, 6)] {
+    let gpus: Vec<Gpu> = [gpu(), gl()].into_iter().flatten().collect();
+    let modes = [(AlphaMode::Opaque, 2), (AlphaMode::Blend, 6)];
+    for (Gpu { device, queue }, (alpha_mode, calls)) in gpus.iter().flat_map(|gpu| modes.map(|mode| (gpu, mode))) {
         let material = Material { alpha_mode, ..unlit(Vec4::ONE) };
         let mut scene = Scene::new(vec![square(0)], vec![material]);
         scene.frame.characters[0].palette = vec![palette_entry(&half, SkinningMode::Linear)];

@@ -10,7 +10,7 @@ use glam::camera::rh::proj::directx::orthographic;
 use glam::camera::rh::view::look_at_mat4;
 use glam::{Vec3, Vec4};
 
-use crate::device::gpu;
+use crate::device::{Gpu, gl, gpu};
 use crate::scene::{Picture, SIZE, Scene, near, square, unlit};
 
 /// A square whose alpha falls from left to right, with a slope that no pixel edge follows.
@@ -38,24 +38,29 @@ fn between(picture: &Picture) -> usize {
 
 #[test]
 fn the_edges_of_masks_are_smooth() {
-    let Some(gpu) = gpu() else { return };
-    let mut scene = fading(AlphaMode::Mask { cutoff: 0.5 });
-    for background in [Background::Color([0, 0, 0]), Background::Transparent, Background::Studio] {
-        scene.frame.look.background = background;
-        let [hard, smooth] = [1, 4].map(|samples| scene.draw_with(&gpu, RendererOptions { samples }));
-        near(smooth.at(-0.4, 0.0), [255; 4], 0);
-        assert_eq!(smooth.at(-0.4, 0.0), hard.at(-0.4, 0.0), "{background:?}");
-        assert_eq!(smooth.at(0.45, -0.3), hard.at(0.45, -0.3), "{background:?}");
-        let opaque = |picture: &Picture| picture.0.as_chunks::<4>().0.iter().all(|pixel| pixel[3] == 255);
-        match background {
-            Background::Color(_) => {
-                assert_eq!(between(&hard), 0);
-                assert!(between(&smooth) >= 6, "{}", between(&smooth));
-                assert!(opaque(&smooth));
-            }
-            Background::Studio => assert!(opaque(&smooth) && opaque(&hard)),
-            _ => assert_eq!(between(&smooth), 0, "colours stay as they are"),
+    for gpu in [gpu(), gl()].into_iter().flatten() {
+        for background in [Background::Color([0, 0, 0]), Background::Transparent, Background::Studio] {
+            check_edges(&gpu, background);
         }
+    }
+}
+
+fn check_edges(gpu: &Gpu, background: Background) {
+    let mut scene = fading(AlphaMode::Mask { cutoff: 0.5 });
+    scene.frame.look.background = background;
+    let [hard, smooth] = [1, 4].map(|samples| scene.draw_with(gpu, RendererOptions { samples }));
+    near(smooth.at(-0.4, 0.0), [255; 4], 0);
+    assert_eq!(smooth.at(-0.4, 0.0), hard.at(-0.4, 0.0), "{background:?}");
+    assert_eq!(smooth.at(0.45, -0.3), hard.at(0.45, -0.3), "{background:?}");
+    let opaque = |picture: &Picture| picture.0.as_chunks::<4>().0.iter().all(|pixel| pixel[3] == 255);
+    match background {
+        Background::Color(_) => {
+            assert_eq!(between(&hard), 0);
+            assert!(between(&smooth) >= 6, "{}", between(&smooth));
+            assert!(opaque(&smooth));
+        }
+        Background::Studio => assert!(opaque(&smooth) && opaque(&hard)),
+        _ => assert_eq!(between(&smooth), 0, "colours stay as they are"),
     }
 }
 

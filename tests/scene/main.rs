@@ -25,6 +25,7 @@ mod frame;
 mod framing;
 mod generator_animations;
 mod history;
+mod instancing;
 mod link;
 mod link_files;
 mod link_properties;
