@@ -46,14 +46,14 @@ fn the_frame_says_which_variant_is_drawn() {
 #[test]
 fn a_variant_is_undone_and_stays_with_its_model() {
     let mut library = library_of(model("box.glb"));
-    let (mut state, mut history) = (ViewerState::default(), History::default());
+    let (mut state, mut history, mut kept) = (ViewerState::default(), History::default(), Default::default());
     history.apply(&mut state, &library, chosen("Night"));
     let link = to_link(&state);
     assert_eq!(link, "v=1&variant=Night");
     assert_eq!(from_link(&link), (state.clone(), Vec::new()));
-    assert!(history.undo(&mut state, &mut library));
+    assert!(history.undo(&mut state, &mut kept, &mut library));
     assert_eq!(state.edits.variant, None);
-    assert!(history.redo(&mut state, &mut library));
+    assert!(history.redo(&mut state, &mut kept, &mut library));
     assert_eq!(state.edits.variant.as_deref(), Some("Night"));
     let other = state.for_model(ViewerState::of_model("other.glb".to_owned()));
     assert_eq!(other.edits.variant, None);
