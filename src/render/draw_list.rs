@@ -59,6 +59,8 @@ struct Instance<'a> {
     /// Features that depend on the frame's lights.
     lighting: Features,
     multisampled: bool,
+    /// A shadow map is drawn.
+    shadow: bool,
     distance: f32,
 }
 
@@ -231,26 +233,43 @@ impl DrawList {
                     morph_weights,
                     lighting,
                     multisampled,
+                    shadow,
                     distance: -frame.view.view_from_world.transform_point3(draws[0].center).z,
                 };
-                let model = &models[model];
-                let primitives = model.meshes.get(draw.mesh).into_iter().flatten().enumerate();
-                for (index, primitive) in primitives.filter_map(|(index, known)| Some((index, known.as_ref()?))) {
-                    let primitive = primitive.in_variant(character.variant);
-                    let depths = Depths {
-                        shadow: shadow && model.casts_shadow(primitive),
-                        surface: primitive.features.has(Features::BLEND) && model.has_opaque_parts(primitive),
-                    };
-                    let at_once = if primitive.can_repeat() { copies.len() } else { 1 };
-                    for draws in copies.chunks(at_once) {
-                        self.add(device, pipelines, &instance(draws), index, primitive, depths);
-                    }
-                }
+                self.add_mesh(device, pipelines, &models[model], copies, instance);
             }
         }
         self.solid.sort_unstable_by(|a, b| a.distance.total_cmp(&b.distance).then(a.offset.cmp(&b.offset)));
         // A stable sort keeps the file's order within a mesh.
         self.blended.sort_by(|a, b| a.edges.cmp(&b.edges).then(b.distance.total_cmp(&a.distance)));
+    }
+
+    /// Adds the items of a mesh and its copies. `instance` makes one of several of them.
+    fn add_mesh<'a>(
+        &mut self,
+        device: &wgpu::Device,
+        pipelines: &mut Pipelines,
+        model: &GpuModel,
+        copies: &'a [Draw],
+        instance: impl Fn(&'a [Draw]) -> Instance<'a>,
+    ) {
+        let Some(primitives) = copies.first().and_then(|draw| model.meshes.get(draw.mesh)) else { return };
+        for (index, primitive) in primitives.iter().enumerate() {
+            let Some(primitive) = primitive else { continue };
+            let whole = instance(copies);
+            let primitive = primitive.in_variant(whole.character.variant);
+            let depths = Depths {
+                shadow: whole.shadow && model.casts_shadow(primitive),
+                surface: primitive.features.has(Features::BLEND) && model.has_opaque_parts(primitive),
+            };
+            if primitive.can_repeat() {
+                self.add(device, pipelines, &whole, index, primitive, depths);
+                continue;
+            }
+            for draw in copies.chunks(1) {
+                self.add(device, pipelines, &instance(draw), index, primitive, depths);
+            }
+        }
     }
 
     /// Adds the items of one primitive.

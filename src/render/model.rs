@@ -112,12 +112,7 @@ impl ModelUploader {
                     false => None,
                     true => {
                         let gpu = GpuGeometry::new(device, queue, geometry, smooth, mesh_index, primitive_index)?;
-                        let of_variant = |&(variant, material): &(usize, usize)| {
-                            (variant, materials.primitive(layouts, geometry, gpu.clone(), Some(material)))
-                        };
-                        let variants = geometry.variants.iter().map(of_variant).collect();
-                        let primitive = materials.primitive(layouts, geometry, gpu, geometry.material);
-                        Some(GpuPrimitive { variants, ..primitive })
+                        Some(materials.primitive_and_variants(layouts, geometry, gpu))
                     }
                 });
             }
@@ -198,6 +193,15 @@ struct Materials<'a> {
 }
 
 impl Materials<'_> {
+    fn primitive_and_variants(&mut self, layouts: &Layouts, geometry: &Geometry, gpu: GpuGeometry) -> GpuPrimitive {
+        let mut primitive = self.primitive(layouts, geometry, gpu.clone(), geometry.material);
+        for &(variant, material) in &geometry.variants {
+            let of_variant = self.primitive(layouts, geometry, gpu.clone(), Some(material));
+            primitive.variants.push((variant, of_variant));
+        }
+        primitive
+    }
+
     fn primitive(
         &mut self,
         layouts: &Layouts,
