@@ -1,4 +1,5 @@
-//! Lists the sample files to embed. The page does not embed them; they lie beside it.
+//! Lists the sample files to embed (the page does not embed them; they lie beside it), and strips the shaders of comments
+//! and indentation, which would be downloaded with every program.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -7,11 +8,32 @@ use std::{env, fs, io};
 const EXTENSIONS: [&str; 5] = ["glb", "bvh", "obj", "skel", "attach"];
 
 fn main() -> io::Result<()> {
+    let root = env::var("CARGO_MANIFEST_DIR").map_err(io::Error::other)?;
+    let out = env::var("OUT_DIR").map_err(io::Error::other)?;
+    write_samples(Path::new(&root), Path::new(&out))?;
+    write_shaders(Path::new(&root), Path::new(&out))
+}
+
+fn write_shaders(root: &Path, out: &Path) -> io::Result<()> {
+    println!("cargo::rerun-if-changed=shaders");
+    for entry in fs::read_dir(root.join("shaders"))? {
+        let path = entry?.path();
+        let text = fs::read_to_string(&path)?;
+        let lines = text.lines().map(|line| line.split_once("//").map_or(line, |(code, _)| code).trim());
+        let lines: Vec<&str> = lines.filter(|line| !line.is_empty()).collect();
+        if let Some(name) = path.file_name() {
+            fs::write(out.join(name), lines.join("\n") + "\n")?;
+        }
+    }
+    Ok(())
+}
+
+fn write_samples(root: &Path, out: &Path) -> io::Result<()> {
     const FOLDER: &str = "assets/samples";
     // The README lists every sample, so it changes when one is added. The folder itself also holds files that are not
     // embedded.
     println!("cargo::rerun-if-changed={FOLDER}/README.md");
-    let folder = Path::new(&env::var("CARGO_MANIFEST_DIR").map_err(io::Error::other)?).join(FOLDER);
+    let folder = root.join(FOLDER);
     let mut names: Vec<String> =
         fs::read_dir(&folder)?.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect();
     names.sort();
@@ -27,5 +49,5 @@ fn main() -> io::Result<()> {
         }
     }
     text.push_str("];\n");
-    fs::write(Path::new(&env::var("OUT_DIR").map_err(io::Error::other)?).join("samples.rs"), text)
+    fs::write(out.join("samples.rs"), text)
 }

@@ -6,6 +6,7 @@
 @group(1) @binding(3) var shadow_sampler: sampler_comparison;
 @group(1) @binding(4) var reflectance: texture_2d<f32>;
 @group(1) @binding(5) var irradiance: texture_cube<f32>;
+@group(1) @binding(6) var opaque_picture: texture_2d<f32>;
 
 const PI: f32 = 3.14159265;
 // Edge length of the reflectance table, environment/reflectance.rs.
@@ -38,12 +39,12 @@ fn directional_albedo(roughness: f32, normal_view: f32) -> vec2f {
 
 // Reflected fraction of an environment, with light that leaves the surface after several reflections (Fdez-Agüera 2019, "A
 // Multiple-Scattering Microfacet Model for Real-Time Image-based Lighting", as in the Khronos glTF Sample Viewer). White
-// reflects everything.
-fn environment_reflectance(specular: vec3f, albedo: vec2f, roughness: f32, normal_view: f32) -> vec3f {
+// reflects everything. `weight` is that of KHR_materials_specular.
+fn environment_reflectance(specular: vec3f, weight: f32, albedo: vec2f, roughness: f32, normal_view: f32) -> vec3f {
     let grazing = max(vec3f(1.0 - roughness), specular) - specular;
-    let once = (specular + grazing * schlick(normal_view)) * albedo.x + albedo.y;
+    let once = weight * ((specular + grazing * schlick(normal_view)) * albedo.x + albedo.y);
     let lost = 1.0 - albedo.x - albedo.y;
-    let average = specular + (1.0 - specular) / 21.0;
+    let average = weight * (specular + (1.0 - specular) / 21.0);
     return once + once * average * lost / (1.0 - average * lost);
 }
 
@@ -71,44 +72,6 @@ fn mesh_shadow(world: vec3f, normal: vec3f) -> f32 {
     let sum = shadow_tap(at, texel * vec2f(-0.25, -0.75)) + shadow_tap(at, texel * vec2f(0.75, -0.25))
         + shadow_tap(at, texel * vec2f(0.25, 0.75)) + shadow_tap(at, texel * vec2f(-0.75, 0.25));
     return 0.25 * sum;
-}
-
-struct Surface {
-    normal: vec3f,
-    to_eye: vec3f,
-    // Reflected diffusely by what is not metal.
-    diffuse: vec3f,
-    // Reflectance at normal incidence.
-    specular: vec3f,
-    roughness: f32,
-    normal_view: f32,
-}
-
-const DIELECTRIC: f32 = 0.04;
-// A light has no size; below this roughness its highlight would be too small to see.
-const MIN_ROUGHNESS: f32 = 0.045;
-
-// BRDF times the cosine for a light direction: GGX distribution, height-correlated Smith visibility, Schlick Fresnel.
-fn reflect_light(surface: Surface, to_light: vec3f) -> vec3f {
-    let normal_light = dot(surface.normal, to_light);
-    if normal_light <= 0.0 {
-        return vec3f(0.0);
-    }
-    let half_way = normalize(to_light + surface.to_eye);
-    let normal_half = max(dot(surface.normal, half_way), 0.0);
-    let view_half = max(dot(surface.to_eye, half_way), 0.0);
-    let roughness = max(surface.roughness, MIN_ROUGHNESS);
-    let alpha = roughness * roughness;
-    let alpha_squared = alpha * alpha;
-    let f = normal_half * normal_half * (alpha_squared - 1.0) + 1.0;
-    let distribution = alpha_squared / (PI * f * f);
-    let cosines = vec2f(normal_light, surface.normal_view);
-    let masked = cosines.yx * sqrt(cosines * cosines * (1.0 - alpha_squared) + alpha_squared);
-    let visibility = 0.5 / (masked.x + masked.y);
-    let grazing = schlick(view_half);
-    let diffuse = (1.0 - mix(DIELECTRIC, 1.0, grazing)) * surface.diffuse / PI;
-    let specular = min(distribution * visibility, 64.0) * mix(surface.specular, vec3f(1.0), grazing);
-    return normal_light * (diffuse + specular);
 }
 
 // Radiance from one of the file's lights at a point; sets `to_light` to the direction to it.

@@ -1,4 +1,5 @@
-// Fragment stages of meshes: metallic-roughness, unlit, heat map, wireframe, shadow. Overrides remove unused features.
+// Fragment stages of meshes: metallic-roughness with lobes, unlit, heat map, wireframe, shadow. Overrides remove unused
+// features; `#if` and `#maps` are explained in src/render/shaders.rs.
 
 override BASE_COLOR_MAP: bool = false;
 override METALLIC_ROUGHNESS_MAP: bool = false;
@@ -36,21 +37,34 @@ struct Material {
     roughness: f32,
     normal_scale: f32,
     occlusion_strength: f32,
-    // Base colour, metallic-roughness, normal, occlusion, emissive.
-    uvs: array<UvTransform, 5>,
+    // Reflectance of the dielectric at normal incidence, and its weight.
+    specular_color: vec3f,
+    specular: f32,
+    sheen_color: vec3f,
+    sheen_roughness: f32,
+    // Absorption per metre.
+    absorption: vec3f,
+    thickness: f32,
+    diffuse_transmission_color: vec3f,
+    diffuse_transmission: f32,
+    clearcoat: f32,
+    clearcoat_roughness: f32,
+    clearcoat_normal_scale: f32,
+    ior: f32,
+    iridescence: f32,
+    iridescence_ior: f32,
+    // Nanometres.
+    iridescence_thickness: vec2f,
+    // Unit vector from the tangent.
+    anisotropy_direction: vec2f,
+    anisotropy: f32,
+    transmission: f32,
+    dispersion: f32,
+    // In the order of the maps' bindings.
+    uvs: array<UvTransform, 19>,
 }
 
 @group(3) @binding(0) var<uniform> material: Material;
-@group(3) @binding(1) var base_color_map: texture_2d<f32>;
-@group(3) @binding(2) var base_color_sampler: sampler;
-@group(3) @binding(3) var metallic_roughness_map: texture_2d<f32>;
-@group(3) @binding(4) var metallic_roughness_sampler: sampler;
-@group(3) @binding(5) var normal_map: texture_2d<f32>;
-@group(3) @binding(6) var normal_sampler: sampler;
-@group(3) @binding(7) var occlusion_map: texture_2d<f32>;
-@group(3) @binding(8) var occlusion_sampler: sampler;
-@group(3) @binding(9) var emissive_map: texture_2d<f32>;
-@group(3) @binding(10) var emissive_sampler: sampler;
 
 fn map_uv(slot: u32, uv: vec4f) -> vec2f {
     let transform = material.uvs[slot];
@@ -58,10 +72,12 @@ fn map_uv(slot: u32, uv: vec4f) -> vec2f {
     return transform.matrix.xy * chosen.x + transform.matrix.zw * chosen.y + transform.offset;
 }
 
+#maps
+
 fn base_color(in: VertexOut) -> vec4f {
     var color = material.base_color;
     if BASE_COLOR_MAP {
-        color *= textureSample(base_color_map, base_color_sampler, map_uv(0u, in.uv));
+        color *= base_color_texel(in.uv);
     }
     if VERTEX_COLORS {
         color *= in.color;
@@ -71,7 +87,7 @@ fn base_color(in: VertexOut) -> vec4f {
 
 fn emissive(in: VertexOut) -> vec3f {
     if EMISSIVE_MAP {
-        return material.emissive * textureSample(emissive_map, emissive_sampler, map_uv(4u, in.uv)).rgb;
+        return material.emissive * emissive_texel(in.uv).rgb;
     }
     return material.emissive;
 }
@@ -103,41 +119,46 @@ fn flat_normal(in: VertexOut) -> vec3f {
     return normalize_or_zero(select(normal, -normal, dot(normal, in.to_eye) < 0.0));
 }
 
-fn surface_normal(in: VertexOut, front: bool) -> vec3f {
-    var normal: vec3f;
-    var side = 1.0;
+fn geometric_normal(in: VertexOut, front: bool) -> vec3f {
     if FLAT {
-        normal = flat_normal(in);
-    } else {
-        side = select(-1.0, 1.0, front);
-        normal = side * normalize_or_zero(in.normal);
+        return flat_normal(in);
     }
+    return select(-1.0, 1.0, front) * normalize_or_zero(in.normal);
+}
+
+// Columns: tangent, bitangent, normal.
+fn tangent_frame(in: VertexOut, normal: vec3f, front: bool, uv: vec2f) -> mat3x3f {
+    if TANGENTS {
+        let side = select(-1.0, 1.0, front || FLAT);
+        let tangent = side * normalize_or_zero(in.tangent.xyz);
+        return mat3x3f(tangent, in.tangent.w * cross(normal, tangent), normal);
+    }
+    // Cotangent frame from screen-space derivatives (Schüler, "Followup: Normal Mapping Without Precomputed Tangents"),
+    // negated because the screen's y axis points down.
+    let across = -dpdx(in.to_eye);
+    let down = -dpdy(in.to_eye);
+    let uv_across = dpdx(uv);
+    let uv_down = dpdy(uv);
+    let a = cross(down, normal);
+    let b = cross(normal, across);
+    let tangent = -(a * uv_across.x + b * uv_down.x);
+    // glTF's v axis points down, its bitangent up.
+    let bitangent = a * uv_across.y + b * uv_down.y;
+    let scale = inverseSqrt(max(max(dot(tangent, tangent), dot(bitangent, bitangent)), 1e-38));
+    return mat3x3f(scale * tangent, scale * bitangent, normal);
+}
+
+// The normal that a texel of a normal map stands for.
+fn mapped_normal(basis: mat3x3f, texel: vec4f, scale: f32) -> vec3f {
+    let sample = 2.0 * texel.xyz - 1.0;
+    return normalize_or_zero(basis * vec3f(sample.xy * scale, sample.z));
+}
+
+fn surface_normal(in: VertexOut, front: bool) -> vec3f {
+    let normal = geometric_normal(in, front);
     if NORMAL_MAP {
-        let uv = map_uv(2u, in.uv);
-        var sample = 2.0 * textureSample(normal_map, normal_sampler, uv).xyz - 1.0;
-        sample = vec3f(sample.xy * material.normal_scale, sample.z);
-        var tangent: vec3f;
-        var bitangent: vec3f;
-        if TANGENTS {
-            tangent = side * normalize_or_zero(in.tangent.xyz);
-            bitangent = in.tangent.w * cross(normal, tangent);
-        } else {
-            // Cotangent frame from screen-space derivatives (Schüler, "Followup: Normal Mapping Without Precomputed
-            // Tangents"), negated because the screen's y axis points down.
-            let across = -dpdx(in.to_eye);
-            let down = -dpdy(in.to_eye);
-            let uv_across = dpdx(uv);
-            let uv_down = dpdy(uv);
-            let a = cross(down, normal);
-            let b = cross(normal, across);
-            tangent = -(a * uv_across.x + b * uv_down.x);
-            // glTF's v axis points down, its bitangent up.
-            bitangent = a * uv_across.y + b * uv_down.y;
-            let scale = inverseSqrt(max(max(dot(tangent, tangent), dot(bitangent, bitangent)), 1e-38));
-            tangent *= scale;
-            bitangent *= scale;
-        }
-        normal = normalize_or_zero(sample.x * tangent + sample.y * bitangent + sample.z * normal);
+        let basis = tangent_frame(in, normal, front, map_uv(2u, in.uv));
+        return mapped_normal(basis, normal_texel(in.uv), material.normal_scale);
     }
     return normal;
 }
@@ -148,34 +169,120 @@ fn lit(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) vec4f 
     var metallic = material.metallic;
     var roughness = material.roughness;
     if METALLIC_ROUGHNESS_MAP {
-        let sample = textureSample(metallic_roughness_map, metallic_roughness_sampler, map_uv(1u, in.uv));
+        let sample = metallic_roughness_texel(in.uv);
         metallic *= sample.b;
         roughness *= sample.g;
     }
     var occlusion = 1.0;
     if OCCLUSION_MAP {
-        let sample = textureSample(occlusion_map, occlusion_sampler, map_uv(3u, in.uv)).r;
-        occlusion = 1.0 + material.occlusion_strength * (sample - 1.0);
+        occlusion = 1.0 + material.occlusion_strength * (occlusion_texel(in.uv).r - 1.0);
     }
-    let emitted = emissive(in);
+    var emitted = emissive(in);
 
     var surface: Surface;
     surface.normal = surface_normal(in, front);
     surface.to_eye = normalize(in.to_eye);
     metallic = clamp(metallic, 0.0, 1.0);
-    surface.roughness = clamp(roughness, 0.0, 1.0);
-    surface.diffuse = base.rgb * (1.0 - metallic);
-    surface.specular = mix(vec3f(DIELECTRIC), base.rgb, metallic);
     let facing = dot(surface.normal, surface.to_eye);
     surface.normal_view = clamp(facing, 0.001, 1.0);
+    var dielectric = vec3f(DIELECTRIC);
+    var weight = 1.0;
+#if SPECULAR
+    let specular_color = specular_color_texel(in.uv);
+    dielectric = min(material.specular_color * specular_color.rgb, vec3f(1.0));
+    weight = material.specular * specular_texel(in.uv).a;
+#endif
+#if GLOSSINESS
+    roughness = 1.0 - (1.0 - roughness) * specular_color.a;
+#endif
+    surface.roughness = clamp(roughness, 0.0, 1.0);
+    surface.diffuse = base.rgb * (1.0 - metallic);
+    surface.dielectric = weight * dielectric;
+    surface.dielectric_grazing = weight;
+    surface.specular = mix(surface.dielectric, base.rgb, metallic);
+    surface.grazing = mix(weight, 1.0, metallic);
 
+#if ANISOTROPY
+    let basis = tangent_frame(in, surface.normal, front, map_uv(14u, in.uv));
+    let turn = material.anisotropy_direction;
+    var direction = turn;
+    surface.anisotropy = clamp(material.anisotropy, 0.0, 1.0);
+#if ANISOTROPY_MAP
+    let offset = anisotropy_texel(in.uv).rgb;
+    direction = mat2x2f(turn, vec2f(-turn.y, turn.x)) * (2.0 * offset.rg - 1.0);
+    surface.anisotropy *= offset.b;
+#endif
+    surface.tangent = normalize_or_zero(basis * vec3f(direction, 0.0));
+    surface.bitangent = cross(surface.normal, surface.tangent);
+    let reflected = reflect(-surface.to_eye, bent_normal(surface));
+#else
     let reflected = 2.0 * facing * surface.normal - surface.to_eye;
+#endif
     let specular_light = environment_specular(reflected, surface.roughness);
     let albedo = directional_albedo(surface.roughness, surface.normal_view);
-    let metal = environment_reflectance(base.rgb, albedo, surface.roughness, surface.normal_view);
-    let dielectric = environment_reflectance(vec3f(DIELECTRIC), albedo, surface.roughness, surface.normal_view);
-    var color = mix(base.rgb * environment_diffuse(surface.normal), specular_light, dielectric);
+    let metal = environment_reflectance(base.rgb, 1.0, albedo, surface.roughness, surface.normal_view);
+    let mirrored = environment_reflectance(dielectric, weight, albedo, surface.roughness, surface.normal_view);
+    var diffuse = base.rgb * environment_diffuse(surface.normal);
+#if VOLUME
+    let thickness = material.thickness * thickness_texel(in.uv).g * in.scale;
+    let clearness = exp(-material.absorption * thickness);
+#else
+    let thickness = 0.0;
+    let clearness = vec3f(1.0);
+#endif
+#if DIFFUSE_TRANSMISSION
+    let passed = clamp(material.diffuse_transmission * diffuse_transmission_texel(in.uv).a, 0.0, 1.0);
+    let tint = clearness * material.diffuse_transmission_color * diffuse_transmission_color_texel(in.uv).rgb;
+    diffuse = mix(diffuse, tint * environment_diffuse(-surface.normal), passed);
+    surface.diffuse *= 1.0 - passed;
+    surface.diffuse_transmitted = (1.0 - metallic) * passed * tint;
+#endif
+#if TRANSMISSION
+    let transmission = clamp(material.transmission * transmission_texel(in.uv).r, 0.0, 1.0);
+    surface.transmission_roughness = transmission_roughness(surface.roughness);
+    surface.diffuse *= 1.0 - transmission;
+    surface.transmitted = (1.0 - metallic) * transmission * clearness * base.rgb;
+    let shown = shown_behind(in, surface, thickness);
+    let seen = scene_from_display(shown.rgb);
+    diffuse = mix(diffuse, clearness * base.rgb * seen / frame.exposure, transmission);
+#if DIFFUSE_TRANSMISSION
+    surface.diffuse_transmitted *= 1.0 - transmission;
+#endif
+#endif
+    var color = mix(diffuse, specular_light, mirrored);
     color = mix(color, metal * specular_light, metallic);
+#if IRIDESCENCE
+    surface.iridescence = clamp(material.iridescence * iridescence_texel(in.uv).r, 0.0, 1.0);
+    let range = material.iridescence_thickness;
+    let nanometres = mix(range.x, range.y, iridescence_thickness_texel(in.uv).g);
+    let film = film_reflectance(material.iridescence_ior, surface.normal_view, nanometres, dielectric);
+    let metal_film = film_reflectance(material.iridescence_ior, surface.normal_view, nanometres, base.rgb);
+    surface.film_dielectric = film;
+    surface.film = mix(film, metal_film, metallic);
+    let below = (1.0 - metallic) * (1.0 - max3(film)) * diffuse;
+    color = mix(color, below + surface.film * specular_light, surface.iridescence);
+#endif
+#if SHEEN
+    surface.sheen_color = material.sheen_color * sheen_color_texel(in.uv).rgb;
+    surface.sheen_roughness = clamp(material.sheen_roughness * sheen_roughness_texel(in.uv).a, 0.07, 1.0);
+    let sheen = sheen_albedo(surface.sheen_roughness, surface.normal_view);
+    color = (1.0 - max3(surface.sheen_color) * sheen) * color
+        + sheen * surface.sheen_color * environment_diffuse(surface.normal);
+#endif
+#if CLEARCOAT
+    surface.coat_normal = geometric_normal(in, front);
+#if CLEARCOAT_NORMAL_MAP
+    let coat_basis = tangent_frame(in, surface.coat_normal, front, map_uv(9u, in.uv));
+    surface.coat_normal = mapped_normal(coat_basis, clearcoat_normal_texel(in.uv), material.clearcoat_normal_scale);
+#endif
+    surface.coat_roughness = clamp(material.clearcoat_roughness * clearcoat_roughness_texel(in.uv).g, 0.0, 1.0);
+    let coat_facing = clamp(dot(surface.coat_normal, surface.to_eye), 0.0, 1.0);
+    let coat = clamp(material.clearcoat * clearcoat_texel(in.uv).r, 0.0, 1.0);
+    surface.coat = coat * mix(DIELECTRIC, 1.0, schlick(coat_facing));
+    let coat_reflected = reflect(-surface.to_eye, surface.coat_normal);
+    color = mix(color, environment_specular(coat_reflected, surface.coat_roughness), surface.coat);
+    emitted *= 1.0 - surface.coat;
+#endif
     color *= occlusion;
 
     let world = frame.eye - in.to_eye;
@@ -195,7 +302,16 @@ fn lit(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) vec4f 
     } else {
         color += shadow * frame.key_color * reflect_light(surface, frame.key_direction);
     }
-    return finish(tone_map(frame.exposure * (color + emitted)), base.a);
+    var display = tone_map(frame.exposure * (color + emitted));
+#if TRANSMISSION
+    // Colours that tone mapping cannot make, such as unlit ones, keep what they differ by.
+    display += surface.transmitted * (shown.rgb - tone_map(seen));
+    // Nothing behind stays nothing. What is reflected is added to it.
+    let finished = finish(display, base.a);
+    return vec4f(finished.rgb, finished.a * mix(1.0, shown.a, transmission * (1.0 - metallic)));
+#else
+    return finish(display, base.a);
+#endif
 }
 
 @fragment

@@ -33,6 +33,10 @@ struct VertexOut {
     @location(3) uv: vec4f,
     @location(4) color: vec4f,
     @location(5) heat: f32,
+#if VOLUME
+    // World units per unit of the mesh.
+    @location(6) scale: f32,
+#endif
 }
 
 // Depth offset towards the viewer, which keeps the wireframe in front of its surface.
@@ -49,6 +53,9 @@ fn vertex_out(in: VertexIn, blend: Blend, heat: f32) -> VertexOut {
     out.uv = in.uv;
     out.color = in.color;
     out.heat = heat;
+#if VOLUME
+    out.scale = (length(blend.linear[0]) + length(blend.linear[1]) + length(blend.linear[2])) / 3.0;
+#endif
     return out;
 }
 

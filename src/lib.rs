@@ -52,7 +52,7 @@
 // Files are untrusted: whatever is wrong with them must be reported, never panic.
 #![warn(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
-pub use gaitway_core::{anim, asset, formats, library, mesh, retarget};
+pub use gaitway_core::{anim, asset, avatar, formats, library, mesh, retarget};
 
 pub mod editor;
 pub mod frame;

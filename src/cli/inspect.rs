@@ -43,6 +43,17 @@ fn text(opened: &Opened, document: &Value) -> String {
     if !asset.variants.is_empty() {
         line("variants", asset.variants.join(", "));
     }
+    let avatar = &asset.avatar;
+    for (key, value) in &avatar.meta {
+        line("avatar", format!("{key}: {value}"));
+    }
+    if !avatar.expressions.is_empty() {
+        let names: Vec<&str> = avatar.expressions.iter().map(|expression| &*expression.name).collect();
+        line("expressions", names.join(", "));
+    }
+    for (joint, flag) in &avatar.first_person {
+        line("1st person", format!("{}: {flag}", asset.skeleton.label(*joint)));
+    }
     if !asset.extensions_used.is_empty() {
         line("extensions", asset.extensions_used.join(", "));
     }

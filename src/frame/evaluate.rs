@@ -1,15 +1,16 @@
 //! Evaluates the library and the state into a frame.
 
-use glam::{Affine3A, Vec3};
+use glam::Vec3;
 
 use super::{Character, Draw, Frame, FrameLight, Look, overlays, view};
-use crate::anim::{JointIndex, Pose, PropertyTarget, PropertyValues, SampleCursor, model_from_joint};
+use crate::anim::{JointIndex, Pose, PropertyTarget, PropertyValues, SampleCursor, model_from_joint, model_from_one};
 use crate::asset::{Asset, LightKind, MAX_LIGHTS, MeshInstance, SceneJoints};
 use crate::library::{Library, Model, ModelId};
 use crate::mesh::{Bounds, Material, SkinningMode, palette_entry, write_palette};
 use crate::state::{
-    COMPARED_SKINNING, Comparison, EnvironmentChoice, LightSetup, PoseSampler, SourceOnStage, ViewerState, active_clip,
-    active_variant, clip_secs, compared_rests, comparison, panes, resolved_bounds, source_on_stage, world_from_model,
+    COMPARED_SKINNING, Comparison, EnvironmentChoice, LightSetup, LookTarget, PoseSampler, SourceOnStage, ViewerState,
+    active_clip, active_variant, camera_eye, clip_secs, compared_rests, comparison, panes, resolved_bounds,
+    source_on_stage, world_from_model,
 };
 
 /// Buffers and lookups reused between frames.
@@ -18,7 +19,6 @@ pub(super) struct Scratch {
     pub sampler: PoseSampler,
     first_pose: Pose,
     first_cursor: SampleCursor,
-    pub world_from_first: Vec<Affine3A>,
     rest_pose: Pose,
     rest_cursor: SampleCursor,
     source_pose: Pose,
@@ -77,13 +77,18 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
         return;
     };
     frame.clip = active_clip(model, state);
-    frame.scratch.sampler.sample(model, state);
-    let source = source_on_stage(library, state);
-    write_characters(library, model, state, source.as_ref(), frame);
+    frame.scratch.sampler.sample_motion(model, state);
     let travel = match state.camera_options.follow {
-        true => travel(model, frame.clip, state, &mut frame.scratch, &frame.characters[0].world_from_joint),
+        true => travel(model, frame.clip, state, &mut frame.scratch),
         false => Vec3::ZERO,
     };
+    let eye = match state.display.look_at {
+        LookTarget::Camera => camera_eye(library, state, aspect, travel, &frame.scratch.sampler.pose),
+        _ => None,
+    };
+    frame.scratch.sampler.apply_avatar(model, state, eye);
+    let source = source_on_stage(library, state);
+    write_characters(library, model, state, source.as_ref(), frame);
     frame.bounds = translated(resolved_bounds(library, state), travel);
     write_lights(model, frame);
     overlays::write_ground(model, state, frame);
@@ -175,18 +180,21 @@ impl Scene {
 
 /// Fills `out` with the animated materials and their numbers, in ascending order.
 fn write_materials(asset: &Asset, properties: &PropertyValues, out: &mut Vec<(usize, Material)>) {
-    out.clear();
+    let mut count = 0;
     for (target, value) in properties.iter() {
         let PropertyTarget::Material(index, property) = target else { continue };
-        if out.last().is_none_or(|&(last, _)| last != index) {
-            out.extend(asset.materials.get(index).map(|material| (index, material.nameless())));
+        if count == 0 || out[count - 1].0 != index {
+            let Some(material) = asset.materials.get(index) else { continue };
+            if out.len() == count {
+                out.push((index, Material::default()));
+            }
+            out[count].0 = index;
+            out[count].1.copy_values(material);
+            count += 1;
         }
-        if let Some((last, material)) = out.last_mut()
-            && *last == index
-        {
-            material.set(property, value);
-        }
+        out[count - 1].1.set(property, value);
     }
+    out.truncate(count);
 }
 
 /// If `chosen` is set, surfaces show that joint's influence.
@@ -233,30 +241,24 @@ fn heat_joint(model: &Model, instance: &MeshInstance, chosen: JointIndex) -> u32
 /// Returns the ground-plane travel of the active model's root since the start of its clip, which a following camera adds.
 pub fn travelled(library: &Library, state: &ViewerState) -> Vec3 {
     let Some(model) = library.active() else { return Vec3::ZERO };
-    let (mut scratch, mut world_from_joint) = (Scratch::default(), Vec::new());
-    scratch.sampler.sample(model, state);
-    let pose = &scratch.sampler.pose;
-    model_from_joint(&model.asset.skeleton, pose, world_from_model(state.edits.up), &mut world_from_joint);
-    travel(model, active_clip(model, state), state, &mut scratch, &world_from_joint)
+    let mut scratch = Scratch::default();
+    scratch.sampler.sample_motion(model, state);
+    travel(model, active_clip(model, state), state, &mut scratch)
 }
 
-fn travel(
-    model: &Model,
-    clip: Option<usize>,
-    state: &ViewerState,
-    scratch: &mut Scratch,
-    world_from_joint: &[Affine3A],
-) -> Vec3 {
+/// Expects the motion to be sampled.
+fn travel(model: &Model, clip: Option<usize>, state: &ViewerState, scratch: &mut Scratch) -> Vec3 {
     let Some((clip, root)) = clip.and_then(|clip| Some((clip, model.root_of_clip(clip)?))) else { return Vec3::ZERO };
     let skeleton = &model.asset.skeleton;
     scratch.first_pose.copy_from(skeleton.rest());
     if let Some(clip) = model.clip(clip) {
         clip.sample(skeleton, 0.0, &mut scratch.first_cursor, &mut scratch.first_pose);
     }
-    let world_from_model = world_from_model(state.edits.up);
-    model_from_joint(skeleton, &scratch.first_pose, world_from_model, &mut scratch.world_from_first);
-    let at = |world: &[Affine3A]| Vec3::from(world[root.get()].translation);
-    let travel = (at(world_from_joint) - at(&scratch.world_from_first)) * Vec3::new(1.0, 0.0, 1.0);
+    let position = |pose| {
+        let world_from_root = world_from_model(state.edits.up) * model_from_one(skeleton, pose, root);
+        Vec3::from(world_from_root.translation)
+    };
+    let travel = (position(&scratch.sampler.pose) - position(&scratch.first_pose)) * Vec3::new(1.0, 0.0, 1.0);
     if travel.is_finite() { travel } else { Vec3::ZERO }
 }
 

@@ -60,9 +60,15 @@ impl Frame {
         &self.scratch.sampler.pose
     }
 
-    /// What the clip animates besides joints: the values of materials, lights, cameras and visibility.
+    /// What the clip and the expressions change besides joints: the values of materials, lights, cameras and
+    /// visibility.
     pub fn properties(&self) -> &PropertyValues {
         &self.scratch.sampler.properties
+    }
+
+    /// The weights of the active model's expressions, by the clip or set manually, before they override each other.
+    pub fn expressions(&self) -> &[f32] {
+        self.scratch.sampler.expressions()
     }
 
     /// Whether what is on a joint of the active model is shown; false outside the chosen scene.

@@ -3,6 +3,7 @@
 use super::model::{GpuModel, GpuPrimitive};
 use super::palette::PaletteTexture;
 use super::pipelines::{Features, Layouts, MeshKey, MeshPipeline, Pipelines, Shading};
+use super::shaders::SurfaceVariant;
 use super::uniforms::DrawUniform;
 use crate::frame::{Character, Draw, Frame};
 use crate::mesh::Topology;
@@ -90,6 +91,7 @@ impl Instance<'_> {
         }
         MeshKey {
             shading,
+            surface: primitive.surface,
             influences: geometry.influences,
             skinning: self.character.skinning,
             topology: geometry.topology,
@@ -149,7 +151,9 @@ struct Depths {
 pub(super) struct DrawList {
     shadow: Vec<Item>,
     solid: Vec<Item>,
+    transmissive: Vec<Item>,
     blended: Vec<Item>,
+    shows_behind: bool,
     uniforms: Vec<u8>,
     uploaded: Vec<u8>,
     buffer: wgpu::Buffer,
@@ -162,7 +166,9 @@ impl DrawList {
         Self {
             shadow: Vec::new(),
             solid: Vec::new(),
+            transmissive: Vec::new(),
             blended: Vec::new(),
+            shows_behind: false,
             uniforms: Vec::new(),
             uploaded: Vec::new(),
             buffer,
@@ -177,6 +183,16 @@ impl DrawList {
     /// Front to back.
     pub fn solid(&self) -> &[Item] {
         &self.solid
+    }
+
+    /// Back to front, so that a volume's front is in front of its back.
+    pub fn transmissive(&self) -> &[Item] {
+        &self.transmissive
+    }
+
+    /// Whether anything shows what is behind it through the picture of opaque surfaces.
+    pub fn shows_behind(&self) -> bool {
+        self.shows_behind
     }
 
     /// Back to front, then wireframes.
@@ -200,7 +216,9 @@ impl DrawList {
     ) {
         self.shadow.clear();
         self.solid.clear();
+        self.transmissive.clear();
         self.blended.clear();
+        self.shows_behind = false;
         self.uniforms.clear();
         palette.clear();
         if !frame.look.mesh && !frame.look.wireframe {
@@ -240,7 +258,8 @@ impl DrawList {
             }
         }
         self.solid.sort_unstable_by(|a, b| a.distance.total_cmp(&b.distance).then(a.offset.cmp(&b.offset)));
-        // A stable sort keeps the file's order within a mesh.
+        // Stable sorts keep the file's order within a mesh.
+        self.transmissive.sort_by(|a, b| b.distance.total_cmp(&a.distance));
         self.blended.sort_by(|a, b| a.edges.cmp(&b.edges).then(b.distance.total_cmp(&a.distance)));
     }
 
@@ -304,7 +323,11 @@ impl DrawList {
             if depths.surface {
                 self.blended.push(item(depth_key(key), false));
             }
-            if !key.features.has(Features::BLEND) {
+            let is_transmissive = key.shading == Shading::Lit && key.surface.has(SurfaceVariant::TRANSMISSION);
+            self.shows_behind |= is_transmissive;
+            if is_transmissive && !key.features.has(Features::BLEND) {
+                self.transmissive.push(item(key, false));
+            } else if !key.features.has(Features::BLEND) {
                 self.solid.push(item(key, false));
             } else if primitive.double_sided && is_surface {
                 // Back faces first, so that front faces blend over them.

@@ -1,8 +1,10 @@
-//! What lights meshes and ground, bound together: environment, reflectance table and shadow map.
+//! What lights meshes and ground, bound together: environment, reflectance table, shadow map and the picture of what is behind
+//! glass.
 
 use super::environment::{self, Environment, Source};
 use super::pipelines::Layouts;
 use super::shadow::ShadowMap;
+use super::texture::single_texel;
 use crate::state::LightSetup;
 
 pub(super) struct LightSources {
@@ -10,6 +12,8 @@ pub(super) struct LightSources {
     pub shadow_map: ShadowMap,
     pub sampler: wgpu::Sampler,
     reflectance: wgpu::TextureView,
+    /// What transmissive surfaces let through; a single texel until one is drawn.
+    behind: wgpu::TextureView,
     pub group: wgpu::BindGroup,
     /// Used while the shadow map itself is drawn: binds a placeholder instead.
     pub without_shadow: wgpu::BindGroup,
@@ -23,11 +27,29 @@ impl LightSources {
         let shadow_map = ShadowMap::new(device);
         let sampler = environment::sampler(device);
         let reflectance = environment::reflectance_table(device, queue);
+        let behind = single_texel(device, queue, wgpu::TextureFormat::Rgba8Unorm, &[0; 4]);
         let [group, without_shadow] = [&shadow_map.view, &shadow_map.placeholder].map(|shadow| {
-            let views = [&environment.view, shadow, &reflectance, &environment.irradiance];
+            let views = [&environment.view, shadow, &reflectance, &environment.irradiance, &behind];
             light_group(device, layouts, views, [&sampler, &shadow_map.sampler])
         });
-        Self { environment, shadow_map, sampler, reflectance, group, without_shadow, sky: None }
+        Self { environment, shadow_map, sampler, reflectance, behind, group, without_shadow, sky: None }
+    }
+
+    /// Lets transmissive surfaces show another picture.
+    pub fn show_behind(&mut self, device: &wgpu::Device, layouts: &Layouts, behind: &wgpu::TextureView) {
+        if self.behind != *behind {
+            self.behind = behind.clone();
+            self.bind(device, layouts);
+        }
+    }
+
+    fn bind(&mut self, device: &wgpu::Device, layouts: &Layouts) {
+        let shadows = [&self.shadow_map.view, &self.shadow_map.placeholder];
+        [self.group, self.without_shadow] = shadows.map(|shadow| {
+            let environment = &self.environment;
+            let views = [&environment.view, shadow, &self.reflectance, &environment.irradiance, &self.behind];
+            light_group(device, layouts, views, [&self.sampler, &self.shadow_map.sampler])
+        });
     }
 
     /// Makes another environment, unless it is the current one.
@@ -37,11 +59,7 @@ impl LightSources {
         }
         self.environment = Environment::new(device, queue, source);
         self.sky = None;
-        let shadows = [&self.shadow_map.view, &self.shadow_map.placeholder];
-        [self.group, self.without_shadow] = shadows.map(|shadow| {
-            let views = [&self.environment.view, shadow, &self.reflectance, &self.environment.irradiance];
-            light_group(device, layouts, views, [&self.sampler, &self.shadow_map.sampler])
-        });
+        self.bind(device, layouts);
     }
 
     /// Makes the environment a background, if it is not yet.
@@ -62,7 +80,7 @@ impl LightSources {
 fn light_group(
     device: &wgpu::Device,
     layouts: &Layouts,
-    [environment, shadow, reflectance, irradiance]: [&wgpu::TextureView; 4],
+    [environment, shadow, reflectance, irradiance, behind]: [&wgpu::TextureView; 5],
     [environment_sampler, shadow_sampler]: [&wgpu::Sampler; 2],
 ) -> wgpu::BindGroup {
     let resources = [
@@ -72,6 +90,7 @@ fn light_group(
         wgpu::BindingResource::Sampler(shadow_sampler),
         wgpu::BindingResource::TextureView(reflectance),
         wgpu::BindingResource::TextureView(irradiance),
+        wgpu::BindingResource::TextureView(behind),
     ];
     bind_group(device, &layouts.light, "light", resources)
 }

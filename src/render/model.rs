@@ -7,23 +7,19 @@ use wgpu::util::DeviceExt;
 
 use super::UploadError;
 use super::geometry::{GpuGeometry, InfluenceSource, edges};
-use super::pipelines::{Features, Layouts, MATERIAL_MAPS, Shading};
+use super::lobes::{self, write_uniform};
+use super::pipelines::{Features, Shading, primitive_layout};
+use super::shaders::SurfaceVariant;
 use super::texture::{MipMaker, sampler, single_texel};
 use super::uniform_buffer::UniformBuffer;
 use super::uniforms::{MaterialUniform, UvTransformUniform};
 use crate::anim::TextureSlot;
 use crate::asset::Asset;
 use crate::library::{Model, ModelId};
-use crate::mesh::{AlphaMode, Geometry, Material, Sampler, TextureRef, Topology, smooth_normals};
+use crate::mesh::{AlphaMode, Geometry, Lobes, Material, Sampler, TextureRef, Topology, UvTransform, smooth_normals};
 
-/// The maps of a material in the order of their bindings.
-const TEXTURE_SLOTS: [TextureSlot; MATERIAL_MAPS] = [
-    TextureSlot::BaseColor,
-    TextureSlot::MetallicRoughness,
-    TextureSlot::Normal,
-    TextureSlot::Occlusion,
-    TextureSlot::Emissive,
-];
+/// The maps of a material, by slot.
+type Maps = [Option<(wgpu::TextureView, wgpu::Sampler)>; TextureSlot::ALL.len()];
 
 /// Alpha from which a blended surface counts as opaque; must match surface.wgsl.
 const OPAQUE_ALPHA: f32 = 0.9;
@@ -44,6 +40,7 @@ pub(super) struct GpuPrimitive {
     pub bind_group: wgpu::BindGroup,
     pub shading: Shading,
     pub features: Features,
+    pub surface: SurfaceVariant,
     pub double_sided: bool,
     /// Index in the asset; `None` is the default material.
     material: Option<usize>,
@@ -89,7 +86,6 @@ impl ModelUploader {
         &mut self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
-        layouts: &Layouts,
         model: &Model,
     ) -> Result<GpuModel, UploadError> {
         let asset = &model.asset;
@@ -112,7 +108,7 @@ impl ModelUploader {
                     false => None,
                     true => {
                         let gpu = GpuGeometry::new(device, queue, geometry, smooth, mesh_index, primitive_index)?;
-                        Some(materials.primitive_and_variants(layouts, geometry, gpu))
+                        Some(materials.primitive_and_variants(geometry, gpu))
                     }
                 });
             }
@@ -142,10 +138,12 @@ impl GpuModel {
         }
     }
 
-    /// Blended surfaces cast a shadow only if they are more than half opaque.
+    /// Blended and transmissive surfaces cast a shadow only if they are more than half opaque.
     pub fn casts_shadow(&self, primitive: &GpuPrimitive) -> bool {
-        let is_solid = || !primitive.features.has(Features::BLEND) || self.alpha(primitive) > 0.5;
-        primitive.geometry.topology == Topology::Triangles && is_solid()
+        let is_faint = primitive.features.has(Features::BLEND) && self.alpha(primitive) <= 0.5;
+        let transmission = self.uniform(primitive).map_or(0.0, |uniform| uniform.transmission);
+        let is_clear = primitive.surface.has(SurfaceVariant::TRANSMISSION) && transmission >= 0.5;
+        primitive.geometry.topology == Topology::Triangles && !is_faint && !is_clear
     }
 
     /// Whether a blended surface may have parts that hide what is behind them.
@@ -155,8 +153,11 @@ impl GpuModel {
 
     /// The alpha of the material without its texture.
     fn alpha(&self, primitive: &GpuPrimitive) -> f32 {
-        let material = primitive.material.and_then(|index| self.materials.get(&index));
-        material.map_or(1.0, |uniform| uniform.written().base_color[3])
+        self.uniform(primitive).map_or(1.0, |uniform| uniform.base_color[3])
+    }
+
+    fn uniform(&self, primitive: &GpuPrimitive) -> Option<&MaterialUniform> {
+        primitive.material.and_then(|index| self.materials.get(&index)).map(UniformBuffer::written)
     }
 
     /// Builds the edge lists of a mesh on first use.
@@ -178,7 +179,7 @@ impl GpuModel {
 /// A material's uniform buffer and maps, shared by the primitives that use it.
 struct GpuMaterial {
     uniform: UniformBuffer<MaterialUniform>,
-    maps: [Option<(wgpu::TextureView, wgpu::Sampler)>; MATERIAL_MAPS],
+    maps: Maps,
 }
 
 /// Materials of a model during upload. An image is uploaded once as sRGB and once as linear, as its uses require.
@@ -193,22 +194,16 @@ struct Materials<'a> {
 }
 
 impl Materials<'_> {
-    fn primitive_and_variants(&mut self, layouts: &Layouts, geometry: &Geometry, gpu: GpuGeometry) -> GpuPrimitive {
-        let mut primitive = self.primitive(layouts, geometry, gpu.clone(), geometry.material);
+    fn primitive_and_variants(&mut self, geometry: &Geometry, gpu: GpuGeometry) -> GpuPrimitive {
+        let mut primitive = self.primitive(geometry, gpu.clone(), geometry.material);
         for &(variant, material) in &geometry.variants {
-            let of_variant = self.primitive(layouts, geometry, gpu.clone(), Some(material));
+            let of_variant = self.primitive(geometry, gpu.clone(), Some(material));
             primitive.variants.push((variant, of_variant));
         }
         primitive
     }
 
-    fn primitive(
-        &mut self,
-        layouts: &Layouts,
-        geometry: &Geometry,
-        gpu: GpuGeometry,
-        material: Option<usize>,
-    ) -> GpuPrimitive {
+    fn primitive(&mut self, geometry: &Geometry, gpu: GpuGeometry, material: Option<usize>) -> GpuPrimitive {
         let default = Material::default();
         let asset = self.model.asset.clone();
         let found = material.and_then(|index| asset.materials.get(index));
@@ -223,13 +218,23 @@ impl Materials<'_> {
             .entry(Sampler::default())
             .or_insert_with(|| sampler(self.device, &Sampler::default(), self.uploader.anisotropy));
         let gpu_material = &self.created[&key];
-        let bind_group = primitive_bind_group(self.device, layouts, gpu_material, &gpu, plain, self.uploader);
         // Points and lines without normals have no side to light (glTF 2.0 §3.7.2.1).
         let unlit = material.unlit || (geometry.topology != Topology::Triangles && geometry.normals.is_empty());
+        // A map without texture coordinates is ignored; otherwise its first texel would colour everything.
+        let has_map = |slot: TextureSlot| {
+            let reference = material.texture(slot).filter(|_| gpu_material.maps[slot as usize].is_some());
+            reference.is_some_and(|reference| !geometry.uvs[reference.uv_set & 1].is_empty())
+        };
+        let lobes = if unlit { 0 } else { lobes::visible(&asset, key, material) };
+        // Without texture coordinates there is no direction to stretch highlights in.
+        let has_tangents = geometry.uvs.iter().any(|uvs| !uvs.is_empty()) || !geometry.tangents.is_empty();
+        let lobes = if has_tangents { lobes } else { lobes & !SurfaceVariant::ANISOTROPY };
+        let surface = lobes::variant(lobes, has_map);
         GpuPrimitive {
-            bind_group,
+            bind_group: primitive_bind_group(self.device, surface, gpu_material, &gpu, plain, self.uploader),
             shading: if unlit { Shading::Unlit } else { Shading::Lit },
-            features: features(material, &gpu_material.maps, geometry),
+            features: features(material, has_map, geometry),
+            surface,
             double_sided: material.double_sided,
             material: key,
             edges: None,
@@ -239,10 +244,9 @@ impl Materials<'_> {
     }
 
     fn create(&mut self, material: &Material) -> GpuMaterial {
-        let is_srgb = |slot| matches!(slot, TextureSlot::BaseColor | TextureSlot::Emissive);
         let mut uniform = UniformBuffer::new(self.device, "material");
         uniform.write(self.queue, material_uniform(material));
-        GpuMaterial { uniform, maps: TEXTURE_SLOTS.map(|slot| self.map(material.texture(slot)?, is_srgb(slot))) }
+        GpuMaterial { uniform, maps: TextureSlot::ALL.map(|slot| self.map(material.texture(slot)?, slot.is_color())) }
     }
 
     fn map(&mut self, reference: TextureRef, srgb: bool) -> Option<(wgpu::TextureView, wgpu::Sampler)> {
@@ -266,8 +270,9 @@ impl Materials<'_> {
 }
 
 fn material_uniform(material: &Material) -> MaterialUniform {
-    let uvs = |slot| material.texture(slot).map_or_else(UvTransformUniform::default, uv_transform);
-    MaterialUniform {
+    let plain = TextureRef { texture: 0, uv_set: 0, uv_transform: UvTransform::IDENTITY };
+    let uvs = |slot| uv_transform(material.texture(slot).unwrap_or(plain));
+    let mut uniform = MaterialUniform {
         base_color: material.base_color.to_array(),
         // KHR_materials_unlit has no emission; points and lines without normals are unlit too, but keep theirs.
         emissive: if material.unlit { [0.0; 3] } else { (material.emissive * material.emissive_strength).to_array() },
@@ -280,26 +285,21 @@ fn material_uniform(material: &Material) -> MaterialUniform {
         roughness: material.roughness,
         normal_scale: material.normal_scale,
         occlusion_strength: material.occlusion_strength,
-        uvs: TEXTURE_SLOTS.map(uvs),
-    }
+        uvs: TextureSlot::ALL.map(uvs),
+        ..Default::default()
+    };
+    write_uniform(material.lobes.as_deref().unwrap_or(&Lobes::default()), &mut uniform);
+    uniform
 }
 
 /// The parts of the surface shader that a primitive needs.
-fn features(
-    material: &Material,
-    maps: &[Option<(wgpu::TextureView, wgpu::Sampler)>; MATERIAL_MAPS],
-    geometry: &Geometry,
-) -> Features {
-    // A map without texture coordinates is ignored; otherwise its first texel would colour everything.
-    let has = |slot: usize, reference: Option<TextureRef>| {
-        maps[slot].is_some() && reference.is_some_and(|reference| !geometry.uvs[reference.uv_set & 1].is_empty())
-    };
+fn features(material: &Material, has_map: impl Fn(TextureSlot) -> bool, geometry: &Geometry) -> Features {
     Features::default()
-        .with(Features::BASE_COLOR_MAP, has(0, material.base_color_texture))
-        .with(Features::METALLIC_ROUGHNESS_MAP, has(1, material.metallic_roughness_texture))
-        .with(Features::NORMAL_MAP, has(2, material.normal_texture))
-        .with(Features::OCCLUSION_MAP, has(3, material.occlusion_texture))
-        .with(Features::EMISSIVE_MAP, !material.unlit && has(4, material.emissive_texture))
+        .with(Features::BASE_COLOR_MAP, has_map(TextureSlot::BaseColor))
+        .with(Features::METALLIC_ROUGHNESS_MAP, has_map(TextureSlot::MetallicRoughness))
+        .with(Features::NORMAL_MAP, has_map(TextureSlot::Normal))
+        .with(Features::OCCLUSION_MAP, has_map(TextureSlot::Occlusion))
+        .with(Features::EMISSIVE_MAP, !material.unlit && has_map(TextureSlot::Emissive))
         .with(Features::VERTEX_COLORS, !geometry.colors.is_empty())
         .with(Features::FLAT, geometry.normals.is_empty())
         .with(Features::TANGENTS, !geometry.tangents.is_empty())
@@ -310,16 +310,17 @@ fn features(
 /// `plain` is the sampler of the maps that the material does not have.
 fn primitive_bind_group(
     device: &wgpu::Device,
-    layouts: &Layouts,
+    surface: SurfaceVariant,
     material: &GpuMaterial,
     geometry: &GpuGeometry,
     plain: &wgpu::Sampler,
     placeholders: &ModelUploader,
 ) -> wgpu::BindGroup {
     let mut entries = vec![wgpu::BindGroupEntry { binding: 0, resource: material.uniform.binding() }];
-    for (slot, map) in material.maps.iter().enumerate() {
-        let (view, sampler) = map.as_ref().map_or((&placeholders.white, plain), |(view, sampler)| (view, sampler));
-        let binding = 1 + 2 * slot as u32;
+    for map in surface.maps() {
+        let (view, sampler) =
+            material.maps[map].as_ref().map_or((&placeholders.white, plain), |(view, sampler)| (view, sampler));
+        let binding = SurfaceVariant::binding(map);
         entries.push(wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) });
         entries.push(wgpu::BindGroupEntry { binding: binding + 1, resource: wgpu::BindingResource::Sampler(sampler) });
     }
@@ -330,7 +331,7 @@ fn primitive_bind_group(
     }));
     device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("primitive"),
-        layout: &layouts.primitive,
+        layout: &primitive_layout(device, surface),
         entries: &entries,
     })
 }

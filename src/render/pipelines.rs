@@ -4,87 +4,97 @@ use std::collections::HashMap;
 
 use super::flush;
 use super::geometry::{InfluenceSource, vertex_buffers};
-use super::shaders;
+use super::shaders::{self, Shader, SurfaceVariant};
 use super::shadow::SHADOW_FORMAT;
 use super::targets::{DEPTH_FORMAT, SCENE_FORMAT};
 use super::uniforms::{DrawUniform, FrameUniform, MaterialUniform};
 use crate::mesh::{SkinningMode, Topology};
 use crate::state::{Background, ToneMap};
 
-/// Number of texture and sampler pairs in a material.
-pub(super) const MATERIAL_MAPS: usize = 5;
-
 /// Bind group layouts in the order of their group numbers. No pipeline skips a number: software Vulkan drops the groups
 /// after a gap.
 pub(super) struct Layouts {
     /// Group 0: frame, palette.
     pub frame: wgpu::BindGroupLayout,
-    /// Group 1 of meshes and ground: environment, shadow map, reflectance table.
+    /// Group 1 of meshes and ground: environment, shadow map, reflectance table, what is behind glass.
     pub light: wgpu::BindGroupLayout,
     /// Group 1 of the environment as a background: environment, panorama.
     pub sky: wgpu::BindGroupLayout,
     /// Group 2 of meshes: draw, with a dynamic offset.
     pub draw: wgpu::BindGroupLayout,
-    /// Group 3 of meshes: material, morph deltas, influences.
-    pub primitive: wgpu::BindGroupLayout,
+}
+
+fn texture_binding(
+    sample_type: wgpu::TextureSampleType,
+    view_dimension: wgpu::TextureViewDimension,
+) -> wgpu::BindingType {
+    wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false }
+}
+
+fn uniform_binding(size: usize, has_dynamic_offset: bool) -> wgpu::BindingType {
+    wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Uniform,
+        has_dynamic_offset,
+        min_binding_size: wgpu::BufferSize::new(size as u64),
+    }
+}
+
+fn entry(binding: u32, visibility: wgpu::ShaderStages, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None }
+}
+
+const FILTERED: wgpu::TextureSampleType = wgpu::TextureSampleType::Float { filterable: true };
+const NUMBERS: wgpu::TextureSampleType = wgpu::TextureSampleType::Float { filterable: false };
+
+/// Creates the layout of group 3 of meshes: material, its maps, morph deltas, influences. Layouts of the same maps are
+/// interchangeable.
+pub(super) fn primitive_layout(device: &wgpu::Device, surface: SurfaceVariant) -> wgpu::BindGroupLayout {
+    use wgpu::{ShaderStages as Stages, TextureViewDimension as Dimension};
+    let mut entries = vec![entry(0, Stages::FRAGMENT, uniform_binding(size_of::<MaterialUniform>(), false))];
+    for map in surface.maps() {
+        let binding = SurfaceVariant::binding(map);
+        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+        entries.push(entry(binding, Stages::FRAGMENT, texture_binding(FILTERED, Dimension::D2)));
+        entries.push(entry(binding + 1, Stages::FRAGMENT, sampler));
+    }
+    entries.extend([11, 12].map(|binding| entry(binding, Stages::VERTEX, texture_binding(NUMBERS, Dimension::D2))));
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("primitive"), entries: &entries })
 }
 
 impl Layouts {
     pub fn new(device: &wgpu::Device) -> Self {
-        use wgpu::{ShaderStages as Stages, TextureSampleType as Sample, TextureViewDimension as Dimension};
-        let entry = |binding, visibility, ty| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
-        let texture = |sample_type, view_dimension| wgpu::BindingType::Texture {
-            sample_type,
-            view_dimension,
-            multisampled: false,
-        };
-        let uniform = |size: usize, has_dynamic_offset| wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset,
-            min_binding_size: wgpu::BufferSize::new(size as u64),
-        };
+        use wgpu::{ShaderStages as Stages, TextureViewDimension as Dimension};
         let layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
         };
-        let filtered = Sample::Float { filterable: true };
-        let numbers = Sample::Float { filterable: false };
-
-        let mut primitive = vec![entry(0, Stages::FRAGMENT, uniform(size_of::<MaterialUniform>(), false))];
-        for map in 0..MATERIAL_MAPS as u32 {
-            let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-            primitive.push(entry(1 + 2 * map, Stages::FRAGMENT, texture(filtered, Dimension::D2)));
-            primitive.push(entry(2 + 2 * map, Stages::FRAGMENT, sampler));
-        }
-        primitive.push(entry(11, Stages::VERTEX, texture(numbers, Dimension::D2)));
-        primitive.push(entry(12, Stages::VERTEX, texture(numbers, Dimension::D2)));
-
+        let filter = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
         Self {
             frame: layout(
                 "frame",
                 &[
-                    entry(0, Stages::VERTEX_FRAGMENT, uniform(size_of::<FrameUniform>(), false)),
-                    entry(1, Stages::VERTEX, texture(numbers, Dimension::D2)),
+                    entry(0, Stages::VERTEX_FRAGMENT, uniform_binding(size_of::<FrameUniform>(), false)),
+                    entry(1, Stages::VERTEX, texture_binding(NUMBERS, Dimension::D2)),
                 ],
             ),
-            draw: layout("draw", &[entry(0, Stages::VERTEX_FRAGMENT, uniform(size_of::<DrawUniform>(), true))]),
-            primitive: layout("primitive", &primitive),
+            draw: layout("draw", &[entry(0, Stages::VERTEX_FRAGMENT, uniform_binding(size_of::<DrawUniform>(), true))]),
             sky: layout(
                 "sky",
                 &[
-                    entry(0, Stages::FRAGMENT, texture(filtered, Dimension::Cube)),
-                    entry(1, Stages::FRAGMENT, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
-                    entry(2, Stages::FRAGMENT, texture(filtered, Dimension::D2)),
+                    entry(0, Stages::FRAGMENT, texture_binding(FILTERED, Dimension::Cube)),
+                    entry(1, Stages::FRAGMENT, filter),
+                    entry(2, Stages::FRAGMENT, texture_binding(FILTERED, Dimension::D2)),
                 ],
             ),
             light: layout(
                 "light",
                 &[
-                    entry(0, Stages::FRAGMENT, texture(filtered, Dimension::Cube)),
-                    entry(1, Stages::FRAGMENT, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
-                    entry(2, Stages::FRAGMENT, texture(Sample::Depth, Dimension::D2)),
+                    entry(0, Stages::FRAGMENT, texture_binding(FILTERED, Dimension::Cube)),
+                    entry(1, Stages::FRAGMENT, filter),
+                    entry(2, Stages::FRAGMENT, texture_binding(wgpu::TextureSampleType::Depth, Dimension::D2)),
                     entry(3, Stages::FRAGMENT, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison)),
-                    entry(4, Stages::FRAGMENT, texture(filtered, Dimension::D2)),
-                    entry(5, Stages::FRAGMENT, texture(filtered, Dimension::Cube)),
+                    entry(4, Stages::FRAGMENT, texture_binding(FILTERED, Dimension::D2)),
+                    entry(5, Stages::FRAGMENT, texture_binding(FILTERED, Dimension::Cube)),
+                    entry(6, Stages::FRAGMENT, texture_binding(FILTERED, Dimension::D2)),
                 ],
             ),
         }
@@ -157,6 +167,7 @@ const OVERRIDES: [&str; 12] = [
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) struct MeshKey {
     pub shading: Shading,
+    pub surface: SurfaceVariant,
     pub influences: InfluenceSource,
     pub skinning: SkinningMode,
     pub topology: Topology,
@@ -175,8 +186,10 @@ pub(super) struct MeshPipeline(usize);
 pub(super) struct Pipelines {
     queue: wgpu::Queue,
     samples: u32,
-    mesh_module: wgpu::ShaderModule,
-    mesh_layout: wgpu::PipelineLayout,
+    /// Of meshes, by the maps and lobes of their surfaces.
+    modules: HashMap<SurfaceVariant, (wgpu::ShaderModule, wgpu::PipelineLayout)>,
+    /// Groups 0 to 2 of meshes.
+    mesh_groups: [wgpu::BindGroupLayout; 3],
     by_key: HashMap<MeshKey, MeshPipeline>,
     meshes: Vec<wgpu::RenderPipeline>,
     pub grid: wgpu::RenderPipeline,
@@ -290,7 +303,7 @@ impl<'a> ScenePipeline<'a> {
 impl Pipelines {
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, layouts: &Layouts, samples: u32) -> Self {
         let frame = Some(&layouts.frame);
-        let (draw, primitive, light) = (Some(&layouts.draw), Some(&layouts.primitive), Some(&layouts.light));
+        let light = Some(&layouts.light);
         let frame_layout = pipeline_layout(device, "frame only", &[frame]);
         let ground_module = shaders::GROUND_PLANE.module(device);
         let ground_layout = pipeline_layout(device, "ground", &[frame, light]);
@@ -313,20 +326,31 @@ impl Pipelines {
             ..ScenePipeline::new("background", &background_module, &frame_layout, ["full_screen", "backdrop"])
         }
         .create(device, samples);
-        let mesh_module = shaders::MESH.module(device);
-        flush(queue);
-        Self {
+        let mut pipelines = Self {
             queue: queue.clone(),
             samples,
-            mesh_module,
-            mesh_layout: pipeline_layout(device, "mesh", &[frame, light, draw, primitive]),
+            modules: HashMap::new(),
+            mesh_groups: [&layouts.frame, &layouts.light, &layouts.draw].map(Clone::clone),
             by_key: HashMap::new(),
             meshes: Vec::new(),
             grid,
             ground_shadow,
             background,
             sky: None,
-        }
+        };
+        pipelines.prepare_module(device, SurfaceVariant::PLAIN);
+        flush(queue);
+        pipelines
+    }
+
+    fn prepare_module(&mut self, device: &wgpu::Device, surface: SurfaceVariant) {
+        let groups = &self.mesh_groups;
+        self.modules.entry(surface).or_insert_with(|| {
+            let primitive = primitive_layout(device, surface);
+            let [frame, light, draw] = groups.each_ref().map(Some);
+            let layout = pipeline_layout(device, "mesh", &[frame, light, draw, Some(&primitive)]);
+            (Shader::mesh(surface).module(device), layout)
+        });
     }
 
     /// Makes the pipelines that draw the environment as a background, unless they are there.
@@ -362,6 +386,7 @@ impl Pipelines {
         if let Some(&pipeline) = self.by_key.get(&key) {
             return pipeline;
         }
+        self.prepare_module(device, key.surface);
         let pipeline = MeshPipeline(self.meshes.len());
         self.meshes.push(self.create_mesh(device, key));
         self.by_key.insert(key, pipeline);
@@ -381,6 +406,7 @@ impl Pipelines {
         let shadow = key.shading == Shading::Shadow;
         let blended = key.shading == Shading::Wireframe || key.features.has(Features::BLEND);
         let constants = mesh_constants(key);
+        let (module, layout) = &self.modules[&key.surface];
         let options =
             || wgpu::PipelineCompilationOptions { constants: &constants, zero_initialize_workgroup_memory: false };
         let fragment = fragment_entry_point(key);
@@ -399,9 +425,9 @@ impl Pipelines {
         let bias = wgpu::DepthBiasState { constant: 2, slope_scale: 2.0, clamp: 0.0 };
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("mesh"),
-            layout: Some(&self.mesh_layout),
+            layout: Some(layout),
             vertex: wgpu::VertexState {
-                module: &self.mesh_module,
+                module,
                 entry_point: Some(key.influences.entry_point(shadow && fragment.is_none())),
                 compilation_options: options(),
                 buffers: &vertex_buffers(key.influences),
@@ -429,7 +455,7 @@ impl Pipelines {
                 ..Default::default()
             },
             fragment: fragment.map(|entry_point| wgpu::FragmentState {
-                module: &self.mesh_module,
+                module,
                 entry_point: Some(entry_point),
                 compilation_options: options(),
                 targets: if shadow { &[] } else { &color },

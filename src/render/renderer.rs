@@ -2,6 +2,7 @@
 
 use std::ops::AddAssign;
 
+use super::behind::BehindMaker;
 use super::draw_list::{DrawList, Item};
 use super::environment::Source;
 use super::flush;
@@ -93,6 +94,8 @@ pub struct Renderer {
     /// How many of [`SAMPLES`] the last picture has; all with multisampling.
     samples: usize,
     average: Option<Average>,
+    /// Created for the first picture with transmissive surfaces.
+    behind_maker: Option<BehindMaker>,
     stats: RenderStats,
 }
 
@@ -142,6 +145,7 @@ impl Renderer {
             uniform: FrameUniform::default(),
             samples: SAMPLES.len(),
             average: None,
+            behind_maker: None,
             stats: RenderStats::default(),
         }
     }
@@ -149,7 +153,7 @@ impl Renderer {
     /// Uploads a model's geometry and textures, unless it is already uploaded.
     pub fn upload(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, model: &Model) -> Result<(), UploadError> {
         if !self.models.iter().any(|known| known.id == model.id) {
-            self.models.push(self.uploader.upload(device, queue, &self.layouts, model)?);
+            self.models.push(self.uploader.upload(device, queue, model)?);
         }
         Ok(())
     }
@@ -195,6 +199,12 @@ impl Renderer {
         }
         self.draws.collect(device, frame, &mut self.models, &mut self.pipelines, &mut self.palette, shadow);
         self.draws.upload(device, queue, &self.layouts);
+        if self.draws.shows_behind() {
+            let maker = self.behind_maker.get_or_insert_with(|| BehindMaker::new(device));
+            let output = &self.targets.output_view;
+            let behind = self.targets.behind.get_or_insert_with(|| maker.behind(device, output, size));
+            self.light.show_behind(device, &self.layouts, &behind.view);
+        }
         if self.palette.upload(device, queue) {
             self.frame_group = self.frame_buffer.bind_group(device, &self.layouts, &self.palette);
             self.shadow_group = self.shadow_buffer.bind_group(device, &self.layouts, &self.palette);
@@ -206,13 +216,7 @@ impl Renderer {
         if shadow {
             self.draw_shadow(&mut encoder);
         }
-        let output = self.targets.output_view.clone();
-        let (view, resolve_target) = match self.targets.multisampled.clone() {
-            Some(samples) => (samples, Some(&output)),
-            None => (output.clone(), None),
-        };
-        let target = Target { view: &view, resolve_target, background: frame.look.background };
-        self.draw_scene(&mut encoder, &target, ground.as_ref(), &panes);
+        self.draw_scene(&mut encoder, None, frame.look.background, ground.as_ref(), &panes);
         queue.submit([encoder.finish()]);
         self.samples = if self.options.samples > 1 { SAMPLES.len() } else { 1 };
         &self.targets.output_view
@@ -238,8 +242,8 @@ impl Renderer {
         let sample = self.targets.prepare_sample(device);
         let stats = self.stats;
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("sample") });
-        let target = Target { view: &sample, resolve_target: None, background: frame.look.background };
-        self.draw_scene(&mut encoder, &target, GroundPlane::of(frame).as_ref(), &panes);
+        let ground = GroundPlane::of(frame);
+        self.draw_scene(&mut encoder, Some(&sample), frame.look.background, ground.as_ref(), &panes);
         self.stats = stats;
         let average = self.average.get_or_insert_with(|| Average::new(device));
         let group = average.bind(device, &sample);
@@ -288,14 +292,16 @@ impl Renderer {
         self.stats.draw_calls += stats.draw_calls;
     }
 
+    /// Everything in one pass, unless something shows what is behind it: then what is opaque comes first, to be copied. A further
+    /// `sample` shows the copy that the first one made.
     fn draw_scene(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        target: &Target<'_>,
+        sample: Option<&wgpu::TextureView>,
+        background: Background,
         ground: Option<&GroundPlane>,
         panes: &Panes,
     ) {
-        let &Target { view, resolve_target, background } = target;
         let clear = match background {
             Background::Color(color) => {
                 let [r, g, b] = color.map(|channel| f64::from(channel) / 255.0);
@@ -305,35 +311,66 @@ impl Renderer {
             // Drawn over; masked surfaces keep its alpha.
             _ => wgpu::Color::BLACK,
         };
+        let clear = (wgpu::LoadOp::Clear(clear), wgpu::LoadOp::Clear(1.0));
+        let behind = self.behind_maker.as_ref().zip(self.targets.behind.as_ref());
+        let behind = behind.filter(|_| self.draws.shows_behind() && sample.is_none());
+        let mut stats = RenderStats::default();
+        let mut pass = self.scene_pass(encoder, sample, clear, behind.is_some());
+        for pane in 0..panes.count() {
+            panes.choose(&mut pass, pane);
+            stats += self.draw_opaque(&mut pass, background, ground, pane);
+            if behind.is_none() {
+                stats += self.draw_transparent(&mut pass, pane);
+            }
+        }
+        drop(pass);
+        if let Some((maker, behind)) = behind {
+            maker.record(behind, encoder);
+            let mut pass = self.scene_pass(encoder, None, (wgpu::LoadOp::Load, wgpu::LoadOp::Load), false);
+            for pane in 0..panes.count() {
+                panes.choose(&mut pass, pane);
+                stats += self.draw_transparent(&mut pass, pane);
+            }
+        }
+        self.stats += stats;
+    }
+
+    /// Begins a pass into the scene's targets, or into that of a further sample. `continues`: another one follows.
+    fn scene_pass<'a>(
+        &self,
+        encoder: &'a mut wgpu::CommandEncoder,
+        sample: Option<&wgpu::TextureView>,
+        (color, depth): (wgpu::LoadOp<wgpu::Color>, wgpu::LoadOp<f32>),
+        continues: bool,
+    ) -> wgpu::RenderPass<'a> {
+        let (view, resolve_target) = match (sample, &self.targets.multisampled) {
+            (Some(sample), _) => (sample, None),
+            (None, Some(samples)) => (samples, Some(&self.targets.output_view)),
+            (None, None) => (&self.targets.output_view, None),
+        };
+        let store = |wanted| if wanted { wgpu::StoreOp::Store } else { wgpu::StoreOp::Discard };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("scene"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                 view,
                 depth_slice: None,
                 resolve_target,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(clear),
-                    store: if resolve_target.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store },
-                },
+                ops: wgpu::Operations { load: color, store: store(continues || resolve_target.is_none()) },
             })],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &self.targets.depth,
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Discard }),
+                depth_ops: Some(wgpu::Operations { load: depth, store: store(continues) }),
                 stencil_ops: None,
             }),
             ..Default::default()
         });
         pass.set_bind_group(0, &self.frame_group, &[]);
         pass.set_bind_group(1, &self.light.group, &[]);
-        for pane in 0..panes.count() {
-            let [x, y, width, height] = panes.rect(pane);
-            pass.set_viewport(x, y, width, height, 0.0, 1.0);
-            let stats = self.draw_pane(&mut pass, background, ground, pane);
-            self.stats += stats;
-        }
+        pass
     }
 
-    fn draw_pane(
+    /// Opaque surfaces, the background and the ground.
+    fn draw_opaque(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
         background: Background,
@@ -367,7 +404,17 @@ impl Renderer {
             pass.draw(0..6, 0..1);
             stats += overlay_call;
         }
-        stats += draw_items(pass, self.draws.blended(), pane, draw, &self.models, &self.pipelines);
+        stats
+    }
+
+    /// Transmissive and blended surfaces, and overlays.
+    fn draw_transparent(&self, pass: &mut wgpu::RenderPass<'_>, pane: u32) -> RenderStats {
+        let mut stats = RenderStats::default();
+        let overlay_call = RenderStats { draw_calls: 1, triangles: 0 };
+        let draw = self.draws.bind_group();
+        for items in [self.draws.transmissive(), self.draws.blended()] {
+            stats += draw_items(pass, items, pane, draw, &self.models, &self.pipelines);
+        }
         for on_top in [false, true] {
             if on_top && (self.overlay.bones() > 0 || !self.overlay.lines(true).is_empty()) {
                 self.overlay.clear_depth(pass);
@@ -386,13 +433,6 @@ impl Renderer {
     }
 }
 
-/// What the scene is drawn into.
-struct Target<'a> {
-    view: &'a wgpu::TextureView,
-    resolve_target: Option<&'a wgpu::TextureView>,
-    background: Background,
-}
-
 /// The panes of a picture: equal rectangles in rows.
 struct Panes {
     columns: u32,
@@ -409,6 +449,11 @@ impl Panes {
 
     fn count(&self) -> u32 {
         self.columns * self.rows
+    }
+
+    fn choose(&self, pass: &mut wgpu::RenderPass<'_>, pane: u32) {
+        let [x, y, width, height] = self.rect(pane);
+        pass.set_viewport(x, y, width, height, 0.0, 1.0);
     }
 
     /// Left, top, width and height in whole pixels, as OpenGL requires.

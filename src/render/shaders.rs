@@ -1,20 +1,143 @@
 //! The WGSL modules, concatenated from the files in `shaders/`.
 
-const FRAME: &str = include_str!("../../shaders/frame.wgsl");
-const TONE: &str = include_str!("../../shaders/tone.wgsl");
-const PALETTE: &str = include_str!("../../shaders/palette.wgsl");
-const SKINNING: &str = include_str!("../../shaders/skinning.wgsl");
-const VERTEX: &str = include_str!("../../shaders/vertex.wgsl");
-const LIGHT: &str = include_str!("../../shaders/light.wgsl");
-const SURFACE: &str = include_str!("../../shaders/surface.wgsl");
-const GROUND: &str = include_str!("../../shaders/ground.wgsl");
-const LINE: &str = include_str!("../../shaders/line.wgsl");
-const BONE: &str = include_str!("../../shaders/bone.wgsl");
-const CLEAR_DEPTH: &str = include_str!("../../shaders/clear_depth.wgsl");
-const BACKGROUND: &str = include_str!("../../shaders/background.wgsl");
-const SKY_BACKGROUND: &str = include_str!("../../shaders/sky.wgsl");
-const MIP: &str = include_str!("../../shaders/mip.wgsl");
-const BLIT_PICTURE: &str = include_str!("../../shaders/blit.wgsl");
+use std::fmt::Write;
+
+use crate::anim::TextureSlot;
+
+/// A file of `shaders/` without comments and indentation (build.rs).
+macro_rules! wgsl {
+    ($name:literal) => {
+        include_str!(concat!(env!("OUT_DIR"), "/", $name, ".wgsl"))
+    };
+}
+
+const FRAME: &str = wgsl!("frame");
+const TONE: &str = wgsl!("tone");
+const PALETTE: &str = wgsl!("palette");
+const SKINNING: &str = wgsl!("skinning");
+const VERTEX: &str = wgsl!("vertex");
+const LIGHT: &str = wgsl!("light");
+const BRDF: &str = wgsl!("brdf");
+const CLEARCOAT: &str = wgsl!("clearcoat");
+const SHEEN: &str = wgsl!("sheen");
+const ANISOTROPY: &str = wgsl!("anisotropy");
+const IRIDESCENCE: &str = wgsl!("iridescence");
+const TRANSMISSION: &str = wgsl!("transmission");
+const SURFACE: &str = wgsl!("surface");
+const GROUND: &str = wgsl!("ground");
+const LINE: &str = wgsl!("line");
+const BONE: &str = wgsl!("bone");
+const CLEAR_DEPTH: &str = wgsl!("clear_depth");
+const BACKGROUND: &str = wgsl!("background");
+const SKY_BACKGROUND: &str = wgsl!("sky");
+const MIP: &str = wgsl!("mip");
+const BLIT_PICTURE: &str = wgsl!("blit");
+
+/// The maps of a material in the order of their bindings and texture transforms, as the shaders call them.
+const MAPS: [&str; TextureSlot::ALL.len()] = [
+    "base_color",
+    "metallic_roughness",
+    "normal",
+    "occlusion",
+    "emissive",
+    "specular",
+    "specular_color",
+    "clearcoat",
+    "clearcoat_roughness",
+    "clearcoat_normal",
+    "sheen_color",
+    "sheen_roughness",
+    "iridescence",
+    "iridescence_thickness",
+    "anisotropy",
+    "transmission",
+    "thickness",
+    "diffuse_transmission",
+    "diffuse_transmission_color",
+];
+
+/// Which maps and lobes the mesh shader has, as bits: one for each slot of [`TextureSlot`], then the
+/// lobes. The shader's text is cut to what is needed, since WebGL2 has few texture units, and most files have no lobes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct SurfaceVariant(pub u32);
+
+impl SurfaceVariant {
+    /// The maps of core glTF, which overrides turn off, and no lobes.
+    pub const PLAIN: Self = Self(0b11111);
+    /// An index of refraction, or a weight or colour of the dielectric reflection.
+    pub const SPECULAR: u32 = 1 << 19;
+    /// Roughness is in alpha of the specular colour.
+    pub const GLOSSINESS: u32 = 1 << 20;
+    /// KHR_materials_clearcoat.
+    pub const CLEARCOAT: u32 = 1 << 21;
+    /// KHR_materials_sheen.
+    pub const SHEEN: u32 = 1 << 22;
+    /// KHR_materials_iridescence.
+    pub const IRIDESCENCE: u32 = 1 << 23;
+    /// KHR_materials_anisotropy.
+    pub const ANISOTROPY: u32 = 1 << 24;
+    /// KHR_materials_transmission.
+    pub const TRANSMISSION: u32 = 1 << 25;
+    /// KHR_materials_volume; only with one of the transmissions.
+    pub const VOLUME: u32 = 1 << 26;
+    /// KHR_materials_dispersion; only with transmission and a volume.
+    pub const DISPERSION: u32 = 1 << 27;
+    /// KHR_materials_diffuse_transmission.
+    pub const DIFFUSE_TRANSMISSION: u32 = 1 << 28;
+    /// All lobes.
+    pub const LOBES: u32 = 0x3ff << 19;
+
+    /// What the shaders' `#if` asks for: any of these bits.
+    const CONDITIONS: [(&str, u32); 13] = [
+        ("SPECULAR", Self::SPECULAR),
+        ("GLOSSINESS", Self::GLOSSINESS),
+        ("CLEARCOAT", Self::CLEARCOAT),
+        ("CLEARCOAT_NORMAL_MAP", 1 << TextureSlot::ClearcoatNormal as u32),
+        ("SHEEN", Self::SHEEN),
+        ("IRIDESCENCE", Self::IRIDESCENCE),
+        ("ANISOTROPY", Self::ANISOTROPY),
+        ("ANISOTROPY_MAP", 1 << TextureSlot::Anisotropy as u32),
+        ("TRANSMISSION", Self::TRANSMISSION),
+        ("VOLUME", Self::VOLUME),
+        ("DISPERSION", Self::DISPERSION),
+        ("DIFFUSE_TRANSMISSION", Self::DIFFUSE_TRANSMISSION),
+        ("TRANSMISSIVE", Self::TRANSMISSION | Self::DIFFUSE_TRANSMISSION),
+    ];
+
+    /// Whether it has any of these lobes.
+    pub fn has(self, lobes: u32) -> bool {
+        self.0 & lobes != 0
+    }
+
+    /// The numbers of the maps it has.
+    pub fn maps(self) -> impl Iterator<Item = usize> {
+        (0..MAPS.len()).filter(move |map| self.0 >> map & 1 == 1)
+    }
+
+    /// The binding of a map in group 3; its sampler follows. Bindings 11 and 12 are the vertex stage's.
+    pub fn binding(map: usize) -> u32 {
+        let binding = 1 + 2 * map as u32;
+        if binding < 11 { binding } else { binding + 2 }
+    }
+
+    /// A function for each map that returns its texel, or white without the map.
+    fn write_maps(self, out: &mut String) {
+        for (map, name) in MAPS.iter().enumerate() {
+            // Writing to a string cannot fail.
+            let _ = match self.0 >> map & 1 {
+                0 => writeln!(out, "fn {name}_texel(uv: vec4f) -> vec4f {{ return vec4f(1.0); }}"),
+                _ => writeln!(
+                    out,
+                    "@group(3) @binding({}) var {name}_map: texture_2d<f32>;
+@group(3) @binding({}) var {name}_sampler: sampler;
+fn {name}_texel(uv: vec4f) -> vec4f {{ return textureSample({name}_map, {name}_sampler, map_uv({map}u, uv)); }}",
+                    Self::binding(map),
+                    Self::binding(map) + 1
+                ),
+            };
+        }
+    }
+}
 
 /// One shader module.
 #[derive(Debug, Clone, Copy)]
@@ -22,36 +145,82 @@ pub struct Shader {
     /// Name in wgpu's messages and graphics debuggers.
     pub label: &'static str,
     parts: &'static [&'static str],
+    surface: SurfaceVariant,
 }
 
-/// Meshes: all vertex and fragment stages of the scene and shadow passes.
-pub const MESH: Shader = Shader { label: "mesh", parts: &[FRAME, TONE, PALETTE, SKINNING, VERTEX, LIGHT, SURFACE] };
+const MESH_PARTS: [&str; 13] = [
+    FRAME,
+    TONE,
+    PALETTE,
+    SKINNING,
+    VERTEX,
+    LIGHT,
+    BRDF,
+    CLEARCOAT,
+    SHEEN,
+    ANISOTROPY,
+    IRIDESCENCE,
+    TRANSMISSION,
+    SURFACE,
+];
+
+/// Meshes without lobes: all vertex and fragment stages of the scene and shadow passes.
+pub const MESH: Shader = Shader::mesh(SurfaceVariant::PLAIN);
 /// The grid and the shadow on the ground.
-pub(super) const GROUND_PLANE: Shader = Shader { label: "ground", parts: &[FRAME, LIGHT, GROUND] };
+pub(super) const GROUND_PLANE: Shader = Shader::new("ground", &[FRAME, LIGHT, GROUND]);
 /// Overlay lines.
-pub(super) const LINES: Shader = Shader { label: "lines", parts: &[FRAME, TONE, LINE] };
+pub(super) const LINES: Shader = Shader::new("lines", &[FRAME, TONE, LINE]);
 /// Bones of the skeleton overlay.
-pub(super) const BONES: Shader = Shader { label: "bones", parts: &[FRAME, TONE, BONE] };
+pub(super) const BONES: Shader = Shader::new("bones", &[FRAME, TONE, BONE]);
 /// Resets the depth buffer before the overlays that are drawn on top.
-pub(super) const DEPTH_CLEAR: Shader = Shader { label: "clear depth", parts: &[CLEAR_DEPTH] };
+pub(super) const DEPTH_CLEAR: Shader = Shader::new("clear depth", &[CLEAR_DEPTH]);
 /// The gradient of the studio background.
-pub(super) const BACKDROP: Shader = Shader { label: "background", parts: &[FRAME, BACKGROUND] };
+pub(super) const BACKDROP: Shader = Shader::new("background", &[FRAME, BACKGROUND]);
 /// The environment as a background.
-pub(super) const SKY: Shader = Shader { label: "sky", parts: &[FRAME, TONE, SKY_BACKGROUND] };
+pub(super) const SKY: Shader = Shader::new("sky", &[FRAME, TONE, SKY_BACKGROUND]);
 /// Renders a mip level of a texture from the level above.
-pub(super) const MIPS: Shader = Shader { label: "mips", parts: &[MIP] };
+pub(super) const MIPS: Shader = Shader::new("mips", &[MIP]);
 /// Copies the finished picture to the screen.
-pub(super) const BLIT: Shader = Shader { label: "blit", parts: &[BLIT_PICTURE] };
+pub(super) const BLIT: Shader = Shader::new("blit", &[BLIT_PICTURE]);
 /// The vertex stages of meshes alone, without fragment stages.
-pub const SKINNED_VERTEX: Shader = Shader { label: "skinned vertex", parts: &[FRAME, PALETTE, SKINNING, VERTEX] };
+pub const SKINNED_VERTEX: Shader = Shader::new("skinned vertex", &[FRAME, PALETTE, SKINNING, VERTEX]);
 
 /// Every module used for drawing.
 pub const ALL: [Shader; 9] = [MESH, GROUND_PLANE, LINES, BONES, DEPTH_CLEAR, BACKDROP, SKY, MIPS, BLIT];
 
 impl Shader {
-    /// Returns the WGSL of the whole module.
+    const fn new(label: &'static str, parts: &'static [&'static str]) -> Self {
+        Self { label, parts, surface: SurfaceVariant::PLAIN }
+    }
+
+    /// Meshes with these maps and lobes.
+    pub const fn mesh(surface: SurfaceVariant) -> Self {
+        Self { label: "mesh", parts: &MESH_PARTS, surface }
+    }
+
+    /// Returns the WGSL of the whole module. Of the files, lines between `#if NAME`, `#else` and `#endif` are left out if the
+    /// variant has no such lobe.
     pub fn source(&self) -> String {
-        self.parts.concat()
+        let mut out = String::new();
+        let mut conditions = Vec::new();
+        for line in self.parts.iter().flat_map(|part| part.lines()) {
+            match line.strip_prefix('#') {
+                Some("maps") => self.surface.write_maps(&mut out),
+                Some("endif") => drop(conditions.pop()),
+                Some("else") => conditions.last_mut().into_iter().for_each(|shown: &mut bool| *shown = !*shown),
+                Some(condition) => {
+                    let name = condition.trim_start_matches("if ");
+                    let found = SurfaceVariant::CONDITIONS.iter().find(|(known, _)| *known == name);
+                    conditions.push(found.is_some_and(|&(_, lobes)| self.surface.has(lobes)));
+                }
+                None if conditions.iter().all(|shown| *shown) => {
+                    out.push_str(line);
+                    out.push('\n');
+                }
+                None => {}
+            }
+        }
+        out
     }
 
     pub(super) fn module(&self, device: &wgpu::Device) -> wgpu::ShaderModule {

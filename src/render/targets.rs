@@ -1,5 +1,7 @@
 //! Render targets of a picture.
 
+use super::behind::Behind;
+
 pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth24Plus;
 pub(super) const SCENE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
@@ -11,6 +13,8 @@ pub(super) struct Targets {
     pub output_view: wgpu::TextureView,
     /// Where the samples of a refined picture are drawn; created for the first one.
     pub sample: Option<wgpu::TextureView>,
+    /// Created for the first picture with transmissive surfaces.
+    pub behind: Option<Behind>,
 }
 
 impl Targets {
@@ -37,6 +41,7 @@ impl Targets {
             output_view: output.create_view(&Default::default()),
             output,
             sample: None,
+            behind: None,
         }
     }
 

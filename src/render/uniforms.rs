@@ -2,6 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
+use crate::anim::TextureSlot;
 use crate::asset::MAX_LIGHTS;
 
 /// `Light` in frame.wgsl.
@@ -138,6 +139,46 @@ pub struct MaterialUniform {
     pub normal_scale: f32,
     /// 0 ignores the occlusion map, 1 applies it fully.
     pub occlusion_strength: f32,
-    /// Transforms for the base colour, metallic-roughness, normal, occlusion and emissive maps.
-    pub uvs: [UvTransformUniform; 5],
+    /// Linear reflectance of the dielectric at normal incidence; may exceed 1.
+    pub specular_color: [f32; 3],
+    /// Weight of the dielectric reflection.
+    pub specular: f32,
+    /// Linear colour of the sheen.
+    pub sheen_color: [f32; 3],
+    /// Roughness of the sheen.
+    pub sheen_roughness: f32,
+    /// Absorption of the volume per metre.
+    pub absorption: [f32; 3],
+    /// Thickness of the volume in the mesh's units.
+    pub thickness: f32,
+    /// Linear colour of diffusely transmitted light.
+    pub diffuse_transmission_color: [f32; 3],
+    /// Fraction of diffusely transmitted light.
+    pub diffuse_transmission: f32,
+    /// Weight of the clearcoat.
+    pub clearcoat: f32,
+    /// Roughness of the clearcoat.
+    pub clearcoat_roughness: f32,
+    /// Scale of the clearcoat normal map's x and y.
+    pub clearcoat_normal_scale: f32,
+    /// Index of refraction.
+    pub ior: f32,
+    /// Weight of the thin film.
+    pub iridescence: f32,
+    /// Index of refraction of the thin film.
+    pub iridescence_ior: f32,
+    /// Minimum and maximum thickness of the thin film in nanometres.
+    pub iridescence_thickness: [f32; 2],
+    /// Cosine and sine of the angle between the tangent and stretched highlights.
+    pub anisotropy_direction: [f32; 2],
+    /// How much highlights are stretched.
+    pub anisotropy: f32,
+    /// Transmitted fraction of light.
+    pub transmission: f32,
+    /// 20 divided by the Abbe number.
+    pub dispersion: f32,
+    /// Unused, zero.
+    pub padding: [f32; 3],
+    /// Transforms of the maps, in the order of [`TextureSlot::ALL`].
+    pub uvs: [UvTransformUniform; TextureSlot::ALL.len()],
 }

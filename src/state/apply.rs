@@ -7,7 +7,7 @@ use glam::Vec3;
 use super::framing::{DEFAULT_ASPECT, frame_all, resolve_camera, resolved_bounds};
 use super::maps::{self, reconciled_maps};
 use super::playhead::{active_clip, choice_of_clip, clip_of, clip_secs, play_range};
-use super::{CameraChoice, ClipChoice, Command, Fade, KeyLight, OrbitCamera, VertexChoice, ViewerState};
+use super::{CameraChoice, ClipChoice, Command, Fade, KeyLight, LookTarget, OrbitCamera, VertexChoice, ViewerState};
 use crate::anim::{LoopMode, TimeRange};
 use crate::library::{Library, Model};
 use crate::retarget::JointMap;
@@ -38,6 +38,10 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::SetSkinning(mode) => state.display.skinning = mode,
         Command::SetMorph { index, weight } => set_morph(state, model, index, weight),
         Command::ClearMorphs => state.edits.morph.clear(),
+        Command::SetExpression { name, weight } => set_expression(state, model, &name, weight),
+        Command::ClearExpressions => state.edits.expressions.clear(),
+        Command::SetLookAt(target) => set_look_at(state, target),
+        Command::SetSprings(on) => state.display.springs = on,
         Command::SetPose { joint, degrees } => set_pose(state, model, joint, degrees),
         Command::ClearPose => state.edits.pose.clear(),
         Command::RenameJoint { joint, name } => rename(state, model, joint, &name),
@@ -98,6 +102,12 @@ fn replace(state: &mut ViewerState, new: ViewerState) {
     for (index, weight) in wanted.edits.morph {
         set_morph(state, None, index, Some(weight));
     }
+    state.edits.expressions.clear();
+    for (name, weight) in wanted.edits.expressions {
+        set_expression(state, None, &name, Some(weight));
+    }
+    state.display.look_at = LookTarget::Off;
+    set_look_at(state, wanted.display.look_at);
     state.edits.pose.clear();
     for (joint, degrees) in wanted.edits.pose {
         set_pose(state, None, joint, Some(degrees));
@@ -331,6 +341,25 @@ fn set_morph(state: &mut ViewerState, model: Option<&Model>, index: usize, weigh
             state.edits.morph.insert(index, weight.clamp(-10.0, 10.0));
         }
         Some(_) => {}
+    }
+}
+
+fn set_expression(state: &mut ViewerState, model: Option<&Model>, name: &str, weight: Option<f32>) {
+    let exists = model.is_none_or(|model| model.asset.avatar.expression(name).is_some());
+    match weight {
+        None => {
+            state.edits.expressions.remove(name);
+        }
+        Some(weight) if exists && weight.is_finite() => {
+            state.edits.expressions.insert(name.to_owned(), weight.clamp(0.0, 1.0));
+        }
+        Some(_) => {}
+    }
+}
+
+fn set_look_at(state: &mut ViewerState, target: LookTarget) {
+    if !matches!(target, LookTarget::Point(point) if !point.is_finite()) {
+        state.display.look_at = target;
     }
 }
 

@@ -1,6 +1,9 @@
 //! Everything the user can do to the view. Menus, keys, links, scripts and tests all send these commands.
 
-use super::{Background, CameraChoice, ClipChoice, EnvironmentChoice, KeyLight, MapEdit, ToneMap, UpAxis, ViewerState};
+use super::{
+    Background, CameraChoice, ClipChoice, EnvironmentChoice, KeyLight, LookTarget, MapEdit, ToneMap, UpAxis,
+    ViewerState,
+};
 use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
 use crate::retarget::{Feet, JointMap, RootOptions, Unmapped};
@@ -41,6 +44,19 @@ pub enum Command {
     },
     /// Returns all morph weights to the clip.
     ClearMorphs,
+    /// Overrides the weight of an expression.
+    SetExpression {
+        /// [`Expression::name`](crate::avatar::Expression::name).
+        name: String,
+        /// Clamped to 0…1; `None` returns it to the clip.
+        weight: Option<f32>,
+    },
+    /// Returns all expressions to the clip.
+    ClearExpressions,
+    /// Sets where the eyes of an avatar look.
+    SetLookAt(LookTarget),
+    /// Sets whether the spring bones of an avatar swing.
+    SetSprings(bool),
     /// Poses a joint manually (index in the file; Euler angles in degrees from its rest pose); `None` returns it to the clip.
     SetPose {
         /// Index in the file.

@@ -8,7 +8,7 @@ use super::comparison::{comparison, pane_aspect};
 use super::playhead::{PoseSampler, active_clip, world_from_model};
 use super::stage::source_on_stage;
 use super::{CameraChoice, OrbitCamera, ViewerState};
-use crate::anim::model_from_joint;
+use crate::anim::{Pose, model_from_joint, model_from_one};
 use crate::library::{Library, Model};
 use crate::mesh::Bounds;
 
@@ -123,6 +123,21 @@ pub fn world_from_file_camera(world_from_joint: &Affine3A) -> Option<Affine3A> {
     let right = world_from_joint.matrix3.y_axis.cross(back).try_normalize()?;
     let matrix3 = Mat3A::from_cols(right, back.cross(right), back);
     world_from_joint.translation.is_finite().then_some(Affine3A { matrix3, translation: world_from_joint.translation })
+}
+
+/// Returns the camera's position in world space, in a pose of the active model. `travel` moves an orbit camera that
+/// follows the character.
+pub fn camera_eye(library: &Library, state: &ViewerState, aspect: f32, travel: Vec3, pose: &Pose) -> Option<Vec3> {
+    let of_file = |camera: usize| {
+        let model = library.active()?;
+        let joint = model.asset.cameras.get(camera)?.joint;
+        let model_from_camera = model_from_one(&model.asset.skeleton, pose, joint);
+        Some(world_from_model(state.edits.up).transform_point3a(model_from_camera.translation).into())
+    };
+    match state.camera {
+        CameraChoice::File(camera) => of_file(camera),
+        _ => Some(resolve_camera(library, state, aspect).eye() + travel),
+    }
 }
 
 fn file_orbit(library: &Library, state: &ViewerState, index: usize) -> Option<OrbitCamera> {

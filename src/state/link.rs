@@ -172,6 +172,15 @@ const KEYS: &[Key] = &[
     ),
     word!("skinning", display.skinning, SKINNING_MODES, "linear, rigid or dual-quaternion"),
     key!("morph", edits.morph, read_morph, write_morph, "pairs of index and weight: 0:0.5,3:1"),
+    key!(
+        "expression",
+        edits.expressions,
+        read_expressions,
+        write_expressions,
+        "pairs of name and weight from 0 to 1: happy:0.5,blink:1"
+    ),
+    key!("look", display.look_at, read_look, write_look, "camera, x,y,z in metres, or off"),
+    key!("springs", display.springs, flag, write_flag, "0 or 1"),
     key!("pose", edits.pose, read_pose, write_pose, "joints with three angles in degrees: 4:30:0:-15,7:0:90:0"),
     key!("names", edits.names, read_names, write_names, "joints with their names: 4:Left%20knee,7:Hand"),
     Key { name: "show", repeatable: false, read: read_show, write: write_show, reset: reset_show },

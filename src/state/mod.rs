@@ -1,6 +1,7 @@
 //! The view state, everything the user can set, as plain data, and the commands that change it. No UI, GPU or clock.
 
 mod apply;
+mod avatar;
 mod camera;
 mod command;
 mod comparison;
@@ -20,11 +21,12 @@ mod variant;
 mod view;
 
 pub use apply::apply;
+pub use avatar::LookTarget;
 pub use camera::{CameraChoice, OrbitCamera};
 pub use command::Command;
 pub use comparison::{COMPARED_SKINNING, Comparison, compared_rests, comparison, comparison_ratio, pane_aspect, panes};
 pub use framing::{
-    DEFAULT_ASPECT, frame_all, front_yaw_radians, resolve_camera, resolved_bounds, world_from_file_camera,
+    DEFAULT_ASPECT, camera_eye, frame_all, front_yaw_radians, resolve_camera, resolved_bounds, world_from_file_camera,
 };
 pub use history::History;
 pub use lighting::{EnvironmentChoice, KeyLight, LightSetup, Lighting, ToneMap};

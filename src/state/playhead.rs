@@ -1,7 +1,8 @@
 //! From a view state to a pose: the active clip, its time, and the sampled pose.
 
-use glam::{Affine3A, EulerRot, Quat};
+use glam::{Affine3A, EulerRot, Quat, Vec3};
 
+use super::avatar::AvatarPose;
 use super::{ClipChoice, NameKind, UnknownName, UpAxis, ViewerState};
 use crate::anim::{ClipQuery, Pose, PropertyValues, SampleCursor, TimeRange, clip_time, find_clip};
 use crate::library::Model;
@@ -73,13 +74,21 @@ pub struct PoseSampler {
     before: Pose,
     before_properties: PropertyValues,
     before_cursor: SampleCursor,
+    avatar: AvatarPose,
 }
 
 impl PoseSampler {
-    /// Samples the current pose: rest pose, layers below the clip, the clip, the crossfade from the previous one, then joints and
-    /// morph weights set manually. Properties aren't blended: a crossfade switches them halfway. Allocates nothing once the
-    /// buffers have grown.
+    /// Samples the current pose: [`Self::sample_motion`], then [`Self::apply_avatar`], for whom the camera's position
+    /// is unknown.
     pub fn sample(&mut self, model: &Model, state: &ViewerState) {
+        self.sample_motion(model, state);
+        self.apply_avatar(model, state, None);
+    }
+
+    /// Samples rest pose, layers below the clip, the clip, the crossfade from the previous one, then joints set
+    /// manually. Properties aren't blended: a crossfade switches them halfway. Allocates nothing once the buffers have
+    /// grown.
+    pub fn sample_motion(&mut self, model: &Model, state: &ViewerState) {
         let clip = active_clip(model, state);
         let time_secs = clip.map_or(0.0, |clip| clip_secs(model, clip, state));
         let into = (&mut self.pose, &mut self.properties);
@@ -101,16 +110,32 @@ impl PoseSampler {
             // Smoothstep: eases in and out.
             self.pose.blend(&self.before, (weight * weight * (3.0 - 2.0 * weight)) as f32);
         }
-        for (&joint, &degrees) in &state.edits.pose {
-            if let Some(joint) = model.asset.skeleton.joint_of_source(joint) {
-                let rest = model.asset.skeleton.rest().local(joint).rotation;
-                self.pose.set_rotation(joint, manual_rotation(rest, degrees));
-            }
-        }
+        pose_joints(model, state, &mut self.pose);
+    }
+
+    /// Applies the avatar to the sampled motion, then morph weights set manually. `eye` is the camera's position in
+    /// world space: eyes that look into the camera keep still without it. Allocates only when spring bones start over.
+    pub fn apply_avatar(&mut self, model: &Model, state: &ViewerState, eye: Option<Vec3>) {
+        self.avatar.apply(model, state, eye, &mut self.pose, &mut self.properties);
         for (&index, &weight) in &state.edits.morph {
             if let Some(slot) = self.pose.morph_weights.get_mut(index) {
                 *slot = weight;
             }
+        }
+    }
+
+    /// The weights of the avatar's expressions, by the clip or set manually, before they override each other.
+    pub fn expressions(&self) -> &[f32] {
+        &self.avatar.weights
+    }
+}
+
+/// Applies the joints set manually.
+pub(super) fn pose_joints(model: &Model, state: &ViewerState, pose: &mut Pose) {
+    for (&joint, &degrees) in &state.edits.pose {
+        if let Some(joint) = model.asset.skeleton.joint_of_source(joint) {
+            let rest = model.asset.skeleton.rest().local(joint).rotation;
+            pose.set_rotation(joint, manual_rotation(rest, degrees));
         }
     }
 }
@@ -128,6 +153,24 @@ pub fn manual_degrees(rest: Quat, rotation: Quat) -> [f32; 3] {
 }
 
 /// Samples a clip over the rest pose, and its layers at `elapsed_secs`; without a clip, the rest pose.
+pub(super) fn sample_pose(
+    model: &Model,
+    clip: Option<usize>,
+    time_secs: f64,
+    elapsed_secs: f64,
+    cursor: &mut SampleCursor,
+    pose: &mut Pose,
+) {
+    let skeleton = &model.asset.skeleton;
+    pose.copy_from(skeleton.rest());
+    let Some((index, clip)) = clip.and_then(|index| Some((index, model.clip(index)?))) else { return };
+    for layer in model.layers(index) {
+        layer.sample(skeleton, elapsed_secs, cursor, pose);
+    }
+    clip.sample(skeleton, time_secs as f32, cursor, pose);
+}
+
+/// The same with animated properties.
 fn sample_clip(
     model: &Model,
     clip: Option<usize>,
@@ -136,15 +179,11 @@ fn sample_clip(
     cursor: &mut SampleCursor,
     (pose, properties): (&mut Pose, &mut PropertyValues),
 ) {
-    let skeleton = &model.asset.skeleton;
-    pose.copy_from(skeleton.rest());
+    sample_pose(model, clip, time_secs, elapsed_secs, cursor, pose);
     properties.clear();
-    let Some((index, clip)) = clip.and_then(|index| Some((index, model.clip(index)?))) else { return };
-    for layer in model.layers(index) {
-        layer.sample(skeleton, elapsed_secs, cursor, pose);
+    if let Some(clip) = clip.and_then(|clip| model.clip(clip)) {
+        clip.sample_properties(time_secs as f32, cursor, properties);
     }
-    clip.sample(skeleton, time_secs as f32, cursor, pose);
-    clip.sample_properties(time_secs as f32, cursor, properties);
 }
 
 /// Returns the quarter turns that bring the file's up axis to +Y.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::{CameraChoice, Lighting, MotionMap, ToneMap};
+use super::{CameraChoice, Lighting, LookTarget, MotionMap, ToneMap};
 use crate::anim::{LoopMode, TimeRange};
 use crate::mesh::SkinningMode;
 use crate::retarget::{Feet, RootOptions, Unmapped};
@@ -150,6 +150,8 @@ pub struct RetargetEdits {
 pub struct Edits {
     /// Morph weights by index in `Pose::morph_weights`; they override the clip.
     pub morph: BTreeMap<usize, f32>,
+    /// Weights of expressions, 0 to 1, by [`Expression::name`](crate::avatar::Expression::name); they override the clip.
+    pub expressions: BTreeMap<String, f32>,
     /// Joints posed manually, by index in the file: Euler angles in degrees, see [`super::manual_rotation`]. They override
     /// the clip.
     pub pose: BTreeMap<usize, [f32; 3]>,
@@ -224,6 +226,10 @@ pub struct Display {
     pub skinning: SkinningMode,
     /// What is drawn.
     pub show: Show,
+    /// Where the eyes of an avatar look.
+    pub look_at: LookTarget,
+    /// Whether the spring bones of an avatar swing.
+    pub springs: bool,
     /// In stops: the image is multiplied by 2^exposure.
     pub exposure: f32,
     /// The tone mapping.
@@ -239,6 +245,8 @@ impl Default for Display {
         Self {
             skinning: SkinningMode::Linear,
             show: Show::default(),
+            look_at: LookTarget::Off,
+            springs: false,
             exposure: 0.0,
             tone_map: ToneMap::Neutral,
             environment_degrees: 0.0,

@@ -131,6 +131,46 @@ pub fn from_motion(name: &str) -> String {
     format!("From {name}")
 }
 
+// Avatar
+/// Switch for spring bones.
+pub const SPRINGS: &str = "Spring bones";
+/// Accessible name and label of the choice of where the eyes look.
+pub const EYES: &str = "Eyes look";
+/// Choice: wherever the clip turns the eyes.
+pub const LOOK_OFF: &str = "As animated";
+/// Choice: the eyes look into the camera.
+pub const LOOK_AT_CAMERA: &str = "At the camera";
+/// Choice: the eyes look at a point.
+pub const LOOK_AT_POINT: &str = "At a point";
+/// Button that returns all expressions to the clip.
+pub const RESET_EXPRESSIONS: &str = "Reset expressions";
+
+/// Returns the name of a mesh's first-person flag in the File tab.
+pub fn first_person(mesh: &str) -> String {
+    format!("First person: {mesh}")
+}
+
+/// Writes a key of VRM's metadata as words: `commercialUsage` becomes “Commercial usage”. Text with spaces, and URLs, stay.
+pub fn words(key: &str) -> String {
+    if !key.bytes().all(|byte| byte.is_ascii_alphabetic()) {
+        return key.to_owned();
+    }
+    let mut words = String::new();
+    let mut before = ' ';
+    for letter in key.chars() {
+        if letter.is_uppercase() && before.is_lowercase() {
+            words.push(' ');
+        }
+        match words.is_empty() {
+            true => words.push(letter.to_ascii_uppercase()),
+            false => words.push(letter.to_ascii_lowercase()),
+        }
+        before = letter;
+    }
+    // VRM 0.x misspells it.
+    words.replace("ussage", "usage")
+}
+
 // Transport
 /// Accessible name of the play button while stopped.
 pub const PLAY: &str = "Play";

@@ -33,6 +33,11 @@ const COMPRESSED = [
       { file: "compressed/Fox-gltftransform-webp.glb" },
     ],
   },
+  {
+    plain: "khronos/Duck/glTF-Binary/Duck.glb",
+    view: "",
+    encodings: [{ file: "compressed/Duck-vp-12-vt-12-vn-12.glb", part: "meshopt" }],
+  },
 ];
 /**
  * Mean difference of pictures, 0 to 255. 14 bits move no vertex of the fox by more than 0.01 pixels, so only pixels on edges change:
@@ -127,6 +132,51 @@ const WITHOUT_BC7 = {
   webgl2: { etc2: 0x9275, astc: 0x93d0 },
 };
 
+/** A triangle of which KHR_animation_pointer hides one of two copies after a second, by KHR_node_visibility, and its colours turn. */
+function hidingTriangle() {
+  const numbers = Buffer.from(new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 1, 1]).buffer);
+  const buffer = Buffer.concat([numbers, Buffer.from([1, 0, 0, 0])]);
+  /** @type {(pointer: string, sampler: number) => object} */
+  const channel = (pointer, sampler) => ({ sampler, target: { path: "pointer", extensions: { KHR_animation_pointer: { pointer } } } });
+  const document = {
+    asset: { version: "2.0" },
+    extensionsUsed: ["KHR_animation_pointer", "KHR_node_visibility", "KHR_materials_unlit"],
+    scene: 0,
+    scenes: [{ nodes: [0, 1] }],
+    nodes: [{ mesh: 0 }, { mesh: 0, translation: [1, 1, 0], extensions: { KHR_node_visibility: { visible: true } } }],
+    meshes: [{ primitives: [{ attributes: { POSITION: 0 }, material: 0 }] }],
+    materials: [{ pbrMetallicRoughness: { baseColorFactor: [1, 0, 0, 1] }, extensions: { KHR_materials_unlit: {} } }],
+    accessors: [
+      { bufferView: 0, componentType: 5126, count: 3, type: "VEC3", min: [0, 0, 0], max: [1, 1, 0] },
+      { bufferView: 1, componentType: 5126, count: 2, type: "SCALAR", min: [0], max: [1] },
+      { bufferView: 2, componentType: 5126, count: 2, type: "VEC4" },
+      { bufferView: 3, componentType: 5121, count: 2, type: "SCALAR" },
+    ],
+    bufferViews: [[0, 36], [36, 8], [44, 32], [76, 2]].map(([byteOffset, byteLength]) => ({ buffer: 0, byteOffset, byteLength })),
+    animations: [
+      {
+        samplers: [{ input: 1, output: 2 }, { input: 1, output: 3, interpolation: "STEP" }],
+        channels: [channel("/materials/0/pbrMetallicRoughness/baseColorFactor", 0), channel("/nodes/1/extensions/KHR_node_visibility/visible", 1)],
+      },
+    ],
+    buffers: [{ byteLength: buffer.length, uri: dataUri("application/octet-stream", buffer) }],
+  };
+  return Buffer.from(JSON.stringify(document));
+}
+
+/**
+ * Returns the share of pixels that are more red than anything else, and of those that are more blue.
+ * @param {import("./browser.mjs").Image} image
+ */
+function redAndBlue({ width, height, rgba }) {
+  let [red, blue] = [0, 0];
+  for (let at = 0; at < rgba.length; at += 4) {
+    if (rgba[at] > rgba[at + 1] + 100 && rgba[at] > rgba[at + 2] + 100) red += 1;
+    if (rgba[at + 2] > rgba[at + 1] + 100 && rgba[at + 2] > rgba[at] + 100) blue += 1;
+  }
+  return [red, blue].map((count) => count / (width * height));
+}
+
 /** As for a page without HTTPS: parts aren't compared with the hash in their name. */
 function withoutHashes() {
   Object.defineProperty(crypto, "subtle", { value: undefined });
@@ -214,6 +264,18 @@ for (const renderer of BACK_ENDS)
       const avif = dataUri("image/avif", fs.readFileSync(AVIF));
       const difference = meanDifference(await pictureOf(withTextures(dataFile(KTX2), [avif], "EXT_texture_avif")), expected);
       assert.ok(difference < 0.5, `the pictures differ by ${difference} of 255`);
+    });
+
+    test("animated colours and visibility are a link", async () => {
+      const link = `model=${site.data("made.gltf")}&play=0&camera=0,0,6,1,1,0`;
+      const page = await site.page({ renderer, link: `${link}&t=0`, files: { "made.gltf": hidingTriangle() } });
+      const [red, none] = redAndBlue(await picture(page));
+      await apply(page, { t: 1 });
+      const [gone, blue] = redAndBlue(await picture(page));
+      assert.ok(red > 0.01 && none === 0 && gone === 0, `red ${red} and ${gone}, blue ${none}`);
+      assert.ok(Math.abs(blue / red - 0.5) < 0.02, `one of two triangles is left: ${blue} of ${red}`);
+      assert.deepEqual(page.troubles, []);
+      await page.finish();
     });
 
     test("an FBX file is a link like any other, as a model and as a motion", async () => {

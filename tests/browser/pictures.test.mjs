@@ -34,6 +34,7 @@ const MORE_PICTURES = [
   { name: "RobotExpressive", file: "threejs/RobotExpressive.glb", clip: "Wave", t: 0.6 },
   { name: "TextureSettingsTest", file: "khronos/TextureSettingsTest/glTF-Binary/TextureSettingsTest.glb", clip: "", t: 0 },
   { name: "Material_AlphaBlend", file: "asset-generator/Positive/Material_AlphaBlend/Material_AlphaBlend_05.gltf", clip: "", t: 0 },
+  { name: "24_animation_pointer", file: "blender-io/24_animation_pointer/24_animation_pointer.gltf", clip: "0", t: 2.5 },
   { name: "Node_NegativeScale", file: "asset-generator/Positive/Node_NegativeScale/Node_NegativeScale_08.gltf", clip: "", t: 0 },
 ];
 

@@ -5,6 +5,7 @@ mod bounds;
 mod build;
 mod clip;
 mod layering;
+mod lobes;
 mod morph;
 mod playback;
 mod pose;

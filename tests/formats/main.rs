@@ -12,6 +12,7 @@ mod instancing;
 mod invalid;
 mod lenient;
 mod limits;
+mod lobes;
 mod meshopt;
 mod mutation;
 mod obj;

@@ -11,10 +11,10 @@ use crate::device::{Gpu, gl, gpu};
 use crate::scene::{Picture, Scene};
 
 /// What Khronos Neutral makes of white: 0.96 is compressed to 0.869, which sRGB encodes as 240.
-const WHITE: u8 = 240;
+pub const WHITE: u8 = 240;
 
 /// A sphere at a place in the picture.
-fn sphere(center: Vec2, radius: f32, material: usize) -> Geometry {
+pub fn sphere(center: Vec2, radius: f32, material: usize) -> Geometry {
     const RINGS: u32 = 16;
     const AROUND: u32 = 32;
     let mut geometry = Geometry { material: Some(material), ..Default::default() };
@@ -51,7 +51,7 @@ fn spheres(base_color: Vec3) -> Scene {
     Scene::new(geometries, materials)
 }
 
-fn drawn_pixels(picture: &Picture) -> Vec<[u8; 4]> {
+pub fn drawn_pixels(picture: &Picture) -> Vec<[u8; 4]> {
     picture.0.as_chunks::<4>().0.iter().copied().filter(|pixel| pixel[3] > 0).collect()
 }
 

@@ -32,7 +32,7 @@ macro_rules! check {
 }
 
 #[test]
-fn uniforms_have_the_same_layout_in_wgsl_and_rust() {
+fn frames_and_draws_have_the_same_layout_in_wgsl_and_rust() {
     check!("Light", LightUniform, position, range, color, kind, direction, spot_scale, spot_offset);
     check!(
         "Frame",
@@ -75,6 +75,10 @@ fn uniforms_have_the_same_layout_in_wgsl_and_rust() {
         heat_joint,
         color
     );
+}
+
+#[test]
+fn materials_have_the_same_layout_in_wgsl_and_rust() {
     check!("UvTransform", UvTransformUniform, matrix, offset, uv_set);
     check!(
         "Material",
@@ -86,6 +90,25 @@ fn uniforms_have_the_same_layout_in_wgsl_and_rust() {
         roughness,
         normal_scale,
         occlusion_strength,
+        specular_color,
+        specular,
+        sheen_color,
+        sheen_roughness,
+        absorption,
+        thickness,
+        diffuse_transmission_color,
+        diffuse_transmission,
+        clearcoat,
+        clearcoat_roughness,
+        clearcoat_normal_scale,
+        ior,
+        iridescence,
+        iridescence_ior,
+        iridescence_thickness,
+        anisotropy_direction,
+        anisotropy,
+        transmission,
+        dispersion,
         uvs
     );
 }

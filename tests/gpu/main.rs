@@ -16,6 +16,7 @@ mod environment;
 mod golden;
 mod layouts;
 mod lights;
+mod lobes;
 mod maps;
 mod pictures;
 #[path = "../support/random.rs"]

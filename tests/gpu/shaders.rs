@@ -1,6 +1,7 @@
 //! Every shader is valid and translates to GLSL ES 3.00, the language of WebGL2.
 
-use gaitway::render::shaders::{ALL, SKINNED_VERTEX, Shader};
+use gaitway::anim::TextureSlot;
+use gaitway::render::shaders::{ALL, SKINNED_VERTEX, Shader, SurfaceVariant};
 use naga::back::glsl;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
@@ -48,6 +49,69 @@ fn every_shader_is_valid_and_translates_to_webgl2() {
     for shader in ALL.iter().chain([&SKINNED_VERTEX]) {
         for overrides in 0..4 {
             check(shader, overrides);
+        }
+    }
+}
+
+/// The shader and the slots of the material have the same names and numbers.
+#[test]
+fn every_texture_slot_is_a_map_of_the_shader() {
+    let every_map = (1 << TextureSlot::ALL.len()) - 1;
+    let source = Shader::mesh(SurfaceVariant(every_map)).source();
+    for (number, slot) in TextureSlot::ALL.into_iter().enumerate() {
+        assert_eq!(slot as usize, number);
+        let spelled = format!("{slot:?}").replace(|letter: char| letter.is_uppercase(), "_?");
+        let initials: Vec<String> = format!("{slot:?}").matches(char::is_uppercase).map(str::to_lowercase).collect();
+        let name = initials.iter().fold(spelled, |name, initial| name.replacen('?', initial, 1));
+        let name = name.trim_start_matches('_');
+        let texel = format!("return textureSample({name}_map, {name}_sampler, map_uv({number}u, uv));");
+        assert!(source.contains(&texel), "{texel}");
+    }
+}
+
+/// Maps of a lobe, as bits.
+fn maps_of(lobe: u32) -> u32 {
+    let maps: &[u32] = match lobe {
+        SurfaceVariant::SPECULAR => &[5, 6],
+        SurfaceVariant::CLEARCOAT => &[7, 8, 9],
+        SurfaceVariant::SHEEN => &[10, 11],
+        SurfaceVariant::IRIDESCENCE => &[12, 13],
+        SurfaceVariant::ANISOTROPY => &[14],
+        SurfaceVariant::TRANSMISSION => &[15],
+        SurfaceVariant::VOLUME => &[16],
+        SurfaceVariant::DIFFUSE_TRANSMISSION => &[17, 18],
+        _ => &[],
+    };
+    maps.iter().map(|map| 1 << map).sum()
+}
+
+/// Each lobe by itself and with each other one, with and without its maps, and all at once with as many maps as fit.
+#[test]
+fn every_pair_of_lobes_is_valid_and_translates_to_webgl2() {
+    use SurfaceVariant as Variant;
+    let lobes: Vec<u32> = (19..29).map(|bit| 1 << bit).collect();
+    assert_eq!(lobes.iter().sum::<u32>(), Variant::LOBES);
+    let with_needed = |lobes: u32| {
+        let needs_transmission = lobes & (Variant::VOLUME | Variant::DISPERSION) != 0;
+        let needs = |lobe, is_needed| if is_needed { lobe } else { 0 };
+        lobes
+            | needs(Variant::TRANSMISSION, needs_transmission && lobes & Variant::DIFFUSE_TRANSMISSION == 0)
+            | needs(Variant::TRANSMISSION | Variant::VOLUME, lobes & Variant::DISPERSION != 0)
+            | needs(Variant::SPECULAR, lobes & Variant::GLOSSINESS != 0)
+    };
+    let mut checked = std::collections::BTreeSet::new();
+    for &a in &lobes {
+        for &b in &lobes {
+            let pair = with_needed(a | b);
+            let maps: u32 = lobes.iter().filter(|&lobe| pair & lobe != 0).map(|&lobe| maps_of(lobe)).sum();
+            // The normal map only: with the others of the core there would be too many.
+            checked.extend([pair, pair | maps | 1 << 2]);
+        }
+    }
+    checked.insert(Variant::LOBES | 0b1_1111 | maps_of(Variant::CLEARCOAT));
+    for variant in checked {
+        for overrides in 0..2 {
+            check(&Shader::mesh(Variant(variant)), overrides);
         }
     }
 }

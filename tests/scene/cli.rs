@@ -77,6 +77,7 @@ fn inspect_prints_the_documented_keys() {
         "variants",
         "texture_bytes",
         "cameras",
+        "avatar",
         "extensions_used",
         "extensions_required",
         "bounds",

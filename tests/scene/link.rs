@@ -9,7 +9,7 @@ use gaitway::retarget::{
     SourceRef, Unmapped,
 };
 use gaitway::state::{
-    Background, CameraChoice, ClipChoice, Display, EnvironmentChoice, Fade, KeyLight, LinkError, MotionMap,
+    Background, CameraChoice, ClipChoice, Display, EnvironmentChoice, Fade, KeyLight, LinkError, LookTarget, MotionMap,
     NumberedMap, OrbitCamera, Playback, Playhead, RetargetEdits, Selection, Show, Sources, ToneMap, UpAxis,
     VertexChoice, ViewerState, from_link, from_object, to_link, to_object,
 };
@@ -124,6 +124,9 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
         ("playback.loop_mode", with(&|state| state.playback.loop_mode = LoopMode::PingPong)),
         ("playhead.range", with(&|state| state.playhead.range = Some(TimeRange { start_secs: 0.25, end_secs: 1.1 }))),
         ("display.skinning", with(&|state| state.display.skinning = SkinningMode::DualQuaternion)),
+        ("edits.expressions", with(&|state| state.edits.expressions = BTreeMap::from([("a b,:".to_owned(), 0.5)]))),
+        ("display.look_at", with(&|state| state.display.look_at = LookTarget::Camera)),
+        ("display.springs", with(&|state| state.display.springs = true)),
         ("edits.morph", with(&|state| state.edits.morph = BTreeMap::from([(0, 0.3), (12, -1.0)]))),
         (
             "edits.pose",

@@ -7,9 +7,9 @@ use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::mesh::SkinningMode;
 use gaitway::retarget::{ClipRef, Feet, JointMap, MapEntry, RootOptions, RootPart, Unmapped};
 use gaitway::state::{
-    Background, CameraChoice, ClipChoice, EnvironmentChoice, Fade, Inspect, KeyLight, LightSetup, LinkError, MotionMap,
-    NumberedMap, OrbitCamera, RetargetEdits, Show, ToneMap, UpAxis, VertexChoice, ViewerState, from_link, from_object,
-    to_link, to_object,
+    Background, CameraChoice, ClipChoice, EnvironmentChoice, Fade, Inspect, KeyLight, LightSetup, LinkError,
+    LookTarget, MotionMap, NumberedMap, OrbitCamera, RetargetEdits, Show, ToneMap, UpAxis, VertexChoice, ViewerState,
+    from_link, from_object, to_link, to_object,
 };
 use glam::{Quat, Vec3};
 use serde_json::Value;
@@ -104,7 +104,7 @@ impl Random {
 
     fn state(&mut self) -> ViewerState {
         let mut state = ViewerState::default();
-        for field in 0..33 {
+        for field in 0..36 {
             if self.often() {
                 self.set(&mut state, field);
             }
@@ -130,6 +130,20 @@ impl Random {
                 let [strength, yaw_degrees, pitch_degrees] = [self.number(), self.number(), self.number()];
                 state.lighting.key = Some(KeyLight { strength, yaw_degrees, pitch_degrees });
             }
+        }
+    }
+
+    fn set_avatar(&mut self, state: &mut ViewerState, field: usize) {
+        match field {
+            32 => {
+                let expressions = (0..self.below(4)).map(|_| (self.text(), self.below(5) as f32 / 4.0));
+                state.edits.expressions = expressions.collect();
+            }
+            33 => {
+                let point = LookTarget::Point(Vec3::new(self.number(), self.number(), self.number()));
+                state.display.look_at = self.one(&[LookTarget::Camera, point]);
+            }
+            _ => state.display.springs = self.often(),
         }
     }
 
@@ -188,6 +202,7 @@ impl Random {
             }
             22 if self.often() => state.edits.variant = Some(self.text()),
             22..=24 | 29..=31 => self.set_look(state, field),
+            32..=34 => self.set_avatar(state, field),
             _ => state.page.embed = self.often(),
         }
     }

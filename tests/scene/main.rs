@@ -4,6 +4,7 @@ mod address;
 mod allocation;
 #[path = "../support/allocations.rs"]
 mod allocations;
+mod avatar;
 
 #[allow(dead_code)]
 #[path = "../support/build_gltf.rs"]

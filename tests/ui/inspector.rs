@@ -3,11 +3,13 @@
 use egui_kittest::kittest::{NodeT, Queryable};
 use gaitway::anim::{ClipBuilder, Interpolation, Joint, JointIndex, MaterialProperty, PropertyTarget, Skeleton};
 use gaitway::asset::{Asset, AssetParts, Panorama};
+use gaitway::avatar::{Avatar, Expression, LookAt, LookAtKind, Override, RangeMaps, SpringJoint, Springs};
 use gaitway::library::{Environment, Library, Model};
 use gaitway::mesh::{Material, SkinningMode};
 use gaitway::samples;
 use gaitway::state::{
-    Background, CameraChoice, Command, EnvironmentChoice, Inspect, KeyLight, LightSetup, Show, ToneMap, UpAxis,
+    Background, CameraChoice, Command, EnvironmentChoice, Inspect, KeyLight, LightSetup, LookTarget, Show, ToneMap,
+    UpAxis,
 };
 use gaitway::ui::{Tab, text};
 use glam::Vec3;
@@ -156,6 +158,63 @@ fn glowing() -> Model {
     let materials = vec![Material { name: "Paint".to_owned(), ..Material::default() }];
     let parts = AssetParts { format: "glb", skeleton, clips, materials, ..AssetParts::default() };
     Model::new("glow.glb".to_owned(), Asset::new(parts).expect("indices in range"), Vec::new())
+}
+
+/// A head without eyes of its own, on a spring, with an expression that has an effect and one that has none.
+fn avatar() -> Model {
+    let joint = Joint { name: "Head".to_owned(), ..Joint::default() };
+    let skeleton = Skeleton::new(vec![joint]).expect("one joint");
+    let joint = JointIndex(0);
+    let happy = Expression { overrides: [Override::Block; 3], ..Expression::new("happy", "Joy", true) };
+    let range = [90.0, 10.0];
+    let maps = RangeMaps { inner: range, outer: range, down: range, up: range };
+    let kind = LookAtKind::Bones([None; 2]);
+    let look_at = Some(LookAt { head: joint, offset: Vec3::ZERO, faces_minus_z: false, maps, kind });
+    let spring = SpringJoint {
+        joint,
+        tail: Vec3::Y,
+        stiffness: 1.0,
+        gravity: Vec3::ZERO,
+        drag: 0.4,
+        radius: 0.0,
+        center: None,
+        colliders: Vec::new(),
+    };
+    let avatar = Avatar {
+        expressions: vec![happy, Expression::new("sad", "Sorrow", true)],
+        look_at,
+        springs: Springs::new(&skeleton, vec![spring], Vec::new()),
+        meta: vec![("commercialUssageName".to_owned(), "Allow".to_owned())],
+        first_person: vec![(joint, "thirdPersonOnly".to_owned())],
+        ..Avatar::default()
+    };
+    let parts = AssetParts { format: "vrm", skeleton, avatar, ..AssetParts::default() };
+    Model::new("head.vrm".to_owned(), Asset::new(parts).expect("indices in range"), Vec::new())
+}
+
+#[test]
+fn avatars_have_expressions_eyes_springs_and_a_licence() {
+    let mut library = Library::default();
+    library.add(avatar());
+    // Tall enough for the whole tab.
+    let mut harness = bench_of([1280.0, 1600.0], library);
+    press(&mut harness, Tab::Display.label());
+    assert!(harness.query_by_label("Sorrow").is_none());
+    harness.get_by_label("Joy").set_value_accesskit(0.75);
+    harness.run();
+    assert_eq!(harness.state().state().edits.expressions.get("happy"), Some(&0.75));
+    assert_eq!(press(&mut harness, text::RESET_EXPRESSIONS), [Command::ClearExpressions]);
+    assert_eq!(press(&mut harness, text::SPRINGS), [Command::SetSprings(true)]);
+    let choice = |choice: &str| format!("{}: {choice}", text::EYES);
+    assert_eq!(press(&mut harness, &choice(text::LOOK_AT_CAMERA)), [Command::SetLookAt(LookTarget::Camera)]);
+    let commands = press(&mut harness, &choice(text::LOOK_AT_POINT));
+    assert!(matches!(commands[..], [Command::SetLookAt(LookTarget::Point(_))]), "{commands:?}");
+    harness.run();
+    assert!(harness.query_by_label("Z").is_some());
+    press(&mut harness, Tab::File.label());
+    for (name, value) in [("Commercial usage name", "Allow"), (&*text::first_person("Head"), "Third person only")] {
+        assert!(harness.query_by_label(&text::fact(name, value)).is_some(), "{name}");
+    }
 }
 
 #[test]

@@ -10,6 +10,7 @@
 
 pub mod anim;
 pub mod asset;
+pub mod avatar;
 pub mod formats;
 mod json_text;
 pub mod library;

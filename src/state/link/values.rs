@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Display;
 
+use glam::Vec3;
 use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_encode};
 use serde_json::Value;
 
@@ -14,7 +15,7 @@ use crate::retarget::{ClipRef, Feet, JointMapFile, RootOptions, RootPart, Unmapp
 use crate::state::{
     Background, CameraChoice, ClipChoice, Fade, Inspect, MotionMap, OrbitCamera, Show, UpAxis, VertexChoice,
 };
-use crate::state::{EnvironmentChoice, KeyLight, LightSetup, ToneMap, ViewerState, map_code};
+use crate::state::{EnvironmentChoice, KeyLight, LightSetup, LookTarget, ToneMap, ViewerState, map_code};
 
 const FEET: [(&str, Feet); 2] = [("off", Feet::Off), ("plant", Feet::Plant)];
 
@@ -272,6 +273,41 @@ pub(super) fn read_morph(text: &str) -> Option<BTreeMap<usize, f32>> {
     each(text, pair)
 }
 
+pub(super) fn write_expressions(expressions: &BTreeMap<String, f32>) -> Written {
+    let pair = |(name, weight): (&String, &f32)| format!("{}:{weight}", utf8_percent_encode(name, IN_NAMES));
+    Written::Text(joined(expressions.iter().map(pair)))
+}
+
+/// Names are escaped as joint names are.
+pub(super) fn read_expressions(text: &str) -> Option<BTreeMap<String, f32>> {
+    let pair = |pair: &str| {
+        let (name, weight) = pair.split_once(':')?;
+        let name = percent_decode_str(name).decode_utf8().ok()?;
+        Some((name.into_owned(), finite(weight)?))
+    };
+    each(text, pair)
+}
+
+pub(super) fn write_look(target: &LookTarget) -> Written {
+    match target {
+        LookTarget::Off => Written::Unset,
+        LookTarget::Camera => Written::Text("camera".to_owned()),
+        LookTarget::Point(point) => Written::Text(joined(point.to_array().iter())),
+    }
+}
+
+pub(super) fn read_look(text: &str) -> Option<LookTarget> {
+    match text {
+        "off" | "" => Some(LookTarget::Off),
+        "camera" => Some(LookTarget::Camera),
+        _ => {
+            let mut numbers = text.split(',').map(finite::<f32>);
+            let point = Vec3::new(numbers.next()??, numbers.next()??, numbers.next()??);
+            numbers.next().is_none().then_some(LookTarget::Point(point))
+        }
+    }
+}
+
 pub(super) fn write_pose(pose: &BTreeMap<usize, [f32; 3]>) -> Written {
     Written::Text(joined(pose.iter().map(|(joint, [x, y, z])| format!("{joint}:{x}:{y}:{z}"))))
 }
@@ -391,7 +427,7 @@ pub(super) fn read_camera(text: &str) -> Option<CameraChoice> {
         radians.is_finite().then_some(radians)
     };
     let distance = finite::<f32>(distance).filter(|&distance| distance > 0.0)?;
-    let target = glam::Vec3::new(finite(x)?, finite(y)?, finite(z)?);
+    let target = Vec3::new(finite(x)?, finite(y)?, finite(z)?);
     Some(CameraChoice::Orbit(OrbitCamera {
         yaw_radians: radians(yaw)?,
         pitch_radians: radians(pitch)?,

@@ -1,4 +1,5 @@
-//! What clips animate besides joints, in the File tab: materials, lights, cameras, visibility and single morph weights.
+//! What clips animate besides joints, in the File tab: materials, lights, cameras, visibility,
+//! expressions and single morph weights.
 
 use egui::Ui;
 
@@ -76,6 +77,11 @@ fn name(shown: &Shown<'_>, model: &Model, target: PropertyTarget) -> String {
         PropertyTarget::Visibility(joint) => {
             (title(Some(shown.state), asset, joint).into_owned(), text::VISIBILITY.to_owned())
         }
+        PropertyTarget::LookAt => ("Eyes".to_owned(), "direction".to_owned()),
+        PropertyTarget::Expression(number) => {
+            let name = asset.avatar.expressions.get(number).map(|expression| &*expression.name);
+            (called(name, "Expression", number), "expression".to_owned())
+        }
         PropertyTarget::MorphWeight(joint, target) => {
             (title(Some(shown.state), asset, joint).into_owned(), format!("morph weight {target}"))
         }
@@ -84,16 +90,7 @@ fn name(shown: &Shown<'_>, model: &Model, target: PropertyTarget) -> String {
 }
 
 fn material_property(property: MaterialProperty) -> String {
-    let texture = |slot, what: &str| {
-        let slot = match slot {
-            TextureSlot::BaseColor => text::BASE_COLOR,
-            TextureSlot::MetallicRoughness => "metallic-roughness",
-            TextureSlot::Normal => "normal",
-            TextureSlot::Occlusion => "occlusion",
-            TextureSlot::Emissive => "emissive",
-        };
-        format!("{slot} texture {what}")
-    };
+    let texture = |slot: TextureSlot, what: &str| format!("{} texture {what}", words(&format!("{slot:?}")));
     match property {
         MaterialProperty::BaseColor => text::BASE_COLOR.to_owned(),
         MaterialProperty::Metallic => "metallic".to_owned(),
@@ -106,7 +103,20 @@ fn material_property(property: MaterialProperty) -> String {
         MaterialProperty::UvOffset(slot) => texture(slot, "offset"),
         MaterialProperty::UvRotation(slot) => texture(slot, "rotation"),
         MaterialProperty::UvScale(slot) => texture(slot, "scale"),
+        MaterialProperty::Lobe(factor) => words(&format!("{factor:?}")),
     }
+}
+
+/// Spells a variant's name: "sheen colour" for `SheenColor`.
+fn words(name: &str) -> String {
+    let mut words = String::new();
+    for letter in name.chars() {
+        if letter.is_uppercase() && !words.is_empty() {
+            words.push(' ');
+        }
+        words.push(letter.to_ascii_lowercase());
+    }
+    words.replace("color", "colour").replace("metallic ", "metallic-")
 }
 
 fn light_property(property: LightProperty) -> &'static str {

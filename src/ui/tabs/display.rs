@@ -1,7 +1,8 @@
-//! The Display tab: material variants, skinning, overlays and morph targets.
+//! The Display tab: material variants, skinning, overlays, expressions and morph targets.
 
 use egui::Ui;
 
+use super::avatar;
 use crate::library::Model;
 use crate::mesh::{Geometry, SkinningMode, Topology};
 use crate::state::{Command, Inspect, Show, active_clip, active_variant};
@@ -45,6 +46,7 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     // First for unskinned models, where they are the most useful controls.
     let morphs_first = model.is_some_and(|model| model.asset.skins.is_empty());
     if let Some(model) = model.filter(|_| morphs_first) {
+        avatar::controls(ui, shown, model, out);
         morphs(ui, shown, model, out);
     }
     skinning(ui, shown, out);
@@ -52,6 +54,7 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     special_overlays(ui, shown, out);
     source(ui, shown, out);
     if let Some(model) = model.filter(|_| !morphs_first) {
+        avatar::controls(ui, shown, model, out);
         morphs(ui, shown, model, out);
     }
 }

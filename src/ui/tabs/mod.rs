@@ -1,6 +1,7 @@
 //! The inspector: the right panel, one tab at a time.
 
 mod animated;
+mod avatar;
 pub mod display;
 pub mod formula;
 mod joint_card;
@@ -22,9 +23,9 @@ pub use view_options::PictureSettings;
 pub enum Tab {
     /// The node tree, and the selected joint and vertex.
     Scene,
-    /// Skinning method, overlays and morph targets.
+    /// Skinning method, overlays, expressions and morph targets.
     Display,
-    /// Contents, parts, extensions and warnings of the file.
+    /// Contents, licence, parts, extensions and warnings of the file.
     File,
     /// Camera, light, background, up axis, images and videos.
     View,

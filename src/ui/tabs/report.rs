@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use egui::{RichText, Ui};
 
-use super::animated;
+use super::{animated, avatar};
 use crate::asset::{Asset, Warning};
 use crate::editor::Export;
 use crate::library::Model;
@@ -18,6 +18,7 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let Some(model) = shown.library.active() else { return };
     let asset: &Asset = &model.asset;
     contents(ui, model);
+    avatar::facts(ui, shown, model);
     animated::show(ui, shown, model);
     parts(ui, asset);
     save(ui, asset, out);

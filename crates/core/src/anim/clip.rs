@@ -217,7 +217,7 @@ impl Clip {
         &self.channels
     }
 
-    /// The channels of materials, lights, cameras, visibility and single morph weights, one per target, in their order.
+    /// The channels of materials, lights, cameras, visibility, expressions and single morph weights, one per target, in their order.
     pub fn properties(&self) -> &[PropertyChannel] {
         &self.properties.channels
     }
@@ -225,6 +225,16 @@ impl Clip {
     /// Distinct lists of key times of [`Self::properties`], in strictly increasing seconds.
     pub fn property_timelines(&self) -> &[Vec<f32>] {
         &self.properties.timelines
+    }
+
+    /// Returns the clip with some property channels of another one, such as its source in retargeting: those whose target
+    /// `map` finds.
+    pub fn with_properties_of(mut self, other: &Self, map: &dyn Fn(PropertyTarget) -> Option<PropertyTarget>) -> Self {
+        if other.properties().iter().any(|channel| map(channel.target).is_some()) {
+            self.properties.add_mapped(&other.properties, map);
+            self.duration_secs = self.duration_secs.max(other.duration_secs);
+        }
+        self
     }
 
     /// The key times of everything that the clip animates; a time may occur several times.

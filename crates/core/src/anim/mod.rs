@@ -35,9 +35,10 @@ pub use channel::{Channel, ChannelError, Interpolation, Keys, Property};
 pub use clip::{Clip, ClipBuilder, ClipQuery, SampleCursor, find_clip};
 pub use playback::{LoopMode, TimeRange, clip_time};
 pub use polar::nearest_rotation;
-pub use pose::{Pose, model_from_joint};
+pub use pose::{Pose, model_from_joint, model_from_one};
 pub use property::{
-    CameraProperty, LightProperty, MaterialProperty, PropertyChannel, PropertyTarget, PropertyValues, TextureSlot,
+    CameraProperty, LightProperty, LobeFactor, MaterialProperty, PropertyChannel, PropertyTarget, PropertyValues,
+    TextureSlot,
 };
 pub use skeleton::{Joint, JointIndex, Skeleton, SkeletonError};
 pub use transform::Transform;

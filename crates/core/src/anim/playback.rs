@@ -16,7 +16,7 @@ pub enum LoopMode {
 }
 
 /// In and out points within a clip, in seconds, `start <= end`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct TimeRange {
     /// In point.
     pub start_secs: f64,

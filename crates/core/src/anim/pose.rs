@@ -128,3 +128,14 @@ pub fn model_from_joint(skeleton: &Skeleton, pose: &Pose, world_from_model: Affi
     out.resize(skeleton.len(), Affine3A::IDENTITY);
     kernels::model_from_joint(&pose.groups, skeleton.by_depth(), world_from_model, out);
 }
+
+/// Computes one joint's transform in model space. For many joints, [`model_from_joint`] is cheaper.
+pub fn model_from_one(skeleton: &Skeleton, pose: &Pose, joint: JointIndex) -> Affine3A {
+    let mut model_from_joint = pose.local(joint).to_affine();
+    let mut at = joint;
+    while let Some(parent) = skeleton.parent(at) {
+        model_from_joint = pose.local(parent).to_affine() * model_from_joint;
+        at = parent;
+    }
+    model_from_joint
+}

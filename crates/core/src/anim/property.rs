@@ -17,6 +17,10 @@ pub enum PropertyTarget {
     Camera(usize, CameraProperty),
     /// Whether a joint and all below it are shown: 0 hides them.
     Visibility(JointIndex),
+    /// The weight of an expression, by its number in [`Avatar::expressions`](crate::avatar::Avatar::expressions).
+    Expression(usize),
+    /// Yaw to the left and pitch downwards of an avatar's eyes, in degrees.
+    LookAt,
     /// The weight of one morph target of the mesh on a joint.
     MorphWeight(JointIndex, usize),
 }
@@ -46,6 +50,45 @@ pub enum MaterialProperty {
     UvRotation(TextureSlot),
     /// U and V.
     UvScale(TextureSlot),
+    /// Only of materials with lobes.
+    Lobe(LobeFactor),
+}
+
+/// An animated factor of a material's lobes, which `mesh::Lobes` describes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[expect(missing_docs, reason = "named like the fields of `mesh::Lobes`")]
+pub enum LobeFactor {
+    Ior,
+    Specular,
+    SpecularColor,
+    Clearcoat,
+    ClearcoatRoughness,
+    ClearcoatNormalScale,
+    SheenColor,
+    SheenRoughness,
+    Iridescence,
+    IridescenceIor,
+    IridescenceThicknessMin,
+    IridescenceThicknessMax,
+    Anisotropy,
+    AnisotropyRotation,
+    Transmission,
+    Thickness,
+    AttenuationDistance,
+    AttenuationColor,
+    Dispersion,
+    DiffuseTransmission,
+    DiffuseTransmissionColor,
+}
+
+impl LobeFactor {
+    /// Number of components: 3 for colours, otherwise 1.
+    pub fn width(self) -> usize {
+        match self {
+            Self::SpecularColor | Self::SheenColor | Self::AttenuationColor | Self::DiffuseTransmissionColor => 3,
+            _ => 1,
+        }
+    }
 }
 
 /// A texture of a material.
@@ -61,6 +104,67 @@ pub enum TextureSlot {
     Occlusion,
     /// Multiplied with the emissive colour.
     Emissive,
+    /// Weight of the dielectric reflection, in alpha.
+    Specular,
+    /// Colour of the dielectric reflection.
+    SpecularColor,
+    /// Weight of the clearcoat, in red.
+    Clearcoat,
+    /// Roughness of the clearcoat, in green.
+    ClearcoatRoughness,
+    /// Tangent-space normals of the clearcoat.
+    ClearcoatNormal,
+    /// Multiplied with the sheen colour.
+    SheenColor,
+    /// Roughness of the sheen, in alpha.
+    SheenRoughness,
+    /// Weight of the iridescence, in red.
+    Iridescence,
+    /// Thickness of the thin film between minimum and maximum, in green.
+    IridescenceThickness,
+    /// Direction in red and green, strength in blue.
+    Anisotropy,
+    /// Transmitted fraction, in red.
+    Transmission,
+    /// Thickness of the volume, in green.
+    Thickness,
+    /// Diffusely transmitted fraction, in alpha.
+    DiffuseTransmission,
+    /// Colour of the diffuse transmission.
+    DiffuseTransmissionColor,
+}
+
+impl TextureSlot {
+    /// All slots in the order of their numbers: first those of core glTF, then from [`Self::Specular`] on those of lobes.
+    pub const ALL: [Self; 19] = [
+        Self::BaseColor,
+        Self::MetallicRoughness,
+        Self::Normal,
+        Self::Occlusion,
+        Self::Emissive,
+        Self::Specular,
+        Self::SpecularColor,
+        Self::Clearcoat,
+        Self::ClearcoatRoughness,
+        Self::ClearcoatNormal,
+        Self::SheenColor,
+        Self::SheenRoughness,
+        Self::Iridescence,
+        Self::IridescenceThickness,
+        Self::Anisotropy,
+        Self::Transmission,
+        Self::Thickness,
+        Self::DiffuseTransmission,
+        Self::DiffuseTransmissionColor,
+    ];
+
+    /// Whether the texture holds colours, which are sRGB; otherwise it holds linear data.
+    pub fn is_color(self) -> bool {
+        matches!(
+            self,
+            Self::BaseColor | Self::Emissive | Self::SpecularColor | Self::SheenColor | Self::DiffuseTransmissionColor
+        )
+    }
 }
 
 /// An animated property of a light.
@@ -94,11 +198,12 @@ pub enum CameraProperty {
 impl PropertyTarget {
     /// Number of components of a value, at most four.
     pub fn width(self) -> usize {
-        use MaterialProperty::{BaseColor, Emissive, UvOffset, UvScale};
+        use MaterialProperty::{BaseColor, Emissive, Lobe, UvOffset, UvScale};
         match self {
+            Self::Material(_, Lobe(factor)) => factor.width(),
             Self::Material(_, BaseColor) => 4,
             Self::Material(_, Emissive) | Self::Light(_, LightProperty::Color) => 3,
-            Self::Material(_, UvOffset(_) | UvScale(_)) => 2,
+            Self::Material(_, UvOffset(_) | UvScale(_)) | Self::LookAt => 2,
             _ => 1,
         }
     }
@@ -138,6 +243,14 @@ impl PropertyValues {
         Some(self.0[at].1)
     }
 
+    /// Adds to a target's value, which is `rest` unless it is animated.
+    pub fn add(&mut self, target: PropertyTarget, rest: Vec4, delta: Vec4) {
+        match self.0.binary_search_by_key(&target, |&(target, _)| target) {
+            Ok(at) => self.0[at].1 += delta,
+            Err(at) => self.0.insert(at, (target, rest + delta)),
+        }
+    }
+
     /// Whether any joint's visibility is animated.
     pub fn has_visibility(&self) -> bool {
         self.0.iter().any(|(target, _)| matches!(target, PropertyTarget::Visibility(_)))
@@ -164,6 +277,19 @@ impl Properties {
         let is_weight = |channel: &PropertyChannel| matches!(channel.target, PropertyTarget::MorphWeight(..));
         let first_weight = channels.iter().position(is_weight).unwrap_or(channels.len());
         Self { timelines, channels, first_weight }
+    }
+
+    /// Adds the channels of another clip whose target `map` finds.
+    pub fn add_mapped(&mut self, other: &Self, map: &dyn Fn(PropertyTarget) -> Option<PropertyTarget>) {
+        let start = self.timelines.len() as u32;
+        let mut channels = std::mem::take(&mut self.channels);
+        channels.extend(other.channels.iter().filter_map(|channel| {
+            let timeline = start + channel.timeline;
+            Some(PropertyChannel { target: map(channel.target)?, timeline, ..channel.clone() })
+        }));
+        let mut timelines = std::mem::take(&mut self.timelines);
+        timelines.extend(other.timelines.iter().cloned());
+        *self = Self::new(timelines, channels);
     }
 
     /// Replaces the values in `out` by those of all channels except morph weights.

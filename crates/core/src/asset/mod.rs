@@ -11,7 +11,10 @@ use std::sync::Arc;
 
 use glam::{Affine3A, Vec3, Vec4Swizzles};
 
-use crate::anim::{CameraProperty, Clip, JointIndex, LightProperty, PropertyTarget, PropertyValues, Skeleton};
+use crate::anim::{
+    CameraProperty, Clip, JointIndex, LightProperty, PropertyTarget, PropertyValues, Skeleton, TextureSlot,
+};
+use crate::avatar::{Avatar, LookAtKind};
 use crate::mesh::{Material, Mesh, Skin, Texture};
 
 pub use error::AssetError;
@@ -66,6 +69,8 @@ pub struct AssetParts {
     pub lights: Vec<Light>,
     /// The humanoid bones that the file declares (VRM, VRMA).
     pub humanoid: Option<Humanoid>,
+    /// Expressions, constraints, eyes and spring bones that the file declares (VRM, VRMA).
+    pub avatar: Avatar,
     /// glTF's `extensionsUsed`.
     pub extensions_used: Vec<String>,
     /// glTF's `extensionsRequired`. Loading fails if any of them is unsupported.
@@ -313,13 +318,16 @@ impl AssetParts {
                 PropertyTarget::Visibility(joint) | PropertyTarget::MorphWeight(joint, _) => {
                     check("clips", joint.get(), joints)?;
                 }
-                PropertyTarget::Light(..) | PropertyTarget::Camera(..) => {}
+                PropertyTarget::Expression(number) => check("clips", number, self.avatar.expressions.len())?,
+                PropertyTarget::Light(..) | PropertyTarget::Camera(..) | PropertyTarget::LookAt => {}
             }
         }
         check_all("hidden", &mut self.hidden.iter().copied())?;
         check_all("cameras", &mut self.cameras.iter().map(|camera| camera.joint))?;
         check_all("lights", &mut self.lights.iter().map(|light| light.joint))?;
         check_all("humanoid", &mut self.humanoid.iter().flat_map(|humanoid| humanoid.0.values().copied()))?;
+        check_all("avatar", &mut self.avatar.joints())?;
+        self.check_avatar()?;
         check_all("instances", &mut self.instances.iter().map(|instance| instance.joint))?;
         for instance in &self.instances {
             check("instances", instance.mesh, self.meshes.len())?;
@@ -328,16 +336,31 @@ impl AssetParts {
         self.default_scene.map_or(Ok(()), |scene| check("default_scene", scene, self.scenes.len()))
     }
 
+    /// Checks all indices except those of joints.
+    fn check_avatar(&self) -> Result<(), AssetError> {
+        let expressions = &self.avatar.expressions;
+        for expression in expressions {
+            for bind in &expression.morphs {
+                check("avatar", bind.index, self.skeleton.rest().morph_weights.len())?;
+            }
+            for bind in &expression.materials {
+                if let PropertyTarget::Material(material, _) = bind.target {
+                    check("avatar", material, self.materials.len())?;
+                }
+            }
+        }
+        let look_at = self.avatar.look_at.map(|look_at| look_at.kind);
+        if let Some(LookAtKind::Expressions(indices)) = look_at {
+            indices.into_iter().flatten().try_for_each(|index| check("avatar", index, expressions.len()))?;
+        }
+        let springs = &self.avatar.springs;
+        let mut colliders = springs.joints().iter().flat_map(|spring| &spring.colliders);
+        colliders.try_for_each(|&collider| check("avatar", collider as usize, springs.colliders().len()))
+    }
+
     fn check_surfaces(&self) -> Result<(), AssetError> {
         for material in &self.materials {
-            let textures = [
-                material.base_color_texture,
-                material.metallic_roughness_texture,
-                material.normal_texture,
-                material.occlusion_texture,
-                material.emissive_texture,
-            ];
-            for texture in textures.into_iter().flatten() {
+            for texture in TextureSlot::ALL.into_iter().filter_map(|slot| material.texture(slot)) {
                 check("materials", texture.texture, self.textures.len())?;
             }
         }

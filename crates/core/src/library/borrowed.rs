@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use glam::Affine3A;
 
-use crate::anim::{Clip, JointIndex};
+use crate::anim::{Clip, JointIndex, PropertyTarget};
 use crate::asset::Asset;
 use crate::formats::file_stem;
 use crate::retarget::{
@@ -122,8 +122,20 @@ pub(super) fn borrow(
         let pair = Retargeting::new(model, motion, source_clip, map).map_err(error)?;
         let baked = pair.bake().map_err(error)?;
         let root = root_of(&baked.clip);
+        let own = |target| match target {
+            PropertyTarget::Expression(number) => {
+                let name = &motion.asset.avatar.expressions.get(number)?.name;
+                model.asset.avatar.expression(name).map(PropertyTarget::Expression)
+            }
+            PropertyTarget::LookAt => model.asset.avatar.look_at.map(|_| target),
+            _ => None,
+        };
+        let clip = match motion.asset.clips.get(source_clip) {
+            Some(source) => baked.clip.with_properties_of(source, &own),
+            None => baked.clip,
+        };
         Ok(BorrowedClip {
-            clip: baked.clip,
+            clip,
             layers: layers.clone(),
             motion: index,
             source_clip,

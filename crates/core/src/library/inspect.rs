@@ -1,10 +1,11 @@
 //! The inspect document: the contents of a file, as reported by `gaitway inspect --json` and `window.gaitway.open`.
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::Model;
 use crate::anim::{Clip, Interpolation};
 use crate::asset::{Asset, Warning, Warnings};
+use crate::avatar::Avatar;
 use crate::formats::pointer_to;
 use crate::mesh::{Bounds, Geometry, Mesh};
 
@@ -36,6 +37,7 @@ pub fn inspect(model: &Model, files: &[String]) -> Value {
         "variants": asset.variants,
         "texture_bytes": model.texture_bytes(),
         "cameras": asset.cameras.len(),
+        "avatar": avatar_document(asset),
         "extensions_used": asset.extensions_used,
         "extensions_required": asset.extensions_required,
         "bounds": bounds_document(model.rest_bounds()),
@@ -52,6 +54,29 @@ pub fn warning_documents(warnings: &Warnings) -> Value {
 
 fn target_count(mesh: &Mesh) -> usize {
     mesh.primitives.iter().map(|geometry| geometry.morph_targets.len()).max().unwrap_or(0)
+}
+
+/// What a VRM file says about its avatar; null for other files. `meta` has the file's own keys.
+fn avatar_document(asset: &Asset) -> Value {
+    let avatar = &asset.avatar;
+    if *avatar == Avatar::default() {
+        return Value::Null;
+    }
+    let meta: Map<String, Value> =
+        avatar.meta.iter().map(|(key, value)| (key.clone(), Value::String(value.clone()))).collect();
+    let expressions: Vec<&str> = avatar.expressions.iter().map(|expression| &*expression.name).collect();
+    let node = |joint| asset.skeleton.source_index(joint);
+    let first_person: Vec<Value> =
+        avatar.first_person.iter().map(|(joint, flag)| json!({ "node": node(*joint), "flag": flag })).collect();
+    json!({
+        "spec_version": avatar.spec_version,
+        "meta": meta,
+        "expressions": expressions,
+        "look_at": avatar.look_at.is_some(),
+        "spring_joints": avatar.springs.joints().len(),
+        "constraints": avatar.constraints.len(),
+        "first_person": first_person,
+    })
 }
 
 /// `properties` are JSON pointers: what the clip animates besides joints.

@@ -36,6 +36,7 @@ pub struct Model {
     pub images: Vec<Option<ImageData>>,
     /// Clips of other files retargeted to this model; their indices follow the asset's own.
     borrowed: Vec<BorrowedClip>,
+    borrowed_revision: u32,
     clip_titles: Vec<String>,
     recognized: OnceLock<(Humanoid, Option<Vec3>)>,
     rig: Rig,
@@ -72,6 +73,7 @@ impl Model {
             asset,
             images,
             borrowed: Vec::new(),
+            borrowed_revision: 0,
             clip_titles,
             recognized: OnceLock::new(),
             rig,
@@ -106,6 +108,11 @@ impl Model {
         self.borrowed.iter().enumerate().map(|(at, borrowed)| (self.asset.clips.len() + at, borrowed))
     }
 
+    /// Changes whenever borrowed clips may have: then a clip with the same index may be another.
+    pub fn borrowed_revision(&self) -> u32 {
+        self.borrowed_revision
+    }
+
     /// Layers that animate the joints a borrowed clip does not; empty for the asset's own clips.
     pub fn layers(&self, clip: usize) -> &[LayerClip] {
         self.borrowed(clip).map_or(&[], |borrowed| &borrowed.layers)
@@ -126,6 +133,7 @@ impl Model {
     /// Replaces the borrowed clips.
     pub(super) fn set_borrowed(&mut self, borrowed: Vec<BorrowedClip>) {
         self.borrowed = borrowed;
+        self.borrowed_revision += 1;
         self.clip_titles = unique_titles(&self.asset.clips, &self.borrowed);
         let own = self.asset.clips.len();
         if let Ok(mut swept) = self.swept.lock() {

@@ -2,6 +2,7 @@
 
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
+use super::Lobes;
 use crate::anim::{MaterialProperty, TextureSlot};
 
 /// How alpha is interpreted, `alphaMode` in glTF.
@@ -53,6 +54,8 @@ pub struct Material {
     pub occlusion_texture: Option<TextureRef>,
     /// sRGB.
     pub emissive_texture: Option<TextureRef>,
+    /// Clearcoat, sheen, transmission and so on, if the file has any.
+    pub lobes: Option<Box<Lobes>>,
 }
 
 impl Default for Material {
@@ -75,18 +78,21 @@ impl Default for Material {
             normal_texture: None,
             occlusion_texture: None,
             emissive_texture: None,
+            lobes: None,
         }
     }
 }
 
 impl Material {
-    /// Returns a copy without the name, which allocates nothing.
-    pub fn nameless(&self) -> Self {
-        Self { name: String::new(), ..*self }
+    /// Copies everything but the name. Allocates only if this has no lobes and `other` has some.
+    pub fn copy_values(&mut self, other: &Self) {
+        let (name, mut lobes) = (std::mem::take(&mut self.name), self.lobes.take());
+        lobes.clone_from(&other.lobes);
+        *self = Self { name, lobes, ..*other };
     }
 
-    /// Sets an animated property. The alpha cutoff of a material that is not masked and the transform of a texture that it
-    /// doesn't have are ignored.
+    /// Sets an animated property. The alpha cutoff of a material that is not masked, and textures and lobes that it doesn't
+    /// have, are ignored.
     pub fn set(&mut self, property: MaterialProperty, value: Vec4) {
         match property {
             MaterialProperty::BaseColor => self.base_color = value,
@@ -104,6 +110,12 @@ impl Material {
             MaterialProperty::UvOffset(slot) => self.change_uvs(slot, |uvs| uvs.offset = value.xy()),
             MaterialProperty::UvRotation(slot) => self.change_uvs(slot, |uvs| uvs.rotation_radians = value.x),
             MaterialProperty::UvScale(slot) => self.change_uvs(slot, |uvs| uvs.scale = value.xy()),
+            MaterialProperty::Lobe(factor) => {
+                if let Some(lobes) = &mut self.lobes {
+                    let components = lobes.factor_mut(factor);
+                    components.copy_from_slice(&value.to_array()[..components.len()]);
+                }
+            }
         }
     }
 
@@ -115,18 +127,32 @@ impl Material {
             TextureSlot::Normal => self.normal_texture,
             TextureSlot::Occlusion => self.occlusion_texture,
             TextureSlot::Emissive => self.emissive_texture,
+            _ => self.lobes.as_ref()?.texture(slot),
         }
     }
 
-    fn change_uvs(&mut self, slot: TextureSlot, change: impl FnOnce(&mut UvTransform)) {
-        let texture = match slot {
+    /// Returns the texture coordinates that tangents follow; `None` if nothing needs tangents.
+    pub fn tangent_uv_set(&self) -> Option<usize> {
+        let slots = [TextureSlot::Normal, TextureSlot::ClearcoatNormal, TextureSlot::Anisotropy];
+        let texture = slots.into_iter().find_map(|slot| self.texture(slot));
+        let is_stretched = || self.lobes.as_ref().is_some_and(|lobes| lobes.anisotropy > 0.0);
+        texture.map(|texture| texture.uv_set).or_else(|| is_stretched().then_some(0))
+    }
+
+    /// The place of a texture; `None` if it is one of lobes and there are none.
+    pub fn texture_mut(&mut self, slot: TextureSlot) -> Option<&mut Option<TextureRef>> {
+        Some(match slot {
             TextureSlot::BaseColor => &mut self.base_color_texture,
             TextureSlot::MetallicRoughness => &mut self.metallic_roughness_texture,
             TextureSlot::Normal => &mut self.normal_texture,
             TextureSlot::Occlusion => &mut self.occlusion_texture,
             TextureSlot::Emissive => &mut self.emissive_texture,
-        };
-        if let Some(texture) = texture {
+            _ => self.lobes.as_mut()?.texture_mut(slot)?,
+        })
+    }
+
+    fn change_uvs(&mut self, slot: TextureSlot, change: impl FnOnce(&mut UvTransform)) {
+        if let Some(Some(texture)) = self.texture_mut(slot) {
             change(&mut texture.uv_transform);
         }
     }

@@ -3,6 +3,7 @@
 
 mod bounds;
 mod geometry;
+mod lobes;
 mod material;
 mod mikktspace;
 mod normals;
@@ -14,6 +15,7 @@ mod tangents;
 pub use bounds::Bounds;
 pub use geometry::first_not_below;
 pub use geometry::{Geometry, GeometryError, Influences, MAX_INFLUENCES, Mesh, MorphTarget, Topology};
+pub use lobes::Lobes;
 pub use material::{AlphaMode, Filter, Material, MipFilter, Sampler, Texture, TextureRef, UvTransform, Wrap};
 pub use normals::smooth_normals;
 pub use palette::{PaletteEntry, SkinningMode, palette_entry, write_palette};

@@ -11,6 +11,7 @@ use gltf::json::validation::Checked;
 use super::accessor::{Accessors, get};
 use super::document::{Document, present};
 use super::pointer::{Aim, POINTER, Pointers, Unresolved};
+use super::vrm::AnimatedNodes;
 use crate::anim::{ChannelError, Clip, ClipBuilder, Interpolation, Keys, PropertyTarget, Skeleton};
 use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
@@ -25,10 +26,11 @@ pub fn clips(
     accessors: &Accessors,
     skeleton: &Skeleton,
     materials: &[Material],
+    animated: &AnimatedNodes,
     warnings: &mut Warnings,
 ) -> Result<Vec<Clip>, Problem> {
     let root = &accessors.document.root;
-    let pointers = Pointers { root, skeleton, materials };
+    let pointers = Pointers { root, skeleton, materials, animated };
     let mut times = Times { accessors, read: BTreeMap::new() };
     let mut clips = Vec::with_capacity(root.animations.len());
     for (index, animation) in root.animations.iter().enumerate() {
@@ -195,6 +197,14 @@ impl ClipReader<'_> {
         let keys = keys(accessors, property, source.output, &format_args!("{here}.output"), targets)?;
         let key_times = times.get(source.input, &format_args!("{here}.input"))?;
         let interpolation = interpolation_mode(accessors.document, source, warnings);
+        // Tangents of a rotation aren't those of its angles.
+        let is_spline_of_angles = matches!(keys, Keys::Rotation(_)) && interpolation == Interpolation::CubicSpline;
+        if let Some((target, values)) = self.pointers.animated.property(joint, &keys)
+            && !is_spline_of_angles
+        {
+            let added = self.builder.property(target, interpolation, key_times, values);
+            added.map_err(|problem| unusable(source, problem))?;
+        }
         self.builder.channel(joint, interpolation, key_times, keys).map_err(|problem| unusable(source, problem))?;
         if target.matrix.is_some() && property != Property::MorphTargetWeights {
             let problem = format!(

@@ -3,9 +3,11 @@
 use gltf::json::Root;
 
 use super::instancing;
+use super::lobes;
 use super::nodes::VISIBILITY;
 use super::pointer::POINTER;
 use super::variants;
+use super::vrm::{EXTENDED_COLLIDER, NODE_CONSTRAINT, SPRING_BONE};
 use crate::asset::{Warning, Warnings};
 use crate::formats::LoadError;
 
@@ -15,6 +17,7 @@ const SUPPORTED: &[&str] = &[
     "KHR_materials_unlit",
     "KHR_materials_emissive_strength",
     "KHR_lights_punctual",
+    lobes::SPECULAR_GLOSSINESS,
     variants::NAME,
     instancing::NAME,
     POINTER,
@@ -26,15 +29,18 @@ const SUPPORTED: &[&str] = &[
     "EXT_meshopt_compression",
     "KHR_draco_mesh_compression",
     "KHR_meshopt_compression",
-    // Only their map of humanoid bones is used.
     "VRM",
     "VRMC_vrm",
     "VRMC_vrm_animation",
+    NODE_CONSTRAINT,
+    SPRING_BONE,
+    EXTENDED_COLLIDER,
 ];
 
 /// Rejects required extensions that are not supported, and warns about each optional one.
 pub fn check(file: &str, root: &Root, warnings: &mut Warnings) -> Result<(), LoadError> {
-    let unsupported = |name: &&String| !SUPPORTED.contains(&name.as_str());
+    let unsupported =
+        |name: &&String| !SUPPORTED.contains(&name.as_str()) && !lobes::EXTENSIONS.contains(&name.as_str());
     if let Some(name) = root.extensions_required.iter().find(unsupported) {
         return Err(LoadError::RequiredExtension {
             file: file.to_owned(),

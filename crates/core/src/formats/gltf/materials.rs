@@ -13,7 +13,8 @@ use serde_json::{Map, Value};
 
 use super::accessor::get;
 use super::document::{Document, present};
-use super::loosen::cleaned;
+use super::lobes;
+use super::loosen::{cleaned, whole};
 use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
 use crate::mesh::{AlphaMode, Filter, Material, MipFilter, Sampler, Texture, TextureRef, UvTransform, Wrap};
@@ -62,8 +63,9 @@ fn read(
     let occlusion_texture = reader.data(occlusion, "occlusionTexture")?;
     let emissive_texture = reader.color(&material.emissive_texture, "emissiveTexture")?;
     let extensions = material.extensions.as_ref();
+    let others = extensions.map(|extensions| &extensions.others);
     let emissive_strength = extensions.and_then(|extensions| extensions.emissive_strength.as_ref());
-    Ok(Material {
+    let mut read = Material {
         name: material.name.clone().unwrap_or_default(),
         base_color: Vec4::from(pbr.base_color_factor.0),
         metallic: pbr.metallic_factor.0,
@@ -72,7 +74,7 @@ fn read(
         emissive_strength: emissive_strength.map_or(1.0, |strength| strength.emissive_strength.0),
         normal_scale: material.normal_texture.as_ref().map_or(1.0, |info| info.scale),
         occlusion_strength: material.occlusion_texture.as_ref().map_or(1.0, |info| info.strength.0),
-        alpha_mode: alpha_mode(document, material, &here, warnings),
+        alpha_mode: alpha_mode(document, material, &here, reader.warnings),
         double_sided: material.double_sided,
         unlit: extensions.is_some_and(|extensions| extensions.unlit.is_some()),
         base_color_texture,
@@ -80,7 +82,10 @@ fn read(
         normal_texture,
         occlusion_texture,
         emissive_texture,
-    })
+        lobes: None,
+    };
+    others.map_or(Ok(()), |others| lobes::read(others, &mut read, &mut reader))?;
+    Ok(read)
 }
 
 fn alpha_mode(document: &Document, material: &json::Material, here: &str, warnings: &mut Warnings) -> AlphaMode {
@@ -102,10 +107,11 @@ fn alpha_mode(document: &Document, material: &json::Material, here: &str, warnin
 
 /// Reads the textures of one material. The crate has KHR_texture_transform typed for colour textures, but not for normal and
 /// occlusion textures.
-struct TextureReader<'a> {
+pub struct TextureReader<'a> {
     root: &'a Root,
-    material: &'a str,
-    warnings: &'a mut Warnings,
+    /// Its place in the file.
+    pub material: &'a str,
+    pub warnings: &'a mut Warnings,
 }
 
 /// Texture index, UV set, extensions.
@@ -131,6 +137,19 @@ impl TextureReader<'_> {
             }
         };
         self.texture(index, uv_set, transform, place)
+    }
+
+    /// Reads a texture of an extension that the crate has no type for.
+    pub fn lobe(&mut self, info: Option<&Value>, name: &str) -> Result<Option<TextureRef>, Problem> {
+        let Some(info) = info.filter(|info| !info.is_null()) else { return Ok(None) };
+        let Some(index) = info.get("index").and_then(whole) else {
+            let problem = Problem::new(format!("{}.{name}", self.material), "a texture's index", info);
+            problem.leave_out("texture", "the texture is left out", self.warnings)?;
+            return Ok(None);
+        };
+        let uv_set = info.get("texCoord").and_then(whole).unwrap_or(0);
+        let extensions = info.get("extensions").and_then(Value::as_object);
+        self.data(Some((index as usize, uv_set.min(u64::from(u32::MAX)) as u32, extensions)), name)
     }
 
     fn texture(

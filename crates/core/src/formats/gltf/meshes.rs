@@ -193,13 +193,12 @@ fn read_primitive(
         file_vertex: Vec::new(),
     };
     let of_variants = geometry.variants.iter().map(|&(_, material)| material);
-    let mut normal_textures =
-        material.into_iter().chain(of_variants).map(|material| &surfaces.materials[material].normal_texture);
-    if let Some(texture) = normal_textures.find_map(|texture| *texture)
+    let mut used = material.into_iter().chain(of_variants);
+    if let Some(uv_set) = used.find_map(|material| surfaces.materials[material].tangent_uv_set())
         && topology == Topology::Triangles
         && geometry.tangents.is_empty()
     {
-        let copied_bytes = add_tangents(&mut geometry, texture.uv_set, accessors.budget.left(Limit::DataBytes));
+        let copied_bytes = add_tangents(&mut geometry, uv_set, accessors.budget.left(Limit::DataBytes));
         accessors.budget.allocate(1, copied_bytes, &place)?;
     }
     Ok(geometry)

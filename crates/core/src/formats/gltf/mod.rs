@@ -15,6 +15,7 @@ mod images;
 mod indices;
 mod influences;
 mod instancing;
+mod lobes;
 mod loosen;
 mod materials;
 mod meshes;
@@ -25,6 +26,7 @@ mod pointer;
 mod skins;
 mod strict;
 mod variants;
+mod vrm;
 mod write;
 
 use crate::asset::{Asset, AssetParts, Image, Warning, Warnings};
@@ -103,12 +105,20 @@ fn build(
     let skeleton = nodes::skeleton(root, &meshes, &accessors.budget, &mut warnings)?;
     let skins = skins::skins(&accessors, &skeleton, &mut warnings)?;
     let instances = nodes::instances(&accessors, &skeleton, &meshes, &skins, &mut warnings)?;
-    let clips = animations::clips(&accessors, &skeleton, &materials, &mut warnings)?;
+    let humanoid = humanoid::humanoid(root, &skeleton, &mut warnings);
+    let parts = vrm::Parts {
+        root,
+        skeleton: &skeleton,
+        instances: &instances,
+        materials: &materials,
+        humanoid: humanoid.as_ref(),
+    };
+    let vrm::Read { avatar, animated } = vrm::read(&parts, &mut warnings);
+    let clips = animations::clips(&accessors, &skeleton, &materials, &animated, &mut warnings)?;
     let (scenes, default_scene) = nodes::scenes(root, &skeleton, &mut warnings)?;
     let cameras = nodes::cameras(document, &skeleton, &mut warnings)?;
     let hidden = nodes::hidden(root, &skeleton, &mut warnings);
     let lights = nodes::lights(document, &skeleton, &mut warnings)?;
-    let humanoid = humanoid::humanoid(root, &skeleton, &mut warnings);
     let conversion = files.conversion(file);
     let decoded = conversion.into_iter().flat_map(|conversion| &conversion.extensions);
     let parts = AssetParts {
@@ -129,6 +139,7 @@ fn build(
         cameras,
         lights,
         humanoid,
+        avatar,
         extensions_used: root.extensions_used.iter().chain(decoded).cloned().collect(),
         extensions_required: root.extensions_required.clone(),
     };

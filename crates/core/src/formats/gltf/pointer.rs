@@ -6,6 +6,8 @@ use gltf::json::animation::Property;
 use gltf::json::extensions::scene::khr_lights_punctual::{self, Type as LightType};
 use gltf::json::validation::Checked;
 
+use super::lobes;
+use super::vrm::AnimatedNodes;
 use crate::anim::{CameraProperty, JointIndex, LightProperty, MaterialProperty, PropertyTarget, Skeleton, TextureSlot};
 use crate::asset::{Asset, Camera, CameraProjection};
 use crate::mesh::Material;
@@ -36,6 +38,8 @@ const TEXTURE_TRANSFORM: [(&str, OfTexture); 3] = [
     ("/extensions/KHR_texture_transform/rotation", MaterialProperty::UvRotation),
     ("/extensions/KHR_texture_transform/scale", MaterialProperty::UvScale),
 ];
+/// Before the paths of lobes.
+const EXTENSIONS: &str = "extensions/";
 const LIGHT: [(&str, LightProperty); 5] = [
     ("color", LightProperty::Color),
     ("intensity", LightProperty::Intensity),
@@ -84,6 +88,7 @@ pub struct Pointers<'a> {
     pub root: &'a Root,
     pub skeleton: &'a Skeleton,
     pub materials: &'a [Material],
+    pub animated: &'a AnimatedNodes,
 }
 
 impl Pointers<'_> {
@@ -161,12 +166,15 @@ impl Pointers<'_> {
     }
 
     fn material(&self, material: usize, rest: &str) -> Result<Vec<Aim>, Unresolved> {
-        let property = match find(&MATERIAL, rest) {
+        let has_lobes = || self.materials[material].lobes.is_some();
+        let lobe = || find(&lobes::FACTORS, rest.strip_prefix(EXTENSIONS)?).filter(|_| has_lobes());
+        let property = match find(&MATERIAL, rest).or_else(|| lobe().map(MaterialProperty::Lobe)) {
             Some(property) => property,
             None => {
                 let transform = TEXTURE_TRANSFORM.iter().find_map(|(end, of)| Some((rest.strip_suffix(end)?, of)));
                 let (texture, of) = transform.ok_or(Unresolved::Unsupported)?;
-                let slot = find(&TEXTURES, texture).ok_or(Unresolved::Unsupported)?;
+                let lobe = || find(&lobes::TEXTURES, texture.strip_prefix(EXTENSIONS)?);
+                let slot = find(&TEXTURES, texture).or_else(lobe).ok_or(Unresolved::Unsupported)?;
                 if self.materials[material].texture(slot).is_none() {
                     return Err(Unresolved::Bad("the material has no such texture".to_owned()));
                 }
@@ -213,17 +221,35 @@ pub fn pointer_to(target: PropertyTarget, asset: &Asset) -> String {
             format!("/cameras/{camera}/{}", name(lens, property))
         }
         PropertyTarget::Visibility(joint) => format!("/nodes/{}/{VISIBLE}", node(joint)),
+        PropertyTarget::LookAt => format!("/extensions/{}/lookAt", vrm_extension(asset)),
+        PropertyTarget::Expression(number) => {
+            let Some(expression) = asset.avatar.expressions.get(number) else { return String::new() };
+            let extension = vrm_extension(asset);
+            let kind = if expression.is_preset { "preset" } else { "custom" };
+            let name = expression.name.replace('~', "~0").replace('/', "~1");
+            format!("/extensions/{extension}/expressions/{kind}/{name}")
+        }
         PropertyTarget::MorphWeight(joint, target) => format!("/nodes/{}/weights/{target}", node(joint)),
     }
 }
 
+fn vrm_extension(asset: &Asset) -> &'static str {
+    if asset.format == "vrma" { "VRMC_vrm_animation" } else { "VRMC_vrm" }
+}
+
 fn material_name(property: MaterialProperty) -> String {
-    let transform = |slot| {
-        let end = TEXTURE_TRANSFORM.iter().find(|(_, of)| of(slot) == property)?.0;
-        Some(name(&TEXTURES, slot).to_owned() + end)
-    };
-    let slots = || TEXTURES.iter().map(|&(_, slot)| slot);
-    slots().find_map(transform).unwrap_or_else(|| name(&MATERIAL, property).to_owned())
+    use MaterialProperty::{Lobe, UvOffset, UvRotation, UvScale};
+    match property {
+        Lobe(factor) => format!("{EXTENSIONS}{}", name(&lobes::FACTORS, factor)),
+        UvOffset(slot) | UvRotation(slot) | UvScale(slot) => {
+            let transform = TEXTURE_TRANSFORM.iter().find(|(_, of)| of(slot) == property).map_or("", |(end, _)| end);
+            match name(&TEXTURES, slot) {
+                "" => format!("{EXTENSIONS}{}{transform}", name(&lobes::TEXTURES, slot)),
+                texture => format!("{texture}{transform}"),
+            }
+        }
+        _ => name(&MATERIAL, property).to_owned(),
+    }
 }
 
 fn find<T: Copy>(table: &[(&str, T)], name: &str) -> Option<T> {

@@ -1,0 +1,225 @@
+//! `expressions` of VRM 1.0, `blendShapeMaster` of 0.x, and the names of animated expressions in a .vrma.
+
+use std::collections::BTreeMap;
+
+use glam::Vec4;
+use serde_json::Value;
+
+use super::{Read, Reader, index, number, text};
+use crate::anim::{JointIndex, MaterialProperty, PropertyTarget, TextureSlot};
+use crate::avatar::{Expression, MaterialBind, MorphBind, Override};
+
+/// Further expressions, and further parts of one, are left out.
+const MAX_EXPRESSIONS: usize = 256;
+const MAX_BINDS: usize = 1024;
+
+/// VRM 0.x's preset names and those of 1.0.
+const PRESETS_0: [(&str, &str); 18] = [
+    ("neutral", "neutral"),
+    ("a", "aa"),
+    ("i", "ih"),
+    ("u", "ou"),
+    ("e", "ee"),
+    ("o", "oh"),
+    ("blink", "blink"),
+    ("joy", "happy"),
+    ("angry", "angry"),
+    ("sorrow", "sad"),
+    ("fun", "relaxed"),
+    ("lookup", "lookUp"),
+    ("lookdown", "lookDown"),
+    ("lookleft", "lookLeft"),
+    ("lookright", "lookRight"),
+    ("blink_l", "blinkLeft"),
+    ("blink_r", "blinkRight"),
+    ("surprised", "surprised"),
+];
+
+/// Calls `add` with place, name, whether it is a preset, and definition of each entry of `expressions`.
+fn each(
+    reader: &mut Reader,
+    extension: &str,
+    value: &Value,
+    add: &mut dyn FnMut(&mut Reader, &str, &str, bool, &Value),
+) {
+    let mut count = 0;
+    for (kind, is_preset) in [("preset", true), ("custom", false)] {
+        let entries = value["expressions"][kind].as_object().into_iter().flatten();
+        for (name, value) in entries.filter(|(_, value)| !value.is_null()) {
+            let place = format!("extensions.{extension}.expressions.{kind}.{name}");
+            count += 1;
+            if count > MAX_EXPRESSIONS {
+                reader
+                    .ignore(place, format!("expected at most {MAX_EXPRESSIONS} expressions; the others are left out"));
+                return;
+            }
+            if Expression::PRESETS.contains(&name.as_str()) == is_preset && !name.is_empty() {
+                add(reader, &place, name, is_preset, value);
+            } else {
+                reader.ignore(place, format!("“{name}” can't be the name of a {kind} expression; it is left out"));
+            }
+        }
+    }
+}
+
+pub fn read_1(reader: &mut Reader, vrm: &Value, out: &mut Vec<Expression>) {
+    each(reader, "VRMC_vrm", vrm, &mut |reader, place, name, is_preset, value| {
+        let mut expression = Expression::new(name, name, is_preset);
+        expression.is_binary = value["isBinary"] == true;
+        expression.overrides = ["overrideBlink", "overrideLookAt", "overrideMouth"].map(|key| match text(value, key) {
+            "block" => Override::Block,
+            "blend" => Override::Blend,
+            _ => Override::None,
+        });
+        let mut binds = |key: &str| {
+            let place = format!("{place}.{key}");
+            (reader.list(&place, &value[key], MAX_BINDS), place)
+        };
+        let (morphs, morphs_place) = binds("morphTargetBinds");
+        let (colors, _) = binds("materialColorBinds");
+        let (transforms, _) = binds("textureTransformBinds");
+        for (at, bind) in morphs.iter().enumerate() {
+            let place = format!("{morphs_place}[{at}]");
+            if let Some(joint) = reader.joint_at(&place, &bind["node"]) {
+                morph(reader, &place, &[joint], &bind["index"], number(bind, "weight", 1.0), &mut expression);
+            }
+        }
+        for bind in colors {
+            if let Some(material) = index(&bind["material"]) {
+                color(reader, material, text(bind, "type"), &bind["targetValue"], &mut expression);
+            }
+        }
+        for bind in transforms {
+            if let Some(material) = index(&bind["material"]) {
+                let offset = pair(&bind["offset"], 0, [0.0, 0.0]);
+                texture_transform(reader, material, pair(&bind["scale"], 0, [1.0, 1.0]), offset, &mut expression);
+            }
+        }
+        out.push(expression);
+    });
+}
+
+pub fn read_0(reader: &mut Reader, vrm: &Value, out: &mut Vec<Expression>) {
+    let mut joints_of_mesh: BTreeMap<usize, Vec<JointIndex>> = BTreeMap::new();
+    for instance in reader.parts.instances {
+        joints_of_mesh.entry(instance.mesh).or_default().push(instance.joint);
+    }
+    let place = "extensions.VRM.blendShapeMaster.blendShapeGroups";
+    let groups = reader.list(place, &vrm["blendShapeMaster"]["blendShapeGroups"], MAX_EXPRESSIONS);
+    for (at, value) in groups.iter().enumerate() {
+        let place = format!("{place}[{at}]");
+        let (title, preset) = (text(value, "name"), text(value, "presetName").to_lowercase());
+        let preset = PRESETS_0.iter().find(|(name, _)| *name == preset).map(|&(_, name)| name);
+        let name = preset.unwrap_or(title);
+        if name.is_empty() || out.iter().any(|other| other.name == name) {
+            let problem = format!("expected an expression with a name of its own, found “{name}”; it is left out");
+            reader.ignore(place, problem);
+            continue;
+        }
+        let title = if title.is_empty() { name } else { title };
+        let mut expression = Expression::new(name, title, preset.is_some());
+        expression.is_binary = value["isBinary"] == true;
+        let binds_place = format!("{place}.binds");
+        for (at, bind) in reader.list(&binds_place, &value["binds"], MAX_BINDS).iter().enumerate() {
+            let joints =
+                index(&bind["mesh"]).and_then(|mesh| joints_of_mesh.get(&mesh)).map_or(&[][..], |joints| joints);
+            let weight = number(bind, "weight", 100.0) / 100.0;
+            morph(reader, &format!("{binds_place}[{at}]"), joints, &bind["index"], weight, &mut expression);
+        }
+        for bind in reader.list(&format!("{place}.materialValues"), &value["materialValues"], MAX_BINDS) {
+            material_value(reader, bind, &mut expression);
+        }
+        out.push(expression);
+    }
+}
+
+/// The expressions that a .vrma animates: their names and nodes.
+pub fn read_animated(reader: &mut Reader, vrma: &Value, read: &mut Read) {
+    each(reader, "VRMC_vrm_animation", vrma, &mut |reader, place, name, is_preset, value| {
+        if let Some(joint) = reader.joint_at(place, &value["node"]) {
+            read.animated.expressions.push((joint, read.avatar.expressions.len()));
+            read.avatar.expressions.push(Expression::new(name, name, is_preset));
+        }
+    });
+}
+
+fn morph(
+    reader: &mut Reader,
+    place: &str,
+    joints: &[JointIndex],
+    target: &Value,
+    weight: f32,
+    expression: &mut Expression,
+) {
+    let before = expression.morphs.len();
+    for &joint in joints.iter().take(MAX_BINDS) {
+        let range = reader.parts.skeleton.morph_range(joint);
+        let target = index(target).filter(|&target| target < range.len());
+        if let Some(target) = target.filter(|_| expression.morphs.len() < MAX_BINDS) {
+            expression.morphs.push(MorphBind { index: range.start + target, weight });
+        }
+    }
+    if expression.morphs.len() == before {
+        reader.ignore(place.to_owned(), format!("there is no morph target {target} of this mesh; it is left out"));
+    }
+}
+
+fn add(expression: &mut Expression, material: usize, property: MaterialProperty, rest: Vec4, target: Vec4) {
+    let target_property = PropertyTarget::Material(material, property);
+    // Several values of one property would add up.
+    if expression.materials.len() < MAX_BINDS && expression.materials.iter().all(|bind| bind.target != target_property)
+    {
+        expression.materials.push(MaterialBind { target: target_property, rest, delta: target - rest });
+    }
+}
+
+/// Colours of MToon have no effect, since its materials are shown as what they fall back to.
+fn color(reader: &Reader, at: usize, kind: &str, target: &Value, expression: &mut Expression) {
+    let Some(material) = reader.parts.materials.get(at) else { return };
+    let component = |index: usize| target.get(index).and_then(Value::as_f64).map_or(1.0, |number| number as f32);
+    let target = Vec4::from_array([0, 1, 2, 3].map(component));
+    if !target.is_finite() {
+        return;
+    }
+    match kind {
+        "color" | "_Color" => add(expression, at, MaterialProperty::BaseColor, material.base_color, target),
+        "emissionColor" | "_EmissionColor" => {
+            let rest = material.emissive.extend(0.0);
+            add(expression, at, MaterialProperty::Emissive, rest, target.truncate().extend(0.0));
+        }
+        _ => {}
+    }
+}
+
+fn texture_transform(reader: &Reader, at: usize, scale: [f32; 2], offset: [f32; 2], expression: &mut Expression) {
+    let Some(material) = reader.parts.materials.get(at) else { return };
+    for slot in TextureSlot::ALL {
+        let Some(texture) = material.texture(slot) else { continue };
+        let uvs = texture.uv_transform;
+        let wide = |[x, y]: [f32; 2]| Vec4::new(x, y, 0.0, 0.0);
+        add(expression, at, MaterialProperty::UvOffset(slot), wide(uvs.offset.to_array()), wide(offset));
+        add(expression, at, MaterialProperty::UvScale(slot), wide(uvs.scale.to_array()), wide(scale));
+    }
+}
+
+/// Two components of an array, from `start`.
+fn pair(value: &Value, start: usize, default: [f32; 2]) -> [f32; 2] {
+    let component = |at: usize| {
+        let number = value.get(start + at).and_then(Value::as_f64).map(|number| number as f32);
+        number.filter(|number| number.is_finite()).unwrap_or(default[at])
+    };
+    [component(0), component(1)]
+}
+
+/// VRM 0.x names materials, and has texture coordinates that start at the bottom.
+fn material_value(reader: &Reader, bind: &Value, expression: &mut Expression) {
+    let (name, property, value) = (text(bind, "materialName"), text(bind, "propertyName"), &bind["targetValue"]);
+    for (at, _) in reader.parts.materials.iter().enumerate().filter(|(_, material)| material.name == name) {
+        if property == "_MainTex_ST" {
+            let (scale, [x, y]) = (pair(value, 0, [1.0, 1.0]), pair(value, 2, [0.0, 0.0]));
+            texture_transform(reader, at, scale, [x, 1.0 - y - scale[1]], expression);
+        } else {
+            color(reader, at, property, value, expression);
+        }
+    }
+}

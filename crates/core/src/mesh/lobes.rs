@@ -1,0 +1,137 @@
+//! The optional lobes of a material: glTF's extensions of the metallic-roughness model. Colours are linear.
+
+use std::slice;
+
+use glam::Vec3;
+
+use super::TextureRef;
+use crate::anim::{LobeFactor, TextureSlot};
+
+/// Number of slots in [`Lobes::textures`].
+const TEXTURES: usize = TextureSlot::ALL.len() - TextureSlot::Specular as usize;
+
+/// What a material has beyond metallic-roughness. The default changes nothing. Factors are multiplied with the matching
+/// textures.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lobes {
+    /// Index of refraction (KHR_materials_ior); 0 makes the dielectric reflect everything at all angles.
+    pub ior: f32,
+    /// Weight of the dielectric reflection (KHR_materials_specular), from 0 to 1.
+    pub specular: f32,
+    /// Linear RGB factor on the dielectric reflection at normal incidence; may exceed 1.
+    pub specular_color: Vec3,
+    /// Whether alpha of the specular colour texture is glossiness, a factor on 1 − roughness: the material was converted from
+    /// KHR_materials_pbrSpecularGlossiness.
+    pub glossiness_in_specular_color: bool,
+    /// Weight of the clear coating (KHR_materials_clearcoat), from 0 to 1.
+    pub clearcoat: f32,
+    /// Perceptual roughness of the coating.
+    pub clearcoat_roughness: f32,
+    /// Multiplies X and Y of the coating's normal texture.
+    pub clearcoat_normal_scale: f32,
+    /// Linear RGB of the fibres (KHR_materials_sheen); black for none.
+    pub sheen_color: Vec3,
+    /// Perceptual roughness of the fibres.
+    pub sheen_roughness: f32,
+    /// Weight of the thin film (KHR_materials_iridescence), from 0 to 1.
+    pub iridescence: f32,
+    /// Index of refraction of the thin film.
+    pub iridescence_ior: f32,
+    /// Thickness of the film in nanometres where its texture is 0.
+    pub iridescence_thickness_min: f32,
+    /// Thickness of the film in nanometres where its texture is 1, and without one.
+    pub iridescence_thickness_max: f32,
+    /// How much highlights are stretched (KHR_materials_anisotropy), from 0 to 1.
+    pub anisotropy: f32,
+    /// Direction in which highlights are stretched: radians, counter-clockwise from the tangent.
+    pub anisotropy_rotation: f32,
+    /// Fraction of light that passes through (KHR_materials_transmission), from 0 to 1.
+    pub transmission: f32,
+    /// Thickness of the volume below the surface, in the mesh's units (KHR_materials_volume); 0 for thin walls.
+    pub thickness: f32,
+    /// Distance in metres at which white light has become [`Self::attenuation_color`]; infinite for a clear volume.
+    pub attenuation_distance: f32,
+    /// Linear RGB.
+    pub attenuation_color: Vec3,
+    /// 20 divided by the Abbe number (KHR_materials_dispersion); 0 for none.
+    pub dispersion: f32,
+    /// Fraction of diffuse light that passes through (KHR_materials_diffuse_transmission), from 0 to 1.
+    pub diffuse_transmission: f32,
+    /// Linear RGB of light that passes through diffusely.
+    pub diffuse_transmission_color: Vec3,
+    /// By slot, from [`TextureSlot::Specular`] on.
+    pub textures: [Option<TextureRef>; TEXTURES],
+}
+
+impl Default for Lobes {
+    fn default() -> Self {
+        Self {
+            ior: 1.5,
+            specular: 1.0,
+            specular_color: Vec3::ONE,
+            glossiness_in_specular_color: false,
+            clearcoat: 0.0,
+            clearcoat_roughness: 0.0,
+            clearcoat_normal_scale: 1.0,
+            sheen_color: Vec3::ZERO,
+            sheen_roughness: 0.0,
+            iridescence: 0.0,
+            iridescence_ior: 1.3,
+            iridescence_thickness_min: 100.0,
+            iridescence_thickness_max: 400.0,
+            anisotropy: 0.0,
+            anisotropy_rotation: 0.0,
+            transmission: 0.0,
+            thickness: 0.0,
+            attenuation_distance: f32::INFINITY,
+            attenuation_color: Vec3::ONE,
+            dispersion: 0.0,
+            diffuse_transmission: 0.0,
+            diffuse_transmission_color: Vec3::ONE,
+            textures: [None; TEXTURES],
+        }
+    }
+}
+
+impl Lobes {
+    /// Returns the components of a factor, [`LobeFactor::width`] of them.
+    pub fn factor_mut(&mut self, factor: LobeFactor) -> &mut [f32] {
+        slice::from_mut(match factor {
+            LobeFactor::Ior => &mut self.ior,
+            LobeFactor::Specular => &mut self.specular,
+            LobeFactor::SpecularColor => return AsMut::<[f32; 3]>::as_mut(&mut self.specular_color),
+            LobeFactor::Clearcoat => &mut self.clearcoat,
+            LobeFactor::ClearcoatRoughness => &mut self.clearcoat_roughness,
+            LobeFactor::ClearcoatNormalScale => &mut self.clearcoat_normal_scale,
+            LobeFactor::SheenColor => return AsMut::<[f32; 3]>::as_mut(&mut self.sheen_color),
+            LobeFactor::SheenRoughness => &mut self.sheen_roughness,
+            LobeFactor::Iridescence => &mut self.iridescence,
+            LobeFactor::IridescenceIor => &mut self.iridescence_ior,
+            LobeFactor::IridescenceThicknessMin => &mut self.iridescence_thickness_min,
+            LobeFactor::IridescenceThicknessMax => &mut self.iridescence_thickness_max,
+            LobeFactor::Anisotropy => &mut self.anisotropy,
+            LobeFactor::AnisotropyRotation => &mut self.anisotropy_rotation,
+            LobeFactor::Transmission => &mut self.transmission,
+            LobeFactor::Thickness => &mut self.thickness,
+            LobeFactor::AttenuationDistance => &mut self.attenuation_distance,
+            LobeFactor::AttenuationColor => return AsMut::<[f32; 3]>::as_mut(&mut self.attenuation_color),
+            LobeFactor::Dispersion => &mut self.dispersion,
+            LobeFactor::DiffuseTransmission => &mut self.diffuse_transmission,
+            LobeFactor::DiffuseTransmissionColor => {
+                return AsMut::<[f32; 3]>::as_mut(&mut self.diffuse_transmission_color);
+            }
+        })
+    }
+
+    /// Returns the texture in a slot from [`TextureSlot::Specular`] on; `None` for the others.
+    pub fn texture(&self, slot: TextureSlot) -> Option<TextureRef> {
+        let index = (slot as usize).checked_sub(TextureSlot::Specular as usize)?;
+        self.textures[index]
+    }
+
+    /// The place of a texture. None for slots before [`TextureSlot::Specular`].
+    pub fn texture_mut(&mut self, slot: TextureSlot) -> Option<&mut Option<TextureRef>> {
+        let index = (slot as usize).checked_sub(TextureSlot::Specular as usize)?;
+        self.textures.get_mut(index)
+    }
+}

@@ -1,0 +1,148 @@
+//! What an avatar adds to the pose of a clip: where the eyes look, expressions, constraints and spring bones, in this
+//! order.
+
+use std::collections::BTreeMap;
+
+use glam::{Affine3A, Vec3};
+use serde::{Deserialize, Serialize};
+
+use super::playhead::{active_clip, clip_secs, play_range, pose_joints, sample_pose, world_from_model};
+use super::{UpAxis, ViewerState};
+use crate::anim::{LoopMode, Pose, PropertyTarget, PropertyValues, SampleCursor, TimeRange, model_from_joint};
+use crate::avatar::{Avatar, SpringCache, SpringMotion, apply_expressions, resolve_weights};
+use crate::library::{Model, ModelId};
+
+/// Where an avatar's eyes look.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LookTarget {
+    /// Wherever the clip turns them.
+    #[default]
+    Off,
+    /// Into the camera.
+    Camera,
+    /// At a point in world space.
+    Point(Vec3),
+}
+
+/// Buffers of [`AvatarPose::apply`], reused between frames.
+#[derive(Debug, Default)]
+pub(super) struct AvatarPose {
+    /// The weights that were set, one per expression.
+    pub weights: Vec<f32>,
+    shown: Vec<f32>,
+    springs: SpringCache,
+    springs_of: Option<SpringsKey>,
+    cursor: SampleCursor,
+}
+
+/// What a simulation of the springs depends on.
+#[derive(Debug, PartialEq)]
+struct SpringsKey {
+    model: ModelId,
+    revision: u32,
+    clip: Option<usize>,
+    range: TimeRange,
+    repeats: bool,
+    up: UpAxis,
+    joints: BTreeMap<usize, [f32; 3]>,
+}
+
+impl AvatarPose {
+    /// Applies the avatar of `model` to the pose of its clip. `eye` is the camera's position in world space, if known.
+    pub fn apply(
+        &mut self,
+        model: &Model,
+        state: &ViewerState,
+        eye: Option<Vec3>,
+        pose: &mut Pose,
+        properties: &mut PropertyValues,
+    ) {
+        let (skeleton, avatar) = (&model.asset.skeleton, &model.asset.avatar);
+        self.set_weights(avatar, state, properties);
+        self.shown.clone_from(&self.weights);
+        if let Some(look_at) = &avatar.look_at {
+            let model_from_world = world_from_model(state.edits.up).inverse();
+            let towards = |point| look_at.direction(model_from_world.transform_point3(point), skeleton, pose);
+            let direction = match state.display.look_at {
+                LookTarget::Off => properties.get(PropertyTarget::LookAt).map(|angles| [angles.x, angles.y]),
+                LookTarget::Camera => eye.and_then(towards),
+                LookTarget::Point(point) => towards(point),
+            };
+            if let Some(direction) = direction {
+                look_at.apply(direction, skeleton, pose, &mut self.shown);
+            }
+        }
+        resolve_weights(&avatar.expressions, &mut self.shown);
+        apply_expressions(&avatar.expressions, &self.shown, pose, properties);
+        for constraint in &avatar.constraints {
+            constraint.apply(skeleton, pose);
+        }
+        if state.display.springs && !avatar.springs.joints().is_empty() {
+            self.swing(model, state, pose);
+        }
+    }
+
+    /// The clip's weights, replaced by those set by hand.
+    fn set_weights(&mut self, avatar: &Avatar, state: &ViewerState, properties: &PropertyValues) {
+        self.weights.clear();
+        self.weights.resize(avatar.expressions.len(), 0.0);
+        for (target, value) in properties.iter() {
+            if let PropertyTarget::Expression(number) = target
+                && let Some(weight) = self.weights.get_mut(number)
+            {
+                *weight = value.x.clamp(0.0, 1.0);
+            }
+        }
+        for (name, &weight) in &state.edits.expressions {
+            if let Some(number) = avatar.expression(name) {
+                self.weights[number] = weight;
+            }
+        }
+    }
+
+    fn swing(&mut self, model: &Model, state: &ViewerState, pose: &mut Pose) {
+        let (skeleton, springs) = (&model.asset.skeleton, &model.asset.avatar.springs);
+        let clip = active_clip(model, state);
+        let range = clip.map_or(TimeRange::default(), |clip| play_range(model, clip, state));
+        let repeats = state.playback.loop_mode == LoopMode::Loop;
+        if !self.springs_of.as_ref().is_some_and(|key| key.fits(model, state, clip, range, repeats)) {
+            self.springs.restart(springs, range, repeats);
+            let (revision, joints) = (model.borrowed_revision(), state.edits.pose.clone());
+            let up = state.edits.up;
+            self.springs_of = Some(SpringsKey { model: model.id, revision, clip, range, repeats, up, joints });
+        }
+        let time_secs = clip.map_or(0.0, |clip| clip_secs(model, clip, state));
+        let mut motion = ClipMotion { model, state, clip, cursor: &mut self.cursor };
+        self.springs.apply(skeleton, springs, time_secs, &mut motion, pose);
+    }
+}
+
+impl SpringsKey {
+    fn fits(&self, model: &Model, state: &ViewerState, clip: Option<usize>, range: TimeRange, repeats: bool) -> bool {
+        (self.model, self.revision, self.clip) == (model.id, model.borrowed_revision(), clip)
+            && (self.range, self.repeats, self.up) == (range, repeats, state.edits.up)
+            && self.joints == state.edits.pose
+    }
+}
+
+/// The active clip with joints posed manually and constraints, without a crossfade.
+struct ClipMotion<'a> {
+    model: &'a Model,
+    state: &'a ViewerState,
+    clip: Option<usize>,
+    cursor: &'a mut SampleCursor,
+}
+
+impl SpringMotion for ClipMotion<'_> {
+    /// Layers below the clip are sampled as in its first loop.
+    fn pose_at(&mut self, time_secs: f64, pose: &mut Pose, world: &mut Vec<Affine3A>) {
+        let skeleton = &self.model.asset.skeleton;
+        sample_pose(self.model, self.clip, time_secs, time_secs, self.cursor, pose);
+        pose_joints(self.model, self.state, pose);
+        for constraint in &self.model.asset.avatar.constraints {
+            constraint.apply(skeleton, pose);
+        }
+        model_from_joint(skeleton, pose, world_from_model(self.state.edits.up), world);
+    }
+}

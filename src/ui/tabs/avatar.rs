@@ -1,0 +1,95 @@
+//! The avatar's part of the Display tab: expressions, eyes and spring bones; and of the File tab: licence and authors.
+
+use egui::Ui;
+
+use super::report::fact;
+use crate::avatar::Avatar;
+use crate::library::Model;
+use crate::state::{Command, LookTarget, title};
+use crate::ui::controls::{self, SliderSettings};
+use crate::ui::{Output, Shown, text};
+
+/// Sliders for expressions, and the controls of eyes and spring bones, as far as the model has them.
+pub fn controls(ui: &mut Ui, shown: &Shown<'_>, model: &Model, out: &mut Output) {
+    let avatar = &model.asset.avatar;
+    let has_springs = !avatar.springs.joints().is_empty();
+    if avatar.look_at.is_some() || has_springs {
+        controls::section(ui, "AVATAR");
+    }
+    if avatar.look_at.is_some() {
+        look_at(ui, shown, out);
+    }
+    if has_springs && controls::switch(ui, text::SPRINGS, shown.state.display.springs) {
+        out.commands.push(Command::SetSprings(!shown.state.display.springs));
+    }
+    expressions(ui, shown, avatar, out);
+}
+
+fn look_at(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
+    let now = shown.state.display.look_at;
+    // A point starts where the camera is.
+    let point = if let LookTarget::Point(point) = now { point } else { shown.frame.view.eye };
+    let choices = [
+        (LookTarget::Off, text::LOOK_OFF),
+        (LookTarget::Camera, text::LOOK_AT_CAMERA),
+        (LookTarget::Point(point), text::LOOK_AT_POINT),
+    ];
+    ui.label(text::EYES);
+    if let Some(target) = controls::segmented_about(ui, text::EYES, Some(now), &choices) {
+        out.commands.push(Command::SetLookAt(target));
+    }
+    if let LookTarget::Point(mut point) = now {
+        let mut is_changed = false;
+        ui.horizontal(|ui| {
+            for (coordinate, name) in [(&mut point.x, "X"), (&mut point.y, "Y"), (&mut point.z, "Z")] {
+                let field = egui::DragValue::new(coordinate).speed(0.02).max_decimals(2).suffix(" m");
+                is_changed |= ui.add_sized([80.0, 26.0], field).accessible_name(name).changed();
+            }
+        });
+        if is_changed {
+            out.commands.push(Command::SetLookAt(LookTarget::Point(point)));
+        }
+    }
+}
+
+/// They follow the clip until they are touched.
+fn expressions(ui: &mut Ui, shown: &Shown<'_>, avatar: &Avatar, out: &mut Output) {
+    let mut expressions = avatar.expressions.iter().enumerate().filter(|(_, one)| one.has_effect()).peekable();
+    if expressions.peek().is_none() {
+        return;
+    }
+    controls::section(ui, "EXPRESSIONS");
+    let edited = &shown.state.edits.expressions;
+    if ui.add_enabled(!edited.is_empty(), egui::Button::new(text::RESET_EXPRESSIONS)).clicked() {
+        out.commands.push(Command::ClearExpressions);
+    }
+    for (index, expression) in expressions {
+        let set = edited.get(&expression.name).or_else(|| shown.frame.expressions().get(index));
+        let value = f64::from(set.copied().unwrap_or(0.0));
+        let settings = SliderSettings { range: (0.0, 1.0), default: 0.0, decimals: 2, suffix: "", logarithmic: false };
+        let new =
+            ui.push_id(("expression", index), |ui| controls::slider(ui, &expression.title, value, settings)).inner;
+        if let Some(weight) = new {
+            let name = expression.name.clone();
+            out.commands.push(Command::SetExpression { name, weight: Some(weight as f32) });
+        }
+    }
+}
+
+/// Title, authors, terms of use, and how first-person cameras treat meshes.
+pub fn facts(ui: &mut Ui, shown: &Shown<'_>, model: &Model) {
+    let avatar = &model.asset.avatar;
+    if avatar.meta.is_empty() && avatar.first_person.is_empty() {
+        return;
+    }
+    controls::section(ui, "AVATAR");
+    controls::card(ui, |ui| {
+        for (key, value) in &avatar.meta {
+            fact(ui, &text::words(key), value);
+        }
+        for (joint, flag) in &avatar.first_person {
+            let mesh = title(Some(shown.state), &model.asset, *joint);
+            fact(ui, &text::first_person(&mesh), &text::words(flag));
+        }
+    });
+}
