@@ -6,8 +6,8 @@ struct GroundOut {
     @location(0) offset: vec2f,
 }
 
-// Fewer on software adapters.
-override SHADOW_TAPS: u32 = 12u;
+// 4 on software adapters, where the shadow is equally soft everywhere.
+override SHADOW_TAPS: u32 = 16u;
 
 fn ground_out(offset: vec2f) -> GroundOut {
     let world = vec3f(frame.ground.x + offset.x, frame.ground.y, frame.ground.z + offset.y);
@@ -64,28 +64,71 @@ fn shadow_vertex(@builtin(vertex_index) vertex: u32) -> GroundOut {
         + frame.shadow_center);
 }
 
-// A spiral of taps, each filtering four texels.
-fn soft_shadow(world: vec3f, pixel: vec2f) -> f32 {
+// Offset of a tap in a spiral that fills a disc of radius 1.
+fn spiral(tap: u32, taps: u32, turn: f32) -> vec2f {
+    let angle = turn + 2.3999632 * f32(tap);
+    return sqrt((f32(tap) + 0.5) / f32(taps)) * vec2f(cos(angle), sin(angle));
+}
+
+// Radii in texels: of the search for what blocks the light, and the narrowest and widest edge of a shadow.
+const SEARCH_RADIUS: f32 = 18.0;
+const MIN_RADIUS: f32 = 1.5;
+const MAX_RADIUS: f32 = 12.0;
+const SEARCH_TAPS: u32 = 12u;
+// How much of its distance from the ground a thing's shadow is blurred by.
+const LIGHT_SIZE: f32 = 0.03;
+// Heights in texels between which the search tells things apart.
+const LOW: f32 = 24.0;
+const HIGH: f32 = 240.0;
+// Darkest that the ground gets where something touches it.
+const CONTACT: f32 = 0.5;
+
+// A comparison with the ground's own depth at that offset, raised by `height`: otherwise a slanting light would shine below what
+// stands on the ground.
+fn ground_tap(at: vec3f, slope: vec2f, offset: vec2f, height: f32) -> f32 {
+    return shadow_tap(vec3f(at.xy, min(at.z + dot(slope, offset), 1.0) - height), offset);
+}
+
+// Opacity of the shadow. The further away what blocks the light, the softer the edge (percentage-closer soft shadows, Fernando
+// 2005); comparisons at several heights stand in for reading the map, which WebGL2 doesn't allow together with comparisons.
+// What is close to the ground also hides it from the light of the surroundings.
+fn ground_shade(world: vec3f, pixel: vec2f) -> f32 {
     let at = shadow_coordinates(world);
     let texel = 1.0 / vec2f(textureDimensions(shadow_map));
+    // How the depth of the ground changes across the map, and depth per texel along the light.
+    let m = frame.shadow_from_world;
+    let depth = vec3f(m[0].z, m[1].z, m[2].z);
+    let slope = 2.0 * vec2f(dot(depth.xz, frame.shadow_x), -dot(depth.xz, frame.shadow_y));
+    let step = frame.shadow_texel * length(depth);
     if SHADOW_TAPS <= 4u {
         let a = 1.5 * texel * vec2f(0.4, 0.9);
         let b = 1.5 * texel * vec2f(0.9, -0.4);
-        return 0.25 * (shadow_tap(at, a) + shadow_tap(at, b) + shadow_tap(at, -a) + shadow_tap(at, -b));
+        let lit = ground_tap(at, slope, a, 0.0) + ground_tap(at, slope, b, 0.0) + ground_tap(at, slope, -a, 0.0)
+            + ground_tap(at, slope, -b, 0.0);
+        return frame.ground_shadow * (1.0 - 0.25 * lit);
     }
     let turn = 6.2831853 * fract(52.9829189 * fract(dot(pixel, vec2f(0.06711056, 0.00583715))));
+    // Shares of the map around that are above each height.
+    var above = vec3f(0.0);
+    for (var tap = 0u; tap < SEARCH_TAPS; tap++) {
+        let offset = SEARCH_RADIUS * texel * spiral(tap, SEARCH_TAPS, turn);
+        above += 1.0 - vec3f(ground_tap(at, slope, offset, 0.0), ground_tap(at, slope, offset, LOW * step),
+            ground_tap(at, slope, offset, HIGH * step));
+    }
+    above /= f32(SEARCH_TAPS);
+    let distance = dot(above, vec3f(0.5 * LOW, 0.5 * HIGH, HIGH)) / max(above.x, 1e-3);
+    let radius = clamp(LIGHT_SIZE * distance, MIN_RADIUS, MAX_RADIUS);
     var lit = 0.0;
     for (var tap = 0u; tap < SHADOW_TAPS; tap++) {
-        let angle = turn + 2.3999632 * f32(tap);
-        let radius = 5.0 * sqrt((f32(tap) + 0.5) / f32(SHADOW_TAPS));
-        lit += shadow_tap(at, texel * radius * vec2f(cos(angle), sin(angle)));
+        lit += ground_tap(at, slope, radius * texel * spiral(tap, SHADOW_TAPS, turn), 0.0);
     }
-    return lit / f32(SHADOW_TAPS);
+    let shadow = frame.ground_shadow * (1.0 - lit / f32(SHADOW_TAPS));
+    return 1.0 - (1.0 - shadow) * (1.0 - CONTACT * (above.x - above.y));
 }
 
 @fragment
 fn shadow_fragment(in: GroundOut) -> @location(0) vec4f {
     let world = vec3f(frame.ground.x + in.offset.x, frame.ground.y, frame.ground.z + in.offset.y);
-    let dark = frame.ground_shadow * (1.0 - soft_shadow(world, in.position.xy)) * ground_fade(in.offset);
+    let dark = ground_shade(world, in.position.xy) * ground_fade(in.offset);
     return vec4f(0.0, 0.0, 0.0, dark);
 }

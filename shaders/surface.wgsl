@@ -11,10 +11,15 @@ override VERTEX_COLORS: bool = false;
 override FLAT: bool = false;
 override TANGENTS: bool = false;
 override MASK: bool = false;
+// Masks set the coverage of the pixel's samples instead of discarding it.
+override COVERAGE: bool = false;
 override BLEND: bool = false;
 override SHADOW: bool = false;
 // Uses the file's lights instead of the key light.
 override FILE_LIGHTS: bool = false;
+
+// Alpha from which a blended surface counts as opaque; must match model.rs.
+const OPAQUE_ALPHA: f32 = 0.9;
 
 struct UvTransform {
     // Columns of the 2×2 matrix.
@@ -87,9 +92,18 @@ fn emissive(in: VertexOut) -> vec3f {
     return material.emissive;
 }
 
+// Coverage of a pixel by a mask: its edge, as wide as a pixel (Golus 2017, "Anti-aliased Alpha Test").
+fn mask_coverage(alpha: f32) -> f32 {
+    let smallest = 1e-4;
+    return clamp((alpha - material.alpha_cutoff + smallest) / max(fwidth(alpha), smallest) + 0.5, 0.0, 1.0);
+}
+
 // Encodes and premultiplies. The alpha test comes last, because textures must be sampled in uniform control flow.
 fn finish(display: vec3f, alpha: f32) -> vec4f {
     let color = srgb_from_linear(display);
+    if MASK && COVERAGE {
+        return vec4f(color, mask_coverage(alpha));
+    }
     if MASK && alpha < material.alpha_cutoff {
         discard;
     }
@@ -330,6 +344,15 @@ fn heat(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) vec4f
 @fragment
 fn wireframe(in: VertexOut) -> @location(0) vec4f {
     return vec4f(draw.color.rgb * draw.color.a, draw.color.a);
+}
+
+// What a blended surface hides of itself: all that is behind its opaque parts.
+@fragment
+fn depth_mask(in: VertexOut) -> @location(0) vec4f {
+    if base_color(in).a < OPAQUE_ALPHA {
+        discard;
+    }
+    return vec4f(0.0);
 }
 
 // Shadow pass: cuts out the holes of masked and blended materials.

@@ -23,7 +23,8 @@ struct Influences8 {
 }
 
 struct VertexOut {
-    @builtin(position) position: vec4f,
+    // Invariant, since surfaces are compared with the depth that another pipeline has drawn.
+    @builtin(position) @invariant position: vec4f,
     // World-space vector to the eye. Unlike positions it stays small far from the origin, which keeps derivatives
     // precise.
     @location(0) to_eye: vec3f,
@@ -65,9 +66,10 @@ fn position_out(in: VertexIn, blend: Blend) -> vec4f {
     return frame.projection_from_world * vec4f(moved, 1.0);
 }
 
+// Without influences, each copy of the mesh has a palette entry.
 @vertex
-fn position_0(in: VertexIn) -> @builtin(position) vec4f {
-    return position_out(in, single(0u));
+fn position_0(in: VertexIn, @builtin(instance_index) copy: u32) -> @builtin(position) vec4f {
+    return position_out(in, single(copy));
 }
 
 @vertex
@@ -87,8 +89,8 @@ fn position_texture(in: VertexIn) -> @builtin(position) vec4f {
 }
 
 @vertex
-fn vertex_0(in: VertexIn) -> VertexOut {
-    return vertex_out(in, single(0u), select(0.0, 1.0, draw.heat_joint == 0u));
+fn vertex_0(in: VertexIn, @builtin(instance_index) copy: u32) -> VertexOut {
+    return vertex_out(in, single(copy), select(0.0, 1.0, draw.heat_joint == 0u));
 }
 
 @vertex

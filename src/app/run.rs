@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 use super::record::Recording;
 use super::timing::Timing;
@@ -315,7 +316,14 @@ impl App {
             ((to * pixels_per_point).round() - (from * pixels_per_point).round()).clamp(1.0, max) as u32
         };
         let size = [pixels(rect.left(), rect.right()), pixels(rect.top(), rect.bottom())];
-        self.viewport.draw(&mut self.editor, size);
+        let now_secs = self.context.input(|input| input.time);
+        let refine_in = self.viewport.draw(&mut self.editor, size, now_secs);
+        if let Some(secs) = refine_in.filter(|_| self.has_begun) {
+            self.context.request_repaint_after(Duration::from_secs_f64(secs));
+        }
+        if !self.screenshots.is_empty() {
+            self.viewport.refine();
+        }
     }
 
     /// Lays out the panels and the viewport, and applies the user's input. Returns whether there was any, the viewport's

@@ -46,9 +46,19 @@ impl SceneTexture {
         }
     }
 
+    /// Whether the last image lacks samples.
+    pub fn can_refine(&self) -> bool {
+        self.renderer.can_refine()
+    }
+
+    /// Adds a sample per pixel to the image on screen, which must be that of this frame. Returns whether it lacks more.
+    pub fn refine(&mut self, frame: &Frame) -> bool {
+        self.renderer.refine(&self.gpu.device, &self.gpu.queue, frame)
+    }
+
     /// Draws an image that is not for the screen. The screen keeps the one before, unless that has the same size.
     pub fn draw_off_screen(&mut self, frame: &Frame, size: [u32; 2]) -> (wgpu::Device, wgpu::Queue, wgpu::Texture) {
-        self.renderer.draw(&self.gpu.device, &self.gpu.queue, frame, size);
+        self.renderer.draw_refined(&self.gpu.device, &self.gpu.queue, frame, size);
         self.displayed = None;
         self.last_image()
     }

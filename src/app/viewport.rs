@@ -14,6 +14,10 @@ pub(super) struct Viewport {
     /// Size in pixels of the last image; `None` before the first.
     drawn_size: Option<[u32; 2]>,
     needs_redraw: bool,
+    /// The image on screen lacks samples.
+    can_refine: bool,
+    /// When the image on screen was drawn, on egui's clock.
+    drawn_at_secs: f64,
     /// The model on the device, and the source beside it.
     uploaded: Option<(ModelId, Option<ModelId>)>,
 }
@@ -21,7 +25,15 @@ pub(super) struct Viewport {
 impl Viewport {
     pub fn new(gpu: RenderState, samples: u32) -> Self {
         let scene = SceneTexture::new(gpu, samples);
-        Self { scene, frame: Frame::default(), drawn_size: None, needs_redraw: true, uploaded: None }
+        Self {
+            scene,
+            frame: Frame::default(),
+            drawn_size: None,
+            needs_redraw: true,
+            can_refine: false,
+            drawn_at_secs: 0.0,
+            uploaded: None,
+        }
     }
 
     /// Uploads a model if it fits on the device; the editor asks for this before it activates one.
@@ -31,11 +43,24 @@ impl Viewport {
         Ok(())
     }
 
-    pub fn draw(&mut self, editor: &mut Editor, size: [u32; 2]) {
+    /// Draws the view if it changed. Otherwise refines its image, one sample with each call, once it has been still for a
+    /// moment. Returns in how many seconds there is a sample to add, if any. `now_secs` is egui's clock.
+    pub fn draw(&mut self, editor: &mut Editor, size: [u32; 2], now_secs: f64) -> Option<f64> {
+        /// Longer than between two steps of an interaction, which further samples would slow down.
+        const STILL_SECS: f64 = 0.25;
         self.needs_redraw |= editor.take_needs_redraw();
-        if !self.needs_redraw && self.drawn_size == Some(size) {
-            return;
+        if self.needs_redraw || self.drawn_size != Some(size) {
+            self.draw_view(editor, size);
+            self.drawn_at_secs = now_secs;
         }
+        let wait_secs = self.drawn_at_secs + STILL_SECS - now_secs;
+        if self.can_refine && wait_secs <= 0.0 {
+            self.can_refine = self.scene.refine(&self.frame);
+        }
+        self.can_refine.then_some(wait_secs.max(0.0))
+    }
+
+    fn draw_view(&mut self, editor: &Editor, size: [u32; 2]) {
         let (library, state) = (editor.library(), editor.state());
         let source = source_on_stage(library, state).map(|source| source.model);
         let key = library.active().map(|model| (model.id, source.map(|source| source.id)));
@@ -48,6 +73,14 @@ impl Viewport {
         self.scene.draw(&self.frame, size);
         self.drawn_size = Some(size);
         self.needs_redraw = false;
+        self.can_refine = self.scene.can_refine();
+    }
+
+    /// Adds all the samples that the image on screen lacks.
+    pub fn refine(&mut self) {
+        while self.can_refine {
+            self.can_refine = self.scene.refine(&self.frame);
+        }
     }
 
     /// Returns the size of an image that was asked for in this size: smaller with the same aspect ratio if the device cannot

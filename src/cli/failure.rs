@@ -8,7 +8,7 @@ use crate::files::{OpenError, SaveError, SortError};
 use crate::formats::{LoadError, WriteError};
 use crate::library::BorrowError;
 use crate::retarget::{MapError, RetargetError};
-use crate::state::UnknownClip;
+use crate::state::UnknownName;
 
 /// The result of a command or a part of one.
 pub(super) type Outcome<T = ()> = Result<T, Failure>;
@@ -87,10 +87,10 @@ impl Failure {
     }
 }
 
-impl From<UnknownClip> for Failure {
-    fn from(unknown: UnknownClip) -> Self {
+impl From<UnknownName> for Failure {
+    fn from(unknown: UnknownName) -> Self {
         let found = format!("“{}”", unknown.name);
-        Self::parts(None, None, Some(UnknownClip::EXPECTED), Some(&found)).saying(unknown)
+        Self::parts(None, None, Some(unknown.expected()), Some(&found)).saying(unknown)
     }
 }
 

@@ -40,6 +40,9 @@ fn text(opened: &Opened, document: &Value) -> String {
     line("triangles", number("triangles"));
     line("morphs", number("morph_targets"));
     line("cameras", number("cameras"));
+    if !asset.variants.is_empty() {
+        line("variants", asset.variants.join(", "));
+    }
     let avatar = &asset.avatar;
     for (key, value) in &avatar.meta {
         line("avatar", format!("{key}: {value}"));

@@ -276,6 +276,9 @@ struct RenderArguments {
     /// Angles in degrees and distance in metres; the camera looks at the centre of the model.
     #[arg(long, value_name = "YAW,PITCH,DISTANCE", allow_hyphen_values = true, value_parser = read_camera)]
     camera: Option<[f32; 3]>,
+    /// The material variant to show, by name [default: the file's own materials].
+    #[arg(long, value_name = "NAME")]
+    variant: Option<String>,
     /// What lights the scene: studio, white, soft, hard, outdoor, or an .hdr image.
     #[arg(long, value_name = "NAME|FILE.hdr")]
     environment: Option<String>,

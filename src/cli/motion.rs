@@ -12,7 +12,7 @@ use crate::editor::{Contents, Editor, Event, OpenedMap, OpenedModel};
 use crate::files::{Disk, Held, Opened, Role, member_of};
 use crate::library::Motion;
 use crate::retarget::{FoundRest, RestOrigin};
-use crate::state::{ClipChoice, Command, Sources, ViewerState, from_link, unknown_clip};
+use crate::state::{ClipChoice, Command, Sources, ViewerState, from_link, unknown_clip, unknown_variant};
 
 /// A motion to retarget to the model, and its joint map.
 #[derive(Debug, Default, Args)]
@@ -150,6 +150,9 @@ pub(super) fn apply_link(
     let unknown = editor.library().active().and_then(|model| unknown_clip(model, editor.state()));
     if let Some(unknown) = unknown.filter(|_| !has_clip && arguments.motion.is_none()) {
         warn(&format!("--view: clip: {unknown}; the rest pose is used"));
+    }
+    if let Some(unknown) = editor.library().active().and_then(|model| unknown_variant(model, editor.state())) {
+        warn(&format!("--view: variant: {unknown}; the file's own materials are used"));
     }
     Ok(())
 }

@@ -12,7 +12,8 @@ use crate::files::{Disk, Role, encode_png};
 use crate::frame::{Frame, evaluate};
 use crate::render::{Renderer, RendererOptions, headless_device, read_pixels};
 use crate::state::{
-    CameraChoice, Command, EnvironmentChoice, OrbitCamera, from_object, resolve_camera, source_on_stage,
+    CameraChoice, Command, EnvironmentChoice, NameKind, OrbitCamera, UnknownName, from_object, resolve_camera,
+    source_on_stage,
 };
 
 /// File extensions for the image.
@@ -45,6 +46,16 @@ pub(super) fn run(arguments: &RenderArguments, disk: &Disk) -> Outcome {
     write_output(&arguments.out, &png, EXTENSIONS, disk)
 }
 
+fn show_variant(editor: &mut Editor, name: &str) -> Outcome {
+    editor.apply(Command::SetVariant(Some(name.to_owned())));
+    let Some(model) = editor.library().active() else { return Ok(()) };
+    if editor.state().edits.variant.as_deref() == Some(name) {
+        return Ok(());
+    }
+    let (name, names) = (name.to_owned(), model.asset.variants.clone());
+    Err(Failure::from(UnknownName { kind: NameKind::Variant, name, names }).in_file(&model.source))
+}
+
 /// Lights the scene with what the link's key `light` would name, or with a file.
 fn light_with(editor: &mut Editor, name: &str, disk: &Disk) -> Outcome {
     let (state, errors) = from_object(editor.state(), &json!({ "light": name }));
@@ -71,6 +82,9 @@ fn open_requested_view(arguments: &RenderArguments, disk: &Disk) -> Outcome<Edit
     editor.set_aspect(aspect);
     if let Some(link) = &arguments.view {
         apply_link(&mut editor, link, &arguments.motion, arguments.moment.clip.is_some(), disk)?;
+    }
+    if let Some(name) = &arguments.variant {
+        show_variant(&mut editor, name)?;
     }
     if let Some(name) = &arguments.environment {
         light_with(&mut editor, name, disk)?;

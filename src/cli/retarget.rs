@@ -16,7 +16,7 @@ use crate::retarget::{
     ClipRef, Figures, JointMap, MapError, ResolvedMap, Retargeted, Retargeting, Unmapped, bake_layers, baking,
     layer_clips,
 };
-use crate::state::UnknownClip;
+use crate::state::{NameKind, UnknownName};
 
 pub(super) fn run(arguments: &RetargetArguments, disk: &Disk) -> Outcome {
     let opened = open(std::slice::from_ref(&arguments.model), disk)?;
@@ -131,8 +131,9 @@ fn choose_clip(motion: &Motion, requested: Option<&str>) -> Outcome<usize> {
     }
     let Some(requested) = requested else { return Ok(0) };
     find_clip(clips.iter(), ClipQuery::NameOrIndex(requested)).ok_or_else(|| {
-        let clips = clips.iter().map(|clip| clip.name().to_owned()).collect();
-        Failure::from(UnknownClip { name: requested.to_owned(), clips }).in_file(&motion.source)
+        let names = clips.iter().map(|clip| clip.name().to_owned()).collect();
+        let unknown = UnknownName { kind: NameKind::Clip, name: requested.to_owned(), names };
+        Failure::from(unknown).in_file(&motion.source)
     })
 }
 

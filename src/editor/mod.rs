@@ -25,6 +25,7 @@ use serde_json::Value;
 use crate::library::{Environment, Library, ModelId, Motion};
 use crate::state::{
     Command, DEFAULT_ASPECT, EnvironmentChoice, History, OrbitCamera, ViewerState, from_object, unknown_clip,
+    unknown_variant,
 };
 use motions::ClipIdentity;
 use open::Shelved;
@@ -155,7 +156,7 @@ impl Editor {
             self.notify_rematch(motion, &before);
         }
         if is_view {
-            self.notify_unknown_clip();
+            self.notify_unknown_names();
         }
     }
 
@@ -212,12 +213,17 @@ impl Editor {
         new.model == now.model && new.motion == now.motion
     }
 
-    /// A clip that the view names and the model lacks is not an error: the rest is shown.
-    pub(super) fn notify_unknown_clip(&mut self) {
+    /// A clip or variant that the view names and the model lacks is not an error: the rest is shown.
+    pub(super) fn notify_unknown_names(&mut self) {
         let model = self.library.active().filter(|model| !model.is_placeholder());
-        let unknown = model.and_then(|model| unknown_clip(model, &self.state));
-        if let Some(unknown) = unknown {
+        let Some(model) = model else { return };
+        let clip = unknown_clip(model, &self.state);
+        let variant = unknown_variant(model, &self.state);
+        if let Some(unknown) = clip {
             self.notify(format!("clip: {unknown}; the rest pose is used."));
+        }
+        if let Some(unknown) = variant {
+            self.notify(format!("variant: {unknown}; the file's own materials are used."));
         }
     }
 

@@ -317,7 +317,7 @@ impl Editor {
         let problems = self.retarget();
         self.report(problems);
         if is_link {
-            self.notify_unknown_clip();
+            self.notify_unknown_names();
         }
     }
 

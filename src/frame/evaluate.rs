@@ -9,8 +9,8 @@ use crate::library::{Library, Model, ModelId};
 use crate::mesh::{Bounds, Material, SkinningMode, palette_entry, write_palette};
 use crate::state::{
     COMPARED_SKINNING, Comparison, EnvironmentChoice, LightSetup, LookTarget, PoseSampler, SourceOnStage, ViewerState,
-    active_clip, camera_eye, clip_secs, compared_rests, comparison, panes, resolved_bounds, source_on_stage,
-    world_from_model,
+    active_clip, active_variant, camera_eye, clip_secs, compared_rests, comparison, panes, resolved_bounds,
+    source_on_stage, world_from_model,
 };
 
 /// Buffers and lookups reused between frames.
@@ -119,6 +119,7 @@ fn write_characters(
     for (pane, character) in characters.iter_mut().take(count).enumerate() {
         character.model = model.id;
         character.pane = comparison.is_some().then_some(pane as u32);
+        character.variant = active_variant(model, state);
         character.skinning = match comparison {
             Some(Comparison::Skinning) => COMPARED_SKINNING[pane],
             _ => state.display.skinning,
@@ -156,6 +157,7 @@ fn write_source(source: &SourceOnStage, time_secs: f32, scratch: &mut Scratch, c
     character.model = source.model.id;
     character.skinning = SkinningMode::Linear;
     character.pane = None;
+    character.variant = None;
     character.morph_weights.clone_from(&scratch.source_pose.morph_weights);
     let pose = &scratch.source_pose;
     model_from_joint(skeleton, pose, source.world_from_source, &mut character.world_from_joint);
@@ -200,25 +202,27 @@ fn write_draws(model: &Model, chosen: Option<JointIndex>, scene: &SceneJoints, c
     let asset = &model.asset;
     character.palette.clear();
     character.draws.clear();
+    let mut last_joint = None;
     for (index, instance) in asset.instances.iter().enumerate() {
         if !scene.in_scene[instance.joint.get()] {
             continue;
         }
-        let world_from_node = character.world_from_joint[instance.joint.get()];
+        let world_from_mesh = character.world_from_joint[instance.joint.get()] * instance.joint_from_mesh;
         let skin = instance.skin.map(|skin| &asset.skins[skin]);
         let start = character.palette.len() as u32;
         match skin {
             Some(skin) => write_palette(skin, &character.world_from_joint, character.skinning, &mut character.palette),
-            None => character.palette.push(palette_entry(&world_from_node, character.skinning)),
+            None => character.palette.push(palette_entry(&world_from_mesh, character.skinning)),
         }
         let morphs = asset.skeleton.morph_range(instance.joint);
         character.draws.push(Draw {
             instance: index,
             mesh: instance.mesh,
+            is_copy: last_joint.replace(instance.joint) == Some(instance.joint),
             visible: scene.visible[instance.joint.get()],
             palette: start..character.palette.len() as u32,
             morph_weights: morphs.start as u32..morphs.end as u32,
-            mirrored: skin.is_none() && world_from_node.matrix3.determinant() < 0.0,
+            mirrored: skin.is_none() && world_from_mesh.matrix3.determinant() < 0.0,
             heat_joint: chosen.map(|chosen| heat_joint(model, instance, chosen)),
             center: model.instance_center(index, &character.world_from_joint),
         });

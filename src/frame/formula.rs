@@ -87,7 +87,7 @@ pub fn vertex_formula(model: &Model, character: &Character, choice: VertexChoice
                 }
             }
         }
-        None => add(instance.joint, 1.0, &Affine3A::IDENTITY),
+        None => add(instance.joint, 1.0, &instance.joint_from_mesh),
     }
     out.sum = out.terms.iter().map(|term| term.share).sum();
     true

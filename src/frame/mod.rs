@@ -141,6 +141,8 @@ pub struct Character {
     pub skinning: SkinningMode,
     /// Index of its pane, row by row; none for all panes.
     pub pane: Option<u32>,
+    /// Index of the material variant in [`crate::asset::AssetParts::variants`]; none for the file's own materials.
+    pub variant: Option<usize>,
     /// One per joint of the model.
     pub world_from_joint: Vec<Affine3A>,
     /// World-space palettes of all draws, concatenated.
@@ -172,6 +174,8 @@ pub struct Draw {
     pub instance: usize,
     /// Index into [`crate::asset::AssetParts::meshes`].
     pub mesh: usize,
+    /// The same mesh at the same node as the draw before it: a copy (EXT_mesh_gpu_instancing).
+    pub is_copy: bool,
     /// False if the file or the clip hides the node or an ancestor.
     pub visible: bool,
     /// Range in [`Character::palette`].

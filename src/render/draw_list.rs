@@ -7,7 +7,7 @@ use super::shaders::SurfaceVariant;
 use super::uniforms::DrawUniform;
 use crate::frame::{Character, Draw, Frame};
 use crate::mesh::Topology;
-use crate::state::ToneMap;
+use crate::state::{Background, ToneMap};
 
 /// Stride of the draw uniforms: the alignment WebGPU and WebGL2 require of dynamic offsets.
 const ALIGNMENT: usize = 256;
@@ -22,26 +22,35 @@ pub(super) struct Item {
     model: usize,
     mesh: usize,
     primitive: usize,
+    variant: Option<usize>,
     pub pipeline: MeshPipeline,
     /// Byte offset of the draw's uniform in the dynamic buffer.
     pub offset: u32,
+    /// How many copies to draw; each has a palette entry.
+    pub copies: u32,
     /// Draws the edges instead of the triangles.
     pub edges: bool,
+    /// Draws no colour.
+    pub depth_only: bool,
     /// View depth, for sorting.
     distance: f32,
 }
 
 impl Item {
     pub fn primitive<'a>(&self, models: &'a [GpuModel]) -> Option<&'a GpuPrimitive> {
-        models.get(self.model)?.meshes.get(self.mesh)?.get(self.primitive)?.as_ref()
+        let primitive = models.get(self.model)?.meshes.get(self.mesh)?.get(self.primitive)?.as_ref()?;
+        // Edges have no material.
+        Some(if self.edges { primitive } else { primitive.in_variant(self.variant) })
     }
 }
 
-/// What the primitives of one mesh instance have in common.
+/// What the primitives of one mesh instance, or of several copies of one, have in common.
 struct Instance<'a> {
     frame: &'a Frame,
     character: &'a Character,
     draw: &'a Draw,
+    /// The draw and its copies that follow.
+    copies: u32,
     /// Index into the renderer's models.
     model: usize,
     /// First entry in the palette texture.
@@ -50,6 +59,9 @@ struct Instance<'a> {
     morph_weights: (u32, u32),
     /// Features that depend on the frame's lights.
     lighting: Features,
+    multisampled: bool,
+    /// A shadow map is drawn.
+    shadow: bool,
     distance: f32,
 }
 
@@ -88,6 +100,10 @@ impl Instance<'_> {
             mirrored: self.draw.mirrored,
             // The other kinds of shading have no use for it.
             tone_map: if shading == Shading::Lit { self.frame.look.tone_map } else { ToneMap::default() },
+            // In front of nothing, the alpha of the picture would be wrong.
+            coverage: self.multisampled
+                && features.has(Features::MASK)
+                && self.frame.look.background != Background::Transparent,
         }
     }
 }
@@ -98,7 +114,14 @@ fn shadow_key(key: MeshKey) -> MeshKey {
     let alpha_sources = Features::BASE_COLOR_MAP.with(Features::VERTEX_COLORS, true);
     let features =
         if has_holes { key.features.only(alpha_sources).with(Features::MASK, true) } else { Features::default() };
-    MeshKey { shading: Shading::Shadow, features, cull: None, mirrored: false, tone_map: ToneMap::default(), ..key }
+    let tone_map = ToneMap::default();
+    MeshKey { shading: Shading::Shadow, features, cull: None, mirrored: false, tone_map, coverage: false, ..key }
+}
+
+/// The key that draws the depth of a blended surface's opaque parts.
+fn depth_key(key: MeshKey) -> MeshKey {
+    let features = key.features.only(Features::BASE_COLOR_MAP.with(Features::VERTEX_COLORS, true));
+    MeshKey { shading: Shading::Depth, features, tone_map: ToneMap::default(), ..key }
 }
 
 /// The key that draws the surface's edges.
@@ -110,8 +133,18 @@ fn wireframe_key(key: MeshKey) -> MeshKey {
         cull: None,
         mirrored: false,
         tone_map: ToneMap::default(),
+        coverage: false,
         ..key
     }
+}
+
+/// What a primitive draws besides colours.
+#[derive(Clone, Copy)]
+struct Depths {
+    /// It casts a shadow.
+    shadow: bool,
+    /// It is blended and hides what is behind it in places.
+    surface: bool,
 }
 
 /// Draw calls of a frame, reused between frames.
@@ -172,10 +205,10 @@ impl DrawList {
     }
 
     /// Fills the lists and the palette. `shadow`: a shadow map is drawn.
-    pub fn collect(
+    pub fn collect<'a>(
         &mut self,
         device: &wgpu::Device,
-        frame: &Frame,
+        frame: &'a Frame,
         models: &mut [GpuModel],
         pipelines: &mut Pipelines,
         palette: &mut PaletteTexture,
@@ -196,31 +229,32 @@ impl DrawList {
         }
         let lighting =
             Features::default().with(Features::SHADOW, shadow).with(Features::FILE_LIGHTS, !frame.lights.is_empty());
+        let multisampled = pipelines.is_multisampled();
         let mut next_palette = 0;
         for character in &frame.characters {
             let first_palette = next_palette;
             next_palette += character.palette.len() as u32;
             let Some(model) = models.iter().position(|model| model.id == character.model) else { continue };
-            for draw in character.draws.iter().filter(|draw| draw.visible) {
+            for copies in character.draws.chunk_by(|draw, next| next.is_copy && next.mirrored == draw.mirrored) {
+                let Some(draw) = copies.first().filter(|draw| draw.visible) else { continue };
                 if frame.look.wireframe {
                     models[model].prepare_edges(device, draw.mesh);
                 }
-                let instance = Instance {
+                let morph_weights = palette.push_morph_weights(character.morph_weights_of(draw));
+                let instance = |draws: &'a [Draw]| Instance {
                     frame,
                     character,
-                    draw,
+                    draw: &draws[0],
+                    copies: draws.len() as u32,
                     model,
-                    palette: first_palette + draw.palette.start,
-                    morph_weights: palette.push_morph_weights(character.morph_weights_of(draw)),
+                    palette: first_palette + draws[0].palette.start,
+                    morph_weights,
                     lighting,
-                    distance: -frame.view.view_from_world.transform_point3(draw.center).z,
+                    multisampled,
+                    shadow,
+                    distance: -frame.view.view_from_world.transform_point3(draws[0].center).z,
                 };
-                let model = &models[model];
-                let primitives = model.meshes.get(draw.mesh).into_iter().flatten().enumerate();
-                for (index, primitive) in primitives.filter_map(|(index, known)| Some((index, known.as_ref()?))) {
-                    let shadow = shadow && model.casts_shadow(primitive);
-                    self.add(device, pipelines, &instance, index, primitive, shadow);
-                }
+                self.add_mesh(device, pipelines, &models[model], copies, instance);
             }
         }
         self.solid.sort_unstable_by(|a, b| a.distance.total_cmp(&b.distance).then(a.offset.cmp(&b.offset)));
@@ -229,7 +263,35 @@ impl DrawList {
         self.blended.sort_by(|a, b| a.edges.cmp(&b.edges).then(b.distance.total_cmp(&a.distance)));
     }
 
-    /// Adds the items of one primitive. `shadow`: it casts one.
+    /// Adds the items of a mesh and its copies. `instance` makes one of several of them.
+    fn add_mesh<'a>(
+        &mut self,
+        device: &wgpu::Device,
+        pipelines: &mut Pipelines,
+        model: &GpuModel,
+        copies: &'a [Draw],
+        instance: impl Fn(&'a [Draw]) -> Instance<'a>,
+    ) {
+        let Some(primitives) = copies.first().and_then(|draw| model.meshes.get(draw.mesh)) else { return };
+        for (index, primitive) in primitives.iter().enumerate() {
+            let Some(primitive) = primitive else { continue };
+            let whole = instance(copies);
+            let primitive = primitive.in_variant(whole.character.variant);
+            let depths = Depths {
+                shadow: whole.shadow && model.casts_shadow(primitive),
+                surface: primitive.features.has(Features::BLEND) && model.has_opaque_parts(primitive),
+            };
+            if primitive.can_repeat() {
+                self.add(device, pipelines, &whole, index, primitive, depths);
+                continue;
+            }
+            for draw in copies.chunks(1) {
+                self.add(device, pipelines, &instance(draw), index, primitive, depths);
+            }
+        }
+    }
+
+    /// Adds the items of one primitive.
     fn add(
         &mut self,
         device: &wgpu::Device,
@@ -237,7 +299,7 @@ impl DrawList {
         instance: &Instance<'_>,
         index: usize,
         primitive: &GpuPrimitive,
-        shadow: bool,
+        depths: Depths,
     ) {
         let (look, pane) = (&instance.frame.look, instance.character.pane);
         let is_surface = primitive.geometry.topology == Topology::Triangles;
@@ -248,12 +310,19 @@ impl DrawList {
             model: instance.model,
             mesh: instance.draw.mesh,
             primitive: index,
+            variant: instance.character.variant,
             pipeline: pipelines.mesh(device, key),
             offset,
+            copies: instance.copies,
             edges,
+            depth_only: key.shading == Shading::Depth,
             distance: instance.distance,
         };
         if look.mesh {
+            // Of a blended surface, only the nearest of its opaque layers shows, whatever the order of its triangles.
+            if depths.surface {
+                self.blended.push(item(depth_key(key), false));
+            }
             let is_transmissive = key.shading == Shading::Lit && key.surface.has(SurfaceVariant::TRANSMISSION);
             self.shows_behind |= is_transmissive;
             if is_transmissive && !key.features.has(Features::BLEND) {
@@ -269,7 +338,7 @@ impl DrawList {
                 self.blended.push(item(key, false));
             }
             // All panes share one shadow map.
-            if shadow && pane.is_none_or(|pane| pane == 0) {
+            if depths.shadow && pane.is_none_or(|pane| pane == 0) {
                 self.shadow.push(item(shadow_key(key), false));
             }
         }

@@ -15,7 +15,7 @@ const VERTEX_TEXTURE_WIDTH: u32 = 2048;
 /// Where the vertex stage reads influences from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum InfluenceSource {
-    /// Every vertex uses the draw's first palette entry.
+    /// Every vertex uses the palette entry of its copy: the draw's first one, unless the mesh is copied.
     None,
     /// Four per vertex, as vertex attributes.
     Four,
@@ -100,7 +100,8 @@ pub fn vertex_buffers(influences: InfluenceSource) -> Vec<Option<wgpu::VertexBuf
     buffers
 }
 
-/// A primitive on the GPU.
+/// A primitive on the GPU. Clones share its buffers.
+#[derive(Clone)]
 pub struct GpuGeometry {
     /// Whether the indices form points, lines or triangles.
     pub topology: Topology,

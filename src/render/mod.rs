@@ -2,7 +2,7 @@
 //!
 //! All back ends share one path within WebGL2's limits: palettes and morph targets are textures read with
 //! `textureLoad`. A picture takes a shadow pass and a single scene pass (two if there is glass), whose fragment stages write
-//! display-ready colours.
+//! display-ready colours; without multisampling, further scene passes refine it.
 
 mod behind;
 mod blit;
@@ -18,6 +18,7 @@ mod model;
 mod overlay;
 pub mod palette;
 mod pipelines;
+mod refine;
 mod renderer;
 pub mod shaders;
 mod shadow;

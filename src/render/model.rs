@@ -6,7 +6,7 @@ use std::sync::Arc;
 use wgpu::util::DeviceExt;
 
 use super::UploadError;
-use super::geometry::{GpuGeometry, edges};
+use super::geometry::{GpuGeometry, InfluenceSource, edges};
 use super::lobes::{self, write_uniform};
 use super::pipelines::{Features, Shading, primitive_layout};
 use super::shaders::SurfaceVariant;
@@ -20,6 +20,9 @@ use crate::mesh::{AlphaMode, Geometry, Lobes, Material, Sampler, TextureRef, Top
 
 /// The maps of a material, by slot.
 type Maps = [Option<(wgpu::TextureView, wgpu::Sampler)>; TextureSlot::ALL.len()];
+
+/// Alpha from which a blended surface counts as opaque; must match surface.wgsl.
+const OPAQUE_ALPHA: f32 = 0.9;
 
 pub(super) struct GpuModel {
     pub id: ModelId,
@@ -43,6 +46,21 @@ pub(super) struct GpuPrimitive {
     material: Option<usize>,
     /// Index buffer of the edges and its length; built when the wireframe is first shown.
     pub edges: Option<(wgpu::Buffer, u32)>,
+    /// The same geometry with the materials of variants, by the variant's index.
+    variants: Vec<(usize, GpuPrimitive)>,
+}
+
+impl GpuPrimitive {
+    /// Whether copies can share a draw call: blended ones have to be sorted, and influences leave no palette entry per copy.
+    pub fn can_repeat(&self) -> bool {
+        !self.features.has(Features::BLEND) && self.geometry.influences == InfluenceSource::None
+    }
+
+    /// Returns the primitive as a variant shows it.
+    pub fn in_variant(&self, variant: Option<usize>) -> &Self {
+        let found = self.variants.iter().find(|&&(index, _)| Some(index) == variant);
+        found.map_or(self, |(_, primitive)| primitive)
+    }
 }
 
 /// Uploads models. Holds the mipmap pipelines and placeholders for missing maps and vertex data.
@@ -90,7 +108,7 @@ impl ModelUploader {
                     false => None,
                     true => {
                         let gpu = GpuGeometry::new(device, queue, geometry, smooth, mesh_index, primitive_index)?;
-                        Some(materials.primitive(geometry, gpu))
+                        Some(materials.primitive_and_variants(geometry, gpu))
                     }
                 });
             }
@@ -122,13 +140,24 @@ impl GpuModel {
 
     /// Blended and transmissive surfaces cast a shadow only if they are more than half opaque.
     pub fn casts_shadow(&self, primitive: &GpuPrimitive) -> bool {
-        let material = primitive.material.and_then(|index| self.materials.get(&index));
-        let is_faint = |uniform: &MaterialUniform| {
-            (primitive.features.has(Features::BLEND) && uniform.base_color[3] <= 0.5)
-                || (primitive.surface.has(SurfaceVariant::TRANSMISSION) && uniform.transmission >= 0.5)
-        };
-        primitive.geometry.topology == Topology::Triangles
-            && !material.is_some_and(|uniform| is_faint(uniform.written()))
+        let is_faint = primitive.features.has(Features::BLEND) && self.alpha(primitive) <= 0.5;
+        let transmission = self.uniform(primitive).map_or(0.0, |uniform| uniform.transmission);
+        let is_clear = primitive.surface.has(SurfaceVariant::TRANSMISSION) && transmission >= 0.5;
+        primitive.geometry.topology == Topology::Triangles && !is_faint && !is_clear
+    }
+
+    /// Whether a blended surface may have parts that hide what is behind them.
+    pub fn has_opaque_parts(&self, primitive: &GpuPrimitive) -> bool {
+        primitive.geometry.topology == Topology::Triangles && self.alpha(primitive) >= OPAQUE_ALPHA
+    }
+
+    /// The alpha of the material without its texture.
+    fn alpha(&self, primitive: &GpuPrimitive) -> f32 {
+        self.uniform(primitive).map_or(1.0, |uniform| uniform.base_color[3])
+    }
+
+    fn uniform(&self, primitive: &GpuPrimitive) -> Option<&MaterialUniform> {
+        primitive.material.and_then(|index| self.materials.get(&index)).map(UniformBuffer::written)
     }
 
     /// Builds the edge lists of a mesh on first use.
@@ -165,12 +194,21 @@ struct Materials<'a> {
 }
 
 impl Materials<'_> {
-    fn primitive(&mut self, geometry: &Geometry, gpu: GpuGeometry) -> GpuPrimitive {
+    fn primitive_and_variants(&mut self, geometry: &Geometry, gpu: GpuGeometry) -> GpuPrimitive {
+        let mut primitive = self.primitive(geometry, gpu.clone(), geometry.material);
+        for &(variant, material) in &geometry.variants {
+            let of_variant = self.primitive(geometry, gpu.clone(), Some(material));
+            primitive.variants.push((variant, of_variant));
+        }
+        primitive
+    }
+
+    fn primitive(&mut self, geometry: &Geometry, gpu: GpuGeometry, material: Option<usize>) -> GpuPrimitive {
         let default = Material::default();
         let asset = self.model.asset.clone();
-        let found = geometry.material.and_then(|index| asset.materials.get(index));
+        let found = material.and_then(|index| asset.materials.get(index));
+        let key = found.and(material);
         let material = found.unwrap_or(&default);
-        let key = found.and(geometry.material);
         if !self.created.contains_key(&key) {
             let created = self.create(material);
             self.created.insert(key, created);
@@ -200,6 +238,7 @@ impl Materials<'_> {
             double_sided: material.double_sided,
             material: key,
             edges: None,
+            variants: Vec::new(),
             geometry: gpu,
         }
     }

@@ -108,6 +108,8 @@ pub(super) enum Shading {
     Unlit,
     Heat,
     Wireframe,
+    /// Depth only: the opaque parts of a blended surface.
+    Depth,
     /// Depth only, into the shadow map.
     Shadow,
 }
@@ -173,6 +175,8 @@ pub(super) struct MeshKey {
     pub cull: Option<wgpu::Face>,
     pub mirrored: bool,
     pub tone_map: ToneMap,
+    /// Alpha to coverage: masks cut out single samples of a pixel.
+    pub coverage: bool,
 }
 
 /// Index of the pipeline for a [`MeshKey`].
@@ -208,6 +212,16 @@ pub(super) fn pipeline_layout(
 }
 
 const BLENDED: Option<wgpu::BlendState> = Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING);
+
+/// The alpha of a masked surface is its coverage; that of the picture stays the background's.
+const COVERED: wgpu::BlendState = wgpu::BlendState {
+    color: wgpu::BlendComponent::REPLACE,
+    alpha: wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::Zero,
+        dst_factor: wgpu::BlendFactor::One,
+        operation: wgpu::BlendOperation::Add,
+    },
+};
 
 /// A pipeline that draws into the scene with one of the simple shaders.
 pub(super) struct ScenePipeline<'a> {
@@ -293,7 +307,7 @@ impl Pipelines {
         let frame_layout = pipeline_layout(device, "frame only", &[frame]);
         let ground_module = shaders::GROUND_PLANE.module(device);
         let ground_layout = pipeline_layout(device, "ground", &[frame, light]);
-        let taps = [("SHADOW_TAPS", if samples > 1 { 12.0 } else { 4.0 })];
+        let taps = [("SHADOW_TAPS", if samples > 1 { 16.0 } else { 4.0 })];
         let ground = |label, vertex, fragment| {
             ScenePipeline {
                 constants: &taps,
@@ -380,6 +394,10 @@ impl Pipelines {
         pipeline
     }
 
+    pub fn is_multisampled(&self) -> bool {
+        self.samples > 1
+    }
+
     pub fn get(&self, pipeline: MeshPipeline) -> &wgpu::RenderPipeline {
         &self.meshes[pipeline.0]
     }
@@ -394,8 +412,15 @@ impl Pipelines {
         let fragment = fragment_entry_point(key);
         let color = [Some(wgpu::ColorTargetState {
             format: SCENE_FORMAT,
-            blend: if blended { BLENDED } else { None },
-            write_mask: wgpu::ColorWrites::ALL,
+            blend: match (blended, key.coverage) {
+                (true, _) => BLENDED,
+                (false, true) => Some(COVERED),
+                (false, false) => None,
+            },
+            write_mask: match key.shading {
+                Shading::Depth => wgpu::ColorWrites::empty(),
+                _ => wgpu::ColorWrites::ALL,
+            },
         })];
         let bias = wgpu::DepthBiasState { constant: 2, slope_scale: 2.0, clamp: 0.0 };
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -424,7 +449,11 @@ impl Pipelines {
                 stencil: Default::default(),
                 bias: if shadow && key.topology == Topology::Triangles { bias } else { Default::default() },
             }),
-            multisample: wgpu::MultisampleState { count: if shadow { 1 } else { self.samples }, ..Default::default() },
+            multisample: wgpu::MultisampleState {
+                count: if shadow { 1 } else { self.samples },
+                alpha_to_coverage_enabled: key.coverage,
+                ..Default::default()
+            },
             fragment: fragment.map(|entry_point| wgpu::FragmentState {
                 module,
                 entry_point: Some(entry_point),
@@ -448,6 +477,7 @@ fn mesh_constants(key: MeshKey) -> Vec<(&'static str, f64)> {
     };
     constants.push(("SKINNING", skinning));
     constants.push(tone_constant(key.tone_map));
+    constants.push(("COVERAGE", f64::from(u8::from(key.coverage))));
     constants.push(("DEPTH_OFFSET", if key.shading == Shading::Wireframe { 3e-5 } else { 0.0 }));
     constants
 }
@@ -468,6 +498,7 @@ fn fragment_entry_point(key: MeshKey) -> Option<&'static str> {
         Shading::Unlit => Some("unlit"),
         Shading::Heat => Some("heat"),
         Shading::Wireframe => Some("wireframe"),
+        Shading::Depth => Some("depth_mask"),
         Shading::Shadow => key.features.has(Features::MASK).then_some("shadow_mask"),
     }
 }

@@ -12,6 +12,7 @@ use super::model::{GpuModel, ModelUploader};
 use super::overlay::Overlay;
 use super::palette::PaletteTexture;
 use super::pipelines::{Layouts, Pipelines};
+use super::refine::{Average, SAMPLES};
 use super::targets::Targets;
 use super::uniform_buffer::UniformBuffer;
 use super::uniforms::FrameUniform;
@@ -22,7 +23,7 @@ use crate::state::Background;
 /// Settings that last as long as the renderer.
 #[derive(Debug, Clone, Copy)]
 pub struct RendererOptions {
-    /// Samples per pixel: 4, or 1 on software adapters.
+    /// Samples per pixel of a picture that isn't refined: 4, or 1 on software adapters.
     pub samples: u32,
 }
 
@@ -88,6 +89,11 @@ pub struct Renderer {
     frame_group: wgpu::BindGroup,
     shadow_group: wgpu::BindGroup,
     light: LightSources,
+    /// The uniform of the last picture, without the shift of a sample.
+    uniform: FrameUniform,
+    /// How many of [`SAMPLES`] the last picture has; all with multisampling.
+    samples: usize,
+    average: Option<Average>,
     /// Created for the first picture with transmissive surfaces.
     behind_maker: Option<BehindMaker>,
     stats: RenderStats,
@@ -136,6 +142,9 @@ impl Renderer {
             frame_buffer,
             shadow_buffer,
             layouts,
+            uniform: FrameUniform::default(),
+            samples: SAMPLES.len(),
+            average: None,
             behind_maker: None,
             stats: RenderStats::default(),
         }
@@ -178,6 +187,7 @@ impl Renderer {
         let panes = Panes::new(frame.panes, size);
         let (uniform, shadow_uniform) = frame_uniform(frame, ground.as_ref(), panes.size, &self.light.environment);
         self.frame_buffer.write(queue, uniform);
+        self.uniform = uniform;
         let shadow = shadow_uniform.is_some();
         if let Some(uniform) = shadow_uniform {
             self.shadow_buffer.write(queue, uniform);
@@ -206,14 +216,53 @@ impl Renderer {
         if shadow {
             self.draw_shadow(&mut encoder);
         }
-        self.draw_scene(&mut encoder, frame.look.background, ground.as_ref(), &panes);
+        self.draw_scene(&mut encoder, None, frame.look.background, ground.as_ref(), &panes);
         queue.submit([encoder.finish()]);
+        self.samples = if self.options.samples > 1 { SAMPLES.len() } else { 1 };
         &self.targets.output_view
+    }
+
+    /// Whether the last picture lacks samples.
+    pub fn can_refine(&self) -> bool {
+        self.samples < SAMPLES.len()
+    }
+
+    /// Adds a sample per pixel to the last picture, which must be that of this frame. Returns whether it lacks more; with
+    /// multisampling, it never does.
+    pub fn refine(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, frame: &Frame) -> bool {
+        let Some([right, down]) = SAMPLES.get(self.samples) else { return false };
+        let panes = Panes::new(frame.panes, self.targets.size());
+        let mut uniform = self.uniform;
+        let shift = [-2.0 * right / panes.size[0], 2.0 * down / panes.size[1]];
+        for column in &mut uniform.projection_from_world {
+            column[0] += shift[0] * column[3];
+            column[1] += shift[1] * column[3];
+        }
+        self.frame_buffer.write(queue, uniform);
+        let sample = self.targets.prepare_sample(device);
+        let stats = self.stats;
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("sample") });
+        let ground = GroundPlane::of(frame);
+        self.draw_scene(&mut encoder, Some(&sample), frame.look.background, ground.as_ref(), &panes);
+        self.stats = stats;
+        let average = self.average.get_or_insert_with(|| Average::new(device));
+        let group = average.bind(device, &sample);
+        self.samples += 1;
+        average.draw(&mut encoder, &group, &self.targets.output_view, 1.0 / self.samples as f64);
+        queue.submit([encoder.finish()]);
+        self.can_refine()
+    }
+
+    /// Like [`Self::draw`], with at least four samples per pixel on every device.
+    pub fn draw_refined(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, frame: &Frame, size: [u32; 2]) {
+        self.draw(device, queue, frame, size);
+        while self.refine(device, queue, frame) {}
     }
 
     /// Makes the next picture use a new texture, so that the caller can keep the last one.
     pub fn give_output_away(&mut self, device: &wgpu::Device) {
         self.targets = Targets::new(device, [1, 1], self.options.samples);
+        self.samples = SAMPLES.len();
     }
 
     /// The texture of the last picture.
@@ -243,10 +292,12 @@ impl Renderer {
         self.stats.draw_calls += stats.draw_calls;
     }
 
-    /// Everything in one pass, unless something shows what is behind it: then what is opaque comes first, to be copied.
+    /// Everything in one pass, unless something shows what is behind it: then what is opaque comes first, to be copied. A further
+    /// `sample` shows the copy that the first one made.
     fn draw_scene(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
+        sample: Option<&wgpu::TextureView>,
         background: Background,
         ground: Option<&GroundPlane>,
         panes: &Panes,
@@ -256,13 +307,15 @@ impl Renderer {
                 let [r, g, b] = color.map(|channel| f64::from(channel) / 255.0);
                 wgpu::Color { r, g, b, a: 1.0 }
             }
-            _ => wgpu::Color::TRANSPARENT,
+            Background::Transparent => wgpu::Color::TRANSPARENT,
+            // Drawn over; masked surfaces keep its alpha.
+            _ => wgpu::Color::BLACK,
         };
         let clear = (wgpu::LoadOp::Clear(clear), wgpu::LoadOp::Clear(1.0));
         let behind = self.behind_maker.as_ref().zip(self.targets.behind.as_ref());
-        let behind = behind.filter(|_| self.draws.shows_behind());
+        let behind = behind.filter(|_| self.draws.shows_behind() && sample.is_none());
         let mut stats = RenderStats::default();
-        let mut pass = self.scene_pass(encoder, clear, behind.is_some());
+        let mut pass = self.scene_pass(encoder, sample, clear, behind.is_some());
         for pane in 0..panes.count() {
             panes.choose(&mut pass, pane);
             stats += self.draw_opaque(&mut pass, background, ground, pane);
@@ -273,7 +326,7 @@ impl Renderer {
         drop(pass);
         if let Some((maker, behind)) = behind {
             maker.record(behind, encoder);
-            let mut pass = self.scene_pass(encoder, (wgpu::LoadOp::Load, wgpu::LoadOp::Load), false);
+            let mut pass = self.scene_pass(encoder, None, (wgpu::LoadOp::Load, wgpu::LoadOp::Load), false);
             for pane in 0..panes.count() {
                 panes.choose(&mut pass, pane);
                 stats += self.draw_transparent(&mut pass, pane);
@@ -282,16 +335,18 @@ impl Renderer {
         self.stats += stats;
     }
 
-    /// Begins a pass into the scene's targets. `continues`: another one follows.
+    /// Begins a pass into the scene's targets, or into that of a further sample. `continues`: another one follows.
     fn scene_pass<'a>(
         &self,
         encoder: &'a mut wgpu::CommandEncoder,
+        sample: Option<&wgpu::TextureView>,
         (color, depth): (wgpu::LoadOp<wgpu::Color>, wgpu::LoadOp<f32>),
         continues: bool,
     ) -> wgpu::RenderPass<'a> {
-        let (view, resolve_target) = match &self.targets.multisampled {
-            Some(samples) => (samples, Some(&self.targets.output_view)),
-            None => (&self.targets.output_view, None),
+        let (view, resolve_target) = match (sample, &self.targets.multisampled) {
+            (Some(sample), _) => (sample, None),
+            (None, Some(samples)) => (samples, Some(&self.targets.output_view)),
+            (None, None) => (&self.targets.output_view, None),
         };
         let store = |wanted| if wanted { wgpu::StoreOp::Store } else { wgpu::StoreOp::Discard };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -434,10 +489,10 @@ fn draw_items(
         pass.set_bind_group(3, &primitive.bind_group, &[]);
         primitive.geometry.bind(pass);
         pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
-        pass.draw_indexed(0..count, 0, 0..1);
+        pass.draw_indexed(0..count, 0, 0..item.copies);
         stats.draw_calls += 1;
-        if !item.edges && primitive.geometry.topology == crate::mesh::Topology::Triangles {
-            stats.triangles += count / 3;
+        if !item.edges && !item.depth_only && primitive.geometry.topology == crate::mesh::Topology::Triangles {
+            stats.triangles += item.copies * (count / 3);
         }
     }
     stats

@@ -11,6 +11,8 @@ pub(super) struct Targets {
     pub depth: wgpu::TextureView,
     pub output: wgpu::Texture,
     pub output_view: wgpu::TextureView,
+    /// Where the samples of a refined picture are drawn; created for the first one.
+    pub sample: Option<wgpu::TextureView>,
     /// Created for the first picture with transmissive surfaces.
     pub behind: Option<Behind>,
 }
@@ -38,8 +40,28 @@ impl Targets {
             depth: view(texture("depth", DEPTH_FORMAT, samples, attachment)),
             output_view: output.create_view(&Default::default()),
             output,
+            sample: None,
             behind: None,
         }
+    }
+
+    /// Creates the texture for samples unless it exists.
+    pub fn prepare_sample(&mut self, device: &wgpu::Device) -> wgpu::TextureView {
+        let size = self.output.size();
+        let create = || {
+            let texture = device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("sample"),
+                size,
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: SCENE_FORMAT,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+                view_formats: &[],
+            });
+            texture.create_view(&Default::default())
+        };
+        self.sample.get_or_insert_with(create).clone()
     }
 
     pub fn size(&self) -> [u32; 2] {

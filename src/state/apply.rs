@@ -57,6 +57,7 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::SetFov(degrees) => set_f32(&mut state.camera_options.fov_degrees, degrees, 5.0, 120.0),
         Command::SetFollow(follow) => state.camera_options.follow = follow,
         Command::SetTurntable(speed) => set_f32(&mut state.camera_options.turntable, speed, -360.0, 360.0),
+        Command::SetVariant(variant) => set_variant(state, model, variant),
         Command::SetUp(up) => state.edits.up = up,
         Command::SetExposure(stops) => set_f32(&mut state.display.exposure, stops, -10.0, 10.0),
         Command::SetToneMap(tone_map) => state.display.tone_map = tone_map,
@@ -130,6 +131,13 @@ fn set_scene(state: &mut ViewerState, model: Option<&Model>, scene: Option<usize
     let exists = |scene: usize| model.is_none_or(|model| scene < model.asset.scenes.len());
     if scene.is_none_or(exists) {
         state.sources.scene = scene;
+    }
+}
+
+fn set_variant(state: &mut ViewerState, model: Option<&Model>, variant: Option<String>) {
+    let exists = |name: &String| model.is_none_or(|model| model.asset.variants.contains(name));
+    if variant.as_ref().is_none_or(exists) {
+        state.edits.variant = variant;
     }
 }
 

@@ -115,6 +115,8 @@ pub enum Command {
     SetFollow(bool),
     /// Degrees per second; 0 stops the turntable.
     SetTurntable(f32),
+    /// Shows a material variant by name; `None` shows the file's own materials.
+    SetVariant(Option<String>),
     /// Sets which axis of the file points up.
     SetUp(UpAxis),
     /// Sets the exposure in stops, −10 to 10.

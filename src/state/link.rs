@@ -202,6 +202,13 @@ const KEYS: &[Key] = &[
     key!("fov", camera_options.fov_degrees, finite, write_number, "degrees"),
     key!("follow", camera_options.follow, flag, write_flag, "0 or 1"),
     key!("turntable", camera_options.turntable, finite, write_number, "degrees per second"),
+    key!(
+        "variant",
+        edits.variant,
+        read_unless_empty(read_text),
+        write_some(String::clone),
+        "the name of a material variant"
+    ),
     word!("up", edits.up, UP_AXES, "x, y, z, -x, -y or -z"),
     key!("exposure", display.exposure, finite, write_number, "stops"),
     word!("tonemap", display.tone_map, TONE_MAPS, "neutral, aces, agx or none"),

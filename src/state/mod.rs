@@ -16,6 +16,8 @@ mod maps;
 mod names;
 mod playhead;
 mod stage;
+mod unknown;
+mod variant;
 mod view;
 
 pub use apply::apply;
@@ -38,10 +40,12 @@ pub use map_edit::{MapEdit, muted_properties};
 pub use maps::{MapProblem, MotionMap, NumberedMap, active_map, active_maps, reconciled_maps};
 pub use names::{title, written_skeleton};
 pub use playhead::{
-    PoseSampler, UnknownClip, active_clip, choice_of_clip, clip_secs, manual_degrees, manual_rotation, play_range,
-    unknown_clip, world_from_model,
+    PoseSampler, active_clip, choice_of_clip, clip_secs, manual_degrees, manual_rotation, play_range, unknown_clip,
+    world_from_model,
 };
 pub use stage::{SourceOnStage, source_on_stage};
+pub use unknown::{NameKind, UnknownName};
+pub use variant::{active_variant, unknown_variant};
 pub use view::{
     Background, CameraOptions, ClipChoice, Display, Edits, Fade, Inspect, Overridden, PageOptions, Playback, Playhead,
     RetargetEdits, Selection, Show, Sources, UpAxis, VertexChoice, ViewerState,

@@ -3,7 +3,7 @@
 use glam::{Affine3A, EulerRot, Quat, Vec3};
 
 use super::avatar::AvatarPose;
-use super::{ClipChoice, UpAxis, ViewerState};
+use super::{ClipChoice, NameKind, UnknownName, UpAxis, ViewerState};
 use crate::anim::{ClipQuery, Pose, PropertyValues, SampleCursor, TimeRange, clip_time, find_clip};
 use crate::library::Model;
 
@@ -12,58 +12,10 @@ pub fn active_clip(model: &Model, state: &ViewerState) -> Option<usize> {
     clip_of(model, &state.playhead.clip)
 }
 
-/// A clip that was asked for and doesn't exist.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct UnknownClip {
-    /// The name or index that was given.
-    pub name: String,
-    /// Names of the clips that there are.
-    pub clips: Vec<String>,
-}
-
-impl UnknownClip {
-    /// What should have been given.
-    pub const EXPECTED: &str = "the name or index of a clip";
-
-    /// A file may have hundreds of clips.
-    const MAX_NAMES: usize = 5;
-
-    /// Returns the clips whose names are most like the given one, all of them if there are few; in the order of the file if
-    /// an index was given.
-    fn nearest(&self) -> Vec<&str> {
-        let wanted = beginning(&self.name);
-        let similarity = |clip: &String| strsim::jaro_winkler(&wanted, &beginning(clip));
-        let mut clips: Vec<(f64, &str)> = self.clips.iter().map(|clip| (similarity(clip), clip.as_str())).collect();
-        if clips.len() > Self::MAX_NAMES && self.name.parse::<i64>().is_err() {
-            clips.sort_by(|a, b| b.0.total_cmp(&a.0));
-        }
-        clips.into_iter().map(|(_, clip)| clip).take(Self::MAX_NAMES).collect()
-    }
-}
-
-/// “expected the name or index of a clip, found “Fly”; its clips are Walk, Idle”.
-impl std::fmt::Display for UnknownClip {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "expected {}, found “{}”; ", Self::EXPECTED, self.name)?;
-        let names = self.nearest().join(", ");
-        match self.clips.len().saturating_sub(Self::MAX_NAMES) {
-            _ if names.is_empty() => f.write_str("there are no clips"),
-            0 => write!(f, "its clips are {names}"),
-            more => write!(f, "its clips are {names} and {more} more"),
-        }
-    }
-}
-
-/// The beginning of a name, in lower case, to compare with others. Names in links and files may be of any length.
-fn beginning(name: &str) -> String {
-    const MAX_CHARS: usize = 64;
-    name.chars().flat_map(char::to_lowercase).take(MAX_CHARS).collect()
-}
-
 /// Returns the clip that the state names and the model lacks.
-pub fn unknown_clip(model: &Model, state: &ViewerState) -> Option<UnknownClip> {
+pub fn unknown_clip(model: &Model, state: &ViewerState) -> Option<UnknownName> {
     let ClipChoice::Named(name) = &state.playhead.clip else { return None };
-    let unknown = || UnknownClip { name: name.clone(), clips: model.clip_titles().to_vec() };
+    let unknown = || UnknownName { kind: NameKind::Clip, name: name.clone(), names: model.clip_titles().to_vec() };
     active_clip(model, state).is_none().then(unknown)
 }
 

@@ -158,6 +158,8 @@ pub struct Edits {
     /// Custom joint names, by index in the file; never empty. They replace the file's names on screen and in exported files,
     /// except where a glTF file is copied unchanged.
     pub names: BTreeMap<usize, String>,
+    /// Name of the material variant (KHR_materials_variants); `None` shows the file's own materials.
+    pub variant: Option<String>,
     /// Which axis of the file points up.
     pub up: UpAxis,
 }

@@ -354,6 +354,10 @@ pub const WORLD_MATRIX: &str = "T";
 pub const SKINNING_MATRIX: &str = "T · inv(B)";
 
 // Display tab
+/// Section with the material variants of the file.
+pub const VARIANTS: &str = "MATERIAL VARIANT";
+/// Row for the file's own materials.
+pub const NO_VARIANT: &str = "Default materials";
 /// Skinning method: each vertex follows its strongest joint.
 pub const RIGID: &str = "Rigid";
 /// Skinning method: dual quaternions, abbreviated to fit.

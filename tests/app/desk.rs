@@ -8,7 +8,7 @@ use eframe::App as _;
 use eframe::egui_wgpu::{RenderState, RendererOptions};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use gaitway::app::{App, Host, Inbox, Message, Video, native_options};
+use gaitway::app::{App, Host, Inbox, Message, ScriptCall, Video, native_options};
 use gaitway::files::{Role, read_paths};
 use gaitway::library::Library;
 use gaitway::state::{Command, ViewerState};
@@ -114,6 +114,22 @@ impl Desk {
     pub fn redo(&mut self) {
         self.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Y);
         self.run_frames();
+    }
+
+    /// Runs for most of a second, after which nothing may ask for another frame.
+    pub fn settle(&mut self) {
+        self.harness.run_steps(45);
+        let root = &self.harness.output().viewport_output[&egui::ViewportId::ROOT];
+        assert!(root.repaint_delay.as_secs() > 1, "{:?}", root.repaint_delay);
+    }
+
+    /// Returns what a script's screenshot shows.
+    pub fn screenshot(&mut self) -> Vec<u8> {
+        let png = Rc::new(RefCell::new(None));
+        let taken = png.clone();
+        let reply = Box::new(move |picture| *taken.borrow_mut() = Some(picture));
+        self.send(Message::Script(ScriptCall::Screenshot(reply)));
+        png.take().expect("answered").expect("the device works")
     }
 
     /// Runs a few frames: the panels are laid out before input takes effect.

@@ -55,3 +55,18 @@ fn following_starts_and_stops_without_a_jump() {
     assert!(orbit(&desk).target.distance(before - travel) < 1e-4);
     assert_eq!(travelled(desk.library(), desk.state()), Vec3::ZERO, "no travel yet");
 }
+
+/// On adapters without multisampling, the picture gets its samples one frame after the other; on all others at once.
+#[test]
+fn a_paused_picture_is_refined_and_then_left_alone() {
+    let Some(mut desk) = desk("sample:walker") else { return };
+    desk.settle();
+    let settled = desk.screenshot();
+    // A screenshot doesn't wait: it is refined at once.
+    desk.command(Command::SetExposure(1.0));
+    assert!(desk.screenshot() != settled);
+    desk.command(Command::SetExposure(0.0));
+    assert!(desk.screenshot() == settled, "the same view is the same picture");
+    desk.settle();
+    assert!(desk.screenshot() == settled, "it stays as it is");
+}

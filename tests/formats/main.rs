@@ -8,6 +8,7 @@ mod fuzz;
 mod hdr;
 mod humanoid;
 mod influences;
+mod instancing;
 mod invalid;
 mod lenient;
 mod limits;
@@ -20,6 +21,7 @@ mod pointer;
 mod rehearsal;
 mod sweep;
 mod tangents;
+mod variants;
 mod write;
 mod x;
 

@@ -3,13 +3,19 @@
 use std::process::{Command, Output};
 
 use gaitway::render::headless_device;
+use serde_json::json;
 
 use crate::adapter::or_skipped;
+use crate::build_gltf::Build;
 
 fn render(arguments: &[&str]) -> Output {
+    render_file("sample:walker", arguments)
+}
+
+fn render_file(file: &str, arguments: &[&str]) -> Output {
     // Without this variable, Mesa reports an error that is none.
     let mut command = Command::new(env!("CARGO_BIN_EXE_gaitway"));
-    let command = command.args(["render", "sample:walker", "--size", "8x8"]).args(arguments);
+    let command = command.args(["render", file, "--size", "8x8"]).args(arguments);
     command.env_remove("XDG_RUNTIME_DIR").output().expect("the program runs")
 }
 
@@ -53,4 +59,46 @@ fn a_picture_is_lit_by_what_the_option_names() {
     let refused = render(&["--out", "-", "--environment", file]);
     let said = String::from_utf8_lossy(&refused.stderr);
     assert!(refused.status.code() == Some(1) && said.contains("gaitway-white"), "{said}");
+}
+
+/// A triangle that is white, and red or blue in its variants.
+#[test]
+fn a_picture_shows_the_variant_that_the_option_or_the_link_names() {
+    if or_skipped(headless_device()).is_none() {
+        return;
+    }
+    let mut build = Build::triangle();
+    let material = |color: [f32; 4]| json!({ "pbrMetallicRoughness": { "baseColorFactor": color }, "extensions": { "KHR_materials_unlit": {} } });
+    let colors = [[1.0; 4], [1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]];
+    build.json["materials"] = colors.map(material).to_vec().into();
+    let variants = json!([{ "name": "Red" }, { "name": "Blue & more" }]);
+    build.json["extensions"] = json!({ "KHR_materials_variants": { "variants": variants } });
+    let mappings = json!([{ "material": 1, "variants": [0] }, { "material": 2, "variants": [1] }]);
+    let primitive = &mut build.json["meshes"][0]["primitives"][0];
+    primitive["material"] = json!(0);
+    primitive["extensions"] = json!({ "KHR_materials_variants": { "mappings": mappings } });
+    let path = std::env::temp_dir().join(format!("gaitway-variants-{}.glb", std::process::id()));
+    std::fs::write(&path, build.glb()).expect("a file is written");
+    let file = path.to_str().expect("Unicode");
+    let said = |output: &Output| String::from_utf8_lossy(&output.stderr).into_owned();
+    for (arguments, color) in [
+        (&[][..], [255, 255, 255, 255]),
+        (&["--variant", "Blue & more"], [0, 0, 255, 255]),
+        (&["--view", "v=1&variant=Red"], [255, 0, 0, 255]),
+        (&["--view", "v=1&variant=Red", "--variant", "Blue & more"], [0, 0, 255, 255]),
+        (&["--view", "v=1&variant=Green"], [255, 255, 255, 255]),
+    ] {
+        let near = ["--out", "-", "--camera", "0,0,0.5"];
+        let output = render_file(file, &[&near[..], arguments].concat());
+        assert!(output.status.success(), "{arguments:?}: {}", said(&output));
+        let unknown = said(&output).contains("--view: variant: expected the name of a material variant, found “Green”");
+        assert_eq!(unknown, arguments.contains(&"v=1&variant=Green"), "{}", said(&output));
+        let picture = image::load_from_memory(&output.stdout).expect("a PNG").into_rgba8();
+        assert_eq!(picture.get_pixel(3, 4).0, color, "{arguments:?}");
+    }
+    let refused = render_file(file, &["--out", "-", "--variant", "Green"]);
+    assert_eq!(refused.status.code(), Some(1));
+    let says = "expected the name of a material variant, found “Green”; its variants are Red, Blue & more";
+    assert!(said(&refused).contains(says) && said(&refused).contains("gaitway-variants"), "{}", said(&refused));
+    std::fs::remove_file(&path).expect("it was written");
 }

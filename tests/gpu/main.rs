@@ -21,8 +21,10 @@ mod maps;
 mod pictures;
 #[path = "../support/random.rs"]
 mod random;
+mod refine;
 mod scene;
 mod shaders;
 mod skinning;
 #[path = "../support/skinning_cases.rs"]
 mod skinning_cases;
+mod transparency;

@@ -11,7 +11,7 @@ use gaitway::state::{Background, ToneMap};
 use glam::camera::rh::view::look_at_mat4;
 use glam::{Affine3A, Vec2, Vec3, Vec4};
 
-use crate::device::{Gpu, gpu};
+use crate::device::{Gpu, gl, gpu};
 use crate::scene::{Picture, SIZE, Scene, near, square, unlit};
 
 fn linear(color: [u8; 3]) -> Vec4 {
@@ -383,4 +383,49 @@ fn an_empty_frame_and_an_unknown_model_draw_the_background() {
     renderer.retain(&[]);
     renderer.draw(device, queue, &scene.frame, [SIZE, SIZE]);
     assert_eq!(renderer.stats().triangles, 0);
+}
+
+#[test]
+fn a_variant_has_its_own_material() {
+    let Some(gpu) = gpu() else { return };
+    let glass = Material { alpha_mode: AlphaMode::Blend, ..unlit(Vec4::new(0.0, 1.0, 0.0, 0.5)) };
+    let geometry = Geometry { variants: vec![(1, 1), (2, 2)], ..square(0) };
+    let mut scene = Scene::new_with(vec![geometry], vec![unlit(Vec4::ONE), unlit(linear([255, 0, 0])), glass], 3);
+    for (variant, shown) in [
+        (None, [255, 255, 255, 255]),
+        (Some(0), [255, 255, 255, 255]),
+        (Some(1), [255, 0, 0, 255]),
+        (Some(2), [0, 255, 0, 128]),
+    ] {
+        scene.frame.characters[0].variant = variant;
+        near(scene.draw(&gpu).at(0.0, 0.0), shown, 2);
+    }
+    // Edges belong to all variants.
+    scene.frame.look.wireframe = true;
+    scene.frame.look.mesh = false;
+    assert!((40..120).contains(&scene.draw(&gpu).covered()));
+}
+
+#[test]
+fn copies_are_drawn_in_one_call_unless_they_have_to_be_sorted() {
+    let half = Affine3A::from_scale(Vec3::splat(0.5));
+    let gpus: Vec<Gpu> = [gpu(), gl()].into_iter().flatten().collect();
+    let modes = [(AlphaMode::Opaque, 2), (AlphaMode::Blend, 6)];
+    for (Gpu { device, queue }, (alpha_mode, calls)) in gpus.iter().flat_map(|gpu| modes.map(|mode| (gpu, mode))) {
+        let material = Material { alpha_mode, ..unlit(Vec4::ONE) };
+        let mut scene = Scene::new(vec![square(0)], vec![material]);
+        scene.frame.characters[0].palette = vec![palette_entry(&half, SkinningMode::Linear)];
+        scene.add_copy(Affine3A::from_translation(Vec3::new(0.5, 0.5, 0.0)) * half);
+        // Its front faces are the mesh's back faces, which takes a call of its own.
+        let mirrored = Affine3A::from_scale(Vec3::new(-1.0, 1.0, 1.0)) * half;
+        scene.add_copy(Affine3A::from_translation(Vec3::new(-0.5, -0.5, 0.0)) * mirrored);
+        let mut renderer = Renderer::new(device, queue, RendererOptions { samples: 1 });
+        renderer.upload(device, queue, &scene.model).unwrap();
+        renderer.draw(device, queue, &scene.frame, [SIZE, SIZE]);
+        let picture = Picture(pollster::block_on(read_pixels(device, queue, renderer.output())));
+        for (x, y, covered) in [(0.0, 0.0, true), (0.5, 0.5, true), (-0.5, -0.5, true), (0.5, -0.5, false)] {
+            assert_eq!(picture.at(x, y)[3] == 255, covered, "{alpha_mode:?} at {x}, {y}");
+        }
+        assert_eq!((renderer.stats().draw_calls, renderer.stats().triangles), (calls, 6), "{alpha_mode:?}");
+    }
 }

@@ -45,20 +45,31 @@ impl Scene {
         Self::textured(geometries, materials, Vec::new(), Vec::new())
     }
 
+    /// With material variants, whose names don't matter.
+    pub fn new_with(geometries: Vec<Geometry>, materials: Vec<Material>, variants: usize) -> Self {
+        let variants = (0..variants).map(|index| index.to_string()).collect();
+        let parts = AssetParts { materials, variants, ..AssetParts::default() };
+        Self::of_parts(geometries, parts, Vec::new())
+    }
+
     pub fn textured(
         geometries: Vec<Geometry>,
         materials: Vec<Material>,
         textures: Vec<Texture>,
         images: Vec<Option<ImageData>>,
     ) -> Self {
-        let count = geometries.len();
-        let meshes =
-            geometries.into_iter().map(|geometry| Mesh { primitives: vec![geometry], ..Default::default() }).collect();
         // The pixels are given; of the files only their number counts.
         let file = Image { name: String::new(), mime: "image/png", bytes: Arc::from([]), width: 1, height: 1 };
         let files = vec![file; images.len()];
-        let parts = AssetParts { meshes, materials, textures, images: files, ..AssetParts::default() };
-        let asset = Asset::new(parts).expect("indices in range");
+        let parts = AssetParts { materials, textures, images: files, ..AssetParts::default() };
+        Self::of_parts(geometries, parts, images)
+    }
+
+    fn of_parts(geometries: Vec<Geometry>, parts: AssetParts, images: Vec<Option<ImageData>>) -> Self {
+        let count = geometries.len();
+        let meshes =
+            geometries.into_iter().map(|geometry| Mesh { primitives: vec![geometry], ..Default::default() }).collect();
+        let asset = Asset::new(AssetParts { meshes, ..parts }).expect("indices in range");
         let eye = Vec3::new(0.0, 0.0, 5.0);
         let mut frame = Frame::default();
         frame.view = View {
@@ -76,6 +87,7 @@ impl Scene {
                 .map(|mesh| Draw {
                     instance: mesh,
                     mesh,
+                    is_copy: false,
                     visible: true,
                     palette: 0..1,
                     morph_weights: 0..0,
@@ -87,6 +99,23 @@ impl Scene {
             ..Default::default()
         });
         Self { model: Model::new(String::new(), asset, images), frame }
+    }
+
+    /// Draws the only mesh once more, moved.
+    pub fn add_copy(&mut self, by: Affine3A) {
+        let character = &mut self.frame.characters[0];
+        let next = character.palette.len() as u32;
+        character.palette.push(palette_entry(&by, SkinningMode::Linear));
+        let first = &character.draws[0];
+        let center = by.translation.into();
+        let copy = Draw {
+            is_copy: true,
+            palette: next..next + 1,
+            center,
+            mirrored: by.matrix3.determinant() < 0.0,
+            ..first.clone()
+        };
+        character.draws.push(copy);
     }
 
     pub fn draw(&self, gpu: &Gpu) -> Picture {

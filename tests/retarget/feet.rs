@@ -196,7 +196,7 @@ fn with_shoes(mut figure: Figure) -> Figure {
     let feet = [Slot::LeftFoot, Slot::RightFoot].map(|slot| figure.joint(slot));
     let shoe = Geometry { positions: SHOE.to_vec(), indices: vec![0, 1, 2], ..Geometry::default() };
     let mesh = Mesh { primitives: vec![shoe], ..Mesh::default() };
-    let instances = feet.map(|joint| MeshInstance { joint, mesh: 0, skin: None }).to_vec();
+    let instances = feet.map(|joint| MeshInstance::new(joint, 0, None)).to_vec();
     let parts = std::mem::take(&mut figure.asset).into_parts();
     figure.asset = Asset::new(AssetParts { meshes: vec![mesh], instances, ..parts }).unwrap();
     figure

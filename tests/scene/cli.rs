@@ -74,6 +74,7 @@ fn inspect_prints_the_documented_keys() {
         "morph_targets",
         "clips",
         "borrowed_clips",
+        "variants",
         "texture_bytes",
         "cameras",
         "avatar",

@@ -35,7 +35,7 @@ pub fn moving_box(half: f32, times_secs: &[f32], places: &[Vec3]) -> Library {
         format: "test",
         clips,
         meshes: vec![Mesh { primitives: vec![geometry], ..Mesh::default() }],
-        instances: vec![MeshInstance { joint, mesh: 0, skin: None }],
+        instances: vec![MeshInstance::new(joint, 0, None)],
         skeleton,
         ..AssetParts::default()
     };

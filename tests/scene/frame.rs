@@ -61,7 +61,7 @@ fn of_many_lights_the_strongest_are_drawn() {
     let geometry = Geometry { file_vertices: 3, positions, indices: vec![0, 1, 2], ..Geometry::default() };
     let parts = AssetParts {
         meshes: vec![Mesh { primitives: vec![geometry], ..Mesh::default() }],
-        instances: vec![MeshInstance { joint: node(12), mesh: 0, skin: None }],
+        instances: vec![MeshInstance::new(node(12), 0, None)],
         lights,
         skeleton,
         ..AssetParts::default()

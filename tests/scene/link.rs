@@ -159,6 +159,7 @@ fn one_field_each() -> Vec<(&'static str, ViewerState)> {
         ("camera_options.fov_degrees", with(&|state| state.camera_options.fov_degrees = 50.0)),
         ("camera_options.follow", with(&|state| state.camera_options.follow = true)),
         ("camera_options.turntable", with(&|state| state.camera_options.turntable = -12.5)),
+        ("edits.variant", with(&|state| state.edits.variant = Some("Midnight & blue, 100 %".to_owned()))),
         ("edits.up", with(&|state| state.edits.up = UpAxis::MinusZ)),
         ("display.exposure", with(&|state| state.display.exposure = -0.7)),
         ("display.tone_map", with(&|state| state.display.tone_map = ToneMap::Agx)),

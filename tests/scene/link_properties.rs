@@ -200,6 +200,7 @@ impl Random {
                 let (instance, primitive, vertex) = (self.below(3), self.below(9), self.below(99_999));
                 state.selection.vertex = Some(VertexChoice { instance, primitive, vertex });
             }
+            22 if self.often() => state.edits.variant = Some(self.text()),
             22..=24 | 29..=31 => self.set_look(state, field),
             32..=34 => self.set_avatar(state, field),
             _ => state.page.embed = self.often(),

@@ -5,8 +5,8 @@ use std::f32::consts::PI;
 use gaitway::anim::{LoopMode, TimeRange};
 use gaitway::library::Library;
 use gaitway::state::{
-    CameraChoice, CameraOptions, ClipChoice, Command, OrbitCamera, Playback, Playhead, UnknownClip, ViewerState,
-    active_clip, apply, choice_of_clip, clip_secs, resolve_camera,
+    CameraChoice, CameraOptions, ClipChoice, Command, NameKind, OrbitCamera, Playback, Playhead, UnknownName,
+    ViewerState, active_clip, apply, choice_of_clip, clip_secs, resolve_camera,
 };
 use glam::Vec3;
 
@@ -201,7 +201,7 @@ fn an_unknown_clip_is_told_with_the_nearest_names() {
     let names = ["Idle", "Jump", "Run_Backwards", "Sit", "Walk", "walk_b", "Wave", "Walking", "Run"];
     let check = |name: &str, clips: &[&str], expected: &str| {
         let clips = clips.iter().map(|clip| (*clip).to_owned()).collect();
-        let message = UnknownClip { name: name.to_owned(), clips }.to_string();
+        let message = UnknownName { kind: NameKind::Clip, name: name.to_owned(), names: clips }.to_string();
         assert_eq!(message, format!("expected the name or index of a clip, found “{name}”; {expected}"));
     };
     check("Fly", &[], "there are no clips");

@@ -88,7 +88,7 @@ fn a_model_without_clips_is_told_what_it_lacks() {
     let parts = AssetParts {
         skeleton,
         meshes: vec![Mesh { primitives: vec![geometry], ..Mesh::default() }],
-        instances: vec![MeshInstance { joint: JointIndex(0), mesh: 0, skin: None }],
+        instances: vec![MeshInstance::new(JointIndex(0), 0, None)],
         ..AssetParts::default()
     };
     let chair = Model::new("chair.glb".to_owned(), Asset::new(parts).expect("indices in range"), Vec::new());

@@ -69,6 +69,23 @@ fn display_sets_skinning_overlays_and_morphs() {
 }
 
 #[test]
+fn display_offers_the_material_variants_of_the_file() {
+    let mut harness = sample_bench(WIDE);
+    press(&mut harness, Tab::Display.label());
+    assert!(harness.query_by_label(text::VARIANTS).is_none(), "the sample has none");
+    let skeleton = Skeleton::new(vec![Joint::default()]).expect("one joint");
+    let variants = vec!["Day".to_owned(), "Night".to_owned()];
+    let asset = Asset::new(AssetParts { skeleton, variants, ..AssetParts::default() }).expect("indices in range");
+    let mut library = Library::default();
+    library.add(Model::new("shoe.glb".to_owned(), asset, Vec::new()));
+    let mut harness = bench_of(WIDE, library);
+    press(&mut harness, Tab::Display.label());
+    assert_eq!(press(&mut harness, "Night"), [Command::SetVariant(Some("Night".to_owned()))]);
+    assert_eq!(harness.state().state().edits.variant.as_deref(), Some("Night"));
+    assert_eq!(press(&mut harness, text::NO_VARIANT), [Command::SetVariant(None)]);
+}
+
+#[test]
 fn view_sets_camera_and_background() {
     // Tall enough for the whole tab.
     let mut harness = sample_bench([1280.0, 1600.0]);

@@ -91,8 +91,8 @@ fn build() -> Result<Asset, WalkerError> {
     ];
     let joint_of_source = |source: usize| skeleton.joint_of_source(source).unwrap_or(JointIndex(0));
     let instances = vec![
-        MeshInstance { joint: joint_of_source(BODY_NODE), mesh: 0, skin: Some(0) },
-        MeshInstance { joint: joint_of_source(EYES_NODE), mesh: 1, skin: Some(0) },
+        MeshInstance::new(joint_of_source(BODY_NODE), 0, Some(0)),
+        MeshInstance::new(joint_of_source(EYES_NODE), 1, Some(0)),
     ];
     Ok(Asset::new(AssetParts {
         format: "sample",

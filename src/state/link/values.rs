@@ -88,6 +88,10 @@ pub(super) fn write_index(index: &Option<usize>) -> Written {
     index.as_ref().map_or(Written::Unset, write_number)
 }
 
+pub(super) fn read_text(text: &str) -> Option<String> {
+    Some(text.to_owned())
+}
+
 pub(super) fn read_clip(text: &str) -> Option<ClipChoice> {
     Some(if text.is_empty() { ClipChoice::RestPose } else { ClipChoice::Named(text.to_owned()) })
 }

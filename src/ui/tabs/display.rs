@@ -1,11 +1,11 @@
-//! The Display tab: skinning, overlays, expressions and morph targets.
+//! The Display tab: material variants, skinning, overlays, expressions and morph targets.
 
 use egui::Ui;
 
 use super::avatar;
 use crate::library::Model;
 use crate::mesh::{Geometry, SkinningMode, Topology};
-use crate::state::{Command, Inspect, Show, active_clip};
+use crate::state::{Command, Inspect, Show, active_clip, active_variant};
 use crate::ui::controls::{self, SliderSettings};
 use crate::ui::{Output, Shown, text};
 
@@ -40,6 +40,9 @@ fn explanation(mode: SkinningMode) -> &'static str {
 
 pub fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     let model = shown.library.active();
+    if let Some(model) = model {
+        variants(ui, shown, model, out);
+    }
     // First for unskinned models, where they are the most useful controls.
     let morphs_first = model.is_some_and(|model| model.asset.skins.is_empty());
     if let Some(model) = model.filter(|_| morphs_first) {
@@ -53,6 +56,24 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, out: &mut Output) {
     if let Some(model) = model.filter(|_| !morphs_first) {
         avatar::controls(ui, shown, model, out);
         morphs(ui, shown, model, out);
+    }
+}
+
+/// The file's material variants, if it has any.
+fn variants(ui: &mut Ui, shown: &Shown<'_>, model: &Model, out: &mut Output) {
+    let variants = &model.asset.variants;
+    if variants.is_empty() {
+        return;
+    }
+    controls::section(ui, text::VARIANTS);
+    let active = active_variant(model, shown.state);
+    if controls::list_row(ui, text::NO_VARIANT, "", active.is_none()).clicked() {
+        out.commands.push(Command::SetVariant(None));
+    }
+    for (index, name) in variants.iter().enumerate() {
+        if controls::list_row(ui, name, "", active == Some(index)).clicked() {
+            out.commands.push(Command::SetVariant(Some(name.clone())));
+        }
     }
 }
 
@@ -171,7 +192,9 @@ fn morphs(ui: &mut Ui, shown: &Shown<'_>, model: &Model, out: &mut Output) {
     let asset = &model.asset;
     let now = shown.frame.characters.first().map_or(&[][..], |character| &character.morph_weights);
     let mut titled = false;
-    for instance in &asset.instances {
+    // Copies of a mesh at one node share its weights.
+    let nodes = asset.instances.chunk_by(|a, b| a.joint == b.joint).filter_map(|copies| copies.first());
+    for instance in nodes {
         let (Some(mesh), range) = (asset.meshes.get(instance.mesh), asset.skeleton.morph_range(instance.joint)) else {
             continue;
         };

@@ -9,7 +9,7 @@ mod warning;
 use std::ops::Deref;
 use std::sync::Arc;
 
-use glam::{Vec3, Vec4Swizzles};
+use glam::{Affine3A, Vec3, Vec4Swizzles};
 
 use crate::anim::{
     CameraProperty, Clip, JointIndex, LightProperty, PropertyTarget, PropertyValues, Skeleton, TextureSlot,
@@ -57,6 +57,8 @@ pub struct AssetParts {
     pub hidden: Vec<JointIndex>,
     /// Indexed by [`crate::mesh::Geometry::material`].
     pub materials: Vec<Material>,
+    /// Names of the material variants (KHR_materials_variants), not empty and each unique.
+    pub variants: Vec<String>,
     /// Indexed by [`crate::mesh::TextureRef::texture`].
     pub textures: Vec<Texture>,
     /// Indexed by [`Texture::image`].
@@ -84,8 +86,8 @@ pub struct Scene {
     pub roots: Vec<JointIndex>,
 }
 
-/// A node with a mesh.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// A mesh at a node. A node has several if its mesh is copied (EXT_mesh_gpu_instancing); they follow each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshInstance {
     /// The node. Its transform places the mesh only if there is no skin.
     pub joint: JointIndex,
@@ -93,6 +95,15 @@ pub struct MeshInstance {
     pub mesh: usize,
     /// Index into [`AssetParts::skins`]; `None` if the mesh is rigid, even if it has influences.
     pub skin: Option<usize>,
+    /// Places a copy of the mesh relative to the node; the identity otherwise. Unused with a skin.
+    pub joint_from_mesh: Affine3A,
+}
+
+impl MeshInstance {
+    /// Returns a mesh at its node's own place.
+    pub fn new(joint: JointIndex, mesh: usize, skin: Option<usize>) -> Self {
+        Self { joint, mesh, skin, joint_from_mesh: Affine3A::IDENTITY }
+    }
 }
 
 /// An encoded image, its size already read from the header and within bounds.
@@ -370,7 +381,12 @@ impl AssetParts {
         for (mesh, skin_joints) in smallest_skin.into_iter().enumerate() {
             for (primitive, geometry) in self.meshes[mesh].primitives.iter().enumerate() {
                 geometry.validate(skin_joints).map_err(|problem| AssetError::Geometry { mesh, primitive, problem })?;
-                geometry.material.map_or(Ok(()), |material| check("meshes", material, self.materials.len()))?;
+                let of_variants = geometry.variants.iter().map(|&(_, material)| material);
+                for material in geometry.material.into_iter().chain(of_variants) {
+                    check("meshes", material, self.materials.len())?;
+                }
+                let mut variants = geometry.variants.iter();
+                variants.try_for_each(|&(variant, _)| check("variants", variant, self.variants.len()))?;
             }
         }
         Ok(())

@@ -34,13 +34,13 @@ pub enum Limit {
     DataBytes,
     /// Pixels of all images, as their headers say.
     ImagePixels,
-    /// Nodes of a glTF, joints of a .bvh or a .skel.
+    /// Nodes of a glTF and copies of their meshes, joints of a .bvh or a .skel.
     Nodes,
     /// Each node of a mesh has a weight for each of its morph targets.
     MorphWeights,
     /// Each skinned node has a matrix for each joint of its skin.
     SkinMatrices,
-    /// Each node of a mesh draws all its vertices.
+    /// Each node of a mesh, and each copy, draws all its vertices.
     DrawnVertices,
 }
 

@@ -100,7 +100,7 @@ impl InstanceExtent {
         let skin = instance.skin.map(|skin| &asset.skins[skin]);
         let mut supports = vec![Support::default(); skin.map_or(1, |skin| skin.joints().len())];
         for geometry in &mesh.primitives {
-            add_support(geometry, skin, &mut supports);
+            add_support(geometry, skin, &instance.joint_from_mesh, &mut supports);
         }
         let mut joints = Vec::new();
         for (slot, support) in supports.iter().enumerate() {
@@ -110,7 +110,7 @@ impl InstanceExtent {
             }
             let (joint, joint_from_mesh) = match skin {
                 Some(skin) => (skin.joints()[slot], skin.joint_from_bind()[slot]),
-                None => (instance.joint, Affine3A::IDENTITY),
+                None => (instance.joint, instance.joint_from_mesh),
             };
             let center = Bounds::of(points.iter().copied()).center();
             joints.push(JointExtent { joint, joint_from_mesh, points, center });
@@ -136,9 +136,10 @@ impl InstanceExtent {
 }
 
 /// Adds the vertices of a primitive to the supports of the joints that influence them, in joint space.
-fn add_support(geometry: &Geometry, skin: Option<&Skin>, supports: &mut [Support]) {
+fn add_support(geometry: &Geometry, skin: Option<&Skin>, joint_from_mesh: &Affine3A, supports: &mut [Support]) {
     let Some(skin) = skin else {
-        geometry.positions.iter().for_each(|&position| supports[0].add(position));
+        let positions = geometry.positions.iter().map(|&position| joint_from_mesh.transform_point3(position));
+        positions.for_each(|position| supports[0].add(position));
         return;
     };
     let joint_from_bind = skin.joint_from_bind();
@@ -222,7 +223,10 @@ fn exact_rest_bounds(asset: &Asset, rig: &Rig) -> Bounds {
         palette.clear();
         match instance.skin.map(|skin| &asset.skins[skin]) {
             Some(skin) => write_palette(skin, &world_from_joint, SkinningMode::Linear, &mut palette),
-            None => palette.push(palette_entry(&world_from_joint[instance.joint.get()], SkinningMode::Linear)),
+            None => {
+                let world_from_mesh = world_from_joint[instance.joint.get()] * instance.joint_from_mesh;
+                palette.push(palette_entry(&world_from_mesh, SkinningMode::Linear));
+            }
         }
         let weights = &asset.skeleton.rest().morph_weights[asset.skeleton.morph_range(instance.joint)];
         for geometry in &asset.meshes[instance.mesh].primitives {

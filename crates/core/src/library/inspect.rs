@@ -34,6 +34,7 @@ pub fn inspect(model: &Model, files: &[String]) -> Value {
         "morph_targets": asset.meshes.iter().map(target_count).sum::<usize>(),
         "clips": clips,
         "borrowed_clips": borrowed,
+        "variants": asset.variants,
         "texture_bytes": model.texture_bytes(),
         "cameras": asset.cameras.len(),
         "avatar": avatar_document(asset),

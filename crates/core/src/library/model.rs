@@ -163,7 +163,7 @@ impl Model {
         let parts = Skeleton::new(vec![joint]).map(|skeleton| AssetParts {
             skeleton,
             meshes: vec![Mesh::default()],
-            instances: vec![MeshInstance { joint: JointIndex(0), mesh: 0, skin: None }],
+            instances: vec![MeshInstance::new(JointIndex(0), 0, None)],
             ..AssetParts::default()
         });
         let asset = parts.ok().and_then(|parts| Asset::new(parts).ok()).unwrap_or_default();

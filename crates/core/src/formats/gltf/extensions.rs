@@ -2,9 +2,11 @@
 
 use gltf::json::Root;
 
+use super::instancing;
 use super::lobes;
 use super::nodes::VISIBILITY;
 use super::pointer::POINTER;
+use super::variants;
 use super::vrm::{EXTENDED_COLLIDER, NODE_CONSTRAINT, SPRING_BONE};
 use crate::asset::{Warning, Warnings};
 use crate::formats::LoadError;
@@ -16,6 +18,8 @@ const SUPPORTED: &[&str] = &[
     "KHR_materials_emissive_strength",
     "KHR_lights_punctual",
     lobes::SPECULAR_GLOSSINESS,
+    variants::NAME,
+    instancing::NAME,
     POINTER,
     VISIBILITY,
     "EXT_texture_avif",

@@ -10,7 +10,7 @@ use serde_json::Value;
 use super::accessor::{Accessors, get};
 use super::document::fits_in_memory;
 use super::influences::{self, InfluenceSet};
-use super::{draco, indices};
+use super::{draco, indices, variants};
 use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
 use crate::formats::limits::Limit;
@@ -18,14 +18,29 @@ use crate::mesh::{
     Geometry, Influences, MAX_INFLUENCES, Material, Mesh, MorphTarget, Topology, add_tangents, first_not_below,
 };
 
-pub fn meshes(accessors: &Accessors, materials: &[Material], warnings: &mut Warnings) -> Result<Vec<Mesh>, Problem> {
+/// `variants` is the number of material variants.
+pub fn meshes(
+    accessors: &Accessors,
+    materials: &[Material],
+    variants: usize,
+    warnings: &mut Warnings,
+) -> Result<Vec<Mesh>, Problem> {
     let meshes = accessors.document.root.meshes.iter().enumerate();
-    meshes.map(|(index, mesh)| read_mesh(accessors, materials, index, mesh, warnings)).collect()
+    let surfaces = Surfaces { materials, variants };
+    meshes.map(|(index, mesh)| read_mesh(accessors, surfaces, index, mesh, warnings)).collect()
+}
+
+/// What primitives refer to.
+#[derive(Clone, Copy)]
+struct Surfaces<'a> {
+    materials: &'a [Material],
+    /// Number of material variants.
+    variants: usize,
 }
 
 fn read_mesh(
     accessors: &Accessors,
-    materials: &[Material],
+    surfaces: Surfaces<'_>,
     index: usize,
     mesh: &json::Mesh,
     warnings: &mut Warnings,
@@ -40,7 +55,7 @@ fn read_mesh(
             let expected = format!("{targets} morph targets, as the first primitive has");
             return Err(Problem::new(format!("{place}.targets"), expected, found));
         }
-        primitives.push(read_primitive(accessors, materials, &place, primitive, warnings)?);
+        primitives.push(read_primitive(accessors, surfaces, &place, primitive, warnings)?);
     }
     let weights = mesh.weights.as_ref().map_or(0, Vec::len);
     if weights > 0 && weights != targets {
@@ -130,7 +145,7 @@ impl Attributes<'_> {
 
 fn read_primitive(
     accessors: &Accessors,
-    materials: &[Material],
+    surfaces: Surfaces<'_>,
     place: &str,
     primitive: &Primitive,
     warnings: &mut Warnings,
@@ -160,13 +175,8 @@ fn read_primitive(
     let influences = attributes.influences(place, warnings)?;
     let (topology, indices) = read_indices(accessors, place, primitive, vertices)?;
     let morph_targets = read_targets(accessors, place, primitive, vertices, !normals.is_empty())?;
-    let mut material = primitive.material.map(|material| material.value());
-    if let Some(index) = material
-        && let Err(problem) = get(materials, index, &format_args!("{place}.material"), "materials")
-    {
-        problem.leave_out("material", "the default material is used", warnings)?;
-        material = None;
-    }
+    let material = read_material(surfaces.materials, place, primitive, warnings)?;
+    let variants = variants::mappings(primitive, surfaces.variants, surfaces.materials, place, warnings)?;
     let mut geometry = Geometry {
         topology,
         positions,
@@ -178,10 +188,13 @@ fn read_primitive(
         influences,
         morph_targets,
         material,
+        variants,
         file_vertices: vertices,
         file_vertex: Vec::new(),
     };
-    if let Some(uv_set) = material.and_then(|material| materials[material].tangent_uv_set())
+    let of_variants = geometry.variants.iter().map(|&(_, material)| material);
+    let mut used = material.into_iter().chain(of_variants);
+    if let Some(uv_set) = used.find_map(|material| surfaces.materials[material].tangent_uv_set())
         && topology == Topology::Triangles
         && geometry.tangents.is_empty()
     {
@@ -189,6 +202,23 @@ fn read_primitive(
         accessors.budget.allocate(1, copied_bytes, &place)?;
     }
     Ok(geometry)
+}
+
+/// An index out of range stands for the default material.
+fn read_material(
+    materials: &[Material],
+    place: &str,
+    primitive: &Primitive,
+    warnings: &mut Warnings,
+) -> Result<Option<usize>, Problem> {
+    let Some(index) = primitive.material.map(|material| material.value()) else { return Ok(None) };
+    match get(materials, index, &format_args!("{place}.material"), "materials") {
+        Ok(_) => Ok(Some(index)),
+        Err(problem) => {
+            problem.leave_out("material", "the default material is used", warnings)?;
+            Ok(None)
+        }
+    }
 }
 
 fn read_targets(

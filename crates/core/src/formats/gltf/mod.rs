@@ -14,6 +14,7 @@ mod humanoid;
 mod images;
 mod indices;
 mod influences;
+mod instancing;
 mod lobes;
 mod loosen;
 mod materials;
@@ -24,6 +25,7 @@ mod object;
 mod pointer;
 mod skins;
 mod strict;
+mod variants;
 mod vrm;
 mod write;
 
@@ -98,10 +100,11 @@ fn build(
     let textures = materials::textures(document, &mut warnings)?;
     let images = images::images(files, file, &accessors, &mut warnings)?;
     on_images(&images);
-    let meshes = meshes::meshes(&accessors, &materials, &mut warnings)?;
+    let variants = variants::names(root, &mut warnings)?;
+    let meshes = meshes::meshes(&accessors, &materials, variants.len(), &mut warnings)?;
     let skeleton = nodes::skeleton(root, &meshes, &accessors.budget, &mut warnings)?;
     let skins = skins::skins(&accessors, &skeleton, &mut warnings)?;
-    let instances = nodes::instances(root, &skeleton, &meshes, &skins, &accessors.budget)?;
+    let instances = nodes::instances(&accessors, &skeleton, &meshes, &skins, &mut warnings)?;
     let humanoid = humanoid::humanoid(root, &skeleton, &mut warnings);
     let parts = vrm::Parts {
         root,
@@ -130,6 +133,7 @@ fn build(
         instances,
         hidden,
         materials,
+        variants,
         textures,
         images,
         cameras,

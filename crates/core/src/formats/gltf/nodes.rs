@@ -8,8 +8,9 @@ use gltf::json::validation::Checked;
 use gltf::json::{Index, Node, Root};
 use serde_json::Value;
 
-use super::accessor::get;
+use super::accessor::{Accessors, get};
 use super::document::Document;
+use super::instancing;
 use crate::anim::{Joint, JointIndex, Skeleton, SkeletonError, Transform};
 use crate::asset::{Camera, CameraProjection, Light, LightKind, MAX_LIGHTS, MeshInstance, Scene, Warning, Warnings};
 use crate::formats::error::Problem;
@@ -109,25 +110,35 @@ fn rest(node: &Node, place: &str, warnings: &mut Warnings) -> Result<Transform, 
 
 /// Returns which joint draws which mesh. Without a skin, the influences of a mesh are not used.
 pub fn instances(
-    root: &Root,
+    accessors: &Accessors,
     skeleton: &Skeleton,
     meshes: &[Mesh],
     skins: &[Skin],
-    budget: &Budget,
+    warnings: &mut Warnings,
 ) -> Result<Vec<MeshInstance>, Problem> {
     let vertices_of = |mesh: &Mesh| mesh.primitives.iter().map(|geometry| geometry.positions.len()).sum();
     let vertices: Vec<usize> = meshes.iter().map(vertices_of).collect();
+    let budget = &accessors.budget;
     let mut instances = Vec::new();
-    for (index, node) in root.nodes.iter().enumerate() {
+    for (index, node) in accessors.document.root.nodes.iter().enumerate() {
         let (Some(mesh), Some(joint)) = (node.mesh, skeleton.joint_of_source(index)) else { continue };
-        let place = format_args!("nodes[{index}]");
-        budget.spend(Limit::DrawnVertices, *get(&vertices, mesh.value(), &place, "meshes")?, &place)?;
+        let place = format!("nodes[{index}]");
+        let copies = instancing::copies(accessors, node, &place, warnings)?;
+        let drawn = get(&vertices, mesh.value(), &place, "meshes")?.saturating_mul(copies.as_ref().map_or(1, Vec::len));
+        budget.spend(Limit::DrawnVertices, drawn, &place)?;
         let skin = node.skin.map(|skin| skin.value());
         if let Some(skin) = skin {
             let joints = get(skins, skin, &format_args!("{place}.skin"), "skins")?.joints().len();
             budget.spend(Limit::SkinMatrices, joints, &place)?;
         }
-        instances.push(MeshInstance { joint, mesh: mesh.value(), skin });
+        let instance = MeshInstance::new(joint, mesh.value(), skin);
+        match copies {
+            None => instances.push(instance),
+            Some(copies) => {
+                let copy = |joint_from_mesh| MeshInstance { joint_from_mesh, ..instance };
+                instances.extend(copies.into_iter().map(copy));
+            }
+        }
     }
     Ok(instances)
 }

@@ -176,7 +176,7 @@ fn place_mesh(parts: &mut AssetParts, mesh: Mesh, skin: Option<Skin>) {
     parts.skins.extend(skin);
     // A skinned mesh follows its joints, whichever node draws it, so it needs no node of its own.
     let joint = parts.skeleton.joints().next();
-    parts.instances.extend(joint.map(|joint| MeshInstance { joint, mesh: 0, skin: skin_index }));
+    parts.instances.extend(joint.map(|joint| MeshInstance::new(joint, 0, skin_index)));
 }
 
 /// The node that draws a static model.

@@ -67,7 +67,7 @@ fn joint_sole(rest: &WorldPose, ankle: JointIndex, toes: Option<JointIndex>) -> 
 /// The outermost points of everything that is drawn below the foot's joint.
 fn mesh_sole(asset: &Asset, rest: &WorldPose, foot: JointIndex) -> Sole {
     let mut hull = Hull::new(asset, rest, foot);
-    for &MeshInstance { joint, mesh, skin } in &asset.instances {
+    for &MeshInstance { joint, mesh, skin, joint_from_mesh } in &asset.instances {
         let skin = skin.map(|skin| &asset.skins[skin]);
         if skin.is_none() && !hull.is_in_foot(joint) {
             continue;
@@ -75,7 +75,7 @@ fn mesh_sole(asset: &Asset, rest: &WorldPose, foot: JointIndex) -> Sole {
         for geometry in &asset.meshes[mesh].primitives {
             for (vertex, &position) in geometry.positions.iter().enumerate() {
                 let bound = match skin {
-                    None => Some((joint, position)),
+                    None => Some((joint, joint_from_mesh.transform_point3(position))),
                     Some(skin) => bound_to_foot(&hull, skin, &geometry.influences, vertex, position),
                 };
                 if let Some((joint, position)) = bound {

@@ -102,10 +102,11 @@ fn regions(asset: &Asset, at_rest: &[Affine3A]) -> Vec<Option<Region>> {
     let mut regions = vec![None; at_rest.len()];
     for instance in &asset.instances {
         let skin = instance.skin.map(|skin| &asset.skins[skin]);
+        let at_rest_from_mesh = at_rest[instance.joint.get()] * instance.joint_from_mesh;
         for geometry in &asset.meshes[instance.mesh].primitives {
             for (vertex, position) in geometry.positions.iter().enumerate() {
                 let Some(skin) = skin else {
-                    grow(&mut regions, instance.joint, at_rest[instance.joint.get()].transform_point3(*position));
+                    grow(&mut regions, instance.joint, at_rest_from_mesh.transform_point3(*position));
                     continue;
                 };
                 let strongest = geometry.influences.of_vertex(vertex).max_by(|a, b| a.1.total_cmp(&b.1));

@@ -1,0 +1,101 @@
+//! Material variants (KHR_materials_variants): names for the whole file, and other materials for its primitives.
+
+use gltf::json::Root;
+use gltf::json::mesh::Primitive;
+use serde_json::Value;
+
+use super::accessor::get;
+use crate::asset::Warnings;
+use crate::formats::error::Problem;
+use crate::mesh::Material;
+
+pub const NAME: &str = "KHR_materials_variants";
+
+/// Returns the variants' names, each non-empty and unique, so that a name identifies its variant.
+pub fn names(root: &Root, warnings: &mut Warnings) -> Result<Vec<String>, Problem> {
+    let Some(extension) = root.extensions.as_ref().and_then(|extensions| extensions.others.get(NAME)) else {
+        return Ok(Vec::new());
+    };
+    let Some(variants) = extension.get("variants").and_then(Value::as_array) else {
+        let place = format!("extensions.{NAME}.variants");
+        wrong(place, "an array of variants", extension).leave_out("variant", "the file has no variants", warnings)?;
+        return Ok(Vec::new());
+    };
+    let mut names: Vec<String> = Vec::with_capacity(variants.len());
+    for (index, variant) in variants.iter().enumerate() {
+        let given = variant.get("name").and_then(Value::as_str).unwrap_or_default().trim();
+        let base = if given.is_empty() { format!("Variant {index}") } else { given.to_owned() };
+        let mut name = base.clone();
+        if names.contains(&name) {
+            name = format!("{base} ({index})");
+        }
+        names.push(name);
+    }
+    Ok(names)
+}
+
+/// Returns pairs of variant and material: what a primitive has in the variants in which its material is another. A mapping that
+/// is invalid is left out.
+pub fn mappings(
+    primitive: &Primitive,
+    variants: usize,
+    materials: &[Material],
+    place: &str,
+    warnings: &mut Warnings,
+) -> Result<Vec<(usize, usize)>, Problem> {
+    let Some(extension) = primitive.extensions.as_ref().and_then(|extensions| extensions.others.get(NAME)) else {
+        return Ok(Vec::new());
+    };
+    let place = format!("{place}.extensions.{NAME}.mappings");
+    let mut found: Vec<(usize, usize)> = Vec::new();
+    let mappings = match extension.get("mappings").and_then(Value::as_array) {
+        Some(mappings) => &mappings[..],
+        None => {
+            wrong(place.clone(), "an array of mappings", extension).leave_out("variant", LEFT_OUT, warnings)?;
+            &[]
+        }
+    };
+    for (at, mapping) in mappings.iter().enumerate() {
+        match read(mapping, variants, materials, &format!("{place}[{at}]")) {
+            // Each variant at most once; the first counts.
+            Ok((material, of)) => {
+                for variant in of {
+                    if found.iter().all(|&(known, _)| known != variant) {
+                        found.push((variant, material));
+                    }
+                }
+            }
+            Err(problem) => problem.leave_out("variant", LEFT_OUT, warnings)?,
+        }
+    }
+    Ok(found)
+}
+
+const LEFT_OUT: &str = "the primitive keeps its material";
+
+fn read(mapping: &Value, variants: usize, materials: &[Material], place: &str) -> Result<(usize, Vec<usize>), Problem> {
+    let material = index(mapping.get("material"), &format!("{place}.material"))?;
+    get(materials, material, &format_args!("{place}.material"), "materials")?;
+    let list = mapping.get("variants").and_then(Value::as_array);
+    let list = list.ok_or_else(|| wrong(format!("{place}.variants"), "an array of variants", mapping))?;
+    let mut of = Vec::new();
+    for (at, variant) in list.iter().enumerate() {
+        let place = format!("{place}.variants[{at}]");
+        let variant = index(Some(variant), &place)?;
+        if variant >= variants {
+            return Err(Problem::new(place, format!("an index into the {variants} variants"), variant));
+        }
+        of.push(variant);
+    }
+    Ok((material, of))
+}
+
+fn index(value: Option<&Value>, place: &str) -> Result<usize, Problem> {
+    let found = value.and_then(Value::as_u64).and_then(|index| usize::try_from(index).ok());
+    found.ok_or_else(|| wrong(place.to_owned(), "an index", value.unwrap_or(&Value::Null)))
+}
+
+fn wrong(place: String, expected: &str, found: &Value) -> Problem {
+    let found: String = found.to_string().chars().take(40).collect();
+    Problem::new(place, expected, found)
+}

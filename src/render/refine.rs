@@ -1,0 +1,74 @@
+//! Refines a picture that was drawn with one sample per pixel: more samples, each a drawing of the whole scene shifted by a
+//! fraction of a pixel, are averaged into it.
+
+use super::full_screen::{FullScreenPipeline, sampled_texture_group, sampled_texture_layout};
+use super::pipelines::pipeline_layout;
+use super::shaders;
+use super::targets::SCENE_FORMAT;
+
+/// Where a pixel is sampled, in pixels from its centre, which is their mean. The first is an unrefined picture's.
+pub(super) const SAMPLES: [[f32; 2]; 4] = [[0.0, 0.0], [0.375, -0.125], [-0.125, 0.375], [-0.25, -0.25]];
+
+/// Averages samples into a picture.
+pub(super) struct Average {
+    layout: wgpu::BindGroupLayout,
+    sampler: wgpu::Sampler,
+    pipeline: wgpu::RenderPipeline,
+}
+
+impl Average {
+    pub fn new(device: &wgpu::Device) -> Self {
+        let layout = sampled_texture_layout(device, "average");
+        let module = shaders::BLIT.module(device);
+        let mix = wgpu::BlendComponent {
+            src_factor: wgpu::BlendFactor::Constant,
+            dst_factor: wgpu::BlendFactor::OneMinusConstant,
+            operation: wgpu::BlendOperation::Add,
+        };
+        let pipeline = FullScreenPipeline {
+            label: "average",
+            module: &module,
+            layout: &pipeline_layout(device, "average", &[Some(&layout)]),
+            vertex: "full_viewport",
+            fragment: "blit",
+            constants: &[],
+            target: wgpu::ColorTargetState {
+                format: SCENE_FORMAT,
+                blend: Some(wgpu::BlendState { color: mix, alpha: mix }),
+                write_mask: wgpu::ColorWrites::ALL,
+            },
+        }
+        .create(device);
+        let sampler = device.create_sampler(&wgpu::SamplerDescriptor { label: Some("average"), ..Default::default() });
+        Self { layout, sampler, pipeline }
+    }
+
+    /// Binds the texture that samples are drawn into.
+    pub fn bind(&self, device: &wgpu::Device, sample: &wgpu::TextureView) -> wgpu::BindGroup {
+        sampled_texture_group(device, "average", &self.layout, sample, &self.sampler)
+    }
+
+    /// Mixes the sample into the picture. `weight` is that of the sample, from 0 to 1.
+    pub fn draw(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        sample: &wgpu::BindGroup,
+        picture: &wgpu::TextureView,
+        weight: f64,
+    ) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("average"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: picture,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+            })],
+            ..Default::default()
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_blend_constant(wgpu::Color { r: weight, g: weight, b: weight, a: weight });
+        pass.set_bind_group(0, sample, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}

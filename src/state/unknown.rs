@@ -1,0 +1,71 @@
+//! Names that a view asks for and the model lacks.
+
+use std::fmt;
+
+/// What a name names.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NameKind {
+    /// A clip; its index will do as well.
+    Clip,
+    /// A material variant.
+    Variant,
+}
+
+/// A clip or a variant that was asked for and doesn't exist.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct UnknownName {
+    /// What was asked for.
+    pub kind: NameKind,
+    /// The name or index that was given.
+    pub name: String,
+    /// The names that there are.
+    pub names: Vec<String>,
+}
+
+impl UnknownName {
+    /// A file may have hundreds of clips.
+    const MAX_NAMES: usize = 5;
+
+    /// What should have been given.
+    pub fn expected(&self) -> &'static str {
+        match self.kind {
+            NameKind::Clip => "the name or index of a clip",
+            NameKind::Variant => "the name of a material variant",
+        }
+    }
+
+    /// Returns the names that are most like the given one, all of them if there are few; in the order of the file if an index
+    /// was given.
+    fn nearest(&self) -> Vec<&str> {
+        let wanted = beginning(&self.name);
+        let similarity = |name: &String| strsim::jaro_winkler(&wanted, &beginning(name));
+        let mut names: Vec<(f64, &str)> = self.names.iter().map(|name| (similarity(name), name.as_str())).collect();
+        if names.len() > Self::MAX_NAMES && self.name.parse::<i64>().is_err() {
+            names.sort_by(|a, b| b.0.total_cmp(&a.0));
+        }
+        names.into_iter().map(|(_, name)| name).take(Self::MAX_NAMES).collect()
+    }
+}
+
+/// “expected the name or index of a clip, found “Fly”; its clips are Walk, Idle”.
+impl fmt::Display for UnknownName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let plural = match self.kind {
+            NameKind::Clip => "clips",
+            NameKind::Variant => "variants",
+        };
+        write!(f, "expected {}, found “{}”; ", self.expected(), self.name)?;
+        let names = self.nearest().join(", ");
+        match self.names.len().saturating_sub(Self::MAX_NAMES) {
+            _ if names.is_empty() => write!(f, "there are no {plural}"),
+            0 => write!(f, "its {plural} are {names}"),
+            more => write!(f, "its {plural} are {names} and {more} more"),
+        }
+    }
+}
+
+/// The beginning of a name, in lower case, to compare with others. Names in links and files may be of any length.
+fn beginning(name: &str) -> String {
+    const MAX_CHARS: usize = 64;
+    name.chars().flat_map(char::to_lowercase).take(MAX_CHARS).collect()
+}
