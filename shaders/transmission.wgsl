@@ -20,11 +20,15 @@ fn exit_pixel(in: VertexOut, ray: vec3f) -> vec2f {
     return in.position.xy + 0.5 * frame.viewport_pixels * vec2f(moved.x, -moved.y);
 }
 
-fn behind(pixel: vec2f, roughness: f32) -> vec4f {
+// Of the picture, only the pane of the surface.
+fn behind(pixel: vec2f, surface: vec2f, roughness: f32) -> vec4f {
     let size = vec2f(textureDimensions(opaque_picture));
     let level = log2(size.x) * roughness;
-    let border = min(0.5 * exp2(level) / size, vec2f(0.5));
-    return textureSampleLevel(opaque_picture, environment_sampler, clamp(pixel / size, border, 1.0 - border), level);
+    let pane = frame.viewport_pixels / size;
+    let corner = floor(surface / frame.viewport_pixels) * pane;
+    let border = min(0.5 * exp2(level) / size, 0.5 * pane);
+    let at = clamp(pixel / size, corner + border, corner + pane - border);
+    return textureSampleLevel(opaque_picture, environment_sampler, at, level);
 }
 
 // Little refraction means little blur.
@@ -41,14 +45,14 @@ fn shown_behind(in: VertexOut, surface: Surface, thickness: f32) -> vec4f {
     let roughness = surface.transmission_roughness;
 #if VOLUME
     let ray = thickness * refracted(surface, material.ior);
-    var found = behind(exit_pixel(in, ray), roughness);
+    var found = behind(exit_pixel(in, ray), in.position.xy, roughness);
 #if DISPERSION
     let spread = (material.ior - 1.0) * 0.025 * material.dispersion;
-    found.r = behind(exit_pixel(in, thickness * refracted(surface, material.ior - spread)), roughness).r;
-    found.b = behind(exit_pixel(in, thickness * refracted(surface, material.ior + spread)), roughness).b;
+    found.r = behind(exit_pixel(in, thickness * refracted(surface, material.ior - spread)), in.position.xy, roughness).r;
+    found.b = behind(exit_pixel(in, thickness * refracted(surface, material.ior + spread)), in.position.xy, roughness).b;
 #endif
 #else
-    let found = behind(in.position.xy, roughness);
+    let found = behind(in.position.xy, in.position.xy, roughness);
 #endif
     return found;
 }

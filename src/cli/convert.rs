@@ -1,7 +1,7 @@
 //! `gaitway convert`: converts any supported model to a single GLB.
 
 use super::failure::{Failure, Outcome};
-use super::motion::{MotionArguments, apply_link, open_editor};
+use super::motion::{MotionArguments, Overrides, apply_link, open_editor};
 use super::output::write_output;
 use super::retarget::model_extensions;
 use super::{ConvertArguments, open, print_warnings};
@@ -54,6 +54,6 @@ fn posed(arguments: &ConvertArguments, link: &str, disk: &Disk) -> Outcome<Vec<u
         return Err(failure.at("--view").in_file(&opened.model.source));
     }
     let mut editor = open_editor(opened, &MotionArguments::default(), disk)?;
-    apply_link(&mut editor, link, &MotionArguments::default(), false, disk)?;
+    apply_link(&mut editor, link, &MotionArguments::default(), Overrides::default(), disk)?;
     Ok(editor.export(Export::FullModel { posed: true })?.bytes)
 }

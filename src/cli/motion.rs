@@ -111,13 +111,20 @@ pub(super) fn open_editor(opened: Opened, arguments: &MotionArguments, disk: &Di
     Ok(editor)
 }
 
+/// What of a link command-line options override.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Overrides {
+    pub clip: bool,
+    pub variant: bool,
+}
+
 /// Applies the view of a link to the open model, with those of its motions and maps that are files on disk. Command-line options
-/// override the link; `has_clip` if that includes its clip. Warns about anything unused.
+/// override the link. Warns about anything unused.
 pub(super) fn apply_link(
     editor: &mut Editor,
     link: &str,
     arguments: &MotionArguments,
-    has_clip: bool,
+    overrides: Overrides,
     disk: &Disk,
 ) -> Outcome {
     let fragment = link.split_once('#').map_or(link, |(_, fragment)| fragment);
@@ -148,10 +155,11 @@ pub(super) fn apply_link(
     problems.iter().chain(&unreported).for_each(|problem| warn(problem));
     // A motion's first clip overrides the link's, too.
     let unknown = editor.library().active().and_then(|model| unknown_clip(model, editor.state()));
-    if let Some(unknown) = unknown.filter(|_| !has_clip && arguments.motion.is_none()) {
+    if let Some(unknown) = unknown.filter(|_| !overrides.clip && arguments.motion.is_none()) {
         warn(&format!("--view: clip: {unknown}; the rest pose is used"));
     }
-    if let Some(unknown) = editor.library().active().and_then(|model| unknown_variant(model, editor.state())) {
+    let unknown = editor.library().active().and_then(|model| unknown_variant(model, editor.state()));
+    if let Some(unknown) = unknown.filter(|_| !overrides.variant) {
         warn(&format!("--view: variant: {unknown}; the file's own materials are used"));
     }
     Ok(())

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::failure::Outcome;
-use super::motion::{apply_link, open_editor};
+use super::motion::{Overrides, apply_link, open_editor};
 use super::output::print_bytes;
 use super::{PoseArguments, apply_moment, open};
 use crate::files::Disk;
@@ -12,7 +12,13 @@ use crate::frame::{NodePose, PoseDocument};
 pub(super) fn run(arguments: &PoseArguments, disk: &Disk) -> Outcome {
     let mut editor = open_editor(open(&arguments.input.files, disk)?, &arguments.motion, disk)?;
     if let Some(link) = &arguments.view {
-        apply_link(&mut editor, link, &arguments.motion, arguments.moment.clip.is_some(), disk)?;
+        apply_link(
+            &mut editor,
+            link,
+            &arguments.motion,
+            Overrides { clip: arguments.moment.clip.is_some(), ..Overrides::default() },
+            disk,
+        )?;
     }
     apply_moment(&mut editor, &arguments.moment, arguments.motion.motion.is_some())?;
     let document = PoseDocument::new(editor.library(), editor.state());

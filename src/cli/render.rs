@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use super::failure::{Failure, Outcome};
-use super::motion::{apply_link, open_editor};
+use super::motion::{Overrides, apply_link, open_editor};
 use super::output::{check_output, print_error, write_output};
 use super::quiet::Quiet;
 use super::{RenderArguments, apply_moment, open};
@@ -12,8 +12,8 @@ use crate::files::{Disk, Role, encode_png};
 use crate::frame::{Frame, evaluate};
 use crate::render::{Renderer, RendererOptions, headless_device, read_pixels};
 use crate::state::{
-    CameraChoice, Command, EnvironmentChoice, NameKind, OrbitCamera, UnknownName, from_object, resolve_camera,
-    source_on_stage,
+    CameraChoice, Command, EnvironmentChoice, NameKind, OrbitCamera, UnknownName, active_variant, from_object,
+    resolve_camera, source_on_stage,
 };
 
 /// File extensions for the image.
@@ -49,7 +49,8 @@ pub(super) fn run(arguments: &RenderArguments, disk: &Disk) -> Outcome {
 fn show_variant(editor: &mut Editor, name: &str) -> Outcome {
     editor.apply(Command::SetVariant(Some(name.to_owned())));
     let Some(model) = editor.library().active() else { return Ok(()) };
-    if editor.state().edits.variant.as_deref() == Some(name) {
+    // A link's unknown variant stays in the state.
+    if active_variant(model, editor.state()).is_some_and(|index| model.asset.variants[index] == name) {
         return Ok(());
     }
     let (name, names) = (name.to_owned(), model.asset.variants.clone());
@@ -81,7 +82,8 @@ fn open_requested_view(arguments: &RenderArguments, disk: &Disk) -> Outcome<Edit
     let aspect = width as f32 / height as f32;
     editor.set_aspect(aspect);
     if let Some(link) = &arguments.view {
-        apply_link(&mut editor, link, &arguments.motion, arguments.moment.clip.is_some(), disk)?;
+        let overrides = Overrides { clip: arguments.moment.clip.is_some(), variant: arguments.variant.is_some() };
+        apply_link(&mut editor, link, &arguments.motion, overrides, disk)?;
     }
     if let Some(name) = &arguments.variant {
         show_variant(&mut editor, name)?;

@@ -36,6 +36,9 @@ pub(super) struct Item {
     distance: f32,
 }
 
+/// Draws that are sorted by distance; the instances of a blended mesh that exceed them share one draw.
+const MAX_SORTED: usize = 1 << 14;
+
 impl Item {
     pub fn primitive<'a>(&self, models: &'a [GpuModel]) -> Option<&'a GpuPrimitive> {
         let primitive = models.get(self.model)?.meshes.get(self.mesh)?.get(self.primitive)?.as_ref()?;
@@ -276,12 +279,12 @@ impl DrawList {
         for (index, primitive) in primitives.iter().enumerate() {
             let Some(primitive) = primitive else { continue };
             let whole = instance(copies);
-            let primitive = primitive.in_variant(whole.character.variant);
+            let shown = primitive.in_variant(whole.character.variant);
             let depths = Depths {
-                shadow: whole.shadow && model.casts_shadow(primitive),
-                surface: primitive.features.has(Features::BLEND) && model.has_opaque_parts(primitive),
+                shadow: whole.shadow && model.casts_shadow(shown),
+                surface: shown.features.has(Features::BLEND) && model.has_opaque_parts(shown),
             };
-            if primitive.can_repeat() {
+            if shown.can_repeat() || self.blended.len() + copies.len() > MAX_SORTED {
                 self.add(device, pipelines, &whole, index, primitive, depths);
                 continue;
             }
@@ -291,7 +294,7 @@ impl DrawList {
         }
     }
 
-    /// Adds the items of one primitive.
+    /// Adds the items of one primitive, in the character's variant.
     fn add(
         &mut self,
         device: &wgpu::Device,
@@ -303,6 +306,8 @@ impl DrawList {
     ) {
         let (look, pane) = (&instance.frame.look, instance.character.pane);
         let is_surface = primitive.geometry.topology == Topology::Triangles;
+        let edges = wireframe_key(instance.mesh_key(primitive));
+        let primitive = primitive.in_variant(instance.character.variant);
         let offset = self.push_uniform(&instance.uniform(primitive));
         let key = instance.mesh_key(primitive);
         let mut item = |key: MeshKey, edges| Item {
@@ -343,7 +348,7 @@ impl DrawList {
             }
         }
         if look.wireframe && is_surface {
-            self.blended.push(item(wireframe_key(key), true));
+            self.blended.push(item(edges, true));
         }
     }
 

@@ -92,9 +92,12 @@ pub(super) fn variant(mut lobes: u32, has_map: impl Fn(TextureSlot) -> bool) -> 
 
 /// Writes the factors of lobes.
 pub(super) fn write_uniform(lobes: &Lobes, uniform: &mut MaterialUniform) {
-    let ratio = (lobes.ior - 1.0) / (lobes.ior + 1.0);
+    let ior = lobes.ior.max(0.0);
+    let ratio = (ior - 1.0) / (ior + 1.0);
     let absorption = match lobes.attenuation_distance > 0.0 {
-        true => -lobes.attenuation_color.clamp(Vec3::splat(1e-6), Vec3::ONE).ln() / lobes.attenuation_distance,
+        true => {
+            -lobes.attenuation_color.clamp(Vec3::splat(1e-6), Vec3::ONE).ln() / lobes.attenuation_distance.max(1e-6)
+        }
         false => Vec3::ZERO,
     };
     let (sin, cos) = lobes.anisotropy_rotation.sin_cos();
@@ -109,7 +112,7 @@ pub(super) fn write_uniform(lobes: &Lobes, uniform: &mut MaterialUniform) {
     uniform.clearcoat = lobes.clearcoat;
     uniform.clearcoat_roughness = lobes.clearcoat_roughness;
     uniform.clearcoat_normal_scale = lobes.clearcoat_normal_scale;
-    uniform.ior = lobes.ior;
+    uniform.ior = ior;
     uniform.iridescence = lobes.iridescence;
     uniform.iridescence_ior = lobes.iridescence_ior.max(1.0);
     uniform.iridescence_thickness = [lobes.iridescence_thickness_min, lobes.iridescence_thickness_max];

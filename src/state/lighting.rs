@@ -1,4 +1,4 @@
-//! What lights the scene besides the lights of a file, and how radiance becomes colours of the screen.
+//! What lights the scene besides the lights of a file, and how radiance is tone-mapped for display.
 
 use serde::{Deserialize, Serialize};
 

@@ -114,7 +114,7 @@ impl PoseSampler {
     }
 
     /// Applies the avatar to the sampled motion, then morph weights set manually. `eye` is the camera's position in
-    /// world space: eyes that look into the camera keep still without it. Allocates only when spring bones start over.
+    /// world space: eyes that look at the camera don't move without it. Allocates only when spring bones start over.
     pub fn apply_avatar(&mut self, model: &Model, state: &ViewerState, eye: Option<Vec3>) {
         self.avatar.apply(model, state, eye, &mut self.pose, &mut self.properties);
         for (&index, &weight) in &state.edits.morph {

@@ -5,7 +5,7 @@ use std::fmt;
 /// What a name names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NameKind {
-    /// A clip; its index will do as well.
+    /// A clip, by name or index.
     Clip,
     /// A material variant.
     Variant,
@@ -18,7 +18,7 @@ pub struct UnknownName {
     pub kind: NameKind,
     /// The name or index that was given.
     pub name: String,
-    /// The names that there are.
+    /// The names in the file.
     pub names: Vec<String>,
 }
 

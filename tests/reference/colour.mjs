@@ -72,7 +72,7 @@ export function meanDifference(one, other) {
 }
 
 /**
- * Returns the pixels that neither touch the background nor are it, in both pictures.
+ * Returns the pixels that are at least one pixel inside the object, in both pictures.
  * @param {Picture} one
  * @param {Picture} other
  */

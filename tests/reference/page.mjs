@@ -8,10 +8,9 @@ import { BACKGROUND } from "./colour.mjs";
 /** @typedef {import("./draw.mjs").View} View */
 /** @typedef {Record<"khronos" | "three", (view: View) => Promise<string>>} Reference */
 
-
 /**
- * The average of the Charlie lobe's reflected light over a square of view angles and roughness, as the renderer expects it in an
- * image that its package lacks (KHR_materials_sheen, "albedo-scaling technique").
+ * Builds the table of the Charlie sheen lobe's directional albedo by N·V and roughness, an image that the sample renderer's package
+ * lacks (KHR_materials_sheen, "albedo-scaling technique").
  */
 async function sheenAlbedoImage() {
   const size = 64;
@@ -29,7 +28,7 @@ async function sheenAlbedoImage() {
 }
 
 /**
- * Integrates the Charlie lobe over the upper hemisphere, uniformly in direction.
+ * Integrates the lobe over the hemisphere, uniformly in direction.
  * @param {number} normalView
  * @param {number} roughness
  */

@@ -9,7 +9,7 @@ import { meanDifference } from "./colour.mjs";
 import { startReference } from "./draw.mjs";
 import { sphereGrid } from "./spheres.mjs";
 
-/** Files that need no extension of materials. */
+/** Files without material extensions. */
 const CORE = [
   "cosc422/ArmyPilot.glb",
   "cosc422/dwarf.glb",
@@ -35,7 +35,7 @@ const CORE = [
 ];
 
 /**
- * Files with extensions of materials, and copies. Not materials/babylon/emoji_heart.glb: the sample renderer takes its specular colours
+ * Files with material extensions, and instancing. Not materials/babylon/emoji_heart.glb: the sample renderer takes its specular colours
  * for linear, while KHR_materials_pbrSpecularGlossiness says that they are sRGB.
  */
 const EXTENSIONS = [
@@ -95,7 +95,7 @@ describe("pictures against the Khronos glTF Sample Renderer", { skip: skipWithou
     assert.ok(mean < ofThree, `three.js is nearer: ${ofThree} instead of ${mean}`);
   });
 
-  test("files that need no extension of materials", () => compareAll(CORE, { onAverage: 1.5, each: 4 }));
+  test("files without material extensions", () => compareAll(CORE, { onAverage: 1.5, each: 4 }));
 
-  test("files with extensions of materials", () => compareAll(EXTENSIONS, { onAverage: 2, each: 4 }));
+  test("files with material extensions", () => compareAll(EXTENSIONS, { onAverage: 2, each: 4 }));
 });

@@ -35,8 +35,11 @@ function radiance([x, y, z]) {
   );
 }
 
-/** @param {number[]} color Returns RGBE. */
-function shared([r, g, b]) {
+/**
+ * Encodes a colour as RGBE: three mantissas and their common exponent.
+ * @param {number[]} color
+ */
+function rgbe([r, g, b]) {
   const exponent = Math.ceil(Math.log2(Math.max(r, g, b)));
   return [r, g, b].map((value) => Math.min(Math.round((value * 256) / 2 ** exponent), 255)).concat(exponent + 128);
 }
@@ -49,7 +52,7 @@ export function roomImage() {
     const down = (Math.PI * (row + 0.5)) / HEIGHT;
     const texels = Array.from({ length: WIDTH }, (_, column) => {
       const turn = 2 * Math.PI * ((column + 0.5) / WIDTH - 0.5);
-      return shared(radiance([Math.sin(down) * Math.cos(turn), Math.cos(down), Math.sin(down) * Math.sin(turn)]));
+      return rgbe(radiance([Math.sin(down) * Math.cos(turn), Math.cos(down), Math.sin(down) * Math.sin(turn)]));
     });
     rows.push(Buffer.from([2, 2, WIDTH >> 8, WIDTH & 255]));
     // Component by component, in runs of at most 128 literal bytes.

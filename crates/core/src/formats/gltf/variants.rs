@@ -1,5 +1,7 @@
 //! Material variants (KHR_materials_variants): names for the whole file, and other materials for its primitives.
 
+use std::collections::HashSet;
+
 use gltf::json::Root;
 use gltf::json::mesh::Primitive;
 use serde_json::Value;
@@ -10,6 +12,8 @@ use crate::formats::error::Problem;
 use crate::mesh::Material;
 
 pub const NAME: &str = "KHR_materials_variants";
+/// Each may make a pipeline for each primitive.
+const MAX_VARIANTS: usize = 1024;
 
 /// Returns the variants' names, each non-empty and unique, so that a name identifies its variant.
 pub fn names(root: &Root, warnings: &mut Warnings) -> Result<Vec<String>, Problem> {
@@ -21,13 +25,19 @@ pub fn names(root: &Root, warnings: &mut Warnings) -> Result<Vec<String>, Proble
         wrong(place, "an array of variants", extension).leave_out("variant", "the file has no variants", warnings)?;
         return Ok(Vec::new());
     };
-    let mut names: Vec<String> = Vec::with_capacity(variants.len());
-    for (index, variant) in variants.iter().enumerate() {
+    if variants.len() > MAX_VARIANTS {
+        let problem =
+            Problem::new(format!("extensions.{NAME}.variants"), format!("at most {MAX_VARIANTS}"), variants.len());
+        problem.leave_out("variant", "the others are left out", warnings)?;
+    }
+    let (mut names, mut used) = (Vec::new(), HashSet::new());
+    for (index, variant) in variants.iter().take(MAX_VARIANTS).enumerate() {
         let given = variant.get("name").and_then(Value::as_str).unwrap_or_default().trim();
         let base = if given.is_empty() { format!("Variant {index}") } else { given.to_owned() };
-        let mut name = base.clone();
-        if names.contains(&name) {
-            name = format!("{base} ({index})");
+        let (mut name, mut number) = (base.clone(), index);
+        while !used.insert(name.clone()) {
+            name = format!("{base} ({number})");
+            number += 1;
         }
         names.push(name);
     }
@@ -47,7 +57,7 @@ pub fn mappings(
         return Ok(Vec::new());
     };
     let place = format!("{place}.extensions.{NAME}.mappings");
-    let mut found: Vec<(usize, usize)> = Vec::new();
+    let (mut found, mut is_known) = (Vec::new(), vec![false; variants]);
     let mappings = match extension.get("mappings").and_then(Value::as_array) {
         Some(mappings) => &mappings[..],
         None => {
@@ -60,7 +70,7 @@ pub fn mappings(
             // Each variant at most once; the first counts.
             Ok((material, of)) => {
                 for variant in of {
-                    if found.iter().all(|&(known, _)| known != variant) {
+                    if !std::mem::replace(&mut is_known[variant], true) {
                         found.push((variant, material));
                     }
                 }

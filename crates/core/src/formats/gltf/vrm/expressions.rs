@@ -1,6 +1,6 @@
 //! `expressions` of VRM 1.0, `blendShapeMaster` of 0.x, and the names of animated expressions in a .vrma.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 use glam::Vec4;
 use serde_json::Value;
@@ -104,6 +104,11 @@ pub fn read_0(reader: &mut Reader, vrm: &Value, out: &mut Vec<Expression>) {
     for instance in reader.parts.instances {
         joints_of_mesh.entry(instance.mesh).or_default().push(instance.joint);
     }
+    let mut by_name: HashMap<&str, Vec<usize>> = HashMap::new();
+    let materials = reader.parts.materials;
+    for (at, material) in materials.iter().enumerate().filter(|(_, material)| !material.name.is_empty()) {
+        by_name.entry(&material.name).or_default().push(at);
+    }
     let place = "extensions.VRM.blendShapeMaster.blendShapeGroups";
     let groups = reader.list(place, &vrm["blendShapeMaster"]["blendShapeGroups"], MAX_EXPRESSIONS);
     for (at, value) in groups.iter().enumerate() {
@@ -127,7 +132,7 @@ pub fn read_0(reader: &mut Reader, vrm: &Value, out: &mut Vec<Expression>) {
             morph(reader, &format!("{binds_place}[{at}]"), joints, &bind["index"], weight, &mut expression);
         }
         for bind in reader.list(&format!("{place}.materialValues"), &value["materialValues"], MAX_BINDS) {
-            material_value(reader, bind, &mut expression);
+            material_value(reader, &by_name, bind, &mut expression);
         }
         out.push(expression);
     }
@@ -212,9 +217,9 @@ fn pair(value: &Value, start: usize, default: [f32; 2]) -> [f32; 2] {
 }
 
 /// VRM 0.x names materials, and has texture coordinates that start at the bottom.
-fn material_value(reader: &Reader, bind: &Value, expression: &mut Expression) {
+fn material_value(reader: &Reader, by_name: &HashMap<&str, Vec<usize>>, bind: &Value, expression: &mut Expression) {
     let (name, property, value) = (text(bind, "materialName"), text(bind, "propertyName"), &bind["targetValue"]);
-    for (at, _) in reader.parts.materials.iter().enumerate().filter(|(_, material)| material.name == name) {
+    for &at in by_name.get(name).into_iter().flatten().take(MAX_BINDS - expression.materials.len().min(MAX_BINDS)) {
         if property == "_MainTex_ST" {
             let (scale, [x, y]) = (pair(value, 0, [1.0, 1.0]), pair(value, 2, [0.0, 0.0]));
             texture_transform(reader, at, scale, [x, 1.0 - y - scale[1]], expression);

@@ -13,6 +13,10 @@ const MAX_COLLIDERS: usize = 1024;
 /// Groups of a file, and groups of colliders of a spring.
 const MAX_GROUPS: usize = 512;
 const MAX_GROUPS_OF_SPRING: usize = 64;
+/// Pairs of spring joint and collider, which are tested in every step.
+const MAX_TESTS: usize = 1 << 16;
+
+const BONE_GROUPS: &str = "extensions.VRM.secondaryAnimation.boneGroups";
 
 const DOWN: Vec3 = Vec3::NEG_Y;
 
@@ -33,12 +37,16 @@ pub fn read_1(reader: &mut Reader, value: &Value) -> Springs {
     };
     let mut joints = Vec::new();
     let mut left = MAX_JOINTS;
-    for (at, spring) in list(&value["springs"]).iter().enumerate() {
+    let mut tests = MAX_TESTS;
+    for (at, spring) in reader.list(&place_of("springs"), &value["springs"], MAX_GROUPS).iter().enumerate() {
         let place = place_of(&format!("springs[{at}]"));
         let chain = reader.list(&format!("{place}.joints"), &spring["joints"], left);
         left -= chain.len();
+        if chain.len() < 2 {
+            continue;
+        }
         let groups = reader.list(&format!("{place}.colliderGroups"), &spring["colliderGroups"], MAX_GROUPS_OF_SPRING);
-        let colliders = distinct(groups.iter().flat_map(group));
+        let colliders = affordable(reader, &place, distinct(groups.iter().flat_map(group)), chain.len(), &mut tests);
         let center = spring.get("center").and_then(|node| reader.joint(node));
         for (end, pair) in chain.windows(2).enumerate() {
             let place = |joint: usize| format!("{place}.joints[{joint}]");
@@ -84,7 +92,8 @@ pub fn read_0(reader: &mut Reader, vrm: &Value) -> Springs {
     }
     let mut joints: Vec<SpringJoint> = Vec::new();
     // Each group looks at every joint.
-    for group in reader.list("extensions.VRM.secondaryAnimation.boneGroups", &value["boneGroups"], MAX_GROUPS) {
+    let mut tests = MAX_TESTS;
+    for group in reader.list(BONE_GROUPS, &value["boneGroups"], MAX_GROUPS) {
         let of_group = |at: &Value| index(at).and_then(|at| groups.get(at)).cloned().into_iter().flatten();
         let colliders = list(&group["colliderGroups"]).iter().take(MAX_GROUPS_OF_SPRING).flat_map(of_group);
         let colliders = distinct(colliders);
@@ -96,6 +105,10 @@ pub fn read_0(reader: &mut Reader, vrm: &Value) -> Springs {
         }
         for joint in skeleton.joints() {
             is_below[joint.get()] |= skeleton.parent(joint).is_some_and(|parent| is_below[parent.get()]);
+        }
+        let count = is_below.iter().filter(|is_below| **is_below).count();
+        let colliders = affordable(reader, BONE_GROUPS, colliders, count, &mut tests);
+        for joint in skeleton.joints() {
             if let Some(tail) = SpringJoint::tail(skeleton, joint, first_child[joint.get()])
                 && is_below[joint.get()]
                 && joints.len() < MAX_JOINTS
@@ -105,6 +118,21 @@ pub fn read_0(reader: &mut Reader, vrm: &Value) -> Springs {
         }
     }
     Springs::new(skeleton, joints, colliders)
+}
+
+/// Leaves the colliders of a spring out if testing its joints against them exceeds what is left of [`MAX_TESTS`].
+fn affordable(reader: &mut Reader, place: &str, colliders: Vec<u32>, joints: usize, tests: &mut usize) -> Vec<u32> {
+    match tests.checked_sub(colliders.len() * joints) {
+        Some(left) => {
+            *tests = left;
+            colliders
+        }
+        None => {
+            let problem = format!("more than {MAX_TESTS} pairs of joint and collider in all; it collides with nothing");
+            reader.ignore(place.to_owned(), problem);
+            Vec::new()
+        }
+    }
 }
 
 fn distinct(indices: impl Iterator<Item = u32>) -> Vec<u32> {
