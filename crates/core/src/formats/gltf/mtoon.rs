@@ -5,6 +5,7 @@ use serde_json::{Map, Value};
 use super::lobes::{ignore, member, read_numbers};
 use super::materials::TextureReader;
 use crate::anim::{TextureSlot, ToonColor};
+use crate::asset::Warning;
 use crate::formats::error::Problem;
 use crate::mesh::{Material, OutlineMode, Toon};
 
@@ -76,5 +77,16 @@ pub fn read(
         }
     }
     material.shade_as_toon(toon);
+    let speeds = ["uvAnimationScrollXSpeedFactor", "uvAnimationScrollYSpeedFactor", "uvAnimationRotationSpeedFactor"];
+    if speeds.into_iter().any(|name| extensions[MTOON][name].as_f64().is_some_and(|speed| speed != 0.0)) {
+        warn_about_moving_textures(reader);
+    }
     Ok(())
+}
+
+/// The textures of a material that scrolls or turns them stand still.
+pub fn warn_about_moving_textures(reader: &mut TextureReader<'_>) {
+    let place = reader.material.to_owned();
+    let problem = "its textures move by themselves, which is not supported; they are shown as they start".to_owned();
+    reader.warnings.push(Warning::Other { code: "mtoon-uv-animation", place, problem });
 }

@@ -14,11 +14,14 @@ const MAX_EXPRESSIONS: usize = 256;
 const MAX_BINDS: usize = 1024;
 
 /// Types of colours that only MToon has, in VRM 1.0 and 0.x.
-const TOON_COLORS: [(&str, &str, ToonColor); 4] = [
-    ("shadeColor", "_ShadeColor", ToonColor::ShadeColor),
-    ("matcapColor", "_SphereColor", ToonColor::MatcapColor),
-    ("rimColor", "_RimColor", ToonColor::RimColor),
-    ("outlineColor", "_OutlineColor", ToonColor::OutlineColor),
+const TOON_COLORS: [(&str, ToonColor); 7] = [
+    ("shadeColor", ToonColor::ShadeColor),
+    ("_ShadeColor", ToonColor::ShadeColor),
+    ("matcapColor", ToonColor::MatcapColor),
+    ("rimColor", ToonColor::RimColor),
+    ("_RimColor", ToonColor::RimColor),
+    ("outlineColor", ToonColor::OutlineColor),
+    ("_OutlineColor", ToonColor::OutlineColor),
 ];
 
 /// VRM 0.x's preset names and those of 1.0.
@@ -197,12 +200,10 @@ fn color(reader: &Reader, at: usize, kind: &str, target: &Value, expression: &mu
             add(expression, at, MaterialProperty::Emissive, rest, target.truncate().extend(0.0));
         }
         _ => {
-            let toon = material.toon.as_deref().copied();
-            if let (Some(mut toon), Some((_, _, color))) =
-                (toon, TOON_COLORS.iter().find(|(a, b, _)| kind == *a || kind == *b))
-            {
-                let rest = toon.color_mut(*color).extend(0.0);
-                add(expression, at, MaterialProperty::Toon(*color), rest, target.truncate().extend(0.0));
+            let color = TOON_COLORS.iter().find(|(name, _)| *name == kind).map(|&(_, color)| color);
+            if let (Some(mut toon), Some(color)) = (material.toon.as_deref().copied(), color) {
+                let rest = toon.color_mut(color).extend(0.0);
+                add(expression, at, MaterialProperty::Toon(color), rest, target.truncate().extend(0.0));
             }
         }
     }

@@ -5,6 +5,7 @@ use glam::{Vec3, Vec4};
 use serde_json::{Value, json};
 
 use super::super::materials::TextureReader;
+use super::super::mtoon::warn_about_moving_textures;
 use super::number;
 use crate::anim::TextureSlot;
 use crate::formats::error::Problem;
@@ -128,5 +129,8 @@ pub fn read_0(value: &Value, material: &mut Material, reader: &mut TextureReader
         }
     }
     material.shade_as_toon(toon);
+    if ["_UvAnimScrollX", "_UvAnimScrollY", "_UvAnimRotation"].iter().any(|name| properties.number(name, 0.0) != 0.0) {
+        warn_about_moving_textures(reader);
+    }
     Ok(())
 }
