@@ -2,11 +2,14 @@
 
 use gaitway::anim::{MaterialProperty, PropertyTarget, TextureSlot, ToonColor};
 use gaitway::asset::Asset;
+use gaitway::formats::{load, pointer_to};
 use gaitway::mesh::{AlphaMode, Lobes, Material, OutlineMode, Toon};
 use glam::{Vec2, Vec3, Vec4};
 use serde_json::{Value, json};
 
 use crate::build_gltf::Build;
+use crate::data_folder::data_folder;
+use crate::sweep::file_set;
 
 /// Loads the triangle with this material, these extensions of the file, and 20 textures.
 fn read(material: Value, extensions: Value) -> Asset {
@@ -149,7 +152,7 @@ fn vrm_0_is_converted() {
     let half = 0.5_f32.powf(2.2);
     let (material, toon) = (&asset.materials[0], toon(&asset));
     assert_eq!(material.base_color, Vec4::new(half, 1.0, 0.0, 0.5));
-    close(material.emissive.x, 2.0_f32.powf(2.2));
+    assert_eq!(material.emissive, 2.0 * Vec3::X);
     assert_eq!((material.alpha_mode, material.double_sided), (AlphaMode::Mask { cutoff: 0.3 }, true));
     assert_eq!((material.unlit, material.normal_scale), (false, 0.7));
     let slots = [
@@ -185,6 +188,19 @@ fn vrm_0_is_converted() {
     assert_eq!((bind.rest, bind.rest + bind.delta), (Vec4::Y * half, Vec4::new(1.0, half, 0.0, 0.0)));
 }
 
+/// UniVRM's file for this: what MToon emits at 0.5 looks like unlit 0.5, in linear space.
+#[test]
+fn emission_of_vrm_0_is_linear() {
+    let Some(data) = data_folder() else { return };
+    let asset = load(&file_set(&data.join("vrm/vrm0_EmissionMigration_v0.107.0.vrm"))).expect("a valid file");
+    let material = |name: &str| {
+        asset.materials.iter().find(|material| material.name == name).unwrap_or_else(|| panic!("no material {name}"))
+    };
+    assert_eq!(material("MToon_Emission_0.5").emissive, material("Unlit_Linear_0.5").base_color.truncate());
+    assert_eq!(material("MToon_Emission_2.0").emissive, Vec3::splat(2.0));
+    assert!(material("MToon_Emission_2.0").toon.is_some() && material("Unlit_Linear_0.5").toon.is_none());
+}
+
 #[test]
 fn other_shaders_of_vrm_0_keep_the_gltf_material() {
     let asset =
@@ -197,4 +213,25 @@ fn other_shaders_of_vrm_0_keep_the_gltf_material() {
     close(toon(&asset).shading_toony, 0.95);
     close(toon(&asset).shade_color.x, 0.97_f32.powf(2.2));
     assert_eq!((asset.materials[0].base_color, toon(&asset).outline_mode), (Vec4::ONE, OutlineMode::None));
+}
+
+#[test]
+fn colours_and_texture_transforms_can_be_animated() {
+    let mut build = Build::triangle();
+    build.json["textures"] = json!([{}]);
+    let toon = json!({ "shadeMultiplyTexture": { "index": 0 } });
+    build.json["materials"] = json!([{ "extensions": { "VRMC_materials_mtoon": toon } }, {}]);
+    let pointers = [
+        "/materials/0/extensions/VRMC_materials_mtoon/shadeColorFactor",
+        "/materials/0/extensions/VRMC_materials_mtoon/shadeMultiplyTexture/extensions/KHR_texture_transform/offset",
+        "/materials/1/extensions/VRMC_materials_mtoon/shadeColorFactor",
+    ];
+    for (pointer, shape) in pointers.into_iter().zip(["VEC3", "VEC2", "VEC3"]) {
+        build.point(pointer, "LINEAR", shape, &[0.0, 1.0], if shape == "VEC3" { &[0.5; 6] } else { &[0.5; 4] });
+    }
+    let asset = build.load().expect("a valid file");
+    let found: Vec<String> =
+        asset.clips[0].properties().iter().map(|channel| pointer_to(channel.target, &asset)).collect();
+    // The other material has no such colour.
+    assert_eq!(found, pointers[..2]);
 }

@@ -191,7 +191,7 @@ fn color(reader: &Reader, at: usize, kind: &str, target: &Value, expression: &mu
     if !target.is_finite() {
         return;
     }
-    let is_gamma = kind.starts_with('_') && material.toon.is_some();
+    let is_gamma = kind.starts_with('_') && kind != "_EmissionColor" && material.toon.is_some();
     let target = if is_gamma { mtoon::linear(target) } else { target };
     match kind {
         "color" | "_Color" => add(expression, at, MaterialProperty::BaseColor, material.base_color, target),

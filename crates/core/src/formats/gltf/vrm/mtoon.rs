@@ -1,5 +1,5 @@
-//! MToon of VRM 0.x: `materialProperties`, which are those of a shader in Unity. Colours are in gamma space, and texture
-//! coordinates start at the bottom. The conversion is that of UniVRM and three-vrm.
+//! MToon of VRM 0.x: `materialProperties`, which are those of a shader in Unity. Colours but emission are in gamma
+//! space, and texture coordinates start at the bottom. The conversion is that of UniVRM, and but for emission of three-vrm.
 
 use glam::{Vec3, Vec4};
 use serde_json::{Value, json};
@@ -33,13 +33,18 @@ impl<'a> Properties<'a> {
         number(&self.value["floatProperties"], name, default)
     }
 
+    /// Returns a colour in linear space.
     fn color(&self, name: &str, default: Vec4) -> Vec4 {
+        linear(self.vector(name, default))
+    }
+
+    fn vector(&self, name: &str, default: Vec4) -> Vec4 {
         let list = &self.value["vectorProperties"][name];
         let component = |at: usize| {
             let number = list[at].as_f64().map(|number| number as f32);
             number.filter(|number| number.is_finite()).unwrap_or(default[at])
         };
-        linear(Vec4::from_array([0, 1, 2, 3].map(component)))
+        Vec4::from_array([0, 1, 2, 3].map(component))
     }
 
     fn texture(
@@ -106,7 +111,8 @@ pub fn read_0(value: &Value, material: &mut Material, reader: &mut TextureReader
     material.base_color_texture = properties.texture("_MainTex", transform, reader)?;
     material.normal_texture = properties.texture("_BumpMap", transform, reader)?;
     material.normal_scale = properties.number("_BumpScale", 1.0);
-    material.emissive = properties.color("_EmissionColor", Vec4::W).truncate();
+    // Unity keeps colours without an upper limit linear.
+    material.emissive = properties.vector("_EmissionColor", Vec4::W).truncate().max(Vec3::ZERO);
     material.emissive_strength = 1.0;
     material.emissive_texture = properties.texture("_EmissionMap", transform, reader)?;
     material.alpha_mode = if properties.has_keyword("_ALPHABLEND_ON") {
