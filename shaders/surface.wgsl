@@ -1,4 +1,4 @@
-// Fragment stages of meshes: metallic-roughness with lobes, unlit, heat map, wireframe, shadow. Overrides remove unused
+// Fragment stages of meshes: metallic-roughness with lobes (MToon is in toon.wgsl), unlit, heat map, wireframe, shadow. Overrides remove unused
 // features; `#if` and `#maps` are explained in src/render/shaders.rs.
 
 override BASE_COLOR_MAP: bool = false;
@@ -17,6 +17,8 @@ override BLEND: bool = false;
 override SHADOW: bool = false;
 // Uses the file's lights instead of the key light.
 override FILE_LIGHTS: bool = false;
+// Draws MToon's outline: the mesh inflated and inside out.
+override OUTLINE: bool = false;
 
 // Alpha from which a blended surface counts as opaque; must match model.rs.
 const OPAQUE_ALPHA: f32 = 0.9;
@@ -60,8 +62,23 @@ struct Material {
     anisotropy: f32,
     transmission: f32,
     dispersion: f32,
+    // MToon.
+    shading_shift: f32,
+    shading_shift_scale: f32,
+    shading_toony: f32,
+    shade_color: vec3f,
+    gi_equalization: f32,
+    matcap_color: vec3f,
+    rim_lighting_mix: f32,
+    rim_color: vec3f,
+    rim_fresnel_power: f32,
+    outline_color: vec3f,
+    outline_lighting_mix: f32,
+    rim_lift: f32,
+    outline_width: f32,
+    outline_on_screen: u32,
     // In the order of the maps' bindings.
-    uvs: array<UvTransform, 19>,
+    uvs: array<UvTransform, 24>,
 }
 
 @group(3) @binding(0) var<uniform> material: Material;
@@ -163,6 +180,8 @@ fn surface_normal(in: VertexOut, front: bool) -> vec3f {
     return normal;
 }
 
+#if TOON
+#else
 @fragment
 fn lit(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let base = base_color(in);
@@ -313,6 +332,8 @@ fn lit(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) vec4f 
     return finish(display, base.a);
 #endif
 }
+
+#endif
 
 @fragment
 fn unlit(in: VertexOut) -> @location(0) vec4f {

@@ -44,10 +44,16 @@ override DEPTH_OFFSET: f32 = 0.0;
 
 fn vertex_out(in: VertexIn, blend: Blend, heat: f32) -> VertexOut {
     let shape = deform(in.vertex, Shape(in.position, in.normal, in.tangent.xyz), blend);
+    var position = shape.position;
+#if TOON
+    if OUTLINE {
+        position += outline_offset(in, shape);
+    }
+#endif
     var out: VertexOut;
-    out.position = frame.projection_from_world * vec4f(shape.position, 1.0);
+    out.position = frame.projection_from_world * vec4f(position, 1.0);
     out.position.z -= DEPTH_OFFSET * out.position.w;
-    out.to_eye = frame.eye - shape.position;
+    out.to_eye = frame.eye - position;
     out.normal = shape.normal;
     out.tangent = vec4f(shape.tangent, in.tangent.w);
     out.uv = in.uv;

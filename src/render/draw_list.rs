@@ -127,6 +127,18 @@ fn depth_key(key: MeshKey) -> MeshKey {
     MeshKey { shading: Shading::Depth, features, tone_map: ToneMap::default(), ..key }
 }
 
+/// The key that draws an MToon surface's outline; `None` if it has none. Blended surfaces would show it through themselves,
+/// and flat shading would tear it apart.
+fn outline_key(primitive: &GpuPrimitive, key: MeshKey) -> Option<MeshKey> {
+    let has_outline = primitive.outlined
+        && key.shading == Shading::Lit
+        && key.topology == Topology::Triangles
+        && !key.features.has(Features::BLEND)
+        && !key.features.has(Features::FLAT);
+    let features = key.features.with(Features::OUTLINE, true);
+    has_outline.then_some(MeshKey { features, cull: Some(wgpu::Face::Front), ..key })
+}
+
 /// The key that draws the surface's edges.
 fn wireframe_key(key: MeshKey) -> MeshKey {
     MeshKey {
@@ -334,6 +346,10 @@ impl DrawList {
                 self.transmissive.push(item(key, false));
             } else if !key.features.has(Features::BLEND) {
                 self.solid.push(item(key, false));
+                // Wireframes are for looking at the mesh itself.
+                if let Some(key) = outline_key(primitive, key).filter(|_| !look.wireframe) {
+                    self.solid.push(item(key, false));
+                }
             } else if primitive.double_sided && is_surface {
                 // Back faces first, so that front faces blend over them.
                 for cull in [wgpu::Face::Front, wgpu::Face::Back] {

@@ -1,4 +1,4 @@
-//! What the GPU gets of a material's lobes: the variant of the shader and the uniform.
+//! What the GPU gets of a material's lobes or MToon: the variant of the shader and the uniform.
 
 use glam::Vec3;
 
@@ -6,15 +6,18 @@ use super::shaders::SurfaceVariant as Variant;
 use super::uniforms::MaterialUniform;
 use crate::anim::{LobeFactor, MaterialProperty, PropertyTarget, TextureSlot};
 use crate::asset::Asset;
-use crate::mesh::{Lobes, Material};
+use crate::mesh::{Lobes, Material, OutlineMode, Toon};
 
-/// Returns the lobes that a material, whose index in the asset this is, shows or that a clip can show, as bits of a variant.
-pub(super) fn visible(asset: &Asset, index: Option<usize>, material: &Material) -> u32 {
+/// Returns MToon, or the lobes that a material, whose index in the asset this is, shows or that a clip can show, as bits of a variant.
+pub(super) fn visible(asset: &Asset, index: Option<usize>, material: &Material) -> u64 {
+    if material.toon.is_some() {
+        return Variant::TOON;
+    }
     let Some(lobes) = material.lobes.as_deref() else { return 0 };
     at_rest(lobes) | index.map_or(0, |index| animated(asset, index))
 }
 
-fn at_rest(lobes: &Lobes) -> u32 {
+fn at_rest(lobes: &Lobes) -> u64 {
     let default = Lobes::default();
     let has_specular = (lobes.ior, lobes.specular, lobes.specular_color)
         != (default.ior, default.specular, default.specular_color)
@@ -36,7 +39,7 @@ fn at_rest(lobes: &Lobes) -> u32 {
     .sum()
 }
 
-fn animated(asset: &Asset, material: usize) -> u32 {
+fn animated(asset: &Asset, material: usize) -> u64 {
     let targets = asset.clips.iter().flat_map(|clip| clip.properties()).map(|channel| channel.target);
     let lobes = targets.map(|target| match target {
         PropertyTarget::Material(index, MaterialProperty::Lobe(factor)) if index == material => lobe_of(factor),
@@ -45,7 +48,7 @@ fn animated(asset: &Asset, material: usize) -> u32 {
     lobes.fold(0, |all, lobe| all | lobe)
 }
 
-fn lobe_of(factor: LobeFactor) -> u32 {
+fn lobe_of(factor: LobeFactor) -> u64 {
     match factor {
         LobeFactor::Ior | LobeFactor::Specular | LobeFactor::SpecularColor => Variant::SPECULAR,
         LobeFactor::Clearcoat => Variant::CLEARCOAT,
@@ -61,7 +64,7 @@ fn lobe_of(factor: LobeFactor) -> u32 {
 }
 
 /// Returns the variant for these lobes: with the maps that are there and that they use.
-pub(super) fn variant(mut lobes: u32, has_map: impl Fn(TextureSlot) -> bool) -> Variant {
+pub(super) fn variant(mut lobes: u64, has_map: impl Fn(TextureSlot) -> bool) -> Variant {
     if lobes & (Variant::TRANSMISSION | Variant::DIFFUSE_TRANSMISSION) == 0 {
         lobes &= !Variant::VOLUME;
     }
@@ -84,7 +87,13 @@ pub(super) fn variant(mut lobes: u32, has_map: impl Fn(TextureSlot) -> bool) -> 
         TextureSlot::DiffuseTransmission | TextureSlot::DiffuseTransmissionColor => {
             lobes & Variant::DIFFUSE_TRANSMISSION != 0
         }
-        _ => true,
+        TextureSlot::MetallicRoughness | TextureSlot::Occlusion => lobes & Variant::TOON == 0,
+        TextureSlot::ShadeMultiply
+        | TextureSlot::ShadingShift
+        | TextureSlot::Matcap
+        | TextureSlot::RimMultiply
+        | TextureSlot::OutlineWidth => lobes & Variant::TOON != 0,
+        TextureSlot::BaseColor | TextureSlot::Normal | TextureSlot::Emissive => true,
     };
     let maps = TextureSlot::ALL.into_iter().filter(|&slot| is_used(slot) && has_map(slot));
     Variant(maps.fold(lobes, |bits, slot| bits | 1 << slot as u32))
@@ -120,4 +129,23 @@ pub(super) fn write_uniform(lobes: &Lobes, uniform: &mut MaterialUniform) {
     uniform.anisotropy = lobes.anisotropy;
     uniform.transmission = lobes.transmission;
     uniform.dispersion = lobes.dispersion.max(0.0);
+}
+
+/// Writes the factors of MToon.
+pub(super) fn write_toon(toon: &Toon, uniform: &mut MaterialUniform) {
+    uniform.shading_shift = toon.shading_shift;
+    uniform.shading_shift_scale = toon.shading_shift_scale;
+    uniform.shading_toony = toon.shading_toony;
+    uniform.shade_color = toon.shade_color.to_array();
+    uniform.gi_equalization = toon.gi_equalization;
+    uniform.matcap_color = toon.matcap_color.to_array();
+    uniform.rim_lighting_mix = toon.rim_lighting_mix;
+    uniform.rim_color = toon.rim_color.to_array();
+    // 0 to the power of 0 is undefined in shaders.
+    uniform.rim_fresnel_power = toon.rim_fresnel_power.max(1e-5);
+    uniform.rim_lift = toon.rim_lift;
+    uniform.outline_color = toon.outline_color.to_array();
+    uniform.outline_lighting_mix = toon.outline_lighting_mix;
+    uniform.outline_width = toon.outline_width;
+    uniform.outline_on_screen = u32::from(toon.outline_mode == OutlineMode::Screen);
 }

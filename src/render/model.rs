@@ -7,7 +7,7 @@ use wgpu::util::DeviceExt;
 
 use super::UploadError;
 use super::geometry::{GpuGeometry, InfluenceSource, edges};
-use super::lobes::{self, write_uniform};
+use super::lobes::{self, write_toon, write_uniform};
 use super::pipelines::{Features, Shading, primitive_layout};
 use super::shaders::SurfaceVariant;
 use super::texture::{MipMaker, sampler, single_texel};
@@ -42,6 +42,8 @@ pub(super) struct GpuPrimitive {
     pub features: Features,
     pub surface: SurfaceVariant,
     pub double_sided: bool,
+    /// Whether an outline is drawn around it.
+    pub outlined: bool,
     /// Index in the asset; `None` is the default material.
     material: Option<usize>,
     /// Index buffer of the edges and its length; built when the wireframe is first shown.
@@ -223,7 +225,9 @@ impl Materials<'_> {
         // A map without texture coordinates is ignored; otherwise its first texel would colour everything.
         let has_map = |slot: TextureSlot| {
             let reference = material.texture(slot).filter(|_| gpu_material.maps[slot as usize].is_some());
-            reference.is_some_and(|reference| !geometry.uvs[reference.uv_set & 1].is_empty())
+            // A matcap's coordinates are those of the normal.
+            let is_placed = |uv_set: usize| slot == TextureSlot::Matcap || !geometry.uvs[uv_set & 1].is_empty();
+            reference.is_some_and(|reference| is_placed(reference.uv_set))
         };
         let lobes = if unlit { 0 } else { lobes::visible(&asset, key, material) };
         // Without texture coordinates there is no direction to stretch highlights in.
@@ -236,6 +240,7 @@ impl Materials<'_> {
             features: features(material, has_map, geometry),
             surface,
             double_sided: material.double_sided,
+            outlined: material.toon.as_ref().is_some_and(|toon| toon.has_outline()),
             material: key,
             edges: None,
             variants: Vec::new(),
@@ -289,6 +294,9 @@ fn material_uniform(material: &Material) -> MaterialUniform {
         ..Default::default()
     };
     write_uniform(material.lobes.as_deref().unwrap_or(&Lobes::default()), &mut uniform);
+    if let Some(toon) = &material.toon {
+        write_toon(toon, &mut uniform);
+    }
     uniform
 }
 
@@ -300,7 +308,7 @@ fn features(material: &Material, has_map: impl Fn(TextureSlot) -> bool, geometry
         .with(Features::NORMAL_MAP, has_map(TextureSlot::Normal))
         .with(Features::OCCLUSION_MAP, has_map(TextureSlot::Occlusion))
         .with(Features::EMISSIVE_MAP, !material.unlit && has_map(TextureSlot::Emissive))
-        .with(Features::VERTEX_COLORS, !geometry.colors.is_empty())
+        .with(Features::VERTEX_COLORS, !geometry.colors.is_empty() && material.toon.is_none())
         .with(Features::FLAT, geometry.normals.is_empty())
         .with(Features::TANGENTS, !geometry.tangents.is_empty())
         .with(Features::MASK, matches!(material.alpha_mode, AlphaMode::Mask { .. }))

@@ -50,12 +50,13 @@ const NUMBERS: wgpu::TextureSampleType = wgpu::TextureSampleType::Float { filter
 /// interchangeable.
 pub(super) fn primitive_layout(device: &wgpu::Device, surface: SurfaceVariant) -> wgpu::BindGroupLayout {
     use wgpu::{ShaderStages as Stages, TextureViewDimension as Dimension};
-    let mut entries = vec![entry(0, Stages::FRAGMENT, uniform_binding(size_of::<MaterialUniform>(), false))];
+    let mut entries = vec![entry(0, Stages::VERTEX_FRAGMENT, uniform_binding(size_of::<MaterialUniform>(), false))];
     for map in surface.maps() {
         let binding = SurfaceVariant::binding(map);
         let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-        entries.push(entry(binding, Stages::FRAGMENT, texture_binding(FILTERED, Dimension::D2)));
-        entries.push(entry(binding + 1, Stages::FRAGMENT, sampler));
+        let stage = if SurfaceVariant::is_of_vertices(map) { Stages::VERTEX } else { Stages::FRAGMENT };
+        entries.push(entry(binding, stage, texture_binding(FILTERED, Dimension::D2)));
+        entries.push(entry(binding + 1, stage, sampler));
     }
     entries.extend([11, 12].map(|binding| entry(binding, Stages::VERTEX, texture_binding(NUMBERS, Dimension::D2))));
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("primitive"), entries: &entries })
@@ -131,6 +132,7 @@ impl Features {
     pub const BLEND: Self = Self(1 << 9);
     pub const SHADOW: Self = Self(1 << 10);
     pub const FILE_LIGHTS: Self = Self(1 << 11);
+    pub const OUTLINE: Self = Self(1 << 12);
 
     pub fn with(self, other: Self, wanted: bool) -> Self {
         if wanted { Self(self.0 | other.0) } else { self }
@@ -149,7 +151,7 @@ impl Features {
     }
 }
 
-const OVERRIDES: [&str; 12] = [
+const OVERRIDES: [&str; 13] = [
     "BASE_COLOR_MAP",
     "METALLIC_ROUGHNESS_MAP",
     "NORMAL_MAP",
@@ -162,6 +164,7 @@ const OVERRIDES: [&str; 12] = [
     "BLEND",
     "SHADOW",
     "FILE_LIGHTS",
+    "OUTLINE",
 ];
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -478,7 +481,13 @@ fn mesh_constants(key: MeshKey) -> Vec<(&'static str, f64)> {
     constants.push(("SKINNING", skinning));
     constants.push(tone_constant(key.tone_map));
     constants.push(("COVERAGE", f64::from(u8::from(key.coverage))));
-    constants.push(("DEPTH_OFFSET", if key.shading == Shading::Wireframe { 3e-5 } else { 0.0 }));
+    let depth_offset = match key.shading {
+        Shading::Wireframe => 3e-5,
+        // An outline without width is behind its surface.
+        _ if key.features.has(Features::OUTLINE) => -1e-6,
+        _ => 0.0,
+    };
+    constants.push(("DEPTH_OFFSET", depth_offset));
     constants
 }
 

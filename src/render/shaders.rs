@@ -24,6 +24,7 @@ const ANISOTROPY: &str = wgsl!("anisotropy");
 const IRIDESCENCE: &str = wgsl!("iridescence");
 const TRANSMISSION: &str = wgsl!("transmission");
 const SURFACE: &str = wgsl!("surface");
+const TOON: &str = wgsl!("toon");
 const GROUND: &str = wgsl!("ground");
 const LINE: &str = wgsl!("line");
 const BONE: &str = wgsl!("bone");
@@ -54,41 +55,48 @@ const MAPS: [&str; TextureSlot::ALL.len()] = [
     "thickness",
     "diffuse_transmission",
     "diffuse_transmission_color",
+    "shade_multiply",
+    "shading_shift",
+    "matcap",
+    "rim_multiply",
+    "outline_width",
 ];
 
 /// Which maps and lobes the mesh shader has, as bits: one for each slot of [`TextureSlot`], then the
-/// lobes. The shader's text is cut to what is needed, since WebGL2 has few texture units, and most files have no lobes.
+/// lobes, then MToon. The shader's text is cut to what is needed, since WebGL2 has few texture units, and most files have no lobes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct SurfaceVariant(pub u32);
+pub struct SurfaceVariant(pub u64);
 
 impl SurfaceVariant {
     /// The maps of core glTF, which overrides turn off, and no lobes.
     pub const PLAIN: Self = Self(0b11111);
     /// An index of refraction, or a weight or colour of the dielectric reflection.
-    pub const SPECULAR: u32 = 1 << 19;
+    pub const SPECULAR: u64 = 1 << 24;
     /// Roughness is in alpha of the specular colour.
-    pub const GLOSSINESS: u32 = 1 << 20;
+    pub const GLOSSINESS: u64 = 1 << 25;
     /// KHR_materials_clearcoat.
-    pub const CLEARCOAT: u32 = 1 << 21;
+    pub const CLEARCOAT: u64 = 1 << 26;
     /// KHR_materials_sheen.
-    pub const SHEEN: u32 = 1 << 22;
+    pub const SHEEN: u64 = 1 << 27;
     /// KHR_materials_iridescence.
-    pub const IRIDESCENCE: u32 = 1 << 23;
+    pub const IRIDESCENCE: u64 = 1 << 28;
     /// KHR_materials_anisotropy.
-    pub const ANISOTROPY: u32 = 1 << 24;
+    pub const ANISOTROPY: u64 = 1 << 29;
     /// KHR_materials_transmission.
-    pub const TRANSMISSION: u32 = 1 << 25;
+    pub const TRANSMISSION: u64 = 1 << 30;
     /// KHR_materials_volume; only with one of the transmissions.
-    pub const VOLUME: u32 = 1 << 26;
+    pub const VOLUME: u64 = 1 << 31;
     /// KHR_materials_dispersion; only with transmission and a volume.
-    pub const DISPERSION: u32 = 1 << 27;
+    pub const DISPERSION: u64 = 1 << 32;
     /// KHR_materials_diffuse_transmission.
-    pub const DIFFUSE_TRANSMISSION: u32 = 1 << 28;
+    pub const DIFFUSE_TRANSMISSION: u64 = 1 << 33;
     /// All lobes.
-    pub const LOBES: u32 = 0x3ff << 19;
+    pub const LOBES: u64 = 0x3ff << 24;
+    /// VRMC_materials_mtoon, which has no lobes.
+    pub const TOON: u64 = 1 << 34;
 
     /// What the shaders' `#if` asks for: any of these bits.
-    const CONDITIONS: [(&str, u32); 13] = [
+    const CONDITIONS: [(&str, u64); 16] = [
         ("SPECULAR", Self::SPECULAR),
         ("GLOSSINESS", Self::GLOSSINESS),
         ("CLEARCOAT", Self::CLEARCOAT),
@@ -102,16 +110,24 @@ impl SurfaceVariant {
         ("DISPERSION", Self::DISPERSION),
         ("DIFFUSE_TRANSMISSION", Self::DIFFUSE_TRANSMISSION),
         ("TRANSMISSIVE", Self::TRANSMISSION | Self::DIFFUSE_TRANSMISSION),
+        ("TOON", Self::TOON),
+        ("SHADING_SHIFT_MAP", 1 << TextureSlot::ShadingShift as u32),
+        ("MATCAP_MAP", 1 << TextureSlot::Matcap as u32),
     ];
 
     /// Whether it has any of these lobes.
-    pub fn has(self, lobes: u32) -> bool {
+    pub fn has(self, lobes: u64) -> bool {
         self.0 & lobes != 0
     }
 
     /// The numbers of the maps it has.
     pub fn maps(self) -> impl Iterator<Item = usize> {
         (0..MAPS.len()).filter(move |map| self.0 >> map & 1 == 1)
+    }
+
+    /// Whether the vertex stage reads a map instead of the fragment stage.
+    pub fn is_of_vertices(map: usize) -> bool {
+        map == TextureSlot::OutlineWidth as usize
     }
 
     /// The binding of a map in group 3; its sampler follows. Bindings 11 and 12 are the vertex stage's.
@@ -123,6 +139,8 @@ impl SurfaceVariant {
     /// A function for each map that returns its texel, or white without the map.
     fn write_maps(self, out: &mut String) {
         for (map, name) in MAPS.iter().enumerate() {
+            // A vertex stage has no derivatives to choose a level by.
+            let (call, level) = if Self::is_of_vertices(map) { ("Level", ", 0.0") } else { ("", "") };
             // Writing to a string cannot fail.
             let _ = match self.0 >> map & 1 {
                 0 => writeln!(out, "fn {name}_texel(uv: vec4f) -> vec4f {{ return vec4f(1.0); }}"),
@@ -130,7 +148,7 @@ impl SurfaceVariant {
                     out,
                     "@group(3) @binding({}) var {name}_map: texture_2d<f32>;
 @group(3) @binding({}) var {name}_sampler: sampler;
-fn {name}_texel(uv: vec4f) -> vec4f {{ return textureSample({name}_map, {name}_sampler, map_uv({map}u, uv)); }}",
+fn {name}_texel(uv: vec4f) -> vec4f {{ return textureSample{call}({name}_map, {name}_sampler, map_uv({map}u, uv){level}); }}",
                     Self::binding(map),
                     Self::binding(map) + 1
                 ),
@@ -148,7 +166,7 @@ pub struct Shader {
     surface: SurfaceVariant,
 }
 
-const MESH_PARTS: [&str; 13] = [
+const MESH_PARTS: [&str; 14] = [
     FRAME,
     TONE,
     PALETTE,
@@ -162,6 +180,7 @@ const MESH_PARTS: [&str; 13] = [
     IRIDESCENCE,
     TRANSMISSION,
     SURFACE,
+    TOON,
 ];
 
 /// Meshes without lobes: all vertex and fragment stages of the scene and shadow passes.

@@ -177,8 +177,36 @@ pub struct MaterialUniform {
     pub transmission: f32,
     /// 20 divided by the Abbe number.
     pub dispersion: f32,
+    /// Added to MToon's cosine between normal and light.
+    pub shading_shift: f32,
+    /// Factor on the shading shift map.
+    pub shading_shift_scale: f32,
+    /// Sharpness of the boundary between MToon's colours.
+    pub shading_toony: f32,
+    /// Linear colour where a light doesn't reach.
+    pub shade_color: [f32; 3],
+    /// How little ambient light depends on the normal.
+    pub gi_equalization: f32,
+    /// Linear factor on the matcap.
+    pub matcap_color: [f32; 3],
+    /// How much rim and matcap depend on the light.
+    pub rim_lighting_mix: f32,
+    /// Linear colour of the rim.
+    pub rim_color: [f32; 3],
+    /// Exponent of the rim, above 0.
+    pub rim_fresnel_power: f32,
+    /// Linear colour of the outline.
+    pub outline_color: [f32; 3],
+    /// How much the outline takes on the shaded colour.
+    pub outline_lighting_mix: f32,
+    /// Widens the rim.
+    pub rim_lift: f32,
+    /// Metres, or a fraction of the picture's height.
+    pub outline_width: f32,
+    /// Whether the outline's width is a fraction of the height: 0 or 1.
+    pub outline_on_screen: u32,
     /// Unused, zero.
-    pub padding: [f32; 3],
+    pub padding: f32,
     /// Transforms of the maps, in the order of [`TextureSlot::ALL`].
     pub uvs: [UvTransformUniform; TextureSlot::ALL.len()],
 }

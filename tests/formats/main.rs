@@ -14,6 +14,7 @@ mod lenient;
 mod limits;
 mod lobes;
 mod meshopt;
+mod mtoon;
 mod mutation;
 mod obj;
 mod playback;

@@ -109,6 +109,20 @@ fn materials_have_the_same_layout_in_wgsl_and_rust() {
         anisotropy,
         transmission,
         dispersion,
+        shading_shift,
+        shading_shift_scale,
+        shading_toony,
+        shade_color,
+        gi_equalization,
+        matcap_color,
+        rim_lighting_mix,
+        rim_color,
+        rim_fresnel_power,
+        outline_color,
+        outline_lighting_mix,
+        rim_lift,
+        outline_width,
+        outline_on_screen,
         uvs
     );
 }

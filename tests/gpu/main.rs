@@ -18,6 +18,7 @@ mod layouts;
 mod lights;
 mod lobes;
 mod maps;
+mod mtoon;
 mod pictures;
 #[path = "../support/random.rs"]
 mod random;

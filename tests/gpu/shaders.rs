@@ -64,13 +64,19 @@ fn every_texture_slot_is_a_map_of_the_shader() {
         let initials: Vec<String> = format!("{slot:?}").matches(char::is_uppercase).map(str::to_lowercase).collect();
         let name = initials.iter().fold(spelled, |name, initial| name.replacen('?', initial, 1));
         let name = name.trim_start_matches('_');
-        let texel = format!("return textureSample({name}_map, {name}_sampler, map_uv({number}u, uv));");
+        let texel = match slot {
+            // Read by the vertex stage.
+            TextureSlot::OutlineWidth => {
+                format!("return textureSampleLevel({name}_map, {name}_sampler, map_uv({number}u, uv), 0.0);")
+            }
+            _ => format!("return textureSample({name}_map, {name}_sampler, map_uv({number}u, uv));"),
+        };
         assert!(source.contains(&texel), "{texel}");
     }
 }
 
 /// Maps of a lobe, as bits.
-fn maps_of(lobe: u32) -> u32 {
+fn maps_of(lobe: u64) -> u64 {
     let maps: &[u32] = match lobe {
         SurfaceVariant::SPECULAR => &[5, 6],
         SurfaceVariant::CLEARCOAT => &[7, 8, 9],
@@ -89,9 +95,9 @@ fn maps_of(lobe: u32) -> u32 {
 #[test]
 fn every_pair_of_lobes_is_valid_and_translates_to_webgl2() {
     use SurfaceVariant as Variant;
-    let lobes: Vec<u32> = (19..29).map(|bit| 1 << bit).collect();
-    assert_eq!(lobes.iter().sum::<u32>(), Variant::LOBES);
-    let with_needed = |lobes: u32| {
+    let lobes: Vec<u64> = (24..34).map(|bit| 1 << bit).collect();
+    assert_eq!(lobes.iter().sum::<u64>(), Variant::LOBES);
+    let with_needed = |lobes: u64| {
         let needs_transmission = lobes & (Variant::VOLUME | Variant::DISPERSION) != 0;
         let needs = |lobe, is_needed| if is_needed { lobe } else { 0 };
         lobes
@@ -103,7 +109,7 @@ fn every_pair_of_lobes_is_valid_and_translates_to_webgl2() {
     for &a in &lobes {
         for &b in &lobes {
             let pair = with_needed(a | b);
-            let maps: u32 = lobes.iter().filter(|&lobe| pair & lobe != 0).map(|&lobe| maps_of(lobe)).sum();
+            let maps: u64 = lobes.iter().filter(|&lobe| pair & lobe != 0).map(|&lobe| maps_of(lobe)).sum();
             // The normal map only: with the others of the core there would be too many.
             checked.extend([pair, pair | maps | 1 << 2]);
         }
@@ -112,6 +118,22 @@ fn every_pair_of_lobes_is_valid_and_translates_to_webgl2() {
     for variant in checked {
         for overrides in 0..2 {
             check(&Shader::mesh(Variant(variant)), overrides);
+        }
+    }
+}
+
+/// With all maps that it uses and with each of them alone.
+#[test]
+fn mtoon_is_valid_and_translates_to_webgl2() {
+    let slots = TextureSlot::ALL.into_iter().filter(|&slot| {
+        let unused = [TextureSlot::MetallicRoughness, TextureSlot::Occlusion];
+        (slot < TextureSlot::Specular || slot >= TextureSlot::ShadeMultiply) && !unused.contains(&slot)
+    });
+    let maps: Vec<u64> = slots.map(|slot| 1 << slot as u32).collect();
+    assert_eq!(maps.len(), 8);
+    for maps in maps.iter().copied().chain([0, maps.iter().sum()]) {
+        for overrides in 0..2 {
+            check(&Shader::mesh(SurfaceVariant(SurfaceVariant::TOON | maps)), overrides);
         }
     }
 }

@@ -104,6 +104,7 @@ fn material_property(property: MaterialProperty) -> String {
         MaterialProperty::UvRotation(slot) => texture(slot, "rotation"),
         MaterialProperty::UvScale(slot) => texture(slot, "scale"),
         MaterialProperty::Lobe(factor) => words(&format!("{factor:?}")),
+        MaterialProperty::Toon(color) => words(&format!("{color:?}")),
     }
 }
 

@@ -38,7 +38,7 @@ pub use polar::nearest_rotation;
 pub use pose::{Pose, model_from_joint, model_from_one};
 pub use property::{
     CameraProperty, LightProperty, LobeFactor, MaterialProperty, PropertyChannel, PropertyTarget, PropertyValues,
-    TextureSlot,
+    TextureSlot, ToonColor,
 };
 pub use skeleton::{Joint, JointIndex, Skeleton, SkeletonError};
 pub use transform::Transform;

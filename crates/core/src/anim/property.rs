@@ -52,6 +52,18 @@ pub enum MaterialProperty {
     UvScale(TextureSlot),
     /// Only of materials with lobes.
     Lobe(LobeFactor),
+    /// Linear RGB; only of MToon materials.
+    Toon(ToonColor),
+}
+
+/// A colour of an MToon material, which `mesh::Toon` describes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[expect(missing_docs, reason = "named like the fields of `mesh::Toon`")]
+pub enum ToonColor {
+    ShadeColor,
+    MatcapColor,
+    RimColor,
+    OutlineColor,
 }
 
 /// An animated factor of a material's lobes, which `mesh::Lobes` describes.
@@ -132,11 +144,22 @@ pub enum TextureSlot {
     DiffuseTransmission,
     /// Colour of the diffuse transmission.
     DiffuseTransmissionColor,
+    /// Multiplied with MToon's shade colour.
+    ShadeMultiply,
+    /// Added to MToon's shading shift, in red.
+    ShadingShift,
+    /// Added to MToon's colour by the direction of the normal.
+    Matcap,
+    /// Multiplied with MToon's rim and matcap.
+    RimMultiply,
+    /// Multiplied with the width of MToon's outline, in green.
+    OutlineWidth,
 }
 
 impl TextureSlot {
-    /// All slots in the order of their numbers: first those of core glTF, then from [`Self::Specular`] on those of lobes.
-    pub const ALL: [Self; 19] = [
+    /// All slots in the order of their numbers: first those of core glTF, then from [`Self::Specular`] on those of lobes,
+    /// and from [`Self::ShadeMultiply`] on those of MToon.
+    pub const ALL: [Self; 24] = [
         Self::BaseColor,
         Self::MetallicRoughness,
         Self::Normal,
@@ -156,13 +179,25 @@ impl TextureSlot {
         Self::Thickness,
         Self::DiffuseTransmission,
         Self::DiffuseTransmissionColor,
+        Self::ShadeMultiply,
+        Self::ShadingShift,
+        Self::Matcap,
+        Self::RimMultiply,
+        Self::OutlineWidth,
     ];
 
     /// Whether the texture holds colours, which are sRGB; otherwise it holds linear data.
     pub fn is_color(self) -> bool {
         matches!(
             self,
-            Self::BaseColor | Self::Emissive | Self::SpecularColor | Self::SheenColor | Self::DiffuseTransmissionColor
+            Self::BaseColor
+                | Self::Emissive
+                | Self::SpecularColor
+                | Self::SheenColor
+                | Self::DiffuseTransmissionColor
+                | Self::ShadeMultiply
+                | Self::Matcap
+                | Self::RimMultiply
         )
     }
 }
@@ -198,11 +233,11 @@ pub enum CameraProperty {
 impl PropertyTarget {
     /// Number of components of a value, at most four.
     pub fn width(self) -> usize {
-        use MaterialProperty::{BaseColor, Emissive, Lobe, UvOffset, UvScale};
+        use MaterialProperty::{BaseColor, Emissive, Lobe, Toon, UvOffset, UvScale};
         match self {
             Self::Material(_, Lobe(factor)) => factor.width(),
             Self::Material(_, BaseColor) => 4,
-            Self::Material(_, Emissive) | Self::Light(_, LightProperty::Color) => 3,
+            Self::Material(_, Emissive | Toon(_)) | Self::Light(_, LightProperty::Color) => 3,
             Self::Material(_, UvOffset(_) | UvScale(_)) | Self::LookAt => 2,
             _ => 1,
         }

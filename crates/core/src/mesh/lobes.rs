@@ -8,7 +8,7 @@ use super::TextureRef;
 use crate::anim::{LobeFactor, TextureSlot};
 
 /// Number of slots in [`Lobes::textures`].
-const TEXTURES: usize = TextureSlot::ALL.len() - TextureSlot::Specular as usize;
+const TEXTURES: usize = TextureSlot::ShadeMultiply as usize - TextureSlot::Specular as usize;
 
 /// What a material has beyond metallic-roughness. The default changes nothing. Factors are multiplied with the matching
 /// textures.
@@ -123,13 +123,13 @@ impl Lobes {
         })
     }
 
-    /// Returns the texture in a slot from [`TextureSlot::Specular`] on; `None` for the others.
+    /// Returns the texture in a slot of lobes; `None` for the others.
     pub fn texture(&self, slot: TextureSlot) -> Option<TextureRef> {
         let index = (slot as usize).checked_sub(TextureSlot::Specular as usize)?;
-        self.textures[index]
+        *self.textures.get(index)?
     }
 
-    /// The place of a texture. None for slots before [`TextureSlot::Specular`].
+    /// The place of a texture; `None` for slots that are not those of lobes.
     pub fn texture_mut(&mut self, slot: TextureSlot) -> Option<&mut Option<TextureRef>> {
         let index = (slot as usize).checked_sub(TextureSlot::Specular as usize)?;
         self.textures.get_mut(index)

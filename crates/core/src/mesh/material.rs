@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
-use super::Lobes;
+use super::{Lobes, Toon};
 use crate::anim::{MaterialProperty, TextureSlot};
 
 /// How alpha is interpreted, `alphaMode` in glTF.
@@ -56,6 +56,8 @@ pub struct Material {
     pub emissive_texture: Option<TextureRef>,
     /// Clearcoat, sheen, transmission and so on, if the file has any.
     pub lobes: Option<Box<Lobes>>,
+    /// Shades it as MToon, without lobes, metal, roughness, occlusion and vertex colours.
+    pub toon: Option<Box<Toon>>,
 }
 
 impl Default for Material {
@@ -79,20 +81,22 @@ impl Default for Material {
             occlusion_texture: None,
             emissive_texture: None,
             lobes: None,
+            toon: None,
         }
     }
 }
 
 impl Material {
-    /// Copies everything but the name. Allocates only if this has no lobes and `other` has some.
+    /// Copies everything but the name. Allocates only if `other` has lobes or MToon and this does not.
     pub fn copy_values(&mut self, other: &Self) {
-        let (name, mut lobes) = (std::mem::take(&mut self.name), self.lobes.take());
+        let (name, mut lobes, mut toon) = (std::mem::take(&mut self.name), self.lobes.take(), self.toon.take());
         lobes.clone_from(&other.lobes);
-        *self = Self { name, lobes, ..*other };
+        toon.clone_from(&other.toon);
+        *self = Self { name, lobes, toon, ..*other };
     }
 
-    /// Sets an animated property. The alpha cutoff of a material that is not masked, and textures and lobes that it doesn't
-    /// have, are ignored.
+    /// Sets an animated property. The alpha cutoff of a material that is not masked, and textures, lobes and MToon
+    /// that it doesn't have, are ignored.
     pub fn set(&mut self, property: MaterialProperty, value: Vec4) {
         match property {
             MaterialProperty::BaseColor => self.base_color = value,
@@ -116,7 +120,21 @@ impl Material {
                     components.copy_from_slice(&value.to_array()[..components.len()]);
                 }
             }
+            MaterialProperty::Toon(color) => {
+                if let Some(toon) = &mut self.toon {
+                    *toon.color_mut(color) = value.xyz();
+                }
+            }
         }
+    }
+
+    /// Shades it as MToon. What that has no use for is dropped.
+    pub fn shade_as_toon(&mut self, toon: Toon) {
+        self.toon = Some(Box::new(toon));
+        self.lobes = None;
+        self.unlit = false;
+        self.metallic_roughness_texture = None;
+        self.occlusion_texture = None;
     }
 
     /// Returns the texture in a slot.
@@ -127,6 +145,7 @@ impl Material {
             TextureSlot::Normal => self.normal_texture,
             TextureSlot::Occlusion => self.occlusion_texture,
             TextureSlot::Emissive => self.emissive_texture,
+            _ if slot >= TextureSlot::ShadeMultiply => self.toon.as_ref()?.texture(slot),
             _ => self.lobes.as_ref()?.texture(slot),
         }
     }
@@ -139,7 +158,7 @@ impl Material {
         texture.map(|texture| texture.uv_set).or_else(|| is_stretched().then_some(0))
     }
 
-    /// The place of a texture; `None` if it is one of lobes and there are none.
+    /// The place of a texture; `None` if it is one of lobes or MToon and the material has none.
     pub fn texture_mut(&mut self, slot: TextureSlot) -> Option<&mut Option<TextureRef>> {
         Some(match slot {
             TextureSlot::BaseColor => &mut self.base_color_texture,
@@ -147,6 +166,7 @@ impl Material {
             TextureSlot::Normal => &mut self.normal_texture,
             TextureSlot::Occlusion => &mut self.occlusion_texture,
             TextureSlot::Emissive => &mut self.emissive_texture,
+            _ if slot >= TextureSlot::ShadeMultiply => self.toon.as_mut()?.texture_mut(slot)?,
             _ => self.lobes.as_mut()?.texture_mut(slot)?,
         })
     }

@@ -11,6 +11,7 @@ mod palette;
 mod skin;
 mod skinning;
 mod tangents;
+mod toon;
 
 pub use bounds::Bounds;
 pub use geometry::first_not_below;
@@ -23,3 +24,4 @@ pub use skin::{Skin, SkinError};
 pub use skinning::deform_vertex;
 pub use skinning::{DeformedVertices, deform};
 pub use tangents::{add_tangents, corner_tangents};
+pub use toon::{OutlineMode, Toon};

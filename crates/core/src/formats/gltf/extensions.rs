@@ -4,6 +4,7 @@ use gltf::json::Root;
 
 use super::instancing;
 use super::lobes;
+use super::mtoon::MTOON;
 use super::nodes::VISIBILITY;
 use super::pointer::POINTER;
 use super::variants;
@@ -31,6 +32,7 @@ const SUPPORTED: &[&str] = &[
     "KHR_meshopt_compression",
     "VRM",
     "VRMC_vrm",
+    MTOON,
     "VRMC_vrm_animation",
     NODE_CONSTRAINT,
     SPRING_BONE,

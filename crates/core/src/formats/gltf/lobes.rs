@@ -172,13 +172,13 @@ fn drop_textures(material: &mut Material, reader: &mut TextureReader<'_>) {
 }
 
 /// Returns the value at a path of members.
-fn member<'a>(extensions: &'a Map<String, Value>, path: &str) -> Option<&'a Value> {
+pub fn member<'a>(extensions: &'a Map<String, Value>, path: &str) -> Option<&'a Value> {
     let (extension, rest) = path.split_once('/')?;
     rest.split('/').try_fold(extensions.get(extension)?, |value, key| value.get(key))
 }
 
 /// Leaves `out` as it is if the member is missing or not as many numbers as that.
-fn read_numbers(extensions: &Map<String, Value>, path: &str, out: &mut [f32], reader: &mut TextureReader<'_>) {
+pub fn read_numbers(extensions: &Map<String, Value>, path: &str, out: &mut [f32], reader: &mut TextureReader<'_>) {
     let Some(value) = member(extensions, path).filter(|value| !value.is_null()) else { return };
     let number = |value: &Value| value.as_f64().map(|value| value as f32).filter(|value| value.is_finite());
     let single = std::slice::from_ref(value);
@@ -193,7 +193,8 @@ fn read_numbers(extensions: &Map<String, Value>, path: &str, out: &mut [f32], re
     }
 }
 
-fn ignore(reader: &mut TextureReader<'_>, path: &str, expected: &str, found: &Value) {
+/// Warns about a member below the material's `extensions`.
+pub fn ignore(reader: &mut TextureReader<'_>, path: &str, expected: &str, found: &Value) {
     let place = format!("{}.extensions.{path}", reader.material);
     let problem = format!("expected {expected}, found {found}; it is ignored");
     reader.warnings.push(Warning::Other { code: "material", place, problem });

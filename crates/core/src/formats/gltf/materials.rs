@@ -15,6 +15,8 @@ use super::accessor::get;
 use super::document::{Document, present};
 use super::lobes;
 use super::loosen::{cleaned, whole};
+use super::mtoon;
+use super::vrm::mtoon as mtoon_0;
 use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
 use crate::mesh::{AlphaMode, Filter, Material, MipFilter, Sampler, Texture, TextureRef, UvTransform, Wrap};
@@ -83,8 +85,18 @@ fn read(
         occlusion_texture,
         emissive_texture,
         lobes: None,
+        toon: None,
     };
-    others.map_or(Ok(()), |others| lobes::read(others, &mut read, &mut reader))?;
+    if let Some(others) = others {
+        lobes::read(others, &mut read, &mut reader)?;
+        mtoon::read(others, &mut read, &mut reader)?;
+    }
+    let vrm = document.root.extensions.as_ref().and_then(|extensions| extensions.others.get("VRM"));
+    if let Some(properties) = vrm.and_then(|vrm| vrm["materialProperties"].get(index)) {
+        let place = format!("extensions.VRM.materialProperties[{index}]");
+        let mut reader = TextureReader { root: &document.root, material: &place, warnings: reader.warnings };
+        mtoon_0::read_0(properties, &mut read, &mut reader)?;
+    }
     Ok(read)
 }
 

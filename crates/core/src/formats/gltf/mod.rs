@@ -20,6 +20,7 @@ mod loosen;
 mod materials;
 mod meshes;
 pub(super) mod meshopt;
+mod mtoon;
 mod nodes;
 mod object;
 mod pointer;

@@ -7,6 +7,7 @@ use gltf::json::extensions::scene::khr_lights_punctual::{self, Type as LightType
 use gltf::json::validation::Checked;
 
 use super::lobes;
+use super::mtoon;
 use super::vrm::AnimatedNodes;
 use crate::anim::{CameraProperty, JointIndex, LightProperty, MaterialProperty, PropertyTarget, Skeleton, TextureSlot};
 use crate::asset::{Asset, Camera, CameraProjection};
@@ -168,13 +169,19 @@ impl Pointers<'_> {
     fn material(&self, material: usize, rest: &str) -> Result<Vec<Aim>, Unresolved> {
         let has_lobes = || self.materials[material].lobes.is_some();
         let lobe = || find(&lobes::FACTORS, rest.strip_prefix(EXTENSIONS)?).filter(|_| has_lobes());
-        let property = match find(&MATERIAL, rest).or_else(|| lobe().map(MaterialProperty::Lobe)) {
+        let has_toon = || self.materials[material].toon.is_some();
+        let toon = || find(&mtoon::COLORS, rest.strip_prefix(EXTENSIONS)?).filter(|_| has_toon());
+        let known = find(&MATERIAL, rest).or_else(|| lobe().map(MaterialProperty::Lobe));
+        let property = match known.or_else(|| toon().map(MaterialProperty::Toon)) {
             Some(property) => property,
             None => {
                 let transform = TEXTURE_TRANSFORM.iter().find_map(|(end, of)| Some((rest.strip_suffix(end)?, of)));
                 let (texture, of) = transform.ok_or(Unresolved::Unsupported)?;
-                let lobe = || find(&lobes::TEXTURES, texture.strip_prefix(EXTENSIONS)?);
-                let slot = find(&TEXTURES, texture).or_else(lobe).ok_or(Unresolved::Unsupported)?;
+                let extended = || {
+                    let path = texture.strip_prefix(EXTENSIONS)?;
+                    find(&lobes::TEXTURES, path).or_else(|| find(&mtoon::TEXTURES, path))
+                };
+                let slot = find(&TEXTURES, texture).or_else(extended).ok_or(Unresolved::Unsupported)?;
                 if self.materials[material].texture(slot).is_none() {
                     return Err(Unresolved::Bad("the material has no such texture".to_owned()));
                 }
@@ -238,13 +245,18 @@ fn vrm_extension(asset: &Asset) -> &'static str {
 }
 
 fn material_name(property: MaterialProperty) -> String {
-    use MaterialProperty::{Lobe, UvOffset, UvRotation, UvScale};
+    use MaterialProperty::{Lobe, Toon, UvOffset, UvRotation, UvScale};
     match property {
         Lobe(factor) => format!("{EXTENSIONS}{}", name(&lobes::FACTORS, factor)),
+        Toon(color) => format!("{EXTENSIONS}{}", name(&mtoon::COLORS, color)),
         UvOffset(slot) | UvRotation(slot) | UvScale(slot) => {
             let transform = TEXTURE_TRANSFORM.iter().find(|(_, of)| of(slot) == property).map_or("", |(end, _)| end);
             match name(&TEXTURES, slot) {
-                "" => format!("{EXTENSIONS}{}{transform}", name(&lobes::TEXTURES, slot)),
+                "" => {
+                    let lobe = name(&lobes::TEXTURES, slot);
+                    let path = if lobe.is_empty() { name(&mtoon::TEXTURES, slot) } else { lobe };
+                    format!("{EXTENSIONS}{path}{transform}")
+                }
                 texture => format!("{texture}{transform}"),
             }
         }

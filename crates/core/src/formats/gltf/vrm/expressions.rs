@@ -5,13 +5,24 @@ use std::collections::{BTreeMap, HashMap};
 use glam::Vec4;
 use serde_json::Value;
 
-use super::{Read, Reader, index, number, text};
-use crate::anim::{JointIndex, MaterialProperty, PropertyTarget, TextureSlot};
+use super::{Read, Reader, index, mtoon, number, text};
+use crate::anim::{JointIndex, MaterialProperty, PropertyTarget, TextureSlot, ToonColor};
 use crate::avatar::{Expression, MaterialBind, MorphBind, Override};
 
 /// Further expressions, and further parts of one, are left out.
 const MAX_EXPRESSIONS: usize = 256;
 const MAX_BINDS: usize = 1024;
+
+/// Types of colours that only MToon has, in VRM 1.0 and 0.x.
+const TOON_COLORS: [(&str, ToonColor); 7] = [
+    ("shadeColor", ToonColor::ShadeColor),
+    ("_ShadeColor", ToonColor::ShadeColor),
+    ("matcapColor", ToonColor::MatcapColor),
+    ("rimColor", ToonColor::RimColor),
+    ("_RimColor", ToonColor::RimColor),
+    ("outlineColor", ToonColor::OutlineColor),
+    ("_OutlineColor", ToonColor::OutlineColor),
+];
 
 /// VRM 0.x's preset names and those of 1.0.
 const PRESETS_0: [(&str, &str); 18] = [
@@ -178,7 +189,6 @@ fn add(expression: &mut Expression, material: usize, property: MaterialProperty,
     }
 }
 
-/// Colours of MToon have no effect, since its materials are shown as what they fall back to.
 fn color(reader: &Reader, at: usize, kind: &str, target: &Value, expression: &mut Expression) {
     let Some(material) = reader.parts.materials.get(at) else { return };
     let component = |index: usize| target.get(index).and_then(Value::as_f64).map_or(1.0, |number| number as f32);
@@ -186,13 +196,21 @@ fn color(reader: &Reader, at: usize, kind: &str, target: &Value, expression: &mu
     if !target.is_finite() {
         return;
     }
+    let is_gamma = kind.starts_with('_') && kind != "_EmissionColor" && material.toon.is_some();
+    let target = if is_gamma { mtoon::linear(target) } else { target };
     match kind {
         "color" | "_Color" => add(expression, at, MaterialProperty::BaseColor, material.base_color, target),
         "emissionColor" | "_EmissionColor" => {
             let rest = material.emissive.extend(0.0);
             add(expression, at, MaterialProperty::Emissive, rest, target.truncate().extend(0.0));
         }
-        _ => {}
+        _ => {
+            let color = TOON_COLORS.iter().find(|(name, _)| *name == kind).map(|&(_, color)| color);
+            if let (Some(mut toon), Some(color)) = (material.toon.as_deref().copied(), color) {
+                let rest = toon.color_mut(color).extend(0.0);
+                add(expression, at, MaterialProperty::Toon(color), rest, target.truncate().extend(0.0));
+            }
+        }
     }
 }
 

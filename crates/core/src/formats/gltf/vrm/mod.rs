@@ -6,6 +6,7 @@ mod constraints;
 mod expressions;
 mod look_at;
 mod meta;
+pub mod mtoon;
 mod springs;
 
 use glam::{EulerRot, Quat, Vec3};

@@ -1,0 +1,92 @@
+//! `VRMC_materials_mtoon`, the toon shading of VRM 1.0.
+
+use serde_json::{Map, Value};
+
+use super::lobes::{ignore, member, read_numbers};
+use super::materials::TextureReader;
+use crate::anim::{TextureSlot, ToonColor};
+use crate::asset::Warning;
+use crate::formats::error::Problem;
+use crate::mesh::{Material, OutlineMode, Toon};
+
+pub const MTOON: &str = "VRMC_materials_mtoon";
+/// Below a material's `extensions`.
+pub const COLORS: [(&str, ToonColor); 4] = [
+    ("VRMC_materials_mtoon/shadeColorFactor", ToonColor::ShadeColor),
+    ("VRMC_materials_mtoon/matcapFactor", ToonColor::MatcapColor),
+    ("VRMC_materials_mtoon/parametricRimColorFactor", ToonColor::RimColor),
+    ("VRMC_materials_mtoon/outlineColorFactor", ToonColor::OutlineColor),
+];
+/// Below a material's `extensions`.
+pub const TEXTURES: [(&str, TextureSlot); 5] = [
+    ("VRMC_materials_mtoon/shadeMultiplyTexture", TextureSlot::ShadeMultiply),
+    ("VRMC_materials_mtoon/shadingShiftTexture", TextureSlot::ShadingShift),
+    ("VRMC_materials_mtoon/matcapTexture", TextureSlot::Matcap),
+    ("VRMC_materials_mtoon/rimMultiplyTexture", TextureSlot::RimMultiply),
+    ("VRMC_materials_mtoon/outlineWidthMultiplyTexture", TextureSlot::OutlineWidth),
+];
+
+/// Reads the MToon of a material whose other members have been read. It takes the place of lobes and of KHR_materials_unlit.
+pub fn read(
+    extensions: &Map<String, Value>,
+    material: &mut Material,
+    reader: &mut TextureReader<'_>,
+) -> Result<(), Problem> {
+    match extensions.get(MTOON) {
+        Some(Value::Object(_)) => {}
+        Some(other) => {
+            ignore(reader, MTOON, "an object", other);
+            return Ok(());
+        }
+        None => return Ok(()),
+    }
+    let mut toon = Toon::default();
+    for (path, color) in COLORS {
+        read_numbers(extensions, path, AsMut::<[f32; 3]>::as_mut(toon.color_mut(color)), reader);
+    }
+    for (name, number) in [
+        ("shadingShiftFactor", &mut toon.shading_shift),
+        ("shadingShiftTexture/scale", &mut toon.shading_shift_scale),
+        ("shadingToonyFactor", &mut toon.shading_toony),
+        ("giEqualizationFactor", &mut toon.gi_equalization),
+        ("parametricRimFresnelPowerFactor", &mut toon.rim_fresnel_power),
+        ("parametricRimLiftFactor", &mut toon.rim_lift),
+        ("rimLightingMixFactor", &mut toon.rim_lighting_mix),
+        ("outlineWidthFactor", &mut toon.outline_width),
+        ("outlineLightingMixFactor", &mut toon.outline_lighting_mix),
+    ] {
+        read_numbers(extensions, &format!("{MTOON}/{name}"), std::slice::from_mut(number), reader);
+    }
+    let mode = &extensions[MTOON]["outlineWidthMode"];
+    toon.outline_mode = match mode.as_str() {
+        Some("worldCoordinates") => OutlineMode::World,
+        Some("screenCoordinates") => OutlineMode::Screen,
+        Some("none") => OutlineMode::None,
+        _ => {
+            if !mode.is_null() {
+                let path = format!("{MTOON}.outlineWidthMode");
+                ignore(reader, &path, "“none”, “worldCoordinates” or “screenCoordinates”", mode);
+            }
+            OutlineMode::None
+        }
+    };
+    for (path, slot) in TEXTURES {
+        let texture = reader.lobe(member(extensions, path), &format!("extensions.{}", path.replace('/', ".")))?;
+        if let Some(place) = toon.texture_mut(slot) {
+            *place = texture;
+        }
+    }
+    material.shade_as_toon(toon);
+    let speeds = ["uvAnimationScrollXSpeedFactor", "uvAnimationScrollYSpeedFactor", "uvAnimationRotationSpeedFactor"];
+    if speeds.into_iter().any(|name| extensions[MTOON][name].as_f64().is_some_and(|speed| speed != 0.0)) {
+        warn_about_moving_textures(reader);
+    }
+    Ok(())
+}
+
+/// The textures of a material that scrolls or turns them stand still.
+pub fn warn_about_moving_textures(reader: &mut TextureReader<'_>) {
+    let place = reader.material.to_owned();
+    let problem = "its textures move by themselves, which is not supported; they are shown as they start".to_owned();
+    reader.warnings.push(Warning::Other { code: "mtoon-uv-animation", place, problem });
+}
