@@ -55,7 +55,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Local pose of the active model: the clip, blended, with everything set by hand. Empty without a model.
+    /// Local pose of the active model: the clip, blended, with everything set manually. Empty without a model.
     pub fn pose(&self) -> &Pose {
         &self.scratch.sampler.pose
     }

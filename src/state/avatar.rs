@@ -83,7 +83,7 @@ impl AvatarPose {
         }
     }
 
-    /// The clip's weights, replaced by those set by hand.
+    /// The clip's weights, replaced by those set manually.
     fn set_weights(&mut self, avatar: &Avatar, state: &ViewerState, properties: &PropertyValues) {
         self.weights.clear();
         self.weights.resize(avatar.expressions.len(), 0.0);

@@ -78,8 +78,7 @@ pub struct PoseSampler {
 }
 
 impl PoseSampler {
-    /// Samples the current pose: [`Self::sample_motion`], then [`Self::apply_avatar`], for whom the camera's position
-    /// is unknown.
+    /// Samples the current pose: [`Self::sample_motion`], then [`Self::apply_avatar`] without a position of the camera.
     pub fn sample(&mut self, model: &Model, state: &ViewerState) {
         self.sample_motion(model, state);
         self.apply_avatar(model, state, None);

@@ -472,7 +472,7 @@ pub const BASE_COLOR: &str = "base colour";
 /// Property of a node that a clip can animate.
 pub const VISIBILITY: &str = "visibility";
 
-/// A line of the file report as a screen reader reads it.
+/// Returns a name and its value as a screen reader reads them: in the file report, and of a joint's transform.
 pub fn fact(name: &str, value: &str) -> String {
     format!("{name} {value}")
 }

@@ -44,6 +44,15 @@ fn a_primitive_has_a_material_per_variant() {
 fn every_variant_has_a_name_of_its_own() {
     let (asset, _) = check(&[named("a"), named("a"), json!({}), named(" "), json!(3)], json!([]));
     assert_eq!(asset.variants, ["a", "a (1)", "Variant 2", "Variant 3", "Variant 4"]);
+    let (asset, _) = check(&[named("a (2)"), named("a"), named("a")], json!([]));
+    assert_eq!(asset.variants, ["a (2)", "a", "a (3)"]);
+}
+
+#[test]
+fn too_many_variants_are_left_out() {
+    let (asset, warnings) = check(&vec![json!({}); 60_000], json!([]));
+    assert_eq!(asset.variants.len(), 1024);
+    assert!(warnings.len() == 1 && warnings[0].contains("expected at most 1024, found 60000"), "{warnings:?}");
 }
 
 #[test]

@@ -61,7 +61,7 @@ fn a_picture_is_lit_by_what_the_option_names() {
     assert!(refused.status.code() == Some(1) && said.contains("gaitway-white"), "{said}");
 }
 
-/// A triangle that is white, and red or blue in its variants.
+/// A triangle that is white, and red, blue or coated in its variants.
 #[test]
 fn a_picture_shows_the_variant_that_the_option_or_the_link_names() {
     if or_skipped(headless_device()).is_none() {
@@ -71,9 +71,11 @@ fn a_picture_shows_the_variant_that_the_option_or_the_link_names() {
     let material = |color: [f32; 4]| json!({ "pbrMetallicRoughness": { "baseColorFactor": color }, "extensions": { "KHR_materials_unlit": {} } });
     let colors = [[1.0; 4], [1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]];
     build.json["materials"] = colors.map(material).to_vec().into();
-    let variants = json!([{ "name": "Red" }, { "name": "Blue & more" }]);
+    let coat = json!({ "extensions": { "KHR_materials_clearcoat": { "clearcoatFactor": 1 } } });
+    build.json["materials"].as_array_mut().expect("materials").push(coat);
+    let variants = json!([{ "name": "Red" }, { "name": "Blue & more" }, { "name": "Coat" }]);
     build.json["extensions"] = json!({ "KHR_materials_variants": { "variants": variants } });
-    let mappings = json!([{ "material": 1, "variants": [0] }, { "material": 2, "variants": [1] }]);
+    let mappings = json!([{ "material": 1, "variants": [0] }, { "material": 2, "variants": [1] }, { "material": 3, "variants": [2] }]);
     let primitive = &mut build.json["meshes"][0]["primitives"][0];
     primitive["material"] = json!(0);
     primitive["extensions"] = json!({ "KHR_materials_variants": { "mappings": mappings } });
@@ -96,9 +98,11 @@ fn a_picture_shows_the_variant_that_the_option_or_the_link_names() {
         let picture = image::load_from_memory(&output.stdout).expect("a PNG").into_rgba8();
         assert_eq!(picture.get_pixel(3, 4).0, color, "{arguments:?}");
     }
+    let edges = render_file(file, &["--out", "-", "--view", "show=wireframe", "--variant", "Coat"]);
+    assert!(edges.status.success(), "edges have no lobes: {}", said(&edges));
     let refused = render_file(file, &["--out", "-", "--variant", "Green"]);
     assert_eq!(refused.status.code(), Some(1));
-    let says = "expected the name of a material variant, found “Green”; its variants are Red, Blue & more";
+    let says = "expected the name of a material variant, found “Green”; its variants are Red, Blue & more, Coat";
     assert!(said(&refused).contains(says) && said(&refused).contains("gaitway-variants"), "{}", said(&refused));
     std::fs::remove_file(&path).expect("it was written");
 }

@@ -569,6 +569,18 @@ fn chain(gravity: f32, colliders: Value) -> Build {
     build
 }
 
+#[test]
+fn springs_share_a_limited_number_of_tests_against_colliders() {
+    let mut build = chain(0.0, vec![json!({ "node": 4, "shape": { "sphere": { "radius": 0.1 } } }); 1000].into());
+    let springs = &mut build.json["extensions"]["VRMC_springBone"]["springs"];
+    *springs = vec![springs[0].clone(); 40].into();
+    let asset = build.load().expect("springs never prevent loading");
+    let left_out: Vec<&str> = asset.warnings.iter().map(|warning| warning.place()).collect();
+    // Three joints of 1,000 colliders each: 21 springs take 63,000 of 65,536.
+    assert_eq!(left_out.len(), 19, "{left_out:?}");
+    assert_eq!(left_out[0], "extensions.VRMC_springBone.springs[21]");
+}
+
 fn swinging() -> ViewerState {
     let mut state = ViewerState::default();
     state.display.springs = true;

@@ -1,5 +1,5 @@
-// Links that name local files: the page asks for them and meanwhile shows what it can. A copy of a model that couldn't be
-// loaded is welcome in the same way, although nobody is asked for it.
+// Links that name local files: the page asks for them and meanwhile shows what it can. It also accepts a copy of a model that
+// couldn't be loaded, without asking for it.
 import { button, dialog, showList } from "./dom.js";
 import { companionWords } from "./held.js";
 import { linkedFiles, publicLink } from "./links.js";
@@ -9,8 +9,8 @@ import { panel } from "./panels.js";
 /** @typedef {import("./types.d.ts").LinkedFile} LinkedFile */
 
 /**
- * A link whose files are waited for, the same with all of them marked as local, those to ask for still, and the sets that
- * arrived meanwhile.
+ * `link` is as given; `marked` has its files marked as local; `wanted` are the files that it waits for, `missing` those to ask for;
+ * `sets` have arrived meanwhile.
  * @typedef {{ link: string, marked: string, wanted: LinkedFile[], missing: LinkedFile[], sets: Item[][] }} Awaited
  */
 

@@ -156,7 +156,7 @@ impl Springs {
 
 impl SpringJoint {
     /// Returns the tail of a joint: the origin of a joint below it or, without one, 7 cm in the direction in which the
-    /// joint lies from its parent. `None` if `child` isn't below the joint, or by more than [`MAX_BONE_LEVELS`].
+    /// joint lies from its parent. `None` if `child` isn't below the joint, or by more than `MAX_BONE_LEVELS`.
     pub fn tail(skeleton: &Skeleton, joint: JointIndex, child: Option<JointIndex>) -> Option<Vec3> {
         let rest = skeleton.rest();
         let Some(mut at) = child else {
