@@ -35,7 +35,7 @@ const CORE = [
 ];
 
 /**
- * Files with material extensions, and instancing. Not materials/babylon/emoji_heart.glb: the sample renderer takes its specular colours
+ * Files with material extensions. Not materials/babylon/emoji_heart.glb: the sample renderer takes its specular colours
  * for linear, while KHR_materials_pbrSpecularGlossiness says that they are sRGB.
  */
 const EXTENSIONS = [
@@ -47,7 +47,6 @@ const EXTENSIONS = [
   "materials/playcanvas/ClearCoatTest.glb",
   "materials/playcanvas/SpecularTest.glb",
   "materials/playcanvas/glass-table.glb",
-  "materials/playcanvas/simple-instancing.glb",
 ];
 
 /** @type {Awaited<ReturnType<typeof startReference>>} */
