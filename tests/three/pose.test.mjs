@@ -34,7 +34,9 @@ describe("positions agree with three.js", { skip: skipWithoutData, concurrency: 
 });
 
 /** @param {string} file */
-const hasInstances = (file) => readGltf(file).json.extensionsUsed?.includes("EXT_mesh_gpu_instancing");
+function hasInstances(file) {
+  return readGltf(file).json.extensionsUsed?.includes("EXT_mesh_gpu_instancing");
+}
 
 /**
  * A file that requires something unsupported gives an error that says so.
