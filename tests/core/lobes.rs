@@ -1,5 +1,5 @@
-//! The lobes' formulas in `shaders/`, integrated over the hemisphere: no lobe adds energy, and every BRDF is reciprocal. The
-//! functions here follow the shaders line by line.
+//! The lobes' formulas in `shaders/`, integrated over the hemisphere: no lobe adds energy, and every BRDF is
+//! reciprocal. The functions here follow the shaders line by line.
 
 use std::f64::consts::PI;
 
@@ -175,8 +175,8 @@ fn a_coat_attenuates_what_is_below_it() {
     }
 }
 
-/// Light that isn't reflected is shared between diffuse reflection, diffuse transmission and refraction. In glTF's core model,
-/// diffuse and specular reflection together already exceed 1 at grazing angles; the lobes must not add to that.
+/// Light that isn't reflected is shared between diffuse reflection, diffuse transmission and refraction. In glTF's core
+/// model, diffuse and specular reflection together already exceed 1 at grazing angles; the lobes must not add to that.
 #[test]
 fn transmissive_surfaces_return_no_more_light_than_opaque_ones() {
     let returned = |view: DVec3, diffuse_transmission: f64, transmission: f64| {

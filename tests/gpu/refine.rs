@@ -87,8 +87,8 @@ fn refining_ends_and_starts_again_with_the_next_picture() {
     assert!(!renderer.refine(device, queue, &scene.frame), "the output belongs to someone else");
 }
 
-/// Lines from the centre in 17 directions, one pixel wide on every device: whatever their slope, every step along them is
-/// covered, with one sample per pixel, with several, and refined.
+/// Lines from the centre in 17 directions, one pixel wide on every device: whatever their slope, every step along them
+/// is covered, with one sample per pixel, with several, and refined.
 #[test]
 fn lines_have_no_gaps() {
     let (Some(vulkan), gl) = (gpu(), gl()) else { return };

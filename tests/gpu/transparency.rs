@@ -102,8 +102,8 @@ fn a_blended_surface_counts_its_triangles_once() {
     assert_eq!(renderer.stats().triangles, 4);
 }
 
-/// A thin plate above the ground, seen from above and lit from +X at 45°, so that its shadow falls towards −X. The background
-/// is transparent, and the picture is twice `half` metres wide.
+/// A thin plate above the ground, seen from above and lit from +X at 45°, so that its shadow falls towards −X. The
+/// background is transparent, and the picture is twice `half` metres wide.
 fn plate(height: f32, half: f32) -> Scene {
     let corner = |x: f32, z: f32| Vec3::new(x, height, z);
     let geometry = Geometry {

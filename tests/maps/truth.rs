@@ -1,4 +1,5 @@
-//! The body parts of real skeletons, labelled manually by the joints' names, or by the skeleton's shape if it has no names.
+//! The body parts of real skeletons, labelled manually by the joints' names, or by the skeleton's shape if it has no
+//! names.
 
 use std::collections::BTreeMap;
 
@@ -451,8 +452,8 @@ pub const RIGS: &[Rig] = &[
     },
 ];
 
-/// A converter mirrored these and kept the names, so that joints on the left are named right, as the direction of the feet
-/// shows.
+/// A converter mirrored these and kept the names, so joints on the left are named “right”. The direction of the feet
+/// shows it.
 const MIRRORED: [&str; 3] = ["cosc422/dwarf.glb", "cosc422/ArmyPilot.glb", "misc/godot_robot_player.glb"];
 
 impl Rig {

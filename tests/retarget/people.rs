@@ -194,8 +194,8 @@ pub fn measured(model: &Loaded, motion: &Loaded, map: &ResolvedMap) -> Result<(F
     Ok((pair.figures(&made), made))
 }
 
-/// The largest angle in degrees by which a leg joint turns more than its source within 1/60 s. Both arrays hold the model's item
-/// first, then the motion's.
+/// The largest angle in degrees by which a leg joint turns more than its source within 1/60 s. Both arrays hold the
+/// model's item first, then the motion's.
 pub fn largest_excess_turn(assets: [&Asset; 2], clips: [&Clip; 2], map: &ResolvedMap, slots: &Humanoid) -> f64 {
     const LEGS: [Slot; 6] = [
         Slot::LeftUpperLeg,

@@ -574,7 +574,8 @@ fn a_change_that_needs_files_leaves_a_started_clip_playing() {
     assert!(!change(&mut editor, "c.bvh", Some(false)), "the change says so");
 }
 
-/// An empty stage stands for a model that is not available yet. It keeps the whole view, and is closed once something is opened.
+/// An empty stage stands for a model that is not available yet. It keeps the whole view, and is closed once something
+/// is opened.
 #[test]
 fn an_empty_stage_awaits_a_model() {
     let (mut view, _) =

@@ -25,7 +25,8 @@ pub fn eyes(kind: &str, members: Value) -> Build {
     person("VRMC_vrm", json!([]), value)
 }
 
-/// A point three metres from the middle of the eyes of [`eyes`]; positive yaw is to the left, positive pitch down, in degrees.
+/// A point three metres from the middle of the eyes of [`eyes`]; positive yaw is to the left, positive pitch down, in
+/// degrees.
 fn seen_at(yaw: f32, pitch: f32) -> Vec3 {
     let turn = Quat::from_rotation_y(yaw.to_radians()) * Quat::from_rotation_x(pitch.to_radians());
     Vec3::new(0.0, 1.7, 0.0) + turn * Vec3::Z * 3.0

@@ -54,8 +54,8 @@ pub fn is_near(a: Quat, b: Quat) -> bool {
     a.dot(b).abs() > 1.0 - 1e-6
 }
 
-/// A minimal humanoid with eyes, as `extension` describes it: a VRM or a .vrma. `more_nodes` follow the first seven, and
-/// `members` are added to the extension.
+/// A minimal humanoid with eyes, as `extension` describes it: a VRM or a .vrma. `more_nodes` follow the first seven,
+/// and `members` are added to the extension.
 pub fn person(extension: &str, more_nodes: Value, members: Value) -> Build {
     let mut build = Build::new();
     let mut nodes = json!([

@@ -59,8 +59,8 @@ pub fn at(time_secs: f32) -> ViewerState {
     ViewerState { playhead, ..ViewerState::default() }
 }
 
-/// One of everything that can be animated: meshes with two morph targets on nodes 0, 5, 6 and 7, a spot light on node 1,
-/// cameras on nodes 2 and 3. Node 5 is a child of node 4.
+/// One of everything that can be animated: meshes with two morph targets on nodes 0, 5, 6 and 7, a spot light on node
+/// 1, cameras on nodes 2 and 3. Node 5 is a child of node 4.
 pub fn complete() -> Build {
     let mut build = Build::triangle();
     let primitive = json!({ "attributes": { "POSITION": 0 }, "material": 0,

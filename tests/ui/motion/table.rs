@@ -192,8 +192,8 @@ fn names_are_shown_without_their_common_namespace() {
     }
 }
 
-/// egui allocates for what it lays out, the same for both tables, and now and then grows its own lists. Rows out of sight
-/// must cost nothing.
+/// egui allocates for what it lays out, the same for both tables, and now and then grows its own lists. Rows out of
+/// sight must cost nothing.
 #[test]
 fn a_frame_of_the_table_allocates_no_more_for_more_joints() {
     let frames = |joints: usize| {
