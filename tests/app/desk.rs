@@ -116,14 +116,14 @@ impl Desk {
         self.run_frames();
     }
 
-    /// Runs for most of a second, after which nothing may ask for another frame.
+    /// Runs for most of a second, after which nothing may request another frame.
     pub fn settle(&mut self) {
         self.harness.run_steps(45);
         let root = &self.harness.output().viewport_output[&egui::ViewportId::ROOT];
         assert!(root.repaint_delay.as_secs() > 1, "{:?}", root.repaint_delay);
     }
 
-    /// Returns what a script's screenshot shows.
+    /// Returns a screenshot taken by a script, as PNG.
     pub fn screenshot(&mut self) -> Vec<u8> {
         let png = Rc::new(RefCell::new(None));
         let taken = png.clone();

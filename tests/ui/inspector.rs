@@ -160,7 +160,7 @@ fn glowing() -> Model {
     Model::new("glow.glb".to_owned(), Asset::new(parts).expect("indices in range"), Vec::new())
 }
 
-/// A head without eyes of its own, on a spring, with an expression that has an effect and one that has none.
+/// A head without eye bones, on a spring, with an expression that has an effect and one that has none.
 fn avatar() -> Model {
     let joint = Joint { name: "Head".to_owned(), ..Joint::default() };
     let skeleton = Skeleton::new(vec![joint]).expect("one joint");
