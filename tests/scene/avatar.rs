@@ -9,7 +9,7 @@ use gaitway::avatar::{Expression, Override, resolve_weights};
 use gaitway::frame::{Frame, evaluate};
 use gaitway::library::{Library, Model, Motion, inspect};
 use gaitway::state::{
-    CameraChoice, ClipChoice, Command, History, LookTarget, OrbitCamera, Overridden, ViewerState, apply,
+    CameraChoice, ClipChoice, Command, History, LookTarget, OrbitCamera, SavedMotion, ViewerState, apply,
 };
 use glam::{Quat, Vec2, Vec3, Vec4};
 use serde_json::{Value, json};
@@ -191,7 +191,7 @@ fn expressions_that_do_not_exist_are_ignored_and_edits_can_be_undone() {
     assert_eq!(state, ViewerState::default());
     history.apply(&mut state, &library, set("happy", 3.0));
     assert_eq!(state.edits.expressions, BTreeMap::from([("happy".to_owned(), 1.0)]));
-    assert!(history.undo(&mut state, &mut Overridden::default(), &mut library));
+    assert!(history.undo(&mut state, &mut SavedMotion::default(), &mut library));
     assert_eq!(state, ViewerState::default());
     // From a link, before the model is there.
     state.edits.expressions.insert("grin".to_owned(), 1.0);

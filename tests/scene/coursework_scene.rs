@@ -10,8 +10,8 @@ use gaitway::frame::{Frame, VertexFormula, evaluate, joint_matrices, pick_vertex
 use gaitway::library::{Library, Model};
 use gaitway::mesh::{DeformedVertices, Geometry, SkinningMode, Topology, smooth_normals};
 use gaitway::state::{
-    ClipChoice, Command, Display, Edits, History, Overridden, Playhead, Show, UpAxis, VertexChoice, ViewerState, apply,
-    from_link, title, to_link, written_skeleton,
+    ClipChoice, Command, Display, Edits, History, Playhead, SavedMotion, Show, UpAxis, VertexChoice, ViewerState,
+    apply, from_link, title, to_link, written_skeleton,
 };
 use glam::{DQuat, DVec3, EulerRot, Vec2, Vec3};
 use serde_json::Value;
@@ -236,9 +236,9 @@ fn joints_can_be_renamed() {
     assert_eq!(rename(&mut state, ""), before);
     assert_eq!(rename(&mut state, &before.clone()), before, "the file's own name is not a custom name");
     assert!(state.edits.names.is_empty());
-    assert!(history.undo(&mut state, &mut Overridden::default(), &mut library));
+    assert!(history.undo(&mut state, &mut SavedMotion::default(), &mut library));
     assert_eq!(state.edits.names[&5].len(), 80);
-    assert!(history.undo(&mut state, &mut Overridden::default(), &mut library));
+    assert!(history.undo(&mut state, &mut SavedMotion::default(), &mut library));
     assert_eq!(state.edits.names[&5], "Crown,of: the head");
     assert_eq!(title(None, asset, joint), before, "other files keep their names");
     apply(&mut state, &library, Command::RenameJoint { joint: 9999, name: "Nobody".to_owned() });

@@ -4,7 +4,7 @@ use gaitway::anim::JointIndex;
 use gaitway::frame::{Frame, evaluate};
 use gaitway::library::Library;
 use gaitway::state::{
-    CameraChoice, CameraOptions, ClipChoice, Command, History, Overridden, Playback, Playhead, PoseSampler,
+    CameraChoice, CameraOptions, ClipChoice, Command, History, Playback, Playhead, PoseSampler, SavedMotion,
     ViewerState, apply, manual_degrees, manual_rotation,
 };
 use glam::{EulerRot, Quat, Vec3};
@@ -95,9 +95,9 @@ fn manual_poses_are_undone_one_gesture_at_a_time() {
     history.end_gesture();
     history.apply(&mut state, &library, Command::ClearPose);
     assert!(state.edits.pose.is_empty());
-    assert!(history.undo(&mut state, &mut Overridden::default(), &mut library));
+    assert!(history.undo(&mut state, &mut SavedMotion::default(), &mut library));
     assert_eq!(state.edits.pose[&HEAD], [15.0, 0.0, 0.0]);
-    assert!(history.undo(&mut state, &mut Overridden::default(), &mut library));
+    assert!(history.undo(&mut state, &mut SavedMotion::default(), &mut library));
     assert!(state.edits.pose.is_empty());
 }
 

@@ -12,7 +12,7 @@ use gaitway::retarget::{
     ClipRef, Feet, JointMap, JointMapFile, MapEntry, MutedChannel, RootOptions, RootPart, SourceRef, Unmapped,
 };
 use gaitway::state::{
-    ClipChoice, Command, History, MapProblem, MotionMap, Overridden, Playback, Playhead, RetargetEdits, ViewerState,
+    ClipChoice, Command, History, MapProblem, MotionMap, Playback, Playhead, RetargetEdits, SavedMotion, ViewerState,
     active_map, active_maps, apply, from_link, reconciled_maps, to_link,
 };
 use glam::Vec3;
@@ -191,12 +191,12 @@ fn a_source_can_be_changed_and_restored() {
     history.end_gesture();
     history.apply(&mut state, &library, Command::SetFeet(Some(Feet::Plant)));
     assert!(
-        history.undo(&mut state, &mut Overridden::default(), &mut library)
-            && history.undo(&mut state, &mut Overridden::default(), &mut library)
+        history.undo(&mut state, &mut SavedMotion::default(), &mut library)
+            && history.undo(&mut state, &mut SavedMotion::default(), &mut library)
             && !history.can_undo()
     );
     assert_eq!(state, before);
-    assert!(history.redo(&mut state, &mut Overridden::default(), &mut library));
+    assert!(history.redo(&mut state, &mut SavedMotion::default(), &mut library));
     assert_eq!(source(&library, &state), Some(head));
     for (target, source) in [(9999, None), (neck, Some(9999))] {
         let now = state.clone();
