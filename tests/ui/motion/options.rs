@@ -21,11 +21,11 @@ fn the_options_say_how_the_motion_is_carried_over() {
     press(&mut harness, text::OPTIONS);
     let mut root = RootOptions { horizontal: RootPart::InPlace, ..RootOptions::default() };
     assert_eq!(
-        press(&mut harness, &text::option_of(text::ROOT_HORIZONTAL, text::IN_PLACE)),
+        press(&mut harness, &text::labelled(text::ROOT_HORIZONTAL, text::IN_PLACE)),
         [Command::SetRoot(Some(root))]
     );
     root.yaw = RootPart::Freeze;
-    assert_eq!(press(&mut harness, &text::option_of(text::ROOT_TURN, text::FREEZE)), [Command::SetRoot(Some(root))]);
+    assert_eq!(press(&mut harness, &text::labelled(text::ROOT_TURN, text::FREEZE)), [Command::SetRoot(Some(root))]);
     root.extract = true;
     assert_eq!(reach(&mut harness, text::EXTRACT_ROOT_MOTION), [Command::SetRoot(Some(root))]);
     let plant = Command::SetFeet(Some(Feet::Plant));
@@ -62,10 +62,10 @@ fn translations_scales_and_the_crossfade_are_options() {
     press(&mut harness, Tab::Motion.label());
     press(&mut harness, text::OPTIONS);
     assert_eq!(
-        reach(&mut harness, &text::option_of(text::TRANSLATIONS, text::DROP)),
+        reach(&mut harness, &text::labelled(text::TRANSLATIONS, text::DROP)),
         [edit(MapEdit::Translations(Keep::Drop))]
     );
-    assert_eq!(reach(&mut harness, &text::option_of(text::SCALES, text::KEEP)), [edit(MapEdit::Scales(Keep::Keep))]);
+    assert_eq!(reach(&mut harness, &text::labelled(text::SCALES, text::KEEP)), [edit(MapEdit::Scales(Keep::Keep))]);
     let field = text::value_of(text::CROSSFADE);
     harness.get_by_label(&field).scroll_to_me();
     harness.run();
