@@ -68,7 +68,7 @@ pub fn follows(target: &str, source: &str) -> String {
 
 /// Returns a row of the table: the joint, its source and its state. In the accessible name, the reasons follow.
 pub fn row(target: &str, source: &str, state: &str) -> String {
-    format!("{}, {state}", follows(target, source))
+    format!("{} ({state})", follows(target, source))
 }
 
 /// Returns the accessible name of the half of a row that selects the joint.

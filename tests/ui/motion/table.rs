@@ -52,8 +52,8 @@ fn rows_read_like_sentences() {
         harness.state_mut().editor.apply(Command::SetSource { motion: 0, target, source });
     }
     harness.run();
-    let shared = format!("{right}  RightHand (conflict: right hand · same name · 100 % · shared with LeftHand)");
-    for row in [&format!("RightHand follows {shared}"), "Head follows none (none: head · deliberately none)"] {
+    let shared = format!("{right}  RightHand (conflict): right hand · same name · 100 % · shared with LeftHand");
+    for row in [&format!("RightHand follows {shared}"), "Head follows none (none): head · unmapped manually"] {
         assert!(harness.query_by_label(row).is_some(), "{row}");
     }
 }
