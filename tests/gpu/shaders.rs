@@ -1,7 +1,7 @@
 //! Every shader is valid and translates to GLSL ES 3.00, the language of WebGL2.
 
 use gaitway::anim::TextureSlot;
-use gaitway::render::shaders::{ALL, SKINNED_VERTEX, Shader, SurfaceVariant};
+use gaitway::render::shaders::{ALL, SKINNED_VERTEX, Shader, SurfacePermutation};
 use naga::back::glsl;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
@@ -68,7 +68,7 @@ fn snake_case(camel_case: &str) -> String {
 #[test]
 fn every_texture_slot_is_a_map_of_the_shader() {
     let every_map = (1 << TextureSlot::ALL.len()) - 1;
-    let source = Shader::mesh(SurfaceVariant(every_map)).source();
+    let source = Shader::mesh(SurfacePermutation(every_map)).source();
     for (number, slot) in TextureSlot::ALL.into_iter().enumerate() {
         assert_eq!(slot as usize, number);
         let name = snake_case(&format!("{slot:?}"));
@@ -86,14 +86,14 @@ fn every_texture_slot_is_a_map_of_the_shader() {
 /// The maps of a lobe, as bits of a [`SurfaceVariant`].
 fn maps_of(lobe: u64) -> u64 {
     let maps: &[u32] = match lobe {
-        SurfaceVariant::SPECULAR => &[5, 6],
-        SurfaceVariant::CLEARCOAT => &[7, 8, 9],
-        SurfaceVariant::SHEEN => &[10, 11],
-        SurfaceVariant::IRIDESCENCE => &[12, 13],
-        SurfaceVariant::ANISOTROPY => &[14],
-        SurfaceVariant::TRANSMISSION => &[15],
-        SurfaceVariant::VOLUME => &[16],
-        SurfaceVariant::DIFFUSE_TRANSMISSION => &[17, 18],
+        SurfacePermutation::SPECULAR => &[5, 6],
+        SurfacePermutation::CLEARCOAT => &[7, 8, 9],
+        SurfacePermutation::SHEEN => &[10, 11],
+        SurfacePermutation::IRIDESCENCE => &[12, 13],
+        SurfacePermutation::ANISOTROPY => &[14],
+        SurfacePermutation::TRANSMISSION => &[15],
+        SurfacePermutation::VOLUME => &[16],
+        SurfacePermutation::DIFFUSE_TRANSMISSION => &[17, 18],
         _ => &[],
     };
     maps.iter().map(|map| 1 << map).sum()
@@ -102,7 +102,7 @@ fn maps_of(lobe: u64) -> u64 {
 /// Every lobe alone and with every other one, with and without maps, and all lobes at once with as many maps as fit.
 #[test]
 fn every_pair_of_lobes_is_valid_and_translates_to_webgl2() {
-    use SurfaceVariant as Variant;
+    use SurfacePermutation as Variant;
     let lobes: Vec<u64> = (24..34).map(|bit| 1 << bit).collect();
     assert_eq!(lobes.iter().sum::<u64>(), Variant::LOBES);
     let with_needed = |lobes: u64| {
@@ -141,7 +141,7 @@ fn mtoon_is_valid_and_translates_to_webgl2() {
     assert_eq!(maps.len(), 8);
     for maps in maps.iter().copied().chain([0, maps.iter().sum()]) {
         for overrides in 0..2 {
-            check(&Shader::mesh(SurfaceVariant(SurfaceVariant::TOON | maps)), overrides);
+            check(&Shader::mesh(SurfacePermutation(SurfacePermutation::TOON | maps)), overrides);
         }
     }
 }

@@ -1,18 +1,18 @@
 //! Undo and redo.
 
 use gaitway::library::{Library, Model, ModelId, Motion};
-use gaitway::state::{Command, Edits, History, Overridden, Playhead, Sources, UpAxis, ViewerState};
+use gaitway::state::{Command, Edits, History, Playhead, SavedMotion, Sources, UpAxis, ViewerState};
 
 use crate::data::walker;
 
 /// Undoes one step without a preference for reduced motion.
 pub fn undo(history: &mut History, state: &mut ViewerState, library: &mut Library) -> bool {
-    history.undo(state, &mut Overridden::default(), library)
+    history.undo(state, &mut SavedMotion::default(), library)
 }
 
 /// Redoes one step without a preference for reduced motion.
 pub fn redo(history: &mut History, state: &mut ViewerState, library: &mut Library) -> bool {
-    history.redo(state, &mut Overridden::default(), library)
+    history.redo(state, &mut SavedMotion::default(), library)
 }
 
 #[test]
@@ -87,7 +87,7 @@ fn opening_is_a_step_between_edits() {
     let mut state =
         ViewerState { playhead: Playhead { time_secs: 0.7, ..Playhead::default() }, ..ViewerState::default() };
     history.apply(&mut state, &library, Command::SetExposure(1.0));
-    history.opened(state.clone(), Overridden::default(), library.loaded());
+    history.opened(state.clone(), SavedMotion::default(), library.loaded());
     library.show(second);
     let asset = library.active().unwrap().asset.clone();
     library.set_motions(vec![Motion::new("dance.glb".to_owned(), asset)]);
@@ -116,7 +116,7 @@ fn steps_to_an_evicted_model_are_dropped() {
     let (mut state, mut history) = (ViewerState::default(), History::default());
     history.apply(&mut state, &library, Command::SetExposure(1.0));
     library.show(first);
-    history.opened(state.clone(), Overridden::default(), library.loaded());
+    history.opened(state.clone(), SavedMotion::default(), library.loaded());
     library.show(second);
     history.apply(&mut state, &library, Command::SetExposure(2.0));
     library.remove(first);

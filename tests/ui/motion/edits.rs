@@ -114,7 +114,7 @@ fn a_rotation_offset_is_dragged_and_reset() {
     let turned = map(&harness, 0).joints[&neck].correction;
     let (axis, angle) = turned.to_axis_angle();
     assert!(axis.abs_diff_eq(glam::Vec3::Y, 1e-4) && angle > 0.05, "{axis} {angle}");
-    assert!(says(&harness, &format!("{})", text::HAS_OFFSET)));
+    assert!(says(&harness, &format!("· {}", text::HAS_OFFSET)));
     let reset = press(&mut harness, text::RESET_OFFSET);
     assert_eq!(reset, [edit(MapEdit::Correction { target: neck, correction: glam::Quat::IDENTITY })]);
     // The drag was one step, the reset another.
@@ -132,7 +132,7 @@ fn channels_of_a_source_can_be_ignored() {
     let mute = |property, muted| [edit(MapEdit::Mute { source: neck, property, muted })];
     assert_eq!(reach(&mut harness, &text::ignore_channels(rotation)), mute(MutedProperty::Rotation, true));
     assert!(harness.query_by_label_contains(&text::follows("Neck", "")).is_some());
-    assert!(says(&harness, &text::left_out(rotation)));
+    assert!(says(&harness, &text::ignored(rotation)));
     assert_eq!(muted_properties(&map(&harness, 0), neck), [false, true, false]);
     assert_eq!(reach(&mut harness, &text::ignore_channels(rotation)), mute(MutedProperty::Rotation, false));
     reach(&mut harness, &text::ignore_channels(scale));
@@ -149,6 +149,6 @@ fn a_joint_without_a_source_can_have_its_own_policy() {
     let commands = choose(&mut harness, text::OWN_POLICY, &text::first_key_of("Wave"));
     assert_eq!(commands, [edit(MapEdit::Unmapped { target: neck, unmapped: Some(frozen) })]);
     assert!(says(&harness, &text::holds_first_key("Wave")));
-    let commands = choose(&mut harness, text::OWN_POLICY, &text::as_all(text::REST));
+    let commands = choose(&mut harness, text::OWN_POLICY, &text::default_policy(text::REST));
     assert_eq!(commands, [edit(MapEdit::Unmapped { target: neck, unmapped: None })]);
 }

@@ -72,7 +72,7 @@ fn everything_fits_on_a_narrow_screen() {
             text::REMATCH,
             text::SWAP_SIDES,
             text::CLEAR_MAP,
-            &text::option_of(text::ORDER, text::BY_BODY),
+            &text::labelled(text::ORDER, text::BY_BODY),
             text::JOINT_FILTER,
         ];
         check_fit(&harness, screen, &head);

@@ -20,11 +20,11 @@ fn options_set_root_motion_foot_planting_and_rest_poses() {
     press(&mut harness, text::OPTIONS);
     let mut root = RootOptions { horizontal: RootPart::InPlace, ..RootOptions::default() };
     assert_eq!(
-        press(&mut harness, &text::option_of(text::ROOT_HORIZONTAL, text::IN_PLACE)),
+        press(&mut harness, &text::labelled(text::ROOT_HORIZONTAL, text::IN_PLACE)),
         [Command::SetRoot(Some(root))]
     );
     root.yaw = RootPart::Freeze;
-    assert_eq!(press(&mut harness, &text::option_of(text::ROOT_TURN, text::FREEZE)), [Command::SetRoot(Some(root))]);
+    assert_eq!(press(&mut harness, &text::labelled(text::ROOT_TURN, text::FREEZE)), [Command::SetRoot(Some(root))]);
     root.extract = true;
     assert_eq!(reach(&mut harness, text::EXTRACT_ROOT_MOTION), [Command::SetRoot(Some(root))]);
     let plant = Command::SetFeet(Some(Feet::Plant));
@@ -59,10 +59,10 @@ fn options_set_translations_scales_and_the_crossfade() {
     let mut harness = motion_tab();
     press(&mut harness, text::OPTIONS);
     assert_eq!(
-        reach(&mut harness, &text::option_of(text::TRANSLATIONS, text::DROP)),
+        reach(&mut harness, &text::labelled(text::TRANSLATIONS, text::DROP)),
         [edit(MapEdit::Translations(Keep::Drop))]
     );
-    assert_eq!(reach(&mut harness, &text::option_of(text::SCALES, text::KEEP)), [edit(MapEdit::Scales(Keep::Keep))]);
+    assert_eq!(reach(&mut harness, &text::labelled(text::SCALES, text::KEEP)), [edit(MapEdit::Scales(Keep::Keep))]);
     let field = text::value_of(text::CROSSFADE);
     harness.get_by_label(&field).scroll_to_me();
     harness.run();

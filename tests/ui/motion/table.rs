@@ -52,8 +52,8 @@ fn rows_read_like_sentences() {
         harness.state_mut().editor.apply(Command::SetSource { motion: 0, target, source });
     }
     harness.run();
-    let shared = format!("{right}  RightHand (conflict: right hand · same name · 100 % · shared with LeftHand)");
-    for row in [&format!("RightHand follows {shared}"), "Head follows none (none: head · deliberately none)"] {
+    let shared = format!("{right}  RightHand (conflict): right hand · same name · 100 % · shared with LeftHand");
+    for row in [&format!("RightHand follows {shared}"), "Head follows none (none): head · unmapped manually"] {
         assert!(harness.query_by_label(row).is_some(), "{row}");
     }
 }
@@ -73,7 +73,7 @@ fn the_table_is_ordered_by_body_part_or_as_a_tree() {
     harness.run();
     assert!(harness.query_by_label_contains(&text::follows("LeftHand", "")).is_none());
     assert!(top(&harness, text::RIGHT_ARM) < before);
-    press(&mut harness, &text::option_of(text::ORDER, text::BY_TREE));
+    press(&mut harness, &text::labelled(text::ORDER, text::BY_TREE));
     assert!(harness.query_by_label_contains(text::LEFT_ARM).is_none());
     let order = [&text::follows("Hips", ""), &text::follows("Spine", ""), &text::follows("LeftHand", "")]
         .map(|label| top(&harness, label));
@@ -140,7 +140,7 @@ fn bench_of_chain(joints: usize) -> Harness<'static, Bench> {
 fn three_hundred_joints_have_their_rows() {
     let mut harness = bench_of_chain(300);
     assert!(harness.query_by_label(&text::joints_mapped(300, 300)).is_some());
-    assert!(harness.query_by_label(&text::option_of(text::ORDER, text::BY_BODY)).is_none(), "it has no body");
+    assert!(harness.query_by_label(&text::labelled(text::ORDER, text::BY_BODY)).is_none(), "it has no body");
     assert!(harness.query_by_label_contains(&text::follows("Tentacle250", "")).is_none(), "far out of sight");
     harness.state_mut().change(|state| {
         state.selection.joint = Some(250);
