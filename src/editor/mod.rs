@@ -7,6 +7,7 @@ mod camera;
 mod contents;
 mod event;
 mod export;
+mod maps;
 mod motions;
 mod names;
 mod open;
@@ -16,6 +17,7 @@ mod steps;
 pub use contents::{Contents, ModelFiles, OpenedMap, OpenedModel, container_of};
 pub use event::Event;
 pub use export::{Export, ExportedFile};
+pub use maps::{MapProblem, reconciled_maps};
 pub use names::{name_and_place, short_name};
 
 use std::collections::BTreeMap;

@@ -1,12 +1,12 @@
-//! Opening and removing motions and joint maps, and retargeting their clips to the active model. Operations that fail change
-//! nothing; those that succeed can be undone.
+//! Opening and removing motions, and retargeting their clips to the active model. Operations that fail change nothing; those
+//! that succeed can be undone.
 
-use super::{Admit, Contents, Editor, Event, short_name};
+use super::{Admit, Contents, Editor, Event, reconciled_maps, short_name};
 use crate::library::{BorrowError, BorrowedClip, Library, Model, Motion, names_checksum};
-use crate::retarget::{JointMap, JointMapFile, MapError, propose};
+use crate::retarget::{JointMap, MapError, propose};
 use crate::state::{
-    ClipChoice, Command, MapEdit, MapProblem, MotionMap, NumberedMap, RetargetEdits, ViewerState, active_clip,
-    active_map, active_maps, choice_of_clip, reconciled_maps,
+    ClipChoice, Command, MotionMap, NumberedMap, RetargetEdits, ViewerState, active_clip, active_map, active_maps,
+    choice_of_clip,
 };
 
 /// Identifies a motion's clip across models, with the time in it.
@@ -34,7 +34,7 @@ impl Editor {
     pub(super) fn open_motions(
         &mut self,
         motions: Vec<Motion>,
-        map: Option<JointMapFile>,
+        map: Option<MotionMap>,
         view: Option<ViewerState>,
         admit: Admit<'_>,
     ) -> Result<(), String> {
@@ -43,7 +43,7 @@ impl Editor {
         }
         self.check_room(&motions)?;
         let before = self.snapshot();
-        let problems = self.add_motions(motions.clone(), map.map(MotionMap::Names));
+        let problems = self.add_motions(motions.clone(), map);
         let clips = self.clips_of_last(motions.len());
         if clips == 0 && !motions.is_empty() {
             if let Some(before) = before {
@@ -123,57 +123,12 @@ impl Editor {
         problems.join("\n")
     }
 
-    /// Applies a joint map file to every motion it fits.
-    pub(super) fn apply_map_file(&mut self, map: &JointMapFile) -> Result<(), String> {
-        let Some(model) = self.library.active() else { return Ok(()) };
-        if self.library.motions().is_empty() {
-            let problem = "this is a joint map, but no motion is loaded; open the motion first, or both together";
-            return Err(problem.to_owned());
-        }
-        let mut fitting = Vec::new();
-        let mut problem = None;
-        for (index, motion) in self.library.motions().iter().enumerate() {
-            match map.to_joint_map(&model.asset, &motion.asset) {
-                Ok(map) => fitting.push((index, short_name(&motion.source), map)),
-                Err(error) => {
-                    let problem_of_first = MapProblem::NoFit { motion: motion.source.clone(), problem: error };
-                    problem = problem.or(Some(self.map_problem(&problem_of_first)));
-                }
-            }
-        }
-        if let Some(problem) = problem.filter(|_| fitting.is_empty()) {
-            return Err(problem);
-        }
-        self.end_gesture();
-        let steps = self.undo_steps();
-        let mut names = Vec::new();
-        for (motion, name, map) in fitting {
-            self.apply(Command::EditMap { motion, edit: MapEdit::Load(Box::new(map)) });
-            names.push(name);
-        }
-        self.end_gesture();
-        let undoable = self.undo_steps() != steps;
-        let text = format!("Applied the joint map to {}.", names.join(", "));
-        self.events.push(Event::Notice { text, undoable });
-        Ok(())
-    }
-
-    /// Returns the message about a map, with the name of its file if it has just been opened.
-    fn map_problem(&self, problem: &MapProblem) -> String {
-        match (&self.opened_map, problem) {
-            (Some(file), MapProblem::NoFit { motion, problem }) => {
-                format!("{file}: doesn't fit {}: {problem}", short_name(motion))
-            }
-            _ => problem.to_string(),
-        }
-    }
-
     /// Retargets the motions' clips if anything they depend on has changed; returns problems not reported before.
     pub(super) fn retarget(&mut self) -> Vec<String> {
         let (maps, problems) = reconciled_maps(&self.library, &self.state);
         let mut new: Vec<String> = problems.iter().map(|problem| self.map_problem(problem)).collect();
         if maps != self.state.retarget.map {
-            self.record(Command::ReconcileMaps);
+            self.record(Command::ReconcileMaps(maps));
             self.is_changed = true;
         }
         let maps = active_maps(&self.library, &self.state);

@@ -7,7 +7,6 @@ use super::motions::{ClipIdentity, added_from};
 use super::names::is_obj;
 use super::{Admit, Contents, Editor, Event, ModelFiles, OTHER_FILES, OpenedModel, short_name};
 use crate::library::{Environment, Library, Loaded, Model, ModelId, Motion};
-use crate::retarget::JointMapFile;
 use crate::state::{
     ClipChoice, Command, EnvironmentChoice, MotionMap, RetargetEdits, SavedMotion, Sources, ViewerState, apply,
 };
@@ -34,7 +33,7 @@ pub(super) struct Snapshot {
 /// What was opened together with models.
 struct Companions {
     motions: Option<Vec<Motion>>,
-    map: Option<JointMapFile>,
+    map: Option<MotionMap>,
     view: Option<ViewerState>,
 }
 
@@ -56,14 +55,16 @@ impl Editor {
     pub fn open(&mut self, contents: Contents, view: Option<ViewerState>, admit: Admit<'_>) -> Result<(), String> {
         let Contents { models, motions, map, environment, is_map_private, problems } = contents;
         let is_view = view.is_some();
-        let (file, map) = map.map(|opened| (opened.name, opened.map)).unzip();
-        self.opened_map = file;
+        let waiting = map.as_ref().map(|opened| MotionMap::of_file(&opened.map));
+        self.opened_map = map.as_ref().map(|opened| opened.name.clone());
         self.has_private_map |= is_map_private;
         self.refused.clear();
         let opened = match motions {
-            motions if !models.is_empty() => self.open_models(models, Companions { motions, map, view }, admit),
-            Some(motions) => self.open_motions(motions, map, view, admit),
-            None => map.map_or(Ok(()), |map| self.apply_map_file(&map)),
+            motions if !models.is_empty() => {
+                self.open_models(models, Companions { motions, map: waiting, view }, admit)
+            }
+            Some(motions) => self.open_motions(motions, waiting, view, admit),
+            None => map.map_or(Ok(()), |opened| self.open_map(&opened.map)),
         };
         self.opened_map = None;
         if opened.is_ok()
@@ -144,7 +145,7 @@ impl Editor {
                 Some(view) => self.set_view(view),
                 None => self.state = self.view_of_new_model(origin, keeps_motions),
             }
-            self.state.retarget.map.extend(map.map(MotionMap::Names));
+            self.state.retarget.map.extend(map);
             self.finish_view(is_view);
             None
         };
@@ -177,12 +178,11 @@ impl Editor {
         &mut self,
         playing: Option<ClipIdentity>,
         new: Vec<Motion>,
-        map: Option<JointMapFile>,
+        mut map: Option<MotionMap>,
     ) -> Option<String> {
-        let mut maps = map.map(MotionMap::Names);
-        let has_map_for_loaded = new.is_empty() && maps.is_some();
+        let has_map_for_loaded = new.is_empty() && map.is_some();
         if has_map_for_loaded {
-            self.state.retarget.map.extend(maps.take());
+            self.state.retarget.map.extend(map.take());
         }
         let problems = self.retarget();
         if has_map_for_loaded {
@@ -193,7 +193,7 @@ impl Editor {
             self.choose_retargeted(playing);
             return dropped;
         }
-        let problems = self.add_motions(new.clone(), maps);
+        let problems = self.add_motions(new.clone(), map);
         self.report(problems);
         self.choose_retargeted(new.first().map(ClipIdentity::first_of));
         let clips = self.clips_of_last(new.len());
@@ -295,7 +295,7 @@ impl Editor {
         &mut self,
         view: ViewerState,
         motions: Vec<Motion>,
-        map: Option<JointMapFile>,
+        map: Option<MotionMap>,
         admit: Admit<'_>,
     ) -> Result<(), String> {
         let before = self.snapshot();
@@ -306,7 +306,7 @@ impl Editor {
         }
         self.remember(before);
         self.set_view(view);
-        self.state.retarget.map.extend(map.map(MotionMap::Names));
+        self.state.retarget.map.extend(map);
         self.library.set_motions(motions);
         self.finish_view(true);
         Ok(())

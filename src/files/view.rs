@@ -140,7 +140,8 @@ async fn read_map_of<S: Source>(
 ) -> Option<MotionMap> {
     let MotionMap::File(address) = &map else { return Some(map) };
     let read = open_map(source, address.as_ref(), progress).await;
-    read.map(MotionMap::Names).inspect_err(|error| contents.problems.push(source.describe_omission("map", error))).ok()
+    let read = read.inspect_err(|error| contents.problems.push(source.describe_omission("map", error)));
+    read.ok().map(|map| MotionMap::of_file(&map))
 }
 
 /// Opens the models that a view lists. If the one it names is not in its archive, the archive's first one is named instead.

@@ -5,7 +5,7 @@ use std::f32::consts::{PI, TAU};
 use glam::Vec3;
 
 use super::framing::{DEFAULT_ASPECT, frame_all, resolve_camera, resolved_bounds};
-use super::maps::{self, reconciled_maps};
+use super::maps;
 use super::playhead::{active_clip, choice_of_clip, clip_of, clip_secs, play_range};
 use super::{CameraChoice, ClipChoice, Command, Fade, KeyLight, LookTarget, OrbitCamera, VertexChoice, ViewerState};
 use crate::anim::{LoopMode, TimeRange};
@@ -72,7 +72,7 @@ pub fn apply(state: &mut ViewerState, library: &Library, command: Command) {
         Command::SetUnmapped(unmapped) => state.retarget.unmapped = unmapped,
         Command::SetRoot(root) => state.retarget.root = root,
         Command::SetFeet(feet) => state.retarget.feet = feet,
-        Command::ReconcileMaps => state.retarget.map = reconciled_maps(library, state).0,
+        Command::ReconcileMaps(maps) => state.retarget.map = maps,
     }
 }
 
@@ -195,7 +195,7 @@ fn select_vertex(state: &mut ViewerState, model: Option<&Model>, vertex: Option<
 
 /// Sets the map of a motion; `None` sets the proposed one, if there is one.
 fn set_map(state: &mut ViewerState, library: &Library, motion: usize, map: Option<JointMap>) {
-    if let Some(map) = map.or_else(|| maps::proposed(library, motion)) {
+    if let Some(map) = map.or_else(|| maps::proposed_map(library, motion)) {
         maps::set_map(state, library, motion, Some(map));
     }
 }

@@ -1,7 +1,7 @@
 //! Everything the user can do to the view. Menus, keys, links, scripts and tests all send these commands.
 
 use super::{
-    Background, CameraChoice, ClipChoice, EnvironmentChoice, KeyLight, LookTarget, MapEdit, ToneMap, UpAxis,
+    Background, CameraChoice, ClipChoice, EnvironmentChoice, KeyLight, LookTarget, MapEdit, MotionMap, ToneMap, UpAxis,
     ViewerState,
 };
 use crate::anim::{LoopMode, TimeRange};
@@ -162,6 +162,6 @@ pub enum Command {
     SetRoot(Option<RootOptions>),
     /// Overrides what feet do; `None` leaves it to each map.
     SetFeet(Option<Feet>),
-    /// Reconciles the maps with the loaded files: names become joint numbers, missing maps are proposed, others are dropped.
-    ReconcileMaps,
+    /// Replaces the maps by what is left of them once they are reconciled with the loaded files; not an edit of the user's.
+    ReconcileMaps(Vec<MotionMap>),
 }

@@ -162,5 +162,5 @@ impl Step {
 /// Whether undo may cover the command; whether it does depends on the groups of the state that it changes. Neither a whole
 /// view nor the reconciliation of maps is an edit of the user's, and time must not cost a copy of the state in every frame.
 fn may_be_edit(command: &Command) -> bool {
-    !matches!(command, Command::Replace(_) | Command::ReconcileMaps | Command::Advance(_))
+    !matches!(command, Command::Replace(_) | Command::ReconcileMaps(_) | Command::Advance(_))
 }

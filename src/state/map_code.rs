@@ -1,16 +1,24 @@
-//! The compact form of a joint map in a link: `1.CHECKSUM.PAIRS`, or `1.CHECKSUM.PAIRS.REST`. The checksum is eight hex
-//! digits; a pair is `TARGET-SOURCE` in joint numbers (nothing after the hyphen: deliberately no source), pairs are joined
-//! by commas; the rest is everything else in the map, as JSON in base64url.
+//! The text of a joint map in a link. A map by name is its file's JSON. A map by numbers is compact: `1.CHECKSUM.PAIRS`, or
+//! `1.CHECKSUM.PAIRS.REST`. The checksum is eight hex digits; a pair is `TARGET-SOURCE` in joint numbers (nothing after the
+//! hyphen: deliberately no source), pairs are joined by commas; the rest is everything else in the map, as JSON in base64url.
 
 use base64::Engine;
 use base64::engine::general_purpose::URL_SAFE_NO_PAD;
 use serde_json::Value;
 
-use super::maps::NumberedMap;
+use super::maps::{MotionMap, NumberedMap};
 use crate::retarget::{JointMap, JointMapFile, MapEntry};
 
 /// What every code of this form begins with.
 pub(super) const MARK: &str = "1.";
+
+impl MotionMap {
+    /// Returns a map that was read from a file, as a link holds it.
+    pub fn of_file(map: &JointMapFile) -> Self {
+        // A map is plain data, so this cannot fail.
+        Self::Names(serde_json::to_string(map).unwrap_or_default())
+    }
+}
 
 pub(super) fn encode(numbered: &NumberedMap) -> String {
     let mut rest = numbered.map.clone();

@@ -37,7 +37,7 @@ pub use link::{
 };
 pub use loop_frames::LoopFrames;
 pub use map_edit::{MapEdit, muted_properties};
-pub use maps::{MapProblem, MotionMap, NumberedMap, active_map, active_maps, reconciled_maps};
+pub use maps::{MotionMap, NumberedMap, active_map, active_maps, numbered_for, proposed_map};
 pub use names::{title, written_skeleton};
 pub use playhead::{
     PoseSampler, active_clip, choice_of_clip, clip_secs, manual_degrees, manual_rotation, play_range, unknown_clip,

@@ -215,6 +215,31 @@ fn modules_use_only_lower_ranks() {
     assert!(all.is_empty(), "\n{}", all.join("\n"));
 }
 
+/// Names that only these files may use.
+const KEPT_IN: [(&str, &[&str]); 2] = [
+    // Joint maps by name exist where files and links are read and written; everything else has joints by number.
+    (
+        "JointMapFile",
+        &["retarget/", "files/", "editor/contents.rs", "editor/maps.rs", "state/link/values.rs", "state/map_code.rs"],
+    ),
+    // A pose is sampled once, into the frame; everything else reads it there.
+    ("PoseSampler", &["state/mod.rs", "state/playhead.rs", "frame/"]),
+];
+
+#[test]
+fn names_stay_where_they_belong() {
+    let all = all_sources();
+    for (name, places) in KEPT_IN {
+        let users = all.iter().filter(|(_, text)| names(&without_comments(text), name)).map(|(path, _)| path);
+        let (inside, outside): (Vec<_>, Vec<_>) =
+            users.partition(|path| places.iter().any(|place| path.starts_with(place)));
+        assert!(outside.is_empty(), "{name} in {outside:?}");
+        for place in places {
+            assert!(inside.iter().any(|path| path.starts_with(place)), "{place} no longer uses {name}");
+        }
+    }
+}
+
 /// The groups of `ViewerState`'s fields.
 const STATE_GROUPS: [&str; 12] = [
     "sources",

@@ -13,9 +13,10 @@ use gaitway::retarget::{JointMapFile, RootOptions, RootPart};
 use gaitway::samples;
 use gaitway::state::{
     CameraChoice, ClipChoice, Command, EnvironmentChoice, Inspect, Lighting, MapEdit, OrbitCamera, RetargetEdits, Show,
-    Sources, UpAxis, ViewerState, active_clip, from_link, resolve_camera, to_link,
+    Sources, UpAxis, ViewerState, active_clip, active_map, from_link, resolve_camera, to_link, to_object,
 };
 use glam::Vec3;
+use serde_json::json;
 
 use crate::data::moving_box;
 
@@ -331,6 +332,34 @@ fn a_faulty_map_is_blamed_on_its_own_file() {
     let alone = Contents { map: map(), ..Contents::default() };
     let error = editor.open(alone, None, &mut any).expect_err("fits nothing");
     assert!(error.starts_with(expected), "{error}");
+}
+
+/// A map by name waits for its motion as the text that the link has.
+#[test]
+fn a_map_waits_for_its_motion() {
+    let text = r#"{ "gaitway_map": 1, "joints": { "Hips": { "source": "Hips" } } }"#;
+    let (view, errors) = from_link(&format!("model=sample:walker&map={}", text.replace(' ', "%20")));
+    assert_eq!(errors, []);
+    assert_eq!(to_object(&view)["map"], json!([text]));
+    let mut editor = Editor::default();
+    editor.open(contents(&["sample:walker"]), Some(view), &mut any).expect("fits");
+    assert_eq!(to_object(editor.state())["map"], json!([text]), "written back unchanged");
+    let sources = |editor: &Editor| active_map(editor.library(), editor.state(), 0).map(|map| map.joints.len());
+    open_motion(&mut editor, "dance.glb");
+    assert_eq!(sources(&editor), Some(1));
+    assert!(to_link(editor.state()).contains("map=1."), "by number");
+    editor.undo();
+    assert_eq!(to_object(editor.state())["map"], json!([text]));
+    editor.redo();
+    assert_eq!(sources(&editor), Some(1));
+    // The same for a map that is opened with its model, before any motion.
+    let map = OpenedMap { name: "map.json".to_owned(), map: JointMapFile::from_json(text).expect("is valid") };
+    let mut editor = Editor::default();
+    editor.open(Contents { map: Some(map), ..contents(&["sample:walker"]) }, None, &mut any).expect("fits");
+    let (again, errors) = from_link(&to_link(editor.state()));
+    assert_eq!((&again.retarget, &errors[..]), (&editor.state().retarget, &[][..]));
+    open_motion(&mut editor, "dance.glb");
+    assert_eq!(sources(&editor), Some(1));
 }
 
 #[test]

@@ -68,7 +68,7 @@ fn some_maps() -> Vec<MotionMap> {
     vec![
         MotionMap::Numbers(NumberedMap { checksum: 0x00c0_ffee, map: full }),
         MotionMap::Numbers(NumberedMap { checksum: u32::MAX, map: plain }),
-        MotionMap::Names(by_name),
+        MotionMap::of_file(&by_name),
         MotionMap::File("maps/knight.json".to_owned()),
     ]
 }

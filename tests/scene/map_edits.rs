@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use gaitway::anim::Transform;
 use gaitway::asset::Asset;
+use gaitway::editor::reconciled_maps;
 use gaitway::frame::pose_document;
 use gaitway::library::{Library, Model, Motion};
 use gaitway::retarget::{
@@ -13,7 +14,7 @@ use gaitway::retarget::{
 };
 use gaitway::state::{
     ClipChoice, Command, History, MapEdit, MotionMap, NumberedMap, Playback, Playhead, RetargetEdits, ViewerState,
-    active_map, active_maps, apply, from_link, muted_properties, reconciled_maps, to_link,
+    active_map, active_maps, apply, from_link, muted_properties, to_link,
 };
 use glam::{Quat, Vec3};
 
@@ -37,7 +38,8 @@ fn walker_with_motion() -> (Library, ViewerState) {
 }
 
 fn reconcile(library: &mut Library, state: &mut ViewerState) {
-    apply(state, library, Command::ReconcileMaps);
+    let (maps, _) = reconciled_maps(library, state);
+    apply(state, library, Command::ReconcileMaps(maps));
     library.borrow_each(active_maps(library, state));
 }
 

@@ -6,14 +6,15 @@ use std::sync::Arc;
 use gaitway::anim::Clip;
 use gaitway::anim::{ClipBuilder, Interpolation, JointIndex, Keys};
 use gaitway::asset::{Asset, AssetParts};
+use gaitway::editor::{MapProblem, reconciled_maps};
 use gaitway::frame::pose_document;
 use gaitway::library::{Library, Motion, names_checksum};
 use gaitway::retarget::{
     ClipRef, Feet, JointMap, JointMapFile, MapEntry, MutedChannel, RootOptions, RootPart, SourceRef, Unmapped,
 };
 use gaitway::state::{
-    ClipChoice, Command, History, MapProblem, MotionMap, Playback, Playhead, RetargetEdits, ViewerState, active_map,
-    active_maps, apply, from_link, reconciled_maps, to_link,
+    ClipChoice, Command, History, MotionMap, Playback, Playhead, RetargetEdits, ViewerState, active_map, active_maps,
+    apply, from_link, to_link,
 };
 use glam::Vec3;
 
@@ -35,8 +36,8 @@ fn chain(names: &[&str]) -> Asset {
 }
 
 fn reconcile(library: &mut Library, state: &mut ViewerState) -> Vec<MapProblem> {
-    let (_, problems) = reconciled_maps(library, state);
-    apply(state, library, Command::ReconcileMaps);
+    let (maps, problems) = reconciled_maps(library, state);
+    apply(state, library, Command::ReconcileMaps(maps));
     library.borrow_each(active_maps(library, state));
     problems
 }
@@ -115,7 +116,7 @@ fn only_motions_whose_map_changed_are_baked_again() {
 #[test]
 fn without_motions_no_map_is_proposed_or_lost() {
     let mut library = walker();
-    let map = vec![MotionMap::Names(by_name()), MotionMap::File("map.json".to_owned())];
+    let map = vec![MotionMap::of_file(&by_name()), MotionMap::File("map.json".to_owned())];
     let mut state = ViewerState {
         retarget: RetargetEdits { map: map.clone(), ..RetargetEdits::default() },
         ..ViewerState::default()
@@ -128,7 +129,7 @@ fn without_motions_no_map_is_proposed_or_lost() {
 fn a_map_by_name_becomes_numbers_and_round_trips() {
     let mut library = walker_with_motion();
     let mut state = ViewerState {
-        retarget: RetargetEdits { map: vec![MotionMap::Names(by_name())], ..RetargetEdits::default() },
+        retarget: RetargetEdits { map: vec![MotionMap::of_file(&by_name())], ..RetargetEdits::default() },
         ..ViewerState::default()
     };
     assert_eq!(reconcile(&mut library, &mut state), []);
@@ -151,7 +152,7 @@ fn a_map_that_fits_no_motion_is_reported_and_replaced() {
         ..JointMapFile::default()
     };
     let mut state = ViewerState {
-        retarget: RetargetEdits { map: vec![MotionMap::Names(wrong)], ..RetargetEdits::default() },
+        retarget: RetargetEdits { map: vec![MotionMap::of_file(&wrong)], ..RetargetEdits::default() },
         ..ViewerState::default()
     };
     let problems = reconcile(&mut library, &mut state);

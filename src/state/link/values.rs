@@ -151,16 +151,14 @@ pub(super) fn read_source(text: &str) -> Option<String> {
 pub(super) fn map_text(map: &MotionMap) -> String {
     match map {
         MotionMap::Numbers(map) => map_code::encode(map),
-        // A map is plain data, so this cannot fail.
-        MotionMap::Names(map) => serde_json::to_string(map).unwrap_or_default(),
-        MotionMap::File(url) => url.clone(),
+        MotionMap::Names(text) | MotionMap::File(text) => text.clone(),
     }
 }
 
 /// Reads the compact form, JSON, or a URL.
 pub(super) fn read_map(text: &str) -> Option<MotionMap> {
     if text.starts_with('{') {
-        JointMapFile::from_json(text).ok().map(MotionMap::Names)
+        JointMapFile::from_json(text).is_ok().then(|| MotionMap::Names(text.to_owned()))
     } else if text.starts_with(map_code::MARK) {
         map_code::decode(text).map(MotionMap::Numbers)
     } else {
