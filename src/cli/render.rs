@@ -9,11 +9,11 @@ use super::quiet::Quiet;
 use super::{RenderArguments, apply_moment, open};
 use crate::editor::{Contents, Editor};
 use crate::files::{Disk, Role, encode_png};
-use crate::frame::{Frame, evaluate};
+use crate::frame::{Frame, current_orbit, evaluate};
 use crate::render::{Renderer, RendererOptions, headless_device, read_pixels};
 use crate::state::{
     CameraChoice, Command, EnvironmentChoice, NameKind, OrbitCamera, UnknownName, active_variant, from_object,
-    resolve_camera, source_on_stage,
+    source_on_stage,
 };
 
 /// File extensions for the image.
@@ -97,7 +97,7 @@ fn open_requested_view(arguments: &RenderArguments, disk: &Disk) -> Outcome<Edit
             yaw_radians: yaw_degrees.to_radians(),
             pitch_radians: pitch_degrees.to_radians(),
             distance,
-            target: resolve_camera(editor.library(), editor.state(), aspect).target,
+            target: current_orbit(editor.library(), editor.state(), aspect).target,
         };
         editor.apply(Command::SetCamera(CameraChoice::Orbit(orbit)));
     }

@@ -1,7 +1,7 @@
 //! Camera rules: commands that depend on the viewport's shape, or that must not change what is in view.
 
 use super::Editor;
-use crate::frame::travelled;
+use crate::frame::{current_orbit, travelled};
 use crate::state::{
     CameraChoice, Command, OrbitCamera, ViewerState, comparison, comparison_ratio, frame_all, resolve_camera,
 };
@@ -52,15 +52,19 @@ impl Editor {
         if let Some(orbit) = self.compensated_camera(&command) {
             self.record(Command::SetCamera(CameraChoice::Orbit(orbit)));
         }
-        // The automatic camera depends on the viewport's shape, which commands don't know.
+        // The automatic camera depends on the viewport's shape, and the file's cameras on the pose; commands know neither.
+        let is_relative = match command {
+            Command::Orbit { .. } | Command::Pan { .. } | Command::Zoom { .. } => true,
+            Command::FrameAll => !is_auto,
+            Command::Advance(_) => has_turntable && is_auto,
+            _ => false,
+        };
+        if is_relative && !matches!(self.state.camera, CameraChoice::Orbit(_)) {
+            let orbit = current_orbit(&self.library, &self.state, self.aspect);
+            self.record(Command::SetCamera(CameraChoice::Orbit(orbit)));
+        }
         if matches!(command, Command::FrameAll) && !is_auto {
             return Command::SetCamera(CameraChoice::Orbit(frame_all(&self.library, &self.state, self.aspect)));
-        }
-        let is_relative = matches!(command, Command::Orbit { .. } | Command::Pan { .. } | Command::Zoom { .. })
-            || (has_turntable && is_auto && matches!(command, Command::Advance(_)));
-        if is_relative && !matches!(self.state.camera, CameraChoice::Orbit(_)) {
-            let orbit = resolve_camera(&self.library, &self.state, self.aspect);
-            self.record(Command::SetCamera(CameraChoice::Orbit(orbit)));
         }
         command
     }

@@ -19,6 +19,8 @@ use crate::state::{
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
     pub sampler: PoseSampler,
+    /// How far the camera has followed the character.
+    pub travel: Vec3,
     first_pose: Pose,
     first_cursor: SampleCursor,
     rest_pose: Pose,
@@ -80,10 +82,9 @@ pub fn evaluate(library: &Library, state: &ViewerState, aspect: f32, frame: &mut
     };
     frame.clip = active_clip(model, state);
     frame.scratch.sampler.sample_motion(model, state);
-    let travel = match state.camera_options.follow {
-        true => travel(model, frame.clip, state, &mut frame.scratch),
-        false => Vec3::ZERO,
-    };
+    let follows = state.camera_options.follow;
+    let travel = if follows { travel(model, frame.clip, state, &mut frame.scratch) } else { Vec3::ZERO };
+    frame.scratch.travel = travel;
     let eye = match state.display.look_at {
         LookTarget::Camera => camera_eye(library, state, aspect, travel, &frame.scratch.sampler.pose),
         _ => None,

@@ -25,6 +25,7 @@ pub use formula::{FormulaTerm, JointMatrices, VertexFormula, joint_matrices, ver
 pub use pick::{PickedJoint, pick_joint};
 pub use pick_vertex::pick_vertex;
 pub use pose_document::{NodePose, PoseDocument, pose_document};
+pub use view::current_orbit;
 
 /// Input of the renderer. Reused between frames, so that evaluation stops allocating once the buffers have grown.
 #[derive(Debug, Default)]

@@ -5,10 +5,10 @@ use glam::camera::rh::proj::directx::{orthographic, perspective};
 use glam::camera::rh::view::look_at_mat4;
 use glam::{Affine3A, Mat4, Vec3};
 
-use super::{Frame, View};
-use crate::asset::CameraProjection;
+use super::{Frame, View, evaluate};
+use crate::asset::{Camera, CameraProjection};
 use crate::library::Library;
-use crate::state::{CameraChoice, ViewerState, pane_aspect, resolve_camera, world_from_file_camera};
+use crate::state::{CameraChoice, OrbitCamera, ViewerState, pane_aspect, resolve_camera, world_from_file_camera};
 
 /// Smallest ratio of the near to the far plane that 24 bits of depth resolve.
 const MIN_NEAR_RATIO: f32 = 1e-4;
@@ -49,8 +49,7 @@ fn planes(frame: &Frame, eye: Vec3, ahead: Vec3, distance: f32) -> (f32, f32) {
 
 fn file_view(library: &Library, index: usize, aspect: f32, frame: &Frame) -> Option<View> {
     let camera = library.active()?.asset.cameras.get(index)?;
-    let world_from_joint = &frame.characters.first()?.world_from_joint;
-    let world_from_camera: Affine3A = world_from_file_camera(world_from_joint.get(camera.joint.get())?)?;
+    let world_from_camera = world_from_camera(camera, frame)?;
     let eye = Vec3::from(world_from_camera.translation);
     let ahead = Vec3::from(-world_from_camera.matrix3.z_axis);
     let distance = (frame.bounds.center() - eye).length().max(1e-6);
@@ -67,4 +66,34 @@ fn file_view(library: &Library, index: usize, aspect: f32, frame: &Frame) -> Opt
         }
     };
     Some(View { view_from_world: Mat4::from(world_from_camera.inverse()), projection_from_view, eye })
+}
+
+/// Returns a camera's position and axes without scale, in the pose of the frame.
+fn world_from_camera(camera: &Camera, frame: &Frame) -> Option<Affine3A> {
+    let world_from_joint = &frame.characters.first()?.world_from_joint;
+    world_from_file_camera(world_from_joint.get(camera.joint.get())?)
+}
+
+/// Returns the orbit camera from which a view is moved, in a viewport of this aspect ratio (width over height). A camera of the
+/// file becomes the closest orbit camera in the current pose: same position and direction, no roll.
+pub fn current_orbit(library: &Library, state: &ViewerState, aspect: f32) -> OrbitCamera {
+    file_orbit(library, state, aspect).unwrap_or_else(|| resolve_camera(library, state, aspect))
+}
+
+fn file_orbit(library: &Library, state: &ViewerState, aspect: f32) -> Option<OrbitCamera> {
+    let CameraChoice::File(index) = state.camera else { return None };
+    let camera = library.active()?.asset.cameras.get(index)?;
+    let mut frame = Frame::default();
+    evaluate(library, state, aspect, &mut frame);
+    let world_from_camera = world_from_camera(camera, &frame)?;
+    let (eye, towards_eye) = (Vec3::from(world_from_camera.translation), Vec3::from(world_from_camera.matrix3.z_axis));
+    let to_center = (eye - frame.bounds.center()).dot(towards_eye);
+    let distance = to_center.max(0.1 * frame.bounds.diagonal()).max(1e-4);
+    Some(OrbitCamera {
+        yaw_radians: towards_eye.x.atan2(towards_eye.z),
+        pitch_radians: towards_eye.y.clamp(-1.0, 1.0).asin(),
+        distance,
+        // An orbit camera that follows the character is moved by its travel.
+        target: eye - distance * towards_eye - frame.scratch.travel,
+    })
 }

@@ -2,13 +2,13 @@
 
 use std::f32::consts::{FRAC_PI_2, PI};
 
-use glam::{Affine3A, Mat3A, Vec2, Vec3, Vec3A};
+use glam::{Affine3A, Mat3A, Vec2, Vec3};
 
 use super::comparison::{comparison, pane_aspect};
-use super::playhead::{PoseSampler, active_clip, world_from_model};
+use super::playhead::{active_clip, world_from_model};
 use super::stage::source_on_stage;
 use super::{CameraChoice, OrbitCamera, ViewerState};
-use crate::anim::{Pose, model_from_joint, model_from_single_joint};
+use crate::anim::{Pose, model_from_single_joint};
 use crate::library::{Library, Model};
 use crate::mesh::Bounds;
 
@@ -40,27 +40,19 @@ pub fn resolved_bounds(library: &Library, state: &ViewerState) -> Bounds {
 /// it, so callers that know the viewport send `SetCamera` with [`resolve_camera`] first.
 pub const DEFAULT_ASPECT: f32 = 1.6;
 
-/// Returns the orbit camera for the state in a viewport of this aspect ratio (width over height). A camera of the file becomes
-/// the closest orbit camera: same position and direction, no roll.
+/// Returns the orbit camera for the state in a viewport of this aspect ratio (width over height). For a camera of the file, whose
+/// place depends on the pose, that is the automatic one; `frame::current_orbit` knows better.
 pub fn resolve_camera(library: &Library, state: &ViewerState, aspect: f32) -> OrbitCamera {
+    if let CameraChoice::Orbit(orbit) = state.camera {
+        return orbit;
+    }
     let aspect = pane_aspect(comparison(library, state), aspect);
-    let auto = || {
-        let (yaw_radians, pitch_radians) = (front_yaw_radians(library, state) + AUTO_YAW_RADIANS, AUTO_PITCH_RADIANS);
-        match library.active() {
-            Some(_) => fit(
-                resolved_bounds(library, state),
-                yaw_radians,
-                pitch_radians,
-                state.camera_options.fov_degrees,
-                aspect,
-            ),
-            None => OrbitCamera { yaw_radians, pitch_radians, distance: 3.0, target: Vec3::ZERO },
+    let (yaw_radians, pitch_radians) = (front_yaw_radians(library, state) + AUTO_YAW_RADIANS, AUTO_PITCH_RADIANS);
+    match library.active() {
+        Some(_) => {
+            fit(resolved_bounds(library, state), yaw_radians, pitch_radians, state.camera_options.fov_degrees, aspect)
         }
-    };
-    match state.camera {
-        CameraChoice::Orbit(orbit) => orbit,
-        CameraChoice::Auto => auto(),
-        CameraChoice::File(index) => file_orbit(library, state, index).unwrap_or_else(auto),
+        None => OrbitCamera { yaw_radians, pitch_radians, distance: 3.0, target: Vec3::ZERO },
     }
 }
 
@@ -138,24 +130,4 @@ pub fn camera_eye(library: &Library, state: &ViewerState, aspect: f32, travel: V
         CameraChoice::File(camera) => file_eye(camera),
         _ => Some(resolve_camera(library, state, aspect).eye() + travel),
     }
-}
-
-fn file_orbit(library: &Library, state: &ViewerState, index: usize) -> Option<OrbitCamera> {
-    let model = library.active()?;
-    let camera = model.asset.cameras.get(index)?;
-    let (mut sampler, mut world_from_joint) = (PoseSampler::default(), Vec::new());
-    sampler.sample(model, state);
-    model_from_joint(&model.asset.skeleton, &sampler.pose, world_from_model(state.edits.up), &mut world_from_joint);
-    let world_from_camera = world_from_file_camera(&world_from_joint[camera.joint.get()])?;
-    let towards_eye = world_from_camera.matrix3.z_axis;
-    let eye = world_from_camera.translation;
-    let bounds = resolved_bounds(library, state);
-    let to_center = (eye - Vec3A::from(bounds.center())).dot(towards_eye);
-    let distance = to_center.max(0.1 * bounds.diagonal()).max(1e-4);
-    Some(OrbitCamera {
-        yaw_radians: towards_eye.x.atan2(towards_eye.z),
-        pitch_radians: towards_eye.y.clamp(-1.0, 1.0).asin(),
-        distance,
-        target: (eye - distance * towards_eye).into(),
-    })
 }

@@ -8,12 +8,13 @@ use std::sync::Arc;
 
 use gaitway::anim::{ClipBuilder, Interpolation, MaterialProperty, PropertyTarget};
 use gaitway::asset::Asset;
-use gaitway::frame::{Frame, evaluate};
+use gaitway::editor::Editor;
+use gaitway::frame::{Frame, evaluate, travelled};
 use gaitway::library::{Library, Model, Motion, inspect};
 use gaitway::retarget::{JointMap, propose};
 use gaitway::samples;
-use gaitway::state::{CameraChoice, ClipChoice, Fade, Playhead, PoseSampler, ViewerState};
-use glam::Vec4;
+use gaitway::state::{CameraChoice, ClipChoice, Command, Fade, Playhead, PoseSampler, ViewerState};
+use glam::{Vec3, Vec4};
 use serde_json::{Value, json};
 
 use self::keys::curves;
@@ -243,6 +244,39 @@ fn a_clip_zooms_the_cameras_of_the_file() {
     };
     assert!((up(0, 1.0) - 1.0 / 0.75_f32.tan()).abs() < 1e-5);
     assert!((up(1, 1.0) - 0.5).abs() < 1e-6);
+}
+
+/// Moving the view of a camera of the file starts from where that is in the current pose.
+#[test]
+fn a_camera_of_the_file_is_moved_from_where_it_is() {
+    let tilt = json!([-0.130_526_2, 0.0, 0.0, 0.991_444_9]);
+    let lens = json!([{ "type": "perspective", "perspective": { "yfov": 0.6, "znear": 0.1 } }]);
+    let mut build = Build::triangle().with("/cameras", lens).with("/nodes/0/camera", json!(0));
+    build = build.with("/nodes/0/rotation", tilt);
+    build.point("/nodes/0/translation", "LINEAR", "VEC3", &[0.0, 2.0], &[0.0, 0.0, 0.0, 3.0, 1.0, -2.0]);
+    let state = ViewerState { camera: CameraChoice::File(0), ..at(1.0) };
+    let mut editor = Editor::new(library(build), state.clone());
+    let camera = |editor: &Editor| {
+        let mut frame = Frame::default();
+        evaluate(editor.library(), editor.state(), 1.0, &mut frame);
+        (frame.view.eye, frame.view.view_from_world.row(2).truncate())
+    };
+    for follow in [false, true] {
+        editor.apply(Command::Replace(Box::new(state.clone())));
+        editor.apply(Command::SetFollow(follow));
+        let (eye, back) = camera(&editor);
+        assert!(eye.distance(Vec3::new(1.5, 0.5, -1.0)) < 1e-5, "{eye}");
+        for command in [Command::Orbit { yaw_radians: 0.0, pitch_radians: 0.0 }, Command::Pan { right: 0.0, up: 0.0 }] {
+            editor.apply(command);
+            assert!(matches!(editor.state().camera, CameraChoice::Orbit(_)));
+            let (now, direction) = camera(&editor);
+            assert!(now.distance(eye) < 1e-4 && direction.distance(back) < 1e-4, "{follow}: {now} {direction}");
+        }
+        editor.apply(Command::SetCamera(CameraChoice::File(0)));
+        editor.apply(Command::FrameAll);
+        assert!(camera(&editor).1.distance(back) < 1e-4, "framing keeps the direction");
+    }
+    assert_ne!(travelled(editor.library(), editor.state()), Vec3::ZERO);
 }
 
 /// The walker, whose first clip makes its first material red.
