@@ -1,7 +1,7 @@
 // Runs before anything is shown: picks the image that covers the page while it loads, and starts downloading the samples of
-// the link side by side with the program, and its models from part of the way on: they may be large. There is no program to
-// ask yet, so this is the one script that reads links itself, by the rules of src/state/link.rs. It only guesses what is worth
-// having early; what the page shows is for the program to read.
+// the link side by side with the program, and its models from part of the way on: they may be large. There is no program yet
+// that could read the link, and this script doesn't read it either: it searches its text for names that are worth having
+// early. tests/scene/early.json holds what it finds against the files that the program finds.
 
 (() => {
   const still = /** @type {HTMLImageElement} */ (document.getElementById("loading-still"));
@@ -14,7 +14,7 @@
   const first = still.dataset.link ?? "";
 
   /**
-   * Decodes as the program does: a plus sign stays one, and so does a percent sign that escapes nothing.
+   * A percent sign that escapes nothing is meant as it is.
    * @param {string} text
    */
   function decoded(text) {
@@ -25,18 +25,8 @@
     }
   }
 
-  /**
-   * @param {string} link
-   * @returns {{ key: string, value: string }[]}
-   */
-  const pairs = (link) =>
-    link.split("&").map((pair) => {
-      const [key, ...value] = pair.split("=");
-      return { key: decoded(key), value: decoded(value.join("=")) };
-    });
-
   /** @param {string} link */
-  const modelsOf = (link) => pairs(link).flatMap(({ key, value }) => (key === "model" ? [value] : []));
+  const modelsOf = (link) => Array.from(link.matchAll(/\bmodel=([^&]*)/g), ([, model]) => decoded(model));
 
   /**
    * @param {string} link
@@ -53,8 +43,8 @@
     const meta = /** @type {HTMLMetaElement | null} */ (document.querySelector('meta[name="gaitway-samples"]'));
     /** @type {Record<string, string[]>} */
     const samples = JSON.parse(meta?.content ?? "{}");
-    const values = new Set(pairs(link).map(({ value }) => value));
-    preload(Object.keys(samples).filter((name) => values.has(`sample:${name}`)).flatMap((name) => samples[name]));
+    const names = new Set(Array.from(decoded(link).matchAll(/sample:(\w+)/g), ([, name]) => name));
+    preload(Object.keys(samples).filter((name) => names.has(name)).flatMap((name) => samples[name]));
   }
 
   /** @param {string} link */

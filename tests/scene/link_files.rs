@@ -5,6 +5,7 @@ use gaitway::state::{
     LinkRole, LinkedFile, embedded_link, link_with_files, link_without_missing, linked_files, most_similar_link,
     public_link, shown_files,
 };
+use serde_json::{Value, json};
 
 fn file(role: LinkRole, name: &str, member: &str, is_to_bring: bool) -> LinkedFile {
     LinkedFile { role, name: name.to_owned(), member: member.to_owned(), is_to_bring }
@@ -28,6 +29,21 @@ fn a_file_is_a_url_a_sample_or_a_local_name() {
     check_file("model=", file(LinkRole::Model, "", "", false));
     assert_eq!(linked_files("v=1&map=https://a.example/map.json&models=x&t=1"), []);
     assert_eq!(linked_files(""), []);
+}
+
+/// web/still.js searches these links before the program is there; tests/browser/still.test.mjs holds that it finds the same.
+#[test]
+fn what_is_loaded_early_is_what_the_link_names() {
+    let cases: Vec<Value> = serde_json::from_str(include_str!("early.json")).expect("JSON");
+    for case in cases {
+        let link = case["link"].as_str().expect("a text");
+        let files = linked_files(link);
+        let models = files.iter().filter(|file| file.role == LinkRole::Model);
+        let models: Vec<String> = models.map(|file| format!("{}{}", file.name, file.member)).collect();
+        assert_eq!(json!(models), case["models"], "{link}");
+        let samples: Vec<&str> = files.iter().filter_map(|file| file.name.strip_prefix("sample:")).collect();
+        assert_eq!(json!(samples), case["samples"], "{link}");
+    }
 }
 
 #[test]

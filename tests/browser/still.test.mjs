@@ -1,0 +1,52 @@
+// What still.js finds in a link before the program is there. No browser: the script runs with stand-ins for what it uses.
+import assert from "node:assert/strict";
+import fs from "node:fs";
+import { test } from "node:test";
+import vm from "node:vm";
+
+const script = fs.readFileSync("web/still.js", "utf8");
+/** @type {{ link: string, models: string[], samples: string[] }[]} */
+const cases = JSON.parse(fs.readFileSync("tests/scene/early.json", "utf8"));
+const names = [...new Set(cases.flatMap(({ samples }) => samples))];
+
+/**
+ * Returns the image that covers the page of a link, and the files that are loaded before and after part of the program is.
+ * @param {string} link
+ */
+function early(link) {
+  const still = {
+    hidden: false,
+    src: "",
+    dataset: { images: JSON.stringify(Object.fromEntries(names.map((name) => [`sample:${name}`, `${name}.webp`]))), link: "model=sample:pilot" },
+    getAttribute: () => still.src,
+  };
+  /** @type {Record<string, () => void>} */
+  const listeners = {};
+  /** @type {string[]} */
+  const files = [];
+  vm.runInNewContext(script, {
+    document: {
+      getElementById: () => still,
+      querySelector: () => ({ content: JSON.stringify(Object.fromEntries(names.map((name) => [name, [name]]))) }),
+      createElement: () => ({}),
+      head: { append: (/** @type {{ href: string }[]} */ ...links) => files.push(...links.map(({ href }) => href)) },
+    },
+    location: { hash: link === "" ? "" : `#${link}` },
+    addEventListener: (/** @type {string} */ name, /** @type {() => void} */ listener) => (listeners[name] = listener),
+    URL,
+  });
+  const samples = files.splice(0);
+  listeners["gaitway:part-loaded"]();
+  return { image: still.hidden ? null : still.src, samples, models: files };
+}
+
+test("the script that runs first finds what the program will load", () => {
+  for (const { link, models, samples } of cases) {
+    const found = early(link);
+    assert.deepEqual(found.samples.sort(), link === "" ? ["pilot"] : samples, link);
+    assert.deepEqual(found.models, models.filter((model) => model.startsWith("https:")), link);
+    const [model, other] = link === "" ? ["sample:pilot"] : models;
+    const isKnown = other === undefined && model?.startsWith("sample:");
+    assert.equal(found.image, isKnown ? `${model.slice("sample:".length)}.webp` : null, link);
+  }
+});
