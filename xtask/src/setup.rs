@@ -90,16 +90,22 @@ fn wasm_bindgen() -> anyhow::Result<()> {
     }
     let tools = tools_folder();
     let tools = tools.to_str().context("the target folder's path is not UTF-8")?;
-    // Without `--locked`: its own lock file has an older library.
-    let package = ["--version", &version, "--root", tools, "wasm-bindgen-cli"];
+    let [download, compile] = wasm_bindgen_installations(&version, tools);
     if output("cargo", &["binstall", "-V"]).is_some() {
-        match run("cargo", &[&["binstall", "--no-confirm"], &package[..]].concat()) {
+        match run("cargo", &download) {
             Ok(()) if has_wasm_bindgen(&version) => return Ok(()),
             Ok(()) => eprintln!("cargo binstall left no wasm-bindgen {version}; compiling it"),
             Err(error) => eprintln!("{error:#}; compiling wasm-bindgen instead"),
         }
     }
-    run("cargo", &[&["install"], &package[..]].concat())
+    run("cargo", &compile)
+}
+
+/// The arguments of cargo that download wasm-bindgen into a folder, and those that compile it.
+fn wasm_bindgen_installations<'a>(version: &'a str, tools: &'a str) -> [Vec<&'a str>; 2] {
+    // Without `--locked`: its own lock file has an older library.
+    let package = ["--version", version, "--root", tools, "wasm-bindgen-cli"];
+    [&["binstall", "--no-confirm"][..], &["install"]].map(|first| [first, &package].concat())
 }
 
 fn has_wasm_bindgen(version: &str) -> bool {
@@ -150,5 +156,30 @@ mod tests {
         assert!(reports_version("wasm-bindgen 0.2.130 (0123abc 2026-01-01)", "0.2.130"));
         assert!(!reports_version("wasm-bindgen 0.2.13", "0.2.130"));
         assert!(!reports_version("wasm-bindgen", "0.2.130"));
+    }
+
+    /// Calls a `cargo-binstall` that writes down its arguments.
+    #[cfg(unix)]
+    #[test]
+    fn cargo_binstall_is_asked_for_the_librarys_version() {
+        use std::os::unix::fs::PermissionsExt;
+
+        let folder = tools_folder().join(format!("binstall-test-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        let (script, arguments) = (folder.join("cargo-binstall"), folder.join("arguments"));
+        fs::write(&script, format!("#!/bin/sh\necho \"$*\" > '{}'\n", arguments.display())).unwrap();
+        fs::set_permissions(&script, fs::Permissions::from_mode(0o755)).unwrap();
+        let path = std::env::var_os("PATH").unwrap_or_default();
+        let path = std::env::join_paths([folder.clone()].into_iter().chain(std::env::split_paths(&path))).unwrap();
+        let version = locked_version("wasm-bindgen").unwrap();
+        let [download, compile] = wasm_bindgen_installations(&version, "/tools");
+        let status = std::process::Command::new("cargo").args(download).env("PATH", path).status().unwrap();
+        let written = fs::read_to_string(&arguments);
+        fs::remove_dir_all(&folder).unwrap();
+        assert!(status.success());
+        let expected = format!("--version {version} --root /tools wasm-bindgen-cli");
+        // Cargo passes the name of the subcommand on.
+        assert_eq!(written.unwrap().trim(), format!("binstall --no-confirm {expected}"));
+        assert_eq!(compile.join(" "), format!("install {expected}"));
     }
 }
