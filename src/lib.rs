@@ -24,7 +24,7 @@
 //! motion_files.insert("walk.bvh", std::fs::read("assets/samples/walk.bvh")?);
 //! let (model, motion) = (load(&model_files)?, load(&motion_files)?);
 //!
-//! // A map uses joint names and could also come from a file; resolving it binds it to these two skeletons.
+//! // A map pairs the joints of these two files by number; `JointMapFile` reads one with names. Resolving checks it.
 //! let proposal = propose(&model, &motion);
 //! let map = proposal.to_map(&model, &motion).resolve(&model, &motion)?;
 //!

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use gaitway::asset::Asset;
+use gaitway::files::encode_png;
 use gaitway::frame::{Frame, evaluate};
 use gaitway::library::{Library, Model};
 use gaitway::render::{Renderer, RendererOptions, read_pixels};
@@ -122,7 +123,7 @@ fn the_walker_looks_as_it_did() {
     let Some(gpu) = gpu() else { return };
     let pixels = draw(&gpu, walker());
     if std::env::var_os("UPDATE_GOLDEN").is_some() {
-        image::save_buffer(path(), &pixels, SIZE[0], SIZE[1], image::ColorType::Rgba8).unwrap();
+        std::fs::write(path(), encode_png(SIZE[0], SIZE[1], &pixels).unwrap()).unwrap();
     }
     let difference = Difference::between(&golden(), &pixels);
     assert!(difference.is_small(), "{difference}; run with UPDATE_GOLDEN=1 and look at the picture");
