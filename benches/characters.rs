@@ -1,5 +1,5 @@
-//! One character-frame: sampling a clip, local to model space, skin palette. For 1, 100 and 1,000 characters at different
-//! phases, playing forward at 60 frames per second.
+//! One character-frame: sampling a clip, local to model space, skin palette. For 1, 100 and 1,000 characters at
+//! different phases, playing forward at 60 frames per second.
 
 mod support;
 

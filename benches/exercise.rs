@@ -1,5 +1,5 @@
-//! CPU cost of a step while a joint of a skinning-exercise model is rotated with a slider: pose, matrices, palette and the
-//! rest of the frame. Also the cost of CPU skinning, which the GPU does instead.
+//! CPU cost of a step while a joint of a skinning-exercise model is rotated with a slider: pose, matrices, palette and
+//! the rest of the frame. Also the cost of CPU skinning, which the GPU does instead.
 
 mod support;
 

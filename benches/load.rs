@@ -1,5 +1,5 @@
-//! Loading real files from memory: time per file, without decoding images, slowest first. An argument selects the files whose
-//! paths contain it.
+//! Loading real files from memory: time per file, without decoding images, slowest first. An argument selects the files
+//! whose paths contain it.
 
 mod support;
 

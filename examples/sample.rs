@@ -17,8 +17,8 @@ fn main() -> anyhow::Result<()> {
     let asset = load(&files)?;
     let clip = asset.clips.first().context("the file has no clip")?;
 
-    // Joints that the clip doesn't animate keep what is in the pose: start from the rest pose. A cursor that is kept from
-    // frame to frame makes forward playback cheap.
+    // Joints that the clip doesn't animate keep what is in the pose: start from the rest pose. A cursor that is kept
+    // from frame to frame makes forward playback cheap.
     let mut pose = asset.skeleton.rest().clone();
     let mut cursor = SampleCursor::default();
     clip.sample(&asset.skeleton, time_secs, &mut cursor, &mut pose);

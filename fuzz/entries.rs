@@ -1,6 +1,6 @@
-//! What is fuzzed: one function per reader. Whatever it returns must be consistent, and it must not panic, hang or use unbounded
-//! memory. The fuzz targets call these with libFuzzer's bytes, and `tests/formats/fuzz.rs` with damaged files for a moment in
-//! every test run.
+//! What is fuzzed: one function per reader. Whatever it returns must be consistent, and it must not panic, hang or use
+//! unbounded memory. The fuzz targets call these with libFuzzer's bytes, and `tests/formats/fuzz.rs` with damaged files
+//! for a moment in every test run.
 
 // Each target uses one of them.
 #![allow(dead_code)]
@@ -10,10 +10,10 @@ use gaitway::formats::{FileSet, LoadOptions, convert, load, missing_files, prepa
 use gaitway::retarget::JointMapFile;
 use gaitway::state::{from_link, to_link};
 
-/// A reader's name, and what feeds it.
+/// A reader's name and its entry point.
 pub type Entry = (&'static str, fn(&[u8]));
 
-/// All of them; each has a target of its name in `fuzz_targets`.
+/// All entries; each has a fuzz target of the same name in `fuzz_targets`.
 pub const ENTRIES: [Entry; 8] = [
     ("gltf", gltf),
     ("bvh", bvh),
@@ -40,7 +40,7 @@ pub fn x(bytes: &[u8]) {
     let mut files = one("model.x", bytes);
     match prepare(&mut files) {
         Ok(()) => check_model(&files),
-        // A panic in a part is an error in programs.
+        // Programs report a panic in a part as an error.
         Err(problem) => assert!(!problem.to_string().contains("unexpectedly"), "{problem}"),
     }
 }
@@ -54,7 +54,7 @@ pub fn exercise(bytes: &[u8]) {
     check_model(&files);
 }
 
-/// A zip archive, or any file without a name: its format is found from its content.
+/// A zip archive, or any file without a name: its format is detected from its content.
 pub fn archive(bytes: &[u8]) {
     let mut files = FileSet::default();
     if files.add("dropped", bytes.to_vec()).is_ok() {

@@ -28,7 +28,7 @@ fn sky_sharp(in: SkyOut) -> @location(0) vec4f {
     return display(textureSampleLevel(panorama, environment_sampler, at, 0.0).rgb);
 }
 
-// Several taps hide the few texels of a rough level.
+// Several taps hide the low resolution of a rough level.
 @fragment
 fn sky_blurred(in: SkyOut) -> @location(0) vec4f {
     let direction = normalize(in.direction);

@@ -43,7 +43,7 @@ fn aces(scene: vec3f) -> vec3f {
     return srgb_from_fit * fitted;
 }
 
-// AgX (Troy Sobotka) as Blender 4 has it, in Rec. 2020, with a polynomial for its curve, as in Filament and three.js
+// AgX (Troy Sobotka) as in Blender 4, in Rec. 2020, with a polynomial for its curve, as in Filament and three.js
 // (AgXToneMapping): https://github.com/google/filament/pull/7236
 fn agx(scene: vec3f) -> vec3f {
     let rec2020_from_srgb = mat3x3f(0.6274, 0.0691, 0.0164, 0.3293, 0.9195, 0.0880, 0.0433, 0.0113, 0.8956);

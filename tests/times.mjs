@@ -7,7 +7,7 @@ export default async function* times(events) {
   /** @type {Map<string, number>} */
   const millis = new Map();
   for await (const { type, data } of events) {
-    // Suites and tests at a file's top level, with all that is in them.
+    // Suites and tests at a file's top level, which include everything nested.
     if ((type !== "test:pass" && type !== "test:fail") || data.nesting > 0 || data.file === undefined) continue;
     const file = path.relative(repository, data.file);
     millis.set(file, (millis.get(file) ?? 0) + data.details.duration_ms);

@@ -1,5 +1,5 @@
-// The page around the canvas. It owns what must outlive a crash: the files that were dropped or chosen, the link of the view,
-// the messages, and `window.gaitway`. The build bundles this file with the modules in shell/.
+// The page around the canvas. It owns what must outlive a crash: the files that were dropped or chosen, the link of the
+// view, the messages, and `window.gaitway`. The build bundles this file with the modules in shell/.
 import { addBenches, gaitway } from "./shell/api.js";
 import { forcedBackend } from "./shell/capabilities.js";
 import { button } from "./shell/dom.js";

@@ -1,6 +1,6 @@
-// Keeps the page, its program and the samples for offline use. Names contain a hash of the content, so whatever has such a
-// name never changes; the page itself has a version, which this worker shares. A new version waits until a page asks for it.
-// Requests for anything else are left alone: other sites, files beside the page, ranges.
+// Keeps the page, its program and the samples for offline use. Names contain a hash of the content, so whatever has
+// such a name never changes; the page itself has a version, which this worker shares. A new version waits until a page
+// asks for it. Requests for anything else are left alone: other sites, files beside the page, ranges.
 
 /** The build sets these. */
 const VERSION = "";

@@ -1,5 +1,5 @@
-// Encodes a video frame by frame, however long each takes to draw. A part of the page that is downloaded when the first video
-// is recorded. Uses WebCodecs, and MediaRecorder where that is missing.
+// Encodes a video frame by frame, however long each takes to draw. A part of the page that is downloaded when the first
+// video is recorded. Uses WebCodecs, and MediaRecorder where that is missing.
 //! Contains Mediabunny (MPL-2.0), unmodified; its source code: https://github.com/Vanilagy/mediabunny
 import { BufferTarget, Mp4OutputFormat, Output, Quality, VideoSample, VideoSampleSource, WebMOutputFormat, getFirstEncodableVideoCodec } from "mediabunny";
 
@@ -10,7 +10,8 @@ import { BufferTarget, Mp4OutputFormat, Output, Quality, VideoSample, VideoSampl
  * @property {number} framesPerSec
  * @property {number} frameCount
  * @property {boolean} isTransparent
- * @property {(index: number) => Promise<Uint8Array<ArrayBuffer>>} frame Returns RGBA rows from the top, with straight alpha.
+ * @property {(index: number) => Promise<Uint8Array<ArrayBuffer>>} frame Returns RGBA rows from the top, with straight
+ *   alpha.
  * @property {AbortSignal} signal
  */
 
@@ -135,7 +136,7 @@ async function recordFrames(video) {
 }
 
 /**
- * A recorder that was given nothing in time writes a file without any frame.
+ * A recorder that received no frame in time writes a file without any.
  * @param {Blob} blob
  */
 async function assertPlayable(blob) {

@@ -1,5 +1,5 @@
-//! Timing for the benches: median and minimum of many short rounds. Compare only figures of one run on one machine; on a busy
-//! machine, the minimum.
+//! Timing for the benches: median and minimum of many short rounds. Compare only figures of one run on one machine; on
+//! a busy machine, the minimum.
 
 #[path = "../../tests/support/data_folder.rs"]
 pub mod data_folder;

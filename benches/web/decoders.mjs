@@ -1,6 +1,6 @@
-// The parts that decode compressed files, beside the decoders of npm that other viewers use: meshoptimizer's and Draco's, and
-// Basis Universal's transcoder, all as three.js ships them. All run in Node, on what the page hands to its parts and what
-// npm's decoders take: the compressed data of a whole file.
+// Compares the decoder parts with the npm decoders that other viewers use: meshoptimizer, Draco and the Basis Universal
+// transcoder, as three.js ships them. All run in Node on the compressed data of a whole file, in the form that the page
+// hands to its parts and that npm's decoders take.
 import path from "node:path";
 import { MeshoptDecoder } from "three/examples/jsm/libs/meshopt_decoder.module.js";
 import { dataFile, readGltf } from "../../tests/three/data.mjs";
@@ -24,7 +24,7 @@ const CASES = [
 
 /**
  * Returns the median milliseconds of both for each case.
- * @param {import("playwright-core").Page} page That shows Gaitway.
+ * @param {import("playwright-core").Page} page Shows Gaitway.
  */
 export async function measureDecoders(page) {
   const results = [];

@@ -1,5 +1,5 @@
-// How soon a link shows its model: from navigation to the first moving frame of Soldier.glb, cold cache, brotli on the wire,
-// 10 Mbit/s and 40 ms. Against the smallest three.js page that does the same, bundled and minified.
+// How soon a link shows its model: from navigation to the first moving frame of Soldier.glb, cold cache, brotli on the
+// wire, 10 Mbit/s and 40 ms. Against the smallest three.js page that does the same, bundled and minified.
 import fs from "node:fs";
 import os from "node:os";
 import path from "node:path";
@@ -28,8 +28,8 @@ async function threePage() {
 }
 
 /**
- * How a page started, in milliseconds: its first moving frame since navigation, and the longest task of its main thread until
- * then, 0 if none took 50 ms.
+ * How a page started, in milliseconds: from navigation to its first moving frame, and the longest task on its main
+ * thread until then, 0 if none took 50 ms.
  * @typedef {{ moving: number, longestTask: number }} Start
  */
 

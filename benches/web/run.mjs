@@ -1,6 +1,7 @@
-// Measures three.js and Gaitway on the same work in the same headless Chromium, in alternating rounds, and prints medians.
-// Run `node benches/web/run.mjs` after `cargo xtask build --bench` (or with GAITWAY_DIST), with `characters`, `retargeting`,
-// `loads`, `frames`, `first`, `lighthouse` or `decoders` to measure only these. Nothing is asserted: times vary between machines, ratios less so.
+// Measures three.js and Gaitway on the same work in the same headless Chromium, in alternating rounds, and prints
+// medians. Run `node benches/web/run.mjs` after `cargo xtask build --bench` (or with GAITWAY_DIST), with `characters`,
+// `retargeting`, `loads`, `frames`, `first`, `lighthouse` or `decoders` to measure only these. Nothing is asserted:
+// times vary between machines, ratios less so.
 import { execFileSync } from "node:child_process";
 import fs from "node:fs";
 import path from "node:path";
@@ -17,12 +18,14 @@ const SOLDIER = "threejs/Soldier.glb";
 const LOADED = ["khronos/Fox/glTF-Binary/Fox.glb", "khronos/CesiumMan/glTF-Binary/CesiumMan.glb", SOLDIER, XBOT, "threejs/RobotExpressive.glb"];
 const CROWDS = [1, 100, 1000];
 const ROUNDS = 9;
-/** Character-frames per round: long enough for the clock, short enough that both sides run under the same conditions. */
+/**
+ * Character-frames per round: long enough for the clock, short enough that both sides run under the same conditions.
+ */
 const CHARACTER_FRAMES = 4000;
 const DRAWN_FRAMES = 40;
 
 /** @typedef {import("playwright-core").Page} Page */
-/** @typedef {Record<string, number[]>} Figures Measurements by what they measure. */
+/** @typedef {Record<string, number[]>} Figures Measurements by name. */
 
 /** @param {string} part */
 const wanted = (part) => process.argv.length < 3 || process.argv.includes(part);
@@ -100,8 +103,8 @@ async function measureCharacters() {
 }
 
 /**
- * Runs the native benchmark, if it has been built, before the browser is busy, and returns its figures for the same walk by the
- * number of characters.
+ * Runs the native benchmark, if it has been built, before the browser is busy, and returns its figures for the same
+ * walk by the number of characters.
  * @returns {Map<number, string>}
  */
 function nativeCharacters() {
@@ -234,8 +237,8 @@ async function measureFrames() {
 }
 
 /**
- * Returns the median time from the start of the page's own work in a frame until the graphics process has finished it, which
- * reading a pixel waits for. Earlier work is finished first, and presenting the frame is left out.
+ * Returns the median time from the start of the page's own work in a frame until the graphics process has finished it,
+ * which reading a pixel waits for. Earlier work is finished first, and presenting the frame is left out.
  * @param {Page} page
  */
 async function frameMs(page) {

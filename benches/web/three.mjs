@@ -39,7 +39,8 @@ async function crowd(url, clipName, count) {
     const mixer = new THREE.AnimationMixer(model);
     mixer.clipAction(clip).play();
     mixer.setTime((clip.duration * index) / count);
-    // Meshes of one skin share their skeleton in the file; clone() copies it for each, which would count against three.js.
+    // Meshes of one skin share their skeleton in the file; clone() copies it for each, which would count against
+    // three.js.
     /** @type {Map<THREE.Bone, THREE.Skeleton>} */
     const skeletons = new Map();
     model.traverse((object) => object instanceof THREE.SkinnedMesh && skeletons.set(object.skeleton.bones[0], object.skeleton));
@@ -149,7 +150,8 @@ const bench = {
   },
 
   /**
-   * Plays a file's clip in a loop with image-based light, a key light with a soft shadow on the ground and neutral tone mapping.
+   * Plays a file's clip in a loop with image-based light, a key light with a soft shadow on the ground and neutral tone
+   * mapping.
    * @param {string} url
    * @param {string} clipName
    * @param {number} samples

@@ -27,7 +27,7 @@ pub(super) struct Failure {
     expected: Option<Box<str>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     found: Option<Box<str>>,
-    /// What to do, or what there is instead.
+    /// What to do, or which alternatives exist.
     #[serde(skip_serializing_if = "Option::is_none")]
     hint: Option<Box<str>>,
 }
@@ -189,7 +189,7 @@ failure_from! {
     crate::app::WindowError: |_| Failure::default(),
 }
 
-/// The text of an operation that gives no parts.
+/// The text of an operation that reports no parts.
 impl From<String> for Failure {
     fn from(message: String) -> Self {
         Self::new(message)

@@ -120,7 +120,7 @@ fn contradictions_text(found: &Recognized) -> Option<String> {
     let names: Vec<&str> = found.contradictions.iter().map(place).collect();
     let (first, last) = (names.first()?, names.last()?);
     let matched = if found.by_position {
-        "they were matched by position. To match them by name, exchange left and right in the map"
+        "they were matched by position. To match them by name, swap left and right in the map"
     } else {
         "they were matched by name"
     };

@@ -25,7 +25,7 @@ pub(super) struct MotionArguments {
     pub map: Option<PathBuf>,
 }
 
-/// Code of the warning that [`doubtful_rest`] words.
+/// Code of the warning worded by [`doubtful_rest`].
 pub(super) const DOUBTFUL_REST: &str = "doubtful-rest";
 
 /// A warning for a rest that is not certain, with what to do about it.

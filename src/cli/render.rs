@@ -30,7 +30,7 @@ pub(super) fn run(arguments: &RenderArguments, disk: &Disk) -> Outcome {
     let quiet = Quiet::start();
     let device = headless_device();
     drop(quiet);
-    // Once more if it fails: what the driver says may explain why.
+    // On failure, try again without silencing the driver, whose output may explain why.
     let (device, queue, adapter) = device.or_else(|_| headless_device())?;
     print_error(&format!("rendering with {} ({})", adapter.name, adapter.backend));
     let mut renderer = Renderer::new(&device, &queue, RendererOptions { samples: 4 });

@@ -17,8 +17,8 @@ impl Editor {
         }
     }
 
-    /// Keeps what an automatic camera showed before an option changed what it would frame. It is automatic again as soon as
-    /// that is the same.
+    /// Holds the view of an automatic camera when an option changes what it would frame. The camera becomes automatic
+    /// again as soon as that is the same.
     pub(super) fn hold_view(&mut self, before: Option<OrbitCamera>) {
         let Some(before) = before else { return };
         let automatic = ViewerState { camera: CameraChoice::Auto, ..self.state.clone() };
@@ -30,7 +30,7 @@ impl Editor {
         }
     }
 
-    /// Makes a camera that stands in for the automatic one automatic.
+    /// Makes a held camera automatic again.
     fn release_view(&mut self) {
         if self.automatic_view().is_some() && self.held_camera.take().is_some() {
             self.record(Command::SetCamera(CameraChoice::Auto));

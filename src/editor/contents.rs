@@ -78,7 +78,7 @@ impl Contents {
     }
 }
 
-/// Returns the folder or archive a model came out of: `ARCHIVE` for `ARCHIVE#!/MEMBER`, any other origin unchanged.
+/// Returns the folder or archive a model came from: `ARCHIVE` for `ARCHIVE#!/MEMBER`, any other origin unchanged.
 pub fn container_of(origin: &str) -> &str {
     origin.split_once(MEMBER_SEPARATOR).map_or(origin, |(container, _)| container)
 }

@@ -24,6 +24,6 @@ pub enum Event {
     },
     /// The user is about to edit a joint map.
     MapStarted,
-    /// A step of the history was undone or redone: notices about other steps no longer hold.
+    /// A step of the history was undone or redone: notices about other steps no longer apply.
     Stepped,
 }

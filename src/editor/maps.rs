@@ -1,5 +1,5 @@
-//! Joint maps on their way into the state, which knows joints by number only: maps by name are read here, once the files they
-//! are about are loaded.
+//! Prepares joint maps for the state, which identifies joints by number only: maps by name are read here, once their
+//! files are loaded.
 
 use std::collections::BTreeMap;
 

@@ -41,7 +41,7 @@ pub struct Editor {
     library: Library,
     state: ViewerState,
     history: History,
-    /// What is kept of each loaded model besides the model itself.
+    /// Data kept with each loaded model.
     shelf: BTreeMap<ModelId, Shelved>,
     /// Motions that don't fit the model, until the user decides what to do with them.
     refused: Vec<Motion>,

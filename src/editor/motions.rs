@@ -148,7 +148,7 @@ impl Editor {
         Some((motion, active_map(&self.library, &self.state, motion)))
     }
 
-    /// Says so if matching joints again has changed nothing.
+    /// Notifies the user if matching joints again has changed nothing.
     pub(super) fn notify_rematch(&mut self, motion: usize, before: &Option<JointMap>) {
         let (Some(model), Some(about)) = (self.library.active(), self.library.motions().get(motion)) else { return };
         let names = (short_name(&about.source), short_name(&model.source));

@@ -11,7 +11,7 @@ use crate::state::{
     ClipChoice, Command, EnvironmentChoice, MotionMap, RetargetEdits, SavedMotion, Sources, ViewerState, apply,
 };
 
-/// What is kept of a loaded model besides the model.
+/// Data kept with a loaded model.
 #[derive(Debug, Default)]
 pub(super) struct Shelved {
     /// The files it was read from; `None` for generated samples.
@@ -20,7 +20,7 @@ pub(super) struct Shelved {
     last_view: Option<Snapshot>,
 }
 
-/// What was loaded and set at one moment.
+/// The loaded files and the state at one moment.
 #[derive(Debug, Clone)]
 pub(super) struct Snapshot {
     pub state: ViewerState,
@@ -312,7 +312,7 @@ impl Editor {
         Ok(())
     }
 
-    /// Retargets the motions that were loaded with a model, and says what of a link's view can't be shown.
+    /// Retargets the motions that were loaded with a model, and reports what a link's view names but can't be shown.
     fn finish_view(&mut self, is_link: bool) {
         let problems = self.retarget();
         self.report(problems);

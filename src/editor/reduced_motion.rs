@@ -1,5 +1,5 @@
-//! The user's preference for reduced motion: views start paused and without turntable until the user starts them. It never gets
-//! into links.
+//! The user's preference for reduced motion: views start paused and without turntable until the user starts them. It is
+//! never written to links.
 
 use super::{Admit, Contents, Editor};
 use crate::state::{Command, SavedMotion, ViewerState};
@@ -12,12 +12,12 @@ pub(super) struct ReducedMotion {
 }
 
 impl Editor {
-    /// Sets whether views start calmly from now on.
+    /// Sets whether views start without motion from now on.
     pub fn prefer_reduced_motion(&mut self, is_preferred: bool) {
         self.reduced_motion.is_preferred = is_preferred;
     }
 
-    /// Returns the state for links: as it is, except that the preference for reduced motion leaves no trace.
+    /// Returns the state for links, without the effects of the preference for reduced motion.
     pub fn shared_state(&self) -> ViewerState {
         let mut state = self.state.clone();
         let SavedMotion { playing, turntable } = self.reduced_motion.saved;
@@ -53,7 +53,7 @@ impl Editor {
         Ok(())
     }
 
-    /// Calms the view of a command that replaces the state.
+    /// Applies the preference to the view of a command that replaces the state.
     pub(super) fn command_with_reduced_motion(&mut self, command: Command) -> Command {
         match command {
             Command::Replace(view) => {

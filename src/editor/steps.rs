@@ -31,7 +31,7 @@ impl Editor {
         self.history.steps()
     }
 
-    /// The pointer or the key was released: the next edit is a step of its own.
+    /// The pointer or the key was released: the next edit is a separate step.
     pub fn end_gesture(&mut self) {
         self.history.end_gesture();
     }

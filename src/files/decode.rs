@@ -10,7 +10,7 @@ use crate::formats::Part;
 use crate::formats::limits::MAX_IMAGE_SIDE;
 use crate::library::ImageData;
 
-/// What a decoder may need besides the pixels, which may have 16 bits a channel.
+/// Memory a decoder may use besides the pixels, which may have 16 bits per channel.
 const DECODER_BYTES: u64 = 64 << 20;
 
 /// Returns one entry per image of the asset; `None` for one that cannot be decoded, for which a warning is added.
@@ -36,7 +36,7 @@ fn decode(image: &Image, largest_edge: u32) -> Result<(ImageData, [u32; 2]), Str
         return Err(problem.to_owned());
     }
     let mut reader = ImageReader::new(Cursor::new(&image.bytes)).with_guessed_format().map_err(|e| e.to_string())?;
-    // The decoder reads the header in its own way.
+    // The decoder parses the header itself.
     let mut limits = Limits::default();
     limits.max_image_width = Some(MAX_IMAGE_SIDE);
     limits.max_image_height = Some(MAX_IMAGE_SIDE);

@@ -139,7 +139,7 @@ impl Disk {
         // Where there is such a path, it leads to the file that the input was redirected from.
         self.read.borrow_mut().push("/dev/stdin".into());
         let mut bytes = Vec::new();
-        // One byte more than is left shows that there is more.
+        // Reading one byte past the budget reveals that there is more.
         let most = reading.bytes_left() + 1;
         std::io::stdin().take(most).read_to_end(&mut bytes).map_err(|source| OpenError::Read { path, source })?;
         reading.spend(STANDARD_INPUT_NAME, bytes.len() as u64)?;
@@ -232,7 +232,8 @@ impl Source for Disk {
         reading.check(name, length)?;
         self.read.borrow_mut().push(path.clone());
         let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or(0));
-        // A device or a pipe has a length of 0 and may never end. One byte more than is left shows that there is more.
+        // A device or a pipe has a length of 0 and may never end. Reading one byte past the budget reveals that there
+        // is more.
         file.take(reading.bytes_left() + 1).read_to_end(&mut bytes).map_err(failed)?;
         reading.spend(name, bytes.len() as u64)?;
         Ok(bytes)
@@ -268,8 +269,8 @@ pub fn member_of(path: &Path) -> Option<&str> {
     Some(path.to_str()?.split_once(MEMBER_SEPARATOR)?.1)
 }
 
-/// Returns the path of the file that is meant: links mark files with `file:`, and a model of several files may go by the name
-/// they share.
+/// Resolves a path to the file that is meant: links mark files with `file:`, and a model of several files may go by the
+/// name they share.
 fn existing(path: &Path) -> PathBuf {
     if path.exists() {
         return path.to_owned();
@@ -301,7 +302,7 @@ fn is_below(folder: &Path, path: &Path) -> bool {
     }
 }
 
-/// Adds all files of `folder`, named by their paths inside `root`. Symbolic links out of it are left out.
+/// Adds all files of `folder`, named by their paths inside `root`. Symbolic links that lead out of it are skipped.
 fn list_folder(root: &Path, folder: &Path, depth: usize, files: &mut Vec<(String, Place)>) -> Result<(), OpenError> {
     let failed = |source| OpenError::Read { path: folder.to_owned(), source };
     let entries = std::fs::read_dir(folder).map_err(failed)?;
@@ -309,7 +310,7 @@ fn list_folder(root: &Path, folder: &Path, depth: usize, files: &mut Vec<(String
     paths.sort();
     for path in paths {
         if path.is_dir() {
-            // A symbolic link to a folder further up would never end.
+            // Following a symbolic link to a parent folder would never end.
             if depth < MAX_FOLDER_DEPTH && !path.is_symlink() {
                 list_folder(root, &path, depth + 1, files)?;
             }

@@ -19,7 +19,7 @@ pub enum OpenError {
         known: Vec<String>,
     },
     /// Together, the files exceed the memory budget.
-    #[error("{name}: with it, more than {} MiB in all{}", max >> 20, memory_hint())]
+    #[error("{name}: exceeds the limit of {} MiB in all{}", max >> 20, memory_hint())]
     TooLarge {
         /// The file that exceeds it.
         name: String,
@@ -39,7 +39,7 @@ pub enum OpenError {
     #[error("-: standard input can be read only once; name a file instead")]
     StandardInputTwice,
     /// The folders that are opened together have too many files, counting subfolders.
-    #[error("{}: more than {max} files out of folders; name the model's own files instead", path.display())]
+    #[error("{}: more than {max} files in folders; name the model's own files instead", path.display())]
     TooManyFiles {
         /// The folder that exceeds it.
         path: PathBuf,

@@ -40,7 +40,7 @@ pub(super) fn texture_formats() -> Formats {
     DEVICE_FORMATS.lock().unwrap_or_else(PoisonError::into_inner).0.unwrap_or_default()
 }
 
-/// Returns the compressed formats that the device can sample. The page makes the device while the first files arrive.
+/// Returns the compressed formats that the device can sample. The page creates the device while the first files arrive.
 #[cfg(target_arch = "wasm32")]
 pub(super) async fn texture_formats() -> Formats {
     use std::task::Poll;

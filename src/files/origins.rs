@@ -12,14 +12,14 @@ use crate::state::MEMBER_SEPARATOR;
 pub(super) struct Origins {
     /// Name in the set and origin of each file that was asked for, in that order.
     pub known: Vec<(String, String)>,
-    /// Name in the set and folder or archive of each file that came out of one.
+    /// Name in the set and folder or archive of each file that came from one.
     pub members: Vec<(String, String)>,
     /// The origin of all other files.
     pub container: String,
 }
 
 impl Origins {
-    /// Returns a file's origin and display name. A file out of a folder or an archive is called by its own name.
+    /// Returns a file's origin and display name. A file from a folder or an archive goes by its own name.
     fn origin_and_source(&self, name: &str) -> (String, String) {
         let find = |list: &[(String, String)]| list.iter().find(|(known, _)| known == name).map(|(_, of)| of.clone());
         match find(&self.known) {

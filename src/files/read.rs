@@ -31,9 +31,9 @@ pub(super) struct FilesRead {
     pub origins: Origins,
 }
 
-/// Files referring to files that refer to files.
+/// Maximum depth of files that refer to other files.
 const MAX_ROUNDS: usize = 4;
-/// Tell the model among the items by its name.
+/// Extensions that identify the model among the items.
 const MODEL_EXTENSIONS: [&str; 9] = [".glb", ".gltf", ".vrm", ".vrma", ".fbx", ".x", ".bvh", ".obj", ".zip"];
 
 pub(super) async fn read_items<S: Source>(
@@ -94,7 +94,7 @@ impl<S: Source> Reader<'_, S> {
         }
     }
 
-    /// Notes which files came out of the last item.
+    /// Records which files came from the last item.
     fn note_members(&mut self) {
         let FilesRead { set, origins, .. } = &mut self.files;
         let Some(label) = self.labels.last() else { return };
@@ -148,12 +148,13 @@ impl<S: Source> Reader<'_, S> {
         Ok(())
     }
 
-    /// Converts what has to be plain glTF, and reads the files that the set refers to and that lie next to the named ones. The
-    /// loader reports those that are not there, and whether that matters.
+    /// Converts files to plain glTF where necessary, and reads the files that the set refers to and that lie next to
+    /// the named ones. The loader reports missing files, and whether that matters.
     async fn add_missing(&mut self) -> Result<(), OpenError> {
         let mut tried: Vec<String> = Vec::new();
         for _ in 0..MAX_ROUNDS {
-            // First, since what it makes may refer to more files. Others can be converted only with files that are still missing.
+            // First, since converted files may refer to more files. Others can be converted only with files that are
+            // still missing.
             self.prepare().await?;
             let missing = missing_files(&self.files.set);
             let missing: Vec<String> = missing.into_iter().filter(|path| !tried.contains(path)).collect();
@@ -170,11 +171,11 @@ impl<S: Source> Reader<'_, S> {
         self.prepare().await
     }
 
-    /// Converts what can be converted with the files that are there.
+    /// Converts what can be converted with the files read so far.
     async fn prepare(&mut self) -> Result<(), OpenError> {
         while let Some(preparation) = next_preparation(&self.files.set).map_err(SortError::from)? {
             let answer = self.source.convert(&preparation, &mut self.reading).await?;
-            // Whatever follows is about the file again, not about the part.
+            // From here on, progress is about the file again, not about the part.
             (self.reading.progress)(&short_name(preparation.file()), 0, 0);
             preparation.finish(&mut self.files.set, answer).map_err(SortError::from)?;
         }

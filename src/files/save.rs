@@ -33,9 +33,9 @@ pub enum SaveError {
     },
 }
 
-/// Most symbolic links that lead from one to the next, as on Linux.
+/// Maximum length of a chain of symbolic links, as on Linux.
 const MAX_LINKS: usize = 40;
-/// Most temporary files that earlier runs may have left in a folder.
+/// Maximum number of temporary files that earlier runs may have left in a folder.
 const MAX_LEFTOVERS: usize = 100;
 
 /// Creates or replaces a file. A symbolic link stays, and the file it leads to is replaced. Devices, pipes and open descriptors
@@ -82,7 +82,7 @@ fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     }
 }
 
-/// Names for what is open already, which no other file can take the place of.
+/// Whether a path names something already open, which no other file can replace.
 fn is_descriptor(path: &Path) -> bool {
     let folders = ["/dev/fd", "/proc/self/fd"];
     [Path::new("/dev/stdout"), Path::new("/dev/stderr")].contains(&path)
@@ -130,7 +130,7 @@ fn fill(mut file: File, bytes: &[u8], permissions: Option<Permissions>) -> io::R
     file.sync_all()
 }
 
-/// Whether two paths lead to one file: by other spelling, symbolic or hard links.
+/// Whether two paths lead to one file: by a different spelling, symbolic or hard links.
 fn is_same_file(one: &Path, other: &Path) -> bool {
     let (Ok(found), Ok(other_found)) = (metadata(one), metadata(other)) else { return false };
     if !found.is_file() || !other_found.is_file() {

@@ -66,7 +66,7 @@ pub enum SortError {
         /// Why it is invalid.
         problem: MapError,
     },
-    /// A joint map is larger than any could be.
+    /// A joint map exceeds the size limit.
     #[error("{file}: expected a joint map of at most {max} bytes, found {found}")]
     MapTooLarge {
         /// Name of the file.
@@ -98,7 +98,7 @@ pub enum SortError {
     },
 }
 
-/// Errors list no more names than this.
+/// Maximum number of names listed in an error.
 const MAX_NAMES: usize = 8;
 
 /// Loads every model and motion of a set, and its joint map.

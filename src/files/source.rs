@@ -13,7 +13,7 @@ use crate::library::ImageData;
 /// Called with the name of the file being read, the bytes received so far and the total, 0 if unknown.
 pub type Progress<'a> = &'a dyn Fn(&str, u64, u64);
 
-/// Where files are read from. The futures of the disk are ready at once.
+/// Where files are read from. The futures of the disk resolve immediately.
 pub(super) trait Source {
     /// A file that can be read.
     type Place;
@@ -38,7 +38,7 @@ pub(super) trait Source {
         reading: &mut Reading<'_>,
     ) -> Result<Option<Vec<u8>>, OpenError>;
 
-    /// Runs a conversion's part. The outer error: it cannot be had.
+    /// Runs the part that a conversion needs. The outer error means that the part is unavailable.
     async fn convert(&self, preparation: &Preparation, reading: &mut Reading<'_>) -> Result<Answer, OpenError>;
 
     fn start_decoding(&self, images: &[Image]) -> Self::Decoding;
@@ -62,7 +62,7 @@ pub(super) enum Content<P> {
     File {
         place: P,
         name: String,
-        /// Takes the place of `name` if another file already has it.
+        /// Replaces `name` if another file already has it.
         full_name: String,
         /// What a view lists to open the file again; `None`: its name.
         origin: Option<String>,

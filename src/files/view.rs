@@ -69,7 +69,7 @@ pub(super) async fn open_view<S: Source>(
         next_part();
         contents = open_models(source, &mut models, progress).await?;
     }
-    // Motions out of the model's own archive are not listed.
+    // Motions from the model's own archive are not listed.
     let is_of_model = |motion: &&Motion| {
         models.iter().any(|model| container_of(model) == motion.origin) && !motions.contains(&motion.origin)
     };

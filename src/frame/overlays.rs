@@ -37,7 +37,7 @@ pub(super) fn write_ground(model: &Model, state: &ViewerState, frame: &mut Frame
     }
 }
 
-/// Whether a character has no mesh to see, not only at the moment.
+/// Whether a character has no visible mesh, neither now nor at rest.
 fn shows_no_mesh(scene: &Scene, character: &Character) -> bool {
     !scene.has_meshes && !character.draws.iter().any(|draw| draw.visible)
 }

@@ -23,7 +23,7 @@ pub struct PoseDocument {
     warnings: Value,
 }
 
-/// Where a node is.
+/// World transform of a node.
 #[derive(Debug, Serialize)]
 pub struct NodePose {
     /// Index in the file's list of nodes.

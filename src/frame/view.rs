@@ -74,8 +74,8 @@ fn world_from_camera(camera: &Camera, frame: &Frame) -> Option<Affine3A> {
     world_from_file_camera(world_from_joint.get(camera.joint.get())?)
 }
 
-/// Returns the orbit camera from which a view is moved, in a viewport of this aspect ratio (width over height). A camera of the
-/// file becomes the closest orbit camera in the current pose: same position and direction, no roll.
+/// Returns the orbit camera that camera commands start from, in a viewport of this aspect ratio (width over height). A
+/// camera of the file becomes the closest orbit camera in the current pose: same position and direction, no roll.
 pub fn current_orbit(library: &Library, state: &ViewerState, aspect: f32) -> OrbitCamera {
     file_orbit(library, state, aspect).unwrap_or_else(|| resolve_camera(library, state, aspect))
 }

@@ -1,4 +1,4 @@
-//! Copies a finished picture to the screen inside somebody else's render pass.
+//! Copies a finished picture to the screen inside the caller's render pass.
 
 use super::full_screen::{FullScreenPipeline, sampled_texture_group, sampled_texture_layout};
 use super::pipelines::pipeline_layout;

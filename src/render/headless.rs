@@ -70,7 +70,7 @@ pub async fn read_pixels(device: &wgpu::Device, queue: &wgpu::Queue, texture: &w
         pixels.extend_from_slice(&row[..row_bytes as usize]);
     }
     drop(mapped);
-    // A page would keep it until garbage is collected, which may be too late for the frames of a video.
+    // A page would keep it until garbage collection, which may be too late for the frames of a video.
     buffer.destroy();
     for pixel in pixels.chunks_exact_mut(4) {
         let alpha = u32::from(pixel[3]);

@@ -16,7 +16,7 @@ pub(super) struct LightSources {
     pub group: wgpu::BindGroup,
     /// Used while the shadow map itself is drawn: binds a placeholder instead.
     pub without_shadow: wgpu::BindGroup,
-    /// The environment as a background; made when it is first shown.
+    /// The environment as a background; created when it is first shown.
     pub sky: Option<wgpu::BindGroup>,
 }
 
@@ -51,7 +51,7 @@ impl LightSources {
         });
     }
 
-    /// Makes another environment, unless it is the current one.
+    /// Creates another environment, unless it is the current one.
     pub fn choose(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, layouts: &Layouts, source: Source) {
         if self.environment.source == source {
             return;
@@ -61,7 +61,7 @@ impl LightSources {
         self.bind(device, layouts);
     }
 
-    /// Makes the environment a background, if it is not yet.
+    /// Creates the background from the environment, unless it exists.
     pub fn prepare_sky(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, layouts: &Layouts) {
         if self.sky.is_some() {
             return;

@@ -65,7 +65,7 @@ fn lobe_of(factor: LobeFactor) -> u64 {
     }
 }
 
-/// Returns the permutation with these lobes, less those without effect, and with the maps that they use.
+/// Returns the permutation with these lobes, except those without effect, and with the maps that they use.
 pub(super) fn permutation(mut lobes: u64, has_map: impl Fn(TextureSlot) -> bool) -> Permutation {
     if lobes & (Permutation::TRANSMISSION | Permutation::DIFFUSE_TRANSMISSION) == 0 {
         lobes &= !Permutation::VOLUME;

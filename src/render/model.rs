@@ -31,7 +31,7 @@ pub(super) struct GpuModel {
     pub meshes: Vec<Vec<Option<GpuPrimitive>>>,
     /// The uniforms of the file's materials that primitives use, by index.
     materials: BTreeMap<usize, UniformBuffer<MaterialUniform>>,
-    /// Materials whose uniform is not the file's but that of an animation.
+    /// Materials whose uniform currently holds animated values.
     animated: Vec<usize>,
 }
 
@@ -124,7 +124,7 @@ impl ModelUploader {
 }
 
 impl GpuModel {
-    /// Shows animated materials, given with their indices; all others are the file's again.
+    /// Applies animated materials, given with their indices, and resets all others to the file's.
     pub fn animate(&mut self, queue: &wgpu::Queue, materials: &[(usize, Material)]) {
         for &index in &self.animated {
             let is_animated = materials.iter().any(|&(other, _)| other == index);

@@ -71,7 +71,7 @@ fn instance_buffer(device: &wgpu::Device, label: &'static str, size: u64) -> wgp
     })
 }
 
-/// Created when there is first something to draw.
+/// Created on first use.
 struct OverlayPipelines {
     lines: wgpu::RenderPipeline,
     bones: wgpu::RenderPipeline,

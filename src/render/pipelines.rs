@@ -356,7 +356,7 @@ impl Pipelines {
         });
     }
 
-    /// Makes the pipelines that draw the environment as a background, unless they are there.
+    /// Creates the pipelines that draw the environment as a background, unless they exist.
     pub fn prepare_sky(&mut self, device: &wgpu::Device, layouts: &Layouts, tone_map: ToneMap) {
         if self.sky.as_ref().is_some_and(|(made_for, _)| *made_for == tone_map) {
             return;

@@ -56,8 +56,7 @@ pub(super) struct ShadowView {
 
 impl ShadowView {
     /// Projects the view along the light onto a horizontal plane through `ground`. Returns x and z of its center,
-    /// relative to
-    /// `ground`, and of half its two edges. The light must come from above.
+    /// relative to `ground`, and of half its two edges. The light must come from above.
     pub fn on_ground(&self, to_light: Vec3, ground: Vec3) -> [[f32; 2]; 3] {
         let project = |vector: Vec3| {
             let projected = vector - to_light * (vector.y / to_light.y.max(0.05));

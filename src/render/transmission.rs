@@ -85,7 +85,7 @@ impl TransmissionPass {
         TransmissionBuffer { view: texture.create_view(&Default::default()), levels }
     }
 
-    /// Records copying the image into the buffer and making its mip levels.
+    /// Records the copy of the image into the buffer and the generation of its mip levels.
     pub fn record(&self, buffer: &TransmissionBuffer, encoder: &mut wgpu::CommandEncoder) {
         let pipelines = [&self.copy].into_iter().chain(std::iter::repeat(&self.halve));
         for ((source, target), pipeline) in buffer.levels.iter().zip(pipelines) {

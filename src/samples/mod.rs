@@ -1,4 +1,4 @@
-//! The sample characters. Native builds embed the files of `assets/samples`; the page fetches them from beside itself.
+//! The sample characters. Native builds embed the files of `assets/samples`; the page fetches them from its own folder.
 //! The walker is generated in code, so there is always something to show.
 
 mod walker;

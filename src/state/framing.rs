@@ -40,8 +40,8 @@ pub fn resolved_bounds(library: &Library, state: &ViewerState) -> Bounds {
 /// it, so callers that know the viewport send `SetCamera` with [`resolve_camera`] first.
 pub const DEFAULT_ASPECT: f32 = 1.6;
 
-/// Returns the orbit camera for the state in a viewport of this aspect ratio (width over height). For a camera of the file, whose
-/// place depends on the pose, that is the automatic one; `frame::current_orbit` knows better.
+/// Returns the orbit camera for the state in a viewport of this aspect ratio (width over height). For a camera of the
+/// file, whose position depends on the pose, that is the automatic one; `frame::current_orbit` evaluates the pose.
 pub fn resolve_camera(library: &Library, state: &ViewerState, aspect: f32) -> OrbitCamera {
     if let CameraChoice::Orbit(orbit) = state.camera {
         return orbit;

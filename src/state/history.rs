@@ -47,7 +47,7 @@ impl History {
         }
     }
 
-    /// The pointer or the key was released: the next edit is a step of its own.
+    /// The pointer or the key was released: the next edit is a separate step.
     pub fn end_gesture(&mut self) {
         self.gesture = None;
     }

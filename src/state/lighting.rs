@@ -26,7 +26,7 @@ pub enum ToneMap {
     /// Khronos PBR Neutral: keeps colours, compresses highlights.
     #[default]
     Neutral,
-    /// ACES, as films look.
+    /// ACES, a filmic look.
     Aces,
     /// AgX, as in Blender.
     Agx,
@@ -50,7 +50,7 @@ pub struct Lighting {
 pub enum EnvironmentChoice {
     /// A generated one.
     Setup(LightSetup),
-    /// An .hdr file: a URL or the name of a local file. The studio stands in for it as long as it is not loaded.
+    /// An .hdr file: a URL or the name of a local file. The studio stands in for it until it is loaded.
     File(String),
 }
 

@@ -45,8 +45,8 @@ pub fn source_on_stage<'a>(library: &'a Library, state: &ViewerState) -> Option<
 /// The gap between two characters, as a share of their widths.
 const GAP: f32 = 0.1;
 
-/// Returns the offset that brings the second character to the right of the first, as far as both reach there. `yaw_radians`
-/// is where the first one faces: a model that is long from front to back has the source at its flank.
+/// Returns the offset that places the second character to the right of the first, clear of both. `yaw_radians` is the
+/// direction that the first one faces: a model that is long from front to back has the source at its flank.
 fn beside([model, source]: [Bounds; 2], yaw_radians: f32) -> Vec3 {
     let right = (Quat::from_rotation_y(yaw_radians) * Vec3::NEG_X).round();
     // From the left to the right end of a box.

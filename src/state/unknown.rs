@@ -23,7 +23,7 @@ pub struct UnknownName {
 }
 
 impl UnknownName {
-    /// Names to list: a file may have hundreds of clips.
+    /// Maximum number of names to list: a file may have hundreds of clips.
     const MAX_NAMES: usize = 5;
 
     /// Describes a valid request.

@@ -45,7 +45,7 @@ pub async fn follow_link(link: String, reload: bool) -> Result<String, JsError> 
 pub async fn apply(partial: String) -> Result<String, JsError> {
     let page = page().map_err(error)?;
     let partial: Value = serde_json::from_str(&partial).map_err(|problem| error(problem.to_string()))?;
-    // What is not set by it stays as a link would say it, whatever the preference for reduced motion has stopped.
+    // Keys that it doesn't set keep the values of a link, whatever the preference for reduced motion has stopped.
     let before = with_app(&page, |app| app.editor().shared_state()).map_err(error)?;
     let (state, errors) = from_object(&before, &partial);
     if !errors.is_empty() || !needs_files(&before, &state) {

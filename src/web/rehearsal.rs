@@ -28,7 +28,7 @@ pub(super) async fn rehearse(page: &Page) -> Result<(), String> {
     library.active().map_or(Ok(()), |character| with_app(page, |app| app.rehearse(character, &frame)))
 }
 
-/// That the character can be opened is tested.
+/// A test checks that the character can be opened.
 async fn open_character() -> Library {
     let items = vec![Item::File("rehearsal.gltf".to_owned(), CHARACTER.to_vec())];
     let mut library = Library::default();

@@ -100,7 +100,7 @@ fn the_motion_tabs_arrows_take_back_its_own_edits_only() {
     assert_eq!((desk.library().motions().len(), &desk.state().retarget.map), (1, &proposed));
     desk.press(text::REDO_KEY);
     assert_ne!(desk.state().retarget.map, proposed);
-    // Ctrl+Z is everybody's.
+    // Ctrl+Z undoes every step, not only map edits.
     desk.undo();
     desk.undo();
     assert_eq!(desk.library().motions().len(), 0);

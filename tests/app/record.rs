@@ -1,4 +1,4 @@
-//! Recording a video: its frames depend on nothing but their number, and the view stays as it was.
+//! Recording a video: frames depend only on their number, and the view doesn't change.
 
 use gaitway::app::{Message, Video};
 use gaitway::state::Command;

@@ -56,13 +56,13 @@ fn following_starts_and_stops_without_a_jump() {
     assert_eq!(travelled(desk.library(), desk.state()), Vec3::ZERO, "no travel yet");
 }
 
-/// Without multisampling, samples are added frame by frame; with it, the picture has them all at once.
+/// Without multisampling, samples accumulate frame by frame; with it, the first frame has them all.
 #[test]
 fn a_paused_picture_is_refined_and_then_left_alone() {
     let Some(mut desk) = desk("sample:walker") else { return };
     desk.settle();
     let settled = desk.screenshot();
-    // A screenshot doesn't wait to be refined.
+    // A screenshot doesn't wait for refinement.
     desk.command(Command::SetExposure(1.0));
     assert!(desk.screenshot() != settled);
     desk.command(Command::SetExposure(0.0));

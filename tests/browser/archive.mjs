@@ -11,7 +11,8 @@ export function archive(files) {
   let offset = 0;
   for (const [name, content] of Object.entries(files)) {
     const encoded = Buffer.from(name);
-    // Part of both headers: version, flags, method, time, date, checksum, two sizes, lengths of the name and of the extra field.
+    // Part of both headers: version, flags, method, time, date, checksum, two sizes, lengths of the name and of the
+    // extra field.
     const common = Buffer.alloc(26);
     common.writeUInt16LE(20, 0);
     common.writeUInt32LE(zlib.crc32(content), 10);

@@ -1,4 +1,5 @@
-// Chromium with both back ends in software, and the page as a test sees it. Tests find the shell's controls by their ids.
+// Runs both back ends in Chromium on a software renderer, and wraps the page for tests. Tests find the shell's controls
+// by their ids.
 import fs from "node:fs";
 import path from "node:path";
 import { chromium } from "playwright-core";
@@ -14,7 +15,7 @@ import { dataFile, dist, hasData } from "../three/data.mjs";
 /** Pixels with straight alpha. @typedef {{ width: number, height: number, rgba: Buffer }} Image */
 
 /**
- * A page with what it reported: uncaught errors and messages of level error, and the URLs it requested.
+ * A page with its uncaught errors and console errors, and the URLs it requested.
  * @typedef {Page & { troubles: string[], requests: string[], finish: () => Promise<void> }} TestPage
  */
 
@@ -24,7 +25,7 @@ import { dataFile, dist, hasData } from "../three/data.mjs";
  * @property {string} [link] Empty for a first visit; without it, the walker.
  * @property {{ width: number, height: number }} [viewport]
  * @property {() => void} [before] Runs in the page before its scripts.
- * @property {Record<string, string | Buffer>} [files] Files that exist nowhere, by name: their content under any address.
+ * @property {Record<string, string | Buffer>} [files] Virtual files by name: contents served from any folder.
  * @property {boolean} [ready] False: don't wait for the first image.
  */
 
@@ -36,7 +37,7 @@ export const BACK_ENDS = ["webgpu", "webgl2"];
 /** Small, since a software renderer draws it. */
 export const VIEWPORT = { width: 800, height: 600 };
 
-/** Both back ends on the software renderer. A domain whose GPU process was crashed on purpose may draw again. */
+/** Both back ends on the software renderer. Domains keep the GPU after a test crashes its process. */
 export const FLAGS = [
   "--enable-unsafe-webgpu",
   "--use-webgpu-adapter=swiftshader",
@@ -113,7 +114,7 @@ async function openPage(browser, address, { renderer, link = "model=sample:walke
   return page;
 }
 
-/** The error of a question put to a page that is navigating. */
+/** Playwright's error when it evaluates script in a page that is navigating. */
 const NAVIGATING = /Execution context was destroyed/;
 
 /**
@@ -130,8 +131,8 @@ export async function eventually(holds, what = String(holds)) {
 }
 
 /**
- * Waits until a function in the page, which may be asynchronous, returns something true, also across navigation.
- * (Playwright's own wait takes a promise for something true.)
+ * Waits until a function in the page, which may be asynchronous, returns a truthy value, even across navigation.
+ * (Playwright's own wait considers any promise truthy.)
  * @template [A=undefined]
  * @param {Page | Frame} page
  * @param {(argument: A) => unknown} holds
@@ -154,7 +155,7 @@ export async function whenReady(page) {
   });
 }
 
-// The calls of `window.gaitway`, from the test's side.
+// `window.gaitway`, called from the test.
 
 /** @param {Page | Frame} page */
 export const state = (page) => page.evaluate(async () => await window.gaitway.state());
@@ -168,7 +169,7 @@ export const apply = (page, partial) => page.evaluate(async (partial) => void (a
 export const open = (page, ...urls) => page.evaluate(async (urls) => await window.gaitway.open(urls), urls);
 
 /**
- * Returns the image that `screenshot()` gives.
+ * Returns the decoded image of `screenshot()`.
  * @param {Page} page
  * @returns {Promise<Image>}
  */
@@ -188,7 +189,7 @@ export async function picture(page) {
 }
 
 /**
- * Drops files on the middle of the page, as a person would.
+ * Drops files on the middle of the page, as a user would.
  * @param {Page | Frame} page
  * @param {{ name: string, url?: string, text?: string }[]} files
  */
@@ -206,7 +207,7 @@ export function drop(page, files) {
 }
 
 /**
- * Writes the part of an address after the `#`.
+ * Builds the part of a URL after the `#`.
  * @param {[key: string, value: string | number][]} parts
  */
 export const fragment = (parts) => parts.map(([key, value]) => `${key}=${encodeURIComponent(value)}`).join("&");
@@ -294,7 +295,7 @@ export function furthest(a, b) {
 }
 
 /**
- * Returns how many frames the app draws while the browser offers this many.
+ * Returns how many frames the app draws within this many animation frames.
  * @param {Page} page
  * @param {number} count
  */
@@ -305,7 +306,7 @@ export const framesDrawnDuring = (page, count) =>
     return (await window.gaitway.stats()).frames - before;
   }, count);
 
-/** Display frames without one by the app, after which it has come to rest. */
+/** The app is idle after this many animation frames without drawing. */
 const STILL_FRAMES = 45;
 
 /**

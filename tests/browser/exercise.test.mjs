@@ -7,7 +7,7 @@ import { BACK_ENDS, apply, drop, meanDifference, open, picture, pose, startSite,
 const VERTICES = 13336;
 /** Steps of a dragged slider. */
 const STEPS = 30;
-/** Where the controls of the chosen joint are; egui's panels are pixels to a page. */
+/** Position of the selected joint's controls; egui's panels have no DOM elements. */
 const POSE_MANUALLY = { x: 741, y: 118 };
 const FIRST_SLIDER = { x: 642, y: 216 };
 const KINDS = ["obj", "skel", "attach"];
@@ -45,9 +45,9 @@ for (const renderer of BACK_ENDS) {
       const [rest, restPicture] = [await pose(page), await picture(page)];
       assert.equal(rest.nodes.length, 18);
       assert.deepEqual(rest.meshes.map(({ positions }) => positions.length), [3 * VERTICES]);
-      // The “Pose manually” switch of the selected joint, then the knob of the first slider: egui's panels are pixels to a page.
+      // The selected joint's “Pose manually” switch, then the handle of the first slider.
       await apply(page, { joint: 5 });
-      // egui finds what is under the pointer in the previous frame.
+      // egui hit-tests the widgets of the previous frame.
       await page.mouse.move(POSE_MANUALLY.x, POSE_MANUALLY.y);
       await untilStill(page);
       await page.mouse.click(POSE_MANUALLY.x, POSE_MANUALLY.y);
@@ -60,7 +60,7 @@ for (const renderer of BACK_ENDS) {
       const { frames } = await stats(page);
       let before = (await state(page)).pose;
       for (let step = 1; step <= STEPS; step++) {
-        // egui rounds to the nicest number within a point to either side, which no two steps share.
+        // egui picks the roundest number within a point to either side; no two steps share one.
         await page.mouse.move(FIRST_SLIDER.x + 3 * step, FIRST_SLIDER.y);
         // Each step is shown before the next one.
         await until(page, async (before) => (await window.gaitway.state()).pose !== before, before);

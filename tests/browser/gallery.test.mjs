@@ -1,4 +1,4 @@
-// The first screen and its scenes: each is a link that opens by itself, moves, and looks like its image.
+// The first screen and its scenes: each is a link that opens by itself, moves, and matches its image.
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import path from "node:path";
@@ -62,7 +62,7 @@ for (const renderer of BACK_ENDS)
       const page = watched(await context.newPage());
       const session = await context.newCDPSession(page);
       await session.send("Network.enable");
-      // From this machine, either is there before the other has been asked for.
+      // Unthrottled, either arrives before the other is requested.
       await session.send("Network.emulateNetworkConditions", { offline: false, latency: 40, downloadThroughput: 2_000_000, uploadThroughput: -1 });
       await page.goto(`${site.address}?renderer=${renderer}`);
       await whenReady(page);

@@ -7,15 +7,15 @@ import { neverAnswers } from "../../xtask/site/server.mjs";
 import { FLAGS } from "./browser.mjs";
 
 /**
- * The desktop preset with real network throttling. By default Lighthouse simulates it from a fast load, assuming that the
- * largest image waited for everything that arrived before it, but the still doesn't wait for the program.
+ * The desktop preset with real network throttling. By default Lighthouse simulates it from a fast load, assuming that
+ * the largest image waited for everything that arrived before it, but the still doesn't wait for the program.
  * @type {import("lighthouse").Config}
  */
 const CONFIG = { ...desktopConfig, settings: { ...desktopConfig.settings, throttlingMethod: "devtools" } };
 const CATEGORIES = ["performance", "accessibility", "best-practices"];
 const METRICS = ["first-contentful-paint", "largest-contentful-paint", "total-blocking-time", "cumulative-layout-shift", "speed-index"];
 
-/** Finds a port that nobody listens on: the one of a server that has just been closed. */
+/** Finds a free port: that of a server that has just been closed. */
 async function freePort() {
   const server = await neverAnswers();
   await server.close();

@@ -1,5 +1,5 @@
-// Links on the page: shared and opened elsewhere, with parts that can't be loaded, back and forward, and the page embedded in
-// another one, which never learns what the user dropped.
+// Links on the page: shared and opened elsewhere, with parts that can't be loaded, back and forward, and the page
+// embedded in another one, which never learns what the user dropped.
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import os from "node:os";
@@ -185,7 +185,7 @@ for (const renderer of BACK_ENDS)
       await apply(page, { play: 0, t: 1 });
       await share(page);
       assert.match(await page.locator("#share-local").innerText(), /dance\.bvh \(motion\)/);
-      // The code is collapsed, but there.
+      // The QR code is collapsed, but drawn.
       await page.locator("#share-qr svg").waitFor({ state: "hidden" });
       await page.locator("#share-code-toggle").click();
       await page.locator("#share-qr svg").waitFor({ state: "visible" });
@@ -204,7 +204,7 @@ for (const renderer of BACK_ENDS)
       assert.equal(await page.locator("#share-qr svg").count(), 0);
     });
 
-    /** Two models in one file, of which the fox is the first. */
+    /** An archive of two models, the fox first. */
     const TWO = () => archive({ "a/fox.glb": fs.readFileSync(dataFile(FOX)), "b/man.glb": fs.readFileSync(dataFile(CESIUM_MAN)) });
 
     onPage("names one model of an archive", () => (fs.writeFileSync(path.join(folder, "two.zip"), TWO()), fragment([["model", `${servers.own.origin}/two.zip#!/b/man.glb`]])), async (page) => {
@@ -215,7 +215,7 @@ for (const renderer of BACK_ENDS)
       await whenMissing(page);
       assert.match((await missing(page)).join(), /two\.zip#!\/b\/gone\.glb: there is no such model in this file; its first one is shown/);
       await whenShown(page, FOX_VERTICES);
-      // Also as a URL that is opened.
+      // Also when opened as a URL.
       await page.locator("#missing").press("Escape");
       await open(page, `${servers.own.origin}/two.zip#!/b/man.glb`);
       await whenShown(page, CESIUM_MAN_VERTICES);
@@ -264,7 +264,7 @@ for (const renderer of BACK_ENDS)
 
     test("downloads a model once, whatever its address", async () => {
       fs.copyFileSync(dataFile(FOX), path.join(folder, "red+fox.glb"));
-      // Unescaped, as some write it.
+      // Unescaped, as some people write it.
       const page = await site.page({ renderer, link: `model=${servers.own.origin}/red+fox.glb&play=0` });
       await whenShown(page, FOX_VERTICES);
       assert.equal(page.requests.filter((url) => url.endsWith(".glb")).length, 1, page.requests.join());
@@ -313,7 +313,7 @@ for (const renderer of BACK_ENDS)
         assert.match((await call("open", [site.data("nothing.glb")])).error ?? "", /404/);
         assert.equal((await call("open", site.data(CESIUM_MAN))).result.vertices, CESIUM_MAN_VERTICES);
         await page.waitForFunction(() => window.events.includes("ready") && window.events.includes("change"));
-        // Another frame on the page is not the page around.
+        // A sibling frame is not the parent page.
         assert.equal(await page.evaluate(() => window.askFromAside("state")), "no answer");
 
         await drop(frame, [{ name: "Mine.glb", url: site.data(FOX) }]);
@@ -329,7 +329,7 @@ for (const renderer of BACK_ENDS)
         await withheld();
         assert.deepEqual(await call("apply", { play: 0, exposure: 1 }), nothing);
         assert.match((await call("apply", { clip: "x", speed: "quickly" })).error ?? "", /^withheld/);
-        // Asking for the shown files by name gives nothing away either, and neither does the address.
+        // Requesting the shown files by name reveals nothing either, nor does the URL.
         assert.deepEqual(await call("apply", { model: ["Mine.glb"], motion: [] }), nothing);
         await withheld();
         await page.evaluate((address) => document.querySelector("iframe")?.setAttribute("src", address), `${inside.split("#")[0]}#model=Mine.glb&embed=1`);
@@ -345,7 +345,7 @@ for (const renderer of BACK_ENDS)
         await withheld();
         assert.deepEqual(await call("open", site.data(XBOT)), nothing);
         await withheld();
-        // Files from the page around are its own anyway.
+        // Files sent by the parent page aren't private.
         assert.equal((await page.evaluate((url) => window.openBytes("Fox.glb", url), site.data(FOX))).error, undefined);
         await call("apply", { motion: [] });
         assert.equal((await call("pose")).result.meshes[0].positions.length, 3 * FOX_VERTICES);
@@ -355,7 +355,7 @@ for (const renderer of BACK_ENDS)
     });
   });
 
-/** A page with Gaitway in a frame, at the URL after the `#`, and with another frame beside it. */
+/** A page that embeds Gaitway, at the URL after the `#`, beside another frame. */
 const AROUND = `<!doctype html>
 <title>A page about a fox</title>
 <iframe width="640" height="440"></iframe>

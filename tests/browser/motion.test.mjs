@@ -1,4 +1,4 @@
-// Borrowed motion on the page, dropped, by script and by link, on each back end; joint maps in and out; what doesn't fit.
+// Borrowing motion on each back end by drop, script and link; loading and saving joint maps; motions that don't fit.
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import { after, before, describe, test } from "node:test";
@@ -215,8 +215,8 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
 });
 
 /**
- * Returns the file that the button at this height saves: the Motion tab, its Files, then the button. The canvas has no
- * elements to ask for.
+ * Opens Files in the Motion tab, presses the button at this height and returns the saved file. The canvas has no DOM
+ * elements to query.
  * @param {TestPage} page
  * @param {number} y
  */

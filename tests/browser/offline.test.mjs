@@ -1,4 +1,4 @@
-// What a visit leaves behind: the page and its samples work offline, and new versions wait until they are wanted.
+// After a first visit, the page and its samples work offline, and a new version waits until the user accepts it.
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import os from "node:os";
@@ -24,7 +24,7 @@ const whenStored = (page) =>
   });
 
 /**
- * The programs that are stored.
+ * Lists the stored programs.
  * @param {import("playwright-core").Page} page
  */
 const storedPrograms = (page) =>
@@ -130,7 +130,7 @@ describe("after a visit", () => {
       await site.close();
     });
 
-  // Only the worker's rules about addresses are at stake, which know nothing of programs.
+  // Tests only the worker's URL rules, which don't depend on the program.
   test("other sites, ranges and frames are left alone", async () => {
     const site = await serve({ [FOLDER]: dist });
     const other = await serve({ [FOLDER]: dist }, { "access-control-allow-origin": "*" });
@@ -161,7 +161,7 @@ describe("after a visit", () => {
     await framing.goto(outside.origin);
     const frame = framing.frames()[1];
     await whenReady(frame);
-    // The first image would start the registration.
+    // The first image would trigger registration.
     await frame.evaluate(() => new Promise(requestAnimationFrame));
     assert.equal(await frame.evaluate(() => document.documentElement.dataset.registered), undefined);
     await frameContext.close();

@@ -18,7 +18,7 @@ const CENTER = { x: VIEWPORT.width / 2, y: VIEWPORT.height / 2 };
 const UNASSIGNED = "\u0378";
 
 /**
- * Runs in the page: whether its browser draws a text with letters rather than with the sign for missing ones.
+ * Runs in the page: whether its browser has glyphs for a text, rather than drawing the missing-glyph box.
  * @param {string} text
  */
 function hasFontFor(text) {
@@ -200,7 +200,7 @@ for (const renderer of BACK_ENDS) {
 
     onPage("draws nothing while nothing changes", {}, async (page) => {
       await apply(page, { play: 0 });
-      // What is in progress, such as a fading tooltip, may finish.
+      // Let animations such as a fading tooltip finish.
       await untilStill(page);
       const drawn = await framesDrawnDuring(page, IDLE_FRAMES);
       assert.ok(drawn <= 2, `${drawn} frames in an idle second`);
@@ -355,7 +355,7 @@ describe("page without graphics", () => {
   test("takes the other program if there is no adapter", async () => {
     const page = await site.page({ before: () => void Object.assign(GPU.prototype, { requestAdapter: async () => null }) });
     assert.equal((await stats(page)).backend, "webgl2");
-    // The download of the likely one has begun and is aborted.
+    // The likelier program's download has begun and is aborted.
     assert.equal(programs(page).at(-1), "webgl2");
     await page.finish();
   });

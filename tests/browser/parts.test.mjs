@@ -1,4 +1,4 @@
-// Parts of Gaitway that few files need: downloaded when a file needs one, and whatever goes wrong in one ends nothing else.
+// Parts that few files need: each is downloaded only on demand, and a failure in one affects nothing else.
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import { after, before, describe, test } from "node:test";
@@ -40,8 +40,9 @@ const COMPRESSED = [
   },
 ];
 /**
- * Mean difference of pictures, 0 to 255. 14 bits move no vertex of the fox by more than 0.01 pixels, so only pixels on edges change:
- * about 0.02, as with the other models. Keys at 30 Hz and lossy WebP give 0.05; a fox that is 0.001 seconds ahead, 0.12.
+ * Mean difference of pictures, 0 to 255. 14 bits move no vertex of the fox by more than 0.01 pixels, so only pixels on
+ * edges change: about 0.02, as with the other models. Keys at 30 Hz and lossy WebP give 0.05; a fox that is 0.001
+ * seconds ahead, 0.12.
  */
 const QUANTIZED = 0.1;
 const FOX = "compressed/Fox-gltfpack-meshopt.glb";
@@ -55,7 +56,10 @@ const COURSEWORK = {
   converted: ["cosc422/mannequin.glb", "cosc422/mannequin_run.glb"],
 };
 
-/** A textured triangle on two joints, and a clip that lifts the upper one by 2 along Z, which is away from the viewer there. */
+/**
+ * A textured triangle on two joints, and a clip that lifts the upper one by 2 along Z, which is away from the viewer
+ * there.
+ */
 const MADE_X = `xof 0303txt 0032
 Frame hips { Frame chest { FrameTransformMatrix { 1,0,0,0, 0,1,0,0, 0,0,1,0, 0,1,0,1;; } } }
 Frame body { Mesh {
@@ -92,7 +96,7 @@ function module(body) {
  */
 const largestDifference = (expected, found) => Math.max(...expected.map((value, at) => Math.abs(value - (found?.[at] ?? NaN))));
 
-/** What is in AVIF and UASTC, as PNG; see gradients() in tests/scene/decode.rs. */
+/** The contents of the AVIF and UASTC images, as PNG; see gradients() in tests/scene/decode.rs. */
 function gradients() {
   const pixels = Array.from({ length: 64 * 32 }, (_, at) => {
     const [x, y] = [at % 64, at >> 6];
@@ -101,7 +105,7 @@ function gradients() {
   return png(64, 32, Uint8Array.from(pixels.flat()));
 }
 
-/** Hides BC7 from either back end and notes the formats of textures. */
+/** Hides BC7 from either back end and records texture formats. */
 function withoutBc7() {
   /** @type {unknown[]} */
   const formats = (/** @type {any} */ (window).textureFormats = []);
@@ -126,13 +130,15 @@ function withoutBc7() {
   };
 }
 
-/** What each back end calls the formats that take the place of BC7. */
+/** Each back end's names for the formats that replace BC7. */
 const WITHOUT_BC7 = {
   webgpu: { etc2: "etc2-rgb8unorm-srgb", astc: "astc-4x4-unorm-srgb" },
   webgl2: { etc2: 0x9275, astc: 0x93d0 },
 };
 
-/** Two red triangles. After a second, KHR_animation_pointer has turned them blue and hidden one by KHR_node_visibility. */
+/**
+ * Two red triangles. After a second, KHR_animation_pointer has turned them blue and hidden one by KHR_node_visibility.
+ */
 function animatedTriangles() {
   const numbers = Buffer.from(new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 1, 1]).buffer);
   const buffer = Buffer.concat([numbers, Buffer.from([1, 0, 0, 0])]);
@@ -184,12 +190,12 @@ function redAndBlue({ width, height, rgba }) {
   return [red, blue].map((count) => count / (width * height));
 }
 
-/** As for a page without HTTPS: parts aren't compared with the hash in their name. */
+/** Simulates a page without HTTPS, where parts aren't checked against the hash in their name. */
 function withoutHashes() {
   Object.defineProperty(crypto, "subtle", { value: undefined });
 }
 
-/** Makes the minute that a part may take half a second. */
+/** Shortens a part's time limit from a minute to half a second. */
 function withShortMinute() {
   const { setTimeout } = window;
   /** @type {any} */ (window).setTimeout = (/** @type {() => void} */ run, /** @type {number} */ millis) => setTimeout(run, millis === 60_000 ? 500 : millis);
@@ -309,7 +315,7 @@ for (const renderer of BACK_ENDS)
         await whenBorrowed(page, 1);
         const parts = requested(page);
         const times = [];
-        // The converted clip has a key at each of these, and nothing of the curves between them.
+        // The converted clip has a key at each of these frames; the curves between them are lost.
         for (const frame of [0, 3, 9, 17]) {
           await apply(page, { t: frame / 30 });
           times.push(await pose(page));
@@ -324,7 +330,7 @@ for (const renderer of BACK_ENDS)
       const converted = await moving(COURSEWORK.converted);
       assert.deepEqual(converted.parts, []);
       /** @typedef {Awaited<ReturnType<typeof pose>>["nodes"]} Nodes */
-      /** How far nodes of the same names are apart at most. @type {(a: Nodes, b: Nodes) => number} */
+      /** The largest distance between nodes of the same name. @type {(a: Nodes, b: Nodes) => number} */
       const apart = (a, b) => Math.max(...a.map(({ name, world }) => largestDifference(world.slice(12), b.find((node) => node.name === name)?.world.slice(12))));
       assert.ok(apart(original.times[0].nodes, original.times[3].nodes) > 1, "it runs");
       for (const [at, expected] of converted.times.entries()) {

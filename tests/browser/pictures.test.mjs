@@ -1,5 +1,5 @@
-// Rendering: the two back ends agree, and on both, with every skinning method, the model's silhouette matches the numbers of
-// `pose()`. So numbers and images can only be wrong together.
+// Rendering: the two back ends agree, and on both, with every skinning method, the model's silhouette matches the
+// numbers of `pose()`. So numbers and images can only be wrong together.
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import os from "node:os";
@@ -113,7 +113,7 @@ describe("pictures", { skip: skipWithoutData }, () => {
           const matches = expected.map((mask) => overlap(drawn[mode], mask));
           console.log(`${model.name} on ${renderer}, ${skinning}: overlap ${matches[mode].toFixed(4)} (numbers of ${MODES.join(", ")}: ${matches.map((match) => match.toFixed(4)).join(", ")})`);
           assert.ok(matches[mode] >= MIN_OVERLAP, `${skinning}: overlap ${matches[mode]}`);
-          // The other methods' numbers must match less well, or the methods were never told apart.
+          // The other methods' numbers must match less well, or the test can't tell the methods apart.
           if (model.blended) matches.forEach((match, other) => assert.ok(other === mode || match < matches[mode], `${skinning} looks like ${MODES[other]}`));
         });
         assert.deepEqual(page.troubles, []);

@@ -1,10 +1,17 @@
-// Rasterizes the silhouette that a model must have from world positions, the file's indices and a camera alone. It shares no
-// code with the renderer.
+// Rasterizes the silhouette that a model must have from world positions, the file's indices and a camera alone. It
+// shares no code with the renderer.
 import { readGltf } from "../three/data.mjs";
 
 /** @typedef {import("../../web/shell/types.d.ts").PoseDocument} PoseDocument */
 /** @typedef {{ indices: ArrayLike<number> | null, doubleSided: boolean }} Triangles */
-/** @typedef {{ yawDegrees: number, pitchDegrees: number, distance: number, target: number[], fovDegrees: number }} Camera */
+/**
+ * @typedef {object} Camera
+ * @property {number} yawDegrees
+ * @property {number} pitchDegrees
+ * @property {number} distance
+ * @property {number[]} target
+ * @property {number} fovDegrees
+ */
 
 /** @type {Record<number, Uint8ArrayConstructor | Uint16ArrayConstructor | Uint32ArrayConstructor>} */
 const INDEX_ARRAYS = { 5121: Uint8Array, 5123: Uint16Array, 5125: Uint32Array };
@@ -63,7 +70,7 @@ export function cameraFor(posed, yawDegrees, pitchDegrees, fovDegrees) {
 }
 
 /**
- * The camera as the link has it.
+ * The camera as a link writes it.
  * @param {Camera} camera
  */
 export const cameraText = ({ yawDegrees, pitchDegrees, distance, target }) => [yawDegrees, pitchDegrees, distance, ...target].join(",");

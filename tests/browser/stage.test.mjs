@@ -11,7 +11,7 @@ const FOREARM = "mixamorig:LeftForeArm";
 
 /** @typedef {[x: number, y: number]} Place */
 
-// The canvas has no elements to ask for. Places at the end of the View tab, in a window of 1280×800.
+// Positions of the controls at the end of the View tab in a 1280×800 window; the canvas has no DOM elements to query.
 /** @type {Place} */
 const WIDTH = [1035, 510];
 /** @type {Place} */
@@ -47,11 +47,11 @@ function decoded(page, file, framesPerSec) {
     let before = "";
     let frames = 0;
     let cornerAlpha = 0;
-    // A video that was recorded in real time doesn't say how long it is before it has been played to its end.
+    // A video recorded in real time has no known duration until it has been played to its end.
     video.currentTime = 1e6;
     await next("seeked");
     const durationSecs = video.duration;
-    // One seek beyond the end, since a frame that was recorded last has no duration.
+    // One seek beyond the end, since the last recorded frame has no duration.
     for (let index = 0; (index - 1) / framesPerSec < durationSecs; index++) {
       // The new frame can be drawn a moment after the seek; past the end there is none.
       const presented = new Promise((resolve) => {
@@ -122,7 +122,7 @@ for (const renderer of BACK_ENDS)
     });
 
     /**
-     * Opens the end of the View tab. The canvas has no elements to ask for, so the places of its controls are known here.
+     * Scrolls to the end of the View tab, where the positions above apply.
      * @param {import("./browser.mjs").TestPage} page
      */
     async function openViewTab(page) {
@@ -175,7 +175,7 @@ for (const renderer of BACK_ENDS)
           await apply(page, { range: "0.1,0.5" });
           await openViewTab(page);
           for (const [field, pixels] of /** @type {const} */ ([[WIDTH, 320], [HEIGHT, 180]])) {
-            // Its blinking cursor never comes to rest.
+            // Its blinking caret never comes to rest.
             await page.mouse.click(...field);
             await page.keyboard.type(`${pixels}\n`);
             await untilStill(page);

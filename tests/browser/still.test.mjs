@@ -1,4 +1,4 @@
-// What still.js finds in a link before the program is there. No browser: the script runs with stand-ins for what it uses.
+// What still.js finds in a link before the program has loaded. No browser: the script runs against stubs.
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import { test } from "node:test";
@@ -10,7 +10,7 @@ const cases = JSON.parse(fs.readFileSync("tests/scene/early.json", "utf8"));
 const names = [...new Set(cases.flatMap(({ samples }) => samples))];
 
 /**
- * Returns the image that covers the page of a link, and the files that are loaded before and after part of the program is.
+ * Returns a link's cover image, and the files preloaded before and after part of the program has arrived.
  * @param {string} link
  */
 function early(link) {

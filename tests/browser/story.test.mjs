@@ -1,4 +1,4 @@
-// Whole stories on both back ends: what one person drops, corrects and shares, and what the other one sees of it.
+// End-to-end stories on both back ends: one person drops, corrects and shares; another opens the link.
 import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
 import { skipWithoutData } from "../three/data.mjs";
@@ -131,7 +131,7 @@ for (const renderer of BACK_ENDS)
         assert.deepEqual(await other.locator("#bring-files li").allInnerTexts(), ["Soldier.glb (model)", "cmu_01_01.bvh (motion)"]);
         await other.locator("#bring-later").click();
         assert.equal((await state(other)).model.join(), "file:Soldier.glb", "an empty stage awaits it");
-        // One after the other is as good as both at once.
+        // The files may arrive one at a time.
         await drop(other, files.slice(0, 1));
         await whenModel(other, "Soldier.glb");
         await drop(other, files.slice(1));

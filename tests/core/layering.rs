@@ -25,8 +25,8 @@ const RANKS: [(&str, u32); 18] = [
     ("web", 10),
 ];
 
-/// Modules up to this rank must not use disk, network, clock, GPU or user interface. `render`, which owns the GPU, is the one
-/// exception.
+/// Modules up to this rank must not use disk, network, clock, GPU or user interface. `render`, which owns the GPU, is
+/// the one exception.
 const LAST_CORE_RANK: u32 = 7;
 
 const OUTSIDE: [&str; 13] = [
@@ -117,7 +117,7 @@ fn violations(path: &str, text: &str) -> Vec<String> {
             None => found.push(format!("{path}: `crate::{used}` is not a module with a rank")),
         }
     }
-    // The only other way out of a module's folder.
+    // `super` is the only other way out of a module's folder.
     let upwards = "super::".repeat(parts.len());
     if text.contains(&upwards) {
         found.push(format!("{path}: `{upwards}` leaves the module; say `crate::`"));
@@ -151,8 +151,7 @@ fn sources(folder: &Path, files: &mut Vec<PathBuf>) {
     }
 }
 
-/// Returns path and text of each source file of the library, sorted; those of the core's own package lie in folders beside the
-/// others.
+/// Returns the path and text of every library source file, sorted, including those of the core package.
 fn all_sources() -> Vec<(String, String)> {
     let repository = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut all = Vec::new();
@@ -217,7 +216,7 @@ fn modules_use_only_lower_ranks() {
 
 /// Names that only these files may use.
 const KEPT_IN: [(&str, &[&str]); 2] = [
-    // Joint maps by name exist where files and links are read and written; everything else has joints by number.
+    // Joint maps by name exist where files and links are read and written; everything else identifies joints by number.
     (
         "JointMapFile",
         &["retarget/", "files/", "editor/contents.rs", "editor/maps.rs", "state/link/values.rs", "state/map_code.rs"],
@@ -256,7 +255,7 @@ const STATE_GROUPS: [&str; 12] = [
     "page",
 ];
 
-/// What changes the value in front of it.
+/// Operators and methods that mutate their left-hand side.
 const CHANGES: [&str; 9] = ["+=", "-=", "*=", "|=", "&=", ".push(", ".insert(", ".extend(", ".clear("];
 
 /// Places that change a field of a view state: an assignment to one of its groups, or a mutable borrow of the whole.
@@ -294,7 +293,7 @@ fn only_the_editor_changes_the_view() {
     let mut trouble = Vec::new();
     for (path, text) in all_sources() {
         let module = path.split(['/', '.']).next().unwrap_or_default();
-        // Lower modules know no view state; their fields of the same names are others.
+        // Lower modules don't know the view state; their fields of the same names are unrelated.
         if rank(module) > rank("state") && module != "editor" {
             let changes = state_changes(&without_comments(&text));
             trouble.extend(changes.into_iter().map(|change| format!("{path}: {change}")));

@@ -26,7 +26,7 @@ fn rejects_cycles() {
     check_error(&[Some(0)], SkeletonError::Cycle { joint: 0 });
     check_error(&[Some(1), Some(0)], SkeletonError::Cycle { joint: 0 });
     check_error(&[None, Some(3), Some(1), Some(2)], SkeletonError::Cycle { joint: 1 });
-    // Joint 0 only hangs below the cycle.
+    // Joint 0 is only a descendant of the cycle.
     check_error(&[Some(1), Some(2), Some(1)], SkeletonError::Cycle { joint: 1 });
 }
 

@@ -279,7 +279,7 @@ fn webp_is_preferred_if_present_and_ktx2_to_both() {
     assert_eq!(image_used(both), Some(2));
 }
 
-/// Natively, where nothing decodes it, whatever else there is comes first.
+/// Natively nothing decodes AVIF, so any alternative is preferred.
 #[test]
 fn avif_is_known_by_its_content() {
     let with = |texture: serde_json::Value| {

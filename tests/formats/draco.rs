@@ -122,7 +122,7 @@ fn what_is_written_has_no_compression() {
     assert_eq!(written.meshes[0].primitives[0].positions, plain().load().unwrap().meshes[0].primitives[0].positions);
 }
 
-/// Encoders may remove triangles without area and divide vertices; what they declare may be from before.
+/// Encoders may drop degenerate triangles and split vertices; the declared counts may be the original ones.
 #[test]
 fn counts_are_those_of_the_decoded_data() {
     let mut build = compressed(plain());
@@ -143,7 +143,7 @@ fn strips_and_primitives_without_indices_become_lists() {
     assert_same(&load(&prepared(bare).unwrap()).unwrap(), &original);
 }
 
-/// Both primitives name the accessors of the first, but each has data of its own; a third has that of the first.
+/// Two primitives name the same accessors but each has its own compressed data; a third shares the first one's data.
 #[test]
 fn shared_accessors_get_the_data_of_their_primitive() {
     let mut other = plain();
@@ -258,8 +258,8 @@ fn damaged_meshes_are_errors() {
     assert!(problem.contains("4 vertices"), "{problem}");
 }
 
-/// Damages the compressed data of real files; their JSON is the matter of other tests. A panic would be caught, so the message
-/// tells.
+/// Damages the compressed data of real files; other tests damage the JSON. A panic would be caught, so only the message
+/// reveals one.
 #[test]
 fn damaged_real_files_never_panic() {
     let Some(folder) = data_folder() else { return };
@@ -276,7 +276,7 @@ fn damaged_real_files_never_panic() {
         for case in 0..150 {
             let mut bytes = original.clone();
             for _ in 0..=random.below(2) {
-                // The beginning has the headers.
+                // The headers are at the beginning.
                 let within = if random.below(2) == 0 { 64 } else { length };
                 let at = start + random.below(within);
                 bytes[at] ^= 1 << random.below(8);

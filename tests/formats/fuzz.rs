@@ -1,5 +1,5 @@
-//! The fuzz targets' entry points, fed with some damaged files: `cargo fuzz` needs a nightly toolchain, and looks for hours.
-//! `GAITWAY_FUZZ_SECS` looks for longer here, for that time for each reader.
+//! Feeds damaged files to the fuzz targets' entry points, since `cargo fuzz` needs a nightly toolchain and runs for
+//! hours. `GAITWAY_FUZZ_SECS` sets a longer time per reader.
 
 use std::io::{Cursor, Write};
 use std::panic::catch_unwind;
@@ -19,7 +19,7 @@ mod entries;
 /// Damaged files for each reader by default.
 const CASES: usize = 1000;
 
-/// No input is so large that reading it takes this long, even without optimization.
+/// No input takes this long to read, even without optimization.
 const MAX_SECS: f64 = 10.0;
 
 const EXERCISE: &[u8] = b"mtllib m.mtl\nv 0 0 0\nv 1 0 0 1 0 0\nv 1 1 0\nv 0.3 0.3 0\nvt 0 0\nvn 0 0 1\ng a\nusemtl red\n\
@@ -90,7 +90,7 @@ fn seeds(entry: &str) -> Vec<Vec<u8>> {
     }
 }
 
-/// Damages the seeds again and again. Returns how often.
+/// Damages the seeds repeatedly and returns the number of cases.
 fn run(entry: entries::Entry, is_over: impl Fn(usize) -> bool) -> usize {
     let (name, read) = entry;
     let seeds = seeds(name);
@@ -130,7 +130,7 @@ fn every_reader_survives_damaged_files() {
     }
 }
 
-/// Damage is of little use to what is refused anyway.
+/// Damaging a seed that is rejected anyway tests little.
 #[test]
 fn the_seeds_of_x_are_whole() {
     for seed in x_files() {

@@ -1,4 +1,4 @@
-//! Radiance's .hdr images: the three encodings of rows, and files that are broken.
+//! Radiance's .hdr images: the three encodings of rows, and broken files.
 
 use gaitway::formats::{HdrError, read_hdr};
 use glam::Vec3;
@@ -21,7 +21,7 @@ fn check(size: &str, rows: &[u8], expected: &[Vec3]) {
 fn rows_are_plain_or_run_length_encoded() {
     let color = Vec3::new(1.0, 0.5, 0.0);
     check("-Y 1 +X 2", &[ONE, [0; 4]].concat(), &[color, Vec3::ZERO]);
-    // The old way: repeat the pixel before.
+    // The old encoding: repeat the previous pixel.
     check("-Y 2 +X 3", &[ONE, [1, 1, 1, 2], ONE, ONE, [2, 0, 0, 130]].concat(), &{
         let mut pixels = [color; 6];
         pixels[5] = Vec3::new(2.0 / 64.0, 0.0, 0.0);
@@ -46,7 +46,7 @@ fn rows_are_plain_or_run_length_encoded() {
 fn large_images_are_averaged_down() {
     let row = [ONE, [0; 4]].repeat(4096 / 2).concat();
     let panorama = read_hdr(&file("-Y 2 +X 4096", &row.repeat(2))).unwrap();
-    // Each axis by a factor of its own.
+    // Each axis has its own factor.
     assert_eq!((panorama.width(), panorama.height()), (2048, 2));
     assert!(panorama.pixels().iter().all(|pixel| *pixel == Vec3::new(0.5, 0.25, 0.0)));
 }

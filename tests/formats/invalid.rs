@@ -78,7 +78,7 @@ fn invalid_json_is_located_by_line_and_column() {
     check_bytes("model.gltf", Vec::new(), &["it is empty"]);
 }
 
-/// No editor shows the text in a GLB, so that its lines help nobody.
+/// No editor shows the JSON inside a GLB, so line numbers would help nobody.
 #[test]
 fn places_in_a_glb_are_json_paths() {
     for (nodes, problem) in [
@@ -131,7 +131,7 @@ fn indices_out_of_range_name_their_place() {
     for (pointer, place) in places {
         check(base().with(pointer, json!(99)), &[&format!(": {place}: "), "99"]);
     }
-    // What geometry and skeleton can do without is left out.
+    // Parts that geometry and skeleton don't need are left out.
     let places = [
         ("/nodes/0/camera", "nodes[0].camera"),
         ("/scenes/0/nodes/0", "scenes[0].nodes[0]"),
@@ -194,7 +194,7 @@ fn counts_beyond_the_budget() {
     }
 }
 
-/// A few bytes of JSON that multiply to more than any memory.
+/// A few bytes of JSON that would expand beyond any memory.
 #[test]
 fn products_beyond_the_budget() {
     // Every node of a mesh has a weight for each morph target.
@@ -292,7 +292,7 @@ fn invalid_clips() {
     ignored(good().with(cubic, json!("CUBICSPLINE")), sampler, "usable keys");
     let rotation = good().with("/animations/0/channels/0/target/path", json!("rotation"));
     ignored(rotation, "animations[0].samplers[0].output (accessor 2)", "VEC4");
-    // Nothing is lost with an interpolation that nobody knows.
+    // An unknown interpolation falls back to linear.
     for unknown in [json!("BEZIER"), json!(0)] {
         let build = good().with(cubic, unknown.clone());
         let asset = build.load().expect("readable");

@@ -64,7 +64,7 @@ fn members_that_are_not_needed_may_be_missing_or_of_another_type() {
     assert!(asset.materials[0].unlit);
 }
 
-/// A channel that an extension aims at something else keeps its number, and so do the others.
+/// A channel whose target an extension defines keeps its index, and so do the others.
 #[test]
 fn channels_without_a_node_are_set_aside() {
     let mut build = complete();
@@ -141,13 +141,13 @@ fn an_array_is_not_an_object() {
         ("/skins/0", "skins[0]"),
         ("/scenes/0", "scenes[0]"),
     ] {
-        // As many members as any of them has.
+        // As many elements as the largest struct has members.
         let problem = complete().with(pointer, json!(vec![0; 16])).load().expect_err(pointer).to_string();
         assert!(problem.contains(place), "no {place} in {problem}");
     }
 }
 
-/// What geometry and skeleton can do without is left out with one warning, and keeps its number.
+/// Parts that geometry and skeleton don't need are left out with one warning, and keep their indices.
 #[test]
 fn unreadable_parts_are_left_out() {
     let cases = [
@@ -180,7 +180,7 @@ fn unreadable_parts_are_left_out() {
     }
 }
 
-/// A viewer that drops one of the two without a word shows something else than the next.
+/// Viewers that silently drop one of the two show different things.
 #[test]
 fn contradictions_are_reported() {
     let code = |build: Build| -> Vec<&str> { read(build).warnings.iter().map(|warning| warning.code()).collect() };
@@ -228,7 +228,8 @@ fn an_error_behind_harmless_deviations_has_its_own_place() {
 
 #[test]
 fn an_error_names_its_place_past_names_that_look_like_json() {
-    // The version must be patched, so the text is read a second time; the error is found there and named in the original.
+    // The version must be patched, so the text is read a second time; the error is found there and named in the
+    // original.
     let text = "{\"asset\":{\"version\":2.0},\n\"nodes\":[{\"name\":\"a{[\\\",\\u0041é:\"},\n{\"mesh\":\"x\"}]}";
     let problem = load(&one("m.gltf", text.into())).expect_err("a mesh is not a name").to_string();
     assert!(problem.contains("line 3") && problem.contains("nodes[1].mesh"), "{problem}");

@@ -104,7 +104,7 @@ fn pixels_of_all_images() {
     assert!(matches!(&wide[..], [warning] if warning.contains(&format!("1 to {side} each way"))), "{wide:?}");
 }
 
-/// The table in docs/limits.md has every limit, as it is.
+/// The table in docs/limits.md lists every limit with its current value.
 #[test]
 fn the_limits_are_those_of_the_documentation() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/limits.md");

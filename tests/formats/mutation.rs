@@ -1,5 +1,5 @@
-//! Damaged files, the same on every run: flipped bits, truncation, other numbers. The loader may reject or load them, but what
-//! it loads must be consistent, and nothing may panic.
+//! Damaged files, the same on every run: flipped bits, truncation, other numbers. The loader may reject or load them,
+//! but what it loads must be consistent, and nothing may panic.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 

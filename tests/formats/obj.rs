@@ -1,5 +1,5 @@
-//! .obj with .skel and .attach: invalid files first, then behaviour, then real files against the exercise's formula in double
-//! precision.
+//! .obj with .skel and .attach: invalid files first, then behaviour, then real files against the exercise's formula in
+//! double precision.
 
 use gaitway::anim::{Skeleton, Transform, model_from_joint};
 use gaitway::asset::{Asset, Warning};
@@ -156,7 +156,7 @@ fn companions_are_found_by_stem_or_as_the_only_ones() {
     assert_eq!(joints(&[("M.OBJ", SQUARE), ("m.Skel", TWO_JOINTS), ("M.attach", ROWS)]), Ok(Some(2)));
     assert_eq!(joints(&[("mesh.obj", SQUARE), ("bones.skel", TWO_JOINTS), ("w.attach", ROWS)]), Ok(Some(2)));
     assert_eq!(joints(&[("m.obj", SQUARE)]), Ok(None), "a static model");
-    // Of two candidates, neither is guessed.
+    // Between two candidates, it doesn't guess.
     assert_eq!(joints(&[("m.obj", SQUARE), ("a.skel", TWO_JOINTS), ("b.skel", "0 0 0 -1")]), Ok(None));
     assert_eq!(missing_files(&set(&[("m.obj", SQUARE)])), ["m.skel", "m.attach"]);
 }
@@ -467,7 +467,7 @@ fn a_written_exercise_model_matches_the_formula_in_another_reader() {
         let off = found.iter().zip(exercise.skinned(&exact)).map(|(a, b)| a.distance(b)).fold(0.0, f64::max);
         assert_eq!(found.len(), exercise.vertices.len());
         assert!(off < 1e-6, "{name}: {off}");
-        // And in our own.
+        // And in our own reader.
         let mut set = FileSet::default();
         set.insert("written.glb", written);
         let asset = load(&set).unwrap();

@@ -1,4 +1,4 @@
-//! Real clips, played as fast as the library can and with the formulas of glTF 2.0 appendix C, one joint at a time in f64.
+//! Real clips, sampled by the optimized code and by the formulas of glTF 2.0 appendix C, one joint at a time in f64.
 
 use gaitway::anim::{Clip, Interpolation, JointIndex, Keys, SampleCursor, Skeleton, Transform, model_from_joint};
 use gaitway::formats::load;
@@ -7,7 +7,7 @@ use glam::{Affine3A, DAffine3, DQuat, DVec3, DVec4};
 use crate::data_folder::data_folder;
 use crate::sweep::{GLTF, file_set, models_under};
 
-/// Of the size of the model.
+/// Relative to the model's size.
 const TOLERANCE: f64 = 1e-5;
 
 struct Local {
@@ -57,7 +57,7 @@ impl Segment {
         }
     }
 
-    /// None between rotations half a turn apart, where either way round is as short.
+    /// `None` between rotations half a turn apart, where both ways round are equally short.
     fn rotation(&self, interpolation: Interpolation, at: impl Fn(usize) -> DVec4) -> Option<DQuat> {
         let unit = |value: DVec4| DQuat::from_vec4(value.try_normalize().unwrap_or(DVec4::W));
         if interpolation != Interpolation::Linear {
@@ -77,7 +77,7 @@ impl Segment {
     }
 }
 
-/// Model-space transforms of all joints; `None` where the clip does not say which way a joint turns.
+/// Model-space transforms of all joints; `None` where the clip leaves a joint's direction of rotation ambiguous.
 fn reference(skeleton: &Skeleton, clip: &Clip, time_secs: f32) -> Option<Vec<DAffine3>> {
     let mut locals: Vec<Local> = skeleton.rest().locals().map(Local::from).collect();
     for channel in clip.channels() {
@@ -106,7 +106,7 @@ fn reference(skeleton: &Skeleton, clip: &Clip, time_secs: f32) -> Option<Vec<DAf
     Some(model)
 }
 
-/// Returns the largest distance of a joint from where it should be, of the size of the model. 0 without a reference.
+/// Returns the largest deviation of a joint, relative to the model's size; 0 without a reference.
 fn deviation(skeleton: &Skeleton, clip: &Clip, time_secs: f32) -> (f64, JointIndex) {
     let mut pose = skeleton.rest().clone();
     clip.sample(skeleton, time_secs, &mut SampleCursor::default(), &mut pose);

@@ -1,4 +1,4 @@
-//! KHR_animation_pointer: which channels pointers make, and what becomes of those that lead nowhere.
+//! KHR_animation_pointer: which channels pointers create, and what happens to those that lead nowhere.
 
 use gaitway::anim::{Channel, Clip, Interpolation, MaterialProperty, PropertyTarget};
 use gaitway::asset::Asset;
@@ -133,7 +133,7 @@ fn many_properties_that_are_not_shown_are_counted() {
     assert!(not_shown.len() == 1 && not_shown[0].ends_with("and 20 more"), "{not_shown:?}");
 }
 
-/// The keys, with their times, of everything that a clip moves.
+/// The keys, with their times, of everything that a clip animates.
 fn channels(clip: &Clip) -> Vec<String> {
     let times = |channel: &Channel| &clip.timelines()[channel.timeline as usize];
     clip.channels()

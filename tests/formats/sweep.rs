@@ -246,8 +246,8 @@ fn every_refused_fbx_file_is_in_the_folder() {
     }
 }
 
-/// Joints of the largest skin, vertices in the file, clips, and the first clip's duration in seconds, as counted by other
-/// programs. A negative duration isn't compared.
+/// Joints of the largest skin, vertices in the file, clips, and the first clip's duration in seconds, as counted by
+/// other programs. A negative duration isn't compared.
 struct Facts {
     path: &'static str,
     joints: usize,

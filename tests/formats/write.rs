@@ -35,7 +35,7 @@ fn loaded(file: Vec<u8>) -> Asset {
 /// A clip's name; for each channel the joint, the interpolation, the bits of its key times, and the keys.
 type Contents = (String, Vec<(JointIndex, Interpolation, Vec<u32>, Keys)>);
 
-/// Everything that a file has of a clip.
+/// Everything that a file stores of a clip.
 fn contents(clip: &Clip) -> Contents {
     let bits = |times: &[f32]| times.iter().map(|secs| secs.to_bits()).collect();
     let channel = |channel: &gaitway::anim::Channel| {
@@ -257,7 +257,7 @@ fn unwritable_input_is_an_error() {
     assert!(matches!(&error, LoadError::NoSuchFile { name, .. } if name == "other.glb"), "{error}");
 }
 
-/// Nothing can be read from such a buffer, so it stays as it is; what is added gets a buffer of its own.
+/// Nothing can be read from such a buffer, so it is left unchanged; additions get their own buffer.
 #[test]
 fn a_first_buffer_without_data_stays_without() {
     let text =
@@ -280,7 +280,7 @@ fn a_first_buffer_without_data_stays_without() {
     assert_eq!(contents(&loaded(written).clips[0]), contents(&clip));
 }
 
-/// Also if nothing here can decode it: the file that it was in is not at hand wherever the GLB goes.
+/// Even if nothing here can decode it: the GLB may travel without the original file.
 #[test]
 fn images_of_all_kinds_are_embedded() {
     let ktx2 = b"\xABKTX 20\xBB\r\n\x1A\n rest";
@@ -295,7 +295,7 @@ fn images_of_all_kinds_are_embedded() {
     assert!(images.iter().all(|image| image["uri"].is_null() && image["bufferView"].is_u64()), "{json}");
     let kinds: Vec<_> = images.iter().map(|image| image["mimeType"].as_str().expect("a type")).collect();
     assert_eq!(kinds, ["image/x-tga", "application/octet-stream", "image/ktx2"]);
-    // An image inside a GLB is only KTX2 for those who know the extension.
+    // Only readers that know the extension treat an image inside a GLB as KTX2.
     assert_eq!(json["textures"][0], json!({ "source": 0 }));
     assert_eq!(json["textures"][1], json!({ "extensions": { "KHR_texture_basisu": { "source": 2 } } }));
     assert_eq!(json["extensionsUsed"], json!(["KHR_texture_basisu"]));
@@ -326,7 +326,8 @@ fn a_skeleton_and_its_clip() {
         assert_eq!(again.skeleton.name(new), asset.skeleton.name(old));
         assert_eq!(again.skeleton.rest().local(new), asset.skeleton.rest().local(old));
     }
-    // Morph weights need the mesh, which is left out. (Joint 0 of both is the root, the only one that the clip animates.)
+    // Morph weights need the mesh, which is left out. (Joint 0 of both is the root, the only one that the clip
+    // animates.)
     assert_eq!(contents(&again.clips[0]), contents(&clip));
     assert!(again.meshes.is_empty());
 }

@@ -1,5 +1,5 @@
-//! DirectX .x: the coursework's own files move as the GLBs that another program made of them. What a file means is tested in
-//! parts/x.
+//! DirectX .x: the coursework's files move like the GLBs that another program made from them. parts/x tests what a file
+//! means.
 
 use std::path::Path;
 
@@ -13,9 +13,9 @@ use crate::build_gltf::one;
 use crate::data_folder::data_folder;
 use crate::sweep::file_set;
 
-/// Of the model's size. The GLBs have six digits.
+/// Relative to the model's size. The GLBs have six digits.
 const TOLERANCE: f32 = 1e-4;
-/// Parts of a clip, at which hardly a key is.
+/// Fractions of a clip that rarely coincide with a key.
 const MOMENTS: [f32; 6] = [0.0, 0.0137, 0.2911, 0.5177, 0.7313, 0.983];
 
 /// All joints and vertices at one moment.
@@ -61,7 +61,7 @@ fn check(what: &str, [found, expected]: [&Moment; 2], [own, other]: [&Asset; 2])
     let tolerance = TOLERANCE * expected.size();
     let mut unmatched: Vec<_> = expected.joints.iter().collect();
     for (name, world) in &found.joints {
-        // Of several with the same name, in order.
+        // Joints with the same name are matched in order.
         let at = unmatched.iter().position(|(other, _)| other == name).unwrap_or_else(|| panic!("{what}: {name}"));
         let (_, other) = unmatched.remove(at);
         let moved = world.translation.distance(other.translation);
@@ -102,7 +102,7 @@ fn check_triangles(what: &str, geometries: [&Geometry; 2], vertices: [&DeformedV
 /// A .x file with the images beside it.
 fn read(path: &Path) -> (FileSet, Asset) {
     let mut files = file_set(path);
-    // What it refers to is known once it is converted.
+    // Its references are known only once it is converted.
     for name in missing_files(&files) {
         if let Ok(bytes) = std::fs::read(path.with_file_name(&name)) {
             files.insert(name, bytes);

@@ -13,7 +13,7 @@ fn render(arguments: &[&str]) -> Output {
 }
 
 fn render_file(file: &str, arguments: &[&str]) -> Output {
-    // Without this variable, Mesa reports an error that is none.
+    // Without this variable, Mesa reports a spurious error.
     let mut command = Command::new(env!("CARGO_BIN_EXE_gaitway"));
     let command = command.args(["render", file, "--size", "8x8"]).args(arguments);
     command.env_remove("XDG_RUNTIME_DIR").output().expect("the program runs")
@@ -31,7 +31,7 @@ fn a_picture_can_be_piped_and_drivers_are_quiet() {
     assert_eq!((picture.width(), picture.height()), (8, 8));
     let lines: Vec<&str> = said.lines().collect();
     assert!(matches!(lines[..], [line] if line.starts_with("rendering with ")), "{said}");
-    // Of what is wrong, people hear nevertheless.
+    // Errors are still reported.
     let refused = render(&["--out", "picture.glb"]);
     let said = String::from_utf8_lossy(&refused.stderr);
     assert_eq!(refused.status.code(), Some(1), "{said}");

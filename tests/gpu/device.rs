@@ -13,8 +13,8 @@ pub fn gpu() -> Option<Gpu> {
     or_skipped(headless_device()).map(|(device, queue, _)| Gpu { device, queue })
 }
 
-/// The other back end: what wgpu makes of OpenGL ES is what it makes of WebGL2, through the same translation of shaders. Not
-/// every machine with a Vulkan driver has OpenGL as well, so this is never required.
+/// The other back end: wgpu treats OpenGL ES like WebGL2, with the same shader translation. Not every machine with a
+/// Vulkan driver has OpenGL as well, so this is never required.
 pub fn gl() -> Option<Gpu> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = wgpu::Backends::GL;

@@ -1,4 +1,4 @@
-//! Light from all around, and what surfaces make of it.
+//! Environment lighting, and how surfaces respond to it.
 
 use std::sync::Arc;
 
@@ -55,7 +55,7 @@ pub fn drawn_pixels(picture: &Picture) -> Vec<[u8; 4]> {
     picture.0.as_chunks::<4>().0.iter().copied().filter(|pixel| pixel[3] > 0).collect()
 }
 
-/// Checks that all that is drawn has this shade of grey.
+/// Checks that everything drawn has this shade of grey.
 pub fn check_shade(picture: &Picture, shade: u8, what: &str) {
     let drawn = drawn_pixels(picture);
     assert!(drawn.len() > 300, "{}, {what}", drawn.len());
@@ -70,7 +70,7 @@ fn check_furnace(gpu: &Gpu) {
     check_shade(&scene.draw(gpu), WHITE, "white light");
 }
 
-/// The white furnace: nothing that is white absorbs light or adds to it, whatever its roughness, metal or not.
+/// The white furnace: no white surface absorbs or adds light, whatever its roughness, metal or dielectric.
 #[test]
 fn white_surfaces_disappear_in_white_light() {
     let Some(gpu) = gpu() else { return };
@@ -139,7 +139,7 @@ fn every_setup_shows_the_model_without_blowing_it_out() {
     assert_eq!(brightness.len(), 4, "each lights it in its own way: {brightness:?}");
 }
 
-/// Near white, tone mapping leaves no shading. At three quarters of a stop more, half of a white model is.
+/// Tone mapping flattens shading near white. With three quarters of a stop more, half of a white model would be flat.
 #[test]
 fn a_white_model_keeps_its_shading_in_the_studio() {
     let Some(gpu) = gpu() else { return };

@@ -128,7 +128,7 @@ fn the_mip_levels_of_a_ktx2_image_are_used_and_missing_ones_made() {
     }
 }
 
-/// As a colour map, which is sRGB, and as data; close and, on the smaller mip levels, far.
+/// As a colour map, which is sRGB, and as data; close up, and far away on the smaller mip levels.
 #[test]
 fn ktx2_textures_look_the_same_in_every_format_of_the_device() {
     let Some(gpu) = gpu() else { return };

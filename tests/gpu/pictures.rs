@@ -151,7 +151,7 @@ fn flat_normals_come_from_the_triangles() {
     near(flat.at(0.3, 0.2), smooth.at(0.3, 0.2), 1);
 }
 
-/// Columns of a matrix, as in the shader.
+/// Multiplies by a matrix given by columns, as the shader does.
 fn transformed(matrix: [[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|row| matrix[0][row] * v[0] + matrix[1][row] * v[1] + matrix[2][row] * v[2])
 }

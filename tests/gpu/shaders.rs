@@ -5,7 +5,7 @@ use gaitway::render::shaders::{ALL, SKINNED_VERTEX, Shader, SurfacePermutation};
 use naga::back::glsl;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
-/// Sets every override to this value; what is not a number becomes true.
+/// Sets every override to this value; booleans become true.
 fn check(shader: &Shader, overrides: u8) {
     let source = shader.source();
     let module = naga::front::wgsl::parse_str(&source)

@@ -68,7 +68,7 @@ fn where_feet_are_clear_position_wins_over_names_and_the_contradiction_is_report
     }
 }
 
-/// One crossed leg is no mirrored body.
+/// One crossed leg doesn't make a mirrored body.
 #[test]
 fn a_few_joints_on_the_other_side_do_not_swap_the_sides() {
     let mut asset = figure(1.0, true);

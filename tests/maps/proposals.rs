@@ -178,7 +178,7 @@ fn creatures_are_matched_along_their_limbs() {
     }
 }
 
-/// A horse and a winged one with names of their own for the wings: what they share is followed.
+/// A horse and a winged horse with names of its own for the wings: shared joints are mapped.
 #[test]
 fn creatures_follow_the_names_they_share() {
     let horse = ["body", "neck1", "head1", "tail1", "tail2", "frontleg_l", "frontleg_r", "hindleg_l", "hindleg_r"];
@@ -193,7 +193,7 @@ fn creatures_follow_the_names_they_share() {
     let proposal = propose(&horse, &dragon);
     assert_eq!(proposal.pairs.len(), 9);
     assert!(proposal.pairs.iter().all(|pair| pair.target == pair.source && pair.reason == Reason::SameName));
-    // Two names may be chance.
+    // Two shared names may be a coincidence.
     let pair = |names: [&str; 2]| skeletons::asset(skeletons::chain(names, Vec3::Y));
     assert!(propose(&pair(["tail", "a"]), &pair(["tail", "b"])).pairs.is_empty());
 }

@@ -1,5 +1,5 @@
-//! Rigs without a file at hand, built from the names that their tools use: `A>B` makes B a child of A, `A(B, C)` both. They
-//! have no shape, so names and hierarchy must do.
+//! Rigs that we have no files of, built from the joint names of their tools: `A>B` makes B a child of A, `A(B, C)`
+//! both. They have no shape, so names and hierarchy must suffice.
 
 use gaitway::anim::{Joint, Transform};
 use gaitway::asset::{Asset, Slot};
@@ -294,7 +294,7 @@ fn words_outside_any_vocabulary() {
          hero_left_elbow>hero_left_wrist, hero_right_collarbone>hero_right_upperarm>hero_right_elbow>hero_right_wrist), \
          hero_left_thigh>hero_left_knee>hero_left_ankle, hero_right_thigh>hero_right_knee>hero_right_ankle)",
     );
-    // The rig's name in front of every joint's own does not count.
+    // A rig name that prefixes every joint is ignored.
     check(
         &asset,
         &[
@@ -309,8 +309,8 @@ fn words_outside_any_vocabulary() {
     );
 }
 
-/// Builds a body from its words: hips, spine, neck, head, then per side clavicle, upper arm, forearm, hand, thigh, shin, foot,
-/// toes, with `~` for the side.
+/// Builds a body from its words: hips, spine, neck, head, then per side clavicle, upper arm, forearm, hand, thigh,
+/// shin, foot, toes, with `~` for the side.
 fn check_language(sides: [&str; 2], trunk: [&str; 4], limbs: [&str; 8]) {
     let [hips, spine, neck, head] = trunk;
     let asset = rig(&format!(

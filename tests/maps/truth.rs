@@ -294,8 +294,8 @@ pub const RIGS: &[Rig] = &[
     Rig {
         files: &["threejs/RobotExpressive.glb"],
         prefix: "",
-        // Body is the parent of legs and spine; Hips is above the legs' joint. Feet are parented to the floor, and hands are
-        // only palms.
+        // Body is the parent of legs and spine; Hips is above the legs' joint. Feet are parented to the floor, and
+        // hands are only palms.
         trunk: ["Body", "Abdomen", "#10", "", "Neck", "#12"],
         limbs: ["#15/#35", "UpperArm.L", "LowerArm.L", "", "UpperLeg.L", "#57/#62", "#3/#67", ""],
         fingers: [

@@ -1,4 +1,5 @@
-//! Rigs whose names were replaced by useless ones: geometry must find the joints that the names gave, or leave them out.
+//! Rigs whose names were replaced by useless ones: geometry must find the joints that the names gave, or leave them
+//! out.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +12,7 @@ use crate::data::open;
 use crate::skeletons;
 use crate::truth::{each_file, is_called};
 
-/// Numbers that say nothing: neighbours in the file don't get neighbouring ones.
+/// Numbers without meaning: neighbours in the file don't get consecutive ones.
 fn useless_name(number: usize, count: usize) -> String {
     let step = (1..).map(|step| 7 * step + 1).find(|step| !count.is_multiple_of(*step) || *step > count);
     format!("Object_{}", (number * step.unwrap_or(1) + 5) % count)
@@ -39,7 +40,7 @@ pub fn without_names(asset: &Asset) -> Asset {
     Asset::new(parts).expect("still valid")
 }
 
-/// Parts that were found rightly, wrongly and not at all.
+/// Counts of body parts found correctly, wrongly and not at all.
 #[derive(Debug, Default, Clone, Copy)]
 pub struct Score {
     pub right: usize,
@@ -96,7 +97,7 @@ fn bodies_with_useless_names_are_found_by_their_shape() {
     );
     assert_eq!(bad, [""; 0], "more than 5 % are wrong");
     assert!((right + open) as f64 >= 0.9 * total as f64);
-    // Leaving everything open is no answer.
+    // Leaving everything unmapped must not pass.
     assert!(right as f64 >= 0.8 * total as f64, "{right} of {total}");
 }
 
@@ -140,7 +141,8 @@ fn figure(arm: &[f32]) -> Asset {
     skeletons::asset(joints)
 }
 
-/// The numbers of the joints of the left arm, counted from the chest, that fill collar bone, upper arm, forearm and hand.
+/// The numbers of the joints of the left arm, counted from the chest, that fill collar bone, upper arm, forearm and
+/// hand.
 fn check_arm(arm: &[f32], expected: [Option<usize>; 4]) {
     use Slot::{LeftHand, LeftLowerArm, LeftShoulder, LeftUpperArm};
     const FIRST: usize = 9;

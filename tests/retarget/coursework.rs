@@ -49,8 +49,8 @@ fn the_dwarf_walks_like_the_avatar_while_its_arms_play_its_own_clip() {
     let map = JointMapFile::from_json(DWARF_MAP).unwrap().resolve(&dwarf, &avatar).unwrap();
     let done = retarget(&dwarf, &avatar, 0, &map);
     let (skeleton, walk) = (&dwarf.skeleton, &avatar.clips[0]);
-    // Both face +Z and neither rest has rotations, so the coursework's own rule holds: a joint turns in the world as its
-    // channel does. The legs' rests differ slightly in direction.
+    // Both face +Z and neither rest has rotations, so the coursework's own rule holds: a joint turns in the world as
+    // its channel does. The legs' rests differ slightly in direction.
     for frame in 0..=13 {
         let time = frame as f32 * walk.duration_secs() / 13.0;
         let rotation = |world: Affine3A| -> Quat { world.to_scale_rotation_translation().1 };
@@ -126,7 +126,7 @@ fn the_mannequins_original_files_run_like_the_converted_ones() {
     let (converted, expected) = running("cosc422/mannequin.glb", "cosc422/mannequin_run.glb");
     assert!((clip.duration_secs() - expected.duration_secs()).abs() < 1e-4);
     let size = size(&converted);
-    // The converter baked the curves at 30 frames per second, so that it has nothing of what is between them.
+    // The converter baked the curves at 30 frames per second, so anything between those frames is lost.
     for frame in 0..=22 {
         let time = (frame as f32 / 30.0).min(expected.duration_secs());
         let [found, wanted] =

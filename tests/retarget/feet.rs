@@ -20,7 +20,7 @@ use crate::real::read;
 struct Walk {
     /// Height of the whole clip above the ground.
     lift: f32,
-    /// Or it walks on the spot.
+    /// If false, it walks on the spot.
     travels: bool,
     /// How far the knee of the supporting leg is bent, in radians; below 0, the other way.
     knee: f32,
@@ -91,7 +91,7 @@ fn retarget(model: &Figure, motion: &Figure, map: &ResolvedMap) -> (Retargeted, 
 #[test]
 fn planting_stops_the_sliding_of_legs_of_another_length() {
     let motion = walker(0.0);
-    // Legs of another length than the hips' height accounts for.
+    // Legs whose length the hip height doesn't account for.
     let model = build(&Rig { axes: 3, leg_length: 0.6, size: 1.4, armature: true, ..Rig::default() });
     let plain = map(&model, &motion);
     let (_, sliding) = retarget(&model, &motion, &plain);

@@ -1,5 +1,5 @@
-//! A small human figure made in code, and other rigs of it: with other joint axes, another rest, more or fewer joints, other
-//! names, an armature on top. The motion of the body parts is known, so the exact answer is.
+//! A small human figure made in code, and other rigs of it: with other joint axes, another rest, more or fewer joints,
+//! other names, an armature on top. The motion of each body part is known, and with it the exact answer.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! A clip and the layers below it as one clip.
+//! Baking a clip and the layers below it into one clip.
 
 use gaitway::anim::{Clip, ClipBuilder, Interpolation, JointIndex, Keys, Pose, SampleCursor, Skeleton, Transform};
 use gaitway::asset::Asset;

@@ -52,12 +52,12 @@ fn every_real_pair_keeps_orientations_and_directions() {
     assert_eq!(recorded.len(), pairs, "docs/retargeting-pairs.tsv has other pairs");
 }
 
-/// How far soles may be off the ground while they are planted, as shares of the distance from hips to foot: in any pair, and
-/// on average. One motion (rokoko_jesse_dance) keeps a foot so high that it stands on something.
+/// How far soles may be off the ground while they are planted, as shares of the distance from hips to foot: in any
+/// pair, and on average. One motion (rokoko_jesse_dance) keeps a foot so high that it stands on something.
 const MAX_HOVER: f64 = 0.14;
 const MAX_MEAN_HOVER: f64 = 0.006;
 
-/// Planting holds feet, but never at the price of a leg that snaps.
+/// Planting holds feet, but never at the cost of a leg that snaps.
 #[test]
 fn every_planted_leg_turns_like_its_source_and_stands_on_the_ground() {
     let Some(folder) = data_folder() else { return };
@@ -134,7 +134,7 @@ fn recorded() -> BTreeMap<(&'static str, &'static str), Vec<&'static str>> {
     lines.map(row).collect()
 }
 
-/// Where the published figures are no longer true. Those of planted feet have a test of their own.
+/// Published figures that are out of date. Those of planted feet have their own test.
 fn changes<'a>(outcome: &'a Outcome, cells: &'a [&str]) -> impl Iterator<Item = String> + 'a {
     let columns = COLUMNS.into_iter().zip(outcome.values()).zip(cells);
     let unplanted = columns.filter(|(((name, _), _), _)| !name.contains("_planted_"));

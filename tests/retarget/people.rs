@@ -160,7 +160,7 @@ impl Outcome {
         ]
     }
 
-    /// The values as the file has them.
+    /// The values as the file writes them.
     pub fn cells(&self) -> [String; COLUMNS.len()] {
         let values = self.values();
         std::array::from_fn(|column| {
@@ -170,7 +170,7 @@ impl Outcome {
     }
 }
 
-/// The motion's clip on the model, by the map that is proposed.
+/// Retargets the motion's clip to the model with the proposed map.
 pub fn borrow(model: &Loaded, motion: &Loaded, plant: bool) -> Result<Outcome, String> {
     let map = proposed(model, motion)?;
     let (figures, made) = measured(model, motion, &map)?;

@@ -1,5 +1,5 @@
-//! The rest that a motion is measured from: the model's on the same rig, whatever the motion's nodes rest in, and else a pose
-//! that looks like a rest, or a warning.
+//! The rest that a motion is measured from: on the same rig the model's, whatever the rest of the motion's nodes;
+//! otherwise a pose that looks like a rest, or a warning.
 
 use gaitway::anim::{Clip, Interpolation, Joint, JointIndex, Keys, SampleCursor, Skeleton};
 use gaitway::asset::{Asset, AssetParts, Slot};
@@ -44,7 +44,8 @@ fn largest_degrees<'a>(skeleton: &'a Skeleton, a: &Clip, b: &Clip) -> (f64, &'a 
     angles.fold((0.0, ""), |worst, angle| if angle.0 > worst.0 { angle } else { worst })
 }
 
-/// The clip of `figure` in a file whose nodes rest elsewhere. Only rotations of the body and the place of the hips differ.
+/// The clip of `figure` in a file whose nodes rest elsewhere. Only rotations of the body and the place of the hips
+/// differ.
 fn rested(figure: &Figure, mut turn: impl FnMut(Slot) -> DQuat, hips: Vec3) -> Asset {
     let skeleton = with_rest(&figure.asset.skeleton, |joint, rest| {
         if let Some((&slot, _)) = figure.slots.0.iter().find(|(_, slot_joint)| **slot_joint == joint) {
@@ -180,7 +181,7 @@ fn rolled_axes_are_another_rig() {
     }
 }
 
-/// A walk in place of `figure`: legs and arms swing against each other, knees bend.
+/// Makes `figure` walk in place: legs and arms swing against each other, knees bend.
 fn walk(figure: &mut Figure) {
     const KEYS: usize = 17;
     let times: Vec<f32> = (0..KEYS).map(|key| key as f32 / (KEYS - 1) as f32).collect();
@@ -244,7 +245,7 @@ fn a_rest_in_motion_is_found_out_on_another_rig() {
     as_it_rests.rest.motion = gaitway::retarget::RestChoice::Node;
     let (taken, _, figures) = worst_of(&as_it_rests);
     assert!(taken > 25.0 && found < 0.6 * taken, "{found} and {taken} degrees");
-    // What takes the rest for granted sees nothing; where feet point does.
+    // Figures that take the rest for granted miss it; the direction of the feet shows it.
     assert!(figures.orientation_error_degrees_max.unwrap() < 0.01, "{figures:?}");
     assert!(figures.facing_error_degrees_max.unwrap() > 20.0, "{figures:?}");
 }

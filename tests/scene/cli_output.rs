@@ -65,7 +65,7 @@ impl Desk {
 
 impl Drop for Desk {
     fn drop(&mut self) {
-        // What is left over costs nothing.
+        // A leftover folder does no harm.
         let _ = fs::remove_dir_all(&self.folder);
     }
 }
@@ -205,7 +205,7 @@ fn a_dash_is_standard_input_and_output() {
     assert!(String::from_utf8_lossy(&twice.stderr).contains("-: standard input can be read only once"));
 }
 
-/// Checks the exit status and the whole document, and that people are told the same.
+/// Checks the exit status and the whole document, and that standard error has the same message.
 #[track_caller]
 fn check_document(arguments: &[&str], status: i32, expected: &Value) {
     let output = run(arguments);

@@ -270,7 +270,7 @@ fn a_model_with_motions_keeps_the_loaded_ones() {
     let playing = active_clip(model, editor.state()).and_then(|clip| model.borrowed(clip)).expect("a borrowed clip");
     assert_eq!((playing.motion, playing.source_clip), (1, 0), "the first new clip");
     assert_eq!(notices(&editor.take_events()), ["Opened Walker. Added 3 clips from other.glb."]);
-    // What does not fit is named.
+    // Motions that don't fit are named.
     let mut both = contents(&["sample:morphs"]);
     both.motions = Some(vec![motion("third.glb")]);
     editor.open(both, None, &mut any).expect("the model is fine");
@@ -429,7 +429,7 @@ fn an_exported_clip_is_called_by_its_own_name() {
     }
 }
 
-/// A view's clip that the model lacks is no error, but it isn't silent either.
+/// A view's clip that the model lacks isn't an error, but is reported.
 #[test]
 fn an_unknown_clip_of_a_view_is_told() {
     let told = "clip: expected the name or index of a clip, found “Fly”; its clips are Walk, Idle, Wave; the rest pose is used.";
@@ -472,7 +472,7 @@ fn matching_again_says_if_that_changed_nothing() {
     assert!(text.starts_with("Walk has no joint in common with Fox"), "{text}");
 }
 
-/// What the viewport shows, from where.
+/// The camera of the viewport.
 fn view(editor: &Editor) -> OrbitCamera {
     resolve_camera(editor.library(), editor.state(), 1.6)
 }
@@ -490,7 +490,7 @@ fn an_option_never_moves_the_camera() {
     }
     let automatic = ViewerState { camera: CameraChoice::Auto, ..editor.state().clone() };
     assert_ne!(resolve_camera(editor.library(), &automatic, 1.6), before, "it would have moved");
-    // Without its cause the camera is automatic again, and another clip is framed as ever.
+    // Once the edit is undone the camera is automatic again, and frames another clip as usual.
     editor.undo();
     editor.undo();
     assert_eq!((view(&editor), editor.state()), (before, &state));
@@ -539,7 +539,7 @@ fn the_preference_for_reduced_motion_leaves_no_trace_in_links() {
     editor.apply(Command::SetSpeed(2.0));
     let link = to_link(&editor.shared_state());
     assert!(link.contains("turntable=20") && !link.contains("play="), "{link}");
-    // What the user sets is the user's.
+    // The user's own choice is shared.
     editor.apply(Command::TogglePlaying);
     assert!(editor.state().playback.playing);
     editor.apply(Command::TogglePlaying);

@@ -37,7 +37,7 @@ fn without_a_model_the_frame_is_empty() {
     assert!(frame.view.projection_from_view.is_finite());
 }
 
-/// A metre-wide triangle with a weak sun and point lights of equal strength, farther and farther away.
+/// A metre-wide triangle with a weak sun and point lights of equal strength at increasing distances.
 #[test]
 fn of_many_lights_the_strongest_are_drawn() {
     let places: Vec<f32> = (0..12).map(|index| 12.0 - index as f32).collect();
@@ -173,8 +173,8 @@ fn the_heat_map_shows_the_selected_joint() {
 #[test]
 fn bones_join_the_skins_joints_and_end_in_stubs() {
     let frame = frame_of(&walker(), &showing(|show| show.skeleton = true));
-    // 22 joints: 21 of them hang on another; the ends are head, hands and toes. The meshes' nodes are no joints. Bones
-    // from Root to Hips and so on; none has no length.
+    // 22 joints: 21 of them have a parent; the ends are head, hands and toes. The meshes' nodes aren't joints. Bones
+    // from Root to Hips and so on; all have a length.
     assert_eq!(frame.bones.len(), 21 + 5);
     assert!(frame.bones.iter().all(|bone| bone.joint < 22 && bone.head != bone.tail && bone.radius > 0.0));
     assert!(frame.bones.iter().all(|bone| bone.visible));

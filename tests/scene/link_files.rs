@@ -1,5 +1,5 @@
-//! The files that a link names: listing them, marking local ones for the recipient to supply, leaving out missing ones, and
-//! adding them again.
+//! The files that a link names: listing them, marking local ones for the recipient to supply, leaving out missing ones,
+//! and adding them again.
 
 use gaitway::state::{
     LinkRole, LinkedFile, embedded_link, link_with_files, link_without_missing, linked_files, most_similar_link,
@@ -31,7 +31,8 @@ fn a_file_is_a_url_a_sample_or_a_local_name() {
     assert_eq!(linked_files(""), []);
 }
 
-/// web/still.js searches these links before the program is there; tests/browser/still.test.mjs holds that it finds the same.
+/// web/still.js searches these links before the program has loaded; tests/browser/still.test.mjs checks that it finds
+/// the same files.
 #[test]
 fn what_is_loaded_early_is_what_the_link_names() {
     let cases: Vec<Value> = serde_json::from_str(include_str!("early.json")).expect("JSON");

@@ -1,5 +1,5 @@
-//! Properties of all links: old ones keep their meaning, every state round-trips, and any text becomes a stable link of its
-//! valid parts.
+//! Properties of all links: old ones keep their meaning, every state round-trips, and any text becomes a stable link of
+//! its valid parts.
 
 use std::collections::BTreeMap;
 

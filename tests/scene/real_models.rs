@@ -67,7 +67,8 @@ fn counts_and_durations() {
 
 #[test]
 fn a_skinned_mesh_ignores_its_nodes_transform() {
-    // ArmyPilot's mesh is attached to the joint Pelvis: moved by that node's own transform it would be far above its skeleton.
+    // ArmyPilot's mesh is attached to the joint Pelvis: moved by that node's own transform it would be far above its
+    // skeleton.
     let Some(library) = open("cosc422/ArmyPilot.glb") else { return };
     let bounds = library.active().expect("a model").rest_bounds();
     let (mut frame, rest) = (

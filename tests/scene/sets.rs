@@ -130,7 +130,7 @@ fn files_next_to_a_model_are_read_with_it() {
     std::fs::remove_dir_all(&folder).expect("it was created");
 }
 
-/// A model that names files of the disk it was not given could be converted and sent back with them inside.
+/// Otherwise a model could name any file on the disk, and a conversion sent back to its author would contain it.
 #[test]
 fn nothing_outside_the_models_folder_is_read_with_it() {
     let folder = temporary_folder("outside");

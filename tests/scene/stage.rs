@@ -271,7 +271,7 @@ fn the_source_draws_no_skeleton_that_was_not_asked_for() {
         let of = |of_source| frame.bones.iter().any(|bone| bone.of_source == of_source && bone.visible);
         [of(false), of(true)]
     };
-    // The source has no mesh: its skeleton is all there is to see of it.
+    // The source has no mesh: only its skeleton can be shown.
     assert_eq!(drawn(|show| show.source = true), [false, true]);
     assert_eq!(drawn(|show| (show.source, show.skeleton) = (true, true)), [true, true]);
     assert_eq!(drawn(|show| (show.source, show.error) = (true, true)), [true, true], "errors are colours of bones");

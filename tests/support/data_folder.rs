@@ -19,7 +19,7 @@ pub fn data_folder() -> Option<PathBuf> {
     None
 }
 
-/// The package whose tests these are may lie in a folder of the repository.
+/// The tested package may be in a subfolder of the repository.
 #[allow(dead_code)]
 fn repository() -> &'static Path {
     let package = Path::new(env!("CARGO_MANIFEST_DIR"));

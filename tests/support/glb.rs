@@ -1,4 +1,5 @@
-//! A small reader and evaluator of GLB, written from the glTF specification and independent of the converters that it checks.
+//! A small reader and evaluator of GLB, written from the glTF specification and independent of the converters that it
+//! checks.
 
 // Each test program uses a part of it.
 #![allow(dead_code)]

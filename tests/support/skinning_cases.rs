@@ -1,5 +1,5 @@
-//! Morphing and skinning cases for both the CPU and the GPU. Expected results are computed here in f64 from the definitions;
-//! only the data types come from `gaitway::mesh`.
+//! Morphing and skinning cases for both the CPU and the GPU. Expected results are computed here in f64 from the
+//! definitions; only the data types come from `gaitway::mesh`.
 
 use std::f64::consts::TAU;
 
@@ -146,8 +146,8 @@ pub const TUBE_SIDES: usize = 12;
 pub const TUBE_RINGS: usize = 9;
 pub const TUBE_RADIUS: f32 = 0.2;
 
-/// An upright tube, 1 m high. With 2 `joints` the weights blend from joint 0 at the bottom to joint 1 at the top; with 0 it is
-/// not skinned.
+/// An upright tube, 1 m high. With 2 `joints` the weights blend from joint 0 at the bottom to joint 1 at the top; with
+/// 0 it is not skinned.
 pub fn tube(joints: usize) -> Geometry {
     let mut geometry = Geometry::default();
     for ring in 0..TUBE_RINGS {

@@ -1,5 +1,5 @@
-// Finds the real test files, and tells which of them a reader of the core specification can read. They are not part of the
-// repository: `../shared/data` beside it, or the folder that GAITWAY_DATA names.
+// Finds the real test files, and tells which of them a reader of the core specification can read. They are not part of
+// the repository: `../shared/data` beside it, or the folder that GAITWAY_DATA names.
 import fs from "node:fs";
 import path from "node:path";
 import { fileURLToPath } from "node:url";
@@ -67,7 +67,8 @@ const SUPPORTED = [
 ];
 
 /**
- * A glTF of the data folder. `rejected` is null, or the version or extension that it requires and that is not supported.
+ * A glTF of the data folder. `rejected` is null, or the version or extension that it requires and that is not
+ * supported.
  * @typedef {{ name: string, file: string, rejected: string | null }} GltfFile
  */
 

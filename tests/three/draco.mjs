@@ -1,5 +1,5 @@
-// What GLTFLoader needs of a DRACOLoader, with the decoder that comes with three.js but without the workers that its own loader
-// starts in a browser.
+// What GLTFLoader needs of a DRACOLoader, with the decoder that comes with three.js but without the workers that its
+// own loader starts in a browser.
 import fs from "node:fs";
 import { createRequire } from "node:module";
 import path from "node:path";
@@ -57,7 +57,10 @@ export async function decode(bytes, ids, types) {
 
 export const dracoLoader = {
   preload() {},
-  /** @type {(bytes: ArrayBuffer, onLoad: (geometry: THREE.BufferGeometry) => void, ids: Record<string, number>, types: Record<string, string>, colorSpace: string, onError: (error: unknown) => void) => void} */
+  /**
+   * @type {(bytes: ArrayBuffer, onLoad: (geometry: THREE.BufferGeometry) => void, ids: Record<string, number>, types:
+   *   Record<string, string>, colorSpace: string, onError: (error: unknown) => void) => void}
+   */
   decodeDracoFile(bytes, onLoad, ids, types, _colorSpace, onError) {
     decode(bytes, ids, types).then(onLoad, onError);
   },

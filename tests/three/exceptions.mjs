@@ -1,5 +1,5 @@
-// Departures of three.js from glTF 2.0. Each entry cites the specification and repairs the loaded scene before it serves as a
-// reference. An entry that is no longer needed fails the test.
+// Departures of three.js from glTF 2.0. Each entry cites the specification and repairs the loaded scene before it
+// serves as a reference. An entry that is no longer needed fails the test.
 
 /** @typedef {import("three/examples/jsm/loaders/GLTFLoader.js").GLTF} GLTF */
 

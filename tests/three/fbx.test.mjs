@@ -1,5 +1,6 @@
-// World positions of an FBX file's nodes in `gaitway pose` against three.js's FBXLoader, at keys of every clip. Between keys
-// FBXLoader joins quaternions where the file has curves of Euler angles; tests/formats compares those with ufbx itself.
+// World positions of an FBX file's nodes in `gaitway pose` against three.js's FBXLoader, at keys of every clip. Between
+// keys FBXLoader interpolates quaternions where the file has curves of Euler angles; tests/formats compares those with
+// ufbx itself.
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import path from "node:path";
@@ -18,8 +19,8 @@ const ONE_FRAME = 1 / 24;
 const CENTIMETRES_PER_METRE = 100;
 
 /**
- * What FBXLoader does otherwise than the format demands. Each has to be seen in every file that it names, so that the list stays
- * true. It excuses differences in `"clips"` alone, in the rest pose as well, or of some nodes by name.
+ * Deviations of FBXLoader from the format. Each must occur in every file that it names, so that the list stays
+ * accurate. It excuses differences in `"clips"` alone, in the rest pose as well, or of some nodes by name.
  * @typedef {{ because: string, files: RegExp, excuses: "clips" | "poses" | RegExp }} Fault
  */
 
@@ -38,7 +39,7 @@ const FAULTS = [
   { because: "moves a directional light away from its node", files: /blender_293_barbarian|camera_light_axes/, excuses: /^(Sun|forwardLight)$/ },
 ];
 
-/** FBXLoader reads no keys of a stack of layers, and of the others a clip without keys that we leave out. */
+/** FBXLoader reads no keys from layered stacks, and from the other files a clip without keys, which we leave out. */
 const OTHER_CLIPS = /maya_anim_layers_|maya_blend_shape_cube_7100|maya_huge_stepped_tangents|Samba_Dancing/;
 
 /** One is damaged, and one has no objects. */
@@ -95,7 +96,7 @@ async function compareFile(name) {
 }
 
 /**
- * Returns what FBXLoader makes of a file, or null if it refuses it.
+ * Returns a file as FBXLoader reads it, or null if it rejects it.
  * @param {string} file
  */
 function loadTheirs(file) {
@@ -114,7 +115,7 @@ function loadTheirs(file) {
 /** @typedef {(clip: number | null, theirSecs: number, ourSecs: number) => Promise<Difference>} Compare */
 
 /**
- * Makes a difference the larger of the two, in each respect.
+ * Raises the worst difference to another one, field by field.
  * @param {Difference} worst
  * @param {Difference} other
  */
@@ -134,7 +135,7 @@ function isExcused({ excuses }, node, clip) {
 }
 
 /**
- * Returns a function that compares the nodes with names of their own in a clip at a time.
+ * Returns a function that compares the uniquely named nodes in a clip at a time.
  * @param {string} file
  * @param {THREE.Group} root
  * @param {Fault | undefined} fault
@@ -191,8 +192,8 @@ function play(mixer, clip, timeSecs) {
 }
 
 /**
- * Returns the largest difference at keys of a clip. FBXLoader keeps the file's times and ours begin with the stack, whose start
- * FBXLoader doesn't tell: of the starts that occur, the one that fits best is taken.
+ * Returns the largest difference at keys of a clip. FBXLoader keeps the file's times, and ours begin with the stack,
+ * whose start FBXLoader doesn't expose, so we try the known starts and take the best fit.
  * @param {Compare} compare
  * @param {number} clip
  * @param {THREE.AnimationClip} theirs
@@ -220,7 +221,7 @@ async function differenceOfClip(compare, clip, theirs, ourDurationSecs) {
 }
 
 /**
- * Returns what is the only one of its name.
+ * Returns the values with unique names, by name.
  * @template T
  * @param {[string, T][]} named
  */

@@ -1,5 +1,5 @@
-// Runs the page's parts in Node, as web/shell/parts.js does in a worker, and their native programs. parts/part/src/lib.rs
-// describes the calls.
+// Runs the page's parts in Node, as web/shell/parts.js does in a worker, and their native programs.
+// parts/part/src/lib.rs describes the calls.
 import { execFileSync } from "node:child_process";
 import fs from "node:fs";
 import path from "node:path";
@@ -12,8 +12,8 @@ const CONVERTED = 1;
 const HEADER_BYTES = 5;
 
 /**
- * Returns a function that runs a part of the built page, in a fresh instance for each input as the page does. It throws the
- * part's message if there is no result.
+ * Returns a function that runs a part of the built page, in a fresh instance for each input as the page does. It throws
+ * the part's message if there is no result.
  * @param {string} part
  */
 export async function startPart(part) {
@@ -24,7 +24,7 @@ export async function startPart(part) {
   const module = await WebAssembly.compile(fs.readFileSync(path.join(folder, file)));
   return async (/** @type {Uint8Array} */ input) => {
     const { memory, input: place, run, output, output_length: length } = /** @type {any} */ ((await WebAssembly.instantiate(module)).exports);
-    // The place first: making it may replace the memory's buffer.
+    // Allocate first: growing the memory replaces its buffer.
     const start = place(input.length);
     new Uint8Array(memory.buffer, start, input.length).set(input);
     run();

@@ -1,5 +1,6 @@
 // The decoders of compressed glTF, and the readers of FBX and .x: the page's modules and the native programs give the
-// same bytes. The decoders also give the same bytes as those that three.js ships: meshoptimizer, Draco and Basis Universal.
+// same bytes. The decoders also give the same bytes as those that three.js ships: meshoptimizer, Draco and Basis
+// Universal.
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import os from "node:os";
@@ -22,7 +23,10 @@ const FILTERS = ["NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL", "COLOR"];
 const ARRAYS = { 5120: Int8Array, 5121: Uint8Array, 5122: Int16Array, 5123: Uint16Array, 5125: Uint32Array, 5126: Float32Array };
 const COMPONENTS = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4, MAT4: 16 };
 
-/** A glTF with its buffers. `json` has everything, and its types would only repeat the specification. @typedef {{ json: any, buffers: Uint8Array[] }} Model */
+/**
+ * A glTF with its buffers. `json` has everything, and its types would only repeat the specification.
+ * @typedef {{ json: any, buffers: Uint8Array[] }} Model
+ */
 
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), "gaitway-parts-"));
 after(() => fs.rmSync(folder, { recursive: true }));
@@ -54,7 +58,7 @@ const slice = ({ buffers }, { buffer, byteOffset = 0, byteLength }) => buffers[b
  * Returns an accessor's components.
  * @param {Model} model
  * @param {number} index
- * @param {Uint8Array} [view] Its buffer view, if the file doesn't have that as it is.
+ * @param {Uint8Array} [view] Its buffer view, if the file's own is compressed.
  */
 function components({ json, buffers }, index, view) {
   const { bufferView, byteOffset = 0, componentType, type, count } = json.accessors[index];
@@ -134,7 +138,8 @@ describe("meshopt views are decoded as by meshoptimizer", { skip: skipWithoutDat
       for (const [index, { bufferView, componentType }] of source.json.accessors.entries()) {
         const { decoded, isRounded = false } = views.get(bufferView) ?? {};
         const [expected, found] = [components(source, index, decoded), components(native, index)];
-        // The filters compute with floats. Both round them, and not every platform's result is the same in the last bit.
+        // The filters compute with floats. Both round them, and not every platform's result is the same in the last
+        // bit.
         const allowed = isRounded && [5122, 5123].includes(componentType) ? 1 : 0;
         assert.equal(found.length, expected.length);
         const differences = Array.from(found, (value, at) => Math.abs(value - expected[at]));
@@ -176,8 +181,9 @@ describe("Draco meshes are decoded as by Google's decoder", { skip: skipWithoutD
 });
 
 /**
- * Compares one mesh; parts/draco/src/wire.rs has what the module is given and what it answers.
- * @param {{ module: Awaited<ReturnType<typeof startPart>>, source: Model, native: Model, used: [string, number][], ids: Record<string, number>, indices: number, data: Uint8Array }} mesh
+ * Compares one mesh; parts/draco/src/wire.rs describes the module's input and answer.
+ * @param {{ module: Awaited<ReturnType<typeof startPart>>, source: Model, native: Model, used: [string, number][], ids:
+ *   Record<string, number>, indices: number, data: Uint8Array }} mesh
  */
 async function sameInModule({ module, source, native, used, ids, indices, data }) {
   const declared = used.map(([semantic, index]) => {
@@ -199,8 +205,8 @@ async function sameInModule({ module, source, native, used, ids, indices, data }
 }
 
 /**
- * What a device has besides RGBA, as bits, and what the module then answers: formats by its numbers, with the transcoder's.
- * ETC1S becomes ETC2 on every device that has ASTC, and UASTC becomes RGBA on one with nothing but ETC2.
+ * What a device has besides RGBA, as bits, and what the module then answers: formats by its numbers, with the
+ * transcoder's. ETC1S becomes ETC2 on every device that has ASTC, and UASTC becomes RGBA on one with nothing but ETC2.
  * @type {{ device: string, formats: number, answers: Record<number, number> }[]}
  */
 const KTX2_FORMATS = [

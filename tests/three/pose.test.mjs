@@ -1,5 +1,5 @@
-// World positions and node matrices of `gaitway pose` against three.js (GLTFLoader, AnimationMixer, getVertexPosition), for
-// every readable file of the data folder, at several times of every clip, played once and held at the end.
+// World positions and node matrices of `gaitway pose` against three.js (GLTFLoader, AnimationMixer, getVertexPosition),
+// for every readable file of the data folder, at several times of every clip, played once and held at the end.
 import assert from "node:assert/strict";
 import { after, describe, test } from "node:test";
 import { boundsOf, largestDifference, largestDistance } from "./compare.mjs";

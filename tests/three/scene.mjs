@@ -1,5 +1,5 @@
-// Loads a glTF into three.js in Node, without materials and images, and returns the world positions of every vertex and the
-// world matrix of every node, under the file's own indices, in a clip at a time.
+// Loads a glTF into three.js in Node, without materials and images, and returns the world positions of every vertex and
+// the world matrix of every node, under the file's own indices, in a clip at a time.
 import fs from "node:fs";
 import path from "node:path";
 import * as THREE from "three";
@@ -37,8 +37,8 @@ function documentOf(file) {
 }
 
 /**
- * Returns the channels that say without KHR_animation_pointer, which three.js ignores, what a pointer to nodes says; none for
- * other pointers.
+ * Returns the ordinary channels equivalent to a pointer to nodes, since three.js ignores KHR_animation_pointer; none
+ * for other pointers.
  * @param {import("../types.d.ts").GltfJson} json
  * @param {import("../types.d.ts").GltfChannel} channel
  */

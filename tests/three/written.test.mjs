@@ -1,5 +1,5 @@
-// Files written by `gaitway convert` and `gaitway retarget`: the Khronos validator finds no error that the original doesn't
-// have, and nothing of the original is lost. retarget.test.mjs checks how they look.
+// Files written by `gaitway convert` and `gaitway retarget`: the Khronos validator finds no error that the original
+// doesn't have, and nothing of the original is lost. retarget.test.mjs checks how they look.
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import os from "node:os";
@@ -50,7 +50,7 @@ async function issues(file, withWarnings = false) {
 }
 
 /**
- * What compression rounds; the validator can't look into compressed data to find it in the original.
+ * Errors due to rounding by compression; the validator can't see them in the compressed original.
  * @type {Record<string, string[]>}
  */
 const ROUNDED = {

@@ -1,4 +1,4 @@
-//! The panels over a model, driven by label; commands are noted and applied, as the frame loop does.
+//! The panels over a model, driven by label; commands are recorded and applied, as in the frame loop.
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -52,7 +52,7 @@ impl Bench {
         self.editor.library()
     }
 
-    /// Sets something without any control.
+    /// Changes the state directly, without a control.
     pub fn change(&mut self, change: impl FnOnce(&mut ViewerState)) {
         let mut state = self.state().clone();
         change(&mut state);
@@ -139,7 +139,7 @@ pub fn model_with_clips(count: usize) -> Model {
     Model::new("folder/many.glb".to_owned(), asset, Vec::new())
 }
 
-/// The texts that are painted, each with whether it is cut, and where.
+/// The painted texts, each with whether it is truncated, and where.
 pub fn painted(harness: &Harness<'_, Bench>) -> Vec<(String, bool, egui::Rect)> {
     fn collect(shape: &egui::Shape, texts: &mut Vec<(String, bool, egui::Rect)>) {
         match shape {
@@ -156,7 +156,7 @@ pub fn painted(harness: &Harness<'_, Bench>) -> Vec<(String, bool, egui::Rect)> 
     texts
 }
 
-/// Presses what has this label and gives back the commands that came of it.
+/// Presses the control with this label and returns the resulting commands.
 pub fn press(harness: &mut Harness<'_, Bench>, label: &str) -> Vec<Command> {
     harness.state_mut().commands.clear();
     harness.get_by_label(label).click();
@@ -171,7 +171,7 @@ pub fn press_key(harness: &mut Harness<'_, Bench>, key: egui::Key) -> Vec<Comman
     std::mem::take(&mut harness.state_mut().commands)
 }
 
-/// Presses the pointer at one place, moves it to another and lets go.
+/// Presses the pointer at one place, moves it to another and releases it.
 pub fn drag(
     harness: &mut Harness<'_, Bench>,
     from: egui::Pos2,

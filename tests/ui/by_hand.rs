@@ -96,8 +96,8 @@ fn time_stands_still_while_the_rings_are_aimed_at() {
 fn a_ring_turns_about_its_own_axis_alone() {
     let mut harness = turning(WIDE);
     let middle = place_of_joint(harness.state());
-    // Somewhere on a circle around the joint lies each ring; of a shin in the front view the one about X is seen from its
-    // edge, the one about Z openly.
+    // Each ring crosses a circle around the joint. For a shin in the front view, the ring about X is edge-on, the one
+    // about Z face-on.
     let mut turned = Vec::new();
     for step in 0..24 {
         let mut harness = turning(WIDE);
@@ -120,7 +120,7 @@ fn modes_are_compared_by_a_switch() {
     let split = Inspect { split: true, ..Inspect::default() };
     assert_eq!(press(&mut harness, text::COMPARE_SKINNING), [Command::SetInspect(split)]);
     assert_eq!(harness.state().frame.panes, [3, 1]);
-    // A joint is found in any pane.
+    // A joint can be picked in any pane.
     harness.state_mut().change(|state| {
         state.display.show.skeleton = true;
     });
@@ -187,7 +187,7 @@ fn the_motion_tab_tells_the_fit_and_puts_the_source_on_the_stage() {
     assert_eq!(harness.query_all_by_label_contains(&text::foot_contacts("")).count(), 2, "a lane for each foot");
 }
 
-/// Names stand beside the lanes and the legend with the scale below them: nothing covers the first seconds.
+/// Names are beside the foot-contact tracks, legend and scale below them: nothing covers the first seconds.
 #[test]
 fn the_lanes_of_the_feet_are_not_covered() {
     for size in [WIDE, NARROW] {

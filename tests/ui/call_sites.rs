@@ -1,6 +1,6 @@
-//! Which of our own functions allocate. egui allocates in every frame: it copies each text that it is given, constant or not,
-//! boxes closures and grows lists. An allocation is ours if, seen from the allocator, the first function outside the standard
-//! library is one of ours: `format!`, `to_owned`, `collect`, `vec!`, `clone`.
+//! Which of our own functions allocate. egui allocates in every frame: it copies each text that it is given, constant
+//! or not, boxes closures and grows lists. An allocation is ours if, seen from the allocator, the first function
+//! outside the standard library is one of ours: `format!`, `to_owned`, `collect`, `vec!`, `clone`.
 
 use std::backtrace::Backtrace;
 use std::cell::RefCell;
@@ -12,9 +12,9 @@ thread_local! {
     static TRACES: RefCell<Vec<Backtrace>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Runs `work` and returns where code that is called by a function whose name contains `below` allocates, each place once.
-/// Names for screen readers don't count: they are built in closures that egui calls only while there is one. Nor do the
-/// points of a painted path, which egui takes as a vector.
+/// Runs `work` and returns where code that is called by a function whose name contains `below` allocates, each place
+/// once. Names for screen readers don't count: they are built in closures that egui calls only while there is one. Nor
+/// do the points of a painted path, which egui takes as a vector.
 pub fn own_allocations(below: &str, work: impl FnOnce()) -> BTreeSet<String> {
     ON_ALLOCATION.set(Some(|| TRACES.with_borrow_mut(|traces| traces.push(Backtrace::force_capture()))));
     work();

@@ -41,7 +41,7 @@ fn the_chosen_clip_is_in_sight() {
     assert!(is_in_sight(&harness), "the list got shorter");
 }
 
-/// Also where a search would hide it, and where the number of the clip is that of another motion's clip.
+/// Even if a search would hide it, or another motion's clip has the same index.
 #[test]
 fn a_borrowed_clip_is_selected_and_in_sight() {
     let mut harness = bench(WIDE, model_with_clips(60));

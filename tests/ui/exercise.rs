@@ -94,7 +94,7 @@ fn a_vertex_shows_shares_that_add_up() {
         }
         press(&mut harness, text::VERTEX_PROBE);
         assert!(harness.query_by_label(text::VERTEX_HINT).is_some());
-        // Turned by a quarter about Z, joint 2 alone would put (1, 1) to (0, 0).
+        // Turned by a quarter about Z, joint 2 alone would put (1, 1) at (0, 0).
         harness.state_mut().change(|state| {
             state.edits.pose.insert(2, [0.0, 0.0, 90.0]);
         });
@@ -124,7 +124,7 @@ fn a_vertex_shows_shares_that_add_up() {
     }
 }
 
-/// At a seam of the texture a vertex is drawn several times, in each part again.
+/// A vertex on a texture seam is drawn several times, again in each part.
 #[test]
 fn a_copy_has_the_number_of_its_vertex() {
     for (between, piece, vertex) in [("", 0, 5), ("g other\n", 1, 1)] {
@@ -155,7 +155,7 @@ fn a_click_keeps_the_vertex_and_a_click_beside_lets_it_go() {
     assert!(matches!(kept[..], [Command::SelectVertex(Some(_))]), "{kept:?}");
     let aside = harness.state().viewport.right_center() - egui::vec2(12.0, 0.0);
     assert!(click(&mut harness, aside).contains(&Command::SelectVertex(None)));
-    // Switched off, a click is about joints again.
+    // With the probe off, a click selects joints again.
     press(&mut harness, text::VERTEX_PROBE);
     assert!(!click(&mut harness, middle).iter().any(|command| matches!(command, Command::SelectVertex(_))));
 }

@@ -146,7 +146,7 @@ fn the_file_report_counts_and_groups() {
     assert_eq!(harness.query_all_by_label_contains("sheared or singular").count(), 2);
 }
 
-/// One joint and a material; a clip paints it and hides the joint, another does nothing of the kind.
+/// One joint and a material; one clip animates its colour and hides the joint, another does neither.
 fn glowing() -> Model {
     let joint = Joint { name: "Only".to_owned(), ..Joint::default() };
     let skeleton = Skeleton::new(vec![joint]).expect("one joint");

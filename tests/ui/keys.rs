@@ -65,7 +65,7 @@ fn typing_is_not_taken_for_keys() {
     assert!(press_key(&mut harness, Key::Space).is_empty());
 }
 
-/// The events of typing a key and letting go of it.
+/// The events of pressing and releasing a key.
 fn typed(key: Key, text: &str) -> Vec<Event> {
     let event = |pressed| {
         let modifiers = egui::Modifiers::NONE;

@@ -46,7 +46,7 @@ fn mapping_manually_shows_the_joint_table() {
     }
 }
 
-/// The picture is what a sheet leaves free: the character stays in sight while a clip is chosen.
+/// The viewport is the area that a sheet leaves free: the character stays visible while a clip is chosen.
 #[test]
 fn a_sheet_does_not_hide_the_picture() {
     for size in [NARROW, [320.0, 240.0]] {
@@ -83,7 +83,7 @@ fn the_help_fits_small_screens() {
     }
 }
 
-/// The transport is cut off nowhere, and no tab makes a side panel grow.
+/// The transport is never cut off, and no tab makes a side panel wider.
 #[test]
 fn everything_stays_on_the_screen() {
     for size in [NARROW, [360.0, 640.0], [700.0, 500.0], WIDE, [1920.0, 1080.0]] {

@@ -43,7 +43,7 @@ fn the_shown_model_is_in_sight_among_many() {
     let mut harness = bench_of([1280.0, 400.0], library);
     harness.run_steps(30);
     let last = text::close_model(&format!("{}.glb", Library::MAX_MODELS - 1));
-    // Its section leaves room to the clips.
+    // Its section leaves room for the clips.
     let section = harness.get_by_label(text::CLIPS_SECTION).rect();
     assert!(harness.get_by_label(&last).rect().bottom() <= section.top());
     assert!(harness.get_by_label(text::REST_POSE).rect().bottom() < 400.0);
@@ -82,7 +82,7 @@ fn what_was_opened_has_a_button_to_undo_it() {
     }
 }
 
-/// A link whose model can't be had: the stage says so, and how to bring it.
+/// A link whose model is unavailable: the stage says so, and how to supply it.
 #[test]
 fn an_empty_stage_says_what_it_waits_for_and_keeps_the_offer() {
     for size in [WIDE, NARROW] {

@@ -1,11 +1,11 @@
-//! Widths of texts in the interface's font, which must be those of the original text shaper: crates/harfrust takes its place.
+//! Widths of texts in the interface's font, which must match the original text shaper, which crates/harfrust replaces.
 
 use egui::{Color32, Context, FontId, RawInput};
 
 const SIZES: [f32; 6] = [10.5, 12.0, 13.0, 14.0, 17.0, 28.0];
 
-/// Texts, their glyphs and their widths in points. Printed by this test's measurement with harfrust 0.12.0, vello_cpu 0.2.0, egui
-/// 0.37.0 and all glyphs of Ubuntu Light, before the `[patch.crates-io]` section of Cargo.toml was written.
+/// Texts, their glyphs and their widths in points. Printed by this test's measurement with harfrust 0.12.0, vello_cpu
+/// 0.2.0, egui 0.37.0 and all glyphs of Ubuntu Light, before the `[patch.crates-io]` section of Cargo.toml was written.
 #[rustfmt::skip]
 const TEXTS: [(&str, usize, [f32; 6]); 24] = [
     ("The quick brown fox jumps over the lazy dog. 0123456789", 55, [271.71875, 310.53125, 336.40625, 362.28125, 439.90625, 724.5625]),

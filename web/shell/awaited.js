@@ -1,5 +1,5 @@
-// Links that name local files: the page asks for them and meanwhile shows what it can. It also accepts a copy of a model
-// that couldn't be loaded, without asking for it.
+// Links that name local files: the page asks for them and meanwhile shows what it can. It also accepts a copy of a
+// model that couldn't be loaded, without asking for it.
 import { button, dialog, showList } from "./dom.js";
 import { companionWords } from "./held.js";
 import { linkedFiles, publicLink } from "./links.js";

@@ -1,4 +1,4 @@
-// What follows a change of the view: screen readers, the title, the gallery, the address bar and scripts hear of it.
+// Propagates changes of the view to screen readers, the title, the gallery, the address bar and scripts.
 import { markCard } from "./gallery.js";
 import { localFiles } from "./held.js";
 import { keepTypedAddressOnce, recordView } from "./history.js";
@@ -43,7 +43,7 @@ export function cancelSummary() {
   clearTimeout(timer);
 }
 
-/** Takes back the last error, once something has been opened. */
+/** Clears the last error once something has been opened. */
 export function forgetProblem() {
   announced = null;
   sayProblem("");

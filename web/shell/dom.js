@@ -53,7 +53,7 @@ export async function frames(count) {
 }
 
 /**
- * Runs something that nobody waits for, when the browser has nothing else to do. Safari knows only timers.
+ * Runs work that nothing waits for when the browser is idle. Safari only has timers.
  * @param {() => void} work
  */
 export const whenIdle = (work) => ("requestIdleCallback" in window ? requestIdleCallback(work) : setTimeout(work, 500));

@@ -1,13 +1,15 @@
-// Gaitway in a frame of another page: `window.gaitway` by messages. The page around it sends `{gaitway: 1, id, call, arguments}`
-// and gets `{gaitway: 1, id, result}` or `{gaitway: 1, id, error}`; events are `{gaitway: 1, event}`. It never learns anything
-// about files that the user dropped or chose in the frame.
+// Gaitway in a frame of another page: `window.gaitway` by messages. The page around it sends `{gaitway: 1, id, call,
+// arguments}` and gets `{gaitway: 1, id, result}` or `{gaitway: 1, id, error}`; events are `{gaitway: 1, event}`. It
+// never learns anything about files that the user dropped or chose in the frame.
 import { messageOf } from "./dom.js";
 import { open } from "./opening.js";
 import { isPrivate, seenPrivate } from "./privacy.js";
 import { session } from "./session.js";
 
 /** @typedef {import("./types.d.ts").Gaitway} Gaitway */
-/** @typedef {(...given: any[]) => unknown} Call Arguments come from another page; the functions themselves check them. */
+/**
+ * @typedef {(...given: any[]) => unknown} Call Arguments come from another page; the functions themselves check them.
+ */
 
 const READS = /** @type {const} */ (["state", "pose", "stats", "screenshot"]);
 const WITHHELD = "withheld: the user has opened local files in this frame; what they show stays here";

@@ -6,8 +6,8 @@
 const RENDER_ATTACHMENT = 0x10;
 
 /**
- * Redirects WebGPU into a texture that is never presented, until the returned function is called. Presenting would block the
- * browser's graphics process, and with it every page, until all shaders are compiled.
+ * Redirects WebGPU into a texture that is never presented, until the returned function is called. Presenting would
+ * block the browser's graphics process, and with it every page, until all shaders are compiled.
  * @param {HTMLCanvasElement} canvas
  * @param {Backend} backend
  */

@@ -1,4 +1,4 @@
-// Following links: back and forward, another link typed into the address bar, and what of a link could not be loaded.
+// Following links: back and forward, another link typed into the address bar, and reporting what couldn't be loaded.
 import { awaitCopies, awaitFiles, showAwaited } from "./awaited.js";
 import { cancelSummary, summarizeSoon } from "./changes.js";
 import { button, byId, dialog, messageOf, showList } from "./dom.js";
@@ -87,7 +87,7 @@ function lacksModel(models, isUnchanged) {
 }
 
 /**
- * Says what of a link could not be loaded, and offers to try again.
+ * Lists the parts of a link that couldn't be loaded, and offers to try again.
  * @param {string[]} problems
  * @param {string} link
  * @param {boolean} [isUnchanged] Nothing of the link is shown.

@@ -1,5 +1,5 @@
-// The samples below the viewport: cards that are plain links. The first screen shows them; a link, an embedding page and
-// opening local files hide them until they are asked for.
+// The samples below the viewport: cards that are plain links. The first screen shows them; a link, an embedding page
+// and opening local files hide them until they are asked for.
 import { byId, button, focusCanvas } from "./dom.js";
 import { mostSimilarLink } from "./links.js";
 
@@ -34,7 +34,7 @@ export function markCard(link, isLocal) {
 setShown(location.hash.length < 2 && parent === window && cards.length > 0);
 
 button("gallery-close").addEventListener("click", () => setShown(false));
-// In the viewport, Escape belongs to what is chosen there.
+// In the viewport, Escape acts on the selection there.
 addEventListener("keydown", ({ key, target }) => {
   if (key === "Escape" && (target === document.body || gallery.contains(/** @type {Node} */ (target)))) setShown(false);
 });

@@ -122,7 +122,7 @@ export const localFiles = (link) => linkedFiles(link).filter(isLocalFile);
 export const shareableLink = (link) => publicLink(link, localFiles(link).map(({ name }) => name));
 
 /**
- * What a file consists of besides itself, which a link doesn't name.
+ * The companion files of a file, which a link doesn't name.
  * @type {Record<string, { words: string, extension: RegExp }>}
  */
 const COMPANIONS = {
@@ -131,13 +131,13 @@ const COMPANIONS = {
 };
 
 /**
- * Describes what belongs to a file besides itself, if anything does.
+ * Describes a file's companions, if it has any.
  * @param {string} name
  */
 export const companionWords = (name) => COMPANIONS[extensionOf(name)]?.words;
 
 /**
- * Returns the names of such files that were opened together with one.
+ * Returns the names of the companions that were opened together with a file.
  * @param {string} name
  */
 export function companionsOf(name) {

@@ -1,5 +1,5 @@
-// The address bar and the browser's history: opening other files adds an entry, everything else changes the current one.
-// Entries with local files keep them as long as the page lives.
+// The address bar and the browser's history: opening other files adds an entry, everything else changes the current
+// one. Entries with local files keep them as long as the page lives.
 import { awaited } from "./awaited.js";
 import { heldItems, heldMotionsAndLight, shareableLink } from "./held.js";
 import { shownFiles } from "./links.js";
@@ -61,12 +61,12 @@ export function recordView() {
   remember();
 }
 
-/** Leaves the address alone until something is set. */
+/** Keeps the address as it is until something is set. */
 export function keepTypedAddress() {
   [entry.files, entry.typed] = [shownFiles(session.link), session.link];
 }
 
-/** Does so at the first change only. */
+/** Does the same, unless a typed address is kept already. */
 export function keepTypedAddressOnce() {
   if (entry.files === null) keepTypedAddress();
 }

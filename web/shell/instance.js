@@ -1,5 +1,5 @@
-// Instances of the program. Each is one wasm instance on one canvas; when one ends, another starts on a new canvas with the
-// same files and view.
+// Instances of the program. Each is one wasm instance on one canvas; when one ends, another starts on a new canvas with
+// the same files and view.
 import { awaitFiles, awaited, showAwaited } from "./awaited.js";
 import { BACKEND_NAMES, TRY_DOWNLOAD, TRY_GRAPHICS, hasBackend, missingCapabilities, otherBackend } from "./capabilities.js";
 import { summarize, viewChanged } from "./changes.js";
@@ -166,7 +166,7 @@ async function showFirstFrame(canvas, aborted, bindings, presentFrames) {
   await frames(2);
   if (session.stopReason !== null) throw new Error(session.stopReason);
   canvas.style.visibility = "";
-  // egui types through a hidden field.
+  // egui receives text through a hidden input.
   byId("stage").querySelector("input")?.setAttribute("aria-label", "Text input of the viewport");
 }
 

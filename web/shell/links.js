@@ -1,5 +1,5 @@
-// The text form of links. Only the program reads it (src/state/link); no script splits a link. still.js, which runs before the
-// program is there, only searches one.
+// The text form of links. Only the program reads it (src/state/link); no script splits a link. still.js, which runs
+// before the program is there, only searches one.
 
 /** @typedef {import("./types.d.ts").Bindings} Bindings */
 /** @typedef {import("./types.d.ts").LinkedFile} LinkedFile */

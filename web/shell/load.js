@@ -1,4 +1,4 @@
-// Getting files into the app: read, handed over, and held on to.
+// Gets files into the app: reads them, hands them over and holds on to them.
 import { messageOf } from "./dom.js";
 import { hold, holdLast, releaseNamed } from "./held.js";
 import { beginPrivate, endPrivate, forgetRejected, rememberRejected } from "./privacy.js";
@@ -46,7 +46,7 @@ export async function load(items, as, isPrivate) {
     forgetRejected();
     return { shown, document };
   } catch (error) {
-    // Undo and the missing files of a link may show it yet.
+    // Undo or a link's missing files may still show it.
     if (isLocal) holdLast(items);
     if (isPrivateNow) rememberRejected();
     throw error;
@@ -56,7 +56,8 @@ export async function load(items, as, isPrivate) {
 }
 
 /**
- * Reads the app's news of a followed link or an applied state. Files read from URLs replace held ones of the same names.
+ * Parses the app's report on a followed link or an applied state. Files read from URLs replace held ones of the same
+ * names.
  * @param {string} answer
  * @returns {{ loaded: string[], problems: string[] }}
  */

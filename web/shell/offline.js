@@ -1,5 +1,5 @@
-// The page as an installed app: it works offline after the first visit (sw.js), announces new versions, and opens files that
-// the system hands it.
+// The page as an installed app: it works offline after the first visit (sw.js), announces new versions, and opens files
+// that the system hands it.
 import { button, byId } from "./dom.js";
 import { openByHand } from "./opening.js";
 import { session } from "./session.js";
@@ -9,7 +9,7 @@ const isStored = parent === window && "serviceWorker" in navigator;
 
 export function install() {
   window.launchQueue?.setConsumer(async ({ files }) => openByHand(await Promise.all(files.map((handle) => handle.getFile()))));
-  // The first image comes first.
+  // Don't delay the first image.
   if (isStored) session.started.then(register, register);
 }
 

@@ -1,5 +1,5 @@
-// Opening: files and URLs from a script, a dialog or a drop become items, which the app shows. Files that a link waits for
-// complete it.
+// Opening: files and URLs from a script, a dialog or a drop become items, which the app shows. Files that a link waits
+// for complete it.
 import { awaited, forgetAwaited, showAwaited } from "./awaited.js";
 import { forgetProblem, summarize } from "./changes.js";
 import { focusCanvas, frames, messageOf } from "./dom.js";
@@ -16,8 +16,8 @@ import { running } from "./session.js";
 /** @typedef {import("./types.d.ts").Role} Role */
 
 /**
- * Opens what a script or the user gives. `isPrivate`: local files among it are the user's own, of which a page around this
- * one learns nothing.
+ * Opens what a script or the user gives. `isPrivate`: local files among the items are the user's own, and an embedding
+ * page learns nothing about them.
  * @param {Openable | Openable[] | FileList} items
  * @param {{ as?: Role, isPrivate?: boolean }} [options]
  * @returns {Promise<InspectDocument>}
@@ -116,7 +116,7 @@ function announce(shown, model, { clips, borrowed_clips: borrowed, joints, trian
 }
 
 /**
- * Takes a set of files towards the link that waits for files, and shows the link once it has all of them.
+ * Adds a set of files to those that a link waits for, and shows the link once all have arrived.
  * @param {Item[]} items
  * @param {boolean} isShown The app shows the set.
  */

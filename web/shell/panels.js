@@ -1,5 +1,5 @@
-// What the page itself says: the three panels over the canvas (loading, cannot run, stopped), loading progress, and the live
-// regions for screen readers.
+// What the page itself says: the three panels over the canvas (loading, cannot run, stopped), loading progress, and the
+// live regions for screen readers.
 import { byId, showList } from "./dom.js";
 
 /** @typedef {"loading" | "cannot-run" | "stopped"} Panel */

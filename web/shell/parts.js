@@ -1,6 +1,6 @@
-// Parts of Gaitway that few visits need. Most are WebAssembly modules that convert something into plain glTF (parts/ in the
-// sources): the program downloads one when a file needs it; here it runs, in a worker that ends with the conversion. One is a
-// script that encodes videos (recording.js).
+// Parts of Gaitway that few visits need. Most are WebAssembly modules that convert something into plain glTF (parts/ in
+// the sources): the program downloads one when a file needs it; here it runs, in a worker that ends with the
+// conversion. One is a script that encodes videos (recording.js).
 import { keepOffline } from "./offline.js";
 
 const meta = /** @type {HTMLMetaElement | null} */ (document.querySelector('meta[name="gaitway-parts"]'));
@@ -25,7 +25,7 @@ const HEADER_BYTES = 5;
 async function work({ data: { module, input } }) {
   const { instance } = await WebAssembly.instantiate(module);
   const { memory, input: place, run, output, output_length: length } = /** @type {any} */ (instance.exports);
-  // The place first: making it may replace the memory's buffer.
+  // Allocate first: growing the memory replaces its buffer.
   const start = place(input.length);
   new Uint8Array(memory.buffer, start, input.length).set(input);
   run();
@@ -58,7 +58,7 @@ export const parts = {
   url: (name) => files[name],
 
   /**
-   * Downloads a part, runs it and returns the data of its answer. Rejects with what the part says otherwise.
+   * Downloads a part, runs it and returns the data of its answer. Otherwise rejects with the part's message.
    * @param {string} name
    * @param {Uint8Array<ArrayBuffer>} input
    */
@@ -72,7 +72,8 @@ export const parts = {
   },
 
   /**
-   * Returns the module's answer, encoded as in parts/part/src/lib.rs. Rejects if the module is damaged, traps or takes too long.
+   * Returns the module's answer, encoded as in parts/part/src/lib.rs. Rejects if the module is damaged, traps or takes
+   * too long.
    * @param {string} name
    * @param {Uint8Array<ArrayBuffer>} module
    * @param {Uint8Array<ArrayBuffer>} input

@@ -1,5 +1,5 @@
-// Downloads and compiles the program, and loads its bindings. There is one program per back end; the second is downloaded only
-// if the first can't be used.
+// Downloads and compiles the program, and loads its bindings. There is one program per back end; the second is
+// downloaded only if the first can't be used.
 import { forcedBackend, hasBackend } from "./capabilities.js";
 import { showProgress } from "./panels.js";
 
@@ -76,7 +76,7 @@ function download(backend) {
 }
 
 /**
- * Compiles the program while it downloads, and shows how far it has got.
+ * Compiles the program while it downloads, and shows the progress.
  * @param {Backend} backend
  * @param {AbortSignal} signal
  */

@@ -1,4 +1,4 @@
-// Files for the user to keep: downloads, and videos, for which a part is downloaded that encodes them.
+// Files for the user to keep: downloads, and videos, which a downloaded part encodes.
 import { messageOf } from "./dom.js";
 import { keepOffline } from "./offline.js";
 import { parts } from "./parts.js";

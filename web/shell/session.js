@@ -27,7 +27,9 @@ export const session = {
   started: Promise.resolve(),
   /** Why the last instance stopped. */
   stopReason: /** @type {string | null} */ (null),
-  /** Ends the running instance and starts another one; set by instance.js, which depends on the modules that call it. */
+  /**
+   * Ends the running instance and starts another one; set by instance.js, which depends on the modules that call it.
+   */
   restart: () => {},
   /** A link that was followed while an instance was starting with an earlier one. */
   askedLink: /** @type {string | null} */ (null),

@@ -15,7 +15,7 @@ const MAX_COMPANIONS = 4;
 export function share(link) {
   if (session.app === null) return;
   const page = new URL(location.href);
-  // The back end is a matter of this machine.
+  // The back end is specific to this machine.
   page.searchParams.delete("renderer");
   page.hash = "";
   const address = `${page.href}#${shareableLink(link)}`;
@@ -24,7 +24,7 @@ export function share(link) {
   showList("share-files", local.map(({ role, name }) => `${name} (${role})${companionList(companionsOf(name))}`));
   field("share-link").value = address;
   field("share-frame").value = frameHtml(`${page.href}#${embeddedLink(shareableLink(link))}`);
-  // A phone that scans the code hardly has the files, and there is no room for both.
+  // A phone that scans the code is unlikely to have the files, and there is no room for both.
   byId("share-code", HTMLDetailsElement).open = local.length === 0;
   showCode(address);
   byId("share-said").textContent = "";

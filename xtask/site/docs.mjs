@@ -1,5 +1,5 @@
-// Renders the images of README and docs/, which docs/pictures.json lists. They are committed, so run this by hand when what
-// they show has changed.
+// Renders the images of README and docs/, which docs/pictures.json lists. They are committed, so run this by hand when
+// what they show has changed.
 import fs from "node:fs";
 import path from "node:path";
 import sharp from "sharp";

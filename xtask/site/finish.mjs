@@ -1,6 +1,6 @@
-// Makes the site: the page with its scripts and styles, the programs, samples with their images, icons, manifest and service
-// worker. Everything but index.html, manifest.webmanifest and sw.js is named after a hash of its content. Arguments: the
-// folder of the site, that of the programs, and the URL that the site will have (optional).
+// Makes the site: the page with its scripts and styles, the programs, samples with their images, icons, manifest and
+// service worker. Everything but index.html, manifest.webmanifest and sw.js is named after a hash of its content.
+// Arguments: the folder of the site, that of the programs, and the URL that the site will have (optional).
 import crypto from "node:crypto";
 import fs from "node:fs";
 import path from "node:path";
@@ -62,7 +62,7 @@ async function bundled(entry) {
 }
 
 /**
- * Puts a program and its script in place, and returns what the shell has to know of it.
+ * Puts a program and its script in place, and returns what the shell needs to know about it.
  * @param {string} backend
  */
 async function putProgram(backend) {

@@ -1,5 +1,5 @@
-// Renders scenes with `gaitway render`. Images are cached in the target folder: one is rendered again only when its samples
-// or the rendering code have changed, and the program is built only then.
+// Renders scenes with `gaitway render`. Images are cached in the target folder: one is rendered again only when its
+// samples or the rendering code have changed, and the program is built only then.
 import { spawnSync } from "node:child_process";
 import crypto from "node:crypto";
 import fs from "node:fs";

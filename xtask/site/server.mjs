@@ -1,5 +1,5 @@
-// A static file server for `cargo xtask serve`, tests and benchmarks. These serve the page from a folder below the root,
-// as many hosts do, and the data folder from a second origin that allows cross-origin reads.
+// A static file server for `cargo xtask serve`, tests and benchmarks. These serve the page from a folder below the
+// root, as many hosts do, and the data folder from a second origin that allows cross-origin reads.
 import fs from "node:fs";
 import http from "node:http";
 import path from "node:path";

@@ -1,6 +1,7 @@
-// Writes compressed copies of everything that compresses, for hosts that can send them, and prints what a visitor downloads:
-// the shell and one of the two programs. Fails if that, or a part that some files need, exceeds its budget. Samples and images
-// are counted apart, since each is loaded when it is shown. Arguments: the folder, then `NAME=BYTES` for each program and part.
+// Writes compressed copies of everything that compresses, for hosts that can send them, and prints what a visitor
+// downloads: the shell and one of the two programs. Fails if that, or a part that some files need, exceeds its budget.
+// Samples and images are counted apart, since each is loaded when it is shown. Arguments: the folder, then `NAME=BYTES`
+// for each program and part.
 import fs from "node:fs";
 import path from "node:path";
 import zlib from "node:zlib";

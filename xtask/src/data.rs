@@ -81,7 +81,7 @@ fn fetch(entries: &[Entry], folder: &Path, host: &str) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Runs one curl for all files, each into its partial file. Which of them arrived is for the caller to check.
+/// Runs one curl for all files, each into its partial file. The caller checks which of them arrived.
 fn download(entries: &[&Entry], folder: &Path, host: &str) -> anyhow::Result<()> {
     if entries.is_empty() {
         return Ok(());

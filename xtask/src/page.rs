@@ -11,7 +11,7 @@ use crate::setup;
 
 const BACK_ENDS: [&str; 2] = ["webgpu", "webgl2"];
 
-/// The packages in parts/ that are modules of their own.
+/// The packages in parts/ that are built as separate modules.
 const PARTS: [&str; 6] = ["draco", "fbx", "ktx2", "meshopt", "qr", "x"];
 
 /// Limit on a part's memory. A damaged file must not take all of a tab's.
@@ -104,7 +104,7 @@ fn build_part(part: &str) -> anyhow::Result<()> {
     let wasm = folder.join(format!("{part}.wasm"));
     if part == "fbx" && !setup::has_clang() {
         eprintln!("clang is missing, so this page will not open FBX files");
-        // One of an earlier build.
+        // Left over from an earlier build.
         let _ = fs::remove_file(wasm);
         return Ok(());
     }

@@ -1,4 +1,5 @@
-//! Runs other programs from the repository's root, with the repository's own tools on the path, and keeps their times.
+//! Runs other programs from the repository's root, with the repository's own tools on the path, and records their
+//! times.
 
 use std::ffi::OsStr;
 use std::fmt::Write as _;
@@ -60,7 +61,7 @@ pub fn run_with(program: &str, arguments: &[&str], variables: &[(&str, &str)]) -
     step.end(status)
 }
 
-/// A command that is running, for those who need more of it than [`run_with`] gives.
+/// A running command, for callers that need more than [`run_with`] offers.
 pub struct Step {
     shown: String,
     start: Instant,
@@ -115,7 +116,7 @@ fn format_times(times: &[(String, Duration)]) -> String {
     table
 }
 
-/// What a program prints; none if it is missing or fails.
+/// Returns a program's output; none if it is missing or fails.
 pub fn output(program: &str, arguments: &[&str]) -> Option<String> {
     let output = command(program).args(arguments).stdin(Stdio::null()).stderr(Stdio::null()).output().ok()?;
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())

@@ -32,7 +32,7 @@ fn cargo_checks() -> anyhow::Result<()> {
     process::run("cargo", &[&wasm[..], &["--", "-D", "warnings"]].concat())?;
     let doc = ["doc", "--no-deps", "--package", "gaitway", "--package", "gaitway-core"];
     run_with("cargo", &doc, &[("RUSTDOCFLAGS", "-D warnings")])?;
-    // Only `cargo fuzz` runs them; the tests below feed the same readers for a moment.
+    // Only `cargo fuzz` runs them; the tests below exercise the same readers briefly.
     process::run("cargo", &["check", "--manifest-path", "fuzz/Cargo.toml"])?;
     process::run("cargo", &["test", "--no-default-features"])?;
     process::run("cargo", &["test", "--workspace"])?;

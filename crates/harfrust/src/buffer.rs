@@ -2,7 +2,7 @@
 
 use std::ops::BitOrAssign;
 
-/// Where a piece of text lies in its paragraph. Only scripts that are left out depend on it.
+/// Where a piece of text lies in its paragraph. Only unsupported scripts depend on it.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct BufferFlags;
 

@@ -57,8 +57,8 @@ pub fn is_ignorable(character: u32) -> bool {
     )
 }
 
-/// Returns the width in em of a space that a font may lack, as in HarfBuzz, but for the spaces as wide as a digit or a full stop,
-/// which are taken for those of most fonts.
+/// Returns the width in em of a space that a font may lack, as in HarfBuzz, except for the spaces as wide as a digit or
+/// a full stop, for which the widths in most fonts are assumed.
 pub fn space_width(character: u32) -> Option<f32> {
     Some(match character {
         0x2001 | 0x2003 | 0x3000 => 1.0,

@@ -20,7 +20,7 @@ pub fn lookups(font: &FontRef<'_>) -> Vec<u16> {
     lookups
 }
 
-/// Applies each lookup to all neighbours. Lookups and pairs that can't be read are skipped.
+/// Applies each lookup to all adjacent glyphs. Lookups and pairs that can't be read are skipped.
 pub fn apply(font: &FontRef<'_>, lookups: &[u16], infos: &[GlyphInfo], positions: &mut [GlyphPosition]) {
     let Ok(list) = font.gpos().and_then(|gpos| gpos.lookup_list()) else { return };
     for &index in lookups {
@@ -33,7 +33,7 @@ pub fn apply(font: &FontRef<'_>, lookups: &[u16], infos: &[GlyphInfo], positions
             let [value, second_value] = values.unwrap_or_default();
             add(&mut positions[first], value);
             add(&mut positions[first + 1], second_value);
-            // A pair whose second glyph moves is used up as a whole.
+            // A pair that adjusts its second glyph is consumed as a whole.
             first += if second_value.format.is_empty() { 1 } else { 2 };
         }
     }

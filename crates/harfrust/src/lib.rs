@@ -50,7 +50,7 @@ pub struct Variation {
     pub value: f32,
 }
 
-/// A place in the design space of a variable font.
+/// A location in the design space of a variable font.
 #[derive(Debug, Clone)]
 pub struct ShaperInstance(Location);
 

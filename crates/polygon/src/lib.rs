@@ -1,9 +1,9 @@
-//! Triangulates polygons: as a fan if the polygon is convex, else by ear clipping. A package of its own, since .obj and .x files are
-//! read by different programs on the page.
+//! Triangulates polygons: as a fan if the polygon is convex, else by ear clipping. A separate package, since .obj and
+//! .x files are read by different programs on the page.
 
 use glam::{DVec2, DVec3};
 
-/// Polygons with more corners are always cut as a fan.
+/// Polygons with more corners are always triangulated as a fan.
 const MAX_CLIPPED_CORNERS: usize = 1024;
 
 /// Triangulates the polygons of one file within a total budget: ear clipping is cubic in the number of corners.
@@ -20,7 +20,7 @@ impl Default for Cutter {
 }
 
 impl Cutter {
-    /// Calls `triangle` with the positions in the list of each triangle's corners, keeping the polygon's winding. Always
+    /// Calls `triangle` with the indices of each triangle's corners in the list, keeping the polygon's winding. Always
     /// produces corners − 2 triangles, also for degenerate and self-intersecting polygons.
     pub fn cut(&mut self, corners: &[DVec3], mut triangle: impl FnMut([usize; 3])) {
         let count = corners.len();

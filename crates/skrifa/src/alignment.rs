@@ -34,7 +34,7 @@ impl Zones {
         let stroke = extent('-').map_or(0.0, |[bottom, top]| top - bottom);
         let zone = |(flat, round, is_top): (char, char, bool)| {
             let [flat, round] = [extent(flat)?[usize::from(is_top)], extent(round)?[usize::from(is_top)]];
-            // Letters of another design: then the flat height alone counts.
+            // If the letters are of another design, only the flat height counts.
             let round = if (round - flat).abs() < stroke { round } else { flat };
             Some(Zone { flat, round, is_top })
         };
@@ -46,7 +46,7 @@ impl Zones {
         let mut anchors: Vec<[f32; 2]> = Vec::new();
         for zone in self.zones.iter().filter(|zone| points.iter().any(|point| zone.contains(point.y))) {
             let next = zone.anchors(scale, self.stroke);
-            // Zones too close to each other for their strokes: the lower one counts.
+            // If zones are too close to each other for their strokes, the lower one wins.
             if anchors.last().is_none_or(|last| last[0] < next[0][0] && last[1] <= next[0][1]) {
                 anchors.extend(next);
             }
@@ -60,7 +60,8 @@ impl Zone {
         (self.flat.min(self.round)..=self.flat.max(self.round)).contains(&height)
     }
 
-    /// Returns heights in font units and where they go in pixels: both ends of the zone, and the other edge of its stroke.
+    /// Returns heights in font units and their positions in pixels: both ends of the zone, and the other edge of its
+    /// stroke.
     fn anchors(&self, scale: f32, stroke: f32) -> [[f32; 2]; 3] {
         let row = (self.flat * scale).round();
         let overshoot = ((self.round - self.flat) * scale).round();

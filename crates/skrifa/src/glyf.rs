@@ -7,7 +7,7 @@ use read_fonts::{FontRef, ReadError, TableProvider};
 
 use crate::GlyphId;
 
-/// How deeply glyphs may be composed of others, which a damaged font could make endless.
+/// Maximum nesting of composite glyphs, which could be endless in a damaged font.
 const MAX_DEPTH: u32 = 6;
 
 /// A point of a contour, in font units or pixels, up positive.

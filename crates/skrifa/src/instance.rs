@@ -1,4 +1,4 @@
-//! Sizes, and places in the design space of a variable font, of which there is one.
+//! Sizes and locations in the design space of a variable font, of which there is only one.
 
 /// The size to which glyphs are scaled.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,7 +21,7 @@ impl Size {
     }
 }
 
-/// A place in the design space.
+/// A location in the design space.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Hash)]
 pub struct Location;
 

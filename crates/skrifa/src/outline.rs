@@ -124,7 +124,7 @@ impl HintingInstance {
         self.size
     }
 
-    /// The only place there is.
+    /// The only location there is.
     pub fn location(&self) -> LocationRef<'_> {
         LocationRef::default()
     }
@@ -135,7 +135,7 @@ impl HintingInstance {
     }
 }
 
-/// What hinting is for. It changes nothing: glyphs are aligned vertically alone.
+/// The target of hinting. It changes nothing: glyphs are aligned only vertically.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Target {
     /// Pixels that are on or off.

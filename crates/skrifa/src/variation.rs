@@ -17,7 +17,7 @@ impl AxisCollection {
         std::iter::empty()
     }
 
-    /// Returns the only place there is.
+    /// Returns the only location there is.
     pub fn location<Setting>(&self, _settings: impl IntoIterator<Item = Setting>) -> Location {
         Location
     }
@@ -38,22 +38,22 @@ impl Axis {
         self.0
     }
 
-    /// Its least value.
+    /// Its minimum value.
     pub fn min_value(&self) -> f32 {
         match self.0 {}
     }
 
-    /// Its greatest value.
+    /// Its maximum value.
     pub fn max_value(&self) -> f32 {
         match self.0 {}
     }
 
-    /// Its value unless set.
+    /// Its default value.
     pub fn default_value(&self) -> f32 {
         match self.0 {}
     }
 
-    /// Whether interfaces should leave it out.
+    /// Whether user interfaces should hide it.
     pub fn is_hidden(&self) -> bool {
         match self.0 {}
     }

@@ -35,7 +35,7 @@ impl Coverage {
         }
     }
 
-    /// Returns the coverage of the pixels row by row; 255 is all of a pixel.
+    /// Returns the coverage of the pixels row by row; 255 is a fully covered pixel.
     pub fn pixels(&self) -> impl Iterator<Item = u8> {
         self.differences.chunks_exact(self.width + MARGIN).flat_map(|row| {
             let sums = row[..self.width].iter().scan(0.0, |sum, difference| {

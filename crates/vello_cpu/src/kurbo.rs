@@ -1,7 +1,7 @@
 //! Paths of lines and Bézier curves, their bounds and their lines. Coordinates are pixels, Y down.
 
-/// Largest distance between a curve and the lines that stand for it, in pixels. Over the width of a pixel, the missing area stays
-/// below half of 1/255.
+/// Maximum distance between a curve and the lines that approximate it, in pixels. Over the width of a pixel, the
+/// missing area stays below half of 1/255.
 const TOLERANCE: f64 = 1.0 / 512.0;
 
 /// Limits the lines of one curve, whatever its size. Reached by curves of several thousand pixels.
@@ -22,7 +22,7 @@ impl From<(f64, f64)> for Point {
     }
 }
 
-/// A rectangle along the axes.
+/// An axis-aligned rectangle.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Rect {
     /// Left.
@@ -169,8 +169,8 @@ fn bend(a: Point, b: Point, c: Point) -> f64 {
     (a.x - 2.0 * b.x + c.x).hypot(a.y - 2.0 * b.y + c.y)
 }
 
-/// Divides a curve into so many lines that none deviates by more than [`TOLERANCE`]. `deviation_root` is the square root of the
-/// deviation of a single line.
+/// Divides a curve into enough lines that none deviates by more than [`TOLERANCE`]. `deviation_root` is the square root
+/// of the deviation of a single line.
 fn flatten_curve(start: Point, deviation_root: f64, at: impl Fn(f64) -> Point, line: &mut impl FnMut(Point, Point)) {
     let count = (deviation_root / TOLERANCE.sqrt()).ceil().clamp(1.0, MAX_LINES);
     let mut from = start;

@@ -35,7 +35,7 @@ impl Target {
         }
     }
 
-    /// What stands for 1 if the component is normalized.
+    /// The value that represents 1 if the component is normalized.
     fn one(self) -> f64 {
         match self {
             Self::I8 => i8::MAX.into(),
@@ -80,7 +80,7 @@ impl Target {
     }
 }
 
-/// Returns a component, and what stands for 1 if it is normalized.
+/// Returns a component, and the value that represents 1 if it is normalized.
 fn read(from: DataType, bytes: &[u8]) -> (f64, f64) {
     fn array<const SIZE: usize>(bytes: &[u8]) -> [u8; SIZE] {
         bytes.try_into().unwrap_or([0; SIZE])

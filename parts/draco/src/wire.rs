@@ -1,4 +1,4 @@
-//! What the decoder is given and what it answers, as bytes. All numbers are of 32 bits, little-endian.
+//! The decoder's input and output as bytes. All numbers are 32-bit, little-endian.
 
 use std::ops::Range;
 

@@ -14,7 +14,7 @@ use crate::mesh::Morph;
 use crate::node::{Nodes, finite};
 use crate::tolerance::{Tolerance, Tolerances};
 
-/// How far a blend shape's weight may be off.
+/// Maximum error of a blend shape's weight.
 const WEIGHT_TOLERANCE: f64 = 1e-4;
 
 /// Writes all stacks.
@@ -51,7 +51,7 @@ pub fn write(
     Ok(())
 }
 
-/// One clip in the making.
+/// A clip under construction.
 struct Clip<'a, 'b> {
     scene: &'a Scene,
     anim: &'a Anim,
@@ -198,7 +198,7 @@ impl<'a> Clip<'a, '_> {
         self.animation.add(self.glb, (node, path), interpolation, &keys.times, &keys.values)
     }
 
-    /// Names animated properties that have no place in glTF.
+    /// Warns about animated properties that have no equivalent in glTF.
     fn warn(&self, warnings: &mut Warnings, clip: &str) {
         let mut others: Vec<&str> = Vec::new();
         for &(element, name, value) in &self.curves.properties {

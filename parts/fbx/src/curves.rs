@@ -5,27 +5,27 @@ use ufbx::{AnimCurve, AnimLayer, AnimStack, AnimValue, ExtrapolationMode, Interp
 
 use crate::fit::Corner;
 
-/// Evaluations of a transform for halving pieces, at least and per key; when they are used up, curves are followed less
-/// closely.
+/// Evaluations of a transform for halving pieces: the minimum, and the number per key. When they are used up, curves
+/// are followed less closely.
 const MIN_EVALUATIONS: u64 = 2_000_000;
 const EVALUATIONS_PER_KEY: u64 = 40;
-/// Most keys of one channel, with all repetitions.
+/// Maximum number of keys of one channel, including all repetitions.
 const MAX_CORNERS: usize = 1 << 18;
-/// Most keys that are looked at in a file, counting those of repetitions and shared curves wherever they appear.
+/// Maximum number of keys read from a file, counting those of repetitions and shared curves wherever they appear.
 const MAX_KEYS: usize = 1 << 22;
-/// Most keys that curves which repeat themselves have in these repetitions; beyond, they are followed less closely.
+/// Maximum number of keys from the repetitions of curves; beyond, they are followed less closely.
 const MAX_REPEATED_KEYS: usize = 1 << 16;
-/// Longest clip, in seconds: a day.
+/// Maximum length of a clip, in seconds: a day.
 const MAX_SECS: f64 = 86_400.0;
 /// The properties that a node's transform is made of.
 pub const TRANSLATION_PROPERTIES: [&str; 5] =
     ["Lcl Translation", "RotationOffset", "RotationPivot", "ScalingOffset", "ScalingPivot"];
 pub const ROTATION_PROPERTIES: [&str; 4] = ["Lcl Rotation", "PreRotation", "PostRotation", "RotationOrder"];
 pub const SCALE_PROPERTIES: [&str; 1] = ["Lcl Scaling"];
-/// What makes the translation depend on rotation and scale.
+/// The properties that make the translation depend on rotation and scale.
 pub const PIVOT_PROPERTIES: [&str; 3] = ["RotationPivot", "ScalingPivot", "ScalingOffset"];
 
-/// What is left of the limits for the whole file.
+/// The remaining limits of the whole file.
 pub struct Limits {
     /// Evaluations of a transform for halving pieces.
     pub evaluations: u64,
@@ -81,7 +81,7 @@ impl<'a> Curves<'a> {
         self.properties.iter().flat_map(|(_, _, value)| curves(value)).any(|curve| !curve.keyframes.is_empty())
     }
 
-    /// Returns the time range of the stack, or that of its keys; none if that is absurd.
+    /// Returns the time range of the stack, or that of its keys; none if that is implausible.
     pub fn range(&self, stack: &AnimStack) -> Option<[f64; 2]> {
         let curves = self.properties.iter().flat_map(|(_, _, value)| curves(value));
         let times = curves.filter(|curve| !curve.keyframes.is_empty()).map(|curve| (curve.min_time, curve.max_time));

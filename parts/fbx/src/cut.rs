@@ -1,13 +1,13 @@
 //! Files that end before their content does, as interrupted downloads leave them. ufbx says only that it failed, at whatever
 //! part it was reading; where a file is cut off follows from its outermost structure.
 //!
-//! Binary: after 27 bytes, records, each of which begins with the place of its end: 4 bytes, from version 7500 on 8. A record
-//! of zeros ends the list. Text: sections in braces; strings in quotes and comments, which begin with a semicolon, may
-//! contain others.
+//! Binary: after 27 bytes, records, each of which begins with the offset of its end: 4 bytes, from version 7500 on 8. A
+//! record of zeros ends the list. Text: sections in braces; strings in quotes and comments, which begin with a
+//! semicolon, may contain others.
 
 const HEAD: &[u8] = b"Kaydara FBX Binary  \0\x1a\0";
 const FIRST_RECORD: usize = 27;
-/// The first version with places of 8 bytes.
+/// The first version with offsets of 8 bytes.
 const WIDE_VERSION: u32 = 7500;
 
 /// Says where the file is cut off; `None` if its outermost structure is whole.

@@ -1,15 +1,15 @@
 //! Turns a function of time into glTF keys that follow it within a tolerance.
 //!
-//! FBX curves are pieces of cubics in Euler angles, glTF has cubics in quaternions. Between two keys of the file the motion is
-//! smooth, so a cubic with the right slopes at both ends follows it closely; where it doesn't, the piece is halved. Then
-//! keys that the rest doesn't need are left out. What is linear, stepped or constant anyway is written as such.
+//! FBX curves are piecewise cubics in Euler angles, glTF has cubics in quaternions. Between two keys of the file the
+//! motion is smooth, so a cubic with the right slopes at both ends follows it closely; where it doesn't, the piece is
+//! halved. Then redundant keys are removed. Linear, stepped and constant motion is written as such.
 
-/// Where between two keys the fit is compared with the function. Unevenly spaced, so that a motion that repeats inside a
-/// piece is noticed, and close to the ends, where steep tangents act.
+/// Positions between two keys at which the fit is compared with the function: unevenly spaced, so that a motion that
+/// repeats inside a piece is noticed, and close to the ends, where steep tangents act.
 const CHECKS: [f64; 7] = [0.04, 0.15, 0.31, 0.5, 0.69, 0.85, 0.96];
-/// Most halvings of one piece.
+/// Maximum number of times a piece is halved.
 const MAX_HALVINGS: u32 = 10;
-/// Most pieces that are merged into one, which bounds the time for merging.
+/// Maximum number of pieces that are merged into one, which bounds the time for merging.
 const MAX_MERGED: usize = 64;
 
 /// Time where the function may have a corner or a jump.
@@ -47,7 +47,7 @@ pub struct Keys {
     pub values: Vec<f32>,
 }
 
-/// A function of time, how many components it has, and how far its keys may be off.
+/// A function of time, its number of components, and the tolerance of its keys.
 pub struct Track<'a> {
     pub sample: &'a mut dyn FnMut(f64, &mut [f64]),
     pub width: usize,
@@ -135,7 +135,7 @@ impl Track<'_> {
         let [start, _, _, end] = piece.ends;
         let half = self.at(middle, Some(&start));
         self.split([times[0], middle], [start, half.clone()], halvings + 1, pieces);
-        // A quaternion that was brought to the other sign since then takes the end along.
+        // A quaternion whose sign has been flipped since then flips the end as well.
         let end = if dot(&half, &end) < 0.0 && self.space == Space::Rotation {
             end.iter().map(|component| -component).collect()
         } else {
@@ -315,7 +315,7 @@ struct Span<'a> {
 }
 
 impl Span<'_> {
-    /// Interpolates as glTF 2.0, appendix C, says.
+    /// Interpolates as specified in glTF 2.0, appendix C.
     fn value(&self, time: f64, interpolation: Interpolation, space: Space, out: &mut [f64]) {
         let duration = self.times[1] - self.times[0];
         let t = if duration > 0.0 { (time - self.times[0]) / duration } else { 0.0 };

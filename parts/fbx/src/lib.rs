@@ -1,9 +1,9 @@
 //! Converts an FBX file to glTF, in memory.
 //!
-//! ufbx (C) reads the file: ASCII and binary, versions 3000 to 7700. This crate writes what it finds as one GLB in metres,
-//! right-handed with Y up: the hierarchy under its own names, meshes with skins and blend shapes, materials, cameras,
-//! lights, and every take as a clip. It is a crate of its own, since the page downloads it as a separate wasm module, only
-//! for those who open an FBX file. README.md says how both are built and what isn't carried over.
+//! ufbx (C) reads the file: ASCII and binary, versions 3000 to 7700. This crate writes what it finds as one GLB in
+//! metres, right-handed with Y up: the hierarchy under its own names, meshes with skins and blend shapes, materials,
+//! cameras, lights, and every take as a clip. It is a separate crate, since the page downloads it as a separate wasm
+//! module, only for those who open an FBX file. README.md says how both are built and what isn't carried over.
 
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 #![deny(unsafe_code)]
@@ -24,9 +24,9 @@ mod warnings;
 use gaitway_glb::{Glb, Warnings};
 use gaitway_part::{Answer, Output};
 
-/// Largest file that is read.
+/// Maximum size of a file.
 const MAX_FILE_BYTES: usize = 1 << 29;
-/// Most nodes.
+/// Maximum number of nodes.
 const MAX_NODES: usize = 1 << 16;
 
 /// Converts the bytes of a whole `.fbx` file into those of a `.glb`. External textures are named by the last part of their path.
@@ -63,7 +63,7 @@ pub fn convert(bytes: &[u8]) -> Answer {
     Ok(Output { bytes: glb.write()?, warnings: warnings.into_sentences() })
 }
 
-/// Rejects what isn't FBX, in words that ufbx has no context for.
+/// Rejects files that aren't FBX, with messages that ufbx lacks the context for.
 fn check_head(bytes: &[u8]) -> Result<(), String> {
     if bytes.len() > MAX_FILE_BYTES {
         return Err(format!(
@@ -76,7 +76,7 @@ fn check_head(bytes: &[u8]) -> Result<(), String> {
     }
     if bytes.starts_with(b"Kaydara FBX Binary") && !bytes.starts_with(b"Kaydara FBX Binary  \0\x1a\0") {
         return Err(
-            "the FBX file is damaged: its zero bytes were changed, as by a transfer as text. Download it again."
+            "the FBX file is damaged: its zero bytes were changed, as by a text-mode transfer. Download it again."
                 .to_owned(),
         );
     }

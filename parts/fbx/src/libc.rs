@@ -1,9 +1,9 @@
-//! What ufbx takes from a C library, where that isn't to be had or isn't wanted.
+//! Replaces the parts of the C library that ufbx needs, where there is no C library or it isn't wanted.
 //!
-//! Its mathematics come from here on every target (`UFBX_EXTERNAL_MATH`, set in `.cargo/config.toml`), so that a file gives the
-//! same bytes natively and on the page: C libraries differ in the last digit. On wasm32-unknown-unknown there is no C
-//! library at all (`UFBX_NO_LIBC`), so memory and strings come from here too; it is compiled without files
-//! (`UFBX_NO_STDIO`).
+//! The math functions come from here on every target (`UFBX_EXTERNAL_MATH`, set in `.cargo/config.toml`), so that a
+//! file gives the same bytes natively and on the page: C libraries differ in the last digit. On wasm32-unknown-unknown
+//! there is no C library at all (`UFBX_NO_LIBC`), so memory and strings come from here too; it is compiled without
+//! files (`UFBX_NO_STDIO`).
 #![allow(unsafe_code)]
 
 use std::ffi::c_int;

@@ -1,8 +1,8 @@
 //! Materials as metallic-roughness, and their textures.
 //!
-//! FBX materials are Lambert or Phong, or one of a dozen physically based models that ufbx brings under common names. A
-//! connected texture takes the place of the value it is connected to, as the FBX SDK and Blender see it. Colours are taken as
-//! linear, as Blender and Godot do.
+//! FBX materials are Lambert or Phong, or one of a dozen physically based models that ufbx maps to common names. A
+//! connected texture replaces the value it is connected to, as in the FBX SDK and Blender. Colours are taken as linear,
+//! as in Blender and Godot.
 
 use gaitway_glb::{Glb, Object, Warnings, base_name, percent_encoded, quoted, roughness_of_exponent};
 use ufbx::{Material, MaterialMap, Scene, ShaderType, Texture};
@@ -103,9 +103,9 @@ fn add_details(material: &Material, json: &mut Object, textures: &mut Textures, 
     }
 }
 
-/// Adds metalness and roughness. glTF reads roughness from green and metalness from blue of one texture: a map connected to
-/// both is taken to be packed that way, and a grey roughness map serves for a surface that is no metal. What is left out is
-/// replaced by a middling value, since the one beside a texture means nothing.
+/// Adds metalness and roughness. glTF reads roughness from green and metalness from blue of one texture: a map
+/// connected to both is assumed to be packed that way, and a grey roughness map works for a non-metallic surface. A map
+/// that is left out is replaced by a medium value, since the value beside a texture is meaningless.
 fn add_metal_and_roughness(material: &Material, surface: &mut Object, textures: &mut Textures, uv_names: &mut UvNames) {
     let pbr = &material.pbr;
     let (metal_map, rough_map) = (used(&pbr.metalness), used(&pbr.roughness));

@@ -1,8 +1,8 @@
 //! Meshes with their skins and blend shapes.
 //!
-//! A mesh of FBX has its attributes per corner of a face. Corners that agree in all of them become one vertex; each material
-//! becomes a primitive. An unskinned mesh takes in the geometric transform of its node; a skinned one has it in its inverse
-//! bind matrices.
+//! An FBX mesh has its attributes per face corner. Corners that agree in all of them become one vertex; each material
+//! becomes a primitive. The geometric transform of the node is baked into an unskinned mesh, and into the inverse bind
+//! matrices of a skinned one.
 
 use gaitway_glb::{Glb, List, MAX_INFLUENCES, Object, Warnings, indices, numbers, quoted, strongest};
 use ufbx::{BlendShape, Matrix, Mesh, Node, Scene, SkinDeformer};
@@ -156,7 +156,8 @@ impl Meshes<'_> {
         Ok(Some(self.glb.meshes.push(&json.end())))
     }
 
-    /// Returns the influences of each vertex, strongest first, with sum 1. What no cluster moves follows the mesh's own node.
+    /// Returns the influences of each vertex, strongest first, with sum 1. Vertices without a cluster follow the mesh's
+    /// own node.
     fn influences(&mut self, mesh: &Mesh, skin: &SkinDeformer, name: &str) -> Influences {
         if !matches!(skin.skinning_method, ufbx::SkinningMethod::Linear | ufbx::SkinningMethod::Rigid) {
             self.warnings.add(format!("Mesh \"{name}\": dual quaternion skinning became linear."));

@@ -3,12 +3,12 @@
 use gaitway_glb::{Glb, Object, Warnings, indices};
 use ufbx::{Matrix, Node, Quat, Scene, Transform, Vec3};
 
-/// One glTF node in the making.
+/// A glTF node under construction.
 pub struct Entry {
     name: Option<String>,
     transform: Transform,
     children: Vec<usize>,
-    /// The node without a parent that this one is below, or itself.
+    /// Its topmost ancestor, or the node itself.
     root: usize,
     visible: bool,
     hides_children: bool,
@@ -89,7 +89,8 @@ impl Nodes {
         index
     }
 
-    /// Notes that a skin has these joints. glTF wants a common root for them, which FBX's nameless one is if there are several.
+    /// Records the joints of a skin. glTF requires a common root for them; if there are several roots, FBX's nameless
+    /// one is used.
     pub fn join(&mut self, joints: &[usize]) {
         let mut roots = joints.iter().filter_map(|&joint| self.entries.get(joint)).map(|entry| entry.root);
         let first = roots.next();
@@ -107,7 +108,8 @@ impl Nodes {
         }
     }
 
-    /// A hidden node hides only its own mesh, whereas glTF's hide all below: those that would hide other meshes stay visible.
+    /// A hidden node hides only its own mesh, whereas in glTF it hides everything below: nodes that would hide other
+    /// meshes stay visible.
     fn show_what_hides_others(&mut self) {
         let mut has_mesh = vec![false; self.entries.len()];
         // Children, and leaves even more, come after their parents.

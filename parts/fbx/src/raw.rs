@@ -9,12 +9,12 @@ use std::marker::PhantomData;
 use crate::cut;
 use ufbx::{RawAllocatorOpts, RawLoadOpts, RawVertexStream, SceneRoot};
 
-/// What ufbx may allocate while it reads or sorts vertices.
+/// Memory limit of ufbx while it reads or sorts vertices.
 const MAX_TEMPORARY_BYTES: usize = 1 << 29;
-/// What the scene may take.
+/// Memory limit of the scene.
 const MAX_SCENE_BYTES: usize = 3 << 28;
 const MAX_ALLOCATIONS: usize = 1 << 24;
-/// Deepest node hierarchy.
+/// Maximum depth of the node hierarchy.
 const MAX_DEPTH: u32 = 1000;
 
 const NOT_FBX: &str = "this is not an FBX file: expected \"Kaydara FBX Binary\" or \"; FBX … project file\" at its start. \
@@ -42,7 +42,7 @@ pub fn load(bytes: &[u8]) -> Result<SceneRoot, String> {
     };
     // SAFETY: the options are those that a program in C would set: all others are zero, and none holds a pointer.
     let scene = unsafe { ufbx::load_memory_raw(bytes, &options) }.map_err(|error| explain(&error, bytes))?;
-    // ufbx reads OBJ as well, unless that is left out of it, as it is in wasm.
+    // ufbx reads OBJ as well, unless compiled without it, as in wasm.
     if scene.metadata.file_format != ufbx::FileFormat::Fbx {
         return Err(NOT_FBX.to_owned());
     }

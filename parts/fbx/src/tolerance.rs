@@ -1,9 +1,9 @@
-//! How far a joint's keys may be off, so that no joint of the model moves noticeably.
+//! Tolerances for a joint's keys, such that no joint of the model moves noticeably.
 //!
-//! Every joint is to stay within 0.01° and within 0.01 mm per metre of the model's size. The errors of a joint's ancestors
-//! add up in it, and a turned ancestor moves it the more the farther away it is. So the allowance is shared along the longest
-//! chain of animated joints, as errors that are independent of each other add up, and a rotation gets less the longer the
-//! chain below it is.
+//! Every joint must stay within 0.01° and within 0.01 mm per metre of the model's size. The errors of a joint's
+//! ancestors accumulate, and a rotated ancestor moves it farther the farther away it is. So the allowance is shared
+//! along the longest chain of animated joints, as independent errors accumulate, and a rotation gets less the longer
+//! the chain below it is.
 
 use ufbx::{Matrix, Node, Scene};
 
@@ -11,20 +11,20 @@ use ufbx::{Matrix, Node, Scene};
 const ANGLE: f64 = 1.745e-4;
 /// 0.01 mm per metre.
 const DISTANCE: f64 = 1e-5;
-/// What 32-bit quaternions resolve, about.
+/// Approximate resolution of 32-bit quaternions.
 const SMALLEST_ANGLE: f64 = 3e-7;
 
 /// The model's measures at rest.
 pub struct Tolerances {
     size: f64,
-    /// Longest way from a node along its descendants.
+    /// Longest path from a node along its descendants.
     reach: Vec<f64>,
     parents: Vec<Option<usize>>,
     /// Scale of the node's parent in the world.
     scales: Vec<f64>,
 }
 
-/// What the channels of one node may be off.
+/// Tolerances of one node's channels.
 pub struct Tolerance {
     pub translation: f64,
     pub rotation: f64,

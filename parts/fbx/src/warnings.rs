@@ -1,9 +1,9 @@
-//! What the file has that is not converted.
+//! Warnings about contents of the file that are not converted.
 
 use gaitway_glb::Warnings;
 use ufbx::Scene;
 
-/// Adds what ufbx had to correct and what glTF has no place for.
+/// Warns about what ufbx had to correct and what glTF cannot represent.
 pub fn add_scene(warnings: &mut Warnings, scene: &Scene) {
     let corrections = scene.metadata.warnings.as_ref();
     for (index, warning) in corrections.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use crate::{Glb, List, Object, check_size, quoted};
 
-/// How many of the key times written last are looked through for the same ones.
+/// Maximum number of recently written key times that are searched for equal ones.
 const MAX_COMPARED: usize = 64;
 
 /// The samplers and channels of an animation.

@@ -1,5 +1,5 @@
-//! What the converters of other formats share: a glTF document under construction, written as GLB, and the rules by which values
-//! become glTF's.
+//! Shared by the converters of other formats: a glTF document under construction, written as GLB, and the conversion of
+//! values to glTF's.
 //!
 //! No serializer: a converter has to stay small as a wasm module, and its JSON is a few dozen fixed shapes, assembled member by
 //! member.
@@ -19,7 +19,7 @@ pub use sort::sort;
 pub use values::{MAX_INFLUENCES, base_name, linear, percent_encoded, roughness_of_exponent, strongest};
 pub use warnings::Warnings;
 
-/// Largest GLB that is written. Its header counts bytes with 32 bits.
+/// Maximum size of the GLB. Its header counts bytes with 32 bits.
 const MAX_BYTES: usize = 1 << 29;
 
 const FLOAT: u32 = 5126;

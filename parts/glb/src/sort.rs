@@ -1,6 +1,6 @@
 //! Sorting in a few hundred bytes of code, where the standard library takes several thousand per type.
 
-/// Sorts with heapsort: in place, with n log n comparisons at worst, equal items in any but a fixed order.
+/// Sorts with heapsort: in place, with n log n comparisons at worst; not stable, but deterministic.
 pub fn sort<T>(items: &mut [T], less: impl Fn(&T, &T) -> bool) {
     let count = items.len();
     for root in (0..count / 2).rev() {

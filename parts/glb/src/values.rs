@@ -1,15 +1,15 @@
-//! Rules by which the values of other formats become glTF's.
+//! Converts the values of other formats to glTF's.
 
 use std::fmt::Write;
 
 use crate::sort::sort;
 
-/// Most influences per vertex: four sets of four.
+/// Maximum number of influences per vertex: four sets of four.
 pub const MAX_INFLUENCES: usize = 16;
 
 /// Returns the strongest influences of a vertex in that order, with sum 1; none if no weight is positive.
 pub fn strongest(mut influences: Vec<(u16, f64)>) -> Vec<(u16, f32)> {
-    // Equal ones in the order of their joints, since sorting isn't stable.
+    // Ties are broken by joint, since sorting isn't stable.
     sort(&mut influences, |a, b| a.1 > b.1 || (a.1 == b.1 && a.0 < b.0));
     influences.truncate(MAX_INFLUENCES);
     let sum: f64 = influences.iter().map(|&(_, weight)| weight).sum();

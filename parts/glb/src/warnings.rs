@@ -1,13 +1,13 @@
 //! What could not be carried over, in sentences.
 
-/// Most sentences.
+/// Maximum number of sentences.
 const MAX_SENTENCES: usize = 100;
 
 /// Sentences for the user, each once.
 #[derive(Default)]
 pub struct Warnings {
     sentences: Vec<String>,
-    /// How many more there would have been.
+    /// Number of sentences beyond the maximum.
     more: usize,
 }
 

@@ -1,24 +1,24 @@
-//! The container, KTX 2.0: a header, an index of the mip levels, a description of the texels and, for ETC1S, what all levels have
-//! in common. Nothing in it is trusted.
+//! The KTX 2.0 container: a header, an index of the mip levels, a data format descriptor and, for ETC1S, the data that
+//! all levels share. Nothing in it is trusted.
 
 use crate::texture::level_size;
 
-/// How a file begins.
+/// Magic number at the start of a file.
 pub const MAGIC: [u8; 12] = *b"\xABKTX 20\xBB\r\n\x1A\n";
 
 /// Longest edge in pixels. The decoder would overflow beyond.
 const MAX_EDGE: u32 = 16_384;
 
-/// Where the index of levels begins, and the bytes of an entry.
+/// Offset of the level index, and the size of an entry in bytes.
 const LEVELS: usize = 80;
 const LEVEL: usize = 24;
 
-/// What `supercompressionScheme` says.
+/// Values of `supercompressionScheme`.
 const NONE: u32 = 0;
 const BASIS_LZ: u32 = 1;
 const ZSTANDARD: u32 = 2;
 
-/// Colour models of the description of texels.
+/// Colour models of the data format descriptor.
 const ETC1S: u32 = 163;
 const UASTC: u32 = 166;
 
@@ -32,13 +32,13 @@ pub enum Codec {
 pub struct Container<'a> {
     pub size: [u32; 2],
     pub codec: Codec,
-    /// Only of ETC1S.
+    /// Only for ETC1S.
     pub has_alpha: bool,
     /// Whether the levels are compressed once more, with Zstandard.
     pub is_packed: bool,
     /// From the largest; at least one.
     pub levels: Vec<&'a [u8]>,
-    /// What all levels of ETC1S have in common.
+    /// Data shared by all levels of ETC1S.
     pub global: &'a [u8],
 }
 

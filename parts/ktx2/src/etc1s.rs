@@ -1,4 +1,4 @@
-//! ETC1S with BasisLZ: the levels are indices into two codebooks, which the file has once.
+//! ETC1S with BasisLZ: the levels are indices into two codebooks, stored once per file.
 
 use basisu::basislz::etc1s::Etc1sTranscoder;
 

@@ -1,14 +1,14 @@
 //! Transcodes the images of `KHR_texture_basisu`, KTX2 files with ETC1S or UASTC texels, into what the device can sample.
 //!
-//! What comes of each:
+//! Output by input format and device:
 //!
 //! |  | BC7 | ETC2 | ASTC | neither |
 //! | --- | --- | --- | --- | --- |
 //! | ETC1S | BC7 | ETC2, without loss | ETC2 (every device has both) | RGBA |
 //! | UASTC | BC7 | RGBA: ETC2 would blur normal maps | ASTC, without loss | RGBA |
 //!
-//! An image without all its mip levels becomes RGBA as well, so that the others can be made of it, and so does one whose edges are
-//! no multiples of 4, which WebGPU doesn't take in blocks.
+//! An image with missing mip levels becomes RGBA as well, so that they can be generated from it, and so does one whose
+//! edges aren't multiples of 4, which WebGPU doesn't accept in compressed formats.
 
 mod container;
 mod etc1s;

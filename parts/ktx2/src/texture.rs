@@ -1,8 +1,8 @@
-//! What the transcoder is asked for and what it answers, as bytes. All numbers are of 32 bits, little-endian.
+//! The transcoder's input and output as bytes. All numbers are 32-bit, little-endian.
 
 use gaitway_part::words;
 
-/// What one texel, or one block of 4 × 4, is stored as.
+/// How one texel, or one block of 4 × 4, is stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
     /// Red, green, blue and alpha bytes.

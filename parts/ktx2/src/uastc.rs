@@ -1,4 +1,4 @@
-//! UASTC: blocks of 16 bytes, each on its own, sometimes compressed once more with Zstandard.
+//! UASTC: independent blocks of 16 bytes, sometimes compressed once more with Zstandard.
 
 use std::borrow::Cow;
 

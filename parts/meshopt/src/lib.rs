@@ -16,10 +16,10 @@ pub enum Mode {
     Indices,
 }
 
-/// How decoded attributes are turned into those of the file.
+/// The filter to apply to decoded attributes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Filter {
-    /// Not at all.
+    /// No filter.
     None,
     /// From octahedral normals or tangents.
     Octahedral,

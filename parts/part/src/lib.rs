@@ -1,6 +1,6 @@
-//! A *part* of Gaitway converts something that few files contain into plain glTF. Natively it is a crate like any other; on the
-//! page it is a WebAssembly module of its own, downloaded when a file needs it and run in a worker (`web/shell/parts.js`), so
-//! that it can be stopped, and so that a trap ends nothing but the conversion.
+//! A *part* of Gaitway converts something that few files contain into plain glTF. Natively it is a crate like any
+//! other; on the page it is a separate WebAssembly module, downloaded when a file needs it and run in a worker
+//! (`web/shell/parts.js`), so that it can be stopped, and so that a trap ends nothing but the conversion.
 //!
 //! A part is one function from bytes to an [`Answer`]. [`module!`] exports it: the caller writes the input to where `input(length)`
 //! points, calls `run()` and finds the encoded answer at `output()`, `output_length()` bytes of it.
@@ -49,7 +49,7 @@ pub fn encode(answer: Answer) -> Vec<u8> {
 
 /// Decodes what [`encode`] wrote.
 pub fn decode(encoded: &[u8]) -> Answer {
-    let unknown = || "its converter gave an answer that cannot be read".to_owned();
+    let unknown = || "its converter returned an invalid answer".to_owned();
     let (&kind, rest) = encoded.split_first().ok_or_else(unknown)?;
     if kind != CONVERTED {
         return Err(String::from_utf8_lossy(rest).into_owned());
@@ -97,8 +97,8 @@ impl Exchange {
     }
 }
 
-/// Makes a program of a function `fn(&[u8]) -> Answer`: a module with the exports that the crate's documentation describes.
-/// Natively, the program runs [`pipe`] instead.
+/// Turns a function `fn(&[u8]) -> Answer` into a program: a module with the exports that the crate's documentation
+/// describes. Natively, the program runs [`pipe`] instead.
 #[macro_export]
 macro_rules! module {
     ($convert:path) => {

@@ -9,7 +9,7 @@ use crate::transform::{matrix, mirrored, parts, rotation};
 
 /// DirectX's unit of time, where the file states none.
 const DEFAULT_TICKS_PER_SEC: u32 = 4800;
-/// Frames per second where the file counts frames without saying so, as assimp's and other viewers have it.
+/// Frames per second where the file counts frames without saying so, as assumed by assimp and other viewers.
 const FRAMES_PER_SEC: u32 = 25;
 /// Minimum plausible key spacing at [`DEFAULT_TICKS_PER_SEC`]: 240 keys per second.
 const MIN_TICKS_BETWEEN_KEYS: f64 = 20.0;
@@ -111,7 +111,8 @@ fn target(document: &Document, animation: usize, nodes: &Nodes, warnings: &mut W
     node
 }
 
-/// Returns the file's unit of time. Some exporters count frames and don't say so: their keys would be absurdly close.
+/// Returns the file's unit of time. Some exporters count frames and don't say so: their keys would be implausibly
+/// close.
 fn ticks_per_sec(document: &Document, warnings: &mut Warnings) -> Result<f64, String> {
     for (index, _) in document.all("AnimTicksPerSecond") {
         let ticks = document.numbers(index).index(u32::MAX as usize, "ticks per second")?;
@@ -158,7 +159,7 @@ fn read_keys(document: &Document, key: usize) -> Result<Keys, String> {
     }
     if !ascend {
         sort(&mut keys, |a, b| (a.0, a.1) < (b.0, b.1));
-        // Of keys at the same time, the last one holds.
+        // Of keys at the same time, the last one wins.
         keys.reverse();
         keys.dedup_by(|a, b| a.0 == b.0);
         keys.reverse();
@@ -230,7 +231,7 @@ impl Track {
         (times, values)
     }
 
-    /// Of values that never change, leaves the first and the last: when a clip ends matters.
+    /// Reduces constant values to the first and the last key, which keeps the clip's end.
     fn simplified(mut self, width: usize) -> Track {
         let (first, rest) = self.values.split_at(width.min(self.values.len()));
         if self.ticks.len() > 2 && rest.chunks_exact(width).all(|value| value == first) {

@@ -1,4 +1,4 @@
-//! The header, and what is behind it unpacked.
+//! The header, and the unpacked data after it.
 
 use std::borrow::Cow;
 
@@ -7,7 +7,7 @@ use miniz_oxide::inflate::core::{DecompressorOxide, decompress, inflate_flags};
 
 use crate::{damaged, too_large};
 
-/// Largest file that is read, and largest size unpacked.
+/// Maximum size of a file, as read and unpacked.
 const MAX_BYTES: usize = 1 << 28;
 const HEADER: usize = 16;
 
@@ -21,7 +21,7 @@ pub enum Encoding {
     },
 }
 
-/// What is behind the header.
+/// The data after the header.
 pub struct Contents<'a> {
     pub encoding: Encoding,
     pub bytes: Cow<'a, [u8]>,
@@ -79,7 +79,7 @@ impl Contents<'_> {
         }
     }
 
-    /// Returns the number of the first place behind the header.
+    /// Returns the number of the first place after the header.
     pub fn first(&self) -> usize {
         // The header is on the first line.
         if self.encoding == Encoding::Text { 1 } else { HEADER }

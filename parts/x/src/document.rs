@@ -7,14 +7,14 @@ use crate::token::{Token, Tokens};
 use crate::{damaged, too_large};
 
 const MAX_OBJECTS: usize = 1 << 19;
-/// Numbers in all objects.
+/// Maximum count of numbers in all objects.
 const MAX_NUMBERS: usize = 1 << 25;
-/// Objects inside objects.
+/// Maximum nesting of objects.
 const MAX_DEPTH: usize = 1000;
-/// Bytes of a name in messages.
+/// Maximum length of a name in messages, in bytes.
 const MAX_SHOWN: usize = 60;
 
-/// Templates that are read, or that say nothing a glTF needs.
+/// Templates that are read, or that contain nothing glTF needs.
 const KNOWN: [&str; 21] = [
     "AnimTicksPerSecond",
     "Animation",
@@ -88,7 +88,7 @@ impl<'a> Document<'a> {
         Ok(reader.document)
     }
 
-    /// Adds what the objects have that is not converted.
+    /// Warns about contents of the objects that are not converted.
     pub fn warn(&self, warnings: &mut Warnings) {
         let is_known = |object: &Object| KNOWN.iter().any(|template| object.is(template));
         for object in self.objects.iter().skip(1).filter(|object| !object.is_reference() && !is_known(object)) {
@@ -113,7 +113,7 @@ impl<'a> Document<'a> {
         self.objects.iter().enumerate().filter(move |(_, object)| object.is(template))
     }
 
-    /// Returns an object as messages call it.
+    /// Returns the label of an object in messages.
     pub fn label(&self, object: usize) -> String {
         let Object { template, name, place, .. } = self.objects[object];
         let name = if name.is_empty() { String::new() } else { format!(" \"{}\"", short(name)) };
@@ -295,7 +295,7 @@ impl<'a> Numbers<'a> {
         if number >= 0.0 && number <= max as f64 && number.fract() == 0.0 {
             return Ok(number as usize);
         }
-        // No text of a float: its formatting would be a fifth of the wasm module.
+        // Floats are not printed: their formatting would be a fifth of the wasm module.
         let found = match number {
             number if number < 0.0 => "a negative number".to_owned(),
             number if number.fract() != 0.0 => "a fraction".to_owned(),

@@ -9,12 +9,12 @@ use crate::transform::{columns, matrix, parts};
 
 const MAX_NODES: usize = 1 << 16;
 
-/// One glTF node in the making.
+/// A glTF node under construction.
 pub struct Entry {
     name: String,
     pub matrix: DAffine3,
     children: Vec<usize>,
-    /// The node without a parent that this one is below, or itself.
+    /// Its topmost ancestor, or the node itself.
     root: usize,
     pub mesh: Option<usize>,
     pub skin: Option<usize>,
@@ -74,7 +74,7 @@ impl<'a> Nodes<'a> {
         index
     }
 
-    /// Notes that a skin has these joints: glTF wants a common root for them.
+    /// Records the joints of a skin: glTF requires a common root for them.
     pub fn join(&mut self, joints: &[usize]) {
         let mut roots = joints.iter().map(|&joint| self.entries[joint].root);
         let first = roots.next();

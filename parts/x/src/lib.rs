@@ -40,9 +40,9 @@
 //!
 //! # Conventions
 //!
-//! Left-handed with Y up; +Z becomes -Z. Front faces are clockwise. Vectors are rows, so the 16 numbers of a matrix are glTF's,
-//! columns first. Quaternions are `w x y z` and turn the other way round than the matrices. V of a texture points down, as in
-//! glTF. There is no unit of length.
+//! Left-handed with Y up; +Z becomes -Z. Front faces are clockwise. Vectors are rows, so the 16 numbers of a matrix are
+//! glTF's, columns first. Quaternions are `w x y z` and rotate in the opposite direction to the matrices. V of a
+//! texture points down, as in glTF. There is no unit of length.
 
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 #![forbid(unsafe_code)]

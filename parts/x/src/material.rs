@@ -1,7 +1,7 @@
 //! Materials as metallic-roughness.
 //!
-//! DirectX multiplies what the lights and the emission give with the texture, in the values that are shown, so colours are sRGB.
-//! As in FBX, a texture takes the place of the colour: modelling programs leave a grey there that they don't show.
+//! DirectX multiplies the sum of lighting and emission by the texture in display values, so colours are sRGB. As in
+//! FBX, a texture replaces the colour: modelling programs leave a grey there that they don't show.
 
 use gaitway_glb::{Glb, Object, base_name, linear, percent_encoded, quoted, roughness_of_exponent, sort};
 

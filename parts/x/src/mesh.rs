@@ -13,7 +13,7 @@ use crate::material::Materials;
 use crate::skin::{self, Influences};
 use crate::transform::mirrored;
 
-/// What a vertex takes at most, in bytes: position, normal, texture coordinates, colour, and its influences.
+/// Maximum size of a vertex in bytes: position, normal, texture coordinates, colour, and its influences.
 const VERTEX_BYTES: usize = 12 + 12 + 8 + 16;
 const INFLUENCE_BYTES: usize = 6;
 
@@ -309,7 +309,7 @@ fn triangles(positions: &[DVec3], corners: &[u32], ends: &[u32], cutter: &mut Cu
         polygon.clear();
         polygon.extend(corners[start as usize..end as usize].iter().map(|&vertex| positions[vertex as usize]));
         cutter.cut(&polygon, |[a, b, c]| {
-            // What is clockwise to the left-handed is so to everyone: mirroring Z doesn't change what one sees.
+            // The winding that one sees doesn't depend on handedness: mirroring Z doesn't change the image.
             triangles.push(([a, c, b].map(|corner| start + corner as u32), face as u32));
         });
         start = end;

@@ -1,4 +1,4 @@
-//! The words of a file, the same for text and binary.
+//! The tokens of a file, the same for text and binary.
 
 use crate::container::{Contents, Encoding};
 use crate::damaged;

@@ -4,7 +4,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 /// A scale this close to 1 is 1: a matrix of 32-bit floats isn't more precise.
 const SCALE_ROUNDING: f64 = 4e-6;
-/// How far a matrix may be from its parts, compared with its longest axis.
+/// Maximum difference between a matrix and its parts, relative to its longest axis.
 const MAX_SHEAR: f64 = 1e-3;
 
 /// Translation, rotation and scale.
@@ -13,7 +13,7 @@ pub struct Parts {
     pub translation: DVec3,
     pub rotation: DQuat,
     pub scale: DVec3,
-    /// Whether the matrix is something else, too.
+    /// Whether the parts don't fully describe the matrix.
     pub is_sheared: bool,
 }
 
@@ -22,8 +22,8 @@ pub fn mirrored(vector: [f64; 3]) -> DVec3 {
     DVec3::new(vector[0], vector[1], -vector[2])
 }
 
-/// Returns the rotation of a key, `w x y z`, in right-handed space. The key turns the other way round, and mirroring keeps the
-/// turn about Z only.
+/// Returns the rotation of a key, `w x y z`, in right-handed space. The key rotates in the opposite direction, and
+/// mirroring keeps only the rotation about Z.
 pub fn rotation([w, x, y, z]: [f64; 4]) -> DQuat {
     let rotation = DQuat::from_xyzw(x, y, -z, w);
     if rotation.length_squared() > 1e-12 { rotation.normalize() } else { DQuat::IDENTITY }
@@ -37,7 +37,7 @@ pub fn matrix(numbers: [f64; 16]) -> DAffine3 {
     DAffine3 { matrix3, translation: column(12) * mirror }
 }
 
-/// Takes a matrix apart.
+/// Decomposes a matrix.
 pub fn parts(matrix: &DAffine3) -> Parts {
     let axes = matrix.matrix3;
     let mut scale = DVec3::new(axes.x_axis.length(), axes.y_axis.length(), axes.z_axis.length());

@@ -52,7 +52,7 @@ pub async fn finish(decoding: Vec<Decoding>, asset: &mut Asset) -> Vec<Option<Im
     decoded
 }
 
-/// The loader has checked the size in the header: the browser would use any amount of memory.
+/// The loader has checked the size in the header: the browser itself sets no limit on memory.
 fn start_one(image: &Image, largest_edge: u32) -> Decoding {
     if image.bytes.is_empty() {
         return Err("it has no data".to_owned());

@@ -1,4 +1,4 @@
-//! Parts of Gaitway that are modules of their own, downloaded when a file needs them.
+//! Parts of Gaitway in separate modules, downloaded when a file needs them.
 
 use gaitway_part::{Answer, decode};
 use js_sys::{Promise, Uint8Array};
@@ -38,7 +38,7 @@ pub async fn download(part: Part, reading: &mut Reading<'_>) -> Result<Vec<u8>, 
     fetch::fetch(&url, part.title(), reading).await.map_err(|problem| problem.to_string())
 }
 
-/// Starts a part in a worker of its own; [`finish`] waits for it.
+/// Starts a part in a separate worker; [`finish`] waits for it.
 pub fn start(part: Part, module: &[u8], input: &[u8]) -> JsFuture {
     run_part(part.name(), module.into(), input.into()).into()
 }

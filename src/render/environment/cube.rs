@@ -5,7 +5,7 @@ use glam::{Vec2, Vec3, Vec4};
 /// Edge length of an irradiance face, small because irradiance is smooth.
 const IRRADIANCE_SIZE: usize = 16;
 
-/// One mip level. Every face has a border of one texel from its neighbours, so that filtering knows no edges.
+/// One mip level. Every face has a border of one texel from its neighbours, so that filtering is seamless.
 struct Level {
     size: usize,
     texels: Vec<Vec4>,

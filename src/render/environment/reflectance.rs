@@ -59,8 +59,8 @@ fn directional_albedo(roughness: f32, normal_view: f32) -> [f32; 2] {
 mod tests {
     use super::*;
 
-    /// The BRDF times the cosine, integrated over all directions of light in double precision: another way to the same numbers.
-    /// Returns scale and bias for N·V.
+    /// The BRDF times the cosine, integrated over all directions of light in double precision, as an independent
+    /// reference. Returns scale and bias for N·V.
     fn integrated(roughness: f64, normal_view: f64) -> [f64; 2] {
         const STEPS: usize = 1200;
         let alpha2 = roughness.powi(4);

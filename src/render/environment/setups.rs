@@ -112,7 +112,7 @@ fn white() -> Surroundings {
     Surroundings::new(Vec::new(), [[1.0; 3]; 3], [KEY_DIRECTION, [0.0; 3]])
 }
 
-/// An overcast tent: large boxes, hardly a highlight, a weak shadow.
+/// An overcast tent: large boxes, almost no highlights, a weak shadow.
 fn soft() -> Surroundings {
     let boxes = vec![
         SoftBox::new([0.0, 1.0, 0.15], [1.6, 1.6], [0.55, 0.55, 0.56]),

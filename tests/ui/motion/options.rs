@@ -40,7 +40,7 @@ fn joints_without_a_source_can_play_a_clip() {
     let mut harness = motion_tab();
     press(&mut harness, text::OPTIONS);
     reach(&mut harness, text::UNMAPPED_JOINTS);
-    // The label also stands in the list of clips; the last one is in the open drop-down list.
+    // The label is also in the list of clips; the last one is in the open drop-down list.
     harness.state_mut().commands.clear();
     harness.get_all_by_label("Wave").last().expect("in the list").click();
     harness.run();

@@ -57,7 +57,7 @@ impl Keys {
         }
     }
 
-    /// Returns the number of values, and how many of them make an entry.
+    /// Returns the number of values and the number per entry.
     pub(super) fn count(&self) -> (usize, usize) {
         match self {
             Self::Translation(values) | Self::Scale(values) => (values.len(), 1),
@@ -104,7 +104,7 @@ pub enum ChannelError {
         /// Its time.
         time_secs: f32,
     },
-    /// The number of values does not fit the number of keys.
+    /// The number of values does not match the number of keys.
     #[error("expected {expected} values for {keys} keys, found {found}")]
     ValueCount {
         /// Number of key times.
@@ -125,7 +125,7 @@ pub enum ChannelError {
     /// The number of morph targets does not match the mesh, or the joint has none.
     #[error("the keys have {found} morph targets, but the mesh on this joint has {expected}")]
     MorphTargetCount {
-        /// Number of morph targets on the joint, 0 without any.
+        /// Number of morph targets of the mesh on the joint, 0 if it has none.
         expected: usize,
         /// Number of morph targets of the keys.
         found: usize,

@@ -18,7 +18,7 @@ pub struct Clip {
     properties: Properties,
 }
 
-/// How a clip is asked for.
+/// How to look up a clip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ClipQuery<'a> {
     /// Position in the list, from 0.
@@ -68,10 +68,11 @@ struct Timelines {
 }
 
 impl Timelines {
-    /// Returns the index of these times, after adding them if they are new. `last` is the index that the last call returned.
+    /// Returns the index of these times, adding them if they are new. `last` is the index returned by the previous
+    /// call.
     fn index(&mut self, times_secs: &[f32], last: Option<u32>) -> u32 {
         let bits = times_secs.iter().map(|time_secs| time_secs.to_bits());
-        // Most channels have the times of the one before.
+        // Most channels share their times with the previous one.
         if let Some(last) = last
             && bits.clone().eq(self.times_secs[last as usize].iter().map(|time_secs| time_secs.to_bits()))
         {
@@ -228,7 +229,7 @@ impl Clip {
         &self.properties.timelines
     }
 
-    /// Adds property channels of another clip, such as the source of a retargeting: those for which `map` returns a
+    /// Adds property channels of another clip, such as the source of a retarget: those for which `map` returns a
     /// target.
     pub fn with_properties_of(mut self, other: &Self, map: &dyn Fn(PropertyTarget) -> Option<PropertyTarget>) -> Self {
         if other.properties().iter().any(|channel| map(channel.target).is_some()) {
@@ -238,14 +239,15 @@ impl Clip {
         self
     }
 
-    /// The key times of everything that the clip animates; a time may occur several times.
+    /// The key times of all channels; a time may occur several times.
     pub fn key_times_secs(&self) -> impl Iterator<Item = f32> + '_ {
         self.timelines.iter().chain(&self.properties.timelines).flatten().copied()
     }
 
-    /// Samples joints and morph weights at `time_secs` into `pose`; what has no channel keeps its value, so start from the rest pose.
-    /// Times outside the keys hold the first or the last value. `skeleton` is the one the clip was built for, and `pose`
-    /// has its size. Allocates only if the clip has more timelines than any clip sampled with this cursor before.
+    /// Samples joints and morph weights at `time_secs` into `pose`. Properties without a channel keep their values, so
+    /// start from the rest pose. Times outside the keys hold the first or the last value. `skeleton` is the one the
+    /// clip was built for, and `pose` matches its size. Allocates only if the clip has more timelines than any clip
+    /// sampled with this cursor before.
     pub fn sample(&self, skeleton: &Skeleton, time_secs: f32, cursor: &mut SampleCursor, pose: &mut Pose) {
         self.sampler.sample(&self.timelines, &self.channels, skeleton, time_secs, &mut cursor.segments, pose);
         self.properties.sample_weights(time_secs, &mut cursor.property_segments, |joint, target, weight| {
@@ -253,13 +255,15 @@ impl Clip {
         });
     }
 
-    /// Samples what isn't in a pose, replacing `out`: materials, lights, cameras and visibility. Times outside the keys hold the
-    /// first or the last value. Allocates only if the clip has more of these than any clip sampled before.
+    /// Samples everything that isn't part of a pose (materials, lights, cameras and visibility), replacing `out`. Times
+    /// outside the keys hold the first or the last value. Allocates only if the clip has more of these than any clip
+    /// sampled before.
     pub fn sample_properties(&self, time_secs: f32, cursor: &mut SampleCursor, out: &mut PropertyValues) {
         self.properties.sample(time_secs, &mut cursor.property_segments, out);
     }
 
-    /// Estimates the frame rate the keys were authored at; [`Clip::DEFAULT_FRAMES_PER_SEC`] if their times do not tell.
+    /// Estimates the frame rate the keys were authored at; [`Clip::DEFAULT_FRAMES_PER_SEC`] if their times don't reveal
+    /// it.
     pub fn frames_per_sec(&self) -> f64 {
         const COMMON: [f64; 8] = [Clip::DEFAULT_FRAMES_PER_SEC, 24.0, 25.0, 60.0, 50.0, 48.0, 120.0, 100.0];
         const MAX_KEYS: usize = 4096;

@@ -1,12 +1,12 @@
-//! The arithmetic of playback, four joints at a time, one to a lane of every vector (structure of arrays): interpolating keys and
-//! turning local transforms into matrices needs no shuffling in this layout. The unit tests have the same formulas for a single
+//! SIMD kernels of playback: four joints at a time, one per lane (structure of arrays), so that interpolating keys and
+//! converting local transforms to matrices needs no shuffling. The unit tests have the same formulas for a single
 //! joint, in f64.
 
 use glam::{Affine3A, BVec4A, Mat3A, Quat, Vec3, Vec4};
 
 use super::{JointIndex, Transform};
 
-/// Joints in a group.
+/// Joints per group.
 pub(super) const LANES: usize = 4;
 
 /// Four vectors.
@@ -34,7 +34,8 @@ pub(super) struct Transformx4 {
     pub scale: Vec3x4,
 }
 
-/// Rotation keys of four channels, with the squared angles (as 4-vectors) to the next keys, which are at most a right angle away.
+/// Rotation keys of four channels, with the squared angles (as 4-vectors) to the next keys, which are at most a right
+/// angle away.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct ArcKey {
     rotation: Quatx4,
@@ -58,7 +59,7 @@ impl Vec3x4 {
         (self.x[lane], self.y[lane], self.z[lane]) = (value.x, value.y, value.z);
     }
 
-    /// Takes the masked lanes of another value.
+    /// Replaces the masked lanes with those of another value.
     #[inline(always)]
     pub fn replace(&mut self, lanes: BVec4A, by: Self) {
         if lanes.all() {
@@ -97,7 +98,7 @@ impl Quatx4 {
         (self.x[lane], self.y[lane], self.z[lane], self.w[lane]) = (value.x, value.y, value.z, value.w);
     }
 
-    /// Takes the masked lanes of another value.
+    /// Replaces the masked lanes with those of another value.
     #[inline(always)]
     pub fn replace(&mut self, lanes: BVec4A, by: Self) {
         if lanes.all() {
@@ -110,8 +111,9 @@ impl Quatx4 {
     }
 }
 
-/// Normalizes a rotation. One that is normalized up to rounding stays as it is, a degenerate one becomes identity. Components
-/// that change no f32 result become 0: their squares would be denormal, and processors take many times longer with those.
+/// Normalizes a rotation. One already normalized up to rounding is returned unchanged; a degenerate one becomes the
+/// identity. Components that change no f32 result become 0: their squares would be denormal, and processors are many
+/// times slower with those.
 pub(super) fn unit(value: Quat) -> Quat {
     const NEGLIGIBLE: f32 = 1e-12;
     let length_squared = value.length_squared();
@@ -129,7 +131,7 @@ impl ArcKey {
         Self { rotation: from, squared_angles: Vec4::from(squared_chords.to_array().map(squared_angle)) }
     }
 
-    /// Interpolates along the arcs to the next keys. Only the directions of the results are those of slerp.
+    /// Interpolates along the arcs to the next keys. The results match slerp's in direction, not in length.
     #[inline(always)]
     pub fn slerp(&self, to: &Self, weight: &ArcWeight) -> Quatx4 {
         let weights = weight.at(self.squared_angles);
@@ -153,15 +155,15 @@ fn squared_angle(chord: f32) -> f32 {
         .fold(0.0, |sum, coefficient| sum * chord + coefficient)
 }
 
-/// Where on the chord between two unit quaternions slerp's direction lies, from 0 to 1.
+/// Position, from 0 to 1, at which slerp's direction crosses the chord between two unit quaternions.
 ///
-/// Slerp weighs the ends with `sin((1 - t) ω)` and `sin(t ω)` (glTF 2.0 appendix C.3). The second one's share of their sum is
-/// `½ + ½ tan(s ω) / tan(ω / 2)` with `s = t - ½`, and its Taylor series `t + s (s² - ¼) (⅓ ω² + …)`. As in Eberly's "A Fast and
-/// Accurate Algorithm for Computing SLERP" (2011), the coefficients depend on the time only, so all channels share them. Exact at
-/// the keys; elsewhere within 1e-7 radians.
+/// Slerp weights the ends by `sin((1 - t) ω)` and `sin(t ω)` (glTF 2.0 appendix C.3). The second weight as a fraction
+/// of their sum is `½ + ½ tan(s ω) / tan(ω / 2)` with `s = t - ½`, and its Taylor series `t + s (s² - ¼) (⅓ ω² + …)`.
+/// As in Eberly's "A Fast and Accurate Algorithm for Computing SLERP" (2011), the coefficients depend only on the time,
+/// so all channels share them. Exact at the keys; elsewhere within 1e-7 radians.
 pub(super) struct ArcWeight {
     factor: f32,
-    /// Of ω², ω⁴ and ω⁶, the same in all lanes.
+    /// Coefficients of ω², ω⁴ and ω⁶, the same in all lanes.
     coefficients: [Vec4; 3],
 }
 
@@ -217,8 +219,8 @@ impl Transformx4 {
         }
     }
 
-    /// Returns the matrices `parent_from_joint`: columns x, y, z and the translation, three rows each, one lane per joint. Dividing
-    /// by the rotations' squared lengths takes the place of normalizing them.
+    /// Returns the matrices `parent_from_joint`: columns x, y, z and the translation, three rows each, one lane per
+    /// joint. Divides by the rotations' squared lengths instead of normalizing them.
     #[inline(always)]
     fn matrices(&self) -> [[f32; LANES]; 12] {
         let Quatx4 { x, y, z, w } = self.rotation;
@@ -247,7 +249,7 @@ impl Transformx4 {
     }
 }
 
-/// Multiplies local transforms down the hierarchy. `joints` are those of the groups' lanes, each with its parent and after it;
+/// Multiplies local transforms down the hierarchy. `joints` has the joint of each lane and its parent, parents first;
 /// `out` has one entry per joint.
 pub(super) fn model_from_joint(
     groups: &[Transformx4],
@@ -279,7 +281,7 @@ mod tests {
 
     use super::*;
 
-    /// A repeatable number from -1 to 1.
+    /// Returns a reproducible number from -1 to 1.
     fn scattered(seed: usize) -> f32 {
         (seed as f32 * 12.9898).sin()
     }
@@ -303,7 +305,7 @@ mod tests {
         let mut worst = 0.0_f64;
         for step in 0..=400 {
             let from = scattered_quat(step);
-            // Angles from tiny to a right one, with a different one in each lane.
+            // From tiny angles to a right angle, different in each lane.
             let to: [Quat; LANES] = std::array::from_fn(|lane| {
                 let angle = FRAC_PI_2 * (step as f64 / 400.0) * [1.0, 0.99, 0.3, 1e-4][lane];
                 let side = scattered_quat(step + 1);
@@ -355,7 +357,7 @@ mod tests {
                 rotation: Quatx4::new(locals.map(|local| local.rotation)),
                 scale: Vec3x4::new(locals.map(|local| local.scale)),
             };
-            // As interpolation leaves them.
+            // Not normalized, as after interpolation.
             let length = 0.7 + 0.3 * scattered(seed);
             group.rotation.x *= length;
             group.rotation.y *= length;

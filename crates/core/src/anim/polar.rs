@@ -1,9 +1,10 @@
-//! The rotation in a matrix that may be scaled, sheared or mirrored.
+//! Extracts the rotation from a matrix that may be scaled, sheared or mirrored.
 
 use glam::{DMat3, DQuat, DVec3};
 
 /// Returns the rotation nearest to a matrix whose columns have been normalized, by the polar iteration of Higham
-/// ("Computing the polar decomposition", 1986). Of a mirrored matrix the x axis is flipped first. None for a singular one.
+/// ("Computing the polar decomposition", 1986). The X axis of a mirrored matrix is flipped first. `None` if the matrix
+/// is singular.
 pub fn nearest_rotation(matrix: &DMat3) -> Option<DQuat> {
     let mirrored = if matrix.determinant() < 0.0 { -1.0 } else { 1.0 };
     let axis = |axis: DVec3| axis.try_normalize();
@@ -39,7 +40,7 @@ mod tests {
         }
     }
 
-    /// A shear's columns are not perpendicular: normalizing them alone gives no rotation.
+    /// The columns of a sheared matrix are not perpendicular, so normalizing them is not enough.
     #[test]
     fn shear_is_spread_over_all_axes() {
         let shear = DMat3::from_cols(DVec3::X, DVec3::new(0.6, 0.8, 0.0), DVec3::Z);

@@ -11,9 +11,10 @@ use super::{JointIndex, Skeleton, Transform};
 /// concatenated (see [`Skeleton::morph_range`]). A pose of a skeleton starts as a copy of its rest pose.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Pose {
-    /// Four joints each, sorted by depth: a joint rarely waits for the parent just before it. The last group is padded.
+    /// Four joints each, sorted by depth, so that a joint rarely has to wait for the parent just before it. The last
+    /// group is padded.
     pub(super) groups: Vec<Transformx4>,
-    /// Each joint's place among the lanes of all groups.
+    /// Each joint's lane, counted over all groups.
     lane_of_joint: Arc<[u32]>,
     /// Usually from 0 to 1, but not clamped.
     pub morph_weights: Vec<f32>,
@@ -89,7 +90,7 @@ impl Pose {
         self.groups[group].scale.set(lane, scale);
     }
 
-    /// Returns a joint's group and its lane there.
+    /// Returns a joint's group and its lane.
     pub(super) fn place(&self, joint: JointIndex) -> (usize, usize) {
         let lane = self.lane_of_joint[joint.get()] as usize;
         (lane / LANES, lane % LANES)
@@ -121,8 +122,8 @@ impl Pose {
     }
 }
 
-/// Computes the transform of every joint. `pose` is one of this skeleton; `out` gets one entry per joint. `world_from_model` is
-/// applied to root joints; identity gives model space.
+/// Computes the transform of every joint. `pose` belongs to this skeleton; `out` gets one entry per joint.
+/// `world_from_model` is applied to root joints; identity gives model space.
 pub fn model_from_joint(skeleton: &Skeleton, pose: &Pose, world_from_model: Affine3A, out: &mut Vec<Affine3A>) {
     debug_assert_eq!(skeleton.len(), pose.len());
     out.resize(skeleton.len(), Affine3A::IDENTITY);

@@ -1,12 +1,12 @@
-//! Animation of what is not a joint: materials, lights, cameras, visibility and single morph weights. Key times are kept apart
-//! from those of the joints, so that clips without such channels are sampled as if there were none.
+//! Animation of everything but joints: materials, lights, cameras, visibility and single morph weights. Key times are
+//! stored apart from those of the joints, so that clips without such channels pay nothing for them.
 
 use glam::Vec4;
 
 use super::sampler::{Segment, find_segment};
 use super::{Interpolation, JointIndex};
 
-/// What a [`PropertyChannel`] animates. Materials, lights and cameras are numbered as in their file.
+/// What a [`PropertyChannel`] animates. Materials, lights and cameras are given by their index in the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum PropertyTarget {
     /// A factor or texture transform of a material.
@@ -15,7 +15,7 @@ pub enum PropertyTarget {
     Light(usize, LightProperty),
     /// A property of a camera, on all nodes that have it.
     Camera(usize, CameraProperty),
-    /// Whether a joint and all below it are shown: 0 hides them.
+    /// Whether a joint and its descendants are shown: 0 hides them.
     Visibility(JointIndex),
     /// The weight of an expression, by its index in [`Avatar::expressions`](crate::avatar::Avatar::expressions).
     Expression(usize),
@@ -38,7 +38,7 @@ pub enum MaterialProperty {
     Emissive,
     /// Factor on the emissive colour.
     EmissiveStrength,
-    /// Only of masked materials.
+    /// Masked materials only.
     AlphaCutoff,
     /// Factor on X and Y of the normal texture.
     NormalScale,
@@ -211,9 +211,9 @@ pub enum LightProperty {
     Intensity,
     /// Metres.
     Range,
-    /// Radians; only of spot lights.
+    /// Radians; spot lights only.
     InnerCone,
-    /// Radians; only of spot lights.
+    /// Radians; spot lights only.
     OuterCone,
 }
 
@@ -296,7 +296,7 @@ impl PropertyValues {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Properties {
     pub timelines: Vec<Vec<f32>>,
-    /// One per target, in their order: single morph weights come last.
+    /// One per target, sorted: single morph weights come last.
     pub channels: Vec<PropertyChannel>,
     /// Index of the first channel of a morph weight.
     first_weight: usize,
@@ -327,14 +327,14 @@ impl Properties {
         *self = Self::new(timelines, channels);
     }
 
-    /// Replaces the values in `out` by those of all channels except morph weights.
+    /// Replaces the values in `out` with those of all channels except morph weights.
     pub fn sample(&self, time_secs: f32, segments: &mut Vec<u32>, out: &mut PropertyValues) {
         out.clear();
         let put = |target, value| out.0.push((target, value));
         self.sample_some(&self.channels[..self.first_weight], time_secs, segments, put);
     }
 
-    /// Calls `put` with each animated morph weight: its joint, its target and its value.
+    /// Calls `put` with the joint, target and value of each animated morph weight.
     pub fn sample_weights(&self, time_secs: f32, segments: &mut Vec<u32>, mut put: impl FnMut(JointIndex, usize, f32)) {
         self.sample_some(&self.channels[self.first_weight..], time_secs, segments, |target, value| {
             if let PropertyTarget::MorphWeight(joint, target) = target {

@@ -1,9 +1,9 @@
 //! Samples clips as defined in glTF 2.0 §3.11 and appendix C, optimized for playback.
 //!
-//! Most channels of real clips are LINEAR, and many share their key times. Their values are stored here a second time, in the
-//! pose's groups of four joints: a row holds the values of all groups of a timeline at one key, so one search and two rows serve
-//! them all. Rotations in rows are normalized and in a consistent hemisphere. Constant channels make a timeline with a single
-//! key. Everything else (STEP, CUBICSPLINE, morph weights) is read from the clip's own keys.
+//! Most channels of real clips are LINEAR, and many share their key times. Their values are stored here a second time,
+//! in the pose's groups of four joints: a row holds the values of all groups of a timeline at one key, so one search
+//! and two rows serve them all. Rotations in rows are normalized and in a consistent hemisphere. Constant channels form
+//! a timeline with a single key. Everything else (STEP, CUBICSPLINE, morph weights) is read from the clip's own keys.
 
 use std::borrow::Cow;
 
@@ -70,7 +70,7 @@ struct RowChannels<'a, T: Clone> {
 }
 
 impl Sampler {
-    /// `channels` must be valid for `timelines`, which the builder ensures; `rest` is the skeleton's.
+    /// `channels` must be valid for `timelines`, which the builder ensures; `rest` is the skeleton's rest pose.
     pub(super) fn new(timelines: &[Vec<f32>], channels: &[Channel], rest: &Pose) -> Self {
         let mut sampler = Self { timelines: vec![TimelineTracks::default(); timelines.len()], ..Self::default() };
         let (mut translations, mut scales) = (RowChannels::default(), RowChannels::default());
@@ -97,7 +97,8 @@ impl Sampler {
         sampler
     }
 
-    /// `row_entry` makes a group's entry in the row of a key from its lanes' values, empty for lanes without a channel.
+    /// `row_entry` builds a group's entry in a key's row from the values of its lanes, which are empty for lanes
+    /// without a channel.
     fn add_rows<T: Clone, R>(
         &mut self,
         timelines: &[Vec<f32>],
@@ -121,7 +122,7 @@ impl Sampler {
         }
     }
 
-    /// `timelines` and `channels` are those the sampler was made from.
+    /// `timelines` and `channels` are those the sampler was built from.
     pub(super) fn sample(
         &self,
         timelines: &[Vec<f32>],
@@ -198,7 +199,7 @@ impl From<&PlannedGroup> for Group {
     }
 }
 
-/// Groups channels by timeline and group, sorted. A constant joins a timeline that its group has anyway.
+/// Groups channels by timeline and group, sorted. A constant joins a timeline that its group already uses.
 fn planned_groups(mut places: Vec<Place>) -> Vec<PlannedGroup> {
     let mut timeline_of_group = vec![CONSTANT; places.iter().map(|place| place.group + 1).max().unwrap_or(0)];
     for place in places.iter().filter(|place| place.timeline != CONSTANT) {
@@ -222,7 +223,7 @@ fn planned_groups(mut places: Vec<Place>) -> Vec<PlannedGroup> {
     planned
 }
 
-/// Returns a lane's value at a key; constants have the same one at all keys.
+/// Returns a lane's value at a key; constants have the same value at every key.
 fn lane_value<T: Copy>(values: &[T], key: usize, absent: T) -> T {
     values.get(key).or(values.last()).copied().unwrap_or(absent)
 }
@@ -236,7 +237,7 @@ fn rotation_row(lanes: &[&[Quat]; LANES], key: usize) -> ArcKey {
     ArcKey::new(at(key), at(key + 1))
 }
 
-/// Returns the channels with their indices, in order, without those that a later channel for the same property overrides.
+/// Returns the channels and their indices, in order, except those overridden by a later channel for the same property.
 fn last_of_each_property(channels: &[Channel]) -> Vec<(usize, &Channel)> {
     let mut seen = std::collections::HashSet::new();
     let new = |(_, channel): &(usize, &Channel)| seen.insert((channel.joint, channel.keys.property()));
@@ -260,7 +261,7 @@ fn vectors_in_rows(interpolation: Interpolation, values: &[Vec3]) -> Option<&[Ve
     }
 }
 
-/// The same for rotations, normalized and each in the hemisphere of the one before it.
+/// Like `vectors_in_rows`, but normalizes the rotations, each in the hemisphere of the one before it.
 fn rotations_in_rows(interpolation: Interpolation, values: &[Quat]) -> Option<Vec<Quat>> {
     match (interpolation, values) {
         (Interpolation::CubicSpline, &[_, value, _]) | (Interpolation::Step, &[value]) => Some(vec![unit(value)]),
@@ -368,7 +369,7 @@ impl Segment {
         Quat::from_vec4(sum)
     }
 
-    /// Any interpolation of entries of `width` numbers, each on its own.
+    /// Interpolates entries of `width` numbers, each number on its own, with any interpolation.
     pub(super) fn numbers(&self, values: &[f32], width: usize, interpolation: Interpolation, out: &mut [f32]) {
         let at = |entry: usize, component: usize| values[entry * width + component];
         match interpolation {

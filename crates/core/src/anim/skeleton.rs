@@ -57,7 +57,7 @@ pub enum SkeletonError {
 pub struct Skeleton {
     names: Vec<String>,
     parents: Vec<Option<JointIndex>>,
-    /// Joints whose name no other joint has, found when a label is first needed.
+    /// Whether each joint's name is unique, computed when a label is first needed.
     has_unique_name: OnceLock<Vec<bool>>,
     /// All joints with their parents, sorted by depth: the order of a pose's lanes.
     by_depth: Vec<(JointIndex, Option<JointIndex>)>,
@@ -184,14 +184,14 @@ impl Skeleton {
         skeleton
     }
 
-    /// Returns a joint's name, or `#NODE` if the name is empty or not unique, as joint maps have it.
+    /// Returns a joint's name, or `#NODE` if the name is empty or not unique, as in joint maps.
     pub fn label(&self, joint: JointIndex) -> String {
         let name = self.name(joint);
         let is_unique = self.has_unique_name.get_or_init(|| unique(&self.names))[joint.get()];
         if is_unique && !name.is_empty() { name.to_owned() } else { format!("#{}", self.source_index(joint)) }
     }
 
-    /// Returns a copy whose rest pose has the local transforms of another pose; morph weights stay.
+    /// Returns a copy whose rest pose has the local transforms of another pose; morph weights are unchanged.
     pub fn with_rest(&self, pose: &Pose) -> Self {
         let mut skeleton = self.clone();
         for (joint, local) in self.joints().zip(pose.locals()) {
@@ -233,7 +233,7 @@ fn sorted_by_depth(parents: &[Option<JointIndex>]) -> Vec<(JointIndex, Option<Jo
     joints
 }
 
-/// Walks up from a joint that no root reaches. The joint itself may only hang below the cycle.
+/// Walks up from a joint that no root reaches, as the joint itself may merely be below the cycle.
 fn first_on_cycle(joints: &[Joint], mut joint: usize) -> usize {
     let mut seen = vec![false; joints.len()];
     while !std::mem::replace(&mut seen[joint], true) {

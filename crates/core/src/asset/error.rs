@@ -1,4 +1,4 @@
-//! Why parts do not make an asset.
+//! Why parts don't form a valid asset.
 
 use crate::mesh::GeometryError;
 

@@ -61,7 +61,7 @@ impl Slot {
         Self::ALL.iter().copied().find(|slot| slot.name() == name)
     }
 
-    /// Returns the slot on the other side; a slot in the middle is its own.
+    /// Returns the slot on the other side; a slot in the middle mirrors to itself.
     pub fn mirrored(self) -> Self {
         let name = self.name();
         let other = match (name.strip_prefix("left"), name.strip_prefix("right")) {

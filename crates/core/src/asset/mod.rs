@@ -100,7 +100,7 @@ pub struct MeshInstance {
 }
 
 impl MeshInstance {
-    /// Returns an instance that only its node places.
+    /// Returns an instance placed by its node alone.
     pub fn new(joint: JointIndex, mesh: usize, skin: Option<usize>) -> Self {
         Self { joint, mesh, skin, joint_from_mesh: Affine3A::IDENTITY }
     }
@@ -109,7 +109,7 @@ impl MeshInstance {
 /// An encoded image, its size already read from the header and within bounds.
 #[derive(Debug, Clone, Default)]
 pub struct Image {
-    /// The file's name for it, else its URI; may be empty.
+    /// Its name in the file, else its URI; may be empty.
     pub name: String,
     /// By content: `image/png`, `image/jpeg`, `image/webp`, `image/avif` or `image/ktx2`. Empty if the image is unavailable.
     pub mime: &'static str,
@@ -128,13 +128,13 @@ pub struct Camera {
     pub name: String,
     /// The node that has the camera.
     pub joint: JointIndex,
-    /// Its number in the file; several nodes can have the same camera.
+    /// Its index in the file; several nodes can have the same camera.
     pub number: usize,
     /// Lens and clip planes.
     pub projection: CameraProjection,
 }
 
-/// A camera's lens and clip planes, as glTF has them; distances in metres. The viewport decides the aspect ratio.
+/// A camera's lens and clip planes, as in glTF; distances in metres. The viewport decides the aspect ratio.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CameraProjection {
     /// glTF's `camera.perspective`.
@@ -165,7 +165,7 @@ pub const MAX_LIGHTS: usize = 8;
 pub struct Light {
     /// The node that has the light.
     pub joint: JointIndex,
-    /// Its number in the file; several nodes can have the same light.
+    /// Its index in the file; several nodes can have the same light.
     pub number: usize,
     /// Linear RGB.
     pub color: Vec3,
@@ -194,7 +194,7 @@ pub enum LightKind {
 }
 
 impl Camera {
-    /// Returns the projection with animated properties.
+    /// Returns the projection with animated properties applied.
     pub fn animated(&self, values: &PropertyValues) -> CameraProjection {
         let mut projection = self.projection;
         for (target, value) in values.iter() {
@@ -209,7 +209,7 @@ impl Camera {
 }
 
 impl CameraProjection {
-    /// Sets an animated property; one that only the other kind of camera has is ignored.
+    /// Sets an animated property; ignored if only the other kind of camera has it.
     fn set(&mut self, property: CameraProperty, value: f32) {
         match (self, property) {
             (Self::Perspective { y_fov_radians, .. }, CameraProperty::YFov) => *y_fov_radians = value,
@@ -223,7 +223,7 @@ impl CameraProjection {
 }
 
 impl Light {
-    /// Returns the light with animated properties.
+    /// Returns the light with animated properties applied.
     pub fn animated(&self, values: &PropertyValues) -> Self {
         let mut light = *self;
         for (target, value) in values.iter() {
@@ -245,7 +245,7 @@ impl Light {
 }
 
 impl Asset {
-    /// Checks every index once.
+    /// Validates all indices.
     pub fn new(parts: AssetParts) -> Result<Self, AssetError> {
         parts.check()?;
         Ok(Self { parts, warnings: Warnings::default() })
@@ -284,7 +284,7 @@ impl Deref for Asset {
     }
 }
 
-/// A skeleton and nothing else.
+/// An asset with nothing but a skeleton.
 impl From<Skeleton> for Asset {
     fn from(skeleton: Skeleton) -> Self {
         Self { parts: AssetParts { skeleton, ..AssetParts::default() }, warnings: Warnings::default() }
@@ -369,7 +369,7 @@ impl AssetParts {
     }
 
     fn check_geometry(&self) -> Result<(), AssetError> {
-        // A mesh may be used with several skins; its influences have to fit the smallest.
+        // A mesh may be used with several skins; its influences must fit the smallest.
         let mut smallest_skin = vec![None; self.meshes.len()];
         for instance in &self.instances {
             if let Some(skin) = instance.skin {

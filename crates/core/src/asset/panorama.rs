@@ -1,4 +1,4 @@
-//! Light from all directions as an image.
+//! Environment light as an image.
 
 use std::f32::consts::{PI, TAU};
 
@@ -14,7 +14,8 @@ pub struct Panorama {
 }
 
 impl Panorama {
-    /// `pixels` are linear RGB, row by row from the top; `None` if they are not `width` times `height`, or not at least one.
+    /// `pixels` are linear RGB, row by row from the top; `None` unless there are `width` times `height` of them, at
+    /// least one.
     pub fn new(width: usize, height: usize, pixels: Vec<Vec3>) -> Option<Self> {
         let fits = !pixels.is_empty() && width.checked_mul(height) == Some(pixels.len());
         fits.then_some(Self { width, height, pixels })
@@ -35,7 +36,7 @@ impl Panorama {
         &self.pixels
     }
 
-    /// Returns the radiance from a unit direction, filtered between four pixels.
+    /// Returns the radiance from a unit direction, bilinearly filtered.
     pub fn radiance(&self, direction: Vec3) -> Vec3 {
         let x = (direction.z.atan2(direction.x) / TAU + 0.5) * self.width as f32 - 0.5;
         let y = direction.y.clamp(-1.0, 1.0).acos() / PI * self.height as f32 - 0.5;
@@ -65,7 +66,7 @@ mod tests {
             assert_eq!(panorama.radiance(direction), color, "{direction}");
         }
         assert_eq!(panorama.radiance(Vec3::new(1.0, -0.5, 1.0).normalize()), Vec3::ZERO);
-        // Half way between the last and the first column.
+        // Halfway between the last and the first column.
         assert!(panorama.radiance(up(-1.0, 0.0)).abs_diff_eq(Vec3::new(1.0, 0.5, 0.5), 1e-5));
         assert_eq!(Panorama::new(2, 2, vec![Vec3::ZERO; 3]), None);
     }

@@ -1,4 +1,4 @@
-//! Which joints of a scene are visible: all that neither the file nor a clip hides, by themselves or with a joint above.
+//! Visibility of a scene's joints: all are visible except those that the file or a clip hides, and their descendants.
 
 use super::Asset;
 use crate::anim::{PropertyTarget, PropertyValues};
@@ -8,7 +8,7 @@ use crate::anim::{PropertyTarget, PropertyValues};
 pub struct SceneJoints {
     /// Whether the joint belongs to the scene.
     pub in_scene: Vec<bool>,
-    /// Whether what is on the joint is shown: it belongs to the scene and is not hidden.
+    /// Whether the joint is shown: it belongs to the scene and is not hidden.
     pub visible: Vec<bool>,
     /// [`Self::visible`] at rest.
     pub visible_at_rest: Vec<bool>,
@@ -17,7 +17,7 @@ pub struct SceneJoints {
 }
 
 impl SceneJoints {
-    /// The joints of a scene at rest; those of all scenes without one.
+    /// Returns the flags of a scene at rest; without a scene, of all scenes.
     pub fn new(asset: &Asset, scene: Option<usize>) -> Self {
         let in_scene = asset.joints_in_scene(scene);
         let mut joints = Self { in_scene, is_animated: true, ..Self::default() };
@@ -46,7 +46,7 @@ impl SceneJoints {
         for joint in asset.skeleton.joints() {
             visible[joint.get()] &= asset.skeleton.parent(joint).is_none_or(|parent| visible[parent.get()]);
         }
-        // Last: a scene may contain a node without its parent, which hides it all the same.
+        // Last: a scene may contain a node without its parent, which still hides it.
         for (visible, in_scene) in visible.iter_mut().zip(in_scene) {
             *visible &= *in_scene;
         }

@@ -1,4 +1,4 @@
-//! Problems that do not prevent loading, but that the user is told.
+//! Problems that do not prevent loading but are reported to the user.
 
 use std::fmt;
 
@@ -23,9 +23,9 @@ pub enum Warning {
     InfluencesDropped {
         /// The primitive, such as `meshes[0].primitives[1]`, or the .attach file.
         mesh: String,
-        /// Most influences that one vertex had.
+        /// Largest number of influences that a vertex had.
         found: usize,
-        /// Most influences that a vertex has now.
+        /// Largest number of influences that a vertex has now.
         kept: usize,
         /// Largest weight dropped, as a fraction of its vertex's sum.
         largest_lost_weight: f32,
@@ -147,7 +147,7 @@ impl fmt::Display for Warning {
 pub struct Warnings(pub Vec<Warning>);
 
 impl Warnings {
-    /// Limit per code, so that a broken file does not fill the memory.
+    /// Limit per code, so that a broken file can't exhaust memory.
     const MAX_PER_CODE: usize = 100;
 
     /// Adds a warning unless it was added before or its code has reached the limit.

@@ -23,7 +23,7 @@ pub struct Constraint {
 pub enum ConstraintKind {
     /// The source's rotation relative to its rest, about this axis of the joint only. A unit vector.
     Roll(Vec3),
-    /// The direction to the source, which this axis of the joint points in. A unit vector.
+    /// The direction to the source; this axis of the joint is aimed along it. A unit vector.
     Aim(Vec3),
     /// The source's rotation relative to its rest.
     Rotation,

@@ -49,7 +49,7 @@ pub struct Collider {
     pub joint: JointIndex,
     /// Centre of a sphere, one end of a capsule, or a point on a plane.
     pub offset: Vec3,
-    /// The other end of a capsule; the offset again for a sphere.
+    /// The other end of a capsule; equal to the offset for a sphere.
     pub tail: Vec3,
     /// Radius of a sphere or capsule.
     pub radius: f32,

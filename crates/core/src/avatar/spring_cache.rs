@@ -10,7 +10,7 @@ use crate::anim::{Pose, Skeleton, TimeRange};
 /// Steps per second. Drag acts per step, and spring bones are usually tuned for this rate.
 const RATE: f64 = 60.0;
 
-/// Steps in which the tails settle in the first pose.
+/// Steps for the tails to settle in the first pose.
 const SETTLE_STEPS: u32 = 60;
 
 /// Maximum number of warm-up steps before a section: from the end of a loop, or from the section before.

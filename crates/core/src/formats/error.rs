@@ -109,7 +109,7 @@ pub enum LoadError {
     },
 }
 
-/// Files above the model's folder are not looked for, so they may well exist.
+/// Files above the model's folder are not searched for, so they may well exist.
 fn where_missing(uri: &str) -> &'static str {
     if uri.split(['/', '\\']).any(|part| part == "..") || uri.starts_with('/') {
         "may lie outside the model's folder and is not among the files"
@@ -155,7 +155,8 @@ impl Problem {
         Self::Invalid { place: place.into(), expected: expected.into(), found: found.to_string() }
     }
 
-    /// Reports a problem with a part that is left out, unless it concerns the whole model. `outcome` says what happens instead.
+    /// Reports a problem with a part that is left out, unless it concerns the whole model. `outcome` says what happens
+    /// instead.
     pub fn leave_out(self, code: &'static str, outcome: &str, warnings: &mut Warnings) -> Result<(), Self> {
         let Self::Invalid { place, expected, found } = self else { return Err(self) };
         let problem = format!("expected {expected}, found {found}; {outcome}");
@@ -175,7 +176,7 @@ impl Problem {
     }
 }
 
-/// Places are those of a glTF, the only format whose files can lead here: the other readers check as they go.
+/// Names places as in a glTF, the only format whose files can fail here: the other readers check as they go.
 impl From<AssetError> for Problem {
     fn from(problem: AssetError) -> Self {
         match problem {

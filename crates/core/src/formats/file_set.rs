@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::LoadError;
 use super::limits::{MAX_ARCHIVE_FILES, MAX_READ_BYTES};
 
-/// Deflate makes nothing smaller than this.
+/// Maximum compression ratio of Deflate.
 const MAX_COMPRESSION: u64 = 1032;
 
 /// Files by path, with `/` between folders, in the order they were added.
@@ -38,7 +38,8 @@ impl FileSet {
     /// Adds a file, or the files inside it if it is a zip archive. Returns its normalized name.
     ///
     /// # Errors
-    /// If the archive cannot be read, or unpacks to more than is kept in memory. Some of its files may have been added then.
+    /// If the archive cannot be read, or unpacks to more than is kept in memory. Some of its files may already have
+    /// been added.
     pub fn add(&mut self, name: impl Into<String>, bytes: impl Into<Arc<[u8]>>) -> Result<String, LoadError> {
         let (name, bytes) = (join("", &name.into()), bytes.into());
         if bytes.starts_with(b"PK\x03\x04") {
@@ -49,7 +50,8 @@ impl FileSet {
         Ok(name)
     }
 
-    /// Adds a file as it is, replacing any file of the same name. Archives are left packed, and their content is not found.
+    /// Adds a file as it is, replacing any file of the same name. Archives are not unpacked, so their contents are not
+    /// found.
     pub fn insert(&mut self, name: impl Into<String>, bytes: impl Into<Arc<[u8]>>) {
         let (name, bytes) = (join("", &name.into()), bytes.into());
         match self.files.iter_mut().find(|(other, _)| *other == name) {
@@ -58,7 +60,7 @@ impl FileSet {
         }
     }
 
-    /// Replaces a file by what it was converted into.
+    /// Replaces a file with what it was converted into.
     pub(super) fn convert(&mut self, name: &str, bytes: impl Into<Arc<[u8]>>, conversion: Conversion) {
         self.insert(name, bytes);
         let known = self.conversions.iter_mut().find(|(of, _)| of == name);
@@ -139,7 +141,7 @@ impl FileSet {
                 let max = MAX_READ_BYTES >> 20;
                 error(format!("packed and unpacked, more than {max} MiB in all, the most that is read at once"))
             };
-            // Trusting an oversized header saves work; one that understates the size is caught while unpacking.
+            // An oversized header is trusted to save work; one that understates the size is caught while unpacking.
             if entry.size() > bytes_left {
                 return Err(too_large());
             }
@@ -160,7 +162,7 @@ pub(super) fn bare_name(path: &str) -> &str {
     path.rsplit(['/', '\\']).next().unwrap_or(path)
 }
 
-/// Returns the name in the set of a file `part` that was made of `base`, and the URI by which `base` refers to it.
+/// Returns the name in the set of a file `part` that was made from `base`, and the URI by which `base` refers to it.
 pub(super) fn beside(base: &str, part: &str) -> (String, String) {
     let uri = format!("{}.{part}", bare_name(base));
     (join(base, &uri), uri)
@@ -172,8 +174,8 @@ pub fn file_stem(name: &str) -> &str {
     bare.rsplit_once('.').map_or(bare, |(stem, _)| stem)
 }
 
-/// Cuts the query and the fragment off a URL, which may contain slashes of their own. In a path, folders may be named with `?`
-/// or `#`.
+/// Strips the query and the fragment, which may contain slashes of their own, from a URL. Folder names in a path may
+/// contain `?` or `#`.
 pub(super) fn without_query(name: &str) -> &str {
     let start = if name.contains("://") { 0 } else { name.len() - bare_name(name).len() };
     let end = name[start..].find(['?', '#']).map_or(name.len(), |length| start + length);

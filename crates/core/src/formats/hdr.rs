@@ -1,7 +1,7 @@
-//! Radiance's RGBE images (.hdr): text lines up to an empty one, a line with the size, then rows of pixels with a common exponent
-//! for red, green and blue. Rows are plain, run-length encoded with a marker pixel (the old way), or component by component
-//! (the usual way). `EXPOSURE` is ignored, as in three.js and the Khronos viewer. Images in XYZ or with other orientations than
-//! left to right from the top are rare and refused.
+//! Radiance's RGBE images (.hdr): text lines up to an empty one, a line with the size, then rows of pixels with a
+//! common exponent for red, green and blue. Rows are plain, run-length encoded with a marker pixel (the old way), or
+//! component by component (the usual way). `EXPOSURE` is ignored, as in three.js and the Khronos viewer. Images in XYZ,
+//! or with an orientation other than left to right from the top, are rare and rejected.
 
 use glam::Vec3;
 
@@ -15,7 +15,7 @@ const MAX_SIZE: usize = 16_384;
 /// Why an .hdr file cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum HdrError {
-    /// A line of the header is not what it has to be.
+    /// A line of the header is invalid.
     #[error("header: expected {expected}, found {found}")]
     Header {
         /// What the line should be.
@@ -81,7 +81,7 @@ fn header(expected: &'static str, found: Option<&[u8]>) -> HdrError {
     HdrError::Header { expected, found }
 }
 
-/// Takes a line, without its end; none at the end of the file.
+/// Reads a line, without its end; `None` at the end of the file.
 fn line<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
     let end = rest.iter().position(|&byte| byte == b'\n')?;
     let text = &rest[..end];
@@ -112,7 +112,7 @@ fn read_rows(mut rest: &[u8], width: usize, height: usize) -> Result<Panorama, H
     Panorama::new(columns, rows, pixels).ok_or(HdrError::Size { width, height })
 }
 
-/// What graphics devices hold in half precision; brighter pixels are as bright as this.
+/// The largest number in half precision; brighter pixels are clamped to it.
 const MAX_RADIANCE: f32 = 65_504.0;
 
 fn radiance([red, green, blue, exponent]: [u8; 4]) -> Vec3 {
@@ -158,7 +158,8 @@ fn read_row(rest: &mut &[u8], row: &mut [[u8; 4]]) -> Result<(), &'static str> {
     Ok(())
 }
 
-/// A pixel of 1, 1, 1 repeats the one before as often as its last byte says; such pixels in a row make up a larger number.
+/// A marker pixel (1, 1, 1, n) repeats the pixel before it n times; the n of consecutive markers are base-256 digits of
+/// a larger count.
 fn read_plain_row(rest: &mut &[u8], row: &mut [[u8; 4]]) -> Result<(), &'static str> {
     let (mut column, mut shift) = (0, 0);
     while column < row.len() {

@@ -27,7 +27,7 @@ pub const MAX_JSON_OBJECTS: usize = 1 << 21;
 /// Values in a JSON text that has to be corrected, and is held as a tree.
 pub const MAX_JSON_VALUES: usize = 1 << 24;
 
-/// What a reader counts in all of a model or motion.
+/// What a reader counts over a whole model or motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Limit {
     /// Bytes of vertices, indices, keys and embedded images.
@@ -62,7 +62,7 @@ impl Limit {
         }
     }
 
-    /// What is counted, as messages and docs/limits.md have it.
+    /// What is counted, as messages and docs/limits.md call it.
     pub fn name(self) -> &'static str {
         match self {
             Self::DataBytes => "MiB of data",

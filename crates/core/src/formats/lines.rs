@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 pub const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 
-/// Characters of an unexpected word that a message quotes.
+/// Maximum length in characters of an unexpected word quoted in a message.
 const MAX_QUOTED: usize = 40;
 
 /// The reading position. Lines end with LF, CR LF or CR; line numbers start at 1.

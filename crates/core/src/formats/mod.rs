@@ -67,12 +67,12 @@ pub fn missing_files(files: &FileSet) -> Vec<String> {
     missing
 }
 
-/// What a file does not state and the user may know.
+/// What a file does not state but the user may know.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct LoadOptions {
-    /// Metres per unit of a .bvh. None: guessed from the skeleton's size.
+    /// Metres per unit of a .bvh. `None` guesses it from the skeleton's size.
     pub bvh_unit_metres: Option<f32>,
-    /// Whether Z is up in a .bvh (else Y). None: guessed from the rest pose and the motion.
+    /// Whether Z is up in a .bvh (else Y). `None` guesses it from the rest pose and the motion.
     pub bvh_z_up: Option<bool>,
 }
 
@@ -257,7 +257,7 @@ fn foreign_format(name: &str) -> Option<&'static str> {
     }
 }
 
-/// The file extension in lower case, also of a URL with a query.
+/// The file extension in lower case, even if a URL has a query.
 fn extension(name: &str) -> String {
     let bare = bare_name(without_query(name));
     bare.rsplit_once('.').map_or_else(String::new, |(_, extension)| extension.to_lowercase())

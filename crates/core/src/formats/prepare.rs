@@ -45,7 +45,7 @@ impl Part {
         }
     }
 
-    /// Runs the decoder in this process. A panic in it is an error.
+    /// Runs the decoder in this process. A panic in it is returned as an error.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn run(self, input: &[u8]) -> Answer {
         let convert = match self {
@@ -74,7 +74,7 @@ pub struct Preparation {
 /// What the part's output is.
 #[derive(Debug)]
 enum Step {
-    /// A GLB in the place of a file of this format.
+    /// A GLB that replaces a file of this format.
     File(&'static str),
     /// Meshes of a glTF.
     Meshes(draco::Decoding),
@@ -88,7 +88,7 @@ impl Preparation {
         &self.file
     }
 
-    /// Puts what the part returned in the place of the file.
+    /// Replaces the file with the part's output.
     ///
     /// # Errors
     /// If the part returned an error.
@@ -112,7 +112,7 @@ impl Preparation {
 /// Returns a conversion that can be done with the files that are in the set. `None` once there is none left.
 ///
 /// # Errors
-/// If a file describes its compressed data wrongly.
+/// If a file describes its compressed data incorrectly.
 pub fn next_preparation(files: &FileSet) -> Result<Option<Preparation>, LoadError> {
     for (name, bytes) in files.iter() {
         let preparation = |part, input, step| Ok(Some(Preparation { part, input, file: name.to_owned(), step }));

@@ -23,9 +23,9 @@ pub struct BorrowedClip {
     pub motion: usize,
     /// Index into the motion's clips.
     pub source_clip: usize,
-    /// What it is called if its file gives it no name: the file, and its number there if the file has several.
+    /// Title of a clip without a name: its file, and its number there if the file has several.
     pub(super) file_title: String,
-    /// The joint whose travel is the character's. `None` if nothing is translated.
+    /// The root-motion joint, which carries the character. `None` if nothing is translated.
     pub root: Option<JointIndex>,
     /// Frame rate the source was authored at; retargeting may add keys between its frames.
     pub frames_per_sec: f64,
@@ -33,7 +33,7 @@ pub struct BorrowedClip {
     pub model_from_source: Affine3A,
     /// Which pose the motion is measured from, and how sure that is.
     pub motion_rest: FoundRest,
-    /// What planting its feet did; `None` if the map doesn't plant them.
+    /// Result of foot planting; `None` if the map doesn't plant the feet.
     pub planting: Option<Planting>,
     /// Every pair of the joint map, to compare the model with the source beside it.
     pub pairs: Vec<StagePair>,
@@ -50,8 +50,8 @@ impl BorrowedClip {
         self.map.rest.motion
     }
 
-    /// The clip as it comes from each rest of the motion, in the order of [`RestChoice::ALL`]; made on first use. Where a
-    /// rest gives none, this clip stands in.
+    /// The clip retargeted from each rest of the motion, in the order of [`RestChoice::ALL`], baked on first use. Falls
+    /// back to this clip for a rest from which that fails.
     pub(super) fn clips_by_rest(&self, model: Body<'_>, motion: Body<'_>) -> &[Clip] {
         let from = |choice| {
             let mut map = ResolvedMap::clone(&self.map);

@@ -120,7 +120,7 @@ impl InstanceExtent {
         Self { joints, morph_reach }
     }
 
-    /// Bounds of the offsets that these morph weights can cause, in mesh space; none if they cause none.
+    /// Bounds of the offsets that these morph weights can cause, in mesh space; `None` if they cause none.
     fn reach(&self, weights: &[f32]) -> Option<Bounds> {
         let mut sum: Option<Bounds> = None;
         for (reach, &weight) in self.morph_reach.iter().zip(weights) {

@@ -14,7 +14,7 @@ pub enum ImageData {
         /// Red, green, blue and alpha bytes of each pixel.
         pixels: Vec<u8>,
     },
-    /// A KTX2 image with its mip levels, in a format that the device has.
+    /// A KTX2 image with its mip levels, in a format that the device supports.
     Ktx2(Texture),
     /// The browser's bitmap, created with `premultiplyAlpha: "none"` and `colorSpaceConversion: "none"`.
     #[cfg(target_arch = "wasm32")]
@@ -22,7 +22,7 @@ pub enum ImageData {
 }
 
 impl ImageData {
-    /// Returns the GPU memory in bytes, mip levels included: a third on top.
+    /// Returns the GPU memory in bytes, including mip levels (a third more).
     pub fn device_bytes(&self) -> u64 {
         match self {
             Self::Ktx2(texture) if texture.format != Format::Rgba8 => texture.data.len() as u64,

@@ -79,7 +79,7 @@ fn avatar_document(asset: &Asset) -> Value {
     })
 }
 
-/// `properties` are JSON pointers: what the clip animates besides joints.
+/// `properties` are JSON pointers to what the clip animates besides joints.
 fn clip_document(asset: &Asset, index: usize, clip: &Clip) -> Value {
     let interpolations = || {
         let properties = clip.properties().iter().map(|channel| channel.interpolation);

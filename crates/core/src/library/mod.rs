@@ -34,7 +34,7 @@ pub struct Loaded {
 /// A loaded environment.
 #[derive(Debug, Clone)]
 pub struct Environment {
-    /// What a view calls it: a URL or a file's name.
+    /// The URL or file name by which views refer to it.
     pub origin: String,
     /// Its light.
     pub panorama: Arc<Panorama>,
@@ -81,15 +81,15 @@ pub struct Library {
 }
 
 impl Library {
-    /// Models held at once; each keeps its meshes and images.
+    /// Maximum number of models held at once; each keeps its meshes and images.
     pub const MAX_MODELS: usize = 8;
-    /// Motions held at once; every clip of each is retargeted, which takes time and memory.
+    /// Maximum number of motions held at once; every clip of each is retargeted, which takes time and memory.
     pub const MAX_MOTIONS: usize = 64;
 
-    /// Environments held at once; undo and other links come back to them.
+    /// Maximum number of environments held at once; undo and other links may return to them.
     pub const MAX_ENVIRONMENTS: usize = 4;
 
-    /// Adds an environment in place of one of the same origin.
+    /// Adds an environment, replacing any of the same origin.
     pub fn add_environment(&mut self, environment: Environment) {
         self.environments.retain(|known| known.origin != environment.origin);
         if self.environments.len() == Self::MAX_ENVIRONMENTS {
@@ -103,7 +103,7 @@ impl Library {
         &self.environments
     }
 
-    /// Finds an environment by what a view calls it.
+    /// Finds an environment by its origin.
     pub fn environment(&self, origin: &str) -> Option<&Environment> {
         self.environments.iter().find(|known| known.origin == origin)
     }
@@ -224,9 +224,9 @@ impl Library {
         self.baked_with.as_ref()?.get(motion)?.as_ref()
     }
 
-    /// Bakes the active model's borrowed clips if their inputs have changed, with a map per motion; returns whether they had.
-    /// A motion without a map gets the proposed one. Clips of motions whose map is unchanged are kept. Motions that fail are
-    /// reported by [`Library::borrow_errors`]; the others still work.
+    /// Bakes the active model's borrowed clips if their inputs have changed, with one map per motion; returns whether
+    /// they had changed. A motion without a map gets the proposed one. Clips of motions whose map is unchanged are
+    /// kept. Motions that fail are reported by [`Library::borrow_errors`]; the others still work.
     pub fn borrow_each(&mut self, maps: Vec<Option<JointMap>>) -> bool {
         let before = self.baked_with.take();
         let share = |(index, map): (usize, Option<JointMap>)| {
@@ -245,7 +245,7 @@ impl Library {
         is_changed
     }
 
-    /// Bakes the clips of motions whose map is not the one from before.
+    /// Bakes the clips of motions whose map differs from the one in `before`.
     fn bake(&mut self, before: &[Option<Arc<JointMap>>], maps: &[Option<Arc<JointMap>>]) {
         self.borrow_errors.clear();
         let active = self.active;
@@ -280,7 +280,7 @@ impl Library {
         self.measured(clip).map_or(&[], |(_, tracks)| tracks)
     }
 
-    /// A borrowed clip as it comes from another rest of its motion; none for the model's own clips.
+    /// A borrowed clip retargeted from another rest of its motion; `None` for the model's own clips.
     pub fn clip_from_rest(&self, clip: usize, rest: RestChoice) -> Option<&Clip> {
         let model = self.active()?;
         let borrowed = model.borrowed(clip)?;

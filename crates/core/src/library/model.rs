@@ -118,7 +118,7 @@ impl Model {
         self.borrowed(clip).map_or(&[], |borrowed| &borrowed.layers)
     }
 
-    /// Crossfade between two clips as set in the joint maps of borrowed ones. None is the rest pose.
+    /// Crossfade between two clips as set in the joint maps of borrowed ones. `None` is the rest pose.
     pub fn crossfade_secs(&self, from: Option<usize>, to: Option<usize>) -> f64 {
         let secs =
             |clip: Option<usize>| clip.and_then(|clip| self.borrowed(clip)).map_or(0.0, |clip| clip.crossfade_secs);
@@ -146,7 +146,7 @@ impl Model {
         Body { asset: &self.asset, slots: &self.recognized().0 }
     }
 
-    /// Bytes of GPU memory that the textures take.
+    /// GPU memory of the textures in bytes.
     pub fn texture_bytes(&self) -> u64 {
         self.images.iter().flatten().map(ImageData::device_bytes).sum()
     }
@@ -177,7 +177,7 @@ impl Model {
         self.is_placeholder
     }
 
-    /// What a model without a skeleton lacks, after its name.
+    /// Message about a model without a skeleton, to follow its name.
     pub const NO_SKELETON: &str =
         "has no skeleton that a motion could move; bind its mesh to one and export it again with its skin";
 
@@ -222,9 +222,8 @@ impl Model {
         self.extent.rest()
     }
 
-    /// Conservative bounds of a pose: encloses every vertex (nearly, for dual quaternions), a little loose where joints
-    /// bend.
-    /// `world_from_joint` has one entry per joint. With no mesh in sight, the bounds of the joints.
+    /// Conservative bounds of a pose: they enclose every vertex (nearly, for dual quaternions) and are a little loose
+    /// where joints bend. `world_from_joint` has one entry per joint. If no mesh is visible, the bounds of the joints.
     pub fn pose_bounds(&self, world_from_joint: &[Affine3A], morph_weights: &[f32], scene: &SceneJoints) -> Bounds {
         self.extent.of_pose(&self.asset, &self.rig, world_from_joint, morph_weights, scene)
     }
@@ -250,8 +249,8 @@ impl Model {
         bounds
     }
 
-    /// The joint whose travel is the character's in a clip: the topmost translated joint of the skin, else the topmost
-    /// translated joint. None if nothing is translated.
+    /// The root-motion joint of a clip, which carries the character: the topmost translated joint of the skin, else the
+    /// topmost translated joint. `None` if nothing is translated.
     pub fn root_of_clip(&self, clip: usize) -> Option<JointIndex> {
         match self.borrowed(clip) {
             Some(borrowed) => borrowed.root,

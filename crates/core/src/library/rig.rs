@@ -13,7 +13,7 @@ pub struct Rig {
     skin_joints: usize,
 }
 
-/// From a joint to one of its children; without a tail at the end of a chain.
+/// A bone from a joint to one of its children; at the end of a chain, it has no tail.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RigBone {
     /// The joint it starts from.
@@ -119,7 +119,7 @@ fn fill_gaps(asset: &Asset, real: &mut [bool]) {
     }
 }
 
-/// Finds the joint whose travel is the character's in a clip for this asset.
+/// Finds the root-motion joint of a clip for this asset.
 pub(super) fn root_of(asset: &Asset, clip: &Clip) -> Option<JointIndex> {
     root_of_clip(asset, clip, &skin_flags(asset))
 }

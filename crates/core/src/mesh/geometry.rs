@@ -61,7 +61,7 @@ pub struct Geometry {
     pub topology: Topology,
     /// The number of positions is the number of vertices.
     pub positions: Vec<Vec3>,
-    /// Unit length. If empty, triangles are drawn flat or, if the view asks for it, with [`super::smooth_normals`].
+    /// Unit length. If empty, triangles are flat-shaded or, if the view asks for it, use [`super::smooth_normals`].
     pub normals: Vec<Vec3>,
     /// xyz unit length, w the bitangent's sign.
     pub tangents: Vec<Vec4>,
@@ -73,7 +73,7 @@ pub struct Geometry {
     pub indices: Vec<u32>,
     /// Joints and weights; empty if the primitive has none.
     pub influences: Influences,
-    /// As many as the other primitives of the mesh have.
+    /// The same number in all primitives of the mesh.
     pub morph_targets: Vec<MorphTarget>,
     /// Index into the asset's materials; `None` for the default material.
     pub material: Option<usize>,
@@ -156,8 +156,8 @@ pub enum GeometryError {
     },
 }
 
-/// Returns the position of the first index that is not below `count`. Looks for the largest first: without early exit, that
-/// search is vectorized.
+/// Returns the position of the first index that is not below `count`. Finds the maximum first: without an early exit,
+/// that search is vectorized.
 pub fn first_not_below<T: Copy + Ord + TryInto<usize>>(indices: &[T], count: usize) -> Option<usize> {
     let is_outside = |index: T| index.try_into().map_or(true, |index| index >= count);
     let largest = indices.iter().copied().max()?;

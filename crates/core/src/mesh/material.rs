@@ -56,7 +56,7 @@ pub struct Material {
     pub emissive_texture: Option<TextureRef>,
     /// Clearcoat, sheen, transmission and so on; `None` for plain metallic-roughness.
     pub lobes: Option<Box<Lobes>>,
-    /// Shades it as MToon, which has no lobes, metalness, roughness, occlusion or vertex colours.
+    /// MToon shading, which has no lobes, metalness, roughness, occlusion or vertex colours.
     pub toon: Option<Box<Toon>>,
 }
 
@@ -128,7 +128,7 @@ impl Material {
         }
     }
 
-    /// Shades it as MToon, and drops everything that MToon doesn't use.
+    /// Switches to MToon shading and drops everything that MToon doesn't use.
     pub fn shade_as_toon(&mut self, toon: Toon) {
         self.toon = Some(Box::new(toon));
         self.lobes = None;

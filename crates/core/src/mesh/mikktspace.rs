@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3, Vec4};
 
 /// No face or group.
 const NONE: u32 = u32::MAX;
-/// Faces compared pairwise at an edge or around a vertex. Only hostile files have more.
+/// Maximum number of faces compared pairwise at an edge or around a vertex. Only hostile files have more.
 const MAX_COMPARED: usize = 64;
 
 struct Face {
@@ -212,7 +212,7 @@ fn on_plane(vector: Vec3, normal: Vec3) -> Vec3 {
     (vector - normal * normal.dot(vector)).normalize_or_zero()
 }
 
-/// Whether two faces at a vertex may share a tangent, that is, theirs are not exactly opposed.
+/// Whether two faces at a vertex may share a tangent, that is, their own are not exactly opposite.
 fn agree(a: &Face, b: &Face, normal: Vec3) -> bool {
     let above = |a: Vec3, b: Vec3| on_plane(a, normal).dot(on_plane(b, normal)) > -1.0;
     a.any || b.any || std::ptr::eq(a, b) || (above(a.along_u, b.along_u) && above(a.along_v, b.along_v))

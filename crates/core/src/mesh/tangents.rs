@@ -4,8 +4,8 @@ use glam::{Vec2, Vec3, Vec4};
 
 use super::{Geometry, mikktspace};
 
-/// Copies of a vertex searched for a matching tangent. Corners that share a tangent are close to each other; only
-/// hostile files have thousands of copies.
+/// Maximum number of a vertex's copies searched for a matching tangent. Corners that share a tangent are close to each
+/// other; only hostile files have thousands of copies.
 const MAX_COPIES_COMPARED: usize = 64;
 
 /// Returns the tangent of every corner of a triangle list, which must have normals and these texture coordinates.

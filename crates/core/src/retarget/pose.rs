@@ -29,7 +29,7 @@ impl From<&Transform> for Local {
     }
 }
 
-/// A pose with one entry per joint. "World" is whatever `world_from_model` leads to, as a rule the frame that source and
+/// A pose with one entry per joint. "World" is whatever `world_from_model` leads to, usually the frame that source and
 /// target share.
 #[derive(Debug, Clone)]
 pub struct WorldPose {
@@ -99,7 +99,7 @@ pub fn locals_of(pose: &Pose) -> Vec<Local> {
     pose.locals().map(|local| Local::from(&local)).collect()
 }
 
-/// Reused between samples of one clip.
+/// Buffers reused between samples of one clip.
 #[derive(Debug, Default)]
 pub struct Scratch {
     cursor: SampleCursor,

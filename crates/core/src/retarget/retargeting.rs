@@ -76,7 +76,7 @@ impl<'a> Retargeting<'a> {
         Ok(Self { model, source, map, tracks, alignment, hips, rest: found })
     }
 
-    /// Which pose the motion is measured from, and how sure that is.
+    /// Returns the motion's rest pose: its origin and confidence.
     pub fn motion_rest(&self) -> FoundRest {
         self.rest
     }

@@ -29,7 +29,7 @@ pub fn files(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// Loads a file with none of the conversions that the converter relies on, but for axes and units at the root.
+/// Loads a file with none of the conversions that the converter relies on, except axes and units at the root.
 fn reference(bytes: &[u8]) -> Option<ufbx::SceneRoot> {
     let options =
         ufbx::LoadOpts { target_axes: ufbx::axes_right_handed_y_up(), target_unit_meters: 1.0, ..Default::default() };
@@ -133,8 +133,8 @@ impl Errors {
     }
 }
 
-/// Returns the angle between two axes in degrees, whichever way they point (mirroring turns some around); 0 for axes of no
-/// length.
+/// Returns the angle between two axes in degrees, whichever way they point (mirroring turns some around); 0 for axes of
+/// no length.
 fn angle(a: [f64; 3], b: [f64; 3]) -> f64 {
     let length = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
     let (la, lb) = (length(a), length(b));
@@ -219,7 +219,8 @@ fn every_file_moves_as_in_ufbx() {
         match gaitway_fbx::convert(&bytes) {
             Ok(result) => {
                 let (errors, count) = check(&bytes, &result.bytes);
-                // The converter promises 0.01 mm per metre and 0.01° for joints; a vertex may be farther from its joint.
+                // The converter promises 0.01 mm per metre and 0.01° for joints; a vertex may be farther from its
+                // joint.
                 if errors.joints > 1e-5 || errors.angles > 0.01 || errors.vertices > 1e-4 {
                     faults.push(format!("{name}: {errors:?} of size"));
                 }
@@ -261,7 +262,7 @@ const fn frame(
 const FRAMES: [Frame; 10] = [
     frame("blender_279_sausage_base_0", &["blender_279_sausage_7400_binary"], "Base", 0.0, [1.0; 3]),
     frame("blender_279_sausage_spin_15", &["blender_279_sausage_7400_binary"], "Spin", 15.0, [1.0; 3]),
-    // The same numbers as the OBJ's, but said to be centimetres; the take begins a frame earlier.
+    // The same numbers as the OBJ's, but declared as centimetres; the take begins a frame earlier.
     frame("blender_279_sausage_base_0", &["blender_279_sausage_6100_ascii"], "Base", 1.0, [0.01; 3]),
     frame("blender_279_sausage_spin_15", &["blender_279_sausage_6100_ascii"], "Spin", 16.0, [0.01; 3]),
     frame("maya_game_sausage_deform_8", &DEFORM, "deform", 8.0, [0.01; 3]),
@@ -325,7 +326,7 @@ fn frames_look_as_other_programs_exported_them() {
     }
 }
 
-/// FBX files beside what FBX2glTF made of them, at 30 keys per second.
+/// FBX files and FBX2glTF's conversions of them, at 30 keys per second.
 const OTHER_CONVERTER: [[&str; 2]; 4] = [
     ["threejs/Samba_Dancing.fbx", "threejs/Samba_Dancing.glb"],
     ["cosc422/original/Mannequin/run.fbx", "cosc422/mannequin_run.glb"],

@@ -1,4 +1,4 @@
-//! Damaged files: an error or a valid glTF, soon, and never a crash.
+//! Damaged files: an error or a valid glTF, quickly, and never a crash.
 
 use std::time::{Duration, Instant};
 
@@ -17,7 +17,7 @@ const LIMIT: Duration = Duration::from_secs(5);
 const NUMBERS: [&str; 10] =
     ["0", "-1", "1e39", "-1e308", "nan", "2147483647", "4294967295", "9223372036854775807", "1e-320", "65536"];
 
-/// Returns small files of all kinds: text made here, and real ones where there are.
+/// Returns small files of all kinds: text made here, and real ones if available.
 fn seeds() -> Vec<Vec<u8>> {
     let mut seeds = vec![text::character().into_bytes(), text::cube().into_bytes()];
     if let Some(folder) = data_folder() {
@@ -98,7 +98,7 @@ fn damaged_files_convert_or_say_why_not() {
     }
 }
 
-/// Returns the most memory that this process has used, where the system tells.
+/// Returns the peak memory of this process, where the system reports it.
 fn peak_bytes() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

@@ -16,7 +16,7 @@ struct Fbx {
 }
 
 impl Fbx {
-    /// Starts a scene of Y up and a unit in centimetres.
+    /// Starts a Y-up scene; its unit is in centimetres.
     fn new(unit: f64) -> Fbx {
         Fbx::with_axes(unit, [(1, 1), (2, 1), (0, 1)])
     }

@@ -2,7 +2,7 @@
 
 use miniz_oxide::deflate::compress_to_vec;
 
-/// Bytes of a block unpacked: small, so that a test file has several.
+/// Unpacked bytes per block: few, so that a test file has several blocks.
 const BLOCK: usize = 100;
 
 /// Returns a file of objects as text.

@@ -100,6 +100,6 @@ fn blocks() {
     check(&file(10, stream.clone()), &["a block of 10 bytes"]);
     check(&file(12, stream), &["a block of 12 bytes", "only 11"]);
     check(&file(3, vec![7]), &["a block of 3 bytes", "only 0"]);
-    // A distance beyond the beginning.
+    // A distance that reaches before the beginning.
     check(&file(3, vec![0b0000_0011, 0b0000_0010, 0]), &["a block of 3 bytes", "only 0"]);
 }

@@ -1,4 +1,5 @@
-//! Tests of the converter, on text made here. `tests/formats/x.rs` compares real files with what another program made of them.
+//! Tests of the converter, on text made here. `tests/formats/x.rs` compares real files with what another program made
+//! of them.
 
 #[path = "../../../../tests/support/damage.rs"]
 mod damage;

@@ -58,7 +58,7 @@ pub fn convert(objects: &str) -> (Glb, Vec<String>) {
     (Glb::new(&output.bytes), output.warnings)
 }
 
-/// Converts objects about which there is nothing to say.
+/// Converts objects that give no warnings.
 fn clean(objects: &str) -> Glb {
     let (glb, warnings) = convert(objects);
     assert_eq!(warnings, [""; 0]);
@@ -91,7 +91,7 @@ fn near(found: &[f64], expected: &[f64]) {
 fn all_encodings_give_the_same() {
     let as_text = text(CHARACTER);
     let expected = gaitway_x::convert(&as_text).unwrap();
-    // Comments and the GUIDs of templates are of text alone.
+    // Only text files have comments and the GUIDs of templates.
     let plain: String = CHARACTER.lines().skip(3).collect::<Vec<_>>().join("\n").replace("{ # another", "{");
     let (narrow, wide) = (binary(&plain, 4), binary(&plain, 8));
     for file in [&narrow, &wide, &packed(&as_text), &packed(&narrow), &packed(&wide)] {
@@ -168,7 +168,7 @@ fn vertices_may_be_declared_as_direct3d_has_them() {
 
 #[test]
 fn faces_of_any_size_become_triangles() {
-    // An arrow head: its fan from the first corner would cover what is outside.
+    // An arrow head: a fan from its first corner would cover area outside it.
     let concave = [[0.0, 1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 0.0, 0.0], [-1.0, -1.0, 0.0]];
     let area = |vertices: &[[f32; 3]], faces: &[&[u32]]| -> (usize, f64, f64) {
         let glb = clean(&mesh(vertices, faces, ""));
@@ -218,8 +218,8 @@ fn vertices_follow_their_joints() {
     assert_eq!(glb.list("skins")[0]["joints"], json!([0, 1, 2]), "the last is the mesh's own, for what no joint moves");
     let rest = glb.pose(None);
     let vertices = glb.vertices(&rest);
-    // In the file's space: the first vertex is bound to the hips where they are; the third follows the chest, which is turned by
-    // a quarter about Z and has its bind pose at the origin.
+    // In the file's space: the first vertex is bound to the hips where they are; the third follows the chest, which is
+    // turned by a quarter about Z and has its bind pose at the origin.
     near(&vertices[0], &[0.0, 0.0, -1.0]);
     near(&vertices[2], &[0.5 - 1.0, 2.0 + 1.0 + 1.0, -(3.0 + 1.0)]);
     let mixed = [0.25 * 0.0 + 0.75 * (0.5 - 1.0), 0.25 * 1.0 + 0.75 * 3.0, -(0.25 * 1.0 + 0.75 * 4.0)];
@@ -253,8 +253,8 @@ fn keys_are_turned_mirrored_and_timed() {
     assert_eq!(clip["name"], "Wave");
     assert!((glb.duration(0) - 1.0).abs() < 1e-6, "10 ticks of a tenth of a second");
     let end = glb.pose(Some((0, 1.0)));
-    // The quaternion 0.5, 0.5, 0.5, 0.5 is a third of a turn about (1, 1, 1) that takes X to Z there, as rows: Direct3D's
-    // quaternions of animation keys turn the other way round. In right-handed space, Z points the other way.
+    // The quaternion 0.5, 0.5, 0.5, 0.5 is a third of a turn about (1, 1, 1) that takes X to Z there, as rows:
+    // Direct3D's quaternions of animation keys turn the other way round. In right-handed space, Z points the other way.
     let hips = end.worlds[0];
     near(&hips[0][..3], &[0.0, 0.0, -2.0]);
     near(&hips[1][..3], &[4.0, 0.0, 0.0]);
@@ -284,7 +284,7 @@ fn ticks_become_seconds() {
         ("AnimTicksPerSecond { 30; }", 1, 60, 2.0, 0),
         ("", 160, 9600, 2.0, 0),
         ("AnimTicksPerSecond { 0; }", 160, 9600, 2.0, 0),
-        // Frames, counted without saying so.
+        // Keys in frames, without a declaration.
         ("", 1, 50, 2.0, 1),
         ("", 1, 20, 0.8, 1),
     ] {
@@ -348,7 +348,7 @@ fn a_sheared_frame_keeps_its_matrix() {
     let sheared = "FrameTransformMatrix { 1.0,1.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,4.0,1.0;; }";
     let glb = clean(&format!("Frame a {{ {sheared} }}"));
     assert_eq!(glb.list("nodes")[0]["matrix"], json!([1, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -4, 1]));
-    // A mirror is no shear.
+    // Mirroring isn't a shear.
     let mirror = "FrameTransformMatrix { -1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0;; }";
     let glb = clean(&format!("Frame a {{ {mirror} }}"));
     near(&glb.pose(None).worlds[0].concat(), &[-1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.]);

@@ -1,4 +1,4 @@
-//! Damaged files: an error or a valid glTF, soon, and never a crash.
+//! Damaged files: an error or a valid glTF, quickly, and never a crash.
 
 use std::time::{Duration, Instant};
 
@@ -33,7 +33,7 @@ fn damaged_files_convert_or_say_why_not() {
     let plain = CHARACTER.lines().skip(3).collect::<Vec<_>>().join("\n").replace("{ # another", "{");
     let mut seeds = vec![text(CHARACTER), binary(&plain, 4), binary(&plain, 8), packed(&binary(&plain, 4))];
     if let Some(folder) = data_folder() {
-        // The beginning: meshes, and what is cut off is missing.
+        // Only the beginning, which has meshes: the rest is missing.
         let dwarf = std::fs::read(folder.join("cosc422/original/Dwarf/dwarf.x")).unwrap();
         seeds.push(dwarf[..20_000].to_vec());
     }

@@ -58,7 +58,7 @@ impl FrameOfReference {
             let name = unit.name;
             warn(
                 "unit-guessed",
-                format!("a BVH has no unit: taken as {name}, which makes a person of about {metres:.2} m"),
+                format!("BVH files state no unit: assuming {name}, which makes a person about {metres:.2} m tall"),
             );
             unit.metres
         });
@@ -67,7 +67,7 @@ impl FrameOfReference {
             if guess {
                 warn(
                     "up-axis-guessed",
-                    "a BVH has no up axis: this one's skeleton stands along Z, which is turned up".to_owned(),
+                    "BVH files state no up axis: this skeleton stands along Z, so Z is taken as up".to_owned(),
                 );
             }
             guess
@@ -88,7 +88,7 @@ impl FrameOfReference {
     }
 }
 
-/// None if there is nothing to measure.
+/// `None` if there is nothing to measure.
 fn likely_unit(height: f64) -> Option<&'static Unit> {
     if !(height > 0.0 && height.is_finite()) {
         return None;

@@ -22,7 +22,7 @@ pub enum Axis {
 pub enum Channel {
     Position(Axis),
     Rotation(Axis),
-    /// A known kind that is not read; its numbers are skipped.
+    /// A kind that isn't supported; its numbers are skipped.
     Unknown,
 }
 

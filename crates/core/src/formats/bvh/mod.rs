@@ -11,8 +11,8 @@
 //!
 //! The format has no owner. Programs agree on the following: keywords in any case, any white space; angles in degrees; a
 //! joint's rotation is the product of its rotation channels in the order listed (the first is the outermost); position channels
-//! replace the OFFSET. Units and up axis are not stated: see [`frame_of_reference`]. End Sites give the length of the last bones
-//! and serve for guessing the size; they are not joints and have no number.
+//! replace the OFFSET. Units and up axis are not stated: see [`frame_of_reference`]. End Sites give the length of the
+//! last bones and help to guess the size; they are not joints and have no number.
 
 mod frame_of_reference;
 mod hierarchy;
@@ -75,7 +75,7 @@ fn skeleton(hierarchy: &Hierarchy, frame: &FrameOfReference) -> Result<Skeleton,
     Skeleton::new(joints).map_err(|problem| Problem::new("HIERARCHY", "a tree of joints", problem))
 }
 
-/// Names the clip after the file, which has no name for it.
+/// Names the clip after the file, since BVH has no clip names.
 fn stem(file: &str) -> &str {
     match file_stem(file) {
         "" => "motion",

@@ -21,7 +21,7 @@ pub struct Frames {
     line: usize,
 }
 
-/// Returns None if the file ends after its skeleton, or has no frame.
+/// Returns `None` if the file ends after its skeleton, or has no frame.
 pub fn read(
     lines: &mut Lines,
     hierarchy: &Hierarchy,
@@ -90,8 +90,8 @@ fn value_of<'a>(line: &'a [u8], key: &str) -> Option<&'a [u8]> {
     (same && words.next().is_none()).then(|| line[colon + 1..].trim_ascii())
 }
 
-/// Reads all numbers of all frames. A frame starts on a new line and may span several, so that a missing or surplus number is
-/// noticed where it occurs. An incomplete last frame is dropped.
+/// Reads all numbers of all frames. A frame starts on a new line and may span several, so that a missing or surplus
+/// number is reported where it occurs. An incomplete last frame is dropped.
 fn frames(
     lines: &mut Lines,
     channels: usize,
@@ -140,7 +140,7 @@ impl Frames {
         self.numbers.get(frame * channels..(frame + 1) * channels).unwrap_or_default()
     }
 
-    /// Builds a clip with one rotation channel and one translation channel for each joint that has any of the kind.
+    /// Builds a clip with at most one rotation channel and one translation channel per joint.
     pub fn into_clip(
         self,
         name: &str,
@@ -174,7 +174,7 @@ impl Frames {
                     Some(keys) => add(Keys::Translation(keys))?,
                     None => {
                         let problem =
-                            "its positions are all zero, which would fold it into its parent; its OFFSET holds"
+                            "its positions are all zero, which would collapse it onto its parent; its OFFSET is used"
                                 .to_owned();
                         let place = format!("joint {index} “{}”", text(joint.name.as_bytes()));
                         warnings.push(Warning::ChannelIgnored { clip: name.to_owned(), place, problem });
@@ -200,7 +200,7 @@ impl Frames {
         keys
     }
 
-    /// Translation keys. None if all are zero although the joint has an OFFSET.
+    /// Translation keys. `None` if all are zero although the joint has an OFFSET.
     fn translations(
         &self,
         index: usize,

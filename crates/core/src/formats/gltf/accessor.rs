@@ -15,7 +15,7 @@ use crate::formats::limits::Budget;
 /// The buffers of one file and the views into them.
 pub struct Accessors<'a> {
     pub document: &'a Document<'a>,
-    /// One per buffer; None for a buffer without data (valid as long as nothing reads it).
+    /// One per buffer; `None` for a buffer without data (valid as long as nothing reads it).
     buffers: Vec<Option<Bytes<'a>>>,
     pub budget: Budget,
 }
@@ -38,7 +38,7 @@ impl Bytes<'_> {
 
 /// Where the elements of an accessor are.
 struct Layout<'a> {
-    /// None: zeros.
+    /// `None` reads as zeros.
     bytes: Option<&'a [u8]>,
     stride: usize,
     count: usize,
@@ -47,7 +47,7 @@ struct Layout<'a> {
     normalized: bool,
 }
 
-/// The component at the start of `bytes`, normalized as §3.6.2.2 says.
+/// Returns the component at the start of `bytes`, normalized as in §3.6.2.2.
 #[inline]
 fn to_f32(component: ComponentType, bytes: &[u8], normalized: bool) -> f32 {
     match (component, normalized) {
@@ -192,7 +192,7 @@ impl<'a> Accessors<'a> {
         let read = |bytes: &[u8]| std::array::from_fn(|at| to_f32(component, &bytes[at * size..], normalized));
         let mut out = match layout.bytes {
             None => vec![[0.0; N]; layout.count],
-            // By far the most common, and fast without a match on the type for each component.
+            // By far the most common case, fast because the type is not matched for each component.
             Some(bytes) if component == ComponentType::F32 => decoded(bytes, &layout, f32::from_le_bytes),
             Some(bytes) => elements(bytes, &layout).map(read).collect(),
         };
@@ -247,7 +247,7 @@ impl<'a> Accessors<'a> {
     }
 }
 
-/// Decodes elements of `N` components of `SIZE` bytes, which has to match the layout.
+/// Decodes elements of `N` components of `SIZE` bytes, which must match the layout.
 fn decoded<T: Copy + Default, const N: usize, const SIZE: usize>(
     bytes: &[u8],
     layout: &Layout,

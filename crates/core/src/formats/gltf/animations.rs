@@ -17,7 +17,7 @@ use crate::asset::{Warning, Warnings};
 use crate::formats::error::Problem;
 use crate::mesh::Material;
 
-/// Further pointers are only counted in the warning about those that aren't shown.
+/// Further pointers to things that aren't shown are only counted in the warning.
 const MAX_NAMED: usize = 30;
 /// Characters of a pointer shown in a warning.
 const MAX_POINTER: usize = 120;
@@ -102,7 +102,7 @@ fn not_shown_warning(index: usize, pointers: &[String]) -> Warning {
 
 /// Why a channel is left out.
 enum Ignored {
-    /// It was reported before.
+    /// Already reported.
     Silently,
     /// This pointer leads to nothing that is shown.
     NotShown(String),

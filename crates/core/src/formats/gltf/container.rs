@@ -9,12 +9,12 @@ pub struct Container<'a> {
     pub json: &'a [u8],
     pub binary: Option<&'a [u8]>,
     pub is_glb: bool,
-    /// First byte of the first chunk of a kind that came before.
+    /// Byte offset of the first chunk whose kind occurred before.
     repeated_chunk: Option<usize>,
 }
 
 impl Container<'_> {
-    /// Reports chunks that are not read.
+    /// Reports chunks that are ignored.
     pub fn warn(&self, warnings: &mut Warnings) {
         if let Some(at) = self.repeated_chunk {
             let (place, problem) =
@@ -38,7 +38,7 @@ pub fn open<'a>(file: &str, bytes: &'a [u8]) -> Result<Container<'a>, LoadError>
         return Err(invalid("the whole file", "a glTF", "nothing: it is empty".to_owned()));
     }
     if !bytes.starts_with(b"glTF") {
-        // What is cut short or misspelt is left to the JSON parser, which knows the place.
+        // Truncated or misspelt text is left to the JSON parser, which knows the place.
         if let Some(first) = bytes.trim_ascii_start().first().filter(|byte| byte.is_ascii_alphabetic()) {
             let found = format!("text that begins with “{}”", char::from(*first));
             return Err(invalid(

@@ -1,4 +1,4 @@
-//! What the decoders of compressed glTF have in common: finding a file that needs one, and writing it without the extension.
+//! Shared by the decoders of compressed glTF: finding a file that needs one, and writing it without the extension.
 
 use super::container::{self, Container};
 use super::document::{Document, as_text};
@@ -8,8 +8,8 @@ use crate::formats::error::Problem;
 use crate::formats::file_set::Conversion;
 use crate::formats::{FileSet, LoadError};
 
-/// Calls `read` for a file that mentions one of the extensions. `None` if it has nothing to decode, or if loading it will say
-/// what is wrong with the file around that.
+/// Calls `read` for a file that mentions one of the extensions. `None` if it has nothing to decode, or if something
+/// else is wrong with the file, which loading it will report.
 pub fn start<T>(
     file: &str,
     bytes: &[u8],
@@ -28,7 +28,7 @@ pub fn start<T>(
     }
 }
 
-/// Replaces a file by one with another JSON, which no longer uses the extensions.
+/// Replaces a file with one that has different JSON and no longer uses the extensions.
 pub fn replace(
     files: &mut FileSet,
     file: &str,

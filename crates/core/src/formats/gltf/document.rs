@@ -28,7 +28,7 @@ pub struct Document<'a> {
     /// Places of the elements that could not be read and were replaced by empty ones, each with the reason.
     unreadable: BTreeMap<String, String>,
     text: Cow<'a, str>,
-    /// The text as a plain value, parsed once a message has to quote it.
+    /// The text as a plain value, parsed when a message has to quote it.
     value: OnceCell<Value>,
 }
 
@@ -79,17 +79,17 @@ impl<'a> Document<'a> {
     }
 }
 
-/// Names in another encoding than UTF-8 get replacement characters. Checking the whole text once is faster than each string.
+/// Names not encoded in UTF-8 get replacement characters. Checking the whole text once is faster than each string.
 pub fn as_text(json: &[u8]) -> Cow<'_, str> {
     str::from_utf8(json).map_or_else(|_| String::from_utf8_lossy(json), Cow::Borrowed)
 }
 
-/// Converts a byte count or offset. A value that is too large for this machine becomes one that is beyond any buffer.
+/// Converts a byte count or offset. A value too large for this machine becomes one beyond the end of any buffer.
 pub fn size(bytes: USize64) -> usize {
     usize::try_from(bytes.0).unwrap_or(usize::MAX)
 }
 
-/// Returns an index unless it stands for none.
+/// Returns an index, unless it is the placeholder for a missing one.
 pub fn present<T>(index: Index<T>) -> Option<usize> {
     Some(index.value()).filter(|&index| index != NONE as usize)
 }
@@ -125,11 +125,11 @@ fn read_loosened(file: &str, text: &str, is_glb: bool) -> Result<(Root, BTreeMap
         return Err(too_many(file, MAX_JSON_VALUES, "values"));
     }
     let mut value: Value = serde_json::from_str(text).map_err(|problem| json_error(file, text, is_glb, &problem))?;
-    // Other versions have another structure, so the version comes first.
+    // Other versions have a different structure, so the version is checked first.
     let asset = |key: &str| value.pointer(&format!("/asset/{key}")).filter(|value| !value.is_null()).map(self::text);
     check_version(file, asset("version").as_deref(), asset("minVersion").as_deref())?;
     loosen(&mut value);
-    // As text again: deserializing the value itself would put the crate's many types into the program a second time.
+    // Back to text: deserializing the value itself would compile the crate's many types into the program a second time.
     let mut loosened = value.to_string();
     let mut unreadable = BTreeMap::new();
     let mut root = strict::from_str(&loosened, MAX_JSON_OBJECTS);
@@ -158,7 +158,7 @@ fn check_version(file: &str, version: Option<&str>, min_version: Option<&str>) -
     let unsupported = |found: String| LoadError::UnsupportedVersion { file: file.to_owned(), found };
     match version {
         // glTF 1.0 allowed an asset without a version.
-        None => return Err(unsupported("of no stated version (asset.version is missing)".to_owned())),
+        None => return Err(unsupported("without a version (asset.version is missing)".to_owned())),
         Some(version) if !version.starts_with("2.") => return Err(unsupported(version.to_owned())),
         Some(_) => {}
     }
@@ -184,7 +184,7 @@ fn has_long_integer(text: &[u8]) -> bool {
             while start > 0 && is_digit(start - 1) {
                 start -= 1;
             }
-            // To the end, so that a long run of digits is read once.
+            // Scans to the end, so that a long run of digits is read only once.
             while is_digit(at) {
                 at += 1;
             }

@@ -43,7 +43,7 @@ struct Target {
     primitive: usize,
     /// Index into [`Decoding::meshes`].
     decoded: usize,
-    /// Of the decoded attributes, in their order.
+    /// Semantics of the decoded attributes, in their order.
     semantics: Vec<String>,
 }
 
@@ -51,7 +51,8 @@ fn extension(primitive: &Primitive) -> Option<&Value> {
     primitive.extensions.as_ref()?.others.get(NAME)
 }
 
-/// Whether a primitive has no data but the compressed. Where the extension is optional, the accessors usually have the original.
+/// Whether a primitive has only compressed data. Where the extension is optional, the accessors usually have the
+/// original.
 pub fn is_needed(root: &Root, primitive: &Primitive) -> bool {
     let is_required = || root.extensions_required.iter().any(|name| name == NAME);
     let is_empty = |accessor: &Index<_>| root.accessors.get(accessor.value()).is_some_and(|a| a.buffer_view.is_none());
@@ -100,8 +101,8 @@ fn read(
     Ok(Some((decoding, gaitway_draco::write(Limit::DataBytes.max() as u32, &meshes))))
 }
 
-/// The decoder may return fewer vertices than the accessors declare, or more (it divides them along seams), but not more than
-/// there are corners.
+/// The decoder may return fewer vertices than the accessors declare, or more (it splits them along seams), but no more
+/// than there are corners.
 fn max_count(accessors: &Accessors, primitive: &Primitive, place: &str) -> Result<u32, Problem> {
     primitive.attributes.values().chain(&primitive.indices).try_fold(0, |max, index| {
         let count = accessors.count(index.value(), &place)?;
@@ -133,7 +134,7 @@ fn compressed(
 }
 
 impl Decoding {
-    /// Replaces the file by one without compression.
+    /// Replaces the file with one without compression.
     pub fn finish(self, files: &mut FileSet, file: &str, bytes: &[u8], decoded: &[u8]) -> Result<(), LoadError> {
         let container = container::open(file, bytes)?;
         let mut json: Object = serde_json::from_str(&as_text(container.json)).unwrap_or_default();
@@ -208,7 +209,7 @@ impl Added {
 /// The accessors of a file.
 struct Rewritten {
     list: Vec<Object>,
-    /// Buffer views of those that were pointed at one.
+    /// Buffer views of the accessors that were pointed at one.
     views: BTreeMap<usize, usize>,
 }
 
@@ -240,7 +241,8 @@ impl Rewritten {
         without_extensions(primitive, &[NAME]);
     }
 
-    /// Points an accessor, or a new one, at a view. If it has another view already, a copy is made. Returns its index.
+    /// Points an accessor, or a new one, at a view. An accessor that already has another view is copied. Returns the
+    /// index.
     fn at(&mut self, index: Option<usize>, view: usize, count: usize) -> usize {
         let existing = index.filter(|&index| index < self.list.len());
         let own = existing.filter(|&index| *self.views.entry(index).or_insert(view) == view);
@@ -259,9 +261,9 @@ impl Rewritten {
     }
 }
 
-/// Writes an integer as such, since a bound of integers must not have a fraction, not even of 0.
+/// Writes a whole number as an integer: the bounds of integer accessors must not have a fraction, not even `.0`.
 fn number(bound: f32) -> Value {
     let integer = bound as i64;
-    // As f64: a reader that goes through f64 may parse the shortest form of an f32 as its neighbour.
+    // As f64: readers that go through f64 may parse the shortest form of an f32 as its neighbour.
     if integer as f32 == bound { integer.into() } else { f64::from(bound).into() }
 }

@@ -26,7 +26,8 @@ const SUPPORTED: &[&str] = &[
     "EXT_texture_avif",
     "EXT_texture_webp",
     "KHR_texture_basisu",
-    // Decoded before the file is loaded. It still has them only if it could not be prepared or has the original data as well.
+    // Decoded before the file is loaded. It still has them only if it could not be prepared or also has the original
+    // data.
     "EXT_meshopt_compression",
     "KHR_draco_mesh_compression",
     "KHR_meshopt_compression",

@@ -8,7 +8,7 @@ use super::loosen::whole;
 use crate::anim::Skeleton;
 use crate::asset::{Humanoid, Slot, Warning, Warnings};
 
-/// None if the file declares no bones. A bone that is unknown or has no node is skipped with a warning.
+/// `None` if the file declares no bones. A bone that is unknown or has no node is skipped with a warning.
 pub fn humanoid(root: &Root, skeleton: &Skeleton, warnings: &mut Warnings) -> Option<Humanoid> {
     let mut humanoid = Humanoid::default();
     let mut add = |place: String, slot: Option<Slot>, bone: &str, node: Option<&Value>| {
@@ -19,7 +19,7 @@ pub fn humanoid(root: &Root, skeleton: &Skeleton, warnings: &mut Warnings) -> Op
                     entry.insert(joint);
                     return;
                 }
-                std::collections::btree_map::Entry::Occupied(_) => format!("bone “{bone}” is named a second time"),
+                std::collections::btree_map::Entry::Occupied(_) => format!("bone “{bone}” appears twice"),
             },
             (None, _) => format!("there is no humanoid bone “{bone}”"),
             (_, None) => format!("bone “{bone}” has no node of this file"),

@@ -47,7 +47,7 @@ pub fn images(
     Ok(images)
 }
 
-/// Returns an image's encoded bytes; none if it has none, which was reported.
+/// Returns an image's encoded bytes; `None` if it has none, which has been reported.
 fn image_bytes(
     files: &FileSet,
     file: &str,
@@ -108,7 +108,7 @@ pub fn is_avif(bytes: &[u8]) -> bool {
     brands.is_some_and(|brands| brands.as_chunks::<4>().0.iter().any(|brand| brand == b"avif" || brand == b"avis"))
 }
 
-/// The largest of the sizes before the pixels, which may be of a thumbnail, tiles or the alpha channel as well.
+/// The largest of the sizes before the pixels, which also include those of thumbnails, tiles and the alpha channel.
 fn avif_size(bytes: &[u8]) -> Option<[usize; 2]> {
     let end = bytes.windows(4).position(|tag| tag == b"mdat").unwrap_or(bytes.len());
     let boxes = bytes[..end].windows(16).filter(|found| found.starts_with(b"ispe"));

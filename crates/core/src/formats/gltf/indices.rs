@@ -4,8 +4,8 @@ use gltf::json::mesh::Mode;
 
 use crate::mesh::Topology;
 
-/// Returns the topology of a mode and the list that draws the same. Drops an incomplete primitive at the end, as the
-/// specification says.
+/// Returns the topology of a mode and the equivalent list. Drops an incomplete primitive at the end, as the
+/// specification requires.
 pub fn to_list(mode: Mode, indices: Vec<u32>) -> (Topology, Vec<u32>) {
     let count = indices.len();
     match mode {

@@ -3,10 +3,10 @@
 use crate::asset::{Warning, Warnings};
 use crate::mesh::{Influences, MAX_INFLUENCES};
 
-/// A sum of weights that is farther from 1 is reported; a smaller error is rounding.
+/// Weight sums farther from 1 are reported; smaller errors are rounding.
 const SUM_TOLERANCE: f32 = 1e-3;
 
-/// Larger weights are ignored, like NaN. Below it no sum overflows.
+/// Larger weights are ignored, like NaN. Smaller ones can't make a sum overflow.
 const MAX_WEIGHT: f32 = 1e30;
 
 /// One JOINTS_n with its WEIGHTS_n.
@@ -70,7 +70,7 @@ pub fn merge(mesh: &str, vertices: usize, sets: &[InfluenceSet], warnings: &mut 
     influences
 }
 
-/// The common case, at most four influences per vertex, without growing lists.
+/// Fast path for the common case, at most four influences per vertex, without growing lists.
 fn single_set(mesh: &str, set: &InfluenceSet, warnings: &mut Warnings) -> Influences {
     let vertices = set.joints.len();
     let (mut sorted_joints, mut sorted_weights) = (vec![[0; 4]; vertices], vec![[0.0; 4]; vertices]);

@@ -11,8 +11,8 @@ use super::document::{message, text};
 use super::strict;
 use crate::formats::limits::MAX_JSON_OBJECTS;
 
-/// Stands for an index that is not there: the `target.node` of an animation channel that an extension aims elsewhere, or what
-/// an element that was left out referred to. The crate has the same for the missing `source` of a texture.
+/// Placeholder for a missing index: the `target.node` of an animation channel that an extension aims elsewhere, or a
+/// reference to an element that was left out. The crate uses the same for the missing `source` of a texture.
 pub const NONE: u32 = u32::MAX;
 
 /// Members that hold an index or a code. The crate silently truncates these to 32 bits.
@@ -63,7 +63,7 @@ pub fn loosen(root: &mut Value) {
     objects(root, "scenes").for_each(|scene| set_default(scene, "nodes", empty_list()));
     objects(root, "skins").for_each(|skin| set_default(skin, "joints", empty_list()));
     for camera in objects(root, "cameras") {
-        // The reader goes by the members of a camera.
+        // The reader tells cameras apart by their members.
         remove_unless(camera, "type", Value::is_string);
         set_default(camera, "type", Value::from("perspective"));
     }
@@ -75,7 +75,7 @@ pub fn loosen(root: &mut Value) {
         set_default(animation, "channels", empty_list());
         set_default(animation, "samplers", empty_list());
         for sampler in objects_of(animation, "samplers") {
-            // As a word that is not known, which the reader reports.
+            // Becomes an unknown name, which the reader reports.
             if let Some(interpolation) = sampler.get_mut("interpolation") {
                 *interpolation = Value::from(text(interpolation));
             }
@@ -121,15 +121,15 @@ fn clean(value: &mut Value, key: Option<&str>) {
     }
 }
 
-/// Returns an integer that is not negative, also if it is written as 3.0 or 3e2 (§2.7). `None` if it is not exact.
+/// Returns a non-negative integer, even if it is written as 3.0 or 3e2 (§2.7). `None` if it is not exact.
 pub fn whole(value: &Value) -> Option<u64> {
     const EXACT: f64 = (1_u64 << 53) as f64;
     let float = |value: f64| ((0.0..=EXACT).contains(&value) && value.fract() == 0.0).then_some(value as u64);
     value.as_u64().or_else(|| float(value.as_f64()?))
 }
 
-/// Replaces elements that the crate's types reject and a model can do without by empty ones, so that indices stay. Returns
-/// their places and why they were rejected.
+/// Replaces elements that the crate's types reject and a model can do without: empty ones take their place, so that
+/// indices stay valid. Returns their places and why they were rejected.
 pub fn leave_out(root: &mut Value) -> BTreeMap<String, String> {
     let mut found = BTreeMap::new();
     let found = &mut found;
@@ -170,7 +170,7 @@ fn elements(list: Option<&mut Value>) -> impl Iterator<Item = (usize, &mut Value
     list.and_then(Value::as_array_mut).into_iter().flatten().enumerate()
 }
 
-/// Replaces elements of a list that are no `T` by `empty`.
+/// Replaces elements of a list that are not a `T` with `empty`.
 fn replace<T: for<'a> Deserialize<'a>>(
     list: Option<&mut Value>,
     name: &str,
@@ -197,7 +197,7 @@ fn remove_unreadable<T: for<'a> Deserialize<'a>>(
     }
 }
 
-/// Why a value is no `T`.
+/// Returns why a value is not a `T`.
 fn why_not<T: for<'a> Deserialize<'a>>(value: &Value) -> Option<String> {
     match strict::from_str::<T>(&value.to_string(), MAX_JSON_OBJECTS) {
         Err(strict::Error::Json(problem)) => Some(message(&problem)),

@@ -177,7 +177,7 @@ impl TextureReader<'_> {
         let transform = transform.unwrap_or_default();
         let mut uv_set = transform.tex_coord.unwrap_or(uv_set) as usize;
         if uv_set > 1 {
-            let problem = format!("TEXCOORD_{uv_set} is asked for; only sets 0 and 1 are read, so set 0 is used");
+            let problem = format!("TEXCOORD_{uv_set} is not supported; only sets 0 and 1 are, so set 0 is used");
             self.warnings.push(Warning::Other { code: "texcoord-set", place, problem });
             uv_set = 0;
         }
@@ -190,7 +190,7 @@ impl TextureReader<'_> {
     }
 }
 
-/// A texture whose image is not there is empty; one whose sampler is not there has the default.
+/// A texture whose image is missing is empty; one whose sampler is missing gets the default.
 pub fn textures(document: &Document, warnings: &mut Warnings) -> Result<Vec<Texture>, Problem> {
     let root = &document.root;
     let mut textures = Vec::with_capacity(root.textures.len());
@@ -209,7 +209,7 @@ pub fn textures(document: &Document, warnings: &mut Warnings) -> Result<Vec<Text
         let sampler = match sampler.transpose() {
             Ok(sampler) => sampler.unwrap_or_default(),
             Err(problem) => {
-                problem.leave_out("texture", "the usual sampler is used", warnings)?;
+                problem.leave_out("texture", "the default sampler is used", warnings)?;
                 Sampler::default()
             }
         };

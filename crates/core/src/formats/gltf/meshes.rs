@@ -270,7 +270,7 @@ fn read_indices(
         let found = accessors.document.quoted_at(&place);
         return Err(Problem::new(place, "0 to 6", found));
     };
-    // Lists that become longer: a strip or a fan has up to three indices for each of its own.
+    // Lists grow: a strip or a fan yields up to three indices for each of its own.
     let is_list = matches!(mode, Mode::Points | Mode::Lines | Mode::Triangles);
     accessors.budget.allocate(if is_list { 0 } else { 3 * list.len() }, size_of::<u32>(), &place)?;
     Ok(indices::to_list(mode, list))

@@ -115,7 +115,7 @@ impl Compressed<'_> {
 }
 
 impl Decoding {
-    /// Notes where `length` decoded bytes of a view belong.
+    /// Records where `length` decoded bytes of a view belong.
     fn add(&mut self, document: &Document, index: usize, length: usize) -> Result<(), Problem> {
         let Document { root, .. } = document;
         let place = || format!("bufferViews[{index}]");
@@ -134,7 +134,7 @@ impl Decoding {
         Ok(())
     }
 
-    /// Replaces the file by one without compression. `decoded` has the views one after the other.
+    /// Replaces the file with one without compression. `decoded` has the views one after the other.
     pub fn finish(self, files: &mut FileSet, file: &str, bytes: &[u8], mut decoded: &[u8]) -> Result<(), LoadError> {
         let container = container::open(file, bytes)?;
         let root = Document::read(file, &container)?.root;

@@ -17,9 +17,9 @@ use crate::formats::error::Problem;
 use crate::formats::limits::{Budget, Limit};
 use crate::mesh::{Mesh, Skin};
 
-/// Hides nodes and what is below them.
+/// Hides nodes and their descendants.
 pub const VISIBILITY: &str = "KHR_node_visibility";
-/// Length in characters to which names are cut that many nodes can share.
+/// Maximum length in characters of names that many nodes can share; longer ones are truncated.
 const MAX_SHARED_NAME: usize = 256;
 
 /// Builds one skeleton from all nodes. Its source indices are the file's node indices.
@@ -166,7 +166,7 @@ fn shared_name(name: &str) -> String {
     name.chars().take(MAX_SHARED_NAME).collect()
 }
 
-/// A node or scene that is not there is left out.
+/// A missing node or scene is left out.
 pub fn scenes(
     root: &Root,
     skeleton: &Skeleton,
@@ -194,7 +194,7 @@ pub fn scenes(
     Ok((scenes, default_scene.or(first)))
 }
 
-/// A camera that is not there or has no lens is left out.
+/// A camera that is missing or has no lens is left out.
 pub fn cameras(document: &Document, skeleton: &Skeleton, warnings: &mut Warnings) -> Result<Vec<Camera>, Problem> {
     let root = &document.root;
     let mut cameras = Vec::new();
@@ -225,7 +225,7 @@ fn read_camera(root: &Root, node: &Node, number: usize, joint: JointIndex, place
     Ok(Camera { name, joint, number, projection })
 }
 
-/// KHR_lights_punctual. A light that is not there or of an unknown type is left out.
+/// KHR_lights_punctual. A light that is missing or of an unknown type is left out.
 pub fn lights(document: &Document, skeleton: &Skeleton, warnings: &mut Warnings) -> Result<Vec<Light>, Problem> {
     let root = &document.root;
     let list: &[khr_lights_punctual::Light] = root.as_ref();
@@ -262,8 +262,7 @@ pub fn lights(document: &Document, skeleton: &Skeleton, warnings: &mut Warnings)
         });
     }
     if lights.len() > MAX_LIGHTS {
-        let problem =
-            format!("{} lights; the {MAX_LIGHTS} that contribute most to the picture are drawn", lights.len());
+        let problem = format!("{} lights; the {MAX_LIGHTS} that contribute most are drawn", lights.len());
         warnings.push(Warning::Other { code: "lights-dropped", place: "KHR_lights_punctual".to_owned(), problem });
     }
     Ok(lights)

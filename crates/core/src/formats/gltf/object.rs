@@ -7,7 +7,8 @@ use serde::ser::SerializeMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::value::{RawValue, to_raw_value};
 
-/// An object's members in order, values as text. Of several members with one name the last counts, as in the reader.
+/// An object's members in order, values as text. If several members have the same name, the last one counts, as in the
+/// reader.
 #[derive(Debug, Default, Clone)]
 pub struct Object(Vec<(String, Box<RawValue>)>);
 
@@ -15,7 +16,7 @@ pub struct Object(Vec<(String, Box<RawValue>)>);
 pub type Array = Vec<Box<RawValue>>;
 
 impl Object {
-    /// Parses a member. None if it is missing or of another type.
+    /// Parses a member. `None` if it is missing or of another type.
     pub fn read<'a, T: Deserialize<'a>>(&'a self, key: &str) -> Option<T> {
         let (_, value) = self.0.iter().rfind(|(other, _)| other == key)?;
         serde_json::from_str(value.get()).ok()
@@ -69,7 +70,7 @@ impl Object {
         }
     }
 
-    /// Removes strings from the array `key`, which is removed once it is empty. Returns those that were there.
+    /// Removes strings from the array `key`, and the array itself if that leaves it empty. Returns the strings removed.
     pub fn remove_strings(&mut self, key: &str, strings: &[&str]) -> Vec<String> {
         let Some(array) = self.read::<Vec<String>>(key) else { return Vec::new() };
         let (removed, kept): (Vec<_>, Vec<_>) = array.into_iter().partition(|text| strings.contains(&text.as_str()));

@@ -278,7 +278,7 @@ fn name<T: PartialEq>(table: &[(&'static str, T)], value: T) -> &'static str {
     table.iter().find(|(_, known)| *known == value).map_or("", |&(name, _)| name)
 }
 
-/// An index of an array as RFC 6901 has it.
+/// Parses an array index as in RFC 6901.
 fn index(text: &str) -> Result<usize, Unresolved> {
     let is_plain = text.bytes().all(|byte| byte.is_ascii_digit()) && (text == "0" || !text.starts_with('0'));
     text.parse().ok().filter(|_| is_plain).ok_or(Unresolved::Unsupported)

@@ -56,7 +56,7 @@ fn read_matrices(matrices: &[[f32; 16]], place: &str, warnings: &mut Warnings) -
         })
         .collect();
     if projective > 0 {
-        let problem = format!("the fourth row of {projective} matrices is not 0 0 0 1; it is taken as such");
+        let problem = format!("the fourth row of {projective} matrices is not 0 0 0 1; it is treated as if it were");
         warnings.push(Warning::Other { code: "bind-matrix-row", place: place.to_owned(), problem });
     }
     affine

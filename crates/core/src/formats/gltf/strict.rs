@@ -1,6 +1,7 @@
-//! Deserializes JSON whose structs must be objects. The derived readers of the `gltf` crate also accept an array and read its
-//! elements by position, which no glTF means; and a few bytes of JSON can stand for any number of large structs. So this wraps
-//! a deserializer: it rejects an array where a struct is expected, and counts the structs and the values of unknown extensions.
+//! Deserializes JSON whose structs must be objects. The derived readers of the `gltf` crate also accept an array and
+//! read its elements by position, which glTF never means; and a few bytes of JSON can stand for any number of large
+//! structs. So this wraps a deserializer: it rejects an array where a struct is expected, and counts the structs and
+//! the values of unknown extensions.
 
 use std::cell::Cell;
 use std::fmt;
@@ -29,7 +30,7 @@ struct Strict<'c, T> {
     inner: T,
     /// Whether a visitor builds a struct.
     is_struct: bool,
-    /// How many more structs and values there may be; 0 after one too many.
+    /// How many more structs and values are allowed; 0 once the limit is exceeded.
     left: &'c Cell<usize>,
 }
 

@@ -14,7 +14,7 @@ use crate::mesh::Material;
 pub const NAME: &str = "KHR_materials_variants";
 /// Each variant may need a pipeline for each primitive.
 const MAX_VARIANTS: usize = 1024;
-/// What an invalid mapping leads to.
+/// Outcome of an invalid mapping.
 const LEFT_OUT: &str = "the primitive keeps its material";
 
 /// Returns the variants' names, made unique and non-empty so that a name identifies its variant.

@@ -7,7 +7,7 @@ use crate::formats::limits::Budget;
 use crate::formats::lines::{Lines, number, quoted};
 use crate::mesh::{Influences, MAX_INFLUENCES};
 
-/// A sum of weights that is farther from 1 is reported; a smaller error is rounding.
+/// Weight sums farther from 1 are reported; smaller errors are rounding.
 const SUM_TOLERANCE: f64 = 1e-3;
 
 /// Bytes of one influence of one vertex.

@@ -37,14 +37,14 @@ impl PrimitiveBuilder {
         self.uv_count > 0
     }
 
-    /// A group in which some corner lacks a normal is drawn flat.
+    /// A group in which some corner lacks a normal is flat-shaded.
     fn has_normals(&self) -> bool {
         self.normal_count == self.corner_count
     }
 }
 
-/// A single group begins with the file's vertices in the file's order. With several groups, vertices that no face uses go to
-/// the first. [`Geometry::file_vertex`] leads back.
+/// A single group begins with the file's vertices in the file's order. With several groups, vertices that no face uses
+/// go to the first. [`Geometry::file_vertex`] maps back to the file.
 pub fn build(obj: &ObjText, name: &str, budget: &Budget) -> Result<Built, Problem> {
     // Indices, and the table of the copies.
     let corner_bytes = size_of::<u32>() + 2 * size_of::<(u32, Corner, u32)>();
@@ -136,7 +136,7 @@ fn geometry(obj: &ObjText, builder: &PrimitiveBuilder, single: bool) -> Geometry
     }
 }
 
-/// Converts from sRGB, in which the files have their colours.
+/// Converts from sRGB, the colour space of the files.
 pub fn linear(color: Vec3) -> Vec3 {
     let channel = |value: f32| {
         let value = value.clamp(0.0, 1.0);

@@ -1,8 +1,8 @@
 //! Wavefront .obj: a mesh as text, alone or with a skeleton (.skel) and weights (.attach) as in the skinning exercise of MIT
 //! 6.837: see [`skel`] and [`attach`].
 //!
-//! The mesh is in its bind pose, and the skeleton's rest pose is the sum of its offsets, so that nothing moves at rest. No file
-//! states units or axes: they are taken as metres and Y up.
+//! The mesh is in its bind pose, and the skeleton's rest pose is the sum of its offsets, so that nothing moves at rest.
+//! No file states units or axes: metres and Y up are assumed.
 
 mod attach;
 mod mesh;
@@ -207,7 +207,7 @@ struct Surfaces<'a> {
 }
 
 impl Surfaces<'_> {
-    /// Adds one material for each that a group of faces names; a plain one if the libraries do not have it.
+    /// Adds one material for each one named by a group of faces; a plain one if it is in none of the libraries.
     fn add_materials(&mut self, obj: &ObjText, groups: &[usize], primitives: &mut [Geometry]) {
         let Libraries { materials, complete } = read_libraries(self.files, self.file, obj, self.warnings);
         let mut material_of_name: BTreeMap<&str, usize> = BTreeMap::new();

@@ -46,7 +46,7 @@ pub fn read(file: &str, bytes: &[u8], found: &mut BTreeMap<String, MtlMaterial>,
             && let Err(value) = open.read(keyword, rest)
         {
             let place = format!("{file}, line {line}");
-            let problem = format!("{} is no value for {}", quoted(Some(value)), text(keyword));
+            let problem = format!("{} is not a valid value for {}", quoted(Some(value)), text(keyword));
             warnings.push(Warning::Other { code: "material-value", place, problem });
         }
     }

@@ -8,7 +8,7 @@ use crate::formats::error::Problem;
 use crate::formats::limits::{Budget, Limit};
 use crate::formats::lines::{Lines, number, quoted, text};
 
-/// The most that influences can refer to.
+/// Maximum number of joints that influences can refer to.
 const MAX_JOINTS: usize = u16::MAX as usize;
 
 pub fn read(bytes: &[u8], budget: &Budget) -> Result<Skeleton, Problem> {

@@ -24,7 +24,7 @@ use crate::formats::lines::{Lines, number, quoted, text};
 /// Each group is a draw of its own.
 const MAX_GROUPS: usize = 4096;
 
-/// Longer names are cut: each group has its own copy.
+/// Longer names are truncated: each group has its own copy.
 const MAX_NAME_BYTES: usize = 256;
 
 /// Limit on libraries, each of which is looked up among the files or fetched.
@@ -208,7 +208,7 @@ impl Reader<'_> {
                 }
                 Ok(())
             }
-            // Smoothing groups: a model without normals is flat, or smooth if the user chooses so.
+            // Smoothing groups: a model without normals is flat-shaded, or smooth if the user chooses so.
             b"s" => Ok(()),
             other => {
                 let problem = format!("{} is not read; vertices and faces are", quoted(Some(other)));
@@ -320,7 +320,7 @@ fn numbers<'a, const N: usize>(
     Ok((found, read))
 }
 
-/// Parses a number, resolves it against the count so far if it is negative, and returns it from 0.
+/// Parses a number that counts from 1, or backwards from the count so far if it is negative. Returns it from 0.
 fn index(word: &[u8], so_far: usize) -> Option<u32> {
     let number: i64 = std::str::from_utf8(word).ok()?.parse().ok()?;
     let index = if number < 0 { (so_far as i64).checked_add(number)? } else { number - 1 };

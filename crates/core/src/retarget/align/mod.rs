@@ -1,5 +1,5 @@
-//! Aligns the two rests before motion is transferred: both face the same way and stand upright, and the target's limbs
-//! point where the source's do. The results are the aligned rests `W*` of the rotation law.
+//! Aligns the two rest poses before motion is transferred: both face the same way and stand upright, and the target's
+//! limbs point where the source's do. The results are the aligned rests `W*` of the rotation law.
 
 mod common_frame;
 pub mod rest;
@@ -50,8 +50,8 @@ impl Rest<'_> {
     }
 }
 
-/// `target_nodes` is the target's rest as the player has it. `target_from_source` turns one model space into the other if both
-/// rest alike, and nothing else needs aligning then.
+/// `target_nodes` is the target's rest pose as the player sees it. `target_from_source` is set if the rest poses match;
+/// it rotates one model space into the other, and nothing else needs aligning.
 pub fn align(
     map: &ResolvedMap,
     source: &Rest,

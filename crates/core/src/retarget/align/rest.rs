@@ -1,5 +1,5 @@
-//! The rest pose that motion is measured from: a skeleton's nodes, a skin's bind pose, a pose of a clip, or the model's own.
-//! Rotations come from orthonormalized matrices, so scaled or rotated ancestors do no harm.
+//! The rest pose that motion is measured from: a skeleton's nodes, a skin's bind pose, a pose of a clip, or the model's
+//! own. Rotations come from orthonormalized matrices, so scaled or rotated ancestors are harmless.
 
 use glam::{Affine3A, DAffine3, DQuat};
 
@@ -11,7 +11,7 @@ use crate::mesh::Skin;
 use crate::retarget::map::{ResolvedMap, RestChoice};
 use crate::retarget::pose::{Local, Scratch, WorldPose, ancestry, clip_locals, node_locals};
 
-/// Where the rest that a motion is measured from comes from.
+/// Origin of the motion's rest pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum RestOrigin {
     /// The joint map chooses it.
@@ -26,39 +26,39 @@ pub enum RestOrigin {
     Mean,
 }
 
-/// The rest that a motion is measured from, and how sure that is.
+/// The motion's rest pose: its origin and confidence.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FoundRest {
     /// Where it comes from.
     pub origin: RestOrigin,
-    /// 0 (a pose in motion) to 1 (the map says so, the rig is the same, or the body stands upright with both sides alike).
+    /// 0 (a mid-motion pose) to 1 (the map says so, the rig is the same, or the body is upright and symmetric).
     pub confidence: f64,
 }
 
 impl FoundRest {
-    /// Whether the motion's own rest looks like a pose in motion and nothing better is certain.
+    /// Whether the motion's own rest looks like a mid-motion pose and no replacement is certain.
     pub fn is_doubtful(&self) -> bool {
         self.confidence < MIN_CONFIDENCE
     }
 }
 
-/// A rest below this is not taken as it is, and whatever replaces it is called doubtful below it.
+/// A rest below this is replaced, and a replacement below it is reported as doubtful.
 const MIN_CONFIDENCE: f64 = 0.5;
 
 /// The source's rest.
 #[derive(Debug)]
 pub struct SourceRest {
     pub locals: Vec<Local>,
-    /// What joints do that the clip does not move.
+    /// Local transforms of joints that the clip does not animate.
     pub unmoved: Vec<Local>,
     /// Turns the source's model space into the target's, if both are the same rig.
     pub target_from_source: Option<DQuat>,
-    /// The hips are where they rest. Otherwise they rest where the target's do.
+    /// Whether the hips are at their rest position. If not, the target's is used.
     pub is_in_place: bool,
     pub found: FoundRest,
 }
 
-/// What the source's rest is found from.
+/// Inputs of [`source_rest`].
 #[derive(Clone, Copy)]
 pub struct RestInput<'a> {
     pub source: &'a Asset,
@@ -70,8 +70,8 @@ pub struct RestInput<'a> {
     pub map: &'a ResolvedMap,
 }
 
-/// Returns the source's rest. `Auto` takes the model's for the same rig, and a pose from the clip if the body does not stand
-/// at rest.
+/// Returns the source's rest pose. `Auto` uses the model's if the rig is the same, and a pose of the clip if the body
+/// does not stand in its own.
 pub fn source_rest(input: RestInput) -> SourceRest {
     let RestInput { source, source_slots: slots, clip, map, .. } = input;
     let skeleton = &source.skeleton;
@@ -109,8 +109,8 @@ pub fn source_rest(input: RestInput) -> SourceRest {
     }
 }
 
-/// Returns the target's rest. Only its rotations are a choice: translations and scales are the nodes', from which the
-/// player moves the joints.
+/// Returns the target's rest pose. Only rotations depend on `choice`: translations and scales are always the nodes',
+/// which the player animates from.
 pub fn target_rest(target: &Asset, nodes: &[Local], choice: RestChoice) -> Vec<Local> {
     let mut locals = chosen_locals(target, target.clips.first(), choice);
     for (local, node) in locals.iter_mut().zip(nodes) {

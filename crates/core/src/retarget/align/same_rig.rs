@@ -1,10 +1,12 @@
-//! Two files of one rig: the same joint names, hierarchy and local frames. What the motion's nodes rest in then says nothing:
-//! its clip means on the model what it means on its own skeleton, so the model's rest is the motion's.
+//! Detects two files of one rig: same joint names, hierarchy and local frames. The rest of the motion's nodes is then
+//! irrelevant: its clip means the same on the model as on its own skeleton, so the model's rest is the motion's.
 //!
-//! Where both rest alike anyway, this leaves them to the usual alignment, which also makes up for differences in build.
+//! If both already share a rest pose, they are left to the usual alignment, which also compensates for differences in
+//! build.
 //!
-//! Nothing in a file states its local frames, but each joint's offset lies in its parent's. A rest rotation leaves that
-//! offset as it is, whereas other axes turn it. A roll about the offset itself shows only in rests that hold the same pose.
+//! No file states its local frames, but each joint's offset is expressed in its parent's. A rest rotation leaves that
+//! offset unchanged, whereas different axes rotate it. A roll about the offset itself shows only between rests that
+//! hold the same pose.
 
 use std::collections::BTreeMap;
 
@@ -18,25 +20,25 @@ use crate::retarget::pose::{Local, WorldPose, ancestry, node_locals};
 /// Minimum share of the mapped joints that must share their names, and of these that must agree.
 const MIN_SHARE: f64 = 0.9;
 
-/// Fewer offsets do not tell a rig.
+/// Minimum number of offsets to identify a rig.
 const MIN_OFFSETS: usize = 3;
 
-/// Offsets of characters on one rig differ by build (20° at a shoulder), those in other axes mostly by 90° or more.
+/// Offsets of characters on one rig differ by build (20° at a shoulder), those in different axes mostly by 90° or more.
 const MAX_OFFSET_DEGREES: f64 = 25.0;
 
-/// A joint whose rests differ by more than this while the pose around it is the same has other axes.
+/// A joint whose rests differ by more than this while the pose around it is the same has different axes.
 const MIN_ROLL_DEGREES: f64 = 45.0;
 
 /// The pose around a joint is the same if the angles to all other offsets differ by less than this on average.
 const MAX_POSE_DEGREES: f64 = 10.0;
 
-/// Offsets that each one is compared with, at most.
+/// Maximum number of offsets that each one is compared with.
 const MAX_COMPARED: usize = 100;
 
-/// Rolled joints that tell other axes. A single one may be posed.
+/// Minimum number of rolled joints that indicates different axes. A single one may be posed.
 const MIN_ROLLED: usize = 2;
 
-/// A skeleton in its rest.
+/// A skeleton in its rest pose.
 #[derive(Clone, Copy)]
 pub struct Resting<'a> {
     pub skeleton: &'a Skeleton,
@@ -47,17 +49,17 @@ pub struct Resting<'a> {
 #[derive(Debug)]
 pub struct SharedRest {
     pub locals: Vec<Local>,
-    /// What joints do that the clip does not move: they stand as the model's nodes do, as if the clip were on the model.
+    /// Local transforms of joints that the clip does not animate: the model's, as if the clip were on the model.
     pub unmoved: Vec<Local>,
     /// Turns the source's model space into the target's.
     pub target_from_source: DQuat,
 }
 
-/// A skeleton in its own rest, whether or not that is worth anything.
+/// A skeleton in its own rest pose, usable or not.
 #[derive(Clone, Copy)]
 pub struct OwnRest<'a> {
     pub resting: Resting<'a>,
-    /// The body stands, so that its hips are in their place.
+    /// Whether the body stands, so that its hips are at their rest position.
     pub is_standing: bool,
 }
 
@@ -137,7 +139,7 @@ impl Rigs<'_> {
             && !self.is_rolled(&offsets)
     }
 
-    /// Whether the nearest ancestors that both have are each other's. Either side may have joints in between.
+    /// Whether the nearest shared ancestors correspond. Either side may have joints in between.
     fn hangs_alike(&self, target: JointIndex, source: JointIndex) -> bool {
         let above = ancestry(self.source.skeleton, source).skip(1).find_map(|joint| self.target_of[joint.get()]);
         above.is_none_or(|above| ancestry(self.target.skeleton, target).skip(1).any(|joint| joint == above))
@@ -180,8 +182,8 @@ impl Rigs<'_> {
         turned.iter().filter(has_same_pose).count() >= MIN_ROLLED
     }
 
-    /// For each offset, by how much its angles to the others differ between the two rests, in degrees on average. Angles
-    /// between offsets depend on no frame.
+    /// For each offset, the mean difference in degrees between its angles to the others in the two rests. Angles
+    /// between offsets are independent of the frame.
     fn pose_differences(&self, offsets: &[Offset]) -> Vec<f64> {
         let direction = |pose: &WorldPose, skeleton: &Skeleton, joint: JointIndex| {
             let parent = skeleton.parent(joint).map_or(DVec3::ZERO, |parent| pose.position(parent));
@@ -204,7 +206,7 @@ impl Rigs<'_> {
         directions.iter().map(mean).collect()
     }
 
-    /// Puts the shared joints of the source into the model's rest, also in place unless it is in its own.
+    /// Puts the source's shared joints into the model's rest pose, including the root position unless `is_in_place`.
     fn repose(&self, is_shared: Vec<bool>, is_in_place: bool) -> Option<SharedRest> {
         let source = self.source.skeleton;
         let tops = tops(source, &is_shared);
@@ -216,7 +218,7 @@ impl Rigs<'_> {
         let nodes = WorldPose::new(self.target.skeleton, node_locals(self.target.skeleton), DQuat::IDENTITY);
         let mut unmoved = node_locals(source);
         self.turn(&mut unmoved, &is_shared, &nodes, source_from_target);
-        // The place of a moving root is as little a rest as its rotation.
+        // The position of a moving root is no more a rest than its rotation.
         for &top in tops.keys().filter(|_| !is_in_place) {
             let Some(target) = self.target_of[top.get()] else { continue };
             let position = source_from_target * self.target_pose.position(target) * size;
@@ -227,7 +229,7 @@ impl Rigs<'_> {
         Some(SharedRest { locals, unmoved, target_from_source: source_from_target.conjugate() })
     }
 
-    /// Turns the shared joints as the target's are in `pose`.
+    /// Rotates the shared joints to match the target's in `pose`.
     fn turn(&self, locals: &mut [Local], is_shared: &[bool], pose: &WorldPose, source_from_target: DQuat) {
         let source = self.source.skeleton;
         let mut rotations: Vec<DQuat> = Vec::with_capacity(locals.len());
@@ -242,11 +244,12 @@ impl Rigs<'_> {
         }
     }
 
-    /// The turn from the target's model space to the source's: what lies above the moving joints differs, unless that is
-    /// how two exporters write the same thing, which the source's own rest tells to a quarter turn.
+    /// Returns the rotation from the target's model space to the source's, which is the one between the ancestors of
+    /// the moving joints. If the source's own rest contradicts it, two exporters write the same thing differently, and
+    /// the rest gives the rotation to a quarter turn.
     fn source_from_target(&self, top: JointIndex) -> Option<DQuat> {
         let target = self.target_of[top.get()]?;
-        // Nothing moves what lies above, so it is where the nodes are, whatever a skin says.
+        // Nothing animates the ancestors, so they are at their node transforms, whatever a skin says.
         let parent_rotation = |skeleton: &Skeleton, joint: JointIndex| {
             let above = ancestry(skeleton, joint).skip(1);
             above.fold(DQuat::IDENTITY, |below, joint| skeleton.rest().local(joint).rotation.as_dquat() * below)
@@ -259,7 +262,7 @@ impl Rigs<'_> {
         Some(if is_turned && contradicts { nearest_quarter_turn(rests) } else { unit(above) })
     }
 
-    /// Length of the source's bones per length of the target's.
+    /// Ratio of source to target bone length.
     fn size_ratio(&self, is_shared: &[bool]) -> f64 {
         let (mut source, mut target) = (0.0, 0.0);
         for joint in self.source.skeleton.joints().filter(|joint| is_shared[joint.get()]) {
@@ -275,7 +278,7 @@ impl Rigs<'_> {
     }
 }
 
-/// The shared joints that no other one is above, with the number of joints from there down.
+/// The topmost shared joints, with the number of joints in each one's subtree.
 fn tops(skeleton: &Skeleton, is_shared: &[bool]) -> BTreeMap<JointIndex, usize> {
     let mut tops = BTreeMap::new();
     let mut top_of: Vec<Option<JointIndex>> = Vec::with_capacity(is_shared.len());
@@ -290,7 +293,7 @@ fn tops(skeleton: &Skeleton, is_shared: &[bool]) -> BTreeMap<JointIndex, usize> 
     tops
 }
 
-/// The rotation nearest to this one that turns axes onto axes.
+/// The nearest rotation that maps axes to axes.
 fn nearest_quarter_turn(rotation: DQuat) -> DQuat {
     let matrix = DMat3::from_quat(rotation);
     let x = nearest_axis(matrix.x_axis);

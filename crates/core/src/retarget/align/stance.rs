@@ -1,4 +1,4 @@
-//! Whether a pose is one that bodies rest in: upright, with left and right alike.
+//! Judges whether a body could rest in a pose: upright and symmetric.
 
 use glam::{DQuat, DVec3};
 
@@ -7,10 +7,10 @@ use crate::asset::{Humanoid, Slot};
 use crate::retarget::math::{degrees_between, unit};
 use crate::retarget::pose::{Local, Scratch, WorldPose, clip_locals};
 
-/// Moments of the clip to compare.
+/// Number of times at which the clip is compared.
 const REST_SAMPLES: usize = 64;
 
-/// A clip must stand better than a rest by this much to replace it, and one moment than an earlier one.
+/// Minimum gain in score for a pose of the clip to replace the rest, or a later one an earlier one.
 const MIN_GAIN: f64 = 0.01;
 
 /// Segments that left and right are compared by; the right ones are the mirrored slots.
@@ -44,13 +44,13 @@ impl Stance {
         upright.min(symmetric).clamp(0.0, 1.0)
     }
 
-    /// To compare poses none of which may look like a rest.
+    /// Compares poses, none of which may look like a rest.
     fn score(self) -> f64 {
         self.uprightness - self.asymmetry_degrees / 90.0
     }
 }
 
-/// A pose of a clip that stands better than its skeleton's rest.
+/// A pose of a clip that looks more like a rest than its skeleton's own.
 pub struct Standing {
     pub locals: Vec<Local>,
     pub stance: Stance,
@@ -58,8 +58,8 @@ pub struct Standing {
     pub time_secs: Option<f32>,
 }
 
-/// Returns the pose of the clip, at one of its moments or in the mean, that looks most like a rest; None if none looks more
-/// like one than `rest` does. In a walk no moment is symmetric, but the mean is.
+/// Returns the pose of the clip, at some time or averaged, that looks most like a rest; None if none beats `rest`. In a
+/// walk no single pose is symmetric, but the mean is.
 pub fn best_standing(skeleton: &Skeleton, slots: &Humanoid, clip: &Clip, rest: Stance) -> Option<Standing> {
     let (first_secs, last_secs) = (super::rest::first_key_secs(clip), clip.duration_secs());
     let mut scratch = Scratch::default();
@@ -84,7 +84,7 @@ pub fn best_standing(skeleton: &Skeleton, slots: &Humanoid, clip: &Clip, rest: S
     best
 }
 
-/// Sums rotations up. A quaternion and its negative are the same rotation.
+/// Adds rotations up. A quaternion and its negative are the same rotation.
 fn add_rotations(sum: &mut Vec<Local>, locals: &[Local]) {
     if sum.is_empty() {
         *sum = locals.to_vec();

@@ -1,4 +1,4 @@
-//! Swings the target's limbs from its rest so that they point where the source's do at its own: A-pose to T-pose and so on.
+//! Swings the target's limbs at rest to the directions of the source's: A-pose to T-pose and so on.
 
 use std::collections::BTreeMap;
 
@@ -53,12 +53,12 @@ pub fn compared_segments() -> impl Iterator<Item = (Slot, Slot)> {
     LIMBS.into_iter().chain([(Slot::Hips, Slot::Head)])
 }
 
-/// Feet and torsos differ in build (heel height, curve of the spine), and a difference in build is not one in posture. They
-/// are turned towards each other only beyond these angles.
+/// Feet and torsos differ in build (heel height, curve of the spine), and a difference in build is not one in posture.
+/// They are aligned only beyond these angles.
 const MIN_FOOT_TURN_DEGREES: f64 = 40.0;
 const MIN_TORSO_TURN_DEGREES: f64 = 15.0;
 
-/// A knee or elbow bent by less than this does not tell the roll of its limb.
+/// A knee or elbow bent by less than this does not define the roll of its limb.
 const MIN_BEND_DEGREES: f64 = 10.0;
 
 /// What the swings depend on: both rests in the common frame and which pair fills which slot.
@@ -122,8 +122,8 @@ fn slot_swing(input: SwingInput, slot: Slot, inherited: DQuat) -> DQuat {
     }
 }
 
-/// Feet stay as flat as they are unless the two rests hold them clearly differently. Without toes that cannot be known, so
-/// the foot follows a shin that is turned a lot.
+/// Feet keep their pitch unless the two rests hold them clearly differently. Without toes that is unknown, so the foot
+/// follows a shin that is swung far.
 fn foot_swing(directions: Option<[DVec3; 2]>, inherited: DQuat) -> DQuat {
     match directions {
         Some([source, target]) if degrees_between(source, target) > MIN_FOOT_TURN_DEGREES => arc(target, source),

@@ -12,17 +12,17 @@ pub struct NewChannel {
     pub interpolation: Interpolation,
     pub times: Vec<f32>,
     pub keys: Keys,
-    /// The keys are not the source's own.
+    /// Whether the keys were resampled instead of taken from the source.
     pub resampled: bool,
 }
 
 impl NewChannel {
-    /// One value for all time.
+    /// Creates a channel with a single value.
     pub fn constant(joint: JointIndex, keys: Keys) -> Self {
         Self { joint, interpolation: Interpolation::Step, times: vec![0.0], keys, resampled: false }
     }
 
-    /// Linear keys that are not the source's own.
+    /// Creates a channel of resampled, linear keys.
     pub fn resampled(joint: JointIndex, times: Vec<f32>, keys: Keys) -> Self {
         Self { joint, interpolation: Interpolation::Linear, times, keys, resampled: true }
     }

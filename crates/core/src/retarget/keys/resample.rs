@@ -1,5 +1,5 @@
-//! Adds keys where no single channel holds the answer: a function of time is evaluated at the given times, and in between
-//! until linear interpolation follows it closely enough.
+//! Resamples where no single channel suffices: evaluates a function of time at the given times, then subdivides until
+//! linear interpolation follows it closely enough.
 
 use glam::DVec3;
 
@@ -75,7 +75,7 @@ pub fn resample_positions(
     resample(times, jumps, &Curve { value, interpolate, error: |a: DVec3, b| a.distance(b), tolerance })
 }
 
-/// Adds the keys needed between two.
+/// Subdivides the interval between two keys until the tolerance is met.
 fn refine<T: Copy>(
     curve: &Curve<impl Fn(f32) -> T, impl Fn(T, T, f64) -> T, impl Fn(T, T) -> f64>,
     start: (f32, T),

@@ -52,7 +52,7 @@ pub struct SourceTracks<'a> {
 }
 
 impl<'a> SourceTracks<'a> {
-    /// `unmoved` is what joints do that the clip does not move.
+    /// `unmoved` holds the local transforms of joints that the clip does not animate.
     pub fn new(skeleton: &'a Skeleton, clip: &'a Clip, muted: &[(JointIndex, Property)], unmoved: &[Local]) -> Self {
         let mut tracks = Self {
             skeleton,

@@ -12,7 +12,7 @@ use crate::anim::Skeleton;
 use crate::asset::Asset;
 
 impl JointMapFile {
-    /// Converts a map that fits both files. One without joints is a start to work from and is not checked further.
+    /// Converts a map that fits both files. One without joints is a starting point and is not checked further.
     ///
     /// # Errors
     /// As [`JointMapFile::resolve`], except that no joint needs a source.
@@ -113,13 +113,13 @@ impl JointMapFile {
 }
 
 impl JointMap {
-    /// The map as a file has it, with names instead of numbers wherever a name stands for one joint.
+    /// Returns the file form of the map, with names instead of numbers wherever a name is unique.
     pub fn to_file(&self, model: &Asset, motion: &Asset) -> JointMapFile {
         let (targets, sources) = (unique_names(&model.skeleton), unique_names(&motion.skeleton));
         self.to_file_with(|number| targets.get(&number).copied(), |number| sources.get(&number).copied())
     }
 
-    /// The map as a file has it, but with numbers only.
+    /// Returns the file form of the map with numbers only.
     pub fn to_numbered_file(&self) -> JointMapFile {
         self.to_file_with(|_| None, |_| None)
     }
@@ -154,7 +154,7 @@ impl JointMap {
     }
 }
 
-/// Names that stand for one joint, by the joint's number; those that look like a number are left out.
+/// Unique names by joint number, without those that look like a number.
 fn unique_names(skeleton: &Skeleton) -> BTreeMap<usize, &str> {
     let mut joints: BTreeMap<&str, Option<usize>> = BTreeMap::new();
     for joint in skeleton.joints() {

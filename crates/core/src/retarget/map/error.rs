@@ -130,13 +130,13 @@ pub enum MapError {
     NothingMapped,
     /// The proposed map has no pairs.
     #[error(
-        "the model and the motion have no joint in common: neither names nor body parts agree. Match joints by hand, in the Motion tab or in a map (docs/joint-maps.md)"
+        "the model and the motion have no joint in common: neither names nor body parts agree. Map joints manually, in the Motion tab or in a map (docs/joint-maps.md)"
     )]
     NothingInCommon,
 }
 
 impl MapError {
-    /// The JSON path of what is wrong; `None` if that is the whole map.
+    /// The JSON path of the error; `None` if it concerns the whole map.
     pub fn path(&self) -> Option<&str> {
         match self {
             Self::Json { path, .. } => Some(path.as_str()).filter(|path| *path != "."),
@@ -155,7 +155,7 @@ impl MapError {
         }
     }
 
-    /// What a member should have been and what it is, if it has the wrong type or value.
+    /// Returns what was expected and what was found, if a member has the wrong type or value.
     pub fn expected_and_found(&self) -> Option<(String, String)> {
         match self {
             Self::Json { message, .. } => json_text::expected_and_found(json_text::split_position(message).0),

@@ -58,7 +58,7 @@ pub enum SourceRef {
     Name(String),
 }
 
-/// Refuses a joint that appears twice, which would silently lose one of its entries.
+/// Rejects a joint that appears twice, which would silently lose one of its entries.
 fn unique_entries<'de, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<BTreeMap<String, MapEntry<SourceRef>>, D::Error> {
@@ -77,7 +77,7 @@ fn unique_entries<'de, D: Deserializer<'de>>(
                 if entries.contains_key(&name) {
                     return Err(A::Error::custom(format!("“{name}” appears twice; keep one of the two")));
                 }
-                // Beyond 32 bits it would be infinite, which no map can be written with.
+                // Out of range for f32 it would be infinite, which cannot be written back.
                 if !entry.correction.is_finite() {
                     return Err(A::Error::custom(format!("a number in the correction of “{name}” is too large")));
                 }
@@ -97,7 +97,7 @@ impl JointMapFile {
     /// If it is not a map of version 1. Unknown members are errors: a misspelt one would have no effect.
     pub fn from_json(text: &str) -> Result<Self, MapError> {
         let text = text.trim_start_matches('\u{feff}');
-        // The version comes first: another one has other rules.
+        // Check the version first: other versions have other rules.
         let version = serde_json::from_str(text).map(|form: serde_json::Value| form.get("gaitway_map").cloned());
         match version {
             Ok(Some(version)) if version == 1 => {}
@@ -114,7 +114,7 @@ impl JointMapFile {
             let is_whole = ["missing field", "invalid length"].iter().any(|start| message.starts_with(start));
             let is_past = !is_whole && matches!(text.as_bytes()[..end].last(), Some(b'}' | b']'));
             let path = place(&path_at(text, end - usize::from(is_past)));
-            // The text is JSON, so the parser misses the name of an option.
+            // The text is valid JSON, so what the parser missed is the name of an option.
             let option = "expected a name in quotation marks (see docs/joint-maps.md) at line ";
             MapError::Json { path, message: message.replacen("expected value at line ", option, 1) }
         })

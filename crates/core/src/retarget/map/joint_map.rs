@@ -1,5 +1,5 @@
-//! The joint map that everything but its file form uses: which target joint follows which source joint, and how, by the
-//! joints' numbers in their files.
+//! The joint map in memory: which target joint follows which source joint, and how, by the joints' numbers in their
+//! files.
 
 use std::collections::BTreeMap;
 
@@ -52,7 +52,7 @@ fn is_identity(rotation: &Quat) -> bool {
 }
 
 impl<S> MapEntry<S> {
-    /// Follows `source` and says nothing else.
+    /// Creates an entry that follows `source`, with default options.
     pub fn following(source: Option<S>) -> Self {
         Self { source, correction: Quat::IDENTITY, unmapped: None }
     }

@@ -16,8 +16,8 @@ pub struct RestChoices {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RestChoice {
-    /// The bind pose where a skin covers a joint, the node's transform elsewhere. For a motion of the model's own rig, the
-    /// model's rest; for one whose body does not stand upright and symmetric in its own, the pose of its clip that does most.
+    /// The bind pose where a skin covers a joint, the node's transform elsewhere. For a motion of the model's own rig,
+    /// the model's rest; for one whose own rest is not upright and symmetric, the pose of its clip that comes closest.
     #[default]
     Auto,
     /// The nodes' own transforms.
@@ -29,7 +29,7 @@ pub enum RestChoice {
 }
 
 impl RestChoice {
-    /// In the order that they are offered.
+    /// All choices in display order.
     pub const ALL: [Self; 4] = [Self::Auto, Self::Node, Self::Bind, Self::FirstFrame];
 }
 
@@ -52,7 +52,7 @@ pub struct RootOptions {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RootPart {
-    /// Leaves it as it is in the motion.
+    /// Leaves it unchanged.
     #[default]
     Keep,
     /// Removes the travel (the line from the first to the last key); the sway stays.

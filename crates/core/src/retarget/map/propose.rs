@@ -1,5 +1,5 @@
-//! Proposes a joint map: by the names that both skeletons share if most are shared, else by humanoid slots; what is left, by
-//! names again if it hangs in the same place.
+//! Proposes a joint map: by shared names if most are shared, else by humanoid slots. Remaining joints are paired by
+//! name if they hang in the same place.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -45,7 +45,7 @@ const MIN_SHARED_NAMES: f32 = 0.8;
 /// Confidence in a shared name outside the humanoid slots.
 const NAME_CONFIDENCE: f32 = 0.9;
 
-/// Fewer slots in common do not make a body.
+/// Minimum number of common slots that make a body.
 const MIN_SHARED_SLOTS: usize = 3;
 
 const TRUNK: [Slot; 3] = [Slot::Spine, Slot::Chest, Slot::UpperChest];
@@ -170,7 +170,7 @@ const CREATURE_NAME_CONFIDENCE: f32 = 0.7;
 /// Confidence in the counterpart of a creature's joint by its place in a chain.
 const CREATURE_CHAIN_CONFIDENCE: f32 = 0.4;
 
-/// Fewer shared names may be chance.
+/// Minimum number of shared names: fewer may be coincidence.
 const MIN_CREATURE_NAMES: usize = 4;
 
 /// Pairs the joints of two creatures: by the names they share, then along trunk, tail, legs and wings.
@@ -213,7 +213,7 @@ fn match_chains(targets: usize, sources: usize) -> Vec<(usize, usize)> {
     }
 }
 
-/// Where joints outside the slots are paired.
+/// Context for pairing joints outside the slots.
 struct Leftovers<'a> {
     model: &'a Skeleton,
     motion: &'a Skeleton,
@@ -240,7 +240,7 @@ fn pair_leftovers(pairs: &mut Pairs, shared: &BTreeMap<JointIndex, JointIndex>, 
     }
 }
 
-/// For each joint, what `of` returns for its nearest ancestor that has anything.
+/// For each joint, the value of `of` at the nearest ancestor that has one.
 fn nearest_above<T: Copy>(skeleton: &Skeleton, of: impl Fn(JointIndex) -> Option<T>) -> Vec<Option<T>> {
     let mut found: Vec<Option<T>> = Vec::with_capacity(skeleton.len());
     for joint in skeleton.joints() {
@@ -250,7 +250,7 @@ fn nearest_above<T: Copy>(skeleton: &Skeleton, of: impl Fn(JointIndex) -> Option
 }
 
 impl Proposal {
-    /// Returns the proposed pairs as a map. Without any, the map lists the model's joints, for someone to fill in.
+    /// Returns the proposed pairs as a map. Without any, the map lists the model's joints to fill in.
     pub fn to_map(&self, model: &Asset, motion: &Asset) -> JointMap {
         let entry = |pair: &ProposedPair| {
             let source = motion.skeleton.source_index(pair.source);

@@ -49,7 +49,7 @@ impl JointMap {
 /// A clip by its index, and whether it is frozen; None for the rest pose.
 type LayerChoice = Option<(usize, bool)>;
 
-/// What the map's entries say.
+/// The map's entries, resolved.
 struct ResolvedJoints {
     /// Ascending by target.
     pairs: Vec<Pair>,

@@ -1,4 +1,4 @@
-//! Joints that two skeletons name alike.
+//! Joints that have the same name in two skeletons.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -57,7 +57,7 @@ fn add_children_of_matches(
     }
 }
 
-/// Named joints by what `read` makes of their names.
+/// Named joints by what `read` returns for their names.
 fn joints_by_name(skeleton: &Skeleton, read: fn(&str) -> String) -> BTreeMap<String, Vec<JointIndex>> {
     let mut joints: BTreeMap<String, Vec<JointIndex>> = BTreeMap::new();
     for joint in skeleton.joints().filter(|&joint| !skeleton.name(joint).is_empty()) {

@@ -28,8 +28,8 @@ pub struct Figures {
     pub facing_error_degrees_mean: Option<f64>,
     /// The largest of these angles.
     pub facing_error_degrees_max: Option<f64>,
-    /// How far the rotation of a mapped joint away from its aligned rest differs from its source's: whether the law was
-    /// kept. It takes the rests for granted. Measured without planted feet.
+    /// Difference between a mapped joint's rotation away from its aligned rest and its source's: how well the rotation
+    /// law holds. Assumes that the rests are right. Measured without planted feet.
     pub orientation_error_degrees_mean: Option<f64>,
     /// The largest of these angles, over all mapped joints and measured times.
     pub orientation_error_degrees_max: Option<f64>,
@@ -37,7 +37,7 @@ pub struct Figures {
     pub foot_slide_metres_per_sec: Option<f64>,
     /// The source's own speed during the same contacts, scaled to the target.
     pub foot_slide_source_metres_per_sec: Option<f64>,
-    /// How far a toe or ankle goes at most below the lowest leg joint of the aligned rest.
+    /// Maximum depth of a toe or ankle below the lowest leg joint of the aligned rest.
     pub ground_penetration_metres_max: Option<f64>,
     /// Mean height of the sole's lowest point above the ground while the source's foot is in contact; negative below it. The
     /// ground is where the lowest point of either sole rests: of the mesh of the feet or, without one, of their joints.
@@ -46,7 +46,7 @@ pub struct Figures {
     pub coverage: Option<f64>,
 }
 
-/// Lines whose directions tell how hips, chest, feet and hands are turned.
+/// Lines whose directions show how hips, chest, feet and hands are turned.
 const FACING: [(Slot, Slot); 6] = [
     (Slot::RightUpperLeg, Slot::LeftUpperLeg),
     (Slot::RightUpperArm, Slot::LeftUpperArm),
@@ -88,7 +88,7 @@ impl Spread {
     }
 }
 
-/// Measures a clip, with what its feet do over time.
+/// Measures a clip and tracks its feet over time.
 pub fn measure(
     transfer: &Transfer,
     source_slots: &Humanoid,

@@ -1,4 +1,4 @@
-//! The source beside its target: where it goes in the model's space, and how far apart each pair is.
+//! The source shown beside its target: its placement in the model's space, and the error of each pair.
 
 use glam::{Affine3A, DAffine3, DVec3, Quat};
 

@@ -1,5 +1,5 @@
-//! Finds the chains of an animal on four legs, or on two with wings, by its shape: legs that hang across the trunk, and what
-//! continues the trunk before and behind them.
+//! Finds the joint chains of a quadruped or a winged biped by shape: legs that hang across the trunk, and what
+//! continues the trunk in front of and behind them.
 
 use std::collections::BTreeMap;
 

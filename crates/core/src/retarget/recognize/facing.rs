@@ -42,8 +42,8 @@ pub(super) fn find(tree: &Tree, parts: &BTreeMap<Slot, RecognizedJoint>, feet_po
         .or_else(|| toes(tree, parts, up))
         .or_else(|| eyes(tree, parts, up))
         .or_else(|| knees(tree, parts, up));
-    // Feet point outwards and rests are crooked: the line through both sides gives the axis more exactly, but not its
-    // direction.
+    // Feet point outwards and rests are crooked: the line through both sides gives the axis more precisely, but not its
+    // sign.
     if let (Some(across), Some(seen)) = (left.map(|left| left.cross(up)), forward) {
         let along = across.dot(seen);
         forward = (along.abs() > 0.5).then_some(across * along.signum());
@@ -73,8 +73,8 @@ fn left(tree: &Tree, parts: &BTreeMap<Slot, RecognizedJoint>, up: Vec3) -> Optio
     [LeftUpperLeg, LeftUpperArm, LeftFoot, LeftHand].into_iter().filter_map(apart).sum::<Vec3>().try_normalize()
 }
 
-/// Where feet point for certain: from the ankles to the toes or, without toes, to the middle of the skin on the feet. Exchanging
-/// left and right does not change it.
+/// Where feet point for certain: from the ankles to the toes or, without toes, to the middle of the skin on the feet.
+/// Swapping left and right does not change it.
 pub(super) fn feet_point(asset: &Asset, tree: &Tree, parts: &BTreeMap<Slot, RecognizedJoint>) -> Option<Vec3> {
     let up = up(tree, parts)?;
     let (left, right) = (parts.get(&LeftFoot)?.joint, parts.get(&RightFoot)?.joint);

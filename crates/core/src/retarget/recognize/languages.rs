@@ -1,5 +1,5 @@
-//! Names in other languages than English, which is what vocabularies and words are in. A skeleton is in one language: that
-//! of which it uses most words. Languages without spaces are cut into the longest known words.
+//! Translates joint names to English, the language of vocabularies and words. Each skeleton is in one language: the one
+//! with the most matching words. Languages without spaces are split into the longest known words.
 
 use std::collections::BTreeSet;
 
@@ -132,7 +132,7 @@ const FRENCH: Words = &[
     ("orteils", "toes"),
 ];
 
-/// As MikuMikuDance has them: 足 is the thigh.
+/// As used by MikuMikuDance: 足 is the thigh.
 const JAPANESE: Words = &[
     ("左", "left"),
     ("右", "right"),
@@ -249,7 +249,7 @@ const KOREAN: Words = &[
 #[derive(Clone, Copy)]
 struct Language {
     words: Words,
-    /// Otherwise a name is a run of words.
+    /// Whether spaces separate words. Otherwise a name is a run of words.
     has_spaces: bool,
 }
 
@@ -269,7 +269,7 @@ pub(super) fn translate(names: &mut [Name]) {
         words.map(|(word, _)| word).collect::<BTreeSet<&str>>().len()
     };
     let used = LANGUAGES.into_iter().map(|language| (uses(language), language));
-    // Of equal ones the first.
+    // The first wins a tie.
     let Some((count, language)) = used.rev().max_by_key(|(count, _)| *count) else { return };
     if count < MIN_WORDS {
         return;
@@ -288,7 +288,7 @@ pub(super) fn translate(names: &mut [Name]) {
     }
 }
 
-/// Splits a word into known words; None if it cannot be. Languages with spaces write each word by itself.
+/// Splits a word into known words; None if that is impossible. Languages with spaces write each word separately.
 fn cut(word: &str, language: Language) -> Option<Vec<(&'static str, &'static str)>> {
     let mut parts = Vec::new();
     let mut rest = word;

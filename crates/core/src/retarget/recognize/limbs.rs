@@ -23,7 +23,7 @@ const MAX_JOINTS: usize = 9;
 const SURE: f32 = 0.85;
 pub(super) const UNSURE: f32 = 0.3;
 
-/// A difference in cost from which the cheaper choice is sure.
+/// Minimum difference in cost for the cheaper choice to be certain.
 const SURE_MARGIN: f32 = 0.3;
 
 /// Upper joint, middle joint and end of a limb, as indices into its chains, and their cost.
@@ -58,7 +58,7 @@ fn bend(shape: &Shape, twins: &Twins, a: usize, b: usize) -> f32 {
     3.0 * (1.0 - span(shape, twins, a, b) / length) + (corner / SHARP_RADIANS).min(1.0)
 }
 
-/// A bend that no twist joint has.
+/// Minimum bend that rules out a twist joint.
 const SHARP_RADIANS: f32 = 0.8;
 
 /// Evaluates all choices of three joints; cheapest first.

@@ -39,7 +39,7 @@ pub struct Recognized {
     pub facing: Facing,
     /// Evidence against what was decided in `parts`.
     pub contradictions: Vec<Contradiction>,
-    /// The position of the joints decided about left and right against their names, for all joints together.
+    /// Whether the joints' positions decided left and right against their names, for all joints together.
     pub by_position: bool,
 }
 
@@ -142,7 +142,7 @@ impl Recognized {
 /// Factor on the confidence in names that leave much of a body unmatched: they may mean something else.
 const PARTIAL_BODY_FACTOR: f32 = 0.7;
 
-/// Confidence in a joint whose name is wrong about the side: its position decided against it, so someone should look.
+/// Confidence in a joint whose name is wrong about the side: its position overrode the name, so it needs review.
 const SWAPPED_CONFIDENCE: f32 = 0.55;
 
 /// A file's own humanoid map with fewer slots than this is ignored.

@@ -110,7 +110,7 @@ impl<'a> Shape<'a> {
         chain.windows(2).map(|pair| self.distance(pair[0], pair[1])).sum()
     }
 
-    /// The joint and what follows it, along the longest path where it forks. A tip that no skin knows is left out.
+    /// The joint and what follows it, along the longest path where it forks. A tip that no skin references is left out.
     pub fn chain(&self, first: JointIndex) -> Vec<JointIndex> {
         let way = |from: JointIndex, to: JointIndex| self.distance(from, to) + self.reach[to.get()];
         let longest = |at: &JointIndex| {
@@ -283,8 +283,8 @@ fn slots(shape: &Shape, body: &Halves) -> Option<Vec<(Slot, JointIndex, f32)>> {
     Some(found)
 }
 
-/// The joints between hips and neck. A lowest one that no skin knows and that never turns only connects the spine. Without
-/// a joint for the neck, the highest ones may be it.
+/// The joints between hips and neck. A lowest one that no skin references and that never rotates only connects the
+/// spine. Without a joint for the neck, the highest ones may be it.
 fn trunk(shape: &Shape, body: &Halves, has_neck: bool) -> Vec<(Slot, JointIndex, f32)> {
     let is_still = |joint: JointIndex| {
         shape.evidence.turns(joint) == Some(false) && shape.evidence.is_skinned(joint) != Some(true)

@@ -29,7 +29,7 @@ impl<'a> Tree<'a> {
     pub fn new(asset: &'a Asset) -> Self {
         let skeleton = &asset.skeleton;
         let usable = usable(asset);
-        // What hangs on a rig must not change what its joints are.
+        // Attachments must not change how a rig's joints are read.
         let read =
             |joint: JointIndex| if usable[joint.get()] { Name::read(skeleton.name(joint)) } else { Name::default() };
         let mut names: Vec<Name> = skeleton.joints().map(read).collect();

@@ -117,8 +117,8 @@ impl<'a> Conversion<'a> {
         }
     }
 
-    /// Converts one of the source joint's channels. None for rotations, and for morph weights if the target joint has
-    /// another number of morph targets than `morphs`.
+    /// Converts one of the source joint's channels. None for rotations, and for morph weights if the target joint has a
+    /// different number of morph targets than `morphs`.
     fn channel(&self, transfer: &Transfer, channel: &Channel, morphs: usize) -> Option<NewChannel> {
         let is_spline = channel.interpolation == Interpolation::CubicSpline;
         let keys = match &channel.keys {

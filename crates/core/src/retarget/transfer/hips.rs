@@ -40,7 +40,7 @@ pub struct Hips {
 }
 
 impl Hips {
-    /// The same for a source whose own rest says nothing: it stands where the target does, in its own size.
+    /// Returns the same for a source without a meaningful rest: it stands where the target does, at its own size.
     pub fn resting_as_target(self) -> Self {
         Self { source_rest: self.target_rest / self.scale, ..self }
     }
@@ -70,8 +70,8 @@ pub struct HipsInput<'a> {
     pub target_slots: &'a Humanoid,
 }
 
-/// Returns None if no pair has to do with hips. In a map without humanoid slots, the first pair that has no mapped ancestor
-/// and whose source travels stands in for them.
+/// Returns None if no pair involves the hips. In a map without humanoid slots, the first pair that has no mapped
+/// ancestor and whose source travels stands in for them.
 pub fn match_hips(input: HipsInput) -> Option<Hips> {
     let HipsInput { map, alignment, source_slots, target_slots, .. } = input;
     let pair = alignment.pair_of_slot.get(&Slot::Hips).copied().or_else(|| travelling_pair(input))?;
@@ -120,8 +120,8 @@ fn lowest_joints(alignment: &Alignment, joints: impl Iterator<Item = (JointIndex
     })
 }
 
-/// Some skeletons, BVH ones as a rule, rest with their hips in the origin and their legs below the ground, and every clip
-/// lifts them. Whether the ground is under the resting feet or in the plane of the origin shows in where the feet go.
+/// Some skeletons, usually BVH, rest with their hips at the origin and their legs below the ground, and every clip
+/// lifts them. Where the feet go shows whether the ground is under the resting feet or in the plane of the origin.
 fn rests_in_the_ground(input: HipsInput, pair: usize, legs: &[JointIndex], source_ground: f64) -> bool {
     let HipsInput { map, alignment, tracks, .. } = input;
     let hips = map.pairs[pair].source;

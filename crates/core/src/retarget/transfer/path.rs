@@ -140,7 +140,7 @@ fn rest_parent_frame(transfer: &Transfer, hips: JointIndex) -> DAffine3 {
     transfer.alignment.target.parent_frame(transfer.target_skeleton, hips)
 }
 
-/// The same at a time: mapped ancestors turn.
+/// The same at a given time, as mapped ancestors rotate.
 fn hips_parent_frame(transfer: &Transfer, hips: JointIndex, laws: &[RotationLaw], time_secs: f32) -> DAffine3 {
     let rest = &transfer.alignment.target;
     parent_frame(transfer.target_skeleton, hips, rest.world_from_model, |ancestor| {

@@ -10,9 +10,9 @@ use crate::avatar::{Collider, SpringJoint, Springs};
 /// Further spring joints, colliders and groups are skipped.
 const MAX_JOINTS: usize = 4096;
 const MAX_COLLIDERS: usize = 1024;
-/// Springs of a file.
+/// Maximum number of springs in a file.
 const MAX_GROUPS: usize = 512;
-/// Collider groups of a spring.
+/// Maximum number of collider groups of a spring.
 const MAX_GROUPS_OF_SPRING: usize = 64;
 /// Maximum number of pairs of spring joint and collider, all of which are tested in every step.
 const MAX_TESTS: usize = 1 << 16;

@@ -155,7 +155,7 @@ fn primitive(geometry: &Geometry, data: &mut Data) -> Value {
     let positions = data.attribute("VEC3", geometry.positions.iter().map(|at| at.to_array()));
     let min = geometry.positions.iter().copied().fold(Vec3::INFINITY, Vec3::min);
     let max = geometry.positions.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
-    // With all digits: validators compare them with the data.
+    // With all digits, since validators compare them with the data.
     data.accessors[positions]["min"] = json!(min.as_dvec3().to_array());
     data.accessors[positions]["max"] = json!(max.as_dvec3().to_array());
     attributes["POSITION"] = json!(positions);
@@ -201,7 +201,7 @@ fn skin(skin: &Skin, skeleton: &Skeleton, data: &mut Data) -> Value {
     json!({ "name": skin.name(), "joints": joints, "inverseBindMatrices": matrices })
 }
 
-/// Writes colours, alpha and the base colour texture; the formats that this is for have nothing else.
+/// Writes colours, alpha and the base colour texture; the source formats have nothing else.
 fn material(material: &Material) -> Value {
     let mut surface = json!({
         "baseColorFactor": material.base_color.to_array(),

@@ -12,8 +12,8 @@ use super::glb::pad;
 use crate::anim::{Channel, Clip, Interpolation, Keys, Property, Skeleton};
 use crate::formats::gltf::object::{Array, raw};
 
-/// A rotation whose squared length is farther from 1 is normalized. Rounding stays far below, so a clip that was loaded is
-/// written back bit by bit.
+/// A rotation whose squared length is farther from 1 is normalized. Rounding errors are far smaller, so a clip that was
+/// loaded is written back bit for bit.
 const UNIT_TOLERANCE: f32 = 1e-5;
 
 /// The elements that clips add to the arrays of a file.
@@ -31,7 +31,7 @@ pub struct Counts {
     pub buffer_views: usize,
 }
 
-/// Appends the keys of `clips` to `binary`, the beginning of the buffer. `weights`: morph weights too.
+/// Appends the keys of `clips` to `binary`, the beginning of the buffer. `weights` includes morph weights.
 pub fn add(
     clips: &[&Clip],
     skeleton: &Skeleton,
@@ -80,7 +80,7 @@ impl Data<'_> {
         if with_bounds {
             let min = numbers.iter().copied().fold(f32::INFINITY, f32::min);
             let max = numbers.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-            // With all digits: validators compare them with the data.
+            // With all digits, since validators compare them with the data.
             accessor["min"] = json!([f64::from(min)]);
             accessor["max"] = json!([f64::from(max)]);
         }
@@ -158,7 +158,7 @@ fn numbers(channel: &Channel) -> (&'static str, &'static str, usize, Vec<f32>) {
     }
 }
 
-/// Normalizes a rotation, as the specification demands. A zero quaternion becomes the identity.
+/// Normalizes a rotation, as the specification requires. A zero quaternion becomes the identity.
 fn unit(rotation: Quat) -> [f32; 4] {
     if (rotation.length_squared() - 1.0).abs() <= UNIT_TOLERANCE || !rotation.is_finite() {
         return rotation.to_array();

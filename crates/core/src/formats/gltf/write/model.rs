@@ -19,13 +19,13 @@ use crate::formats::gltf::object::{Array, Object, raw};
 use crate::formats::gltf::{container, data, resolve_buffers};
 use crate::formats::{FileSet, extension, named};
 
-/// The extension without which no texture may use KTX2.
+/// The extension that textures need to use KTX2.
 const BASISU: &str = "KHR_texture_basisu";
 
-/// Writes the file `file` of the set as a self-contained GLB, with `clips` (of `skeleton`, which was loaded from the same file)
-/// after its own. Its first buffer is the beginning of the new one; indices, numbers and everything unknown are preserved. Only
-/// a node with a matrix that a clip animates gets translation, rotation and scale instead, because the specification forbids
-/// animating a matrix. A GLB without anything to add or embed is returned unchanged.
+/// Writes the file `file` of the set as a self-contained GLB, with `clips` (of `skeleton`, which was loaded from the
+/// same file) added after its own. Its first buffer is the beginning of the new one; indices, numbers and everything
+/// unknown are preserved. Only nodes whose matrix a clip animates get translation, rotation and scale instead, because
+/// the specification forbids animating a matrix. A GLB without anything to add or embed is returned unchanged.
 pub fn model(files: &FileSet, file: &str, skeleton: &Skeleton, clips: &[&Clip]) -> Result<Vec<u8>, WriteError> {
     let bytes = named(files, file)?;
     let container = container::open(file, bytes)?;
@@ -44,7 +44,7 @@ pub fn model(files: &FileSet, file: &str, skeleton: &Skeleton, clips: &[&Clip]) 
     let mut warnings = Warnings::default();
     let buffers = resolve_buffers(files, file, &container, &root, &mut warnings).map_err(|p| p.in_file(file))?;
     let mut binary = buffers.first().map_or(Vec::new(), |first| {
-        // Without data, it makes room below if anything is added.
+        // A first buffer without data is moved back below if anything is added.
         first.as_ref().map_or(Vec::new(), |first| first.as_slice().to_vec())
     });
     let (chunk, json_views) = (binary.len(), json.count("bufferViews"));
@@ -174,8 +174,8 @@ fn embed_images(files: &FileSet, file: &str, json: &mut Object, root: &Root, out
     declare_ktx2(json, &ktx2);
 }
 
-/// Moves textures that use these images as if every reader knew KTX2 to the extension for it. An image in a file may be of any
-/// kind, one inside a GLB may not.
+/// Moves textures that refer to these KTX2 images directly to the extension for it. An image in a file of its own may
+/// be of any kind, one inside a GLB may not.
 fn declare_ktx2(json: &mut Object, images: &[usize]) {
     let mut textures: Vec<Object> = json.read("textures").unwrap_or_default();
     let mut changed = false;
@@ -199,8 +199,8 @@ fn declare_ktx2(json: &mut Object, images: &[usize]) {
     }
 }
 
-/// Returns the MIME type of an image by its content, else as the file declares it, else by its extension. An image of an unknown
-/// kind is embedded as well: the file that it was in is not at hand wherever the GLB goes.
+/// Returns the MIME type of an image by its content, else as the file declares it, else by its extension. An image of
+/// an unknown kind is embedded as well: its file may be unavailable wherever the GLB goes.
 fn mime(bytes: &[u8], uri: &str, said: Option<String>) -> String {
     let by_content = match imagesize::image_type(bytes) {
         Ok(ImageType::Png) => Some("image/png"),
@@ -225,8 +225,8 @@ fn mime(bytes: &[u8], uri: &str, said: Option<String>) -> String {
     by_content.map(str::to_owned).or(said).or_else(in_uri).unwrap_or_else(|| by_extension().to_owned())
 }
 
-/// Puts the GLB's binary chunk before the first buffer, which has no data and must keep it that way: only the file's own
-/// `own_views` views refer to the buffers that were there.
+/// Inserts the GLB's binary chunk before the first buffer, which has no data and must stay that way: only the file's
+/// own `own_views` views refer to the buffers that were there.
 fn insert_first_buffer(json: &mut Object, byte_length: usize, own_views: usize) {
     let mut views: Vec<Object> = json.read("bufferViews").unwrap_or_default();
     for view in views.iter_mut().take(own_views) {
@@ -291,7 +291,7 @@ fn split_matrices(json: &mut Object, clip: &Clip, skeleton: &Skeleton) {
 
 fn parts(skeleton: &Skeleton, joint: JointIndex) -> Vec<(&'static str, Box<RawValue>)> {
     let rest = skeleton.rest().local(joint);
-    // As f64: the shortest decimal form of an f32 may be parsed as its neighbour by readers that go through f64.
+    // As f64: readers that go through f64 may parse the shortest form of an f32 as its neighbour.
     vec![
         ("translation", raw(&rest.translation.as_dvec3().to_array())),
         ("rotation", raw(&rest.rotation.as_dquat().to_array())),
