@@ -136,7 +136,7 @@ pub(super) fn finite<T: std::str::FromStr + Copy + Into<f64>>(text: &str) -> Opt
 /// Returns a source with the current separator: a model inside an archive is `ARCHIVE#!/MEMBER`, but an early version wrote
 /// `ARCHIVE#/MEMBER`.
 pub fn with_current_member(text: &str) -> String {
-    match text.split_once("#/") {
+    match text.split_once("#/").filter(|_| !text.contains(MEMBER_SEPARATOR)) {
         Some((file, member)) if file.contains("://") || file.to_lowercase().ends_with(".zip") => {
             format!("{file}{MEMBER_SEPARATOR}{member}")
         }
