@@ -54,15 +54,22 @@ impl Editor {
     /// # Errors
     /// The message for the user if none of the files can be used; nothing has changed then.
     pub fn open(&mut self, contents: Contents, view: Option<ViewerState>, admit: Admit<'_>) -> Result<(), String> {
-        let Contents { models, motions, map, environment, is_map_private, problems } = contents;
+        let Contents { models, motions, map, environment, is_map_private, is_by_hand, problems } = contents;
         let is_view = view.is_some();
         let (file, map) = map.map(|opened| (opened.name, opened.map)).unzip();
         self.opened_map = file;
         self.has_private_map |= is_map_private;
         self.refused.clear();
         let opened = match motions {
-            motions if !models.is_empty() => self.open_models(models, Companions { motions, map, view }, admit),
-            Some(motions) => self.open_motions(motions, map, view, admit),
+            motions if !models.is_empty() => {
+                let opened = self.open_models(models, Companions { motions, map, view }, admit);
+                if opened.is_ok() {
+                    self.suits_follow = is_by_hand;
+                    self.suit_automatic_follow();
+                }
+                opened
+            }
+            Some(motions) => self.open_motions(motions, map, view, is_by_hand, admit),
             None => map.map_or(Ok(()), |map| self.apply_map_file(&map)),
         };
         self.opened_map = None;
@@ -158,7 +165,7 @@ impl Editor {
     /// Replaces the state, checking each value as if it had been set alone. Adds no step to the history: opening is the step.
     fn set_view(&mut self, view: ViewerState) {
         let view = self.calmed_view(view);
-        self.held_camera = None;
+        (self.held_camera, self.suits_follow) = (None, false);
         apply(&mut self.state, &self.library, Command::Replace(Box::new(view)));
     }
 
@@ -358,6 +365,7 @@ impl Editor {
             Some(clip) if !self.keep_retargeted(&clip) => self.apply(Command::SetClip(ClipChoice::First)),
             _ => {}
         }
+        self.suit_automatic_follow();
         (self.needs_redraw, self.is_changed) = (true, true);
         Ok(())
     }

@@ -110,7 +110,7 @@ struct BoneStyle {
     chosen: Option<JointIndex>,
     of_source: bool,
     visible: bool,
-    /// Gives all bones the same thickness.
+    /// Spheres and boxes, which look thicker than bones of the same radius.
     boxes: bool,
     /// Size of the model, metres.
     size: f32,
@@ -145,7 +145,7 @@ fn write_bones(
             continue;
         }
         let color = if style.chosen == Some(bone.head) { CHOSEN } else { style.plain };
-        let radius = if style.boxes { 0.012 * size } else { (0.1 * length).clamp(0.002 * size, 0.02 * size) };
+        let radius = (0.1 * length).clamp(0.002 * size, if style.boxes { 0.012 } else { 0.02 } * size);
         bones.push(Bone {
             head,
             tail,

@@ -19,18 +19,61 @@ pub const HIDE_INSPECTOR: &str = "Hide inspector";
 pub const SHOW_INSPECTOR: &str = "Show inspector";
 /// Close button of a sheet.
 pub const CLOSE_SHEET: &str = "Close panel";
-/// Viewport button that opens files while the clips panel is closed.
-pub const OPEN_FILES: &str = "Open files";
-/// Button that opens the gallery of samples.
-pub const SAMPLES: &str = "Samples";
 /// Fitting everything into the viewport, as the help describes it.
 pub const FRAME_ALL: &str = "Fit everything in view";
 /// Button that fits everything into the viewport, with its key.
 pub const FRAME_ALL_KEY: &str = "Fit everything in view (F)";
 
+// Header and menu
+/// The program's name.
+pub const NAME: &str = "Gaitway";
+/// What the program does.
+pub const TAGLINE: &str = "Watch a 3D character move, and give it the motion of another.";
+/// Button that opens files.
+pub const OPEN: &str = "Open…";
+/// Button that borrows motion from another file, or loads a joint map.
+pub const BORROW_MOTION: &str = "Borrow motion…";
+/// Button that opens the gallery of samples.
+pub const SAMPLES: &str = "Samples";
+/// Menu of what can be saved.
+pub const EXPORT: &str = "Export";
+/// Entry of the export menu that shows the settings of images and videos.
+pub const PICTURE_SETTINGS: &str = "Image and video settings…";
+/// Button that shares a link to the view.
+pub const SHARE: &str = "Share…";
+/// Menu of everything else.
+pub const MENU: &str = "Menu";
+/// Entry of the menu that enters and leaves full screen.
+pub const FULL_SCREEN: &str = "Full screen";
+/// The choice of the panels' theme.
+pub const THEME: &str = "Theme";
+/// Entry of the menu that opens the help, with its key.
+pub const HELP: &str = "Keys and gestures (?)";
+/// Entry of the menu that opens the box about the program.
+pub const ABOUT: &str = "About Gaitway";
+/// The version, in that box.
+pub const VERSION: &str = concat!("Version ", env!("CARGO_PKG_VERSION"));
+/// The licence, in that box.
+pub const LICENCE: &str = "Free and open source: MIT or Apache 2.0, at your option. Your files stay on your computer.";
+/// Link in that box.
+pub const DOCUMENTATION: &str = "Documentation";
+/// Link in that box.
+pub const SOURCE_CODE: &str = "Source code";
+/// Button that closes that box.
+pub const CLOSE_ABOUT: &str = "Close";
+/// Button that undoes the last step, whatever it was, with its key.
+pub const UNDO_STEP: &str = "Undo last step (Ctrl+Z)";
+/// Button that redoes the last undone step, with its key.
+pub const REDO_STEP: &str = "Redo step (Ctrl+Y)";
+/// Button of an embedded view.
+pub const OPEN_PAGE: &str = "Open in Gaitway";
+
+/// Returns the name of the button that borrows the clips of an open model.
+pub fn borrow_from(model: &str) -> String {
+    format!("Borrow the motion of {model}")
+}
+
 // Help
-/// Button that opens and closes the help, with its key.
-pub const HELP: &str = "Keys (?)";
 /// Title of the help.
 pub const HELP_TITLE: &str = "Keys and gestures";
 /// Close button of the help.
@@ -55,13 +98,7 @@ pub const SHOW_REFUSED_ALONE: &str = "Show its skeleton";
 pub const MAP_REFUSED_MANUALLY: &str = "Map joints manually";
 /// Button on a toast that reports an undoable step.
 pub const UNDO: &str = "Undo";
-/// Accessible name of the path prompt's text field.
-pub const PATH: &str = "Path";
-/// Path prompt: button that opens the path.
-pub const PROMPT_OPEN: &str = "Open";
-/// Path prompt: button that saves to the path.
-pub const PROMPT_SAVE: &str = "Save";
-/// Button that closes the path prompt, or ends a recording.
+/// Button that closes a list, or ends a recording.
 pub const CANCEL: &str = "Cancel";
 
 /// Returns the label of the progress bar while a file loads.
@@ -85,19 +122,13 @@ pub fn couldnt_load(name: &str) -> String {
 }
 
 // Clips
-/// Button that opens files.
-pub const OPEN: &str = "Open…";
-/// Button that borrows motion from another file, or loads a joint map.
-pub const BORROW_MOTION: &str = "Motion…";
-/// Button that shares a link to the view.
-pub const SHARE: &str = "Share…";
 /// Heading of the clip list.
 pub const CLIPS_SECTION: &str = "CLIPS";
 /// Row of the clip list for no clip. The transport shows it in place of the time.
 pub const REST_POSE: &str = "Rest pose";
 /// Shown for a model without clips.
 pub const NO_CLIPS: &str = "This model has no animations. To borrow one, drop a motion (.bvh, .vrma, or an .fbx, .x or .glb without meshes), or use \
-    “Motion…” to take another model's clips.";
+    “Borrow motion…” to take another model's clips.";
 /// Shown for a model without clips that cannot borrow any.
 pub const NO_SKELETON: &str = "This model has no animations and no skeleton, so it can't borrow any. Skin its mesh to a skeleton and export it \
     again; for an .obj of the exercise, open its .skel and .attach as well.";
@@ -213,9 +244,14 @@ pub fn seconds(time_secs: f64, duration_secs: f64) -> String {
     format!("{time_secs:.2} / {duration_secs:.2} s")
 }
 
-/// Returns the numbers of the current and the last frame, counted from 0.
-pub fn frames(frame: f64, last: f64) -> String {
-    format!("Frame {frame:.0} / {last:.0}")
+/// Returns the numbers of the current and the last frame, counted from 0, and their rate.
+pub fn frames(frame: f64, last: f64, per_sec: f64) -> String {
+    format!("Frame {frame:.0} / {last:.0} at {} fps", (10.0 * per_sec).round() / 10.0)
+}
+
+/// Returns the time and the frame under the pointer.
+pub fn time_and_frame(secs: f64, per_sec: f64) -> String {
+    format!("{secs:.2} s · frame {:.0}", (secs * per_sec + 1e-4).floor())
 }
 
 /// Returns the accessible name of a foot's contact track.
@@ -374,6 +410,8 @@ pub const SKELETON_BOXES: &str = "Skeleton as spheres and boxes";
 pub const JOINT_WEIGHTS: &str = "Weights of the selected joint";
 /// Shown while the weights are on and no joint is selected.
 pub const JOINT_WEIGHTS_HINT: &str = "Select a joint in the viewport or in the Scene tab to see its influence.";
+/// Below the scale of the weights, in the viewport.
+pub const WEIGHT_LEGEND: &str = "weight (grey: none)";
 /// Switch that computes normals for meshes without any.
 pub const SMOOTH_SURFACE: &str = "Smooth surface";
 /// Button that undoes all edits of the morph sliders.

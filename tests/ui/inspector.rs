@@ -15,10 +15,12 @@ use gaitway::ui::{Tab, text};
 use glam::Vec3;
 
 use crate::bench::{WIDE, bench, bench_of, model_with_clips, press, sample_bench};
+use crate::motion::reach;
 
 #[test]
 fn the_tree_shows_all_joints_and_chooses_one() {
-    let mut harness = sample_bench(WIDE);
+    // Tall enough for the whole tree.
+    let mut harness = sample_bench([1280.0, 1600.0]);
     let commands = press(&mut harness, "LeftHand");
     let skeleton = &harness.state().library().active().unwrap().asset.skeleton;
     let hand = skeleton.source_index(skeleton.find("LeftHand").unwrap());
@@ -65,7 +67,7 @@ fn display_sets_skinning_overlays_and_morphs() {
     harness.run();
     let morphs: Vec<_> = harness.state().state().edits.morph.values().copied().collect();
     assert_eq!(morphs, [0.75]);
-    assert_eq!(press(&mut harness, text::RESET_MORPHS), [Command::ClearMorphs]);
+    assert_eq!(reach(&mut harness, text::RESET_MORPHS), [Command::ClearMorphs]);
 }
 
 #[test]
@@ -227,7 +229,7 @@ fn the_file_tab_lists_what_clips_animate_besides_joints() {
     assert!(harness.query_by_label_contains("Nothing (").is_none());
     let color = text::option_of("Paint", text::BASE_COLOR);
     let visibility = text::option_of("Only", text::VISIBILITY);
-    let values = [(&color, "1.000  0.500  0  1.000"), (&visibility, text::HIDDEN)];
+    let values = [(&color, "1.000  0.500  0.000  1.000"), (&visibility, text::HIDDEN)];
     for (name, value) in values {
         assert!(harness.query_by_label(&text::fact(name, value)).is_some(), "{name}");
     }
@@ -243,4 +245,16 @@ fn the_chosen_segment_says_so() {
     let toggled = |label: &str| harness.get_by_label(label).accesskit_node().toggled();
     assert_eq!(toggled(text::STUDIO), Some(egui::accesskit::Toggled::True));
     assert_eq!(toggled(text::COLOR), Some(egui::accesskit::Toggled::False));
+}
+
+/// Wherever in the tree it is, and whether or not another joint was selected before.
+#[test]
+fn selecting_a_joint_moves_no_row() {
+    let mut harness = sample_bench(WIDE);
+    for joint in ["Hips", "Chest", "Neck", "Hips"] {
+        let before = harness.get_by_label(joint).rect();
+        press(&mut harness, joint);
+        let name = |label: &str| harness.query_all_by_label(label).map(|node| node.rect()).next();
+        assert_eq!(name(joint), Some(before), "{joint}");
+    }
 }

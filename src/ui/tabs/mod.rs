@@ -39,8 +39,8 @@ impl Tab {
         match self {
             Self::Scene => "Scene",
             Self::Display => "Display",
-            Self::File => "File",
-            Self::View => "View",
+            Self::File => "Info",
+            Self::View => "Camera",
             Self::Motion => "Motion",
         }
     }

@@ -110,6 +110,8 @@ fn a_joint_is_turned_further_and_back() {
     press(&mut harness, Tab::Motion.label());
     let neck = number(&harness, "Neck");
     press(&mut harness, &text::edit_joint("Neck"));
+    harness.get_by_label(&text::rotation_offset_about("Y")).scroll_to_me();
+    harness.run();
     let from = harness.get_by_label(&text::rotation_offset_about("Y")).rect().center();
     let commands = drag(&mut harness, from, from + egui::vec2(40.0, 0.0), egui::PointerButton::Primary);
     assert!(!commands.is_empty());
@@ -117,7 +119,7 @@ fn a_joint_is_turned_further_and_back() {
     let (axis, angle) = turned.to_axis_angle();
     assert!(axis.abs_diff_eq(glam::Vec3::Y, 1e-4) && angle > 0.05, "{axis} {angle}");
     assert!(says(&harness, &format!("{})", text::HAS_OFFSET)));
-    let reset = press(&mut harness, text::RESET_OFFSET);
+    let reset = reach(&mut harness, text::RESET_OFFSET);
     assert_eq!(reset, [edit(MapEdit::Correction { target: neck, correction: glam::Quat::IDENTITY })]);
     // The drag was one step, the reset another.
     press(&mut harness, text::UNDO_KEY);
