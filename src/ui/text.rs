@@ -406,6 +406,8 @@ pub const COMPARE_RESTS: &str = "Compare rest poses";
 pub const SKELETON: &str = "Skeleton";
 /// Switch that replaces the octahedral bones; turning it on also shows the skeleton.
 pub const SKELETON_BOXES: &str = "Skeleton as spheres and boxes";
+/// Switch that adds bones without influence on a mesh; turning it on also shows the skeleton.
+pub const CONTROL_BONES: &str = "Control bones";
 /// Switch that colours the mesh by the selected joint's influence.
 pub const JOINT_WEIGHTS: &str = "Weights of the selected joint";
 /// Shown while the weights are on and no joint is selected.

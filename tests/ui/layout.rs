@@ -130,7 +130,7 @@ fn embedded_there_is_only_picture_and_transport() {
 }
 
 /// The height that the samples take on the first screen, below the canvas.
-const GALLERY_HEIGHT: f32 = 110.0;
+const GALLERY_HEIGHT: f32 = 120.0;
 
 #[test]
 fn the_first_screen_is_mostly_viewport() {

@@ -50,7 +50,7 @@ impl Tab {
 pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     let tabs = [Tab::Scene, Tab::Display, Tab::File, Tab::View, Tab::Motion].map(|tab| (tab, tab.label()));
     let count = if shown.library.motions().is_empty() { tabs.len() - 1 } else { tabs.len() };
-    if let Some(tab) = controls::segmented(ui, Some(local.layout.open_tab(shown.library)), &tabs[..count]) {
+    if let Some(tab) = controls::tabs(ui, local.layout.open_tab(shown.library), &tabs[..count]) {
         local.layout.tab = tab;
     }
     ui.add_space(4.0);
