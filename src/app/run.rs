@@ -336,8 +336,8 @@ impl App {
     /// Lays out the panels and the viewport, and applies the user's input. Returns whether there was any, the viewport's
     /// rectangle, and where to paint the scene.
     fn lay_out(&mut self, ui: &mut egui::Ui, output: &mut Output) -> (bool, egui::Rect, ui::ViewportSlot) {
-        if !self.is_laid_out {
-            self.panels.layout.start(self.context.content_rect().width());
+        if self.timing.frames == 1 {
+            self.panels.start(self.context.content_rect().width());
         }
         let shown = Shown { library: self.editor.library(), state: self.editor.state(), frame: &self.viewport.frame };
         let rect = ui::panels(ui, shown, &mut self.panels, output);

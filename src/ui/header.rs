@@ -7,6 +7,7 @@ use super::{Output, Saved, Sheet, Shown, Tab, UiAction, UiState, controls, text}
 use crate::editor::Export;
 use crate::state::active_clip;
 
+const MENU_WIDTH: f32 = 220.0;
 /// Smaller screens have no room for the name.
 const NAME_WIDTH: f32 = 350.0;
 
@@ -20,6 +21,11 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mu
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| right(ui, shown, local, out));
         });
     });
+}
+
+/// Whether there is room for the button that shows the samples; otherwise the menu has it.
+fn has_samples(ui: &Ui) -> bool {
+    ui.ctx().content_rect().width() >= 800.0
 }
 
 fn left(ui: &mut Ui, local: &mut UiState, out: &mut Output) {
@@ -38,8 +44,7 @@ fn left(ui: &mut Ui, local: &mut UiState, out: &mut Output) {
         out.actions.push(UiAction::OpenFiles);
     }
     borrow(ui, out);
-    let roomy = ui.ctx().content_rect().width() >= 800.0;
-    if roomy && local.host.has_gallery && ui.button(text::SAMPLES).clicked() {
+    if has_samples(ui) && local.host.has_gallery && ui.button(text::SAMPLES).clicked() {
         out.actions.push(UiAction::ShowGallery);
     }
 }
@@ -93,13 +98,13 @@ fn borrow(ui: &mut Ui, out: &mut Output) {
 }
 
 fn menu(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
-    ui.set_min_width(220.0);
+    ui.set_width(MENU_WIDTH);
     if local.layout.is_narrow {
         borrow(ui, out);
         ui.menu_button(text::EXPORT, |ui| export(ui, shown, local, out));
     }
     let items = [
-        (text::SAMPLES, local.host.has_gallery, UiAction::ShowGallery),
+        (text::SAMPLES, local.host.has_gallery && !has_samples(ui), UiAction::ShowGallery),
         (text::FULL_SCREEN, local.host.has_fullscreen, UiAction::ToggleFullscreen),
     ];
     for (label, is_there, action) in items {
@@ -115,6 +120,7 @@ fn menu(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
     }
     let themes =
         [(ThemePreference::System, "System"), (ThemePreference::Light, "Light"), (ThemePreference::Dark, "Dark")];
+    controls::hint(ui, text::THEME);
     let now = ui.ctx().options(|options| options.theme_preference);
     if let Some(theme) = controls::segmented_about(ui, text::THEME, Some(now), &themes) {
         out.actions.push(UiAction::SetTheme(theme));
@@ -123,7 +129,7 @@ fn menu(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
 
 /// Everything that can be saved of this view.
 fn export(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output) {
-    ui.set_min_width(220.0);
+    ui.set_width(MENU_WIDTH);
     let Some(model) = shown.library.active() else { return };
     let clip = active_clip(model, shown.state);
     let borrowed = clip.and_then(|clip| Some((clip, model.borrowed(clip)?)));

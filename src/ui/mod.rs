@@ -170,14 +170,6 @@ impl Default for Layout {
 }
 
 impl Layout {
-    /// Below this width, half of the screen is the viewport's only without the inspector.
-    const ROOMY_WIDTH: f32 = 1400.0;
-
-    /// Closes the inspector of a screen that has no room for it beside the first picture.
-    pub fn start(&mut self, screen_width: f32) {
-        self.inspector_open = screen_width >= Self::ROOMY_WIDTH;
-    }
-
     /// Shows or hides a panel.
     fn toggle(&mut self, panel: Sheet) {
         match panel {
@@ -207,7 +199,15 @@ pub enum Sheet {
     Inspector,
 }
 
+/// On narrower screens, half of the screen is the viewport's only without the inspector.
+const ROOMY_WIDTH: f32 = 1400.0;
+
 impl UiState {
+    /// Closes the inspector of a screen that has no room for it beside the first picture, unless the view is about a joint in it.
+    pub fn start(&mut self, screen_width: f32) {
+        self.layout.inspector_open = screen_width >= ROOMY_WIDTH || self.joint_card.is_posing;
+    }
+
     /// Shows the pose sliders if the opened view selects a joint that it poses manually.
     pub fn on_view_opened(&mut self, state: &ViewerState) {
         self.joint_card.is_posing = state.selection.joint.is_some_and(|joint| state.edits.pose.contains_key(&joint));

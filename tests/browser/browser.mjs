@@ -315,3 +315,13 @@ const STILL_FRAMES = 45;
 export async function untilStill(page) {
   await eventually(async () => (await framesDrawnDuring(page, STILL_FRAMES)) === 0, "the app should come to rest");
 }
+
+/**
+ * Opens the inspector, with which a screen of this size doesn't start.
+ * @param {Page} page
+ */
+export async function openInspector(page) {
+  await page.locator("canvas").focus();
+  await page.keyboard.press("n");
+  await untilStill(page);
+}

@@ -190,7 +190,7 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
         await open(page, site.data(DANCE));
         await apply(page, { t: 1.5, play: 0 });
         const shown = await pose(page);
-        const file = await savedBy(page, 344);
+        const file = await savedBy(page, 386);
         assert.equal(file.suggestedFilename(), "Xbot-cosc422_Dance.glb");
         const base64 = fs.readFileSync(await file.path()).toString("base64");
         const document = await page.evaluate(async (base64) => {
@@ -205,7 +205,7 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
       onPage("the active map is saved as a file", model, async (page) => {
         await open(page, site.data(DANCE));
         await apply(page, { play: 0 });
-        const file = await savedBy(page, 200);
+        const file = await savedBy(page, 242);
         assert.equal(file.suggestedFilename(), "Xbot-cosc422_Dance.json");
         const saved = JSON.parse(fs.readFileSync(await file.path(), "utf8"));
         assert.equal(saved.gaitway_map, 1);
@@ -224,7 +224,7 @@ async function savedBy(page, y) {
   await page.setViewportSize({ width: 1280, height: 800 });
   await untilStill(page);
   const download = page.waitForEvent("download");
-  for (const [x, at] of [[1237, 29], [1232, 93]]) {
+  for (const [x, at] of [[1237, 69], [1232, 135]]) {
     await page.mouse.click(x, at);
     await untilStill(page);
   }

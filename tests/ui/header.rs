@@ -102,6 +102,12 @@ fn the_menu_leads_to_everything_else() {
         assert!(harness.query_by_label(text::VERSION).is_none());
     }
     let mut phone = sample_bench(NARROW);
+    phone.state_mut().panels.host.has_gallery = true;
+    phone.run();
+    choose(&mut phone, text::MENU, text::SAMPLES);
+    assert_eq!(std::mem::take(&mut phone.state_mut().actions), [UiAction::ShowGallery]);
+    phone.key_press(egui::Key::Escape);
+    phone.run();
     press(&mut phone, text::MENU);
     choose(&mut phone, text::EXPORT, text::SAVE_IMAGE);
     assert_eq!(phone.state().actions.len(), 1);

@@ -137,7 +137,7 @@ fn the_first_screen_is_mostly_viewport() {
     for (size, share) in [(WIDE, 0.5), (NARROW, 0.6)] {
         let mut harness = sample_bench([size[0], size[1] - GALLERY_HEIGHT]);
         harness.state_mut().panels.layout = Layout::default();
-        harness.state_mut().panels.layout.start(size[0]);
+        harness.state_mut().panels.start(size[0]);
         harness.run();
         let found = harness.state().viewport.area() / (size[0] * size[1]);
         assert!(found >= share, "{found} of {size:?}");

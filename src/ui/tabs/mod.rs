@@ -53,7 +53,7 @@ pub fn show(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Outpu
     if let Some(tab) = controls::tabs(ui, local.layout.open_tab(shown.library), &tabs[..count]) {
         local.layout.tab = tab;
     }
-    ui.add_space(4.0);
+    ui.add_space(6.0);
     match local.layout.open_tab(shown.library) {
         // Has a scroll area of its own.
         Tab::Scene => scene_tree::show(ui, shown, local, out),
