@@ -150,6 +150,6 @@ fn export(ui: &mut Ui, shown: &Shown<'_>, local: &mut UiState, out: &mut Output)
         }
     }
     if ui.button(text::PICTURE_SETTINGS).clicked() {
-        local.layout.show_tab(Tab::View);
+        local.layout.show_tab(Tab::Camera);
     }
 }

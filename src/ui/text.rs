@@ -5,7 +5,7 @@ use crate::retarget::RestChoice;
 // Viewport and layout
 /// Accessible name of the 3D view.
 pub const VIEWPORT: &str = "Viewport";
-/// Narrow screens: button that opens the clips sheet. Also the number of clips in the File tab.
+/// Narrow screens: button that opens the clips sheet. Also the number of clips in the Info tab.
 pub const CLIPS: &str = "Clips";
 /// Narrow screens: button that opens the inspector sheet.
 pub const INSPECTOR: &str = "Inspector";
@@ -176,7 +176,7 @@ pub const LOOK_AT_POINT: &str = "At a point";
 /// Button that returns all expressions to the clip.
 pub const RESET_EXPRESSIONS: &str = "Reset expressions";
 
-/// Returns the name of a mesh's first-person flag in the File tab.
+/// Returns the name of a mesh's first-person flag in the Info tab.
 pub fn first_person(mesh: &str) -> String {
     format!("First person: {mesh}")
 }
@@ -419,7 +419,7 @@ pub const SMOOTH_SURFACE: &str = "Smooth surface";
 /// Button that undoes all edits of the morph sliders.
 pub const RESET_MORPHS: &str = "Reset to clip";
 
-// View tab
+// Camera tab
 /// Button that looks at the model's front.
 pub const FRONT: &str = "Front";
 /// Button that looks at the model from its left.
@@ -493,7 +493,7 @@ pub fn frames_done(done: u32, count: u32) -> String {
     format!("{done} of {count} frames")
 }
 
-// File tab
+// Info tab
 /// Row of the file report: the format of the file.
 pub const FORMAT: &str = "Format";
 /// Row of the file report: the number of nodes.

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import fs from "node:fs";
 import { after, before, describe, test } from "node:test";
 import { skipWithoutData } from "../three/data.mjs";
-import { BACK_ENDS, apply, drop, furthest, meanDifference, open, picture, pose, startSite, state, until, untilStill, whenReady } from "./browser.mjs";
+import { BACK_ENDS, apply, drop, furthest, meanDifference, open, picture, pose, startSite, state, until, untilStill, whenBorrowed, whenReady } from "./browser.mjs";
 
 const XBOT = "threejs/Xbot.glb";
 const XBOT_CLIPS = 7;
@@ -77,6 +77,14 @@ describe("borrowed motion", { skip: skipWithoutData }, () => {
         const dancing = await pose(page);
         assert.equal(dancing.meshes[0].positions.length, rest.meshes[0].positions.length);
         assert.ok(furthest(dancing, rest) > 0.1, `moved by ${furthest(dancing, rest)} m`);
+      });
+
+      onPage("a character dropped at the right lends its motion", model, async (page) => {
+        await drop(page, [{ name: "Soldier.glb", url: site.data(SOLDIER) }], 0.9);
+        await whenBorrowed(page, 1);
+        const { model, motion } = await state(page);
+        assert.deepEqual([model, motion], [[site.data(XBOT)], ["Soldier.glb"]]);
+        assert.equal(await page.locator("#drop").isVisible(), false);
       });
 
       onPage("another character's clips are borrowed by role", model, async (page) => {

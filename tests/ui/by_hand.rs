@@ -136,7 +136,7 @@ fn modes_are_compared_by_a_switch() {
 #[test]
 fn pictures_and_videos_are_asked_for() {
     let mut harness = sample_bench(WIDE);
-    press(&mut harness, Tab::View.label());
+    press(&mut harness, Tab::Camera.label());
     let rate = text::option_of(text::FRAME_RATE, &text::frames_per_sec(60));
     for label in [text::SQUARE, text::TRANSPARENT_BACKGROUND, text::SAVE_IMAGE, &rate, text::RECORD] {
         harness.get_by_label(label).scroll_to_me();

@@ -188,14 +188,14 @@ fn a_joint_is_renamed_in_its_card() {
 #[test]
 fn the_model_can_be_saved_at_rest_and_as_it_stands() {
     let mut harness = strip(WIDE);
-    harness.state_mut().panels.layout.tab = Tab::File;
+    harness.state_mut().panels.layout.tab = Tab::Info;
     harness.run();
     press(&mut harness, text::SAVE_REST_POSE);
     press(&mut harness, text::SAVE_CURRENT_POSE);
     let whole = |posed| UiAction::Save(Saved::File(Export::FullModel { posed }));
     assert_eq!(harness.state().actions, [whole(false), whole(true)]);
     let mut harness = sample_bench(WIDE);
-    harness.state_mut().panels.layout.tab = Tab::File;
+    harness.state_mut().panels.layout.tab = Tab::Info;
     harness.run();
     assert!(!has(&harness, text::SAVE_CURRENT_POSE), "a glTF is one already");
 }

@@ -80,7 +80,7 @@ fn export_offers_what_the_view_has() {
     let actions = &harness.state().actions;
     assert!(matches!(actions[..], [UiAction::Save(Saved::Picture { .. }), UiAction::Record(_)]), "{actions:?}");
     choose(&mut harness, text::EXPORT, text::PICTURE_SETTINGS);
-    assert_eq!(harness.state().panels.layout.tab, Tab::View);
+    assert_eq!(harness.state().panels.layout.tab, Tab::Camera);
 }
 
 #[test]

@@ -91,7 +91,7 @@ fn display_offers_the_material_variants_of_the_file() {
 fn view_sets_camera_and_background() {
     // Tall enough for the whole tab.
     let mut harness = sample_bench([1280.0, 1600.0]);
-    press(&mut harness, Tab::View.label());
+    press(&mut harness, Tab::Camera.label());
     let angles = [(text::FRONT, 0.0, 0.0), (text::SIDE, 90.0, 0.0), (text::TOP, 0.0, 89.9)];
     for (label, yaw_degrees, pitch_degrees) in angles {
         let commands = press(&mut harness, label);
@@ -117,7 +117,7 @@ fn view_sets_the_light() {
     library.add_environment(Environment { origin: "beach.hdr".to_owned(), panorama: panorama.into(), is_own: true });
     // Tall enough for the whole tab.
     let mut harness = bench_of([1280.0, 1600.0], library);
-    press(&mut harness, Tab::View.label());
+    press(&mut harness, Tab::Camera.label());
     let agx = text::option_of(text::TONE_MAP, text::TONE_AGX);
     assert_eq!(press(&mut harness, &agx), [Command::SetToneMap(ToneMap::Agx)]);
     let outdoor = EnvironmentChoice::Setup(LightSetup::Outdoor);
@@ -139,7 +139,7 @@ fn view_sets_the_light() {
 #[test]
 fn the_file_report_counts_and_groups() {
     let mut harness = bench(WIDE, model_with_clips(3));
-    press(&mut harness, Tab::File.label());
+    press(&mut harness, Tab::Info.label());
     for (name, value) in [(text::FORMAT, "GLB"), (text::CLIPS, "3"), (text::NODES, "1")] {
         assert!(harness.query_by_label(&text::fact(name, value)).is_some(), "{name}");
     }
@@ -213,7 +213,7 @@ fn avatars_have_expressions_eyes_springs_and_a_licence() {
     assert!(matches!(commands[..], [Command::SetLookAt(LookTarget::Point(_))]), "{commands:?}");
     harness.run();
     assert!(harness.query_by_label("Z").is_some());
-    press(&mut harness, Tab::File.label());
+    press(&mut harness, Tab::Info.label());
     for (name, value) in [("Commercial usage name", "Allow"), (&*text::first_person("Head"), "Third person only")] {
         assert!(harness.query_by_label(&text::fact(name, value)).is_some(), "{name}");
     }
@@ -224,7 +224,7 @@ fn the_file_tab_lists_what_clips_animate_besides_joints() {
     let mut harness = bench(WIDE, glowing());
     press(&mut harness, "Only");
     assert!(harness.query_by_label(text::NODE_HIDDEN).is_some());
-    press(&mut harness, Tab::File.label());
+    press(&mut harness, Tab::Info.label());
     assert!(harness.query_by_label(&text::counted("Glow", 2)).is_some());
     assert!(harness.query_by_label_contains("Nothing (").is_none());
     let color = text::option_of("Paint", text::BASE_COLOR);
@@ -241,7 +241,7 @@ fn the_file_tab_lists_what_clips_animate_besides_joints() {
 #[test]
 fn the_chosen_segment_says_so() {
     let mut harness = sample_bench(WIDE);
-    press(&mut harness, Tab::View.label());
+    press(&mut harness, Tab::Camera.label());
     let toggled = |label: &str| harness.get_by_label(label).accesskit_node().toggled();
     assert_eq!(toggled(text::STUDIO), Some(egui::accesskit::Toggled::True));
     assert_eq!(toggled(text::COLOR), Some(egui::accesskit::Toggled::False));

@@ -99,9 +99,9 @@ fn everything_stays_on_the_screen() {
         if narrow {
             press(&mut harness, text::INSPECTOR);
         }
-        for tab in [Tab::Display.label(), Tab::File.label(), Tab::View.label(), Tab::Scene.label()] {
+        for tab in [Tab::Display.label(), Tab::Info.label(), Tab::Camera.label(), Tab::Scene.label()] {
             press(&mut harness, tab);
-            for node in [Tab::Scene.label(), Tab::View.label()] {
+            for node in [Tab::Scene.label(), Tab::Camera.label()] {
                 let rect = harness.get_by_label(node).rect();
                 assert!(screen.contains_rect(rect), "{node} at {rect:?} on {size:?} with {tab} open");
             }

@@ -1,4 +1,4 @@
-//! What clips animate besides joints, in the File tab: materials, lights, cameras, visibility,
+//! What clips animate besides joints, in the Info tab: materials, lights, cameras, visibility,
 //! expressions and single morph weights.
 
 use egui::Ui;

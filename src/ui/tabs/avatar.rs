@@ -1,4 +1,4 @@
-//! The avatar's part of the Display tab: expressions, eyes and spring bones; and of the File tab: licence and authors.
+//! The avatar's part of the Display tab: expressions, eyes and spring bones; and of the Info tab: licence and authors.
 
 use egui::Ui;
 

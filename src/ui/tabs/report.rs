@@ -1,4 +1,4 @@
-//! The File tab: the contents of the file, and its problems.
+//! The Info tab: the contents of the file, and its problems.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! The View tab: camera, light, background, up axis, images and videos.
+//! The Camera tab: camera, light, background, up axis, images and videos.
 
 use egui::{RichText, Ui};
 
